@@ -1,0 +1,279 @@
+//! The simulator's own reading of `config/`.
+//!
+//! The rig file says what is wired to which terminal; the world looks signals up by their fixed
+//! names, so a rewired `rig.toml` makes a rewired simulated rig. The world file
+//! ([`crate::world::table`]) says what the rig and the parts really are. Nothing here is shared
+//! with the controller: two readers that agree by accident would hide a slip.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::terminal::ModuleSpec;
+pub use crate::world::table::{DeviceWorld, FaultSpec, WorldTable, read_world};
+
+/// Why a file of the configuration cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ConfigError {
+    /// The file cannot be read at all.
+    #[error("{path}: cannot be read")]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is no TOML, or a key is unknown, missing or of the wrong kind.
+    #[error("{path}:{line}: {message}")]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// Line of the trouble, from 1; 0 where a key is missing altogether.
+        line: usize,
+        /// What was found and expected.
+        message: String,
+    },
+    /// A value is readable but cannot be.
+    #[error("{path}: {key}: {message}")]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// Key as a dotted path.
+        key: String,
+        /// What was found and expected.
+        message: String,
+    },
+}
+
+/// One serial line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LineSpec {
+    /// Key of the table `[line.NAME]`.
+    pub name: String,
+    /// Bits per second.
+    pub baud: u32,
+    /// Whether the modules of the line want a checksum.
+    pub checksum: bool,
+}
+
+/// The screw terminal a named point is wired to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Terminal {
+    /// Module identifier.
+    pub module: String,
+    /// Channel on the module.
+    pub channel: u8,
+    /// The terminal reads 0 while the signal is present.
+    pub active_low: bool,
+    /// Volts at the terminal per unit of the quantity (inputs), units per volt (outputs).
+    pub gain: f64,
+}
+
+/// A sorting bin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bin {
+    /// Key of the table `[bin]`.
+    pub name: String,
+    /// Number in the point table of the axis.
+    pub point: u8,
+    /// Position along the axis, mm from the nest.
+    pub x_mm: f64,
+    /// Digital input that watches the chute.
+    pub beam: String,
+}
+
+/// References on the interface board as their labels say.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct References {
+    /// Coil substitute, ohm.
+    pub coil_ohm: f64,
+    /// Half width of its error.
+    pub coil_tolerance_pct: f64,
+    /// Contact substitute, milliohm.
+    pub contact_mohm: f64,
+    /// Half width of its error.
+    pub contact_tolerance_pct: f64,
+    /// Voltage reference, volts.
+    pub voltage_v: f64,
+    /// Half width of its error.
+    pub voltage_tolerance_pct: f64,
+    /// Length of the reference gate pulse.
+    pub gate_pulse_ms: f64,
+    /// Nominal clock of the gated counters.
+    pub counter_clock_hz: f64,
+}
+
+/// `rig.toml` as the simulator needs it.
+#[derive(Debug, Clone)]
+pub struct RigFile {
+    /// Serial lines in order of name.
+    pub lines: Vec<LineSpec>,
+    /// Modules in order of identifier.
+    pub modules: Vec<ModuleSpec>,
+    /// Time after the last host OK at which a watched module falls to its safe outputs.
+    pub host_watchdog_ms: f64,
+    /// Analog inputs by point name.
+    pub analog_in: BTreeMap<String, Terminal>,
+    /// Analog outputs by point name.
+    pub analog_out: BTreeMap<String, Terminal>,
+    /// Digital inputs by point name.
+    pub digital_in: BTreeMap<String, Terminal>,
+    /// Digital outputs by point name.
+    pub digital_out: BTreeMap<String, Terminal>,
+    /// Gated counters by point name.
+    pub counter: BTreeMap<String, Terminal>,
+    /// RTD inputs by point name.
+    pub temperature: BTreeMap<String, Terminal>,
+    /// Named stops of the sort axis that are no bins: number in the point table and x in mm.
+    pub axis: BTreeMap<String, (u8, f64)>,
+    /// Bins in order of name.
+    pub bins: Vec<Bin>,
+    /// References on the interface board.
+    pub reference: References,
+}
+
+/// Reads `rig.toml` of the configuration folder.
+///
+/// # Errors
+/// The file cannot be read, is no TOML, or lacks something the simulated rig is made from.
+pub fn read_rig(dir: &Path) -> Result<RigFile, ConfigError> {
+    let path = dir.join("rig.toml");
+    let text = read_text(&path)?;
+    let raw: RawRig = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
+    Ok(resolve(raw))
+}
+
+/// Reads a file of the configuration as text.
+pub(crate) fn read_text(path: &Path) -> Result<String, ConfigError> {
+    std::fs::read_to_string(path)
+        .map_err(|source| ConfigError::Read { path: path.to_path_buf(), source })
+}
+
+/// A TOML error with its line.
+pub(crate) fn content(path: &Path, text: &str, error: &toml::de::Error) -> ConfigError {
+    let line = error.span().map_or(0, |s| line_of(text, s.start));
+    let message = error.message().lines().collect::<Vec<_>>().join(" ");
+    ConfigError::Content { path: path.to_path_buf(), line, message }
+}
+
+/// Line (from 1) of a byte offset.
+fn line_of(text: &str, offset: usize) -> usize {
+    text.as_bytes().iter().take(offset).filter(|&&b| b == b'\n').count() + 1
+}
+
+#[derive(Deserialize)]
+struct RawRig {
+    line: BTreeMap<String, RawLine>,
+    bus: RawBus,
+    module: BTreeMap<String, RawModule>,
+    analog_in: BTreeMap<String, RawPoint>,
+    analog_out: BTreeMap<String, RawPoint>,
+    digital_in: BTreeMap<String, RawPoint>,
+    digital_out: BTreeMap<String, RawPoint>,
+    counter: BTreeMap<String, RawPoint>,
+    temperature: BTreeMap<String, RawPoint>,
+    axis: BTreeMap<String, RawStop>,
+    bin: BTreeMap<String, RawStop>,
+    reference: References,
+}
+
+#[derive(Deserialize)]
+struct RawBus {
+    host_watchdog_ms: f64,
+}
+
+#[derive(Deserialize)]
+struct RawLine {
+    baud: u32,
+    #[serde(default)]
+    checksum: bool,
+}
+
+#[derive(Deserialize)]
+struct RawModule {
+    line: String,
+    #[serde(deserialize_with = "hex_address")]
+    address: u8,
+    model: String,
+    #[serde(flatten)]
+    settings: BTreeMap<String, toml::Value>,
+}
+
+#[derive(Deserialize)]
+struct RawPoint {
+    module: String,
+    #[serde(default)]
+    channel: u8,
+    #[serde(default)]
+    active: Active,
+    #[serde(default = "unity")]
+    gain: f64,
+}
+
+#[derive(Deserialize, Default, PartialEq)]
+#[serde(rename_all = "lowercase")]
+enum Active {
+    #[default]
+    High,
+    Low,
+}
+
+#[derive(Deserialize)]
+struct RawStop {
+    point: u8,
+    x_mm: f64,
+    #[serde(default)]
+    beam: String,
+}
+
+fn unity() -> f64 {
+    1.0
+}
+
+fn hex_address<'de, D: serde::Deserializer<'de>>(d: D) -> Result<u8, D::Error> {
+    let text = String::deserialize(d)?;
+    u8::from_str_radix(&text, 16).map_err(|_| {
+        serde::de::Error::custom(format!("found address \"{text}\", expected two hex digits"))
+    })
+}
+
+fn resolve(raw: RawRig) -> RigFile {
+    RigFile {
+        lines: raw.line.into_iter().map(line_spec).collect(),
+        modules: raw.module.into_iter().map(module_spec).collect(),
+        host_watchdog_ms: raw.bus.host_watchdog_ms,
+        analog_in: points(raw.analog_in),
+        analog_out: points(raw.analog_out),
+        digital_in: points(raw.digital_in),
+        digital_out: points(raw.digital_out),
+        counter: points(raw.counter),
+        temperature: points(raw.temperature),
+        axis: raw.axis.into_iter().map(|(name, s)| (name, (s.point, s.x_mm))).collect(),
+        bins: raw.bin.into_iter().map(bin).collect(),
+        reference: raw.reference,
+    }
+}
+
+fn line_spec((name, raw): (String, RawLine)) -> LineSpec {
+    LineSpec { name, baud: raw.baud, checksum: raw.checksum }
+}
+
+fn module_spec((id, raw): (String, RawModule)) -> ModuleSpec {
+    let RawModule { line, address, model, settings } = raw;
+    ModuleSpec { id, line, address, model, settings }
+}
+
+fn bin((name, raw): (String, RawStop)) -> Bin {
+    Bin { name, point: raw.point, x_mm: raw.x_mm, beam: raw.beam }
+}
+
+fn points(raw: BTreeMap<String, RawPoint>) -> BTreeMap<String, Terminal> {
+    let terminal = |p: RawPoint| Terminal {
+        module: p.module,
+        channel: p.channel,
+        active_low: p.active == Active::Low,
+        gain: p.gain,
+    };
+    raw.into_iter().map(|(name, p)| (name, terminal(p))).collect()
+}

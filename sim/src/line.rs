@@ -1,0 +1,115 @@
+//! One serial line as its modules hear it: characters take time, CR ends a request.
+//!
+//! The host hands bytes over at once; on the wire each takes ten bits. A request has arrived when
+//! its CR has. Fragments are joined, several requests in one piece are taken one after the other,
+//! a partial request is forgotten after [`SILENCE_US`] without a character, and one longer than any
+//! request is dropped up to its CR.
+
+use crate::dcon;
+
+/// A partial request older than this is what a crashed client left behind.
+pub const SILENCE_US: u64 = 150_000;
+
+/// Bits of a character: start, eight data, stop.
+const BITS: u64 = 10;
+
+/// Time of `characters` on the wire, microseconds, rounded up.
+pub fn wire_us(characters: usize, baud: u32) -> u64 {
+    (characters as u64 * BITS * 1_000_000).div_ceil(u64::from(baud.max(1)))
+}
+
+/// A request and the instant at which its CR has arrived.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Arrival {
+    /// Rig time, microseconds.
+    pub at_us: u64,
+    /// Without CR.
+    pub text: Vec<u8>,
+}
+
+/// Receiver of a line.
+#[derive(Debug, Clone)]
+pub struct Receiver {
+    baud: u32,
+    partial: Vec<u8>,
+    too_long: bool,
+    /// The wire is busy with characters until then.
+    busy_until_us: u64,
+}
+
+impl Receiver {
+    /// Nothing heard yet.
+    pub fn new(baud: u32) -> Self {
+        Self {
+            baud,
+            partial: Vec::with_capacity(dcon::LONGEST),
+            too_long: false,
+            busy_until_us: 0,
+        }
+    }
+
+    /// Takes bytes that the host sent at `now_us`; gives the requests they complete.
+    pub fn take(&mut self, bytes: &[u8], now_us: u64) -> Vec<Arrival> {
+        if now_us > self.busy_until_us + SILENCE_US {
+            self.partial.clear();
+            self.too_long = false;
+        }
+        let begin_us = now_us.max(self.busy_until_us);
+        let mut arrivals = Vec::new();
+        for (place, byte) in bytes.iter().enumerate() {
+            if *byte == dcon::CR {
+                let text = std::mem::take(&mut self.partial);
+                if !std::mem::take(&mut self.too_long) {
+                    let at_us = begin_us + wire_us(place + 1, self.baud);
+                    arrivals.push(Arrival { at_us, text });
+                }
+            } else if self.partial.len() < dcon::LONGEST {
+                self.partial.push(*byte);
+            } else {
+                self.too_long = true;
+            }
+        }
+        self.busy_until_us = begin_us + wire_us(bytes.len(), self.baud);
+        arrivals
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(arrivals: &[Arrival]) -> Vec<&[u8]> {
+        arrivals.iter().map(|arrival| &arrival.text[..]).collect()
+    }
+
+    #[test]
+    fn a_request_has_arrived_when_its_last_character_has() {
+        let mut line = Receiver::new(9_600);
+        let arrivals = line.take(b"#01\r", 1_000);
+        assert_eq!(arrivals[0].at_us, 1_000 + 4_167);
+    }
+
+    #[test]
+    fn fragments_are_joined_and_two_requests_in_one_piece_are_two() {
+        let mut line = Receiver::new(115_200);
+        assert!(line.take(b"#0", 0).is_empty());
+        let arrivals = line.take(b"1\r$012\r", 50_000);
+        assert_eq!(texts(&arrivals), [&b"#01"[..], &b"$012"[..]]);
+        assert!(arrivals[0].at_us < arrivals[1].at_us);
+    }
+
+    #[test]
+    fn what_a_crashed_client_left_is_forgotten_after_silence() {
+        let mut line = Receiver::new(115_200);
+        assert!(line.take(b"#0", 0).is_empty());
+        let arrivals = line.take(b"$012\r", 200_000);
+        assert_eq!(texts(&arrivals), [&b"$012"[..]]);
+    }
+
+    #[test]
+    fn an_endless_request_is_dropped_up_to_its_end() {
+        let mut line = Receiver::new(115_200);
+        assert!(line.take(&[b'x'; 500], 0).is_empty());
+        assert_eq!(texts(&line.take(b"\r#01\r", 50_000)), [&b"#01"[..]]);
+    }
+}

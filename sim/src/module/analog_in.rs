@@ -1,0 +1,280 @@
+//! Analog inputs: 7017 and 7018 families, and the RTD module 7033.
+//!
+//! | request | reply |
+//! |---|---|
+//! | `#AA` | `>` and a field per channel; a disabled channel is blank |
+//! | `#AAN` | `>` and one field; `?AA` when there is no channel N |
+//! | `$AAA` | `>` and 4 hexadecimal digits per channel, whatever the format |
+//! | `$AA5VV`, `$AA6` | enable mask, written to the EEPROM; read back |
+//!
+//! A reading is the last finished conversion of its channel (see [`super::converter`]), with this
+//! module's gain, offset and noise, quantised to 16 bit, 12 bit in fast mode, 24 bit for RTD.
+//! Factory calibration (`$AA0`, `$AA1`, `~AAEV`) is not simulated: a rig never sends it.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+use super::converter::Converter;
+use super::habit::Habit;
+use super::plate::{Commissioning, Plate};
+use super::range::{self, Format, Range};
+use super::{Built, Family, Terminals, setting};
+use crate::dcon::{self, Answer, Request};
+use crate::error::SimError;
+use crate::terminal::ModuleSpec;
+
+/// Bit of FF that selects the fast mode.
+const FAST: u8 = 0x20;
+
+/// Bit of FF for the mains filter.
+const MAINS_50_HZ: u8 = 0x80;
+
+/// Conversions a second of the RTD module, all channels together.
+const RTD_PER_S: f64 = 15.0;
+
+struct AnalogIn {
+    kind: Kind,
+    converter: Converter,
+    /// Fractions of full scale.
+    readings: [f64; 8],
+    habit: Habit,
+    rng: ChaCha8Rng,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Voltage { may_be_fast: bool },
+    Rtd,
+}
+
+impl Kind {
+    fn channels(self) -> u8 {
+        match self {
+            Self::Voltage { .. } => 8,
+            Self::Rtd => 3,
+        }
+    }
+
+    fn range(self, type_code: u8) -> Option<Range> {
+        match self {
+            Self::Voltage { .. } => range::voltage_range(type_code),
+            Self::Rtd => range::rtd_range(type_code),
+        }
+    }
+
+    fn bits(self, format: u8) -> i32 {
+        match self {
+            Self::Rtd => 24,
+            Self::Voltage { .. } if format & FAST != 0 => 12,
+            Self::Voltage { .. } => 16,
+        }
+    }
+}
+
+/// Commissions an analog input as its table says.
+pub(super) fn build(
+    spec: &ModuleSpec,
+    model: &str,
+    line: Commissioning,
+    habit: &Habit,
+    rng: ChaCha8Rng,
+) -> Result<Built, SimError> {
+    let (kind, default_type) = match model {
+        "7033" => (Kind::Rtd, 0x20),
+        "7018" | "7018P" | "7018R" => (Kind::Voltage { may_be_fast: false }, 0x05),
+        "7017" => (Kind::Voltage { may_be_fast: false }, 0x08),
+        _ => (Kind::Voltage { may_be_fast: true }, 0x08),
+    };
+    let type_code = type_code(spec, kind, default_type)?;
+    let plate = Plate::new(spec, line, type_code, format_bits(spec, kind)?)?;
+    let all = (1u16 << kind.channels()).wrapping_sub(1);
+    let mask = match setting::bits(spec, "mask")? {
+        Some(mask) => mask,
+        None => setting::bits(spec, "enabled")?.unwrap_or(u32::from(all)),
+    };
+    let per_s = pace(kind, habit, plate.format);
+    let family = AnalogIn {
+        kind,
+        converter: Converter::new(kind.channels(), mask as u8 & all as u8, per_s),
+        readings: [0.0; 8],
+        habit: habit.clone(),
+        rng,
+    };
+    Ok((plate, Box::new(family)))
+}
+
+fn type_code(spec: &ModuleSpec, kind: Kind, default: u8) -> Result<u8, SimError> {
+    let key = if spec.settings.contains_key("type") {
+        "type"
+    } else {
+        "range"
+    };
+    let code = setting::code(spec, key)?.unwrap_or(default);
+    match kind.range(code) {
+        Some(_) => Ok(code),
+        None => Err(setting::wrong(spec, key, "a type code of this module")),
+    }
+}
+
+fn format_bits(spec: &ModuleSpec, kind: Kind) -> Result<u8, SimError> {
+    let name = setting::text(spec, "format")?.unwrap_or("engineering");
+    let format = Format::named(name)
+        .ok_or_else(|| setting::wrong(spec, "format", "engineering, percent or hex"))?;
+    let fast = setting::flag(spec, "fast")?.unwrap_or(false);
+    if fast && kind != (Kind::Voltage { may_be_fast: true }) {
+        return Err(setting::wrong(
+            spec,
+            "fast",
+            "false: this model has no fast mode",
+        ));
+    }
+    Ok(format | if fast { FAST } else { 0 })
+}
+
+fn pace(kind: Kind, habit: &Habit, format: u8) -> f64 {
+    match kind {
+        Kind::Rtd => RTD_PER_S,
+        Kind::Voltage { .. } if format & FAST != 0 => habit.fast_per_s,
+        Kind::Voltage { .. } => habit.normal_per_s,
+    }
+}
+
+impl AnalogIn {
+    fn convert(&mut self, plate: &Plate, channel: u8, terminal: f64) {
+        let Some(range) = self.kind.range(plate.type_code) else {
+            return;
+        };
+        let reading = if terminal.is_nan() {
+            self.open_input()
+        } else {
+            self.digitise(range, plate.format, terminal)
+        };
+        self.readings[usize::from(channel)] = reading;
+    }
+
+    /// Nothing connected: an open sensor reads over range, open voltage terminals read zero.
+    fn open_input(&self) -> f64 {
+        match self.kind {
+            Kind::Rtd => f64::INFINITY,
+            Kind::Voltage { .. } => 0.0,
+        }
+    }
+
+    fn digitise(&mut self, range: Range, format: u8, terminal: f64) -> f64 {
+        let steps = 2f64.powi(self.kind.bits(format) - 1);
+        if self.kind == Kind::Rtd {
+            return (range.fraction(terminal) * steps).round() / steps;
+        }
+        let ideal = terminal * (1.0 + self.habit.ai_gain)
+            + self.habit.ai_offset * range.full_scale / range.per_terminal;
+        let noise: f64 = match self.habit.ai_noise_lsb {
+            0.0 => 0.0,
+            sd => self.rng.sample::<f64, _>(StandardNormal) * sd,
+        };
+        let noisy = ideal + noise / steps * range.full_scale / range.per_terminal;
+        (range.fraction(noisy) * steps).round() / steps
+    }
+
+    fn field(&self, plate: &Plate, channel: u8, format: Format, text: &mut String) {
+        if self.converter.mask() & (1 << channel) == 0 {
+            text.push_str(if format == Format::Hex {
+                "    "
+            } else {
+                "       "
+            });
+        } else if let Some(range) = self.kind.range(plate.type_code) {
+            range.spell(self.readings[usize::from(channel)], format, text);
+        }
+    }
+
+    fn fields(&self, plate: &Plate, format: Format) -> Answer {
+        let mut text = String::with_capacity(dcon::LONGEST);
+        text.push('>');
+        for channel in 0..self.kind.channels() {
+            self.field(plate, channel, format, &mut text);
+        }
+        Answer::Reply(text)
+    }
+
+    fn one_field(&self, plate: &Plate, digit: u8, format: Format) -> Answer {
+        match dcon::hex_digit(digit) {
+            Some(channel) if channel < self.kind.channels() => {
+                let mut text = String::with_capacity(dcon::LONGEST);
+                text.push('>');
+                self.field(plate, channel, format, &mut text);
+                Answer::Reply(text)
+            }
+            Some(_) => dcon::refused(plate.address),
+            None => Answer::Unknown,
+        }
+    }
+
+    fn enable(&mut self, plate: &mut Plate, mask: u8, at: &mut Terminals<'_>) -> Answer {
+        let all = (1u16 << self.kind.channels()).wrapping_sub(1);
+        if u16::from(mask) & !all != 0 {
+            return dcon::refused(plate.address);
+        }
+        self.converter.enable(mask, at);
+        plate.eeprom_writes += 1;
+        dcon::done(plate.address)
+    }
+}
+
+impl Family for AnalogIn {
+    fn fits(&self, type_code: u8, format: u8) -> bool {
+        let may_be_fast = self.kind == (Kind::Voltage { may_be_fast: true });
+        let known = MAINS_50_HZ | 0x40 | 0b11 | if may_be_fast { FAST } else { 0 };
+        self.kind.range(type_code).is_some() && Format::of(format).is_some() && format & !known == 0
+    }
+
+    fn answer(
+        &mut self,
+        plate: &mut Plate,
+        request: &Request<'_>,
+        at: &mut Terminals<'_>,
+    ) -> Answer {
+        let format = Format::of(plate.format).unwrap_or(Format::Engineering);
+        match (request.lead, request.body) {
+            (b'#', []) => self.fields(plate, format),
+            (b'#', [digit]) => self.one_field(plate, *digit, format),
+            (b'$', b"A") => self.fields(plate, Format::Hex),
+            (b'$', b"6") => dcon::done_hex(plate.address, u64::from(self.converter.mask()), 2),
+            (b'$', [b'5', high, low]) => match dcon::hex_byte(&[*high, *low]) {
+                Some(mask) => self.enable(plate, mask, at),
+                None => Answer::Unknown,
+            },
+            (_, _) => Answer::Unknown,
+        }
+    }
+
+    fn configured(&mut self, plate: &Plate, _at: &mut Terminals<'_>) {
+        self.converter
+            .set_pace(pace(self.kind, &self.habit, plate.format));
+    }
+
+    fn next_us(&self) -> u64 {
+        self.converter.next_us()
+    }
+
+    fn run(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+        if let Some((channel, mean)) = self.converter.run(at) {
+            self.convert(plate, channel, mean);
+        }
+    }
+
+    fn sample(&mut self, _at: &mut Terminals<'_>) {}
+
+    fn make_safe(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+
+    fn restart(&mut self, _plate: &Plate) {}
+
+    /// The module has been under power for long: every channel holds a reading.
+    fn energise(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+        for channel in 0..self.kind.channels() {
+            let terminal = at.plant.analog_in(at.module, channel);
+            self.convert(plate, channel, terminal);
+        }
+        self.converter.start(at);
+    }
+}

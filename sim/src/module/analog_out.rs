@@ -1,0 +1,495 @@
+//! Analog outputs: 7021, 7021P (one channel), 7022 (two), 7024 (four).
+//!
+//! | request | reply |
+//! |---|---|
+//! | `#AA(data)`, `#AAN(data)` | `>`; beyond the range `?AA` and the nearest end; tripped `!` |
+//! | `$AA6[N]` | last commanded value |
+//! | `$AA8[N]` | present value: what the terminals carry (7021), the computed ramp (others) |
+//! | `$AA4[N]`, `$AA7[N]` | store the commanded value as power-on value; read it |
+//! | `~AA5[N]`, `~AA4[N]` | the same for the safe value |
+//! | `$AA9N`, `$AA9NTS` | type and slew of one channel (7022) |
+//!
+//! The terminals carry the quantised value with this module's gain error and offset. Data of the
+//! right alphabet but the wrong width are refused with `?AA`; other text is not understood.
+
+use super::habit::Habit;
+use super::plate::{Commissioning, Plate};
+use super::ramp::{Ramp, nominal_rate};
+use super::range::Format;
+use super::{Built, Family, Terminals, setting};
+use crate::dcon::{self, Answer, Request};
+use crate::error::SimError;
+use crate::terminal::ModuleSpec;
+
+struct AnalogOut {
+    model: Model,
+    channels: Vec<Channel>,
+    habit: Habit,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Model {
+    channels: u8,
+    bits: i32,
+    /// Data carry a sign (7024).
+    signed: bool,
+    /// Commands carry a channel digit.
+    numbered: bool,
+    /// Type and slew belong to the channel (7022).
+    own_slew: bool,
+    /// `$AA8` measures the terminals.
+    true_readback: bool,
+}
+
+#[derive(Debug, Clone)]
+struct Channel {
+    ramp: Ramp,
+    power_on: f64,
+    safe: f64,
+    /// Type nibble and slew code of a 7022 channel.
+    own: (u8, u8),
+}
+
+/// Ends of an output range and whether it is a current.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Span {
+    low: f64,
+    high: f64,
+    is_current: bool,
+}
+
+fn span(model: Model, type_code: u8) -> Option<Span> {
+    let (low, high, is_current) = match type_code {
+        0x30 => (0.0, 20.0, true),
+        0x31 => (4.0, 20.0, true),
+        0x32 => (0.0, 10.0, false),
+        0x33 if model.signed => (-10.0, 10.0, false),
+        0x34 if model.signed => (0.0, 5.0, false),
+        0x35 if model.signed => (-5.0, 5.0, false),
+        _ => return None,
+    };
+    Some(Span {
+        low,
+        high,
+        is_current,
+    })
+}
+
+fn model(number: &str) -> Model {
+    let one = Model {
+        channels: 1,
+        bits: 12,
+        signed: false,
+        numbered: false,
+        own_slew: false,
+        true_readback: true,
+    };
+    let several = Model {
+        numbered: true,
+        true_readback: false,
+        ..one
+    };
+    match number {
+        "7021P" => Model { bits: 16, ..one },
+        "7022" => Model {
+            channels: 2,
+            own_slew: true,
+            ..several
+        },
+        "7024" => Model {
+            channels: 4,
+            bits: 14,
+            signed: true,
+            ..several
+        },
+        _ => one,
+    }
+}
+
+/// Commissions an analog output as its table says.
+pub(super) fn build(
+    spec: &ModuleSpec,
+    number: &str,
+    line: Commissioning,
+    habit: &Habit,
+) -> Result<Built, SimError> {
+    let model = model(number);
+    let key = if spec.settings.contains_key("type") {
+        "type"
+    } else {
+        "range"
+    };
+    let type_code = setting::code(spec, key)?.unwrap_or(if model.own_slew { 0x3F } else { 0x32 });
+    if !model.own_slew && span(model, type_code).is_none() {
+        return Err(setting::wrong(spec, key, "a type code of this module"));
+    }
+    let slew = setting::code(spec, "slew")?.unwrap_or(0);
+    if slew > 0xF {
+        return Err(setting::wrong(spec, "slew", "0 to F"));
+    }
+    let name = setting::text(spec, "format")?.unwrap_or("engineering");
+    let format = Format::named(name)
+        .ok_or_else(|| setting::wrong(spec, "format", "engineering, percent or hex"))?;
+    let plate_type = if model.own_slew { 0x3F } else { type_code };
+    let plate = Plate::new(spec, line, plate_type, format | slew << 2)?;
+    let channels = channels(spec, model, type_code, slew)?;
+    let family = AnalogOut {
+        model,
+        channels,
+        habit: habit.clone(),
+    };
+    Ok((plate, Box::new(family)))
+}
+
+fn channels(
+    spec: &ModuleSpec,
+    model: Model,
+    type_code: u8,
+    slew: u8,
+) -> Result<Vec<Channel>, SimError> {
+    let (safe, power_on) = (
+        setting::numbers(spec, "safe")?,
+        setting::numbers(spec, "power_on")?,
+    );
+    let outputs = setting::numbers(spec, "outputs")?;
+    let nth = |list: &[f64], channel: u8| list.get(usize::from(channel)).copied();
+    let channel = |n: u8| {
+        let power_on = nth(&power_on, n).unwrap_or(0.0);
+        Channel {
+            ramp: Ramp::at(nth(&outputs, n).unwrap_or(power_on)),
+            power_on,
+            safe: nth(&safe, n).unwrap_or(0.0),
+            own: (
+                if type_code == 0x3F {
+                    2
+                } else {
+                    type_code & 0xF
+                },
+                slew,
+            ),
+        }
+    };
+    Ok((0..model.channels).map(channel).collect())
+}
+
+impl AnalogOut {
+    fn span(&self, plate: &Plate, channel: usize) -> Span {
+        let type_code = if self.model.own_slew {
+            0x30 | self.channels[channel].own.0
+        } else {
+            plate.type_code
+        };
+        span(self.model, type_code).unwrap_or(Span {
+            low: 0.0,
+            high: 10.0,
+            is_current: false,
+        })
+    }
+
+    fn slew(&self, plate: &Plate, channel: usize) -> u8 {
+        if self.model.own_slew {
+            self.channels[channel].own.1
+        } else {
+            plate.format >> 2 & 0xF
+        }
+    }
+
+    fn format(&self, plate: &Plate) -> Format {
+        match Format::of(plate.format) {
+            Some(format) if !self.model.signed => format,
+            _ => Format::Engineering,
+        }
+    }
+
+    /// What the terminals carry: quantised, with this module's errors.
+    fn carried(&self, span: Span, value: f64) -> f64 {
+        let width = span.high - span.low;
+        let steps = 2f64.powi(self.model.bits) - 1.0;
+        let quantised = span.low + ((value - span.low) / width * steps).round() / steps * width;
+        self.with_errors(quantised)
+    }
+
+    fn with_errors(&self, value: f64) -> f64 {
+        value * (1.0 + self.habit.ao_gain) + self.habit.ao_offset_v
+    }
+
+    /// The plant has one analog output per module: channel 0.
+    fn drive(&self, plate: &Plate, channel: usize, at: &mut Terminals<'_>) {
+        if channel == 0 {
+            let value = self.carried(self.span(plate, 0), self.channels[0].ramp.present());
+            at.plant.analog_out(at.module, value);
+        }
+    }
+
+    fn output(
+        &mut self,
+        plate: &Plate,
+        channel: usize,
+        data: &[u8],
+        at: &mut Terminals<'_>,
+    ) -> Answer {
+        if plate.watchdog.tripped() {
+            return dcon::ignored();
+        }
+        let span = self.span(plate, channel);
+        let value = match self.read(plate, span, data) {
+            Data::Value(value) => value,
+            Data::WrongWidth => return dcon::refused(plate.address),
+            Data::Nonsense => return Answer::Unknown,
+        };
+        let legal = value.clamp(span.low, span.high);
+        match self.slew(plate, channel) {
+            0 => {
+                self.channels[channel].ramp.jump(legal);
+                self.drive(plate, channel, at);
+            }
+            _ => {
+                let refresh_us = self.habit.ao_refresh_us;
+                self.channels[channel].ramp.go(legal, at.now_us, refresh_us);
+            }
+        }
+        if legal == value {
+            dcon::accepted()
+        } else {
+            dcon::refused(plate.address)
+        }
+    }
+
+    fn read(&self, plate: &Plate, span: Span, data: &[u8]) -> Data {
+        match self.format(plate) {
+            Format::Hex => {
+                let digits = if self.model.bits > 12 { 4 } else { 3 };
+                match dcon::hex(data) {
+                    Some(code) if data.len() == digits => {
+                        let top = 16f64.powi(digits as i32) - 1.0;
+                        Data::Value(span.low + f64::from(code) / top * (span.high - span.low))
+                    }
+                    Some(_) => Data::WrongWidth,
+                    None => Data::Nonsense,
+                }
+            }
+            Format::Percent => match fixed(data, true, 3, 2) {
+                Data::Value(percent) => {
+                    Data::Value(span.low + percent / 100.0 * (span.high - span.low))
+                }
+                other => other,
+            },
+            Format::Engineering => fixed(data, self.model.signed, 2, 3),
+        }
+    }
+
+    fn spelt(&self, plate: &Plate, channel: usize, value: f64) -> String {
+        let span = self.span(plate, channel);
+        let fraction = (value - span.low) / (span.high - span.low);
+        match self.format(plate) {
+            Format::Hex => {
+                let digits: u32 = if self.model.bits > 12 { 4 } else { 3 };
+                let top = 16f64.powi(digits as i32) - 1.0;
+                let mut text = String::new();
+                let code = (fraction.clamp(0.0, 1.0) * top).round() as u64;
+                dcon::push_hex(&mut text, code, digits);
+                text
+            }
+            Format::Percent => format!("{:+07.2}", (fraction * 100.0).max(0.0)),
+            Format::Engineering if self.model.signed => format!("{value:+07.3}"),
+            Format::Engineering => format!("{:06.3}", value.max(0.0)),
+        }
+    }
+
+    fn shown(&self, plate: &Plate, channel: usize, value: f64) -> Answer {
+        dcon::done_with(plate.address, &self.spelt(plate, channel, value))
+    }
+
+    fn present(&self, channel: usize) -> f64 {
+        let value = self.channels[channel].ramp.present();
+        if self.model.true_readback {
+            // The converter that reads back is finer than the one that drives.
+            self.with_errors(value)
+        } else {
+            value
+        }
+    }
+
+    fn command(
+        &mut self,
+        plate: &mut Plate,
+        lead: u8,
+        digit: u8,
+        channel: usize,
+        rest: &[u8],
+    ) -> Answer {
+        let store = |plate: &mut Plate| {
+            plate.eeprom_writes += 1;
+            dcon::done(plate.address)
+        };
+        let target = self.channels[channel].ramp.target();
+        match (lead, digit, rest) {
+            (b'$', b'6', []) => self.shown(plate, channel, target),
+            (b'$', b'8', []) => self.shown(plate, channel, self.present(channel)),
+            (b'$', b'7', []) => self.shown(plate, channel, self.channels[channel].power_on),
+            (b'~', b'4', []) => self.shown(plate, channel, self.channels[channel].safe),
+            (b'$', b'4', []) => {
+                self.channels[channel].power_on = target;
+                store(plate)
+            }
+            (b'~', b'5', []) => {
+                self.channels[channel].safe = target;
+                store(plate)
+            }
+            (b'$', b'9', rest) if self.model.own_slew => self.own_slew(plate, channel, rest),
+            (_, _, _) => Answer::Unknown,
+        }
+    }
+
+    fn own_slew(&mut self, plate: &mut Plate, channel: usize, rest: &[u8]) -> Answer {
+        match rest {
+            [] => {
+                let (kind, slew) = self.channels[channel].own;
+                dcon::done_hex(plate.address, u64::from(kind << 4 | slew), 2)
+            }
+            [kind @ b'0'..=b'2', slew] => match dcon::hex_digit(*slew) {
+                Some(slew) => {
+                    self.channels[channel].own = (kind - b'0', slew);
+                    plate.eeprom_writes += 1;
+                    dcon::done(plate.address)
+                }
+                None => Answer::Unknown,
+            },
+            _ => Answer::Unknown,
+        }
+    }
+}
+
+enum Data {
+    Value(f64),
+    WrongWidth,
+    Nonsense,
+}
+
+/// `ddd.dd` and the like, with or without a leading sign.
+fn fixed(data: &[u8], signed: bool, whole: usize, decimals: usize) -> Data {
+    let alphabet = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'+' | b'-' | b'.');
+    if data.is_empty() || !data.iter().all(alphabet) {
+        return Data::Nonsense;
+    }
+    let (sign, digits) = match data {
+        [b'+', rest @ ..] if signed => (1.0, rest),
+        [b'-', rest @ ..] if signed => (-1.0, rest),
+        rest if !signed => (1.0, rest),
+        _ => return Data::WrongWidth,
+    };
+    let form = digits.len() == whole + 1 + decimals
+        && digits.iter().enumerate().all(|(place, byte)| {
+            (*byte == b'.') == (place == whole) && !matches!(byte, b'+' | b'-')
+        });
+    match std::str::from_utf8(digits)
+        .ok()
+        .and_then(|text| text.parse::<f64>().ok())
+    {
+        Some(value) if form => Data::Value(sign * value),
+        _ => Data::WrongWidth,
+    }
+}
+
+impl Family for AnalogOut {
+    fn fits(&self, type_code: u8, format: u8) -> bool {
+        let type_fits = if self.model.own_slew {
+            type_code == 0x3F
+        } else {
+            span(self.model, type_code).is_some()
+        };
+        type_fits && Format::of(format).is_some() && format & 0x80 == 0
+    }
+
+    fn answer(
+        &mut self,
+        plate: &mut Plate,
+        request: &Request<'_>,
+        at: &mut Terminals<'_>,
+    ) -> Answer {
+        let channel_of = |digit: u8| dcon::hex_digit(digit).map(usize::from);
+        match (request.lead, request.body) {
+            (b'#', [digit, data @ ..]) if self.model.numbered => match channel_of(*digit) {
+                Some(channel) if channel < self.channels.len() => {
+                    self.output(plate, channel, data, at)
+                }
+                Some(_) => dcon::refused(plate.address),
+                None => Answer::Unknown,
+            },
+            (b'#', data) if !self.model.numbered => self.output(plate, 0, data, at),
+            (lead @ (b'$' | b'~'), [command @ b'4'..=b'9', digit, rest @ ..])
+                if self.model.numbered =>
+            {
+                match channel_of(*digit) {
+                    Some(channel) if channel < self.channels.len() => {
+                        self.command(plate, lead, *command, channel, rest)
+                    }
+                    Some(_) => dcon::refused(plate.address),
+                    None => Answer::Unknown,
+                }
+            }
+            (lead @ (b'$' | b'~'), [command @ b'4'..=b'9', rest @ ..]) if !self.model.numbered => {
+                self.command(plate, lead, *command, 0, rest)
+            }
+            (_, _) => Answer::Unknown,
+        }
+    }
+
+    fn configured(&mut self, plate: &Plate, _at: &mut Terminals<'_>) {
+        for channel in 0..self.channels.len() {
+            let span = self.span(plate, channel);
+            let target = self.channels[channel]
+                .ramp
+                .target()
+                .clamp(span.low, span.high);
+            if target != self.channels[channel].ramp.target() {
+                self.channels[channel].ramp.jump(target);
+            }
+        }
+    }
+
+    fn next_us(&self) -> u64 {
+        self.channels
+            .iter()
+            .fold(u64::MAX, |next, channel| next.min(channel.ramp.next_us()))
+    }
+
+    fn run(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+        let refresh_us = self.habit.ao_refresh_us;
+        for channel in 0..self.channels.len() {
+            if self.channels[channel].ramp.next_us() > at.now_us {
+                continue;
+            }
+            let is_current = self.span(plate, channel).is_current;
+            let rate = nominal_rate(self.slew(plate, channel), is_current).unwrap_or(f64::INFINITY);
+            let step = rate * (1.0 + self.habit.ao_slope) * refresh_us as f64 * 1e-6;
+            self.channels[channel].ramp.step(step, refresh_us);
+            self.drive(plate, channel, at);
+        }
+    }
+
+    fn sample(&mut self, _at: &mut Terminals<'_>) {}
+
+    fn make_safe(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+        for channel in &mut self.channels {
+            channel.ramp.jump(channel.safe);
+        }
+        self.drive(plate, 0, at);
+    }
+
+    fn restart(&mut self, plate: &Plate) {
+        let tripped = plate.watchdog.tripped();
+        for channel in &mut self.channels {
+            let value = if tripped {
+                channel.safe
+            } else {
+                channel.power_on
+            };
+            channel.ramp.jump(value);
+        }
+    }
+
+    fn energise(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+        self.drive(plate, 0, at);
+    }
+}

@@ -1,0 +1,432 @@
+//! The counter and frequency module 7080 (7080B, 7080D): two gated 32-bit counters.
+//!
+//! Each counter runs from its preset to its maximum and wraps to the preset, setting its overflow
+//! flag. Gating is done in hardware: a counter has seen the pulses of the clock at its input during
+//! the whole time its gate was open, whenever it is asked. Gate mode 0 counts while the gate is
+//! shut, 1 while it is open, 2 always. In frequency mode (type 51) a reading is the frequency in
+//! hertz with the step of the gate time: 10 Hz (0.1 s) or 1 Hz (1.0 s, FF bit 2).
+//!
+//! `#AAN` with a bad channel is not answered. Settings that outlive the power are EEPROM writes.
+//! Alarm and LED commands keep their values; alarms themselves are not simulated beyond owning the
+//! outputs while they are enabled.
+
+use super::plate::{Commissioning, Plate};
+use super::{Built, Family, Terminals, setting};
+use crate::dcon::{self, Answer, Request};
+use crate::error::SimError;
+use crate::terminal::ModuleSpec;
+
+/// Bit of FF for the long frequency gate.
+const ONE_SECOND_GATE: u8 = 0x04;
+
+struct Counter {
+    channels: [Channel; 2],
+    gate_mode: u8,
+    input_mode: u8,
+    filter_on: bool,
+    /// Least width of a high and a low level, microseconds.
+    filter_us: [u32; 2],
+    /// Thresholds of the TTL inputs in tenths of a volt, high and low.
+    threshold: [u32; 2],
+    outputs: u8,
+    alarm_enabled: bool,
+    /// Alarm limits of `@AAPA` and `@AASA`.
+    limits: [u32; 2],
+    led: u8,
+    has_led: bool,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Channel {
+    preset: u32,
+    maximum: u32,
+    running: bool,
+    overflowed: bool,
+    /// Time during which pulses were let through, microseconds.
+    counted_us: f64,
+    /// Gate time at the last look.
+    seen_us: f64,
+    /// Pulses that had passed when the counter stood at `start` above its preset.
+    zero_pulses: u64,
+    start: u64,
+    /// Frequency at a bench input; on a rig the reference clock of the plant.
+    bench_hz: Option<f64>,
+}
+
+impl Channel {
+    fn hz(&self, at: &Terminals<'_>) -> f64 {
+        self.bench_hz
+            .unwrap_or_else(|| at.plant.reference_clock_hz())
+    }
+
+    fn pulses(&self, hz: f64) -> u64 {
+        (hz * self.counted_us * 1e-6).floor() as u64
+    }
+
+    fn span(&self) -> u64 {
+        u64::from(self.maximum.saturating_sub(self.preset)) + 1
+    }
+
+    fn position(&self, hz: f64) -> u64 {
+        self.start + (self.pulses(hz) - self.zero_pulses)
+    }
+
+    fn value(&self, hz: f64) -> u64 {
+        u64::from(self.preset) + self.position(hz) % self.span()
+    }
+
+    fn overflow(&self, hz: f64) -> bool {
+        self.overflowed || self.position(hz) >= self.span()
+    }
+
+    fn reset(&mut self, hz: f64) {
+        self.zero_pulses = self.pulses(hz);
+        self.start = 0;
+        self.overflowed = false;
+    }
+}
+
+/// Commissions a counter module as its table says.
+pub(super) fn build(
+    spec: &ModuleSpec,
+    model: &str,
+    line: Commissioning,
+) -> Result<Built, SimError> {
+    let key = if spec.settings.contains_key("type") {
+        "type"
+    } else {
+        "range"
+    };
+    let type_code = setting::code(spec, key)?.unwrap_or(0x50);
+    if !matches!(type_code, 0x50 | 0x51) {
+        return Err(setting::wrong(spec, key, "50 or 51"));
+    }
+    let pair = |key: &str, default: [u32; 2]| {
+        let list = setting::numbers(spec, key)?;
+        let nth = |n: usize| list.get(n).map_or(default[n], |value| *value as u32);
+        Ok::<_, SimError>([nth(0), nth(1)])
+    };
+    let small = |key: &str, default: u8| {
+        Ok::<_, SimError>(setting::bits(spec, key)?.map_or(default, |value| value as u8))
+    };
+    let family = Counter {
+        channels: channels(spec)?,
+        gate_mode: gate_mode(spec)?,
+        input_mode: small("input_mode", 1)?,
+        filter_on: setting::flag(spec, "filter")?.unwrap_or(false),
+        filter_us: pair("filter_us", [2, 2])?,
+        threshold: pair("threshold", [24, 8])?,
+        outputs: small("outputs", 0)? & 0b11,
+        alarm_enabled: false,
+        limits: [u32::MAX; 2],
+        led: small("led", 0)?,
+        has_led: model == "7080D",
+    };
+    Ok((Plate::new(spec, line, type_code, 0)?, Box::new(family)))
+}
+
+fn channels(spec: &ModuleSpec) -> Result<[Channel; 2], SimError> {
+    let preset = setting::numbers(spec, "preset")?;
+    let maximum = setting::numbers(spec, "maximum")?;
+    let counts = setting::numbers(spec, "counts")?;
+    let inputs = setting::numbers(spec, "inputs")?;
+    let running = setting::bits(spec, "enabled")?.unwrap_or(0b11);
+    let overflow = setting::bits(spec, "overflow")?.unwrap_or(0);
+    Ok([0usize, 1].map(|n| {
+        let preset = preset.get(n).map_or(0, |value| *value as u32);
+        let count = counts.get(n).map_or(preset, |value| *value as u32);
+        Channel {
+            preset,
+            maximum: maximum.get(n).map_or(u32::MAX, |value| *value as u32),
+            running: running & 1 << n != 0,
+            overflowed: overflow & 1 << n != 0,
+            counted_us: 0.0,
+            seen_us: 0.0,
+            zero_pulses: 0,
+            start: u64::from(count.saturating_sub(preset)),
+            bench_hz: inputs.get(n).copied(),
+        }
+    }))
+}
+
+fn gate_mode(spec: &ModuleSpec) -> Result<u8, SimError> {
+    match spec.settings.get("gate") {
+        None => Ok(1),
+        Some(toml::Value::Integer(mode @ 0..=2)) => Ok(*mode as u8),
+        Some(toml::Value::String(mode)) => match mode.as_str() {
+            "low" => Ok(0),
+            "high" => Ok(1),
+            "none" => Ok(2),
+            _ => Err(setting::wrong(spec, "gate", "low, high or none")),
+        },
+        Some(_) => Err(setting::wrong(spec, "gate", "0, 1 or 2")),
+    }
+}
+
+impl Counter {
+    /// Time during which the gate let pulses through so far, microseconds.
+    fn gate_us(&self, channel: usize, at: &mut Terminals<'_>) -> f64 {
+        let now_us = at.now_us as f64;
+        match self.gate_mode {
+            0 => now_us - at.plant.gate_open_us(at.module, channel as u8),
+            1 => at.plant.gate_open_us(at.module, channel as u8),
+            _ => now_us,
+        }
+    }
+
+    /// Brings both counters up to now; gives the clock of each.
+    fn look(&mut self, at: &mut Terminals<'_>) -> [f64; 2] {
+        [0, 1].map(|n| {
+            let gate_us = self.gate_us(n, at);
+            let channel = &mut self.channels[n];
+            if channel.running {
+                channel.counted_us += gate_us - channel.seen_us;
+            }
+            channel.seen_us = gate_us;
+            channel.hz(at)
+        })
+    }
+
+    fn set_gate_mode(&mut self, mode: u8, at: &mut Terminals<'_>) {
+        self.look(at);
+        self.gate_mode = mode;
+        for n in 0..2 {
+            self.channels[n].seen_us = self.gate_us(n, at);
+        }
+    }
+
+    fn reading(&mut self, plate: &Plate, n: usize, at: &mut Terminals<'_>) -> Answer {
+        let hz = self.look(at)[n];
+        let value = match (plate.type_code, plate.format & ONE_SECOND_GATE) {
+            (0x50, _) => self.channels[n].value(hz),
+            (_, 0) => (hz / 10.0).floor() as u64 * 10,
+            (_, _) => hz.floor() as u64,
+        };
+        let mut text = String::from(">");
+        dcon::push_hex(&mut text, value, 8);
+        Answer::Reply(text)
+    }
+
+    fn channel_command(
+        &mut self,
+        plate: &mut Plate,
+        command: u8,
+        n: usize,
+        rest: &[u8],
+        at: &mut Terminals<'_>,
+    ) -> Answer {
+        let hz = self.look(at)[n];
+        let channel = &mut self.channels[n];
+        match (command, rest) {
+            (b'6', []) => channel.reset(hz),
+            (b'7', []) => {
+                return dcon::done_hex(plate.address, u64::from(channel.overflow(hz)), 1);
+            }
+            (b'5', []) => {
+                return dcon::done_hex(plate.address, u64::from(channel.running), 1);
+            }
+            (b'5', [run @ (b'0' | b'1')]) => channel.running = *run == b'1',
+            (b'3', []) => return dcon::done_hex(plate.address, u64::from(channel.maximum), 8),
+            (b'3', digits) => match dcon::hex(digits) {
+                Some(maximum) if digits.len() == 8 => {
+                    channel.maximum = maximum;
+                    plate.eeprom_writes += 1;
+                }
+                _ => return Answer::Unknown,
+            },
+            (_, _) => return Answer::Unknown,
+        }
+        dcon::done(plate.address)
+    }
+
+    /// `$AA0H`, `$AA0L`, `$AA1H`, `$AA1L`: decimal settings of the inputs.
+    fn level_command(&mut self, plate: &mut Plate, kind: u8, level: u8, rest: &[u8]) -> Answer {
+        let place = usize::from(level == b'L');
+        let (values, width) = match kind {
+            b'0' => (&mut self.filter_us, 5),
+            _ => (&mut self.threshold, 2),
+        };
+        if rest.is_empty() {
+            return dcon::done_with(plate.address, &format!("{:0width$}", values[place]));
+        }
+        let limits = if kind == b'0' { 2..=65_535 } else { 0..=50 };
+        match dcon::decimal(rest) {
+            Some(value) if rest.len() == width && limits.contains(&value) => {
+                values[place] = value;
+                plate.eeprom_writes += 1;
+                dcon::done(plate.address)
+            }
+            Some(_) if rest.len() == width => dcon::refused(plate.address),
+            _ => Answer::Unknown,
+        }
+    }
+
+    /// `$AA4`, `$AAA`, `$AAB`, `$AA8`: modes of one digit.
+    fn mode_command(
+        &mut self,
+        plate: &mut Plate,
+        mode: u8,
+        rest: &[u8],
+        at: &mut Terminals<'_>,
+    ) -> Answer {
+        let (present, most) = match mode {
+            b'4' => (u8::from(self.filter_on), 1),
+            b'A' => (self.gate_mode, 2),
+            b'B' => (self.input_mode, 3),
+            _ => (self.led, 2),
+        };
+        let [digit] = rest else {
+            return if rest.is_empty() {
+                dcon::done_hex(plate.address, u64::from(present), 1)
+            } else {
+                Answer::Unknown
+            };
+        };
+        match dcon::hex_digit(*digit) {
+            Some(value) if value <= most => {
+                match mode {
+                    b'4' => self.filter_on = value == 1,
+                    b'A' => self.set_gate_mode(value, at),
+                    b'B' => self.input_mode = value,
+                    _ => self.led = value,
+                }
+                plate.eeprom_writes += 1;
+                dcon::done(plate.address)
+            }
+            Some(_) => dcon::refused(plate.address),
+            None => Answer::Unknown,
+        }
+    }
+
+    fn at_command(&mut self, plate: &mut Plate, body: &[u8], at: &mut Terminals<'_>) -> Answer {
+        match body {
+            [b'G', n @ (b'0' | b'1')] => {
+                let preset = self.channels[usize::from(n - b'0')].preset;
+                dcon::done_hex(plate.address, u64::from(preset), 8)
+            }
+            [b'P', n @ (b'0' | b'1'), digits @ ..] if digits.len() == 8 => {
+                let Some(preset) = dcon::hex(digits) else {
+                    return Answer::Unknown;
+                };
+                self.look(at);
+                self.channels[usize::from(n - b'0')].preset = preset;
+                plate.eeprom_writes += 1;
+                dcon::done(plate.address)
+            }
+            b"DI" => {
+                let alarm = u64::from(self.alarm_enabled);
+                dcon::done_hex(plate.address, alarm << 16 | u64::from(self.outputs) << 8, 5)
+            }
+            [b'D', b'O', b'0', data @ b'0'..=b'3'] => self.write(plate, data - b'0'),
+            _ => self.alarm_command(plate, body),
+        }
+    }
+
+    fn write(&mut self, plate: &Plate, outputs: u8) -> Answer {
+        if plate.watchdog.tripped() {
+            return dcon::ignored();
+        }
+        if self.alarm_enabled {
+            return dcon::refused(plate.address);
+        }
+        self.outputs = outputs;
+        dcon::done(plate.address)
+    }
+
+    fn alarm_command(&mut self, plate: &mut Plate, body: &[u8]) -> Answer {
+        match body {
+            [b'E', b'A', b'0' | b'1' | b'N' | b'T' | b'L' | b'M'] => self.alarm_enabled = true,
+            b"DA" | [b'D', b'A', _] => self.alarm_enabled = false,
+            b"CA" => return dcon::done(plate.address),
+            b"RP" | b"RA" => {
+                let limit = self.limits[usize::from(body == b"RA")];
+                return dcon::done_hex(plate.address, u64::from(limit), 8);
+            }
+            [which @ (b'P' | b'S'), b'A', digits @ ..] if digits.len() == 8 => {
+                match dcon::hex(digits) {
+                    Some(limit) => self.limits[usize::from(*which == b'S')] = limit,
+                    None => return Answer::Unknown,
+                }
+            }
+            _ => return Answer::Unknown,
+        }
+        plate.eeprom_writes += 1;
+        dcon::done(plate.address)
+    }
+}
+
+impl Family for Counter {
+    fn fits(&self, type_code: u8, format: u8) -> bool {
+        matches!(type_code, 0x50 | 0x51) && format & !(0x40 | ONE_SECOND_GATE) == 0
+    }
+
+    fn answer(
+        &mut self,
+        plate: &mut Plate,
+        request: &Request<'_>,
+        at: &mut Terminals<'_>,
+    ) -> Answer {
+        match (request.lead, request.body) {
+            (b'#', [n @ (b'0' | b'1')]) => self.reading(plate, usize::from(n - b'0'), at),
+            (
+                b'$',
+                [
+                    command @ (b'3' | b'5' | b'6' | b'7'),
+                    n @ (b'0' | b'1'),
+                    rest @ ..,
+                ],
+            ) => self.channel_command(plate, *command, usize::from(n - b'0'), rest, at),
+            // The reset status of other modules: here `$AA5N` is the state of a counter.
+            (b'$', [b'5']) => Answer::Silence,
+            (b'$', [kind @ (b'0' | b'1'), level @ (b'H' | b'L'), rest @ ..]) => {
+                self.level_command(plate, *kind, *level, rest)
+            }
+            (b'$', [mode @ (b'4' | b'A' | b'B'), rest @ ..]) => {
+                self.mode_command(plate, *mode, rest, at)
+            }
+            (b'$', [mode @ b'8', rest @ ..]) if self.has_led => {
+                self.mode_command(plate, *mode, rest, at)
+            }
+            (b'$', [b'9', data @ ..]) if self.has_led && data.len() == 5 => {
+                dcon::done(plate.address)
+            }
+            (b'~', [b'A', b'0' | b'1']) => {
+                plate.eeprom_writes += 1;
+                dcon::done(plate.address)
+            }
+            (b'@', body) => self.at_command(plate, body, at),
+            (_, _) => Answer::Unknown,
+        }
+    }
+
+    fn configured(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+
+    fn next_us(&self) -> u64 {
+        u64::MAX
+    }
+
+    fn run(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+
+    fn sample(&mut self, _at: &mut Terminals<'_>) {}
+
+    fn make_safe(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {
+        self.outputs = 0;
+    }
+
+    /// Counts start at the preset after a power loss (the 7080B keeps them by its battery).
+    fn restart(&mut self, _plate: &Plate) {
+        self.outputs = 0;
+        for channel in &mut self.channels {
+            channel.start = 0;
+            channel.overflowed = false;
+            channel.zero_pulses = 0;
+            channel.counted_us = 0.0;
+        }
+    }
+
+    fn energise(&mut self, _plate: &Plate, at: &mut Terminals<'_>) {
+        for n in 0..2 {
+            self.channels[n].seen_us = self.gate_us(n, at);
+        }
+    }
+}

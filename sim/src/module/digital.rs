@@ -1,0 +1,407 @@
+//! Digital inputs and outputs: 7041 to 7067.
+//!
+//! | request | reply |
+//! |---|---|
+//! | `@AA`, `$AA6` | `>` or `!` (then 00 at the end), first and second byte |
+//! | `@AA(data)` | all outputs; 1, 2 or 4 digits by model; `?` when it does not fit |
+//! | `#AABBDD` | a group (00, 0A, 0B) or one channel (1c, Ac, Bc) |
+//! | `#AAN`, `$AACN` | event counter of an input, 5 decimal digits; clear it |
+//! | `$AALS`, `$AAC` | inputs latched high (S = 1) or low (0); clear both |
+//! | `$AA4` | sample of `#**`; `?AA` when there was none |
+//! | `~AA5P`, `~AA5S`, `~AA4P`, `~AA4S` | store and read power-on and safe outputs |
+//!
+//! First and second byte: outputs and inputs; of modules with 16 inputs or 16 outputs alone, high
+//! byte and low byte. Latches see every change between two requests and every counted pulse; an
+//! input that merely stays as it was when the latches were cleared sets none.
+
+use super::plate::{Commissioning, Plate};
+use super::{Built, Family, Terminals, setting};
+use crate::dcon::{self, Answer, Request};
+use crate::error::SimError;
+use crate::terminal::ModuleSpec;
+
+/// Channels of a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shape {
+    /// Digital inputs.
+    pub inputs: u8,
+    /// Digital outputs.
+    pub outputs: u8,
+}
+
+/// Channels of a model number, `None` when it is no digital module.
+pub fn shape(number: &str) -> Option<Shape> {
+    let (inputs, outputs) = match number {
+        "7041" => (14, 0),
+        "7042" => (0, 13),
+        "7043" | "7045" => (0, 16),
+        "7044" => (4, 8),
+        "7050" => (7, 8),
+        "7051" | "7053" => (16, 0),
+        "7052" => (8, 0),
+        "7060" => (4, 4),
+        "7063" | "7063A" | "7063B" => (8, 3),
+        "7065" | "7065A" | "7065B" => (4, 5),
+        "7066" | "7067" => (0, 7),
+        _ => return None,
+    };
+    Some(Shape { inputs, outputs })
+}
+
+impl Shape {
+    fn all_outputs(self) -> u16 {
+        ones(self.outputs)
+    }
+
+    fn output_digits(self) -> usize {
+        match self.outputs {
+            0..=4 => 1,
+            5..=8 => 2,
+            _ => 4,
+        }
+    }
+
+    fn first_and_second(self, inputs: u16, outputs: u16) -> u16 {
+        if self.outputs == 0 {
+            inputs
+        } else if self.outputs > 8 {
+            outputs
+        } else {
+            outputs << 8 | (inputs & 0xFF)
+        }
+    }
+}
+
+fn ones(channels: u8) -> u16 {
+    ((1u32 << channels) - 1) as u16
+}
+
+struct Digital {
+    shape: Shape,
+    outputs: u16,
+    power_on: u16,
+    safe: u16,
+    /// Inputs at the last look.
+    levels: u16,
+    latched_high: u16,
+    latched_low: u16,
+    counters: Vec<EventCounter>,
+    sampled: Option<Sample>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct EventCounter {
+    /// Count at the moment when the terminals had seen `from_edges`.
+    start: u64,
+    from_edges: u64,
+    /// Edges at the last look, for the latches.
+    seen_edges: u64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    data: u16,
+    unread: bool,
+}
+
+/// Commissions a digital module as its table says.
+pub(super) fn build(
+    spec: &ModuleSpec,
+    shape: Shape,
+    line: Commissioning,
+) -> Result<Built, SimError> {
+    let type_code = setting::code(spec, "type")?.unwrap_or(0x40);
+    if type_code != 0x40 {
+        return Err(setting::wrong(spec, "type", "40"));
+    }
+    let mut plate = Plate::new(spec, line, type_code, 0)?;
+    let bits = |key: &str| Ok::<u16, SimError>(setting::bits(spec, key)?.unwrap_or(0) as u16);
+    let safe = if spec.settings.contains_key("safe_outputs") {
+        bits("safe_outputs")?
+    } else {
+        bits("safe")?
+    };
+    let (high, low) = latches(spec)?;
+    let counts = setting::numbers(spec, "counts")?;
+    let counter = |channel: u8| EventCounter {
+        start: counts.get(usize::from(channel)).copied().unwrap_or(0.0) as u64,
+        ..EventCounter::default()
+    };
+    let mut family = Digital {
+        shape,
+        outputs: 0,
+        power_on: bits("power_on")? & shape.all_outputs(),
+        safe: safe & shape.all_outputs(),
+        levels: 0,
+        latched_high: high,
+        latched_low: low,
+        counters: (0..shape.inputs).map(counter).collect(),
+        sampled: None,
+    };
+    family.restart(&plate);
+    if let Some(outputs) = setting::bits(spec, "outputs")? {
+        family.outputs = outputs as u16 & shape.all_outputs();
+    }
+    if setting::flag(spec, "rising")?.unwrap_or(false) {
+        plate.format |= 0x80;
+    }
+    Ok((plate, Box::new(family)))
+}
+
+/// `latches = MASK` latched high, or a table with `high` and `low`.
+fn latches(spec: &ModuleSpec) -> Result<(u16, u16), SimError> {
+    match spec.settings.get("latches") {
+        Some(toml::Value::Table(table)) => {
+            let part = |key: &str| match table.get(key) {
+                Some(toml::Value::Integer(mask)) => *mask as u16,
+                Some(toml::Value::String(digits)) => {
+                    dcon::hex(digits.as_bytes()).unwrap_or(0) as u16
+                }
+                _ => 0,
+            };
+            Ok((part("high"), part("low")))
+        }
+        _ => Ok((setting::bits(spec, "latches")?.unwrap_or(0) as u16, 0)),
+    }
+}
+
+impl Digital {
+    /// Inputs now, latches brought up to date.
+    fn inputs(&mut self, at: &mut Terminals<'_>) -> u16 {
+        if self.shape.inputs == 0 {
+            return 0;
+        }
+        let levels = at.plant.digital_in(at.module) & ones(self.shape.inputs);
+        self.latched_high |= levels & !self.levels;
+        self.latched_low |= !levels & self.levels;
+        self.levels = levels;
+        levels
+    }
+
+    /// Pulses that no request fell into.
+    fn latch_edges(&mut self, at: &mut Terminals<'_>) {
+        for (channel, counter) in self.counters.iter_mut().enumerate() {
+            let edges = at.plant.edges(at.module, channel as u8);
+            if edges != counter.seen_edges {
+                counter.seen_edges = edges;
+                self.latched_high |= 1 << channel;
+                self.latched_low |= 1 << channel;
+            }
+        }
+    }
+
+    fn words(&mut self, at: &mut Terminals<'_>) -> u16 {
+        let inputs = self.inputs(at);
+        self.shape.first_and_second(inputs, self.outputs)
+    }
+
+    fn drive(&mut self, outputs: u16, at: &mut Terminals<'_>) {
+        self.outputs = outputs;
+        if self.shape.outputs > 0 {
+            at.plant.digital_out(at.module, outputs);
+        }
+    }
+
+    fn write_all(&mut self, plate: &Plate, data: &[u8], at: &mut Terminals<'_>) -> Answer {
+        let Some(value) = dcon::hex(data) else {
+            return Answer::Unknown;
+        };
+        let too_much = value & !u32::from(self.shape.all_outputs()) != 0;
+        if self.shape.outputs == 0 || data.len() != self.shape.output_digits() || too_much {
+            return dcon::refused_output();
+        }
+        if plate.watchdog.tripped() {
+            return dcon::ignored();
+        }
+        self.drive(value as u16, at);
+        dcon::accepted()
+    }
+
+    fn write_group(&mut self, plate: &Plate, body: [u8; 4], at: &mut Terminals<'_>) -> Answer {
+        let [group, channel, high, low] = body;
+        let (Some(channel), Some(data)) = (dcon::hex_digit(channel), dcon::hex_byte(&[high, low]))
+        else {
+            return Answer::Unknown;
+        };
+        let Some(outputs) = self.grouped(group, channel, data) else {
+            return dcon::refused_output();
+        };
+        if plate.watchdog.tripped() {
+            return dcon::ignored();
+        }
+        self.drive(outputs, at);
+        dcon::accepted()
+    }
+
+    /// Outputs after a group or single-channel command, `None` when there is no such channel.
+    fn grouped(&self, group: u8, channel: u8, data: u8) -> Option<u16> {
+        let all = self.shape.all_outputs();
+        let (mask, bits): (u16, u16) = match (group, channel) {
+            (b'0', 0x0 | 0xA) => (0x00FF, u16::from(data)),
+            (b'0', 0xB) if self.shape.outputs > 8 => (0xFF00, u16::from(data) << 8),
+            (b'1' | b'A', 0..=7) if data <= 1 => (1 << channel, u16::from(data) << channel),
+            (b'B', 0..=7) if data <= 1 && self.shape.outputs > 8 => {
+                (0x100 << channel, u16::from(data) << (8 + channel))
+            }
+            (_, _) => return None,
+        };
+        let single = mask.count_ones() == 1;
+        let reachable = bits & !all == 0 && (!single || mask & all != 0) && all != 0;
+        reachable.then_some((self.outputs & !mask | bits) & all)
+    }
+
+    fn count(&mut self, plate: &Plate, digit: u8, at: &mut Terminals<'_>) -> Answer {
+        let Some(channel) = dcon::hex_digit(digit) else {
+            return Answer::Unknown;
+        };
+        let Some(counter) = self.counters.get(usize::from(channel)) else {
+            return dcon::refused(plate.address);
+        };
+        let edges = at.plant.edges(at.module, channel);
+        let count = (counter.start + edges - counter.from_edges) % 65_536;
+        dcon::done_with(plate.address, &format!("{count:05}"))
+    }
+
+    fn clear_count(&mut self, plate: &Plate, digit: u8, at: &mut Terminals<'_>) -> Answer {
+        let Some(channel) = dcon::hex_digit(digit) else {
+            return Answer::Unknown;
+        };
+        let Some(counter) = self.counters.get_mut(usize::from(channel)) else {
+            return dcon::refused(plate.address);
+        };
+        counter.start = 0;
+        counter.from_edges = at.plant.edges(at.module, channel);
+        dcon::done(plate.address)
+    }
+
+    fn latched(&mut self, high: bool, at: &mut Terminals<'_>) -> Answer {
+        self.inputs(at);
+        self.latch_edges(at);
+        let latched = if high {
+            self.latched_high
+        } else {
+            self.latched_low
+        };
+        data_reply(latched)
+    }
+
+    fn clear_latches(&mut self, plate: &Plate, at: &mut Terminals<'_>) -> Answer {
+        self.inputs(at);
+        self.latch_edges(at);
+        self.latched_high = 0;
+        self.latched_low = 0;
+        dcon::done(plate.address)
+    }
+
+    fn sampled(&mut self, plate: &Plate) -> Answer {
+        let Some(sample) = &mut self.sampled else {
+            return dcon::refused(plate.address);
+        };
+        let unread = std::mem::take(&mut sample.unread);
+        let mut text = String::from(if unread { "!1" } else { "!0" });
+        dcon::push_hex(&mut text, u64::from(sample.data) << 8, 6);
+        Answer::Reply(text)
+    }
+
+    fn store(&mut self, plate: &mut Plate, which: u8) -> Answer {
+        match which {
+            b'P' => self.power_on = self.outputs,
+            _ => self.safe = self.outputs,
+        }
+        plate.eeprom_writes += 1;
+        dcon::done(plate.address)
+    }
+
+    fn stored(&self, plate: &Plate, which: u8) -> Answer {
+        let value = u64::from(if which == b'P' {
+            self.power_on
+        } else {
+            self.safe
+        });
+        let wide = self.shape.outputs > 8;
+        dcon::done_hex(plate.address, if wide { value } else { value << 8 }, 4)
+    }
+
+    fn input_command(&mut self, plate: &Plate, body: &[u8], at: &mut Terminals<'_>) -> Answer {
+        match body {
+            [b'C', digit] => self.clear_count(plate, *digit, at),
+            [b'C'] => self.clear_latches(plate, at),
+            [b'L', level @ (b'0' | b'1')] => self.latched(*level == b'1', at),
+            _ => Answer::Unknown,
+        }
+    }
+}
+
+/// `!(first)(second)00`: data without address.
+fn data_reply(words: u16) -> Answer {
+    let mut text = String::from("!");
+    dcon::push_hex(&mut text, u64::from(words) << 8, 6);
+    Answer::Reply(text)
+}
+
+impl Family for Digital {
+    fn fits(&self, type_code: u8, _format: u8) -> bool {
+        type_code == 0x40
+    }
+
+    fn answer(
+        &mut self,
+        plate: &mut Plate,
+        request: &Request<'_>,
+        at: &mut Terminals<'_>,
+    ) -> Answer {
+        let has_inputs = self.shape.inputs > 0;
+        match (request.lead, request.body) {
+            (b'@', []) => {
+                let mut text = String::from(">");
+                dcon::push_hex(&mut text, u64::from(self.words(at)), 4);
+                Answer::Reply(text)
+            }
+            (b'@', data) => self.write_all(plate, data, at),
+            (b'#', [a, b, c, d]) => self.write_group(plate, [*a, *b, *c, *d], at),
+            (b'#', [digit]) if has_inputs => self.count(plate, *digit, at),
+            (b'$', b"6") => {
+                let words = self.words(at);
+                data_reply(words)
+            }
+            (b'$', b"4") => self.sampled(plate),
+            (b'$', body) if has_inputs => self.input_command(plate, body, at),
+            (b'~', [b'5', which @ (b'P' | b'S')]) => self.store(plate, *which),
+            (b'~', [b'4', which @ (b'P' | b'S')]) => self.stored(plate, *which),
+            (_, _) => Answer::Unknown,
+        }
+    }
+
+    fn configured(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+
+    fn next_us(&self) -> u64 {
+        u64::MAX
+    }
+
+    fn run(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+
+    fn sample(&mut self, at: &mut Terminals<'_>) {
+        let data = self.words(at);
+        self.sampled = Some(Sample { data, unread: true });
+    }
+
+    fn make_safe(&mut self, _plate: &Plate, at: &mut Terminals<'_>) {
+        self.drive(self.safe, at);
+    }
+
+    fn restart(&mut self, plate: &Plate) {
+        self.outputs = if plate.watchdog.tripped() {
+            self.safe
+        } else {
+            self.power_on
+        };
+        self.sampled = None;
+    }
+
+    fn energise(&mut self, _plate: &Plate, at: &mut Terminals<'_>) {
+        if self.shape.inputs > 0 {
+            self.levels = at.plant.digital_in(at.module) & ones(self.shape.inputs);
+        }
+        self.drive(self.outputs, at);
+    }
+}

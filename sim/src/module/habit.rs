@@ -1,0 +1,122 @@
+//! What one particular module does that its data sheet does not tell: errors, cadence, latency.
+//!
+//! Errors are drawn once per module from the seed, rectangular within the maker's half width, on a
+//! stream named by the module, so that another module more or less changes nothing for the others.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+use crate::config::DeviceWorld;
+
+/// Fewest microseconds a module takes to answer, whatever the draw says.
+const QUICKEST_US: f64 = 100.0;
+
+/// Errors, cadence and latency of one module.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Habit {
+    /// Mean time from the request's CR to the reply's first character, microseconds.
+    pub latency_us: f64,
+    /// Its standard deviation from transaction to transaction, microseconds.
+    pub latency_sd_us: f64,
+    /// Relative error of an analog input.
+    pub ai_gain: f64,
+    /// Offset of an analog input, fraction of full scale.
+    pub ai_offset: f64,
+    /// Noise of one conversion, standard deviation in steps of the converter.
+    pub ai_noise_lsb: f64,
+    /// Relative error of an analog output.
+    pub ao_gain: f64,
+    /// Offset of an analog output, volts.
+    pub ao_offset_v: f64,
+    /// Relative error of a slew rate.
+    pub ao_slope: f64,
+    /// Time between two refreshes of an output that ramps, microseconds.
+    pub ao_refresh_us: u64,
+    /// Conversions a second, all channels together, fast mode.
+    pub fast_per_s: f64,
+    /// The same in normal mode.
+    pub normal_per_s: f64,
+}
+
+impl Habit {
+    /// A module without errors that answers after exactly `latency_us`.
+    pub fn exact(latency_us: f64) -> Self {
+        Self {
+            latency_us,
+            latency_sd_us: 0.0,
+            ai_gain: 0.0,
+            ai_offset: 0.0,
+            ai_noise_lsb: 0.0,
+            ao_gain: 0.0,
+            ao_offset_v: 0.0,
+            ao_slope: 0.0,
+            ao_refresh_us: 1_000,
+            fast_per_s: 75.0,
+            normal_per_s: 10.0,
+        }
+    }
+
+    /// Draws the errors of one module.
+    pub fn draw(world: &DeviceWorld, rng: &mut ChaCha8Rng) -> Self {
+        let mut within = |half_width: f64| half_width * (2.0 * rng.random::<f64>() - 1.0);
+        Self {
+            latency_us: world.latency_ms_mean * 1e3,
+            latency_sd_us: world.latency_ms_sd * 1e3,
+            ai_gain: within(world.ai_gain_pct / 100.0),
+            ai_offset: within(world.ai_offset_pct_of_range / 100.0),
+            ai_noise_lsb: world.ai_noise_lsb,
+            ao_gain: within(world.ao_gain_pct / 100.0),
+            ao_offset_v: within(world.ao_offset_mv / 1e3),
+            ao_slope: within(world.ao_slope_pct / 100.0),
+            ao_refresh_us: (world.ao_refresh_ms * 1e3).round().max(1.0) as u64,
+            fast_per_s: world.conversions_per_s,
+            normal_per_s: world.conversions_per_s_normal,
+        }
+    }
+
+    /// Latency of the next transaction, microseconds.
+    pub fn next_latency_us(&self, rng: &mut ChaCha8Rng) -> u64 {
+        let scatter: f64 = rng.sample(StandardNormal);
+        let latency = self.latency_us + self.latency_sd_us * scatter;
+        latency.max(QUICKEST_US.min(self.latency_us)).round() as u64
+    }
+}
+
+/// The random stream of `seed` that belongs to `name` alone.
+pub fn stream(seed: u64, name: &str) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(fingerprint(name));
+    rng
+}
+
+/// FNV-1a over the name, 64 bit: stable from build to build.
+fn fingerprint(name: &str) -> u64 {
+    name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_module_has_its_own_stream() {
+        let first: u64 = stream(1, "timer").random();
+        assert_eq!(first, stream(1, "timer").random::<u64>());
+        assert_ne!(first, stream(1, "rtd").random::<u64>());
+        assert_ne!(first, stream(2, "timer").random::<u64>());
+    }
+
+    #[test]
+    fn latency_never_falls_below_a_tenth_of_a_millisecond() {
+        let habit = Habit {
+            latency_sd_us: 5_000.0,
+            ..Habit::exact(2_000.0)
+        };
+        let mut rng = stream(3, "m");
+        let least = (0..1000).map(|_| habit.next_latency_us(&mut rng)).min();
+        assert_eq!(least, Some(100));
+    }
+}

@@ -1,0 +1,250 @@
+//! What every module has: address, configuration word, name, firmware, INIT* terminal, watchdog,
+//! EEPROM, and the commands that belong to them.
+//!
+//! | request | reply |
+//! |---|---|
+//! | `$AA2` | `!AATTCCFF` as stored |
+//! | `$AA5` | `!AAS`, S = 1 on the first read after a reset (not I-7080) |
+//! | `$AAF`, `$AAM`, `~AAO(name)` | firmware, name, new name of up to 6 characters |
+//! | `$AAI` | `!AA0` when INIT* is grounded, else `!AA1` |
+//! | `%AANNTTCCFF` | `!NN`; baud and checksum bit need INIT* and take effect at the next power-on |
+//! | `~AA0`..`~AA3` | host watchdog |
+//! | `~AARD` | response delay, newer modules only |
+//!
+//! With INIT* grounded at power-on a module answers at address 00 (and at its own) without checksum;
+//! its replies carry the stored address.
+
+use super::setting;
+use super::watchdog::Watchdog;
+use crate::dcon::{self, Answer, Request};
+use crate::error::SimError;
+use crate::terminal::ModuleSpec;
+
+/// Bit of FF that turns the checksum on.
+const CHECKSUM: u8 = 0x40;
+
+/// Longest response delay, milliseconds.
+const LONGEST_DELAY_MS: u8 = 30;
+
+/// Baud rates in the order of their codes, from 03.
+const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115_200];
+
+/// How the line talks to a module that is commissioned for it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Commissioning {
+    /// Baud rate of the line.
+    pub baud: u32,
+    /// The line uses checksums.
+    pub checksum: bool,
+    /// Time-out of an enabled host watchdog, milliseconds.
+    pub host_watchdog_ms: f64,
+}
+
+/// The part of a module that does not depend on its family.
+#[derive(Debug, Clone)]
+pub struct Plate {
+    /// Stored address; the one on the line unless INIT* is grounded.
+    pub address: u8,
+    /// Type code TT.
+    pub type_code: u8,
+    /// Baud code CC.
+    pub baud_code: u8,
+    /// Format word FF.
+    pub format: u8,
+    /// Host watchdog.
+    pub watchdog: Watchdog,
+    /// Writes to the EEPROM so far.
+    pub eeprom_writes: u64,
+    name: String,
+    firmware: String,
+    newer: bool,
+    response_delay_ms: u8,
+    init_grounded: bool,
+    checksum_running: bool,
+    reset_unread: bool,
+}
+
+impl Plate {
+    /// Reads what is common from the module's table; type code and the family's bits of FF given.
+    pub fn new(
+        spec: &ModuleSpec,
+        line: Commissioning,
+        type_code: u8,
+        family_bits: u8,
+    ) -> Result<Self, SimError> {
+        let checksum = setting::flag(spec, "checksum")?.unwrap_or(line.checksum);
+        let format = family_bits | if checksum { CHECKSUM } else { 0 };
+        Ok(Self {
+            address: spec.address,
+            type_code,
+            baud_code: baud_code(line.baud).unwrap_or(0x0A),
+            format,
+            watchdog: watchdog(spec, line.host_watchdog_ms)?,
+            eeprom_writes: 0,
+            name: name(spec)?,
+            firmware: setting::text(spec, "firmware")?.unwrap_or("A2.0").into(),
+            newer: spec.model.starts_with("M-") || spec.settings.contains_key("response_delay_ms"),
+            response_delay_ms: setting::number(spec, "response_delay_ms")?.unwrap_or(0.0) as u8,
+            init_grounded: setting::flag(spec, "init")?.unwrap_or(false),
+            checksum_running: checksum,
+            reset_unread: !setting::flag(spec, "reset_seen")?.unwrap_or(false),
+        })
+    }
+
+    /// Answers at this address.
+    pub fn hears_at(&self, address: u8) -> bool {
+        address == self.address || (self.init_grounded && address == 0)
+    }
+
+    /// Requests and replies carry a checksum.
+    pub fn uses_checksum(&self) -> bool {
+        self.checksum_running && !self.init_grounded
+    }
+
+    /// Added to every reply time, microseconds.
+    pub fn response_delay_us(&self) -> u64 {
+        u64::from(self.response_delay_ms) * 1_000
+    }
+
+    /// The module restarted: `$AA5` shows it, and what needed a power cycle now counts.
+    pub fn power_cycled(&mut self) {
+        self.reset_unread = true;
+        self.checksum_running = self.format & CHECKSUM != 0;
+    }
+
+    /// Poses as another product (a fault): other name, type 00.
+    pub fn pose_as(&mut self, name: &str) {
+        self.name = name.into();
+        self.type_code = 0;
+    }
+
+    /// Commands that every module knows. `fits` says whether the family takes a type and format.
+    pub fn answer(
+        &mut self,
+        request: &Request<'_>,
+        now_us: u64,
+        fits: impl Fn(u8, u8) -> bool,
+    ) -> Answer {
+        let address = self.address;
+        match (request.lead, request.body) {
+            (b'$', b"2") => dcon::done_hex(address, self.configuration_word(), 6),
+            (b'$', b"5") => {
+                let unread = std::mem::take(&mut self.reset_unread);
+                dcon::done_hex(address, u64::from(unread), 1)
+            }
+            (b'$', b"F") => dcon::done_with(address, &self.firmware),
+            (b'$', b"M") => dcon::done_with(address, &self.name),
+            (b'$', b"I") => dcon::done_hex(address, u64::from(!self.init_grounded), 1),
+            (b'%', body) => self.configure(body, fits),
+            (b'~', [b'O', name @ ..]) => self.rename(name),
+            (b'~', [b'R', b'D', delay @ ..]) if self.newer => self.response_delay(delay),
+            (b'~', body) => self.host_watchdog(body, now_us),
+            (_, _) => Answer::Unknown,
+        }
+    }
+
+    fn configuration_word(&self) -> u64 {
+        u64::from(self.type_code) << 16 | u64::from(self.baud_code) << 8 | u64::from(self.format)
+    }
+
+    fn configure(&mut self, body: &[u8], fits: impl Fn(u8, u8) -> bool) -> Answer {
+        let (Some(word), 8) = (dcon::hex(body), body.len()) else {
+            return Answer::Unknown;
+        };
+        let [address, type_code, baud_code, format] = word.to_be_bytes();
+        let line_changes = baud_code != self.baud_code || (format ^ self.format) & CHECKSUM != 0;
+        let known_baud = (0x03..=0x0A).contains(&baud_code);
+        if (line_changes && !self.init_grounded) || !known_baud || !fits(type_code, format) {
+            return dcon::refused(self.address);
+        }
+        self.eeprom_writes += 1;
+        self.address = address;
+        self.type_code = type_code;
+        self.baud_code = baud_code;
+        self.format = format;
+        dcon::done(address)
+    }
+
+    fn rename(&mut self, name: &[u8]) -> Answer {
+        match std::str::from_utf8(name) {
+            Ok(name) if (1..=6).contains(&name.len()) => {
+                self.name = name.into();
+                self.eeprom_writes += 1;
+                dcon::done(self.address)
+            }
+            _ => Answer::Unknown,
+        }
+    }
+
+    fn response_delay(&mut self, digits: &[u8]) -> Answer {
+        if digits.is_empty() {
+            return dcon::done_hex(self.address, u64::from(self.response_delay_ms), 2);
+        }
+        match dcon::hex_byte(digits) {
+            Some(delay) if delay <= LONGEST_DELAY_MS => {
+                self.response_delay_ms = delay;
+                dcon::done(self.address)
+            }
+            Some(_) => dcon::refused(self.address),
+            None => Answer::Unknown,
+        }
+    }
+
+    fn host_watchdog(&mut self, body: &[u8], now_us: u64) -> Answer {
+        match body {
+            b"0" => dcon::done_hex(self.address, u64::from(self.watchdog.status()), 2),
+            b"1" => {
+                self.watchdog.clear();
+                self.eeprom_writes += 1;
+                dcon::done(self.address)
+            }
+            b"2" => {
+                let (enabled, tenths) = self.watchdog.setting();
+                let word = u64::from(enabled) << 8 | u64::from(tenths);
+                dcon::done_hex(self.address, word, 3)
+            }
+            [b'3', enable @ (b'0' | b'1'), high, low] => {
+                match (dcon::hex_byte(&[*high, *low]), *enable == b'1') {
+                    (None, _) => Answer::Unknown,
+                    (Some(0), true) => dcon::refused(self.address),
+                    (Some(tenths), enabled) => {
+                        self.watchdog.set(enabled, tenths, now_us);
+                        self.eeprom_writes += 1;
+                        dcon::done(self.address)
+                    }
+                }
+            }
+            _ => Answer::Unknown,
+        }
+    }
+}
+
+/// CC of a baud rate.
+fn baud_code(baud: u32) -> Option<u8> {
+    let place = BAUDS.iter().position(|known| *known == baud)?;
+    u8::try_from(place).ok().map(|place| place + 3)
+}
+
+fn name(spec: &ModuleSpec) -> Result<String, SimError> {
+    let printed = spec.model.trim_start_matches("I-").trim_start_matches("M-");
+    Ok(setting::text(spec, "name")?.unwrap_or(printed).into())
+}
+
+/// `watchdog = true` takes the time-out of the plant, a table brings its own.
+fn watchdog(spec: &ModuleSpec, plant_ms: f64) -> Result<Watchdog, SimError> {
+    let tenths_of = |seconds: f64| (seconds * 10.0).round().clamp(1.0, 255.0) as u8;
+    let plant_tenths = tenths_of(plant_ms / 1e3);
+    match spec.settings.get("watchdog") {
+        None => Ok(Watchdog::new(false, plant_tenths, false)),
+        Some(toml::Value::Boolean(enabled)) => Ok(Watchdog::new(*enabled, plant_tenths, false)),
+        Some(toml::Value::Table(table)) => {
+            let flag = |key| table.get(key).and_then(toml::Value::as_bool) == Some(true);
+            let seconds = table
+                .get("timeout_s")
+                .and_then(|value| value.as_float().or(value.as_integer().map(|s| s as f64)));
+            let tenths = seconds.map_or(plant_tenths, tenths_of);
+            Ok(Watchdog::new(flag("enabled"), tenths, flag("tripped")))
+        }
+        Some(_) => Err(setting::wrong(spec, "watchdog", "true, false or a table")),
+    }
+}

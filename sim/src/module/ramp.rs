@@ -1,0 +1,92 @@
+//! The output stage of one analog channel: target, present value, slew.
+//!
+//! With slew code 0 the output follows at once. Otherwise it moves in steps, one per refresh, at
+//! 0.0625 V/s (0.125 mA/s) times two for each further code, until it stands at the target.
+
+/// Values in the unit of the output (V or mA).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ramp {
+    target: f64,
+    present: f64,
+    next_us: Option<u64>,
+}
+
+/// Nominal rate of a slew code, units a second; `None` for code 0.
+pub fn nominal_rate(code: u8, is_current: bool) -> Option<f64> {
+    let first = if is_current { 0.125 } else { 0.0625 };
+    (code > 0).then(|| first * f64::from(1u32 << (code.min(15) - 1)))
+}
+
+impl Ramp {
+    /// At rest.
+    pub fn at(value: f64) -> Self {
+        Self {
+            target: value,
+            present: value,
+            next_us: None,
+        }
+    }
+
+    /// Last commanded value.
+    pub fn target(&self) -> f64 {
+        self.target
+    }
+
+    /// Where the output stands.
+    pub fn present(&self) -> f64 {
+        self.present
+    }
+
+    /// Jumps, whatever the slew code.
+    pub fn jump(&mut self, value: f64) {
+        *self = Self::at(value);
+    }
+
+    /// Goes to `value` in steps, the first one refresh from now unless steps are running already.
+    pub fn go(&mut self, value: f64, now_us: u64, refresh_us: u64) {
+        self.target = value;
+        if self.next_us.is_none() && self.present != value {
+            self.next_us = Some(now_us + refresh_us);
+        }
+    }
+
+    /// Instant of the next step, `u64::MAX` at rest.
+    pub fn next_us(&self) -> u64 {
+        self.next_us.unwrap_or(u64::MAX)
+    }
+
+    /// One step of at most `step` units.
+    pub fn step(&mut self, step: f64, refresh_us: u64) {
+        let left = self.target - self.present;
+        if left.abs() <= step {
+            self.jump(self.target);
+        } else {
+            self.present += step.copysign(left);
+            self.next_us = self.next_us.map(|due| due + refresh_us);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slew_codes_double_from_a_sixteenth_of_a_volt_a_second() {
+        assert_eq!(nominal_rate(0, false), None);
+        assert_eq!(nominal_rate(5, false), Some(1.0));
+        assert_eq!(nominal_rate(0xB, false), Some(64.0));
+        assert_eq!(nominal_rate(0xF, true), Some(2048.0));
+    }
+
+    #[test]
+    fn a_ramp_steps_down_to_its_target_and_rests() {
+        let mut ramp = Ramp::at(1.0);
+        ramp.go(0.75, 100, 1_000);
+        assert_eq!(ramp.next_us(), 1_100);
+        ramp.step(0.2, 1_000);
+        assert_eq!((ramp.present(), ramp.next_us()), (0.8, 2_100));
+        ramp.step(0.2, 1_000);
+        assert_eq!((ramp.present(), ramp.next_us()), (0.75, u64::MAX));
+    }
+}

@@ -1,0 +1,216 @@
+//! Building a rig from its files and sharing it between lines.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::bench;
+use crate::config::{LineSpec, RigFile, WorldTable, read_rig, read_world};
+use crate::error::SimError;
+use crate::fault::{self, FaultInfo, Faults};
+use crate::module::Module;
+use crate::module::habit::{self, Habit};
+use crate::module::plate::Commissioning;
+use crate::rig::{Record, Reply, Rig};
+use crate::terminal::ModuleSpec;
+use crate::world::{World, WorldOptions};
+
+/// Which rig, which lot, which troubles.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Folder with `rig.toml`, `sim.toml`, `golden.toml`, `recipes/`.
+    pub config_dir: PathBuf,
+    /// World file in place of `sim.toml`.
+    pub world: Option<PathBuf>,
+    /// Draws rig and lot.
+    pub seed: u64,
+    /// Recipe whose parts are in the magazine.
+    pub recipe: String,
+    /// Lot parts in the magazine, `None` for no end.
+    pub parts: Option<u64>,
+    /// Golden parts lie in front of the lot.
+    pub golden: bool,
+    /// `NAME` or `NAME=VALUE`.
+    pub faults: Vec<String>,
+}
+
+/// A rig that all its lines use; cloning shares it.
+#[derive(Clone)]
+pub struct SharedRig(Arc<Mutex<Rig>>);
+
+/// Builds the rig of `config_dir` with the errors and parts that the seed draws.
+///
+/// # Errors
+/// A file is missing or wrong, a module is not simulated, a fault unknown or its value unfit.
+pub fn build(options: &Options) -> Result<SharedRig, SimError> {
+    let file = read_rig(&options.config_dir)?;
+    let table = read_world(&options.config_dir, options.world.as_deref())?;
+    let mut faults = Faults::none(options.seed);
+    let mut world_faults = Vec::new();
+    for text in &options.faults {
+        let (name, value) = split(text);
+        if !faults.add(name, value)? {
+            world_faults.push(world_fault(&table, name, value)?);
+        }
+    }
+    check_targets(&faults, &file)?;
+    let world = World::build(&WorldOptions {
+        config_dir: options.config_dir.clone(),
+        world_file: options.world.clone(),
+        seed: options.seed,
+        recipe: options.recipe.clone(),
+        parts: options.parts,
+        golden: options.golden,
+        faults: world_faults,
+    })?;
+    let modules = modules(&file, &table, options.seed)?;
+    let rig = Rig::new(Box::new(world), modules, file.lines, faults);
+    Ok(SharedRig::new(rig))
+}
+
+/// Builds the modules of a bench file with fixed signals at their terminals, on one line `bench`.
+///
+/// # Errors
+/// As [`bench::build`].
+pub fn build_bench(file: &Path) -> Result<SharedRig, SimError> {
+    Ok(SharedRig::new(bench::build(file)?))
+}
+
+/// Every fault that `--fault` takes.
+///
+/// # Errors
+/// The world file cannot be read: the world's faults are listed there.
+pub fn faults(config_dir: &Path, world: Option<&Path>) -> Result<Vec<FaultInfo>, SimError> {
+    let table = read_world(config_dir, world)?;
+    let of_the_world = table.fault.iter().map(|(name, spec)| FaultInfo {
+        name: name.clone(),
+        unit: spec.unit.clone(),
+        default: spec.default.to_string(),
+        what: spec.help.clone(),
+    });
+    Ok(fault::list().into_iter().chain(of_the_world).collect())
+}
+
+fn split(text: &str) -> (&str, Option<&str>) {
+    match text.split_once('=') {
+        Some((name, value)) => (name, Some(value)),
+        None => (text, None),
+    }
+}
+
+fn world_fault(
+    table: &WorldTable,
+    name: &str,
+    value: Option<&str>,
+) -> Result<(String, f64), SimError> {
+    if !table.fault.contains_key(name) {
+        return Err(SimError::UnknownFault { name: name.into() });
+    }
+    let number = match value {
+        None => f64::NAN,
+        Some(text) => match text.parse::<f64>() {
+            Ok(number) if number.is_finite() => number,
+            _ => {
+                return Err(SimError::FaultValue {
+                    name: name.into(),
+                    found: text.into(),
+                    expected: "a number".into(),
+                });
+            }
+        },
+    };
+    Ok((name.into(), number))
+}
+
+/// A fault that strikes a module or line which does not exist would silently do nothing.
+fn check_targets(faults: &Faults, file: &RigFile) -> Result<(), SimError> {
+    let known = |target: &str| {
+        file.modules.iter().any(|module| module.id == target)
+            || file.lines.iter().any(|line| line.name == target)
+    };
+    match faults.targets().find(|target| !known(target)) {
+        None => Ok(()),
+        Some(target) => Err(SimError::FaultValue {
+            name: "target".into(),
+            found: target.into(),
+            expected: "a module or line of rig.toml".into(),
+        }),
+    }
+}
+
+fn modules(file: &RigFile, table: &WorldTable, seed: u64) -> Result<Vec<Module>, SimError> {
+    let module = |spec: &ModuleSpec| {
+        let line = file.lines.iter().find(|line| line.name == spec.line);
+        let commissioning = Commissioning {
+            baud: line.map_or(9_600, |line| line.baud),
+            checksum: line.is_some_and(|line| line.checksum),
+            host_watchdog_ms: file.host_watchdog_ms,
+        };
+        let mut rng = habit::stream(seed, &spec.id);
+        let habit = Habit::draw(&table.devices, &mut rng);
+        Module::new(spec, commissioning, habit, rng)
+    };
+    file.modules.iter().map(module).collect()
+}
+
+impl Record for World {
+    fn truth(&mut self) -> Vec<serde_json::Value> {
+        World::truth(self)
+    }
+
+    fn crashes(&mut self) -> Vec<String> {
+        World::crashes(self)
+    }
+}
+
+impl SharedRig {
+    /// Shares a rig.
+    pub fn new(rig: Rig) -> Self {
+        Self(Arc::new(Mutex::new(rig)))
+    }
+
+    /// A request (without CR) has arrived on line `line` at `t_us`.
+    pub fn exchange(&self, line: usize, text: &[u8], t_us: u64) -> Option<Reply> {
+        self.rig().exchange(line, text, t_us)
+    }
+
+    /// Lets everything happen that is due up to `t_us`.
+    pub fn advance(&self, t_us: u64) {
+        self.rig().advance(t_us);
+    }
+
+    /// Rig time, microseconds.
+    pub fn now_us(&self) -> u64 {
+        self.rig().now_us()
+    }
+
+    /// Name and baud rate of each line, in the order of their numbers.
+    pub fn lines(&self) -> Vec<(String, u32)> {
+        let name = |line: &LineSpec| (line.name.clone(), line.baud);
+        self.rig().lines().iter().map(name).collect()
+    }
+
+    /// EEPROM writes of all modules so far.
+    pub fn eeprom_writes(&self) -> u64 {
+        self.rig().eeprom_writes()
+    }
+
+    /// EEPROM writes of each module so far.
+    pub fn eeprom_writes_by_module(&self) -> Vec<(String, u64)> {
+        self.rig().eeprom_writes_by_module()
+    }
+
+    /// Truth of every lot part that has entered the nest, in order.
+    pub fn truth(&self) -> Vec<serde_json::Value> {
+        self.rig().truth()
+    }
+
+    /// Bodies that touched where they must not.
+    pub fn crashes(&self) -> Vec<String> {
+        self.rig().crashes()
+    }
+
+    /// A line that panicked has left the rig between two events, where it is whole.
+    fn rig(&self) -> MutexGuard<'_, Rig> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

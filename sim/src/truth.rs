@@ -1,0 +1,32 @@
+//! What a specimen really was: the record that judges the controller.
+
+use serde::Serialize;
+
+/// True values of one lot part; absent where the part never showed the quantity.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct PartTruth {
+    /// Order of entering the nest, from 1; golden parts are not counted.
+    pub seq: u64,
+    /// Coil resistance at the reference temperature; absent for an open coil.
+    pub coil_resistance_ohm: Option<f64>,
+    /// Quasi-static operate threshold at the reference temperature.
+    pub operate_voltage_v: Option<f64>,
+    /// Quasi-static release threshold at the reference temperature.
+    pub release_voltage_v: Option<f64>,
+    /// Last operation at full voltage, drive on to first make.
+    pub operate_time_ms: Option<f64>,
+    /// Last release from full voltage, drive off to first make of NC.
+    pub release_time_ms: Option<f64>,
+    /// Open time of NO after its first make in that operation.
+    pub operate_bounce_ms: Option<f64>,
+    /// Open time of NC after its first make in that release.
+    pub release_bounce_ms: Option<f64>,
+    /// Mean over the closures of NO on which the source was on.
+    pub contact_resistance_no_mohm: Option<f64>,
+    /// Mean over the closures of NC on which the source was on.
+    pub contact_resistance_nc_mohm: Option<f64>,
+    /// Name of the defect.
+    pub defect: Option<&'static str>,
+    /// Bin in which the body came to rest.
+    pub landed_in: Option<String>,
+}

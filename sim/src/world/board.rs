@@ -1,0 +1,400 @@
+//! The interface board: coil supply, contact source, monitors, references and interlocks.
+//!
+//! Drive and source need the probe-up chain. The source waits until the selected contact has been
+//! closed for a while and goes off ahead of any change of drive, selection or direction, which
+//! then comes late. The clamp changes only while the coil is free of current. Part or no part,
+//! every terminal answers what its circuit would.
+
+use super::draw::Draw;
+use super::gates::Gates;
+use super::relay::{Contact, Relay, Supply};
+use super::signal::{Commands, In, Out, Quantity, Source};
+use super::table::BoardTable;
+use crate::config::References;
+
+/// What drive, selection and direction stand at.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct Switches {
+    drive: bool,
+    select_no: bool,
+    reverse: bool,
+}
+
+/// The interface board.
+#[derive(Debug, Clone)]
+pub struct Board {
+    table: BoardTable,
+    gates: Gates,
+    source_a: f64,
+    reference_coil_ohm: f64,
+    reference_contact_ohm: f64,
+    reference_v: f64,
+    pulse_us: f64,
+    volts: [f64; 3],
+    gain: [f64; 3],
+    divider: f64,
+    commands: Commands,
+    switches: Switches,
+    switch_at_us: Option<f64>,
+    driving: bool,
+    clamp_diode: bool,
+    chain: bool,
+    touching: bool,
+    source_live: bool,
+    closed_since_us: Option<f64>,
+    arm_level_v: f64,
+    moved: bool,
+    now_us: f64,
+}
+
+impl Board {
+    /// A board with its errors drawn; `gain` is volts of supply per volt of each source.
+    pub fn new(table: &BoardTable, reference: &References, gain: [f64; 3], draw: &mut Draw) -> Self {
+        let mut within = |value: f64, pct: f64| value * (1.0 + draw.half(pct / 100.0));
+        let source_a = within(table.source_current_a, table.source_error_pct);
+        let reference_coil_ohm = within(reference.coil_ohm, reference.coil_tolerance_pct);
+        let contact = within(reference.contact_mohm, reference.contact_tolerance_pct);
+        let reference_v = within(reference.voltage_v, reference.voltage_tolerance_pct);
+        let delay = [draw.half(table.gate_delay_us), draw.half(table.gate_delay_us)];
+        Self {
+            table: table.clone(),
+            gates: Gates::new(delay, table.window_after_latch_ms * 1000.0),
+            source_a,
+            reference_coil_ohm,
+            reference_contact_ohm: contact * 1e-3,
+            reference_v,
+            pulse_us: reference.gate_pulse_ms * 1000.0,
+            volts: [0.0; 3],
+            gain,
+            divider: 1.0,
+            commands: Commands::default(),
+            switches: Switches::default(),
+            switch_at_us: None,
+            driving: false,
+            clamp_diode: false,
+            chain: false,
+            touching: false,
+            source_live: false,
+            closed_since_us: None,
+            arm_level_v: 0.0,
+            moved: false,
+            now_us: 0.0,
+        }
+    }
+
+    /// Brings board and relay to `t_us`.
+    pub fn advance(&mut self, t_us: f64, mut relay: Option<&mut Relay>) {
+        loop {
+            let due = self.next_us().filter(|&at| at <= t_us);
+            let until = due.unwrap_or(t_us);
+            if let Some(relay) = relay.as_deref_mut()
+                && let Some(change) = relay.advance(until)
+            {
+                self.now_us = change.t_us;
+                self.contact_event(change.contact, change.closed, relay);
+                self.refresh(Some(relay));
+                continue;
+            }
+            self.now_us = until;
+            if due.is_none() {
+                return;
+            }
+            self.expire(relay.as_deref_mut());
+        }
+    }
+
+    /// A source of the coil supply now stands at `volts`.
+    pub fn supply(&mut self, source: Source, volts: f64, relay: Option<&mut Relay>) {
+        self.volts[source as usize] = volts;
+        let away = (self.supply_v() - self.arm_level_v).abs() * 1000.0 > self.table.ramp_start_mv;
+        if away && !self.moved && self.commands.is_on(Out::RampMode) {
+            self.gates.start(self.now_us);
+        }
+        self.moved = away;
+        self.refresh(relay);
+    }
+
+    /// All commands of the controller as they now stand.
+    pub fn command(&mut self, commands: Commands, mut relay: Option<&mut Relay>) {
+        let before = std::mem::replace(&mut self.commands, commands);
+        self.refresh(relay.as_deref_mut());
+        if commands.rises(before, Out::Arm) {
+            self.arm_level_v = self.supply_v();
+            self.moved = false;
+            let pulse = commands.is_on(Out::ReferenceContact).then_some(self.pulse_us);
+            self.gates.arm(self.now_us, pulse);
+        }
+        if self.wanted() == self.switches || self.switch_at_us.is_some() {
+            return;
+        }
+        if self.source_live {
+            self.source_live = false;
+            self.switch_at_us = Some(self.now_us + self.table.source_lead_ms * 1000.0);
+        } else {
+            self.throw(relay);
+        }
+    }
+
+    /// The probe block is up (`chain`) and on the pins of a part (`touching`).
+    pub fn probe(&mut self, chain: bool, touching: bool, relay: Option<&mut Relay>) {
+        self.chain = chain;
+        self.touching = touching;
+        self.refresh(relay);
+    }
+
+    /// The coil voltage divider shifts by so many parts per thousand.
+    pub fn drift(&mut self, per_mille: f64) {
+        self.divider = 1.0 + per_mille * 1e-3;
+    }
+
+    /// Open time of a gate so far.
+    pub fn gate_open_us(&self, gate: usize) -> f64 {
+        self.gates.open_us(gate, self.now_us)
+    }
+
+    /// A digital signal of the board; `None` where the signal is none of its own.
+    pub fn signal(&self, signal: In, relay: Option<&Relay>) -> Option<bool> {
+        let kelvin = |pin: usize| {
+            let good = relay.is_some_and(|r| r.specimen().kelvin[pin]);
+            Some(self.commands.is_on(Out::KelvinTest) && self.touching && good)
+        };
+        match signal {
+            In::KelvinCoilA => kelvin(0),
+            In::KelvinCoilB => kelvin(1),
+            In::KelvinCom => kelvin(2),
+            In::KelvinNo => kelvin(3),
+            In::KelvinNc => kelvin(4),
+            In::NoClosed => Some(self.sees(Contact::No, relay)),
+            In::NcClosed => Some(self.sees(Contact::Nc, relay)),
+            In::Window => Some(self.gates.window()),
+            In::Latch => Some(self.gates.latch()),
+            In::SourceCompliance => Some(self.source_limited(relay)),
+            In::ProbeChain => Some(self.chain),
+            _ => None,
+        }
+    }
+
+    /// A quantity in its own unit, before the gain of its terminal.
+    pub fn quantity(&self, quantity: Quantity, relay: Option<&Relay>) -> f64 {
+        match quantity {
+            Quantity::CoilVoltage | Quantity::CoilVoltageFine => {
+                self.coil_v(relay) * self.divider
+            }
+            Quantity::CoilCurrent | Quantity::CoilCurrentFine => self.coil_a(relay),
+            Quantity::ContactCurrent => self.contact_a(relay),
+            Quantity::SupplyVoltage => self.supply_v(),
+            Quantity::ReferenceVoltage => self.reference_v,
+            Quantity::ContactDrop => self.contact_v(relay),
+        }
+    }
+
+    /// Clips what an analog input can see, volts.
+    pub fn clip(&self, volts: f64) -> f64 {
+        volts.clamp(-self.table.input_limit_v, self.table.input_limit_v)
+    }
+
+    fn supply_v(&self) -> f64 {
+        let sum: f64 = self.volts.iter().zip(self.gain).map(|(v, g)| v * g).sum();
+        sum.clamp(0.0, self.table.supply_max_v)
+    }
+
+    fn wanted(&self) -> Switches {
+        Switches {
+            drive: self.commands.is_on(Out::CoilDrive),
+            select_no: self.commands.is_on(Out::SelectNo),
+            reverse: self.commands.is_on(Out::SourceReverse),
+        }
+    }
+
+    fn selected(&self) -> Contact {
+        if self.switches.select_no { Contact::No } else { Contact::Nc }
+    }
+
+    fn sees(&self, contact: Contact, relay: Option<&Relay>) -> bool {
+        self.touching
+            && relay.is_some_and(|r| {
+                let pins = r.specimen().pins;
+                let met = match contact {
+                    Contact::No => pins.no(),
+                    Contact::Nc => pins.nc(),
+                };
+                met && r.is_closed(contact) && self.monitor_trips(r, contact)
+            })
+    }
+
+    fn monitor_trips(&self, relay: &Relay, contact: Contact) -> bool {
+        let ohm = relay.record.contact_mohm(contact) * 1e-3;
+        ohm / (ohm + self.table.monitor_ohm) < self.table.monitor_threshold_pct / 100.0
+    }
+
+    fn selected_closed(&self, relay: Option<&Relay>) -> bool {
+        self.commands.is_on(Out::ReferenceContact) || self.sees(self.selected(), relay)
+    }
+
+    /// Next instant at which the board does something by itself.
+    fn next_us(&self) -> Option<f64> {
+        let times = [self.switch_at_us, self.source_due_us(), self.gates.next_us()];
+        times.into_iter().flatten().min_by(f64::total_cmp)
+    }
+
+    fn source_due_us(&self) -> Option<f64> {
+        let wanted = self.commands.is_on(Out::SourceOn) && self.chain && !self.source_live;
+        let since = self.closed_since_us.filter(|_| wanted && self.switch_at_us.is_none())?;
+        Some((since + self.table.source_wait_ms * 1000.0).max(self.now_us))
+    }
+
+    fn expire(&mut self, relay: Option<&mut Relay>) {
+        let now = self.now_us;
+        self.gates.expire(now);
+        if self.switch_at_us.is_some_and(|at| at <= now) {
+            self.switch_at_us = None;
+            self.throw(relay);
+        } else if self.source_due_us().is_some_and(|at| at <= now) {
+            self.source_live = true;
+            self.refresh(relay);
+        }
+    }
+
+    /// Drive, selection and direction take the wanted position.
+    fn throw(&mut self, relay: Option<&mut Relay>) {
+        let before = self.switches;
+        self.switches = self.wanted();
+        if before.select_no != self.switches.select_no {
+            self.closed_since_us = None;
+        }
+        self.refresh(relay);
+    }
+
+    /// The latch looks at contact events as the monitor sees them.
+    fn contact_event(&mut self, contact: Contact, closed: bool, relay: &Relay) {
+        let pins = relay.specimen().pins;
+        let met = match contact {
+            Contact::No => pins.no(),
+            Contact::Nc => pins.nc(),
+        };
+        if !met || !self.touching || self.commands.is_on(Out::ReferenceContact) {
+            return;
+        }
+        let chosen = match self.commands.is_on(Out::EventNoBreak) {
+            true => contact == Contact::No && !closed,
+            false => contact == self.selected() && closed && self.monitor_trips(relay, contact),
+        };
+        if chosen {
+            self.gates.event(self.now_us);
+        }
+    }
+
+    /// Everything that follows at once from commands, probes and contacts.
+    fn refresh(&mut self, mut relay: Option<&mut Relay>) {
+        let now = self.now_us;
+        self.select_clamp(relay.as_deref());
+        self.edges_of_drive();
+        if let Some(relay) = relay.as_deref_mut() {
+            relay.drive(now, self.coil_supply(relay));
+        }
+        let closed = self.selected_closed(relay.as_deref());
+        match (closed, self.closed_since_us) {
+            (true, None) => self.closed_since_us = Some(now),
+            (false, Some(_)) => self.closed_since_us = None,
+            (true, Some(_)) | (false, None) => {}
+        }
+        self.source_live &= closed && self.chain && self.commands.is_on(Out::SourceOn);
+        self.gates.contact(now, closed);
+        if let Some(relay) = relay
+            && self.source_live
+            && !self.commands.is_on(Out::ReferenceContact)
+        {
+            relay.record.source_on(self.selected());
+        }
+    }
+
+    fn select_clamp(&mut self, relay: Option<&Relay>) {
+        let wanted = self.commands.is_on(Out::ClampDiode);
+        let free = self.coil_a(relay).abs() * 1000.0 < self.table.clamp_select_below_ma;
+        if wanted != self.clamp_diode && free {
+            self.clamp_diode = wanted;
+        }
+    }
+
+    /// Start and opposite edges that the drive gives to the window.
+    fn edges_of_drive(&mut self) {
+        let driving = self.switches.drive && self.chain;
+        if driving == std::mem::replace(&mut self.driving, driving) {
+            return;
+        }
+        let (ramp, no) = (self.commands.is_on(Out::RampMode), self.switches.select_no);
+        match (ramp, driving == no) {
+            (false, true) => self.gates.start(self.now_us),
+            (false, false) => self.gates.opposite(self.now_us),
+            (true, _) if !driving => self.gates.opposite(self.now_us),
+            (true, _) => {}
+        }
+    }
+
+    fn coil_supply(&self, relay: &Relay) -> Supply {
+        let meets = self.touching && relay.specimen().pins.coil();
+        if self.driving && meets && !self.commands.is_on(Out::ReferenceCoil) {
+            return Supply::Volts(self.limited_v(relay.coil_ohm()));
+        }
+        let slow = self.clamp_diode && meets;
+        let clamp_v = if slow { self.table.diode_v } else { self.table.zener_v };
+        Supply::Off { clamp_v, slow }
+    }
+
+    fn limited_v(&self, ohm: f64) -> f64 {
+        self.supply_v().min(self.table.supply_limit_ma * 1e-3 * ohm)
+    }
+
+    fn coil_a(&self, relay: Option<&Relay>) -> f64 {
+        if self.commands.is_on(Out::ReferenceCoil) {
+            let volts = if self.driving { self.limited_v(self.reference_coil_ohm) } else { 0.0 };
+            return volts / self.reference_coil_ohm;
+        }
+        let meets = |r: &&Relay| self.touching && r.specimen().pins.coil();
+        relay.filter(meets).map_or(0.0, |r| r.coil_current_a(self.now_us))
+    }
+
+    fn coil_v(&self, relay: Option<&Relay>) -> f64 {
+        let current = self.coil_a(relay);
+        match (self.driving, self.commands.is_on(Out::ReferenceCoil)) {
+            (true, true) => current * self.reference_coil_ohm,
+            (true, false) => self.limited_v(relay.map_or(f64::INFINITY, Relay::coil_ohm)),
+            (false, _) if current <= 0.0 => 0.0,
+            (false, _) if self.clamp_diode => -self.table.diode_v,
+            (false, _) => -self.table.zener_v,
+        }
+    }
+
+    /// Resistance between the sense wires, `None` when open.
+    fn contact_ohm(&self, relay: Option<&Relay>) -> Option<f64> {
+        if self.commands.is_on(Out::ReferenceContact) {
+            return Some(self.reference_contact_ohm);
+        }
+        let contact = self.selected();
+        let closed = self.sees(contact, relay);
+        relay.filter(|_| closed).map(|r| r.record.contact_mohm(contact) * 1e-3)
+    }
+
+    fn contact_a(&self, relay: Option<&Relay>) -> f64 {
+        let ohm = self.contact_ohm(relay).unwrap_or(f64::INFINITY);
+        let size = match self.source_live {
+            true => self.source_a.min(self.table.source_compliance_v / ohm),
+            false => 0.0,
+        };
+        if self.switches.reverse { -size } else { size }
+    }
+
+    fn source_limited(&self, relay: Option<&Relay>) -> bool {
+        self.source_live && self.contact_a(relay).abs() < self.source_a * 0.999
+    }
+
+    fn contact_v(&self, relay: Option<&Relay>) -> f64 {
+        let Some(ohm) = self.contact_ohm(relay) else {
+            return self.table.monitor_v;
+        };
+        let reference = self.commands.is_on(Out::ReferenceContact);
+        let emf = relay.filter(|_| !reference).map_or(0.0, |r| r.specimen().emf_v);
+        let monitor_a = self.table.monitor_v / (self.table.monitor_ohm + ohm);
+        (self.contact_a(relay) + monitor_a) * ohm + emf
+    }
+}

@@ -1,0 +1,75 @@
+//! Faults of the world that can be asked for by name.
+
+use std::path::Path;
+
+use super::table::FaultSpec;
+use crate::config::ConfigError;
+use std::collections::BTreeMap;
+
+macro_rules! faults {
+    ($($name:ident = $text:literal),* $(,)?) => {
+        /// A fault of mechanism, board or part; `config/sim.toml` says what each does.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        #[allow(missing_docs)] // explained beside the default in config/sim.toml
+        pub enum Fault { $($name),* }
+
+        impl Fault {
+            /// The fault of this name.
+            pub fn from_name(name: &str) -> Option<Self> {
+                match name { $($text => Some(Fault::$name),)* _ => None }
+            }
+        }
+    };
+}
+
+faults! {
+    JamPusher = "jam_pusher", StuckClamp = "stuck_clamp", NoPart = "no_part",
+    DoublePart = "double_part", Fall = "fall", ProbeDirty = "probe_dirty",
+    BeamBlind = "beam_blind", AxisAlarm = "axis_alarm", StuckLift = "stuck_lift",
+    StuckGripper = "stuck_gripper", Door = "door", Estop = "estop", Air = "air",
+    StopButton = "stop_button", Drift = "drift",
+}
+
+/// The faults asked for, with their values.
+#[derive(Debug, Clone, Default)]
+pub struct Faults(Vec<(Fault, f64)>);
+
+impl Faults {
+    /// Resolves names; a value that is NaN takes the default of the table.
+    ///
+    /// # Errors
+    /// There is no fault of that name.
+    pub fn resolve(
+        asked: &[(String, f64)],
+        table: &BTreeMap<String, FaultSpec>,
+        path: &Path,
+    ) -> Result<Self, ConfigError> {
+        let resolve = |(name, value): &(String, f64)| match (Fault::from_name(name), table.get(name)) {
+            (Some(fault), Some(spec)) => {
+                Ok((fault, if value.is_nan() { spec.default } else { *value }))
+            }
+            (_, _) => Err(ConfigError::Value {
+                path: path.to_path_buf(),
+                key: format!("fault.{name}"),
+                message: format!("no such fault, expected one of {}", names(table)),
+            }),
+        };
+        asked.iter().map(resolve).collect::<Result<_, _>>().map(Self)
+    }
+
+    /// Values asked for under one name.
+    pub fn values(&self, fault: Fault) -> impl Iterator<Item = f64> + '_ {
+        self.0.iter().filter(move |(f, _)| *f == fault).map(|(_, v)| *v)
+    }
+
+    /// Takes away a fault that strikes once at a part (counted from 1); true if it was asked for.
+    pub fn strikes(&mut self, fault: Fault, part: Option<u64>) -> bool {
+        let hit = |(f, v): &(Fault, f64)| *f == fault && part == Some(*v as u64);
+        let place = self.0.iter().position(hit);
+        place.map(|i| self.0.remove(i)).is_some()
+    }
+}
+
+fn names(table: &BTreeMap<String, FaultSpec>) -> String {
+    table.keys().map(String::as_str).collect::<Vec<_>>().join(", ")
+}

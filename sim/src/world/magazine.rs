@@ -1,0 +1,123 @@
+//! The magazine track and every part that has left it.
+
+use std::path::Path;
+
+use super::draw::{Draw, Subject};
+use super::golden::{Certificate, read_golden, read_scale};
+use super::relay::{Contact, Relay};
+use super::specimen::{Scale, Specimen};
+use super::table::WorldTable;
+use super::{WorldOptions, fault::{Fault, Faults}};
+use crate::config::ConfigError;
+use crate::truth::PartTruth;
+
+/// A part outside the magazine.
+#[derive(Debug, Clone)]
+pub struct Part {
+    /// The relay; its coil and contacts keep their history.
+    pub relay: Relay,
+    /// Order of entering the nest, from 1; 0 before, and for golden parts always.
+    pub seq: u64,
+    /// Place in the lot from 1, none for golden parts: what `--fault` counts by.
+    pub number: Option<u64>,
+    /// A second body clings to it.
+    pub double: bool,
+    /// Bin in which it came to rest.
+    pub landed_in: Option<String>,
+}
+
+impl Part {
+    /// What this part was.
+    pub fn truth(&self) -> PartTruth {
+        let (spec, record) = (self.relay.specimen(), &self.relay.record);
+        let coil = spec.coil_ohm;
+        PartTruth {
+            seq: self.seq,
+            coil_resistance_ohm: coil.is_finite().then_some(coil),
+            operate_voltage_v: Some(spec.operate_v),
+            release_voltage_v: Some(spec.release_v),
+            operate_time_ms: record.time_ms(Contact::No),
+            release_time_ms: record.time_ms(Contact::Nc),
+            operate_bounce_ms: record.bounce_ms(Contact::No),
+            release_bounce_ms: record.bounce_ms(Contact::Nc),
+            contact_resistance_no_mohm: record.mean_mohm(Contact::No),
+            contact_resistance_nc_mohm: record.mean_mohm(Contact::Nc),
+            defect: spec.defect.map(super::defect::Defect::name),
+            landed_in: self.landed_in.clone(),
+        }
+    }
+}
+
+/// Parts in the order in which they leave: golden ones first.
+#[derive(Debug, Clone)]
+pub struct Magazine {
+    world: WorldTable,
+    scale: Scale,
+    seed: u64,
+    golden: Vec<Certificate>,
+    lot: Option<u64>,
+    out: u64,
+    track_c: f64,
+    ambient_c: f64,
+}
+
+impl Magazine {
+    /// A full magazine; temperatures are those of the track and of the air.
+    ///
+    /// # Errors
+    /// The recipe or the certificates cannot be read.
+    pub fn load(options: &WorldOptions, world: &WorldTable, track_c: f64, ambient_c: f64) -> Result<Self, ConfigError> {
+        let dir: &Path = &options.config_dir;
+        let scale = read_scale(dir, &options.recipe)?;
+        let golden = match options.golden {
+            true => read_golden(dir, scale.nominal_v)?,
+            false => Vec::new(),
+        };
+        let (world, seed, lot) = (world.clone(), options.seed, options.parts);
+        Ok(Self { world, scale, seed, golden, lot, out: 0, track_c, ambient_c })
+    }
+
+    /// Parts that still wait, `u64::MAX` for an endless lot.
+    pub fn waiting(&self) -> u64 {
+        let golden = self.golden.len() as u64;
+        self.lot.map_or(u64::MAX, |lot| (golden + lot).saturating_sub(self.out))
+    }
+
+    /// Place in the lot (from 1) of the part that leaves next.
+    pub fn next_number(&self) -> Option<u64> {
+        (self.out + 1).checked_sub(self.golden.len() as u64).filter(|&n| n > 0)
+    }
+
+    /// The next part leaves; `None` from an empty track.
+    pub fn take(&mut self, now_us: u64, faults: &mut Faults) -> Option<Part> {
+        if self.waiting() == 0 {
+            return None;
+        }
+        let number = self.next_number();
+        let (mut specimen, draw) = match number {
+            Some(n) => self.lot_part(n - 1),
+            None => self.golden_part(self.out),
+        };
+        self.out += 1;
+        if faults.strikes(Fault::ProbeDirty, number) {
+            specimen.kelvin[3] = false;
+            specimen.pins.present[3] = false;
+        }
+        let double = faults.strikes(Fault::DoublePart, number);
+        let (track, air) = (self.track_c, self.ambient_c);
+        let relay = Relay::new(specimen, &self.world, draw, now_us as f64, track, air);
+        Some(Part { relay, seq: 0, number, double, landed_in: None })
+    }
+
+    fn lot_part(&self, index: u64) -> (Specimen, Draw) {
+        let specimen = Specimen::of_lot(&self.world, self.scale, self.seed, index);
+        (specimen, Draw::new(self.seed, Subject::LotOperations, index))
+    }
+
+    fn golden_part(&self, index: u64) -> (Specimen, Draw) {
+        let paper = &self.golden[index as usize];
+        let specimen =
+            Specimen::of_certificate(&self.world, self.scale, self.seed, index, paper);
+        (specimen, Draw::new(self.seed, Subject::GoldenOperations, index))
+    }
+}

@@ -1,0 +1,266 @@
+//! The world behind the terminals: interface board, mechanism and specimens.
+//!
+//! ```text
+//! terminals -> wiring -> signals -> board      (coil supply, gates, contact source, monitors)
+//!                                -> mechanism  (cylinders, axis, sensors; places and parts)
+//!                 board <-> relay of the part in the nest (specimen, mode, thermal, record)
+//! ```
+//!
+//! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the
+//! board. Everything is drawn from the seed in streams of its own, so the same stimuli give the
+//! same world again. Nothing here knows what the controller is for.
+
+pub mod axis;
+pub mod board;
+pub mod cylinder;
+pub mod defect;
+pub mod draw;
+pub mod edges;
+pub mod environment;
+pub mod fault;
+pub mod gates;
+pub mod golden;
+pub mod magazine;
+pub mod mechanism;
+pub mod mode;
+pub mod places;
+pub mod record;
+pub mod relay;
+pub mod signal;
+pub mod specimen;
+pub mod table;
+pub mod thermal;
+pub mod wiring;
+
+use std::path::PathBuf;
+
+use crate::config::{ConfigError, RigFile, read_rig, read_world};
+use crate::terminal::Plant;
+use axis::Axis;
+use board::Board;
+use draw::{Draw, Subject};
+use edges::Edges;
+use environment::Environment;
+use fault::{Fault, Faults};
+use magazine::{Magazine, Part};
+use mechanism::Mechanism;
+use relay::Relay;
+use signal::{Commands, In, Source};
+use table::WorldTable;
+use wiring::{Wire, Wiring};
+
+/// What to build.
+#[derive(Debug, Clone, Default)]
+pub struct WorldOptions {
+    /// Folder with `rig.toml`, `sim.toml`, `golden.toml` and `recipes/`.
+    pub config_dir: PathBuf,
+    /// Another world on top of `sim.toml`.
+    pub world_file: Option<PathBuf>,
+    /// Draws rig and lot.
+    pub seed: u64,
+    /// Recipe of the parts in the magazine.
+    pub recipe: String,
+    /// Lot parts in the magazine; `None` never runs out.
+    pub parts: Option<u64>,
+    /// Golden parts come first.
+    pub golden: bool,
+    /// Faults of the world by name with their value (NaN: the default of the table).
+    pub faults: Vec<(String, f64)>,
+}
+
+/// The simulated world.
+#[derive(Debug, Clone)]
+pub struct World {
+    wiring: Wiring,
+    board: Board,
+    mechanism: Mechanism,
+    environment: Environment,
+    commands: Commands,
+    edges: Vec<(Wire<In>, Edges)>,
+    drift: Option<f64>,
+    clock_hz: f64,
+    now_us: u64,
+}
+
+impl World {
+    /// Builds the world.
+    ///
+    /// # Errors
+    /// A file of the configuration is missing or wrong, or there is no fault of a name.
+    pub fn build(options: &WorldOptions) -> Result<Self, ConfigError> {
+        let rig = read_rig(&options.config_dir)?;
+        let table = read_world(&options.config_dir, options.world_file.as_deref())?;
+        let path = options.config_dir.join("sim.toml");
+        let faults = Faults::resolve(&options.faults, &table.fault, &path)?;
+        let mut draw = Draw::new(options.seed, Subject::Rig, 0);
+        let environment = Environment::new(&table.environment, &mut draw);
+        let (track, ambient) = (environment.track_c, environment.ambient_c);
+        let magazine = Magazine::load(options, &table, track, ambient)?;
+        let drift = faults.values(Fault::Drift).next();
+        let wiring = Wiring::new(&rig);
+        let board = Board::new(&table.board, &rig.reference, supply_gains(&wiring), &mut draw);
+        let clock_hz = rig.reference.counter_clock_hz * (1.0 + draw.half(table.devices.clock_ppm * 1e-6));
+        let strokes = Draw::new(options.seed, Subject::Mechanism, 0);
+        let axis = sort_axis(&rig, &table);
+        let mechanism = Mechanism::new(&table.mechanism, axis, rig.bins, magazine, faults, strokes);
+        let commands = Commands::default();
+        let edges = Vec::new();
+        let mut world =
+            Self { wiring, board, mechanism, environment, commands, edges, drift, clock_hz, now_us: 0 };
+        world.begin_edges();
+        Ok(world)
+    }
+
+    /// Truth of every lot part that has entered the nest, in order.
+    pub fn truth(&self) -> Vec<serde_json::Value> {
+        let truths = self.mechanism.places.truth();
+        truths.into_iter().filter_map(|t| serde_json::to_value(t).ok()).collect()
+    }
+
+    /// Bodies that touched where they must not, in order of time.
+    pub fn crashes(&self) -> Vec<String> {
+        self.mechanism.crashes().to_vec()
+    }
+
+    fn relay(&self) -> Option<&Relay> {
+        self.mechanism.places.nest.as_deref().map(|part| &part.relay)
+    }
+
+    /// A signal at this instant.
+    fn signal(&self, signal: In) -> bool {
+        let own = self.mechanism.signal(signal, self.now_us);
+        own.or_else(|| self.board.signal(signal, self.relay())).unwrap_or(false)
+    }
+
+    fn begin_edges(&mut self) {
+        let wires: Vec<Wire<In>> =
+            self.wiring.inputs.values().flatten().map(|(_, wire)| *wire).collect();
+        for wire in wires {
+            let mut edges = Edges::default();
+            edges.begin(self.signal(wire.signal) != wire.active_low, self.now_us);
+            self.edges.push((wire, edges));
+        }
+    }
+
+    /// What follows from a change in the mechanism at this instant.
+    fn mechanism_changed(&mut self) {
+        let now = self.now_us;
+        let (up, touch) = (self.mechanism.probes_up(now), self.mechanism.probes_touch(now));
+        self.board.probe(up, touch, nest_relay(&mut self.mechanism));
+        for (wire, edges) in &mut self.edges {
+            if let Some(present) = self.mechanism.signal(wire.signal, now) {
+                edges.level(present != wire.active_low, now);
+            }
+        }
+        if self.mechanism.places.entered() > 0
+            && let Some(drift) = self.drift.take()
+        {
+            self.board.drift(drift);
+        }
+    }
+}
+
+impl Plant for World {
+    fn advance(&mut self, t_us: u64) {
+        while self.mechanism.next_us() <= t_us {
+            self.now_us = self.mechanism.next_us().max(self.now_us);
+            self.board.advance(self.now_us as f64, nest_relay(&mut self.mechanism));
+            self.mechanism.process(self.now_us);
+            self.mechanism_changed();
+        }
+        if t_us > self.now_us {
+            self.now_us = t_us;
+            self.board.advance(t_us as f64, nest_relay(&mut self.mechanism));
+        }
+    }
+
+    fn analog_in(&mut self, module: &str, channel: u8) -> f64 {
+        if let Some(wire) = wiring::at(&self.wiring.sensors, module, channel) {
+            return self.environment.sensor_c(wire.signal);
+        }
+        match wiring::at(&self.wiring.quantities, module, channel) {
+            Some(wire) => self.board.clip(self.board.quantity(wire.signal, self.relay()) * wire.gain),
+            None => f64::NAN,
+        }
+    }
+
+    fn analog_out(&mut self, module: &str, volts: f64) {
+        if let Some(wire) = wiring::at(&self.wiring.sources, module, 0) {
+            self.board.supply(wire.signal, volts, nest_relay(&mut self.mechanism));
+        }
+    }
+
+    fn digital_in(&mut self, module: &str) -> u16 {
+        wiring::on(&self.wiring.inputs, module).iter().fold(0xFFFF, |bits, (channel, wire)| {
+            let high = self.signal(wire.signal) != wire.active_low;
+            if high { bits } else { bits & !(1 << channel) }
+        })
+    }
+
+    fn digital_out(&mut self, module: &str, bits: u16) {
+        let mut commands = self.commands;
+        for (channel, wire) in wiring::on(&self.wiring.outputs, module) {
+            let on = (bits >> channel & 1 == 1) != wire.active_low;
+            commands = commands.with(wire.signal, on);
+        }
+        if commands == self.commands {
+            return;
+        }
+        self.commands = commands;
+        self.mechanism.command(commands, self.now_us);
+        self.mechanism_changed();
+        self.board.command(commands, nest_relay(&mut self.mechanism));
+    }
+
+    fn edges(&mut self, module: &str, channel: u8) -> u64 {
+        let Some(wire) = wiring::at(&self.wiring.inputs, module, channel) else {
+            return 0;
+        };
+        let now = self.now_us;
+        let own = self.edges.iter_mut().find(|(w, _)| w.signal == wire.signal);
+        own.map_or(0, |(_, edges)| edges.count(now))
+    }
+
+    fn gate_open_us(&mut self, module: &str, channel: u8) -> f64 {
+        let wire = wiring::at(&self.wiring.gates, module, channel);
+        wire.map_or(0.0, |w| self.board.gate_open_us(w.signal as usize))
+    }
+
+    fn reference_clock_hz(&self) -> f64 {
+        self.clock_hz
+    }
+}
+
+fn nest_relay(mechanism: &mut Mechanism) -> Option<&mut Relay> {
+    mechanism.places.nest.as_deref_mut().map(|part: &mut Part| &mut part.relay)
+}
+
+/// Volts of supply per volt of each source; a source that is not wired gives none.
+fn supply_gains(wiring: &Wiring) -> [f64; 3] {
+    let mut gains = [0.0; 3];
+    for (_, wire) in wiring.sources.values().flatten() {
+        match wire.signal {
+            Source::Level | Source::Coarse | Source::Fine => {
+                gains[wire.signal as usize] = wire.gain;
+            }
+        }
+    }
+    gains
+}
+
+/// The slide with the stops and bins of the rig file, braked at its park position.
+fn sort_axis(rig: &RigFile, table: &WorldTable) -> Axis {
+    let mut points = [None; 8];
+    let stops = rig.axis.values().copied().chain(rig.bins.iter().map(|b| (b.point, b.x_mm)));
+    for (point, x_mm) in stops {
+        if let Some(place) = points.get_mut(usize::from(point)) {
+            *place = Some(x_mm);
+        }
+    }
+    let park = rig.axis.get("park").map_or(0.0, |&(_, x)| x);
+    let mechanism = &table.mechanism;
+    Axis::new(mechanism.axis_mm_per_s, mechanism.axis_mm_per_s2, points, park)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,60 @@
+//! Where every part is: each place holds the part itself, so none is in two places.
+
+use super::magazine::Part;
+use crate::truth::PartTruth;
+
+/// The places of the line between magazine and bin.
+#[derive(Debug, Clone, Default)]
+pub struct Places {
+    /// In the pocket before the pusher.
+    pub pocket: Option<Box<Part>>,
+    /// In front of a pusher that is under way.
+    pub pushed: Option<Box<Part>>,
+    /// In the nest.
+    pub nest: Option<Box<Part>>,
+    /// The fingers hold the part that is still in the nest.
+    pub gripped: bool,
+    /// In the gripper, clear of the nest.
+    pub carried: Option<Box<Part>>,
+    entered: u64,
+    done: Vec<PartTruth>,
+}
+
+impl Places {
+    /// A part comes to the nest; lot parts are counted, coming back changes nothing.
+    pub fn enter_nest(&mut self, mut part: Box<Part>, now_us: u64) {
+        if part.number.is_some() && part.seq == 0 {
+            self.entered += 1;
+            part.seq = self.entered;
+        }
+        while part.relay.advance(now_us as f64).is_some() {}
+        self.nest = Some(part);
+    }
+
+    /// Lot parts that have entered the nest.
+    pub fn entered(&self) -> u64 {
+        self.entered
+    }
+
+    /// A part has left the line.
+    pub fn finish(&mut self, part: &Part) {
+        if part.seq > 0 {
+            self.done.push(part.truth());
+        }
+    }
+
+    /// Number in the lot of the part that the fingers hold.
+    pub fn held_number(&self) -> Option<u64> {
+        let nest = self.nest.as_ref().filter(|_| self.gripped);
+        self.carried.as_ref().or(nest).and_then(|p| p.number)
+    }
+
+    /// Truth of every lot part that has entered the nest, in that order.
+    pub fn truth(&self) -> Vec<PartTruth> {
+        let inside = [&self.nest, &self.carried];
+        let live = inside.into_iter().flatten().filter(|p| p.seq > 0).map(|p| p.truth());
+        let mut all: Vec<PartTruth> = self.done.iter().cloned().chain(live).collect();
+        all.sort_by_key(|t| t.seq);
+        all
+    }
+}

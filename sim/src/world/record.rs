@@ -1,0 +1,125 @@
+//! What a relay has shown: the last full-voltage operation and release, and its contact closures.
+
+use super::relay::Contact;
+use super::specimen::Specimen;
+
+/// Full voltage begins at this share of nominal.
+const FULL: f64 = 0.98;
+/// No voltage ends at this share of nominal.
+const NONE: f64 = 0.05;
+
+/// Closures of one contact.
+#[derive(Debug, Clone, Copy, Default)]
+struct Closures {
+    now_mohm: f64,
+    counted: bool,
+    sum_mohm: f64,
+    count: u32,
+}
+
+/// A timed switching of one contact.
+#[derive(Debug, Clone, Copy, Default)]
+struct Timing {
+    start_us: Option<f64>,
+    time_ms: Option<f64>,
+    bounce_us: f64,
+    open_since_us: Option<f64>,
+    following: bool,
+}
+
+/// Record of one relay on the probes.
+#[derive(Debug, Clone)]
+pub struct Record {
+    nominal_v: f64,
+    closures: [Closures; 2],
+    timing: [Timing; 2],
+}
+
+impl Record {
+    /// Nothing seen yet.
+    pub fn new(specimen: &Specimen) -> Self {
+        Self { nominal_v: specimen.nominal_v, closures: Default::default(), timing: Default::default() }
+    }
+
+    /// Resistance of the present closure, milliohm.
+    pub fn contact_mohm(&self, contact: Contact) -> f64 {
+        self.closures[contact as usize].now_mohm
+    }
+
+    /// Time of the last full-voltage make of this contact, ms: operate for NO, release for NC.
+    pub fn time_ms(&self, contact: Contact) -> Option<f64> {
+        self.timing[contact as usize].time_ms
+    }
+
+    /// Open time after that make, ms.
+    pub fn bounce_ms(&self, contact: Contact) -> Option<f64> {
+        let timing = &self.timing[contact as usize];
+        timing.time_ms.map(|_| timing.bounce_us / 1000.0)
+    }
+
+    /// Mean over the closures on which the source was on, milliohm.
+    pub fn mean_mohm(&self, contact: Contact) -> Option<f64> {
+        let c = &self.closures[contact as usize];
+        (c.count > 0).then(|| c.sum_mohm / f64::from(c.count))
+    }
+
+    /// A contact has closed anew with this resistance.
+    pub(super) fn close(&mut self, contact: Contact, mohm: f64) {
+        let c = &mut self.closures[contact as usize];
+        c.now_mohm = mohm;
+        c.counted = false;
+    }
+
+    /// The source flows through a contact.
+    pub(super) fn source_on(&mut self, contact: Contact) {
+        let c = &mut self.closures[contact as usize];
+        if !c.counted {
+            c.counted = true;
+            c.sum_mohm += c.now_mohm;
+            c.count += 1;
+        }
+    }
+
+    /// The supply has stepped; `still` tells that the armature was at an end.
+    pub(super) fn supply_step(&mut self, t_us: f64, old_v: f64, new_v: f64, still: bool) {
+        let (full, none) = (FULL * self.nominal_v, NONE * self.nominal_v);
+        if (new_v - old_v).abs() < 0.02 * self.nominal_v {
+            return;
+        }
+        let [no, nc] = &mut self.timing;
+        no.start_us = (still && old_v <= none && new_v >= full).then_some(t_us);
+        nc.start_us = (still && old_v >= full && new_v <= none).then_some(t_us);
+    }
+
+    /// First make of a contact after the armature has crossed.
+    pub(super) fn make(&mut self, contact: Contact, t_us: f64) {
+        let timing = &mut self.timing[contact as usize];
+        timing.following = timing.start_us.is_some();
+        if let Some(start) = timing.start_us.take() {
+            timing.time_ms = Some((t_us - start) / 1000.0);
+            timing.bounce_us = 0.0;
+            timing.open_since_us = None;
+        }
+    }
+
+    /// A bounce opens or closes a contact.
+    pub(super) fn bounce(&mut self, contact: Contact, t_us: f64, closed: bool) {
+        let timing = &mut self.timing[contact as usize];
+        if !timing.following {
+            return;
+        }
+        match (closed, timing.open_since_us) {
+            (true, Some(since)) => {
+                timing.bounce_us += t_us - since;
+                timing.open_since_us = None;
+            }
+            (true, None) => {}
+            (false, _) => timing.open_since_us = Some(t_us),
+        }
+    }
+
+    /// A contact parts for good.
+    pub(super) fn part(&mut self, contact: Contact) {
+        self.timing[contact as usize].following = false;
+    }
+}

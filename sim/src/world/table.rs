@@ -1,0 +1,160 @@
+//! The world file: everything about the simulated rig and its parts that is a number.
+//!
+//! `config/sim.toml` explains each key beside its value. Every key must be known; a file given
+//! with `--world` may leave keys out and then takes them from `sim.toml`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::config::{ConfigError, content, read_text};
+
+macro_rules! table {
+    ($(#[$doc:meta])* $name:ident { $($field:ident : $ty:ty),* $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        #[allow(missing_docs)] // each key is explained beside its value in config/sim.toml
+        pub struct $name { $(pub $field: $ty),* }
+    };
+}
+
+table!(
+    /// Errors and paces of modules and lines.
+    DeviceWorld {
+        latency_ms_mean: f64, latency_ms_sd: f64,
+        ai_gain_pct: f64, ai_offset_pct_of_range: f64, ai_noise_lsb: f64,
+        ao_gain_pct: f64, ao_offset_mv: f64, ao_slope_pct: f64, ao_refresh_ms: f64,
+        conversions_per_s: f64, conversions_per_s_normal: f64, clock_ppm: f64,
+    }
+);
+table!(
+    /// The interface board.
+    BoardTable {
+        gate_delay_us: f64, source_current_a: f64, source_error_pct: f64,
+        source_compliance_v: f64, source_wait_ms: f64, source_lead_ms: f64,
+        supply_max_v: f64, supply_limit_ma: f64, zener_v: f64, diode_v: f64,
+        ramp_start_mv: f64, window_after_latch_ms: f64,
+        monitor_v: f64, monitor_ohm: f64, monitor_threshold_pct: f64,
+        input_limit_v: f64, clamp_select_below_ma: f64,
+    }
+);
+table!(
+    /// Temperatures around the rig.
+    EnvironmentTable {
+        ambient_low_c: f64, ambient_high_c: f64,
+        track_minus_ambient_half_k: f64, nest_minus_ambient_half_k: f64,
+        part_minus_track_sd_k: f64, rtd_error_sd_k: f64,
+    }
+);
+table!(
+    /// How parts of the lot scatter.
+    LotTable {
+        nominal_v: f64, nominal_coil_ohm: f64,
+        operate_v_mean: f64, operate_v_sd: f64, release_v_mean: f64, release_v_sd: f64,
+        coil_ohm_mean: f64, coil_ohm_sd: f64,
+        operate_ms_mean: f64, operate_ms_sd: f64, operate_ms_follows_v: f64,
+        release_ms_mean: f64, release_ms_sd: f64,
+        contact_no_mohm_median: f64, contact_nc_mohm_median: f64,
+        contact_ln_sd: f64, closure_ln_sd: f64,
+        bounce_no_ms_mean: f64, bounce_no_ms_sd: f64,
+        bounce_nc_ms_mean: f64, bounce_nc_ms_sd: f64, bounce_ln_sd: f64,
+        threshold_scatter_sd_mv: f64, thermal_emf_sd_uv: f64,
+    }
+);
+table!(
+    /// Laws of the reduced relay model.
+    RelayTable {
+        operate_coil_lag_ms: f64, operate_armature_lag_ms: f64, operate_growth_ms: f64,
+        operate_gain_per_ms: f64,
+        release_coil_lag_ms: f64, release_armature_lag_ms: f64, release_growth_ms: f64,
+        release_gain_per_ms: f64, release_zener_lag_ms: f64, release_diode_lag_ms: f64,
+        inductance_open_h: f64, inductance_sealed_h: f64,
+        copper_zero_c: f64, coil_heat_j_per_k: f64, body_heat_j_per_k: f64,
+        coil_to_body_k_per_w: f64, body_to_air_k_per_w: f64,
+        bounce_no_us: Vec<f64>, bounce_nc_us: Vec<f64>,
+    }
+);
+table!(
+    /// Defects: rate and ranges.
+    DefectTable {
+        rate_pct: f64,
+        shorted_turns_coil_factor: [f64; 2], wrong_coil_factor: [f64; 2],
+        weak_spring_release_v: [f64; 2], weak_spring_operate_v: [f64; 2],
+        stiff_spring_operate_v: [f64; 2], stiff_spring_release_v: [f64; 2],
+        slow_operate_ms: [f64; 2], slow_release_ms: [f64; 2], bouncing_ms: [f64; 2],
+        high_contact_mohm: [f64; 2], far_too_high_ohm: [f64; 2], unstable_contact_mohm: [f64; 2],
+    }
+);
+table!(
+    /// Cylinders, slide and sensors.
+    MechanismTable {
+        escapement_ms: f64, pusher_ms: f64, clamp_ms: f64, probe_lift_ms: f64,
+        sort_z_ms: f64, gripper_ms: f64, scatter_pct: f64, pusher_stroke_mm: f64,
+        axis_mm_per_s: f64, axis_mm_per_s2: f64, axis_window_mm: f64,
+        fall_ms: [f64; 2], beam_dark_ms: [f64; 2], track_level_parts: u64, fault_hold_ms: f64,
+    }
+);
+table!(
+    /// A fault that can be asked for by name.
+    FaultSpec { unit: String, default: f64, help: String }
+);
+table!(
+    /// The whole file.
+    WorldTable {
+        devices: DeviceWorld, board: BoardTable, environment: EnvironmentTable, lot: LotTable,
+        relay: RelayTable, defects: DefectTable, mechanism: MechanismTable,
+        fault: BTreeMap<String, FaultSpec>,
+    }
+);
+
+/// Reads `sim.toml` of the configuration folder, or another world on top of it.
+///
+/// # Errors
+/// A file cannot be read, is no TOML, or has an unknown key or a value of the wrong kind.
+pub fn read_world(dir: &Path, other: Option<&Path>) -> Result<WorldTable, ConfigError> {
+    let base_path = dir.join("sim.toml");
+    let Some(path) = other else {
+        let text = read_text(&base_path)?;
+        return toml::from_str(&text).map_err(|e| content(&base_path, &text, &e));
+    };
+    let text = read_text(path)?;
+    match toml::from_str::<WorldTable>(&text) {
+        Ok(world) => Ok(world),
+        Err(e) if e.message().starts_with("missing field") => overlay(&base_path, path, &text),
+        Err(e) => Err(content(path, &text, &e)),
+    }
+}
+
+/// A partial world over the default one.
+fn overlay(base_path: &Path, path: &Path, text: &str) -> Result<WorldTable, ConfigError> {
+    let base_text = read_text(base_path)?;
+    let mut base: toml::Table =
+        toml::from_str(&base_text).map_err(|e| content(base_path, &base_text, &e))?;
+    let over: toml::Table = toml::from_str(text).map_err(|e| content(path, text, &e))?;
+    merge(&mut base, over);
+    base.try_into().map_err(|e: toml::de::Error| ConfigError::Content {
+        path: path.to_path_buf(),
+        line: line_of_key(text, e.message()),
+        message: e.message().to_owned(),
+    })
+}
+
+fn merge(base: &mut toml::Table, over: toml::Table) {
+    for (key, value) in over {
+        match (base.get_mut(&key), value) {
+            (Some(toml::Value::Table(inner)), toml::Value::Table(more)) => merge(inner, more),
+            (_, value) => {
+                base.insert(key, value);
+            }
+        }
+    }
+}
+
+/// Line of the first key that the message quotes, 0 if it stands nowhere.
+fn line_of_key(text: &str, message: &str) -> usize {
+    let key = message.split('`').nth(1).unwrap_or_default();
+    let names = |l: &str| !key.is_empty() && l.trim_start_matches(['[', ' ']).starts_with(key);
+    text.lines().position(names).map_or(0, |i| i + 1)
+}

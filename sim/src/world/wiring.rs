@@ -1,0 +1,72 @@
+//! Which signal hangs on which terminal, by module and channel.
+
+use std::collections::BTreeMap;
+
+use super::signal::{Gate, In, Out, Quantity, Sensor, Source};
+use crate::config::{RigFile, Terminal};
+
+/// A signal at a terminal.
+#[derive(Debug, Clone, Copy)]
+pub struct Wire<S> {
+    /// What hangs there.
+    pub signal: S,
+    /// The terminal reads 0 while the signal is present.
+    pub active_low: bool,
+    /// Volts at the terminal per unit.
+    pub gain: f64,
+}
+
+/// Terminals of one kind, by module and channel.
+type Terminals<S> = BTreeMap<String, Vec<(u8, Wire<S>)>>;
+
+/// All terminals of the rig.
+#[derive(Debug, Clone)]
+pub struct Wiring {
+    /// Digital inputs.
+    pub inputs: Terminals<In>,
+    /// Digital outputs.
+    pub outputs: Terminals<Out>,
+    /// Analog inputs.
+    pub quantities: Terminals<Quantity>,
+    /// RTD inputs.
+    pub sensors: Terminals<Sensor>,
+    /// Analog outputs.
+    pub sources: Terminals<Source>,
+    /// Counter gates.
+    pub gates: Terminals<Gate>,
+}
+
+impl Wiring {
+    /// Looks every named point up; points with names this rig does not have stay unwired.
+    pub fn new(rig: &RigFile) -> Self {
+        Self {
+            inputs: terminals(&rig.digital_in, In::from_name),
+            outputs: terminals(&rig.digital_out, Out::from_name),
+            quantities: terminals(&rig.analog_in, Quantity::from_name),
+            sensors: terminals(&rig.temperature, Sensor::from_name),
+            sources: terminals(&rig.analog_out, Source::from_name),
+            gates: terminals(&rig.counter, Gate::from_name),
+        }
+    }
+}
+
+/// What hangs on one terminal.
+pub fn at<S: Copy>(terminals: &Terminals<S>, module: &str, channel: u8) -> Option<Wire<S>> {
+    on(terminals, module).iter().find(|(c, _)| *c == channel).map(|(_, wire)| *wire)
+}
+
+/// Everything on one module.
+pub fn on<'a, S>(terminals: &'a Terminals<S>, module: &str) -> &'a [(u8, Wire<S>)] {
+    terminals.get(module).map_or(&[], Vec::as_slice)
+}
+
+fn terminals<S>(points: &BTreeMap<String, Terminal>, named: impl Fn(&str) -> Option<S>) -> Terminals<S> {
+    let mut all: Terminals<S> = BTreeMap::new();
+    for (name, t) in points {
+        if let Some(signal) = named(name) {
+            let wire = Wire { signal, active_low: t.active_low, gain: t.gain };
+            all.entry(t.module.clone()).or_default().push((t.channel, wire));
+        }
+    }
+    all
+}

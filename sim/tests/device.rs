@@ -1,0 +1,9 @@
+//! Facts about modules and lines, seen from the host's side.
+
+mod facts {
+    mod conformance;
+    mod converter;
+    mod line;
+    mod rig;
+    mod terminal;
+}

@@ -1,0 +1,110 @@
+//! The conversations of `conformance.txt`, and what must not be understood.
+
+use rigsim::bench;
+use rigsim::rig::Rig;
+
+const CONVERSATIONS: &str = include_str!("../conformance.txt");
+
+/// Time between two requests, microseconds: longer than any reply.
+const TURN_US: u64 = 1;
+
+fn ask(rig: &mut Rig, request: &str, at_us: u64) -> String {
+    let reply = rig.exchange(0, request.as_bytes(), at_us);
+    let text = reply.map_or_else(String::new, |reply| {
+        String::from_utf8_lossy(&reply.bytes).into_owned()
+    });
+    text.trim_end_matches('\r').to_owned()
+}
+
+fn converse(block: &str, line_number: usize) -> usize {
+    let of = |mark: char| block.lines().filter(move |line| line.starts_with(mark));
+    let file: Vec<&str> = of('=').map(|line| line[1..].trim()).collect();
+    let mut rig = bench::build_text(&file.join("\n"))
+        .unwrap_or_else(|error| panic!("line {line_number}: {error}"));
+    let (mut now_us, mut request, mut asked) = (0, "", 0);
+    for line in block.lines() {
+        let text = line.get(1..).unwrap_or("");
+        let text = text.strip_prefix(' ').unwrap_or(text);
+        match line.chars().next() {
+            Some('@') => now_us += text.trim().parse::<u64>().expect("milliseconds") * 1_000,
+            Some('>') => request = text,
+            Some('<') => {
+                now_us += TURN_US;
+                let reply = ask(&mut rig, request, now_us);
+                assert_eq!(reply, text, "line {line_number} ff: {request} of\n{block}");
+                asked += 1;
+            }
+            _ => {}
+        }
+    }
+    asked
+}
+
+#[test]
+fn modules_answer_as_their_manuals_say() {
+    let mut asked = 0;
+    let mut line_number = 1;
+    for block in CONVERSATIONS.split("\n\n") {
+        if block.lines().any(|line| line.starts_with('>')) {
+            asked += converse(block, line_number);
+        }
+        line_number += block.lines().count() + 1;
+    }
+    assert!(asked > 200, "only {asked} requests found");
+}
+
+/// Every request of the conversations with a checksum, as (bench, request).
+fn checked_requests() -> Vec<(String, &'static str)> {
+    let mut found = Vec::new();
+    for block in CONVERSATIONS.split("\n\n") {
+        let lines = |mark: char| block.lines().filter(move |line| line.starts_with(mark));
+        let file: Vec<&str> = lines('=').map(|line| line[1..].trim()).collect();
+        if file.contains(&"checksum = true") {
+            found.extend(lines('>').map(|line| (file.join("\n"), &line[2..])));
+        }
+    }
+    found
+}
+
+#[test]
+fn with_checksum_a_flipped_bit_or_a_missing_end_is_met_with_silence() {
+    for (file, request) in checked_requests() {
+        let mut rig = bench::build_text(&file).expect("a bench");
+        if ask(&mut rig, request, 0).is_empty() {
+            continue;
+        }
+        for bit in 0..request.len() * 8 {
+            let mut bytes = request.as_bytes().to_vec();
+            bytes[bit / 8] ^= 1 << (bit % 8);
+            assert_eq!(rig.exchange(0, &bytes, 0), None, "{request} bit {bit}");
+        }
+        for length in 0..request.len() {
+            let cut = &request.as_bytes()[..length];
+            assert_eq!(rig.exchange(0, cut, 0), None, "{request} cut to {length}");
+        }
+    }
+}
+
+#[test]
+fn no_bytes_make_a_module_fall_over() {
+    let file = "[[module]]\naddress = 1\nmodel = \"I-7080\"\n[[module]]\naddress = 2\nmodel = \
+                \"I-7024\"\n[[module]]\naddress = 3\nmodel = \"I-7060\"\n[[module]]\naddress = 4\n\
+                model = \"I-7017F\"\n[[module]]\naddress = 5\nmodel = \"I-7022\"";
+    let mut rig = bench::build_text(file).expect("a bench");
+    let alphabet = b"#$%@~0123456789ABCDEFGHILMNOPRST+-.* ";
+    let mut state = 1u64;
+    for _ in 0..100_000 {
+        let mut next = |most: usize| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 33) as usize % most
+        };
+        let length = next(14);
+        let mut text = vec![b"#$%@~"[next(5)], b'0', b"12345"[next(5)]];
+        text.extend((0..length).map(|_| alphabet[next(alphabet.len())]));
+        if let Some(reply) = rig.exchange(0, &text, 0) {
+            assert_eq!(reply.bytes.last(), Some(&b'\r'));
+        }
+    }
+}

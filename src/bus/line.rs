@@ -1,0 +1,409 @@
+//! The task of a line: requests in, answers out, one at a time and in order.
+
+use super::exchange::{Exchange, Frame, Heard};
+use super::{LineSettings, Pace, PortError};
+use crate::dcon::{Command, Common, Reply, ReplyError};
+use crate::units::{RigTime, Span};
+use std::io;
+use thiserror::Error;
+use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::sync::mpsc;
+
+/// One command to be carried out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Request {
+    /// Comes back in the answer.
+    pub ticket: u64,
+    /// What to send.
+    pub command: Command,
+    /// Most tries, the first included; commands that change something have one whatever this says.
+    pub tries: u8,
+}
+
+/// What became of a request.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Of the request.
+    pub ticket: u64,
+    /// Of the request.
+    pub command: Command,
+    /// The reply, or why there is none.
+    pub outcome: Result<Reply, LineError>,
+    /// The characters heard, CR left off; empty when none were.
+    pub raw: String,
+    /// When the first character of the last try was sent.
+    pub asked_at: RigTime,
+    /// When the reply was whole, or given up.
+    pub answered_at: RigTime,
+    /// At least 1.
+    pub tries_used: u8,
+}
+
+/// Why a transaction brought no reply that can be believed. Each says line, module and command.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum LineError {
+    /// Nothing, or no end, in time.
+    #[error("line {line}, {command}: no whole reply within {} ms", limit.0 as f64 / 1000.0)]
+    TimeOut {
+        /// Name of the line.
+        line: String,
+        /// What was asked.
+        command: Command,
+        /// Time that the reply had.
+        limit: Span,
+    },
+    /// The module declined, or what came is no reply to this command.
+    #[error("line {line}, {command}: {reason}")]
+    Reply {
+        /// Name of the line.
+        line: String,
+        /// What was asked.
+        command: Command,
+        /// What is the matter with it.
+        #[source]
+        reason: ReplyError,
+    },
+    /// The request came back: the converter does not mute its receiver while it sends.
+    #[error("line {line}, {command}: the line echoes the request")]
+    Echo {
+        /// Name of the line.
+        line: String,
+        /// What was asked.
+        command: Command,
+    },
+    /// Characters followed the reply: two modules at one address, or a late neighbour. Neither is believed.
+    #[error("line {line}, {command}: more characters behind the reply")]
+    SecondReply {
+        /// Name of the line.
+        line: String,
+        /// What was asked.
+        command: Command,
+    },
+    /// Somebody talks without being asked, and does not stop. Nothing was sent.
+    #[error("line {line}, {command}: not sent, the line does not fall silent")]
+    NeverSilent {
+        /// Name of the line.
+        line: String,
+        /// What should have been asked.
+        command: Command,
+    },
+    /// There is no port.
+    #[error("line {line}, {command}: port lost")]
+    PortLost {
+        /// Name of the line.
+        line: String,
+        /// What was, or should have been, asked.
+        command: Command,
+        /// Why it cannot be used.
+        #[source]
+        reason: PortError,
+    },
+}
+
+/// Where a line gets its port from, at the start and after it was lost.
+pub trait Ports {
+    /// A byte stream to the modules.
+    type Port: AsyncRead + AsyncWrite + Unpin;
+    /// Opens it anew. Called at most once per back-off time.
+    fn open(&mut self) -> impl Future<Output = Result<Self::Port, PortError>> + Send;
+}
+
+/// A ready-made stream, which cannot be opened twice.
+struct Given<P>(Option<P>);
+
+impl<P: AsyncRead + AsyncWrite + Unpin + Send> Ports for Given<P> {
+    type Port = P;
+
+    async fn open(&mut self) -> Result<P, PortError> {
+        self.0.take().ok_or(PortError::Gone)
+    }
+}
+
+/// Serves requests over `port` until one of the channels closes. A request is always answered.
+pub async fn run<P: AsyncRead + AsyncWrite + Unpin + Send>(
+    port: P,
+    settings: LineSettings,
+    pace: Pace,
+    requests: mpsc::Receiver<Request>,
+    answers: mpsc::Sender<Answer>,
+) {
+    run_reopening(Given(Some(port)), settings, pace, requests, answers).await;
+}
+
+/// As [`run`], with a source of ports: the first is opened at the first request.
+pub async fn run_reopening<O: Ports>(
+    ports: O,
+    settings: LineSettings,
+    pace: Pace,
+    mut requests: mpsc::Receiver<Request>,
+    answers: mpsc::Sender<Answer>,
+) {
+    let backoff = Span::ms(settings.reopen_first_ms);
+    let mut line = Line {
+        ports,
+        port: None,
+        settings,
+        pace,
+        request: Vec::with_capacity(24),
+        frame: Frame::new(),
+        silent: true,
+        reopen_at: RigTime(0),
+        backoff,
+        lost_because: PortError::Gone,
+    };
+    while let Some(request) = requests.recv().await {
+        let answer = line.serve(request).await;
+        if answers.send(answer).await.is_err() {
+            return;
+        }
+    }
+}
+
+struct Line<O: Ports> {
+    ports: O,
+    port: Option<O::Port>,
+    settings: LineSettings,
+    pace: Pace,
+    request: Vec<u8>,
+    frame: Frame,
+    /// False after trouble, until the line has been silent for long enough.
+    silent: bool,
+    reopen_at: RigTime,
+    backoff: Span,
+    lost_because: PortError,
+}
+
+/// One try: when it was asked, when it was answered, and what came of it.
+struct Try {
+    asked_at: RigTime,
+    answered_at: RigTime,
+    outcome: Result<Reply, LineError>,
+}
+
+/// What a try ran into; made into a [`LineError`] where line and command are known.
+enum Trouble {
+    Reply(ReplyError),
+    TimeOut,
+    Echo,
+    SecondReply,
+    NeverSilent,
+    Broken(io::ErrorKind),
+    NoPort,
+}
+
+impl From<io::Error> for Trouble {
+    fn from(error: io::Error) -> Self {
+        Self::Broken(error.kind())
+    }
+}
+
+impl<O: Ports> Line<O> {
+    async fn serve(&mut self, asked: Request) -> Answer {
+        let command = asked.command;
+        self.request.clear();
+        command.encode(self.settings.checksum, &mut self.request);
+        let mut tries_used = 0u8;
+        let last = loop {
+            tries_used += 1;
+            self.frame.clear();
+            let attempt = self.attempt(&command).await;
+            self.count(&command, &attempt);
+            if tries_used >= asked.tries || !may_repeat(&command, &attempt.outcome) {
+                break attempt;
+            }
+        };
+        let text = self.frame.bytes();
+        let raw = String::from_utf8_lossy(text.strip_suffix(b"\r").unwrap_or(text)).into_owned();
+        let Try {
+            asked_at,
+            answered_at,
+            outcome,
+        } = last;
+        Answer {
+            ticket: asked.ticket,
+            command,
+            outcome,
+            raw,
+            asked_at,
+            answered_at,
+            tries_used,
+        }
+    }
+
+    async fn attempt(&mut self, command: &Command) -> Try {
+        let mut asked_at = self.pace.now();
+        let mut answered_at = None;
+        let result = self
+            .transact(command, &mut asked_at, &mut answered_at)
+            .await;
+        match result {
+            Err(Trouble::Broken(kind)) => self.lost(PortError::Broken { kind }),
+            Ok(_) => self.backoff = Span::ms(self.settings.reopen_first_ms),
+            Err(_) => {}
+        }
+        let answered_at = answered_at.unwrap_or_else(|| self.pace.now());
+        Try {
+            asked_at,
+            answered_at,
+            outcome: result.map_err(|trouble| self.explain(*command, trouble)),
+        }
+    }
+
+    /// One transaction, with the rest or the silence that belongs to it.
+    async fn transact(
+        &mut self,
+        command: &Command,
+        asked_at: &mut RigTime,
+        answered_at: &mut Option<RigTime>,
+    ) -> Result<Reply, Trouble> {
+        self.reopened(command).await?;
+        let Self {
+            port: Some(port),
+            settings,
+            pace,
+            request,
+            frame,
+            silent,
+            ..
+        } = self
+        else {
+            return Err(Trouble::NoPort);
+        };
+        let mut exchange = Exchange {
+            port,
+            pace: *pace,
+            log: &settings.log,
+        };
+        if !*silent {
+            let limit = pace.now() + settings.silence_limit(command);
+            *silent = exchange.silence(settings.silence(command), limit).await?;
+            return Err(Trouble::NeverSilent);
+        }
+        exchange.discard().await?;
+        *asked_at = pace.now();
+        if !command.answered() {
+            let over = *asked_at + settings.wire().time(request.len()) + settings.turnaround();
+            exchange.tell(request, over).await?;
+            pace.rest_until(over).await;
+            return Ok(Reply::Sent);
+        }
+        let deadline = *asked_at + settings.time_out_of(command, request.len());
+        let heard = exchange.ask(request, deadline, frame).await?;
+        *answered_at = Some(pace.now());
+        let mut result = judge(command, settings.checksum, request, frame, heard);
+        if result.is_ok() || matches!(&result, Err(Trouble::Reply(reason)) if reason.is_answer()) {
+            pace.rest_until(pace.now() + settings.turnaround()).await;
+            if exchange.discard().await? == 0 {
+                return result;
+            }
+            result = Err(Trouble::SecondReply);
+        }
+        let limit = pace.now() + settings.silence_limit(command);
+        *silent = exchange.silence(settings.silence(command), limit).await?;
+        result
+    }
+
+    /// Makes sure of a port. Without one a request takes as long as with a silent module, so that nobody spins.
+    async fn reopened(&mut self, command: &Command) -> Result<(), Trouble> {
+        if self.port.is_some() {
+            return Ok(());
+        }
+        if self.pace.now() >= self.reopen_at {
+            match self.ports.open().await {
+                Ok(port) => {
+                    self.port = Some(port);
+                    self.silent = true;
+                    return Ok(());
+                }
+                Err(reason) => self.lost(reason),
+            }
+        }
+        self.pace
+            .sleep_until(self.pace.now() + self.settings.time_out(command))
+            .await;
+        Err(Trouble::NoPort)
+    }
+
+    /// The port is of no use any more; it is opened again after the back-off, which doubles until something works.
+    fn lost(&mut self, reason: PortError) {
+        self.port = None;
+        self.lost_because = reason;
+        self.reopen_at = self.pace.now() + self.backoff;
+        let longest = Span::ms(self.settings.reopen_longest_ms);
+        self.backoff = (self.backoff + self.backoff).min(longest);
+    }
+
+    fn explain(&self, command: Command, trouble: Trouble) -> LineError {
+        let line = self.settings.name.clone();
+        match trouble {
+            Trouble::TimeOut => LineError::TimeOut {
+                line,
+                command,
+                limit: self.settings.time_out(&command),
+            },
+            Trouble::Reply(reason) => LineError::Reply {
+                line,
+                command,
+                reason,
+            },
+            Trouble::Echo => LineError::Echo { line, command },
+            Trouble::SecondReply => LineError::SecondReply { line, command },
+            Trouble::NeverSilent => LineError::NeverSilent { line, command },
+            Trouble::Broken(_) | Trouble::NoPort => LineError::PortLost {
+                line,
+                command,
+                reason: self.lost_because.clone(),
+            },
+        }
+    }
+
+    fn count(&self, command: &Command, attempt: &Try) {
+        let Some(address) = command.address() else {
+            return;
+        };
+        let on_wire = self
+            .settings
+            .wire()
+            .time(self.request.len() + self.frame.bytes().len());
+        let taken = attempt.answered_at.since(attempt.asked_at);
+        let latency = Span(taken.0.saturating_sub(on_wire.0));
+        let asked_reset = matches!(command, Command::Common(_, Common::ReadResetStatus));
+        self.settings
+            .log
+            .records()
+            .health
+            .count(address, asked_reset, &attempt.outcome, latency);
+    }
+}
+
+/// Whether what was heard is the reply to `command`.
+fn judge(
+    command: &Command,
+    checksum: bool,
+    request: &[u8],
+    frame: &Frame,
+    heard: Heard,
+) -> Result<Reply, Trouble> {
+    match heard {
+        Heard::Nothing => Err(Trouble::TimeOut),
+        Heard::TooLong => Err(Trouble::Reply(ReplyError::TooLong {
+            length: frame.bytes().len(),
+        })),
+        Heard::Whole | Heard::More if frame.bytes() == request => Err(Trouble::Echo),
+        Heard::More => Err(Trouble::SecondReply),
+        Heard::Whole => command
+            .decode(frame.bytes(), checksum)
+            .map_err(Trouble::Reply),
+    }
+}
+
+/// Only reads, and only when the line may do better next time.
+fn may_repeat(command: &Command, outcome: &Result<Reply, LineError>) -> bool {
+    command.repeatable()
+        && match outcome {
+            Ok(_) | Err(LineError::PortLost { .. }) => false,
+            Err(LineError::Reply { reason, .. }) => !reason.is_answer(),
+            Err(LineError::TimeOut { .. } | LineError::Echo { .. }) => true,
+            Err(LineError::SecondReply { .. } | LineError::NeverSilent { .. }) => true,
+        }
+}

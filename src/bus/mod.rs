@@ -1,0 +1,40 @@
+//! A line of modules: one transaction at a time, in bounded time, and never a neighbour's answer.
+//!
+//! One task owns one port ([`run`]). A request goes in, exactly one [`Answer`] comes out, in the same order. A transaction:
+//!
+//! 1. What lies in the input is thrown away: it belongs to nobody.
+//! 2. The request is written. The reply has wire(request) + wire(longest reply) + allowance to arrive whole.
+//! 3. The line rests for the turnaround (two characters). A byte in that time means that somebody else is
+//!    talking, and the reply is not believed.
+//! 4. After a time-out or any damage the line must have been silent for the longest reply time and the grace for
+//!    late replies before it is used again: `>` replies carry no address, so this is the only thing that keeps a
+//!    late answer from being taken for the next one.
+//! 5. Only commands that change nothing are repeated, and at most as often as the request allows.
+//!
+//! Troubles: a line that never falls silent answers [`LineError::NeverSilent`]; a lost port answers
+//! [`LineError::PortLost`] at the pace of a silent module, and is reopened with back-off.
+//!
+//! `pace.rs` is the only place that knows how rig time maps to the timers; `wire.rs` how long characters take;
+//! `trace.rs` keeps the last bytes; `health.rs` counts.
+
+mod exchange;
+mod health;
+mod line;
+mod log;
+mod pace;
+mod port;
+mod settings;
+mod trace;
+mod wire;
+
+#[cfg(test)]
+mod tests;
+
+pub use health::{Health, Histogram, ModuleHealth};
+pub use line::{Answer, LineError, Ports, Request, run, run_reopening};
+pub use log::LineLog;
+pub use pace::Pace;
+pub use port::{PortError, SerialPorts, open_serial};
+pub use settings::{LineSettings, longest_transaction};
+pub use trace::{Direction, Entry, Trace};
+pub use wire::Wire;

@@ -1,0 +1,83 @@
+//! Rig time and the timers below it.
+//!
+//! Real pace runs with the wall clock. Virtual pace runs under tokio's paused clock: time jumps to the next
+//! deadline whenever every task waits. Tokio's timers have a grain of one millisecond, far too coarse for characters of
+//! 87 us; so in virtual pace *one microsecond of the rig is one millisecond of tokio*. Only this file knows.
+
+use crate::units::{RigTime, Span};
+use std::time::Duration;
+use tokio::time::{Instant, Sleep};
+
+/// The rig's clock. Copies show the same time.
+#[derive(Debug, Clone, Copy)]
+pub struct Pace {
+    began: Instant,
+    is_virtual: bool,
+}
+
+/// Real waits shorter than this are slept on the thread: tokio's timer would round them up to a millisecond or two.
+const FINE: Span = Span(1_000);
+
+impl Pace {
+    /// Wall-clock pace; rig time 0 is now.
+    pub fn real() -> Self {
+        Self {
+            began: Instant::now(),
+            is_virtual: false,
+        }
+    }
+
+    /// Virtual pace; rig time 0 is now. For a current-thread runtime whose clock is paused.
+    pub fn virtual_time() -> Self {
+        Self {
+            began: Instant::now(),
+            is_virtual: true,
+        }
+    }
+
+    /// True in virtual pace.
+    pub fn is_virtual(&self) -> bool {
+        self.is_virtual
+    }
+
+    /// Microseconds since the pace was made.
+    pub fn now(&self) -> RigTime {
+        let elapsed = self.began.elapsed();
+        RigTime(if self.is_virtual {
+            elapsed.as_millis()
+        } else {
+            elapsed.as_micros()
+        } as u64)
+    }
+
+    /// A timer that ends at `until`, not earlier; in real pace up to two milliseconds later.
+    pub fn sleep(&self, until: RigTime) -> Sleep {
+        let since_began = if self.is_virtual {
+            Duration::from_millis(until.0)
+        } else {
+            Duration::from_micros(until.0)
+        };
+        tokio::time::sleep_until(self.began + since_began)
+    }
+
+    /// Waits until `until`; at once when it has passed.
+    pub async fn sleep_until(&self, until: RigTime) {
+        if self.now() < until {
+            self.sleep(until).await;
+        }
+    }
+
+    /// As [`Pace::sleep_until`], true to some 0.1 ms in real pace: the last millisecond keeps the thread. For turnarounds.
+    pub async fn rest_until(&self, until: RigTime) {
+        if self.is_virtual {
+            return self.sleep_until(until).await;
+        }
+        if until.since(self.now()) > FINE {
+            self.sleep(RigTime(until.0 - FINE.0)).await;
+        }
+        let left = until.since(self.now());
+        if left > Span(0) {
+            std::thread::sleep(Duration::from_micros(left.0));
+        }
+    }
+}

@@ -1,0 +1,565 @@
+//! A line against scripted modules in virtual time: nothing here waits in earnest.
+
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::dcon::{
+    Address, Bits, Command, Common, Counter, Digital, OutputWord, Reply, ReplyError, UpTo,
+};
+use crate::units::{RigTime, Span};
+use std::future::Future;
+use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream, duplex};
+use tokio::sync::mpsc;
+
+/// One piece of what the modules say: microseconds after the request was heard, and the bytes.
+type Say = (u64, &'static [u8]);
+
+/// `>0000001E` with its checksum, and another count.
+const THIRTY: &[u8] = b">0000001ED4\r";
+const NINE: &[u8] = b">00000009C7\r";
+
+fn count() -> Command {
+    Counter::Read(UpTo::new(0).unwrap()).to(Address(3))
+}
+
+fn write() -> Command {
+    Digital::Write(OutputWord::sixteen(0x1234)).to(Address(4))
+}
+
+fn settings() -> LineSettings {
+    LineSettings::new("measure", 115_200)
+}
+
+/// Runs `test` in virtual time on a current-thread runtime.
+fn in_virtual_time<F: Future>(test: F) -> F::Output {
+    tokio::runtime::Builder::new_current_thread()
+        .enable_time()
+        .start_paused(true)
+        .build()
+        .unwrap()
+        .block_on(test)
+}
+
+/// Answers the n-th request with the n-th entry of `script`, and says nothing afterwards.
+async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) -> Vec<String> {
+    let mut asked = Vec::new();
+    let mut script = script.into_iter();
+    while let Some(request) = next_request(&mut stream).await {
+        asked.push(request);
+        let heard_at = pace.now();
+        for (after, bytes) in script.next().unwrap_or_default() {
+            pace.sleep_until(heard_at + Span(after)).await;
+            let _ = stream.write_all(bytes).await;
+        }
+    }
+    asked
+}
+
+async fn next_request(stream: &mut DuplexStream) -> Option<String> {
+    let mut request = Vec::new();
+    loop {
+        match stream.read_u8().await {
+            Ok(b'\r') => return String::from_utf8(request).ok(),
+            Ok(byte) => request.push(byte),
+            Err(_) => return None,
+        }
+    }
+}
+
+/// Sends `requests` one after the other; gives the answers and what the modules heard.
+async fn played(
+    settings: LineSettings,
+    script: Vec<Vec<Say>>,
+    requests: &[(Command, u8)],
+) -> (Vec<Answer>, Vec<String>) {
+    let pace = Pace::virtual_time();
+    let (ours, theirs) = duplex(4096);
+    let (ask, to_line) = mpsc::channel(1);
+    let (from_line, mut answers) = mpsc::channel(1);
+    let line = run(ours, settings, pace, to_line, from_line);
+    let client = async {
+        let mut got = Vec::new();
+        for (ticket, (command, tries)) in requests.iter().enumerate() {
+            ask.send(Request {
+                ticket: ticket as u64,
+                command: *command,
+                tries: *tries,
+            })
+            .await
+            .unwrap();
+            got.push(answers.recv().await.unwrap());
+        }
+        drop(ask);
+        got
+    };
+    let (asked, (), got) = tokio::join!(modules(theirs, pace, script), line, client);
+    (got, asked)
+}
+
+#[test]
+fn a_reply_in_time_is_answered_with_its_text_and_times() {
+    let (got, asked) = in_virtual_time(played(
+        settings(),
+        vec![vec![(3_000, THIRTY)]],
+        &[(count(), 1)],
+    ));
+    assert_eq!(asked, ["#030B6"]);
+    assert_eq!(got[0].outcome, Ok(Reply::Count(30)));
+    assert_eq!(got[0].raw, ">0000001ED4");
+    assert_eq!(
+        (got[0].asked_at, got[0].answered_at),
+        (RigTime(0), RigTime(3_000))
+    );
+    assert_eq!((got[0].ticket, got[0].tries_used), (0, 1));
+}
+
+#[test]
+fn a_reply_may_come_in_pieces() {
+    let pieces: Vec<Say> = vec![
+        (1_000, &THIRTY[..3]),
+        (2_000, &THIRTY[3..8]),
+        (9_000, &THIRTY[8..]),
+    ];
+    let (got, _) = in_virtual_time(played(settings(), vec![pieces], &[(count(), 1)]));
+    assert_eq!(got[0].outcome, Ok(Reply::Count(30)));
+}
+
+#[test]
+fn a_late_reply_is_never_taken_for_the_next_one() {
+    let limit = settings().time_out(&count()).0;
+    let grace = settings().silence(&count()).0;
+    // At every hundredth of the time from the deadline to the end of the grace.
+    for late in (0..100).map(|part| limit + 1 + part * (grace - 2) / 100) {
+        let script = vec![vec![(late, THIRTY)], vec![(2_000, NINE)]];
+        let (got, asked) =
+            in_virtual_time(played(settings(), script, &[(count(), 1), (count(), 1)]));
+        assert!(
+            matches!(got[0].outcome, Err(LineError::TimeOut { .. })),
+            "{late}: {:?}",
+            got[0].outcome
+        );
+        assert_eq!(got[1].outcome, Ok(Reply::Count(9)), "late by {late}");
+        assert_eq!(asked.len(), 2);
+    }
+}
+
+#[test]
+fn a_silent_module_is_given_up_on_time_and_tried_as_often_as_allowed() {
+    let (got, asked) = in_virtual_time(played(settings(), vec![], &[(count(), 3)]));
+    assert_eq!(got[0].tries_used, 3);
+    assert_eq!(asked.len(), 3);
+    let limit = settings().time_out(&count());
+    assert_eq!(got[0].answered_at.since(got[0].asked_at), limit);
+    let text = got[0].outcome.as_ref().unwrap_err().to_string();
+    assert!(
+        text.starts_with("line measure, 03: ") && text.contains("no whole reply within"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_damaged_reply_to_a_read_is_asked_for_again() {
+    let damaged = vec![(2_000, b">0000001FD4\r" as &[u8])];
+    let (got, asked) = in_virtual_time(played(
+        settings(),
+        vec![damaged, vec![(2_000, THIRTY)]],
+        &[(count(), 2)],
+    ));
+    assert_eq!(
+        (got[0].outcome.clone(), got[0].tries_used, asked.len()),
+        (Ok(Reply::Count(30)), 2, 2)
+    );
+}
+
+#[test]
+fn a_write_is_sent_once_whatever_becomes_of_its_reply() {
+    for say in [
+        vec![],
+        vec![(2_000, b">3F\r" as &[u8])],
+        vec![(2_000, b">\x003E\r")],
+    ] {
+        let (got, asked) = in_virtual_time(played(settings(), vec![say], &[(write(), 5)]));
+        assert!(got[0].outcome.is_err());
+        assert_eq!((got[0].tries_used, asked.len()), (1, 1));
+    }
+}
+
+#[test]
+fn a_refusal_is_neither_repeated_nor_followed_by_a_silence() {
+    let script = vec![
+        vec![(2_000, b"?03A3\r" as &[u8])],
+        vec![(2_000, b"?03A2\r")],
+        vec![(2_000, NINE)],
+    ];
+    let (got, asked) = in_virtual_time(played(
+        settings(),
+        script,
+        &[(count(), 1), (count(), 5), (count(), 1)],
+    ));
+    assert!(matches!(
+        got[0].outcome,
+        Err(LineError::Reply {
+            reason: ReplyError::ChecksumWrong { .. },
+            ..
+        })
+    ));
+    assert!(
+        matches!(
+            got[1].outcome,
+            Err(LineError::Reply {
+                reason: ReplyError::Refused,
+                ..
+            })
+        ),
+        "{:?}",
+        got[1]
+    );
+    assert_eq!(got[1].tries_used, 1);
+    assert_eq!(
+        got[2].asked_at,
+        got[1].answered_at + settings().turnaround()
+    );
+    assert_eq!(asked.len(), 3);
+}
+
+#[test]
+fn two_modules_at_one_address_are_both_disbelieved() {
+    let turnaround = settings().turnaround().0;
+    let at_once: Vec<Say> = vec![(2_000, b">0000001ED4\r>00000009C7\r")];
+    let soon: Vec<Say> = vec![(2_000, THIRTY), (2_000 + turnaround - 1, NINE)];
+    for say in [at_once, soon] {
+        let (got, _) = in_virtual_time(played(
+            settings(),
+            vec![say, vec![(2_000, NINE)]],
+            &[(count(), 1), (count(), 1)],
+        ));
+        assert!(
+            matches!(got[0].outcome, Err(LineError::SecondReply { .. })),
+            "{:?}",
+            got[0].outcome
+        );
+        assert_eq!(got[1].outcome, Ok(Reply::Count(9)));
+    }
+}
+
+#[test]
+fn an_echo_is_called_by_its_name() {
+    let (got, _) = in_virtual_time(played(
+        settings(),
+        vec![vec![(0, b"#030B6\r")]],
+        &[(count(), 1)],
+    ));
+    assert!(
+        matches!(got[0].outcome, Err(LineError::Echo { .. })),
+        "{:?}",
+        got[0].outcome
+    );
+}
+
+#[test]
+fn more_characters_than_a_frame_has_are_dropped() {
+    let noise: Vec<Say> = vec![(2_000, &[b'>'; 100])];
+    let (got, _) = in_virtual_time(played(
+        settings(),
+        vec![noise, vec![(2_000, NINE)]],
+        &[(count(), 1), (count(), 1)],
+    ));
+    assert!(matches!(
+        got[0].outcome,
+        Err(LineError::Reply {
+            reason: ReplyError::TooLong { .. },
+            ..
+        })
+    ));
+    assert_eq!(got[1].outcome, Ok(Reply::Count(9)));
+}
+
+#[test]
+fn a_line_that_never_falls_silent_is_not_talked_into() {
+    let babble: Vec<Say> = (1..60).map(|turn| (turn * 5_000, b"U" as &[u8])).collect();
+    let (got, asked) = in_virtual_time(played(
+        settings(),
+        vec![babble, vec![(2_000, NINE)]],
+        &[(count(), 1); 10],
+    ));
+    let longest = longest_transaction(&settings(), &[count()]);
+    assert!(
+        got.iter()
+            .any(|answer| matches!(answer.outcome, Err(LineError::NeverSilent { .. })))
+    );
+    assert_eq!(
+        asked.len()
+            + got
+                .iter()
+                .filter(|a| matches!(a.outcome, Err(LineError::NeverSilent { .. })))
+                .count(),
+        10
+    );
+    for pair in got.windows(2) {
+        assert!(
+            pair[1].asked_at.since(pair[0].asked_at) <= longest,
+            "{:?}",
+            pair[1]
+        );
+    }
+    assert!(
+        got.iter()
+            .any(|answer| answer.outcome == Ok(Reply::Count(9))),
+        "{got:?}"
+    );
+}
+
+#[test]
+fn a_broadcast_takes_its_wire_time_and_the_turnaround() {
+    let (got, asked) = in_virtual_time(played(
+        settings(),
+        vec![],
+        &[(Command::HostOk, 1), (Command::HostOk, 1)],
+    ));
+    assert_eq!(got[0].outcome, Ok(Reply::Sent));
+    assert_eq!(asked, ["~**D2", "~**D2"]);
+    let each = settings().wire().time(6) + settings().turnaround();
+    assert_eq!(got[1].asked_at.since(got[0].asked_at), each);
+}
+
+#[test]
+fn requests_are_answered_in_order_one_turnaround_apart() {
+    let script = vec![vec![(2_500, THIRTY)]; 50];
+    let (got, _) = in_virtual_time(played(settings(), script, &[(count(), 1); 50]));
+    for pair in got.windows(2) {
+        assert_eq!(pair[1].ticket, pair[0].ticket + 1);
+        assert_eq!(
+            pair[1].asked_at,
+            pair[0].answered_at + settings().turnaround()
+        );
+    }
+}
+
+#[test]
+fn a_closed_stream_is_a_lost_port_at_the_pace_of_a_silent_module() {
+    let (got, pace) = in_virtual_time(async {
+        let pace = Pace::virtual_time();
+        let (ours, theirs) = duplex(64);
+        drop(theirs);
+        let (ask, to_line) = mpsc::channel(4);
+        let (from_line, mut answers) = mpsc::channel(4);
+        for ticket in 0..3 {
+            ask.send(Request {
+                ticket,
+                command: count(),
+                tries: 3,
+            })
+            .await
+            .unwrap();
+        }
+        drop(ask);
+        run(ours, settings(), pace, to_line, from_line).await;
+        let mut got = Vec::new();
+        while let Some(answer) = answers.recv().await {
+            got.push(answer);
+        }
+        (got, pace.now())
+    });
+    assert!(
+        got.iter()
+            .all(|answer| matches!(answer.outcome, Err(LineError::PortLost { .. }))),
+        "{got:?}"
+    );
+    assert_eq!(pace, RigTime(2 * settings().time_out(&count()).0));
+}
+
+/// A port that is missing at first, then ends after one reply, and so on.
+struct Flaky {
+    pace: Pace,
+    opened: u32,
+}
+
+impl Ports for Flaky {
+    type Port = DuplexStream;
+
+    async fn open(&mut self) -> Result<DuplexStream, PortError> {
+        self.opened += 1;
+        if !self.opened.is_multiple_of(2) {
+            return Err(PortError::Missing {
+                path: "/dev/none".to_owned(),
+            });
+        }
+        let (ours, mut theirs) = duplex(64);
+        let pace = self.pace;
+        tokio::spawn(async move {
+            next_request(&mut theirs).await;
+            pace.sleep_until(pace.now() + Span(2_000)).await;
+            let _ = theirs.write_all(THIRTY).await;
+            // One more is heard and then the port is gone.
+            next_request(&mut theirs).await;
+        });
+        Ok(ours)
+    }
+}
+
+#[test]
+fn a_lost_port_is_opened_again_after_its_back_off() {
+    let outcomes = in_virtual_time(async {
+        let pace = Pace::virtual_time();
+        let (ask, to_line) = mpsc::channel(1);
+        let (from_line, mut answers) = mpsc::channel(1);
+        tokio::spawn(run_reopening(
+            Flaky { pace, opened: 0 },
+            settings(),
+            pace,
+            to_line,
+            from_line,
+        ));
+        let mut outcomes = Vec::new();
+        for ticket in 0..40 {
+            ask.send(Request {
+                ticket,
+                command: count(),
+                tries: 1,
+            })
+            .await
+            .unwrap();
+            outcomes.push(answers.recv().await.unwrap().outcome);
+        }
+        outcomes
+    });
+    let missing = PortError::Missing {
+        path: "/dev/none".to_owned(),
+    };
+    assert!(matches!(&outcomes[0], Err(LineError::PortLost { reason, .. }) if *reason == missing));
+    assert!(
+        outcomes
+            .iter()
+            .filter(|outcome| **outcome == Ok(Reply::Count(30)))
+            .count()
+            >= 3,
+        "{outcomes:?}"
+    );
+    assert!(outcomes.iter().any(|o| matches!(
+        o,
+        Err(LineError::PortLost {
+            reason: PortError::Broken { .. },
+            ..
+        })
+    )));
+}
+
+#[test]
+fn health_counts_each_module_and_each_kind_of_trouble() {
+    let settings = settings();
+    let log = settings.log.clone();
+    let reset = Common::ReadResetStatus.to(Address(4));
+    let script = vec![
+        vec![(2_600, THIRTY)],
+        vec![(2_600, b">0000001FD4\r")],
+        vec![],
+        vec![(2_000, b"!041B6\r")],
+    ];
+    let asks = [(count(), 1), (count(), 1), (count(), 1), (reset, 1)];
+    let (got, _) = in_virtual_time(played(settings, script, &asks));
+    assert_eq!(got[3].outcome, Ok(Reply::Flag(true)));
+    let health = log.health();
+    let module = health.module(Address(3)).unwrap();
+    assert_eq!(
+        (
+            module.transactions,
+            module.time_outs,
+            module.checksum_errors
+        ),
+        (3, 1, 1)
+    );
+    let p50 = module.latency.percentile(0.5).unwrap().0;
+    // 2600 us, of which 19 characters are wire time.
+    assert!((950..1_200).contains(&p50), "{p50}");
+    assert_eq!(health.module(Address(4)).unwrap().resets, 1);
+}
+
+#[test]
+fn equal_traffic_has_an_equal_fingerprint_and_other_traffic_another() {
+    let fingerprint = |reply: &'static [u8]| {
+        let settings = settings();
+        let log = settings.log.clone();
+        in_virtual_time(played(
+            settings,
+            vec![vec![(2_000, reply)]; 3],
+            &[(count(), 1); 3],
+        ));
+        assert_eq!(log.trace().entries().count(), 6);
+        assert_eq!(log.trace().entries().nth(1).unwrap().bytes(), reply);
+        log.fingerprint()
+    };
+    assert_eq!(fingerprint(THIRTY), fingerprint(THIRTY));
+    assert_ne!(fingerprint(THIRTY), fingerprint(NINE));
+}
+
+#[test]
+fn the_trace_keeps_the_last_entries_only() {
+    let mut settings = settings();
+    settings.log = LineLog::with_trace(4);
+    let log = settings.log.clone();
+    in_virtual_time(played(
+        settings,
+        vec![vec![(2_000, THIRTY)]; 9],
+        &[(count(), 1); 9],
+    ));
+    assert_eq!(log.trace().entries().count(), 4);
+    assert_eq!(log.trace().byte_count(), 9 * 19);
+}
+
+#[test]
+fn without_checksum_the_same_line_speaks_plain() {
+    let mut settings = settings();
+    settings.checksum = false;
+    let read = Digital::ReadAll.to(Address(4));
+    let (got, asked) = in_virtual_time(played(
+        settings,
+        vec![vec![(2_000, b"!BEDE00\r")]],
+        &[(read, 1)],
+    ));
+    assert_eq!(asked, ["$046"]);
+    assert_eq!(
+        got[0].outcome,
+        Ok(Reply::Bits(Bits {
+            first: 0xBE,
+            second: 0xDE
+        }))
+    );
+}
+
+#[test]
+fn the_longest_transaction_is_that_of_the_slowest_command() {
+    let settings = settings();
+    let both = longest_transaction(&settings, &[count(), write(), Command::HostOk]);
+    assert_eq!(both, longest_transaction(&settings, &[count()]));
+    // 7 + 12 characters and 30 ms, then twice 12 characters and 30 ms.
+    let wire = |characters| settings.wire().time(characters).0;
+    assert_eq!(
+        both.0,
+        wire(7) + wire(12) + 30_000 + 2 * (wire(12) + 30_000)
+    );
+    assert_eq!(longest_transaction(&settings, &[]), Span(0));
+}
+
+#[test]
+fn a_virtual_second_passes_without_a_real_one() {
+    in_virtual_time(async {
+        let pace = Pace::virtual_time();
+        pace.sleep_until(RigTime(3_560)).await;
+        assert_eq!(pace.now(), RigTime(3_560));
+        pace.rest_until(RigTime(3_600_000_000)).await;
+        assert_eq!(pace.now(), RigTime(3_600_000_000));
+    });
+}
+
+#[tokio::test]
+async fn a_missing_port_says_its_path() {
+    let error = open_serial("/dev/there-is-none", 115_200).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "serial port /dev/there-is-none does not exist"
+    );
+    assert!(matches!(
+        open_serial("/dev/null", 115_200),
+        Err(PortError::Unusable { .. })
+    ));
+}

@@ -1,0 +1,131 @@
+//! `relayrig config check` and `relayrig config schema NAME`: nothing is opened, nothing moves.
+
+use crate::config::{Plant, keys, load_recipe, recipe_names, schema::schema};
+use crate::rig::wiring::Wiring;
+use anyhow::Context;
+use std::io::Write;
+use std::path::Path;
+
+/// What to do with the configuration.
+#[derive(Debug, Clone, clap::Subcommand)]
+pub enum Args {
+    /// Check everything that loading would refuse, without moving anything
+    #[command(
+        after_help = "Examples:\n  relayrig config check\n  relayrig --config plant2 config check"
+    )]
+    Check,
+    /// Print the JSON schema of a file: rig, golden or recipe
+    #[command(after_help = "Example:\n  relayrig config schema recipe > recipe.schema.json")]
+    Schema {
+        /// Which file
+        #[arg(value_parser = ["rig", "golden", "recipe"])]
+        name: String,
+    },
+}
+
+/// Runs the command on the configuration in `dir`; the result is the exit status.
+///
+/// # Errors
+/// The first fault of the configuration: exit status 2.
+pub fn run(dir: &Path, args: &Args) -> anyhow::Result<i32> {
+    let text = match args {
+        Args::Check => check(dir)?,
+        Args::Schema { name } => schema_text(name)?,
+    };
+    std::io::stdout()
+        .lock()
+        .write_all(text.as_bytes())
+        .context("writing to stdout")?;
+    Ok(0)
+}
+
+/// Loads everything and says what was looked at.
+fn check(dir: &Path) -> anyhow::Result<String> {
+    let plant = Plant::load(dir)?;
+    let wiring = &plant.wiring;
+    let mut lines = vec![format!(
+        "{}: {} lines, {} modules",
+        dir.join("rig.toml").display(),
+        wiring.lines.len(),
+        wiring.modules.len()
+    )];
+    lines.extend(
+        wiring
+            .lines
+            .iter()
+            .enumerate()
+            .map(|(index, _)| describe_line(wiring, index)),
+    );
+    lines.push(format!(
+        "  emergency stop: worst reaction {:.1} ms, accepted {} ms",
+        wiring.longest_reaction().as_seconds() * 1e3,
+        wiring.safety.estop_reaction_ms
+    ));
+    lines.push(
+        "  every point has a terminal of its own; every address is used once on its line"
+            .to_owned(),
+    );
+    lines.push(format!(
+        "{}: {} bodies, every actuator has its way",
+        dir.join("scene.toml").display(),
+        plant.scene.elements.len()
+    ));
+    lines.push(format!(
+        "{}: {} golden parts",
+        dir.join(&plant.calibration.golden).display(),
+        plant.golden.parts.len()
+    ));
+    for name in recipe_names(dir) {
+        lines.push(describe_recipe(dir, &plant, &name)?);
+    }
+    lines.push("ok\n".to_owned());
+    Ok(lines.join("\n"))
+}
+
+fn describe_line(wiring: &Wiring, index: usize) -> String {
+    let line = &wiring.lines[index];
+    let modules = wiring
+        .modules
+        .iter()
+        .filter(|module| module.line.0 == index)
+        .count();
+    let checksum = if line.checksum {
+        "checksum on"
+    } else {
+        "NO CHECKSUM: a damaged reply that keeps its form cannot be told from a true one"
+    };
+    format!(
+        "  line {}: {} at {} baud, {modules} modules, {checksum}",
+        line.name, line.port, line.baud
+    )
+}
+
+fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<String> {
+    let recipe = load_recipe(dir, name)?;
+    let file = dir.join("recipes").join(format!("{name}.toml"));
+    let golden = match plant.golden.of_nominal(recipe.part.nominal_v).count() {
+        0 => "NO GOLDEN PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
+        count => format!("{count} golden parts"),
+    };
+    let judged = recipe
+        .limits
+        .iter()
+        .filter(|(_, limit)| limit.low.is_some() || limit.high.is_some())
+        .count();
+    Ok(format!(
+        "{}: {judged} of 9 parameters judged, {golden}, sha256 {}",
+        file.display(),
+        &recipe.hash[..12]
+    ))
+}
+
+fn schema_text(name: &str) -> anyhow::Result<String> {
+    let (title, keys) = match name {
+        "rig" => ("rig.toml", keys::rig::FILE),
+        "golden" => ("golden.toml", keys::golden::FILE),
+        "recipe" => ("recipes/NAME.toml", keys::recipe::FILE),
+        other => anyhow::bail!("config schema: found \"{other}\", expected rig, golden or recipe"),
+    };
+    let text = serde_json::to_string_pretty(&schema(title, keys)).context("writing the schema")?;
+    Ok(text + "\n")
+}

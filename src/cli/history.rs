@@ -1,0 +1,116 @@
+//! `history`: lots, parts, filters, statistics, CSV, backup; and `quality`, which works on files.
+//!
+//! Data goes to stdout, remarks to stderr. A reader that goes away (`| head`) is no error.
+
+mod export;
+mod filter;
+mod import;
+mod lots;
+mod output;
+mod quality;
+mod query;
+mod show;
+mod stats;
+
+pub use quality::{QualityArgs, run_quality};
+
+use crate::history::Archive;
+use clap::{Args, Subcommand};
+use output::Output;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Arguments of `history`.
+#[derive(Debug, Args)]
+pub struct HistoryArgs {
+    #[command(subcommand)]
+    command: Box<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Runs of lots with their counts
+    #[command(after_help = "Example: relayrig history list --recipe jzc-22f-012")]
+    List(lots::ListArgs),
+    /// One lot, or one part with everything down to the raw replies
+    #[command(
+        after_help = "Examples:\n  relayrig history show A\n  relayrig history show A 17 --json"
+    )]
+    Show(show::ShowArgs),
+    /// Parts that a filter leaves
+    #[command(
+        after_help = "Examples:\n  relayrig history query --lot A --verdict fail\n  \
+        relayrig history query --param operate_voltage_v --min 8.5 --format csv"
+    )]
+    Query(query::QueryArgs),
+    /// Statistics and capability of one parameter
+    #[command(
+        after_help = "Example: relayrig history stats --param operate_voltage_v --lot A --json"
+    )]
+    Stats(stats::StatsArgs),
+    /// Parts as CSV for spreadsheets (UTF-8 with byte order mark)
+    #[command(after_help = "Example: relayrig history export --lot A lot-a.csv")]
+    Export(export::ExportArgs),
+    /// CSV of an older system: a header of parameter keys, optionally time, verdict, serial, bin
+    #[command(
+        after_help = "Example: relayrig history import old.csv --lot 2019-07 --map Uop=operate_voltage_v"
+    )]
+    Import(import::ImportArgs),
+    /// Copy the history while it is in use
+    #[command(after_help = "Example: relayrig history backup /mnt/backup/relayrig-2026-03.db")]
+    Backup {
+        /// File to make; must not exist
+        file: PathBuf,
+    },
+    /// Check the file for damage
+    #[command(after_help = "Example: relayrig history check")]
+    Check,
+}
+
+/// Runs the command on the history file `db`; gives the exit status. An error is bad input: status 2.
+pub fn run(db: &Path, args: HistoryArgs) -> anyhow::Result<i32> {
+    unless_reader_left(dispatch(db, *args.command))
+}
+
+fn dispatch(db: &Path, command: Command) -> anyhow::Result<i32> {
+    match command {
+        Command::Import(args) => return import::run(db, &args),
+        Command::Check => return check(db),
+        Command::List(args) => lots::run(&Archive::open(db)?, &args)?,
+        Command::Show(args) => show::run(&Archive::open(db)?, &args)?,
+        Command::Query(args) => query::run(&Archive::open(db)?, &args)?,
+        Command::Stats(args) => stats::run(&Archive::open(db)?, &args)?,
+        Command::Export(args) => export::run(&Archive::open(db)?, &args)?,
+        Command::Backup { file } => {
+            let bytes = Archive::open(db)?.backup(&file)?;
+            eprintln!("{}: {bytes} bytes, checked", file.display());
+        }
+    }
+    Ok(0)
+}
+
+/// Damage is an answer (status 1), not bad input.
+fn check(db: &Path) -> anyhow::Result<i32> {
+    match Archive::open(db)?.check() {
+        Ok(()) => {
+            Output::stdout().line(&format!("{}: whole", db.display()))?;
+            Ok(0)
+        }
+        Err(damage) => {
+            eprintln!("{damage}");
+            Ok(1)
+        }
+    }
+}
+
+fn unless_reader_left(done: anyhow::Result<i32>) -> anyhow::Result<i32> {
+    let left = |cause: &(dyn std::error::Error + 'static)| {
+        cause
+            .downcast_ref::<io::Error>()
+            .is_some_and(|it| it.kind() == io::ErrorKind::BrokenPipe)
+    };
+    match done {
+        Err(error) if error.chain().any(left) => Ok(0),
+        done => done,
+    }
+}

@@ -1,0 +1,116 @@
+//! `history import`: all of a file or nothing, and the same file into the same lot only once.
+
+use crate::history::{
+    Archive, Filter, Identity, ImportRow, LotRecord, PartRecord, Store, parse_import, snapshot_hash,
+};
+use anyhow::Context;
+use clap::Args;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub(super) struct ImportArgs {
+    /// CSV file, UTF-8 with or without byte order mark; - is stdin
+    file: PathBuf,
+    /// Lot to put the parts into
+    #[arg(long)]
+    lot: String,
+    /// A column of the file and the key it stands for; may be given several times
+    #[arg(long = "map", value_name = "COLUMN=KEY", value_parser = pair)]
+    maps: Vec<(String, String)>,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    let parts = text.split_once('=').ok_or("expected COLUMN=KEY")?;
+    Ok((parts.0.trim().to_owned(), parts.1.trim().to_owned()))
+}
+
+pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<i32> {
+    let name = args.file.display();
+    let text = read(&args.file).with_context(|| format!("reading {name}"))?;
+    let (program, version) = (
+        env!("CARGO_PKG_NAME").into(),
+        env!("CARGO_PKG_VERSION").into(),
+    );
+    let mut store = Store::open(db, &Identity { program, version })?;
+    let archive = Archive::open(db)?;
+    let snapshot = format!(
+        "# imported from a file with SHA-256 {}\n",
+        snapshot_hash(&text)
+    );
+    let now_us = jiff::Timestamp::now().as_microsecond();
+    let lot = lot_record(&args.lot, snapshot, now_us);
+    only_once(&archive, &lot).with_context(|| name.to_string())?;
+    let rows = parse_import(&text, &args.maps, &archive.parameters()?)
+        .with_context(|| name.to_string())?;
+    let parts = numbered(rows, &args.lot, now_us);
+    let count = parts.len();
+    let run = store.import(&lot, parts)?;
+    eprintln!("{name}: {count} parts into lot {:?}, run {run}", args.lot);
+    Ok(0)
+}
+
+/// In order of the file; a row without a time gets that of the import.
+fn numbered(rows: Vec<ImportRow>, lot: &str, now_us: i64) -> Vec<PartRecord> {
+    let part = |(seq, row): (u64, ImportRow)| {
+        let judged_at_us = if row.timed {
+            row.part.judged_at_us
+        } else {
+            now_us
+        };
+        PartRecord {
+            lot: lot.to_owned(),
+            seq,
+            judged_at_us,
+            ..row.part
+        }
+    };
+    (1..).zip(rows).map(part).collect()
+}
+
+fn read(file: &Path) -> anyhow::Result<String> {
+    let mut bytes = Vec::new();
+    if file.as_os_str() == "-" {
+        io::stdin().read_to_end(&mut bytes)?;
+    } else {
+        bytes = std::fs::read(file)?;
+    }
+    String::from_utf8(bytes).map_err(|cause| {
+        let good = cause.utf8_error().valid_up_to();
+        let line = 1 + cause.as_bytes()[..good]
+            .iter()
+            .filter(|&&it| it == b'\n')
+            .count();
+        anyhow::anyhow!("line {line}: expected UTF-8 (save the file as \"CSV UTF-8\")")
+    })
+}
+
+fn lot_record(lot: &str, recipe_snapshot: String, opened_at_us: i64) -> LotRecord {
+    LotRecord {
+        lot: lot.to_owned(),
+        recipe: "imported".to_owned(),
+        recipe_hash: snapshot_hash(&recipe_snapshot),
+        recipe_snapshot,
+        opened_at_us,
+        ..LotRecord::default()
+    }
+}
+
+fn only_once(archive: &Archive, lot: &LotRecord) -> anyhow::Result<()> {
+    let filter = Filter {
+        lot: Some(lot.lot.clone()),
+        ..Filter::default()
+    };
+    match archive
+        .lots(&filter)?
+        .iter()
+        .find(|it| it.recipe_hash == lot.recipe_hash)
+    {
+        None => Ok(()),
+        Some(before) => anyhow::bail!(
+            "this very file is in lot {:?} already, as run {}; nothing was imported",
+            before.lot,
+            before.run
+        ),
+    }
+}

@@ -1,0 +1,124 @@
+//! `quality`: figures from a file of readings, no history needed.
+
+use super::output::{Output, Table, figure};
+use crate::history::csv;
+use crate::quality::gauge_rr::{GaugeRr, Reading, anova};
+use anyhow::Context;
+use clap::{Args, Subcommand};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+
+/// Arguments of `quality`.
+#[derive(Debug, Args)]
+pub struct QualityArgs {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Gauge repeatability and reproducibility from columns part, operator, trial, value
+    #[command(after_help = "Example: relayrig quality grr study.csv --json")]
+    Grr {
+        /// CSV file; - is stdin
+        file: PathBuf,
+        /// One JSON object
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+/// Runs the command; gives the exit status. An error is bad input: status 2.
+pub fn run_quality(args: QualityArgs) -> anyhow::Result<i32> {
+    super::unless_reader_left(dispatch(&args.command))
+}
+
+fn dispatch(command: &Command) -> anyhow::Result<i32> {
+    let Command::Grr { file, json } = command;
+    let name = file.display().to_string();
+    let text = read(file).with_context(|| format!("reading {name}"))?;
+    let readings = readings(&text).with_context(|| name.clone())?;
+    let result = anova(&readings).context(name)?;
+    let mut out = Output::stdout();
+    if *json {
+        out.json(&result)?;
+    } else {
+        table(&result, &mut out)?;
+    }
+    out.flush()?;
+    Ok(0)
+}
+
+fn read(file: &Path) -> std::io::Result<String> {
+    let mut text = String::new();
+    if file.as_os_str() == "-" {
+        std::io::stdin().read_to_string(&mut text)?;
+    } else {
+        text = std::fs::read_to_string(file)?;
+    }
+    Ok(text)
+}
+
+fn readings(text: &str) -> anyhow::Result<Vec<Reading>> {
+    let records = csv::read(text)?;
+    let (header, rows) = records.split_first().context("line 1: expected a header")?;
+    let column = |name: &str| {
+        header
+            .fields
+            .iter()
+            .position(|field| field.trim().eq_ignore_ascii_case(name))
+            .with_context(|| {
+                format!("line 1: column {name} is missing; expected part, operator, trial, value")
+            })
+    };
+    let [part, operator, trial, value] = [
+        column("part")?,
+        column("operator")?,
+        column("trial")?,
+        column("value")?,
+    ];
+    rows.iter()
+        .map(|row| {
+            let cell = |column: usize| row.fields[column].trim();
+            let number = cell(value).parse().ok().filter(|it: &f64| it.is_finite());
+            Ok(Reading {
+                part: cell(part).to_owned(),
+                operator: cell(operator).to_owned(),
+                trial: cell(trial).to_owned(),
+                value: number.with_context(|| {
+                    format!(
+                        "line {}, column value: found {:?}, expected a finite number",
+                        row.line,
+                        cell(value)
+                    )
+                })?,
+            })
+        })
+        .collect()
+}
+
+fn table(it: &GaugeRr, out: &mut Output) -> anyhow::Result<()> {
+    let mut table = Table::new(&["source", "sd", "percent of total"]);
+    let sources = [
+        ("repeatability", it.repeatability),
+        ("reproducibility", it.reproducibility),
+        ("interaction", it.interaction),
+        ("gauge r&r", it.grr),
+        ("part", it.part),
+        ("total", it.total),
+    ];
+    for (source, sd) in sources {
+        let percent = (it.total > 0.0).then(|| format!("{:.2}", 100.0 * sd / it.total));
+        table.row(
+            out,
+            vec![
+                source.to_owned(),
+                figure(Some(sd)),
+                percent.unwrap_or_default(),
+            ],
+        )?;
+    }
+    table.finish(out)?;
+    let ndc = it.ndc.map_or("unlimited".to_owned(), |ndc| ndc.to_string());
+    Ok(writeln!(out, "distinct categories: {ndc}")?)
+}

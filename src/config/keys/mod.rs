@@ -1,0 +1,5 @@
+//! Every key that may stand in the files of `config/`, file by file.
+
+pub mod golden;
+pub mod recipe;
+pub mod rig;

@@ -1,0 +1,144 @@
+//! References, promised accuracies, calibration.
+
+use crate::config::form::{Form, Key, above_zero, from_to, key};
+
+pub(super) const REFERENCE: &[Key] = &[
+    key(
+        "coil_ohm",
+        above_zero(100_000.0, "ohm"),
+        "gauge",
+        "reference resistor in place of the coil",
+    ),
+    key(
+        "coil_tolerance_pct",
+        from_to(0.0, 10.0, "%"),
+        "gauge",
+        "its tolerance",
+    ),
+    key(
+        "contact_mohm",
+        above_zero(100_000.0, "mOhm"),
+        "gauge",
+        "four-wire reference in place of the contact",
+    ),
+    key(
+        "contact_tolerance_pct",
+        from_to(0.0, 10.0, "%"),
+        "gauge",
+        "its tolerance",
+    ),
+    key(
+        "voltage_v",
+        above_zero(10.0, "V"),
+        "gauge",
+        "voltage at reference_voltage",
+    ),
+    key(
+        "voltage_tolerance_pct",
+        from_to(0.0, 10.0, "%"),
+        "gauge",
+        "its tolerance",
+    ),
+    key(
+        "gate_pulse_ms",
+        above_zero(1000.0, "ms"),
+        "gauge",
+        "gate pulse that ARM gives with the contact reference",
+    ),
+    key(
+        "counter_clock_hz",
+        from_to(1000.0, 100_000.0, "Hz"),
+        "gauge",
+        "clock of the gated counters",
+    ),
+    key(
+        "counter_clock_tolerance_ppm",
+        from_to(0.0, 10_000.0, "ppm"),
+        "gauge",
+        "its tolerance",
+    ),
+];
+
+pub(super) const ACCURACY: &[Key] = &[
+    key(
+        "ai_gain_pct",
+        from_to(0.0, 10.0, "%"),
+        "gauge",
+        "gain of analog inputs, of reading",
+    ),
+    key(
+        "ai_offset_pct_of_range",
+        from_to(0.0, 10.0, "%"),
+        "gauge",
+        "offset of analog inputs, of range",
+    ),
+    key(
+        "ai_noise_lsb",
+        from_to(0.0, 100.0, "LSB"),
+        "gauge",
+        "noise of analog inputs, standard deviation",
+    ),
+    key(
+        "ao_gain_pct",
+        from_to(0.0, 10.0, "%"),
+        "gauge",
+        "gain of analog outputs",
+    ),
+    key(
+        "ao_offset_mv",
+        from_to(0.0, 1000.0, "mV"),
+        "gauge",
+        "offset of analog outputs at the terminal",
+    ),
+    key(
+        "ao_slope_pct",
+        from_to(0.0, 50.0, "%"),
+        "gauge",
+        "slope of ramps",
+    ),
+    key(
+        "gate_delay_us",
+        from_to(0.0, 1000.0, "us"),
+        "gauge",
+        "delay of the counter gates",
+    ),
+    key(
+        "rtd_k",
+        from_to(0.0, 10.0, "K"),
+        "gauge",
+        "thermometers, standard deviation",
+    ),
+    key(
+        "part_minus_track_k",
+        from_to(0.0, 10.0, "K"),
+        "gauge",
+        "part against track, standard deviation",
+    ),
+    key(
+        "operation_scatter_mv",
+        from_to(0.0, 1000.0, "mV"),
+        "gauge",
+        "threshold from operation to operation, standard deviation",
+    ),
+    key(
+        "conversions_per_s",
+        above_zero(10_000.0, "1/s"),
+        "station",
+        "of an I-7017F in fast mode, all enabled channels together",
+    ),
+];
+
+pub(super) const CALIBRATION: &[Key] = &[
+    key(
+        "valid_h",
+        above_zero(8760.0, "h"),
+        "gauge",
+        "age at which a calibration no longer holds",
+    ),
+    key(
+        "golden",
+        Form::Text,
+        "config",
+        "file of the golden parts, beside rig.toml",
+    ),
+];

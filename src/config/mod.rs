@@ -1,0 +1,33 @@
+//! The files of the plant: read, checked, and handed to each module in that module's own types.
+//!
+//! | file | holds | becomes |
+//! |---|---|---|
+//! | `rig.toml` | lines, modules, points, mechanism, references | [`Wiring`], the settings of `gauge` |
+//! | `scene.toml` | the bodies around the nest | `GuardSettings` |
+//! | `golden.toml` (named in `rig.toml`) | certified relays | `GoldenSet` |
+//! | `recipes/NAME.toml` | one kind of part | `Recipe` |
+//!
+//! Three steps, each with its own kind of message, all of one form
+//! `file:line: key: found ..., expected ...`: the text must be TOML; every key must be known, present, of its
+//! type and in its range ([`check`], from the tables in [`keys`]); and the whole must fit together (an address
+//! used once, low not above high), which the module that owns the settings decides.
+//! `sim.toml` describes the simulated world and is no business of the controller.
+
+pub mod check;
+pub mod error;
+pub mod form;
+pub mod keys;
+pub mod nearest;
+pub mod plant;
+#[cfg(test)]
+pub(crate) mod readme;
+pub mod recipes;
+pub mod schema;
+pub mod tree;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::ConfigError;
+pub use plant::Plant;
+pub use recipes::{load_recipe, recipe_names};

@@ -1,0 +1,101 @@
+//! JSON schema (draft 2020-12) of a configuration file, from the same description that loading checks.
+
+use super::form::{Form, Key, Range};
+use serde_json::{Map, Value, json};
+
+/// The schema of a file with these keys.
+pub fn schema(title: &str, keys: &[Key]) -> Value {
+    let mut root = table(keys);
+    if let Value::Object(map) = &mut root {
+        map.insert(
+            "$schema".to_owned(),
+            json!("https://json-schema.org/draft/2020-12/schema"),
+        );
+        map.insert("title".to_owned(), json!(title));
+    }
+    root
+}
+
+fn table(keys: &[Key]) -> Value {
+    let properties: Map<String, Value> = keys
+        .iter()
+        .map(|key| (key.name.to_owned(), described(form(&key.form), key.meaning)))
+        .collect();
+    let required: Vec<&str> = keys
+        .iter()
+        .filter(|key| !key.optional)
+        .map(|key| key.name)
+        .collect();
+    json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
+}
+
+fn described(mut value: Value, meaning: &str) -> Value {
+    if let Value::Object(map) = &mut value {
+        map.insert("description".to_owned(), json!(meaning));
+    }
+    value
+}
+
+fn form(form_of: &Form) -> Value {
+    match form_of {
+        Form::Text => json!({ "type": "string", "minLength": 1 }),
+        Form::Choice(words) => json!({ "enum": words }),
+        Form::Hex(digits) => {
+            json!({ "type": "string", "pattern": format!("^[0-9A-F]{{{digits}}}$") })
+        }
+        Form::Number(range) => number(range),
+        Form::Whole { low, high, .. } => {
+            json!({ "type": "integer", "minimum": low, "maximum": high })
+        }
+        Form::Listed(values) => json!({ "enum": values }),
+        Form::Flag => json!({ "type": "boolean" }),
+        Form::Numbers(count, range) => {
+            json!({ "type": "array", "items": number(range), "minItems": count, "maxItems": count })
+        }
+        Form::Table(keys) => table(keys),
+        Form::Named(entry) => {
+            json!({ "type": "object", "additionalProperties": form(entry), "propertyNames": { "pattern": "^[a-z0-9_]+$" } })
+        }
+        Form::Each(names, entry) => {
+            let properties: Map<String, Value> = names
+                .iter()
+                .map(|name| ((*name).to_owned(), form(entry)))
+                .collect();
+            json!({ "type": "object", "properties": properties, "required": names, "additionalProperties": false })
+        }
+        Form::List(entry) => json!({ "type": "array", "items": form(entry) }),
+    }
+}
+
+fn number(range: &Range) -> Value {
+    let low = if range.low_allowed {
+        "minimum"
+    } else {
+        "exclusiveMinimum"
+    };
+    json!({ "type": "number", low: range.low, "maximum": range.high })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::keys;
+
+    #[test]
+    fn the_schema_knows_what_the_check_knows() {
+        let schema = schema("rig.toml", keys::rig::FILE);
+        assert_eq!(
+            schema["properties"]["analog_in"]["required"][0],
+            "coil_voltage"
+        );
+        assert_eq!(
+            schema["properties"]["safety"]["properties"]["estop_reaction_ms"]["exclusiveMinimum"],
+            0.0
+        );
+        let module = &schema["properties"]["module"]["additionalProperties"];
+        assert_eq!(
+            module["required"],
+            json!(["line", "address", "model", "type"])
+        );
+    }
+}

@@ -1,0 +1,240 @@
+//! A TOML text as a tree in which every value knows its line.
+//!
+//! Keys of a table keep the order of the file. A path names a value from the root: `module.rtd.type`,
+//! list items by number from 0 (`golden.1.serial`).
+
+use std::ops::Range;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// One value with the line (from 1) on which it, or for a table its header, begins.
+#[derive(Debug, Clone)]
+pub struct Node {
+    /// Line in the file, from 1.
+    pub line: usize,
+    /// The value itself.
+    pub value: Value,
+}
+
+/// The kinds of value TOML knows.
+#[derive(Debug, Clone)]
+pub enum Value {
+    /// A string.
+    Text(String),
+    /// A whole number.
+    Whole(i64),
+    /// A number with a point or exponent; may be NaN or infinite.
+    Number(f64),
+    /// `true` or `false`.
+    Flag(bool),
+    /// A date or time, as written.
+    Date(String),
+    /// A list, or an array of tables.
+    List(Vec<Node>),
+    /// A table: keys in the order of the file.
+    Table(Vec<(String, Node)>),
+}
+
+/// A text that is not TOML.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NotToml {
+    /// Line of the fault, from 1.
+    pub line: usize,
+    /// What the parser objects to, in one line.
+    pub problem: String,
+}
+
+impl Node {
+    /// Reads a whole file.
+    pub fn parse(text: &str) -> Result<Node, NotToml> {
+        let table = DeTable::parse(text).map_err(|error| not_toml(text, &error))?;
+        let lines = LineTable::new(text);
+        Ok(Node {
+            line: 1,
+            value: lines.table(table.get_ref()),
+        })
+    }
+
+    /// The value under `key`, when this is a table that has it.
+    pub fn get(&self, key: &str) -> Option<&Node> {
+        match &self.value {
+            Value::Table(entries) => entries
+                .iter()
+                .find(|(name, _)| name == key)
+                .map(|(_, node)| node),
+            Value::List(items) => items.get(key.parse::<usize>().ok()?),
+            Value::Text(_)
+            | Value::Whole(_)
+            | Value::Number(_)
+            | Value::Flag(_)
+            | Value::Date(_) => None,
+        }
+    }
+
+    /// Follows a dotted path as far as it exists: the deepest node, and whether that is the whole path.
+    pub fn find(&self, path: &str) -> (&Node, bool) {
+        let mut node = self;
+        for key in path.split('.').filter(|key| !key.is_empty()) {
+            match node.get(key) {
+                Some(next) => node = next,
+                None => return (node, false),
+            }
+        }
+        (node, true)
+    }
+
+    /// The path of the last value that begins at or before `line`; empty for the root.
+    pub fn path_at(&self, line: usize) -> String {
+        let named: Vec<(String, &Node)> = match &self.value {
+            Value::Table(entries) => entries
+                .iter()
+                .map(|(name, node)| (name.clone(), node))
+                .collect(),
+            Value::List(items) => items
+                .iter()
+                .enumerate()
+                .map(|(at, node)| (at.to_string(), node))
+                .collect(),
+            Value::Text(_)
+            | Value::Whole(_)
+            | Value::Number(_)
+            | Value::Flag(_)
+            | Value::Date(_) => Vec::new(),
+        };
+        match named.iter().rfind(|(_, node)| node.line <= line) {
+            Some((name, node)) => match node.path_at(line).as_str() {
+                "" => name.clone(),
+                deeper => format!("{name}.{deeper}"),
+            },
+            None => String::new(),
+        }
+    }
+
+    /// True for a table.
+    pub fn is_table(&self) -> bool {
+        matches!(self.value, Value::Table(_))
+    }
+
+    /// The value in words, for messages.
+    pub fn describe(&self) -> String {
+        match &self.value {
+            Value::Text(text) => format!("\"{text}\""),
+            Value::Whole(number) => number.to_string(),
+            Value::Number(number) => format!("{number:?}"),
+            Value::Flag(flag) => flag.to_string(),
+            Value::Date(date) => format!("the date {date}"),
+            Value::List(items) => format!("a list of {}", items.len()),
+            Value::Table(_) => "a table".to_owned(),
+        }
+    }
+}
+
+/// The parser's objection with its line, for errors of any reader of `text`.
+pub fn not_toml(text: &str, error: &toml::de::Error) -> NotToml {
+    let at = error.span().map_or(0, |span| span.start);
+    let problem = error.message().lines().collect::<Vec<_>>().join(", ");
+    NotToml {
+        line: LineTable::new(text).line(at),
+        problem,
+    }
+}
+
+/// Byte offsets at which lines begin.
+struct LineTable(Vec<usize>);
+
+impl LineTable {
+    fn new(text: &str) -> Self {
+        let starts = text
+            .bytes()
+            .enumerate()
+            .filter(|(_, byte)| *byte == b'\n')
+            .map(|(at, _)| at + 1);
+        Self(std::iter::once(0).chain(starts).collect())
+    }
+
+    fn line(&self, offset: usize) -> usize {
+        self.0.partition_point(|start| *start <= offset)
+    }
+
+    fn start(&self, span: Range<usize>) -> usize {
+        self.line(span.start)
+    }
+
+    fn table(&self, table: &DeTable<'_>) -> Value {
+        let mut entries: Vec<_> = table
+            .iter()
+            .map(|(key, value)| {
+                let line = self.start(key.span());
+                (
+                    key.span().start,
+                    key.get_ref().to_string(),
+                    Node {
+                        line,
+                        value: self.value(value),
+                    },
+                )
+            })
+            .collect();
+        entries.sort_by_key(|(start, _, _)| *start);
+        Value::Table(
+            entries
+                .into_iter()
+                .map(|(_, key, node)| (key, node))
+                .collect(),
+        )
+    }
+
+    fn value(&self, value: &Spanned<DeValue<'_>>) -> Value {
+        match value.get_ref() {
+            DeValue::String(text) => Value::Text(text.to_string()),
+            DeValue::Integer(number) => whole(number.as_str(), number.radix()),
+            DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
+            DeValue::Boolean(flag) => Value::Flag(*flag),
+            DeValue::Datetime(date) => Value::Date(date.to_string()),
+            DeValue::Array(items) => Value::List(
+                items
+                    .iter()
+                    .map(|item| Node {
+                        line: self.start(item.span()),
+                        value: self.value(item),
+                    })
+                    .collect(),
+            ),
+            DeValue::Table(table) => self.table(table),
+        }
+    }
+}
+
+/// A whole number too large for 64 bits is kept as a number, so that a range check refuses it.
+fn whole(digits: &str, radix: u32) -> Value {
+    match i64::from_str_radix(digits, radix) {
+        Ok(number) => Value::Whole(number),
+        Err(_) => Value::Number(f64::INFINITY),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const TEXT: &str =
+        "a = 1\n\n[module.rtd]\ntype = \"20\"\n[[golden]]\nu = 1\n[[golden]]\nu = 2.5\n";
+
+    #[test]
+    fn every_value_knows_its_line() {
+        let root = Node::parse(TEXT).unwrap();
+        let (node, whole) = root.find("module.rtd.type");
+        assert!(whole);
+        assert_eq!((node.line, node.describe()), (4, "\"20\"".to_owned()));
+        assert_eq!(root.find("golden.1.u").0.line, 8);
+        assert_eq!(root.find("module.rtd.format").0.line, 3);
+    }
+
+    #[test]
+    fn a_key_given_twice_is_refused_with_its_line() {
+        let fault = Node::parse("a = 1\nb = 2\na = 3\n").unwrap_err();
+        assert_eq!(fault.line, 3);
+        assert!(fault.problem.contains("duplicate key"), "{}", fault.problem);
+    }
+}

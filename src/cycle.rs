@@ -1,0 +1,346 @@
+//! One turn of the rig, top to bottom:
+//!
+//! ```text
+//! scan -> step -> clear -> apply -> record -> publish
+//! ```
+//! One task owns the process image, the outputs, the guard and the station; each line is a task of its
+//! own with a one-deep queue ([`traffic`]). A turn begins on an answer or at the instant that the last
+//! step asked for. Nothing here knows what a relay is: that is the station's.
+
+mod commission;
+mod traffic;
+
+pub use traffic::LineEnds;
+
+use crate::bus::{Answer, Pace};
+use crate::dcon;
+use crate::guard::Guard;
+use crate::rig::drive::Outputs;
+use crate::rig::image::Image;
+use crate::rig::level::Correction;
+use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
+use crate::rig::wiring::{LineId, Wiring};
+use crate::station::Station;
+use crate::station::act::{Job, JobDone, Read};
+use crate::station::trouble::Alarm;
+use crate::station::wants::{Ending, Inputs, Wants};
+use crate::units::{RigTime, Span};
+use crate::view::View;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use tokio::sync::{mpsc, watch};
+use traffic::{Purpose, Traffic};
+
+/// With nothing to wait for, a turn begins after this long all the same.
+const IDLE: Span = Span::ms(50);
+/// Safe outputs must be written within this time at the end of a run.
+const SAFE_WITHIN: Span = Span::ms(2000);
+
+/// What a run leaves for the history, in the order it happened.
+#[derive(Debug)]
+pub enum Event {
+    /// A part was judged.
+    Judged(Box<crate::station::wants::Judged>),
+    /// Its beam saw it.
+    Landed(crate::station::wants::Landed),
+    /// It left the nest.
+    Left(crate::station::wants::Left),
+    /// An alarm was raised.
+    Alarm(Alarm, RigTime),
+    /// Calibration and golden parts are complete.
+    Calibrated(Box<crate::gauge::Calibration>),
+    /// The lot itself began.
+    LotBegan(RigTime),
+}
+
+/// What the cycle shares with the outside.
+#[derive(Debug, Clone)]
+pub struct Outside {
+    /// Where events go; bounded by the parts inside the machine.
+    pub events: mpsc::UnboundedSender<Event>,
+    /// Ordinal up to which parts are durable; written by the history.
+    pub recorded: Arc<AtomicU64>,
+    /// Set by the operator's stop.
+    pub stop: Arc<AtomicBool>,
+    /// What screens see.
+    pub view: watch::Sender<View>,
+}
+
+/// A rig under control.
+pub struct Cycle {
+    wiring: Arc<Wiring>,
+    pace: Pace,
+    station: Station,
+    guard: Guard,
+    image: Image,
+    outputs: Outputs,
+    traffic: Traffic,
+    outside: Outside,
+    job_done: Option<JobDone>,
+    bus_alarm: Option<Alarm>,
+}
+
+impl Cycle {
+    /// Takes over the lines. Nothing is written before [`Cycle::run`].
+    pub fn new(
+        wiring: Arc<Wiring>,
+        pace: Pace,
+        station: Station,
+        guard: Guard,
+        lines: Vec<LineEnds>,
+        outside: Outside,
+    ) -> Self {
+        Self {
+            image: Image::new(Arc::clone(&wiring)),
+            outputs: Outputs::new(Arc::clone(&wiring)),
+            traffic: Traffic::new(&wiring, lines),
+            wiring,
+            pace,
+            station,
+            guard,
+            outside,
+            job_done: None,
+            bus_alarm: None,
+        }
+    }
+
+    /// Verifies the modules, then turns until the station has ended and the outputs are safe.
+    pub async fn run(mut self) -> Ending {
+        if let Err(alarm) = commission::verify(&self.wiring, &self.pace, &mut self.traffic).await {
+            self.tell(Event::Alarm(alarm, self.pace.now()));
+            return Ending::Alarm;
+        }
+        loop {
+            let now = self.pace.now();
+            self.scan(now);
+            let mut wants = self.step(now);
+            self.clear(now, &mut wants);
+            self.apply(now, &mut wants);
+            self.record(now, &mut wants);
+            self.publish();
+            if let Some(ending) = wants.ending.take() {
+                self.make_safe().await;
+                return ending;
+            }
+            if self.job_done.is_none() && wants.wake_at.is_none_or(|at| at > now) {
+                self.wait(now, wants.wake_at).await;
+            }
+        }
+    }
+
+    /// Answers that have come in go into the process image.
+    fn scan(&mut self, now: RigTime) {
+        while let Some((line, purpose, answer)) = self.traffic.next_answer() {
+            self.take(line, purpose, answer);
+        }
+        self.traffic.note_time(now);
+    }
+
+    fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
+        let trouble = match &answer.outcome {
+            Ok(reply) => self
+                .image
+                .accept(line, &answer.command, reply, &answer.raw, answer.answered_at)
+                .err()
+                .map(|unexpected| format!("line {}: {unexpected}", self.wiring.line(line).name)),
+            Err(error) => Some(error.to_string()),
+        };
+        match (purpose, trouble) {
+            (Purpose::Write { module, job }, None) => {
+                self.outputs.confirmed(module);
+                self.finish_job(job, answer.answered_at, None);
+            }
+            (Purpose::Write { module, job }, Some(trouble)) => {
+                if self.traffic.may_rewrite(module) {
+                    self.outputs.failed(module);
+                    self.finish_job(job, answer.answered_at, None);
+                } else {
+                    self.finish_job(job, answer.answered_at, Some(trouble.clone()));
+                    self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
+                }
+            }
+            (Purpose::Job, trouble) => self.finish_job(true, answer.answered_at, trouble),
+            (Purpose::Scan | Purpose::Check, Some(trouble)) => {
+                self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
+            }
+            (Purpose::Scan | Purpose::Check | Purpose::Heartbeat, _) => {}
+        }
+    }
+
+    fn finish_job(&mut self, is_job: bool, at: RigTime, trouble: Option<String>) {
+        if is_job && let Some(done) = self.traffic.job_part_done(at, trouble) {
+            self.job_done = Some(done);
+        }
+    }
+
+    fn step(&mut self, now: RigTime) -> Wants {
+        let inputs = Inputs {
+            image: &self.image,
+            job: self.job_done.take(),
+            recorded: self.outside.recorded.load(Ordering::Acquire),
+            bus: self.bus_alarm.take(),
+            stop: self.outside.stop.load(Ordering::Acquire),
+        };
+        self.station.step(now, inputs)
+    }
+
+    /// Each wanted motion passes the guard, one after the other, and is driven or refused.
+    fn clear(&mut self, now: RigTime, wants: &mut Wants) {
+        for movement in std::mem::take(&mut wants.motions) {
+            let situation = self.station.situation(now, &self.image);
+            match self.guard.clear(&self.station.motion(movement), &situation) {
+                Ok(cleared) => {
+                    if let Err(cannot) = self.outputs.apply(cleared) {
+                        self.station.refused(movement, &cannot.to_string(), now, wants);
+                        return;
+                    }
+                    self.station.driven(movement, now, &self.image);
+                }
+                Err(refusal) => {
+                    self.station.refused(movement, &refusal.to_string(), now, wants);
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Outputs become commands; the measuring line gets its job.
+    fn apply(&mut self, now: RigTime, wants: &mut Wants) {
+        if wants.safe {
+            self.outputs.everything_safe();
+            self.traffic.drop_job();
+        }
+        for (point, on) in wants.outputs.drain(..) {
+            if let Err(needs) = self.outputs.set(point, on) {
+                self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
+            }
+        }
+        self.traffic.watch_beam(wants.beam.map(|beam| self.wiring.read_events(beam)));
+        let is_job = wants.job.is_some();
+        if let Some(job) = wants.job.take() {
+            self.start(job, now);
+        }
+        for write in self.outputs.writes() {
+            let job = is_job && self.is_measuring(write.line);
+            self.traffic.queue(write.line, write.command, Purpose::Write { module: write.module, job });
+        }
+        if is_job && let Some(done) = self.traffic.job_if_empty(now) {
+            self.job_done = Some(done);
+        }
+        self.traffic.dispatch(now);
+    }
+
+    fn is_measuring(&self, line: LineId) -> bool {
+        self.traffic.measuring_line() == line
+    }
+
+    fn start(&mut self, job: Job, _now: RigTime) {
+        let line = self.traffic.measuring_line();
+        self.traffic.begin_job();
+        let reads = match job {
+            Job::Board(outputs) => {
+                for (point, on) in outputs {
+                    if let Err(needs) = self.outputs.set(point, on) {
+                        self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
+                    }
+                }
+                Vec::new()
+            }
+            Job::Supply(outputs) => {
+                for (output, volts) in outputs {
+                    if let Err(cannot) = self.outputs.set_supply(output, volts, Correction::NONE) {
+                        self.bus_alarm.get_or_insert(Alarm::bus(&cannot.to_string()));
+                    }
+                }
+                Vec::new()
+            }
+            Job::Read(read) => self.reads(read),
+            Job::CoilMask(mask) => {
+                let module = self.wiring.analog_in(AnalogIn::CoilVoltageFine).module;
+                vec![dcon::AnalogIn::WriteMask(mask).to(self.wiring.module(module).address)]
+            },
+        };
+        for command in reads {
+            self.traffic.queue(line, command, Purpose::Job);
+        }
+    }
+
+    fn reads(&self, read: Read) -> Vec<dcon::Command> {
+        let wiring = &self.wiring;
+        match read {
+            Read::Board => vec![wiring.poll(wiring.digital_in(DigitalIn::Latch).module)],
+            Read::Coil => vec![wiring.poll(wiring.analog_in(AnalogIn::CoilVoltageFine).module)],
+            Read::Drop => vec![wiring.read_analog(AnalogIn::ContactDrop)],
+            Read::Gates => vec![wiring.read_counter(Counter::Gate0), wiring.read_counter(Counter::Gate1)],
+            Read::Track => vec![wiring.read_temperature(Temperature::Track)],
+        }
+    }
+
+    fn record(&mut self, now: RigTime, wants: &mut Wants) {
+        for judged in wants.judged.drain(..) {
+            self.tell(Event::Judged(Box::new(judged)));
+        }
+        for left in wants.left.drain(..) {
+            self.tell(Event::Left(left));
+        }
+        for landed in wants.landed.drain(..) {
+            self.tell(Event::Landed(landed));
+        }
+        if let Some(calibration) = wants.calibrated.take() {
+            self.tell(Event::Calibrated(Box::new(calibration)));
+        }
+        if wants.lot_began {
+            self.tell(Event::LotBegan(now));
+        }
+        for alarm in wants.alarms.drain(..) {
+            self.tell(Event::Alarm(alarm, now));
+        }
+    }
+
+    fn tell(&self, event: Event) {
+        // The receiver ends only with the program; then nobody is left to tell.
+        let _ = self.outside.events.send(event);
+    }
+
+    /// Screens see a turn only when one is looking.
+    fn publish(&mut self) {
+        if self.outside.view.receiver_count() > 0 {
+            let station = &self.station;
+            self.outside.view.send_modify(|view| {
+                view.state = station.state();
+                view.inside = station.ledger().inside();
+                view.came_in = station.ledger().came_in;
+                view.went_out = station.ledger().went_out;
+            });
+        }
+    }
+
+    /// Until an answer, the station's own deadline, or the next scan.
+    async fn wait(&mut self, now: RigTime, wake_at: Option<RigTime>) {
+        let until = wake_at.unwrap_or(now + IDLE).min(self.traffic.next_due(now).unwrap_or(now + IDLE));
+        tokio::select! {
+            biased;
+            () = self.traffic.answer() => {}
+            () = self.pace.sleep_until(until) => {}
+        }
+    }
+
+    /// Writes the safe outputs and waits until every module has confirmed, or the time is up.
+    async fn make_safe(&mut self) {
+        let end = self.pace.now() + SAFE_WITHIN;
+        self.traffic.only_writes();
+        while self.pace.now() < end {
+            let now = self.pace.now();
+            self.scan(now);
+            for write in self.outputs.writes() {
+                let purpose = Purpose::Write { module: write.module, job: false };
+                self.traffic.queue(write.line, write.command, purpose);
+            }
+            self.traffic.dispatch(now);
+            if self.traffic.is_quiet() {
+                return;
+            }
+            self.wait(now, Some(end)).await;
+        }
+    }
+}

@@ -1,0 +1,299 @@
+//! Who may use a line next: writes first, then the heartbeat, the measuring job, and the scan.
+//!
+//! Every line has one transaction under way at most. The module with the emergency-stop contact is
+//! every second transaction of its line's scan.
+
+use crate::bus::{Answer, Request};
+use crate::dcon::Command;
+use crate::rig::point::DigitalIn;
+use crate::rig::wiring::{LineId, ModuleId, Wiring};
+use crate::station::act::JobDone;
+use crate::units::{RigTime, Span};
+use std::collections::VecDeque;
+use std::future::poll_fn;
+use std::sync::Arc;
+use std::task::Poll;
+use tokio::sync::mpsc;
+
+/// The cycle's ends of a line's queues.
+#[derive(Debug)]
+pub struct LineEnds {
+    /// Which line.
+    pub line: LineId,
+    /// To the line's task, one deep.
+    pub requests: mpsc::Sender<Request>,
+    /// From it.
+    pub answers: mpsc::Receiver<Answer>,
+}
+
+/// What a transaction is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// Output write; `job`: the measuring job waits for it.
+    Write {
+        /// Module written.
+        module: ModuleId,
+        /// The measuring job waits for it.
+        job: bool,
+    },
+    /// Part of a measuring job.
+    Job,
+    /// Motion scan.
+    Scan,
+    /// Verification at the start.
+    Check,
+    /// Host OK.
+    Heartbeat,
+}
+
+struct Slot {
+    ends: LineEnds,
+    tries: u8,
+    busy: Option<Purpose>,
+    waiting: Option<Answer>,
+    queue: VecDeque<(Command, Purpose)>,
+    heartbeat_due: RigTime,
+    scan: Vec<Command>,
+    priority: Option<Command>,
+    scan_turn: usize,
+    scan_due: RigTime,
+}
+
+/// A measuring job under way.
+#[derive(Debug, Default)]
+struct JobUnderway {
+    parts: usize,
+    last: RigTime,
+    trouble: Option<String>,
+}
+
+/// All lines.
+pub struct Traffic {
+    slots: Vec<Slot>,
+    measuring: LineId,
+    heartbeat: Span,
+    scan_period: Span,
+    job: Option<JobUnderway>,
+    beam: Option<Command>,
+    beam_line: LineId,
+    rewrites: Vec<u8>,
+    tries: u8,
+    scanning: bool,
+    ticket: u64,
+    now: RigTime,
+}
+
+impl Traffic {
+    /// Nothing under way, every heartbeat due.
+    pub fn new(wiring: &Arc<Wiring>, lines: Vec<LineEnds>) -> Self {
+        let estop = wiring.emergency_stop_module();
+        let estop_line = wiring.module(estop).line;
+        let board_line = wiring.module(wiring.digital_in(DigitalIn::Latch).module).line;
+        let slots = lines
+            .into_iter()
+            .map(|ends| {
+                let mut scan: Vec<ModuleId> = DigitalIn::ALL
+                    .iter()
+                    .map(|point| wiring.digital_in(*point).module)
+                    .filter(|module| wiring.module(*module).line == ends.line && *module != estop)
+                    .collect();
+                scan.sort_by_key(|module| module.0);
+                scan.dedup();
+                let is_board = ends.line == board_line && board_line != estop_line;
+                Slot {
+                    tries: wiring.tries_on(ends.line),
+                    busy: None,
+                    waiting: None,
+                    queue: VecDeque::new(),
+                    heartbeat_due: RigTime(0),
+                    scan: if is_board { Vec::new() } else { scan.into_iter().map(|m| wiring.poll(m)).collect() },
+                    priority: (ends.line == estop_line).then(|| wiring.poll(estop)),
+                    scan_turn: 0,
+                    scan_due: RigTime(0),
+                    ends,
+                }
+            })
+            .collect();
+        Self {
+            slots,
+            measuring: board_line,
+            heartbeat: Span::seconds(wiring.bus.heartbeat_ms / 1e3),
+            scan_period: Span::seconds(wiring.bus.scan_period_ms / 1e3),
+            job: None,
+            beam: None,
+            beam_line: estop_line,
+            rewrites: vec![0; wiring.modules.len()],
+            tries: wiring.bus.tries,
+            scanning: false,
+            ticket: 0,
+            now: RigTime(0),
+        }
+    }
+
+    /// The line with the interface board.
+    pub fn measuring_line(&self) -> LineId {
+        self.measuring
+    }
+
+    /// The time of this turn.
+    pub fn note_time(&mut self, now: RigTime) {
+        self.now = now;
+    }
+
+    /// From now on the motion sensors are scanned.
+    pub fn start_scan(&mut self) {
+        self.scanning = true;
+    }
+
+    /// From now on nothing but writes and heartbeats.
+    pub fn only_writes(&mut self) {
+        self.scanning = false;
+    }
+
+    /// Puts a command at the end of a line's queue.
+    pub fn queue(&mut self, line: LineId, command: Command, purpose: Purpose) {
+        if matches!(purpose, Purpose::Job | Purpose::Write { job: true, .. }) && let Some(job) = &mut self.job {
+            job.parts += 1;
+        }
+        if let Some(slot) = self.slots.iter_mut().find(|slot| slot.ends.line == line) {
+            slot.queue.push_back((command, purpose));
+        }
+    }
+
+    /// Event counter to read with the scan, or none.
+    pub fn watch_beam(&mut self, command: Option<Command>) {
+        self.beam = command;
+    }
+
+    /// Counts a failed write; true while it may be tried again.
+    pub fn may_rewrite(&mut self, module: ModuleId) -> bool {
+        self.rewrites[module.0] += 1;
+        self.rewrites[module.0] < self.tries
+    }
+
+    /// A new measuring job.
+    pub fn begin_job(&mut self) {
+        self.job = Some(JobUnderway::default());
+    }
+
+    /// Forgets the job and what was queued for it.
+    pub fn drop_job(&mut self) {
+        self.job = None;
+        for slot in &mut self.slots {
+            slot.queue.retain(|(_, purpose)| matches!(purpose, Purpose::Write { .. }));
+        }
+    }
+
+    /// A job that needed no transaction is done at once.
+    pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
+        self.job.take_if(|job| job.parts == 0).map(|_| JobDone { at: now, trouble: None })
+    }
+
+    /// One transaction of the job is over; the answer of the job when it was the last.
+    pub fn job_part_done(&mut self, at: RigTime, trouble: Option<String>) -> Option<JobDone> {
+        let job = self.job.as_mut()?;
+        job.parts = job.parts.saturating_sub(1);
+        job.last = at;
+        if job.trouble.is_none() {
+            job.trouble = trouble;
+        }
+        if job.parts > 0 {
+            return None;
+        }
+        self.job.take().map(|job| JobDone { at: job.last, trouble: job.trouble })
+    }
+
+    /// Starts the next transaction on every idle line.
+    pub fn dispatch(&mut self, now: RigTime) {
+        for index in 0..self.slots.len() {
+            if self.slots[index].busy.is_some() {
+                continue;
+            }
+            let Some((command, purpose)) = self.choose(index, now) else { continue };
+            self.ticket += 1;
+            let slot = &mut self.slots[index];
+            let request = Request { ticket: self.ticket, command, tries: slot.tries };
+            // The queue is one deep and the slot idle, so there is room; a closed queue means the line's task ended.
+            if slot.ends.requests.try_send(request).is_ok() {
+                slot.busy = Some(purpose);
+            }
+        }
+    }
+
+    fn choose(&mut self, index: usize, now: RigTime) -> Option<(Command, Purpose)> {
+        let slot = &mut self.slots[index];
+        let write = slot.queue.iter().position(|(_, purpose)| matches!(purpose, Purpose::Write { .. }));
+        if let Some(next) = write.and_then(|at| slot.queue.remove(at)) {
+            return Some(next);
+        }
+        if slot.heartbeat_due <= now {
+            slot.heartbeat_due = now + self.heartbeat;
+            return Some((Command::HostOk, Purpose::Heartbeat));
+        }
+        if let Some(next) = slot.queue.pop_front() {
+            return Some(next);
+        }
+        if !self.scanning || slot.scan_due > now {
+            return None;
+        }
+        let turn = slot.scan_turn;
+        slot.scan_turn += 1;
+        if turn.is_multiple_of(2) && let Some(command) = slot.priority {
+            return Some((command, Purpose::Scan));
+        }
+        if slot.ends.line == self.beam_line && turn % 4 == 3 && let Some(beam) = self.beam {
+            slot.scan_due = now + self.scan_period;
+            return Some((beam, Purpose::Scan));
+        }
+        let others = slot.scan.len();
+        if others == 0 {
+            return None;
+        }
+        slot.scan_due = now + self.scan_period;
+        Some((slot.scan[(turn / 2) % others], Purpose::Scan))
+    }
+
+    /// The next answer that has come in.
+    pub fn next_answer(&mut self) -> Option<(LineId, Purpose, Answer)> {
+        for slot in &mut self.slots {
+            let Some(answer) = slot.waiting.take().or_else(|| slot.ends.answers.try_recv().ok()) else { continue };
+            let purpose = slot.busy.take().unwrap_or(Purpose::Check);
+            return Some((slot.ends.line, purpose, answer));
+        }
+        None
+    }
+
+    /// Resolves when an answer has come in on any line.
+    pub async fn answer(&mut self) {
+        let slots = &mut self.slots;
+        poll_fn(|context| {
+            for slot in slots.iter_mut().filter(|slot| slot.busy.is_some()) {
+                if slot.waiting.is_some() {
+                    return Poll::Ready(());
+                }
+                if let Poll::Ready(Some(answer)) = slot.ends.answers.poll_recv(context) {
+                    slot.waiting = Some(answer);
+                    return Poll::Ready(());
+                }
+            }
+            Poll::Pending
+        })
+        .await;
+    }
+
+    /// When an idle line has something to do without being asked.
+    pub fn next_due(&self, now: RigTime) -> Option<RigTime> {
+        self.slots
+            .iter()
+            .filter(|slot| slot.busy.is_none())
+            .flat_map(|slot| [Some(slot.heartbeat_due), self.scanning.then_some(slot.scan_due)])
+            .flatten()
+            .filter(|due| *due > now)
+            .min()
+    }
+
+    /// Nothing queued, nothing under way.
+    pub fn is_quiet(&self) -> bool {
+        self.slots.iter().all(|slot| slot.busy.is_none() && slot.queue.is_empty())
+    }
+}

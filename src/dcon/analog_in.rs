@@ -1,0 +1,136 @@
+//! Analog inputs: 7017, 7017F, 7017R, 7018 (eight channels) and 7033 (three resistance thermometers).
+
+use super::command::Nature::{self, Read, Store};
+use super::request::Request;
+use super::shape::Shape;
+use super::{Address, Channel, DataFormat, TypeCode};
+
+/// How a module prints its readings: needed to read them, and verified once against its configuration word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InputForm {
+    channels: u8,
+    /// The notation, from the configuration word.
+    pub format: DataFormat,
+    /// The range, from the configuration word.
+    pub range: TypeCode,
+}
+
+impl InputForm {
+    /// A module with `channels` inputs; no module of these families has more than eight.
+    pub const fn new(channels: u8, format: DataFormat, range: TypeCode) -> Option<Self> {
+        if channels >= 1 && channels <= 8 {
+            Some(Self {
+                channels,
+                format,
+                range,
+            })
+        } else {
+            None
+        }
+    }
+
+    /// 7017, 7017F, 7017R, 7018: eight inputs.
+    pub const fn eight(format: DataFormat, range: TypeCode) -> Self {
+        Self {
+            channels: 8,
+            format,
+            range,
+        }
+    }
+
+    /// 7033: three inputs.
+    pub const fn three(format: DataFormat, range: TypeCode) -> Self {
+        Self {
+            channels: 3,
+            format,
+            range,
+        }
+    }
+
+    /// Number of inputs, 1 to 8.
+    pub const fn channels(self) -> u8 {
+        self.channels
+    }
+}
+
+/// Commands of analog input modules.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AnalogIn {
+    /// `#AA`: all channels; disabled ones are blank.
+    ReadAll(InputForm),
+    /// `#AAN`.
+    ReadOne {
+        /// Which input.
+        channel: Channel,
+        /// How it is printed.
+        form: InputForm,
+    },
+    /// `$AAA`: all channels as hex, whatever the configured notation.
+    ReadAllHex(InputForm),
+    /// `$AA6`: the enabled channels, bit n = channel n.
+    ReadMask,
+    /// `$AA5VV`. Differs from the reset status by length only.
+    WriteMask(u8),
+    /// `$AA3` of thermocouple modules: cold junction in degrees Celsius.
+    ReadColdJunction,
+    /// `$AAB`, newer modules: channels with an open wire or over range, bit n = channel n.
+    ReadDiagnosis,
+    /// `$AA8Ci`, newer modules.
+    ReadChannelRange {
+        /// Which input.
+        channel: Channel,
+    },
+    /// `$AA7CiRrr`, newer modules.
+    WriteChannelRange {
+        /// Which input.
+        channel: Channel,
+        /// Its range from now on.
+        range: TypeCode,
+    },
+}
+
+impl AnalogIn {
+    pub(super) fn encode(self, to: Address, request: &mut Request<'_>) {
+        match self {
+            Self::ReadAll(_) => request.to(b'#', to),
+            Self::ReadOne { channel, .. } => request.to(b'#', to).digit(channel),
+            Self::ReadAllHex(_) => request.to(b'$', to).text(b"A"),
+            Self::ReadMask => request.to(b'$', to).text(b"6"),
+            Self::WriteMask(mask) => request.to(b'$', to).text(b"5").hex(u32::from(mask), 2),
+            Self::ReadColdJunction => request.to(b'$', to).text(b"3"),
+            Self::ReadDiagnosis => request.to(b'$', to).text(b"B"),
+            Self::ReadChannelRange { channel } => request.to(b'$', to).text(b"8C").digit(channel),
+            Self::WriteChannelRange { channel, range } => request
+                .to(b'$', to)
+                .text(b"7C")
+                .digit(channel)
+                .text(b"R")
+                .hex(u32::from(range.0), 2),
+        };
+    }
+
+    pub(super) fn table(&self) -> (Nature, Shape) {
+        match *self {
+            Self::ReadAll(form) => (Read, Shape::Readings(form)),
+            Self::ReadOne { form, .. } => (Read, Shape::Reading(form)),
+            Self::ReadAllHex(form) => (
+                Read,
+                Shape::Readings(InputForm {
+                    format: DataFormat::Hex,
+                    ..form
+                }),
+            ),
+            Self::ReadMask | Self::ReadDiagnosis => (Read, Shape::Byte),
+            Self::WriteMask(_) => (Store, Shape::Accepted),
+            Self::ReadColdJunction => (
+                Read,
+                Shape::Reading(InputForm::eight(
+                    DataFormat::Engineering,
+                    TypeCode::COLD_JUNCTION,
+                )),
+            ),
+            Self::ReadChannelRange { channel } => (Read, Shape::ChannelRange(channel)),
+            Self::WriteChannelRange { .. } => (Store, Shape::Accepted),
+        }
+    }
+}

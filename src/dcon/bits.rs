@@ -1,0 +1,75 @@
+//! Bits of digital modules: as read back, and as written.
+
+use super::request::Request;
+
+/// Two bytes as a digital module prints them. Which is which depends on the module.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bits {
+    /// Outputs of a module that has both; the high byte (8..15) of a 16-bit module.
+    pub first: u8,
+    /// Inputs of a module that has both; the low byte (0..7) of a 16-bit module.
+    pub second: u8,
+}
+
+impl Bits {
+    /// Channel 0 in bit 0, for modules with up to 16 inputs or 16 outputs: 7041, 7043, 7045, 7051.
+    pub fn word(self) -> u16 {
+        u16::from(self.first) << 8 | u16::from(self.second)
+    }
+}
+
+/// Hex digits of the data in `@AA(data)`: a module accepts one width only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Width {
+    /// 7060, 7063: up to four outputs.
+    One,
+    /// 7050, 7065, 7067: up to eight.
+    Two,
+    /// 7043, 7045: sixteen.
+    Four,
+}
+
+impl Width {
+    const fn digits(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Two => 2,
+            Self::Four => 4,
+        }
+    }
+}
+
+/// All outputs of a module at once: bit n = output n.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OutputWord {
+    width: Width,
+    bits: u16,
+}
+
+impl OutputWord {
+    /// None when a bit lies beyond the width.
+    pub const fn new(width: Width, bits: u16) -> Option<Self> {
+        if (bits as u32) >> (4 * width.digits()) == 0 {
+            Some(Self { width, bits })
+        } else {
+            None
+        }
+    }
+
+    /// For the 16 outputs of a 7043 or 7045, where any word is good.
+    pub const fn sixteen(bits: u16) -> Self {
+        Self {
+            width: Width::Four,
+            bits,
+        }
+    }
+
+    /// Bit n = output n.
+    pub const fn bits(self) -> u16 {
+        self.bits
+    }
+
+    pub(super) fn encode(self, request: &mut Request<'_>) {
+        request.hex(u32::from(self.bits), self.width.digits());
+    }
+}

@@ -1,0 +1,148 @@
+//! The configuration word `TT CC FF` that every module keeps in its EEPROM, and the module's name.
+//!
+//! Compare what `$AA2` says with what is wanted, and write only a difference: each write wears the EEPROM.
+
+use super::{TypeCode, UpTo};
+
+/// Type, baud and format of a module.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Config {
+    /// TT.
+    pub type_code: TypeCode,
+    /// CC.
+    pub baud: BaudCode,
+    /// FF.
+    pub format: FormatByte,
+}
+
+/// CC: bits 5..0 the rate; newer firmware keeps parity and stop bits in 7..6.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BaudCode(pub u8);
+
+impl BaudCode {
+    const RATES: [(u8, u32); 8] = [
+        (0x03, 1_200),
+        (0x04, 2_400),
+        (0x05, 4_800),
+        (0x06, 9_600),
+        (0x07, 19_200),
+        (0x08, 38_400),
+        (0x09, 57_600),
+        (0x0A, 115_200),
+    ];
+
+    /// The code of a rate with 8N1; none for a rate that no module has.
+    pub fn of(baud: u32) -> Option<Self> {
+        Self::RATES
+            .iter()
+            .find(|(_, rate)| *rate == baud)
+            .map(|(code, _)| Self(*code))
+    }
+
+    /// Bits per second; none for an unknown code.
+    pub fn rate(self) -> Option<u32> {
+        Self::RATES
+            .iter()
+            .find(|(code, _)| *code == self.0 & 0x3F)
+            .map(|(_, rate)| *rate)
+    }
+}
+
+/// Notation of analog values (FF bits 1..0).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum DataFormat {
+    /// In the range's own unit: `+05.123`.
+    Engineering,
+    /// Per cent of full scale: `+051.23`.
+    Percent,
+    /// Two's complement: `4193`.
+    Hex,
+}
+
+/// FF. The same bits mean different things in different families.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FormatByte(pub u8);
+
+impl FormatByte {
+    /// Bit 6: frames carry a checksum. Takes effect after a power cycle.
+    pub fn checksum(self) -> bool {
+        self.0 & 0x40 != 0
+    }
+
+    /// Notation of an analog module; none for the code that no module has.
+    pub fn data_format(self) -> Option<DataFormat> {
+        match self.0 & 0x03 {
+            0 => Some(DataFormat::Engineering),
+            1 => Some(DataFormat::Percent),
+            2 => Some(DataFormat::Hex),
+            _ => None,
+        }
+    }
+
+    /// Analog input, bit 5: fewer bits, more conversions.
+    pub fn fast(self) -> bool {
+        self.0 & 0x20 != 0
+    }
+
+    /// Analog input, bit 7: the filter rejects 50 Hz instead of 60 Hz.
+    pub fn rejects_50_hz(self) -> bool {
+        self.0 & 0x80 != 0
+    }
+
+    /// Analog output, bits 5..2.
+    pub fn slew(self) -> SlewCode {
+        SlewCode(UpTo::new(self.0 >> 2 & 0x0F).unwrap_or(SlewCode::IMMEDIATE.0))
+    }
+
+    /// Counter, bit 2: frequency is gated for 1.0 s instead of 0.1 s.
+    pub fn long_gate(self) -> bool {
+        self.0 & 0x04 != 0
+    }
+}
+
+/// How fast an analog output moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SlewCode(pub UpTo<15>);
+
+impl SlewCode {
+    /// The output steps at once.
+    pub const IMMEDIATE: Self = match UpTo::new(0) {
+        Some(zero) => Self(zero),
+        None => unreachable!(),
+    };
+
+    /// None when immediate. Code 1 is 1/16 V/s, each further code doubles. Current outputs: twice the figure in mA/s.
+    pub fn volt_per_second(self) -> Option<f64> {
+        match self.0.get() {
+            0 => None,
+            code => Some(0.0625 * f64::from(1u32 << (code - 1))),
+        }
+    }
+}
+
+/// A module's name: one to six printable characters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModuleName {
+    bytes: [u8; 6],
+    length: u8,
+}
+
+impl ModuleName {
+    /// None when empty, longer than six, or with characters the line cannot carry.
+    pub fn new(name: &str) -> Option<Self> {
+        let fits =
+            (1..=6).contains(&name.len()) && name.bytes().all(|byte| byte.is_ascii_graphic());
+        let mut bytes = [0; 6];
+        fits.then(|| {
+            bytes[..name.len()].copy_from_slice(name.as_bytes());
+            Self {
+                bytes,
+                length: name.len() as u8,
+            }
+        })
+    }
+
+    pub(super) fn as_bytes(&self) -> &[u8] {
+        &self.bytes[..usize::from(self.length)]
+    }
+}

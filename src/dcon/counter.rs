@@ -1,0 +1,214 @@
+//! The two 32-bit counters of a 7080, each with its own gate input.
+
+use super::command::Nature::{self, Act, Output, Read, Store};
+use super::request::Request;
+use super::shape::Shape;
+use super::{Address, Channel, UpTo};
+
+/// When the counters count. One setting for both channels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GateMode {
+    /// While the gate is low.
+    Low,
+    /// While the gate is high.
+    High,
+    /// Always.
+    None,
+}
+
+/// Which inputs the two counters listen to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InputMode {
+    /// Both TTL, not isolated.
+    BothTtl,
+    /// Both through opto-couplers.
+    BothIsolated,
+    /// Counter 0 TTL, counter 1 isolated.
+    Isolated1,
+    /// Counter 0 isolated, counter 1 TTL.
+    Isolated0,
+}
+
+/// High or low side of the digital filter or the TTL threshold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Edge {
+    /// `H`.
+    High,
+    /// `L`.
+    Low,
+}
+
+impl Edge {
+    fn letter(self) -> &'static [u8] {
+        match self {
+            Self::High => b"H",
+            Self::Low => b"L",
+        }
+    }
+}
+
+/// Reply to `@AADI`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct AlarmState {
+    /// 0 = alarms off; 1, 2 = on, momentary or latched.
+    pub state: u8,
+    /// The two open-collector outputs.
+    pub outputs: u8,
+}
+
+/// Commands of the 7080. Counts are read without address: lead, length and hex digits are all there is to check.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Counter {
+    /// `#AAN`: the count, or in frequency mode Hz.
+    Read(UpTo<1>),
+    /// `$AA6N`: back to the preset, overflow cleared.
+    Reset(UpTo<1>),
+    /// `$AA7N`: true when the counter has passed its maximum.
+    ReadOverflow(UpTo<1>),
+    /// `$AA5N`: true while running.
+    ReadRunning(UpTo<1>),
+    /// `$AA5NS`.
+    Run(UpTo<1>, bool),
+    /// `@AAGN`.
+    ReadPreset(UpTo<1>),
+    /// `@AAPN(data)`.
+    WritePreset(UpTo<1>, u32),
+    /// `$AA3N`.
+    ReadMaximum(UpTo<1>),
+    /// `$AA3N(data)`.
+    WriteMaximum(UpTo<1>, u32),
+    /// `$AAA`.
+    ReadGate,
+    /// `$AAAG`.
+    WriteGate(GateMode),
+    /// `$AAB`.
+    ReadInputs,
+    /// `$AABS`.
+    WriteInputs(InputMode),
+    /// `$AA4`: true with the digital filter on.
+    ReadFilter,
+    /// `$AA4S`.
+    WriteFilter(bool),
+    /// `$AA0H`, `$AA0L`: least width of a pulse, microseconds.
+    ReadFilterWidth(Edge),
+    /// `$AA0H(data)`: 2 to 65535 microseconds.
+    WriteFilterWidth(Edge, u16),
+    /// `$AA1H`, `$AA1L`: TTL threshold, tenths of a volt.
+    ReadThreshold(Edge),
+    /// `$AA1H(data)`: tenths of a volt; high must stay above low.
+    WriteThreshold(Edge, UpTo<50>),
+    /// `@AADI`.
+    ReadAlarm,
+    /// `@AADO0D`: the two outputs; refused while an alarm owns them.
+    WriteOutputs(UpTo<3>),
+    /// `$AA8` of the 7080D: what the display shows.
+    ReadDisplay,
+    /// `$AA8V` of the 7080D: 0 or 1 a counter, 2 the host's text.
+    WriteDisplay(Channel),
+}
+
+impl Counter {
+    pub(super) fn encode(self, to: Address, request: &mut Request<'_>) {
+        match self {
+            Self::Read(n) => request.to(b'#', to).digit(n),
+            Self::Reset(n) => request.to(b'$', to).text(b"6").digit(n),
+            Self::ReadOverflow(n) => request.to(b'$', to).text(b"7").digit(n),
+            Self::ReadRunning(n) => request.to(b'$', to).text(b"5").digit(n),
+            Self::Run(n, run) => request.to(b'$', to).text(b"5").digit(n).flag(run),
+            Self::ReadPreset(n) => request.to(b'@', to).text(b"G").digit(n),
+            Self::WritePreset(n, value) => request.to(b'@', to).text(b"P").digit(n).hex(value, 8),
+            Self::ReadMaximum(n) => request.to(b'$', to).text(b"3").digit(n),
+            Self::WriteMaximum(n, value) => request.to(b'$', to).text(b"3").digit(n).hex(value, 8),
+            Self::ReadGate => request.to(b'$', to).text(b"A"),
+            Self::WriteGate(mode) => request.to(b'$', to).text(b"A").hex(mode.code(), 1),
+            Self::ReadInputs => request.to(b'$', to).text(b"B"),
+            Self::WriteInputs(mode) => request.to(b'$', to).text(b"B").hex(mode.code(), 1),
+            Self::ReadFilter => request.to(b'$', to).text(b"4"),
+            Self::WriteFilter(on) => request.to(b'$', to).text(b"4").flag(on),
+            Self::ReadFilterWidth(side) => request.to(b'$', to).text(b"0").text(side.letter()),
+            Self::WriteFilterWidth(side, width_us) => request
+                .to(b'$', to)
+                .text(b"0")
+                .text(side.letter())
+                .decimal(u32::from(width_us), 5),
+            Self::ReadThreshold(side) => request.to(b'$', to).text(b"1").text(side.letter()),
+            Self::WriteThreshold(side, tenths) => request
+                .to(b'$', to)
+                .text(b"1")
+                .text(side.letter())
+                .decimal(u32::from(tenths.get()), 2),
+            Self::ReadAlarm => request.to(b'@', to).text(b"DI"),
+            Self::WriteOutputs(outputs) => request.to(b'@', to).text(b"DO0").digit(outputs),
+            Self::ReadDisplay => request.to(b'$', to).text(b"8"),
+            Self::WriteDisplay(what) => request.to(b'$', to).text(b"8").digit(what),
+        };
+    }
+
+    pub(super) fn table(&self) -> (Nature, Shape) {
+        match *self {
+            Self::Read(_) => (Read, Shape::Count),
+            Self::ReadOverflow(_) | Self::ReadRunning(_) | Self::ReadFilter => (Read, Shape::Flag),
+            Self::ReadPreset(_) | Self::ReadMaximum(_) => (Read, Shape::Setting32),
+            Self::ReadGate => (Read, Shape::Gate),
+            Self::ReadInputs => (Read, Shape::Inputs),
+            Self::ReadFilterWidth(_) => (
+                Read,
+                Shape::Decimal {
+                    digits: 5,
+                    max: 65_535,
+                },
+            ),
+            Self::ReadThreshold(_) => (Read, Shape::Decimal { digits: 2, max: 50 }),
+            Self::ReadAlarm => (Read, Shape::Alarm),
+            Self::ReadDisplay => (Read, Shape::Decimal { digits: 1, max: 2 }),
+            Self::Reset(_) | Self::Run(..) => (Act, Shape::Accepted),
+            Self::WriteOutputs(_) => (Output, Shape::Accepted),
+            Self::WritePreset(..)
+            | Self::WriteMaximum(..)
+            | Self::WriteGate(_)
+            | Self::WriteInputs(_)
+            | Self::WriteFilter(_)
+            | Self::WriteFilterWidth(..)
+            | Self::WriteThreshold(..)
+            | Self::WriteDisplay(_) => (Store, Shape::Accepted),
+        }
+    }
+}
+
+impl GateMode {
+    fn code(self) -> u32 {
+        match self {
+            Self::Low => 0,
+            Self::High => 1,
+            Self::None => 2,
+        }
+    }
+
+    pub(super) fn from_code(code: u32) -> Option<Self> {
+        [Self::Low, Self::High, Self::None]
+            .into_iter()
+            .find(|mode| mode.code() == code)
+    }
+}
+
+impl InputMode {
+    fn code(self) -> u32 {
+        match self {
+            Self::BothTtl => 0,
+            Self::BothIsolated => 1,
+            Self::Isolated1 => 2,
+            Self::Isolated0 => 3,
+        }
+    }
+
+    pub(super) fn from_code(code: u32) -> Option<Self> {
+        [
+            Self::BothTtl,
+            Self::BothIsolated,
+            Self::Isolated1,
+            Self::Isolated0,
+        ]
+        .into_iter()
+        .find(|mode| mode.code() == code)
+    }
+}

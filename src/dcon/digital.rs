@@ -1,0 +1,132 @@
+//! Digital inputs and outputs, latches, and the slow event counters on the inputs.
+
+use super::command::Nature::{self, Act, Output, Read, ReadOnce, Store};
+use super::request::Request;
+use super::shape::Shape;
+use super::{Address, Channel, OutputWord, UpTo};
+
+/// Which of the two stored output patterns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stored {
+    /// Taken at power-on.
+    PowerOn,
+    /// Taken when the host watchdog trips.
+    Safe,
+}
+
+impl Stored {
+    fn letter(self) -> &'static [u8] {
+        match self {
+            Self::PowerOn => b"P",
+            Self::Safe => b"S",
+        }
+    }
+}
+
+/// `#AABBDD`: some of the outputs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GroupWrite {
+    /// BB = 00: outputs 0..7, bit n = output n.
+    GroupA(u8),
+    /// BB = 0B: outputs 8..15 of 16-output modules.
+    GroupB(u8),
+    /// BB = 1c: one output of the first group.
+    OneOfA {
+        /// 0..7.
+        output: UpTo<7>,
+        /// Its state.
+        on: bool,
+    },
+    /// BB = Bc: one output of the second group.
+    OneOfB {
+        /// 0..7 within the group.
+        output: UpTo<7>,
+        /// Its state.
+        on: bool,
+    },
+}
+
+/// Commands of digital modules.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Digital {
+    /// `$AA6`: everything, outputs first.
+    ReadAll,
+    /// `@AA`: the same in the `>` form.
+    ReadPort,
+    /// `@AA(data)`: all outputs.
+    Write(OutputWord),
+    /// `#AABBDD`: some outputs.
+    WriteGroup(GroupWrite),
+    /// `#AAN`: events on an input since the last clear, modulo 65536. For pulses of 5 ms and longer.
+    ReadEvents {
+        /// Which input.
+        channel: Channel,
+    },
+    /// `$AACN`.
+    ClearEvents {
+        /// Which input.
+        channel: Channel,
+    },
+    /// `$AALS`: inputs that have been high (or low) since the last clear.
+    ReadLatched {
+        /// True for latched high.
+        high: bool,
+    },
+    /// `$AAC`: clears all latches.
+    ClearLatched,
+    /// `$AA4`: what [`super::Command::SampleAll`] took. Refused when nothing was ever sampled.
+    ReadSampled,
+    /// `~AA4V`.
+    ReadStored(Stored),
+    /// `~AA5V`: the present outputs become the stored pattern.
+    Store(Stored),
+}
+
+impl Digital {
+    pub(super) fn encode(self, to: Address, request: &mut Request<'_>) {
+        match self {
+            Self::ReadAll => request.to(b'$', to).text(b"6"),
+            Self::ReadPort => request.to(b'@', to),
+            Self::Write(outputs) => {
+                outputs.encode(request.to(b'@', to));
+                request
+            }
+            Self::WriteGroup(write) => {
+                write.encode(request.to(b'#', to));
+                request
+            }
+            Self::ReadEvents { channel } => request.to(b'#', to).digit(channel),
+            Self::ClearEvents { channel } => request.to(b'$', to).text(b"C").digit(channel),
+            Self::ReadLatched { high } => request.to(b'$', to).text(b"L").flag(high),
+            Self::ClearLatched => request.to(b'$', to).text(b"C"),
+            Self::ReadSampled => request.to(b'$', to).text(b"4"),
+            Self::ReadStored(which) => request.to(b'~', to).text(b"4").text(which.letter()),
+            Self::Store(which) => request.to(b'~', to).text(b"5").text(which.letter()),
+        };
+    }
+
+    pub(super) fn table(&self) -> (Nature, Shape) {
+        match *self {
+            Self::ReadAll => (Read, Shape::Bits),
+            Self::ReadPort => (Read, Shape::PortBits),
+            Self::Write(_) | Self::WriteGroup(_) => (Output, Shape::Output),
+            Self::ReadEvents { .. } => (Read, Shape::Events),
+            Self::ClearEvents { .. } | Self::ClearLatched => (Act, Shape::Accepted),
+            Self::ReadLatched { .. } => (Read, Shape::Latched),
+            Self::ReadSampled => (ReadOnce, Shape::Sampled),
+            Self::ReadStored(_) => (Read, Shape::StoredBits),
+            Self::Store(_) => (Store, Shape::Accepted),
+        }
+    }
+}
+
+impl GroupWrite {
+    fn encode(self, request: &mut Request<'_>) {
+        match self {
+            Self::GroupA(bits) => request.text(b"00").hex(u32::from(bits), 2),
+            Self::GroupB(bits) => request.text(b"0B").hex(u32::from(bits), 2),
+            Self::OneOfA { output, on } => request.text(b"1").digit(output).hex(u32::from(on), 2),
+            Self::OneOfB { output, on } => request.text(b"B").digit(output).hex(u32::from(on), 2),
+        };
+    }
+}

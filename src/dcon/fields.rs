@@ -1,0 +1,162 @@
+//! Reading the fields of a reply by width. Every step either takes exactly what the grammar says or names what was missing.
+
+use super::frame::hex_digit;
+use super::{Address, ReplyError};
+use std::ops::RangeInclusive;
+
+/// The characters of a reply and how far they have been read.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fields<'a> {
+    text: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Fields<'a> {
+    pub(super) fn new(text: &'a [u8]) -> Self {
+        Self { text, at: 0 }
+    }
+
+    pub(super) fn at(&self) -> usize {
+        self.at
+    }
+
+    pub(super) fn length(&self) -> usize {
+        self.text.len()
+    }
+
+    pub(super) fn wrong_length(&self) -> ReplyError {
+        ReplyError::WrongLength {
+            found: self.text.len(),
+        }
+    }
+
+    /// The first character, not consumed.
+    pub(super) fn lead(&self) -> Option<u8> {
+        self.text.first().copied()
+    }
+
+    /// Consumes the lead, and checks the whole length as well: both before any field is looked at.
+    pub(super) fn start(
+        &mut self,
+        expected: u8,
+        lengths: RangeInclusive<usize>,
+    ) -> Result<(), ReplyError> {
+        match self.lead() {
+            Some(found) if found == expected => self.at = 1,
+            Some(found) => return Err(ReplyError::WrongLead { found, expected }),
+            None => return Err(ReplyError::Empty),
+        }
+        if lengths.contains(&self.text.len()) {
+            Ok(())
+        } else {
+            Err(self.wrong_length())
+        }
+    }
+
+    /// The next `width` characters.
+    pub(super) fn take(&mut self, width: usize) -> Result<&'a [u8], ReplyError> {
+        let field = self
+            .text
+            .get(self.at..self.at + width)
+            .ok_or(self.wrong_length())?;
+        self.at += width;
+        Ok(field)
+    }
+
+    /// Nothing may be left.
+    pub(super) fn end(&self) -> Result<(), ReplyError> {
+        if self.at == self.text.len() {
+            Ok(())
+        } else {
+            Err(self.wrong_length())
+        }
+    }
+
+    /// All that is left.
+    pub(super) fn rest(&mut self) -> &'a [u8] {
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        self.at = self.text.len();
+        rest
+    }
+
+    pub(super) fn hex(&mut self, width: usize) -> Result<u32, ReplyError> {
+        let at = self.at;
+        self.take(width)?
+            .iter()
+            .try_fold(0u32, |value, byte| match hex_digit(*byte) {
+                Some(digit) => Ok(value << 4 | u32::from(digit)),
+                None => Err(ReplyError::BadField {
+                    at,
+                    expected: "hex number",
+                }),
+            })
+    }
+
+    pub(super) fn byte(&mut self) -> Result<u8, ReplyError> {
+        Ok(self.hex(2)? as u8)
+    }
+
+    /// Decimal digits with a value up to `max`.
+    pub(super) fn decimal(&mut self, width: usize, max: u32) -> Result<u32, ReplyError> {
+        let at = self.at;
+        let value = self
+            .take(width)?
+            .iter()
+            .try_fold(0u32, |value, byte| match byte {
+                b'0'..=b'9' => Ok(value * 10 + u32::from(byte - b'0')),
+                _ => Err(ReplyError::BadField {
+                    at,
+                    expected: "decimal number",
+                }),
+            })?;
+        if value <= max {
+            Ok(value)
+        } else {
+            Err(ReplyError::OutOfRange {
+                at,
+                what: "decimal number",
+            })
+        }
+    }
+
+    /// `0` or `1`.
+    pub(super) fn flag(&mut self) -> Result<bool, ReplyError> {
+        let at = self.at;
+        match self.take(1)? {
+            b"0" => Ok(false),
+            b"1" => Ok(true),
+            _ => Err(ReplyError::BadField {
+                at,
+                expected: "flag (0 or 1)",
+            }),
+        }
+    }
+
+    /// Characters that say nothing but must be there.
+    pub(super) fn filler(
+        &mut self,
+        filler: &[u8],
+        expected: &'static str,
+    ) -> Result<(), ReplyError> {
+        let at = self.at;
+        if self.take(filler.len())? == filler {
+            Ok(())
+        } else {
+            Err(ReplyError::BadField { at, expected })
+        }
+    }
+
+    pub(super) fn address(&mut self) -> Result<Address, ReplyError> {
+        self.byte().map(Address)
+    }
+
+    /// The address of the module that was asked, and no other.
+    pub(super) fn address_is(&mut self, asked: Address) -> Result<(), ReplyError> {
+        let found = self.address()?;
+        if found == asked {
+            Ok(())
+        } else {
+            Err(ReplyError::WrongAddress { found, asked })
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! The envelope of a frame: printable characters, checksum, CR.
+
+use super::ReplyError;
+
+/// Longest frame a parser need hold, CR included. The longest reply of the protocol has 60 characters.
+pub const FRAME_LIMIT: usize = 64;
+
+/// Carriage return: the only end of a frame.
+pub(super) const CR: u8 = 0x0D;
+
+/// Sum of all characters from the lead on, modulo 256.
+pub fn checksum(text: &[u8]) -> u8 {
+    text.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
+}
+
+/// Takes the envelope off: the characters from the lead to the last before the checksum, and whether a CR was seen.
+pub(super) fn open(frame: &[u8], with_checksum: bool) -> Result<(&[u8], bool), ReplyError> {
+    if frame.len() > FRAME_LIMIT {
+        return Err(ReplyError::TooLong {
+            length: frame.len(),
+        });
+    }
+    let (text, ended) = match frame.split_last() {
+        None => return Err(ReplyError::Empty),
+        Some((&CR, text)) => (text, true),
+        Some(_) => (frame, false),
+    };
+    if let Some(at) = text.iter().position(|byte| !(0x20..0x7F).contains(byte)) {
+        return Err(ReplyError::NotText { at, byte: text[at] });
+    }
+    let text = if with_checksum { verified(text)? } else { text };
+    if text.is_empty() {
+        return Err(ReplyError::Empty);
+    }
+    // A right checksum is as good an end as a CR.
+    Ok((text, ended || with_checksum))
+}
+
+fn verified(text: &[u8]) -> Result<&[u8], ReplyError> {
+    let Some((text, &[high, low])) = text.split_last_chunk::<2>() else {
+        return Err(ReplyError::ChecksumMissing);
+    };
+    let (Some(high), Some(low)) = (hex_digit(high), hex_digit(low)) else {
+        return Err(ReplyError::ChecksumMissing);
+    };
+    let (found, expected) = (high << 4 | low, checksum(text));
+    if found == expected {
+        Ok(text)
+    } else {
+        Err(ReplyError::ChecksumWrong { found, expected })
+    }
+}
+
+/// Value of an upper-case hex digit; the protocol knows no lower case.
+pub(super) fn hex_digit(byte: u8) -> Option<u8> {
+    match byte {
+        b'0'..=b'9' => Some(byte - b'0'),
+        b'A'..=b'F' => Some(byte - b'A' + 10),
+        _ => None,
+    }
+}

@@ -1,0 +1,358 @@
+//! The shapes of replies: lead, lengths, fields. One entry per kind; the families' tables point here.
+
+use super::analog_out::output_range;
+use super::command::Nature;
+use super::fields::Fields;
+use super::reading::width;
+use super::{
+    Address, AlarmState, BaudCode, Bits, Channel, Config, FormatByte, GateMode, InputForm,
+    InputMode, Level, OutputForm, Reading, Readings, Reply, ReplyError, SlewCode, Text, TypeCode,
+    UpTo,
+};
+
+/// What a good reply looks like. In the remarks AA is the address asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// `!AA`
+    Accepted,
+    /// `!NN`, the new address
+    AcceptedAs(Address),
+    /// `>`
+    Output,
+    /// `!AATTCCFF`
+    Config,
+    /// `!AA(text)`
+    Text,
+    /// `!AA0` or `!AA1`
+    Flag,
+    /// `!AAhh`
+    Byte,
+    /// `!AA` and decimal digits
+    Decimal { digits: u8, max: u16 },
+    /// `!AAEVV`, or `!AAVV` from some firmware
+    Watchdog,
+    /// `!ffss00`, no address
+    Bits,
+    /// `>ffss`
+    PortBits,
+    /// `!Sffss00`, no address
+    Sampled,
+    /// `!ffss00`, or `!AAffss00` from some firmware
+    Latched,
+    /// `!AAVV00` or `!AAVVVV`
+    StoredBits,
+    /// `!AAddddd`
+    Events,
+    /// `>hhhhhhhh`
+    Count,
+    /// `!AAhhhhhhhh`
+    Setting32,
+    /// `!AAG`
+    Gate,
+    /// `!AAS`
+    Inputs,
+    /// `!AAS0D00`
+    Alarm,
+    /// `>` and one field
+    Reading(InputForm),
+    /// `>` and all fields
+    Readings(InputForm),
+    /// `!AA(data)`
+    Level(OutputForm),
+    /// `!AATS`
+    OutputChannel,
+    /// `!AACiRrr`
+    ChannelRange(Channel),
+}
+
+/// `?` and the lone `!`: the module heard and declined. Any other beginning is left to the shape.
+pub(super) fn declined(text: &[u8], asked: Address, nature: Nature) -> Result<(), ReplyError> {
+    let output = nature == Nature::Output;
+    let mut fields = Fields::new(text);
+    match (fields.lead(), text.len()) {
+        (Some(b'!'), 1) if output => Err(ReplyError::Ignored),
+        (Some(b'?'), 1) if output => Err(ReplyError::Refused),
+        (Some(b'?'), _) => {
+            fields.start(b'?', 3..=3)?;
+            fields.address_is(asked)?;
+            Err(ReplyError::Refused)
+        }
+        (Some(_) | None, _) => Ok(()),
+    }
+}
+
+impl Shape {
+    fn lead(self) -> u8 {
+        match self {
+            Self::Output | Self::PortBits | Self::Count | Self::Reading(_) | Self::Readings(_) => {
+                b'>'
+            }
+            Self::Accepted
+            | Self::AcceptedAs(_)
+            | Self::Config
+            | Self::Text
+            | Self::Flag
+            | Self::Byte
+            | Self::Decimal { .. }
+            | Self::Watchdog
+            | Self::Bits
+            | Self::Sampled
+            | Self::Latched
+            | Self::StoredBits
+            | Self::Events
+            | Self::Setting32
+            | Self::Gate
+            | Self::Inputs
+            | Self::Alarm
+            | Self::Level(_)
+            | Self::OutputChannel
+            | Self::ChannelRange(_) => b'!',
+        }
+    }
+
+    /// Characters from the lead on, the longest form.
+    pub(super) fn longest(self) -> usize {
+        match self {
+            Self::Output => 1,
+            Self::Accepted | Self::AcceptedAs(_) => 3,
+            Self::Flag | Self::Gate | Self::Inputs => 4,
+            Self::Byte | Self::OutputChannel | Self::PortBits => 5,
+            Self::Watchdog => 6,
+            Self::Bits | Self::StoredBits => 7,
+            Self::Sampled | Self::Events | Self::Alarm | Self::ChannelRange(_) => 8,
+            Self::Config | Self::Latched | Self::Count => 9,
+            Self::Setting32 => 11,
+            Self::Text => 3 + Text::LONGEST,
+            Self::Decimal { digits, .. } => 3 + usize::from(digits),
+            Self::Reading(form) => 1 + width(form.format),
+            Self::Readings(form) => 1 + width(form.format) * usize::from(form.channels()),
+            Self::Level(form) => 3 + form.width(),
+        }
+    }
+
+    /// Characters from the lead on, the shortest form.
+    fn shortest(self) -> usize {
+        match self {
+            Self::Text => 4,
+            Self::Watchdog => 5,
+            Self::Latched => 7,
+            // Over range is also seen without its sign.
+            Self::Reading(form) if width(form.format) == 7 => 7,
+            fixed => fixed.longest(),
+        }
+    }
+
+    /// True where a shorter reply may be whole as well, so that only an end mark tells.
+    pub(super) fn is_open(self) -> bool {
+        self.shortest() < self.longest()
+    }
+
+    /// Reads the fields of `text`, lead to last character before checksum and CR.
+    pub(super) fn decode(self, text: &[u8], asked: Address) -> Result<Reply, ReplyError> {
+        let mut fields = Fields::new(text);
+        fields.start(self.lead(), self.shortest()..=self.longest())?;
+        match self {
+            Self::Output => Ok(Reply::Accepted),
+            Self::AcceptedAs(new) => fields.address_is(new).map(|()| Reply::Accepted),
+            Self::Config => config(&mut fields, asked),
+            Self::Bits | Self::PortBits | Self::Sampled | Self::Latched => {
+                self.bits(&mut fields, asked)
+            }
+            Self::Count => fields.hex(8).map(Reply::Count),
+            Self::Reading(form) => {
+                let width = fields.length() - 1;
+                Reading::decode(form, width, &mut fields).map(Reply::Reading)
+            }
+            Self::Readings(form) => Readings::decode(form, &mut fields).map(Reply::Readings),
+            Self::Accepted
+            | Self::Text
+            | Self::Flag
+            | Self::Byte
+            | Self::Decimal { .. }
+            | Self::Watchdog
+            | Self::StoredBits
+            | Self::Events
+            | Self::Setting32
+            | Self::Gate
+            | Self::Inputs
+            | Self::Alarm
+            | Self::Level(_)
+            | Self::OutputChannel
+            | Self::ChannelRange(_) => {
+                fields.address_is(asked)?;
+                self.addressed(&mut fields)
+            }
+        }
+    }
+
+    /// Replies that begin with `!AA`, from behind the address.
+    fn addressed(self, fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
+        match self {
+            Self::Flag => fields.flag().map(Reply::Flag),
+            Self::Byte => fields.byte().map(Reply::Byte),
+            Self::Decimal { digits, max } => fields
+                .decimal(usize::from(digits), u32::from(max))
+                .map(Reply::Decimal),
+            Self::Watchdog => watchdog(fields),
+            Self::Text => text(fields),
+            Self::StoredBits => stored_bits(fields),
+            Self::Events => Ok(Reply::Events(fields.decimal(5, 65_535)? as u16)),
+            Self::Setting32 => fields.hex(8).map(Reply::Count),
+            Self::Gate => code(fields, GateMode::from_code, "gate mode (0 to 2)").map(Reply::Gate),
+            Self::Inputs => {
+                code(fields, InputMode::from_code, "input mode (0 to 3)").map(Reply::Inputs)
+            }
+            Self::Alarm => alarm(fields),
+            Self::Level(form) => Level::decode(form, fields).map(Reply::Level),
+            Self::OutputChannel => output_channel(fields),
+            Self::ChannelRange(asked) => channel_range(fields, asked),
+            Self::Accepted
+            | Self::AcceptedAs(_)
+            | Self::Output
+            | Self::Config
+            | Self::Bits
+            | Self::PortBits
+            | Self::Sampled
+            | Self::Latched
+            | Self::Count
+            | Self::Reading(_)
+            | Self::Readings(_) => Ok(Reply::Accepted),
+        }
+    }
+
+    /// The replies of digital modules that carry no address, and the latches, which sometimes do.
+    fn bits(self, fields: &mut Fields<'_>, asked: Address) -> Result<Reply, ReplyError> {
+        if self == Self::Latched && fields.length() > self.shortest() {
+            fields.address_is(asked)?;
+        }
+        let first_read = if self == Self::Sampled {
+            Some(fields.flag()?)
+        } else {
+            None
+        };
+        let bits = two_bytes(fields)?;
+        if self != Self::PortBits {
+            fields.filler(b"00", "filler 00")?;
+        }
+        fields.end()?;
+        Ok(match first_read {
+            Some(first_read) => Reply::Sampled { first_read, bits },
+            None => Reply::Bits(bits),
+        })
+    }
+}
+
+fn two_bytes(fields: &mut Fields<'_>) -> Result<Bits, ReplyError> {
+    Ok(Bits {
+        first: fields.byte()?,
+        second: fields.byte()?,
+    })
+}
+
+/// Eight-output modules fill up with 00, so that their pattern is the first byte.
+fn stored_bits(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
+    two_bytes(fields).map(Reply::Bits)
+}
+
+fn config(fields: &mut Fields<'_>, asked: Address) -> Result<Reply, ReplyError> {
+    let found = fields.address()?;
+    // A module in INIT* mode listens at 00 and tells the address it will have without.
+    if found != asked && asked != Address(0) {
+        return Err(ReplyError::WrongAddress { found, asked });
+    }
+    let type_code = TypeCode(fields.byte()?);
+    let at = fields.at();
+    let baud = BaudCode(fields.byte()?);
+    if baud.rate().is_none() {
+        return Err(ReplyError::OutOfRange {
+            at,
+            what: "baud code",
+        });
+    }
+    let config = Config {
+        type_code,
+        baud,
+        format: FormatByte(fields.byte()?),
+    };
+    Ok(Reply::Config {
+        address: found,
+        config,
+    })
+}
+
+fn watchdog(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
+    let with_flag = fields.length() == Shape::Watchdog.longest();
+    let enabled = if with_flag {
+        Some(fields.flag()?)
+    } else {
+        None
+    };
+    Ok(Reply::Watchdog {
+        enabled,
+        timeout_tenths: fields.byte()?,
+    })
+}
+
+fn text(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
+    let at = fields.at();
+    Text::new(fields.rest())
+        .map(Reply::Text)
+        .ok_or(ReplyError::BadField {
+            at,
+            expected: "text",
+        })
+}
+
+fn alarm(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
+    let at = fields.at();
+    let state = fields.hex(1)? as u8;
+    let outputs = fields.byte()?;
+    fields.filler(b"00", "filler 00")?;
+    if state > 2 || outputs > 3 {
+        return Err(ReplyError::OutOfRange {
+            at,
+            what: "alarm state",
+        });
+    }
+    Ok(Reply::Alarm(AlarmState { state, outputs }))
+}
+
+fn output_channel(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
+    let at = fields.at();
+    let (range, slew) = (fields.hex(1)? as u8, fields.hex(1)? as u8);
+    match UpTo::new(slew) {
+        Some(slew) if range <= 2 => Ok(Reply::OutputChannel {
+            range: output_range(range),
+            slew: SlewCode(slew),
+        }),
+        Some(_) | None => Err(ReplyError::OutOfRange {
+            at,
+            what: "output range",
+        }),
+    }
+}
+
+fn channel_range(fields: &mut Fields<'_>, asked: Channel) -> Result<Reply, ReplyError> {
+    fields.filler(b"C", "letter C")?;
+    let at = fields.at();
+    if fields.hex(1)? != u32::from(asked.get()) {
+        return Err(ReplyError::BadField {
+            at,
+            expected: "channel that was asked",
+        });
+    }
+    fields.filler(b"R", "letter R")?;
+    Ok(Reply::ChannelRange {
+        channel: asked,
+        range: TypeCode(fields.byte()?),
+    })
+}
+
+fn code<T>(
+    fields: &mut Fields<'_>,
+    known: fn(u32) -> Option<T>,
+    expected: &'static str,
+) -> Result<T, ReplyError> {
+    let at = fields.at();
+    known(fields.hex(1)?).ok_or(ReplyError::BadField { at, expected })
+}

@@ -1,0 +1,102 @@
+//! Type codes (TT): what range a module measures or drives, and how a number in it is scaled.
+
+/// TT of the configuration word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct TypeCode(pub u8);
+
+/// Unit of a range.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Unit {
+    /// V.
+    Volt,
+    /// mV.
+    Millivolt,
+    /// mA.
+    Milliampere,
+    /// Degrees Celsius.
+    Celsius,
+}
+
+/// The ends of a range in its unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FullScale {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end: what 100 % and 7FFF stand for.
+    pub high: f64,
+    /// Unit of both.
+    pub unit: Unit,
+}
+
+impl FullScale {
+    const fn new(low: f64, high: f64, unit: Unit) -> Self {
+        Self { low, high, unit }
+    }
+
+    const fn around_zero(high: f64, unit: Unit) -> Self {
+        Self::new(-high, high, unit)
+    }
+}
+
+impl TypeCode {
+    /// Digital modules.
+    pub const DIGITAL: Self = Self(0x40);
+    /// 7080 as counter.
+    pub const COUNTER: Self = Self(0x50);
+    /// 7080 as frequency meter.
+    pub const FREQUENCY: Self = Self(0x51);
+    /// The cold junction is printed like a type J thermocouple.
+    pub(super) const COLD_JUNCTION: Self = Self(0x0E);
+
+    /// The range; none for codes without one (digital, counter) and unknown ones.
+    pub fn full_scale(self) -> Option<FullScale> {
+        use Unit::{Milliampere, Millivolt, Volt};
+        Some(match self.0 {
+            0x00 => FullScale::around_zero(15.0, Millivolt),
+            0x01 => FullScale::around_zero(50.0, Millivolt),
+            0x02 => FullScale::around_zero(100.0, Millivolt),
+            0x03 | 0x0B => FullScale::around_zero(500.0, Millivolt),
+            0x04 | 0x0A => FullScale::around_zero(1.0, Volt),
+            0x05 => FullScale::around_zero(2.5, Volt),
+            0x06 | 0x0D => FullScale::around_zero(20.0, Milliampere),
+            0x07 | 0x31 => FullScale::new(4.0, 20.0, Milliampere),
+            0x08 | 0x33 => FullScale::around_zero(10.0, Volt),
+            0x09 | 0x35 => FullScale::around_zero(5.0, Volt),
+            0x0C => FullScale::around_zero(150.0, Millivolt),
+            0x1A | 0x30 => FullScale::new(0.0, 20.0, Milliampere),
+            0x1B => FullScale::around_zero(150.0, Volt),
+            0x1C => FullScale::around_zero(50.0, Volt),
+            0x32 => FullScale::new(0.0, 10.0, Volt),
+            0x34 => FullScale::new(0.0, 5.0, Volt),
+            _ => return self.temperature(),
+        })
+    }
+
+    /// Thermocouples J K T E R S B N C L M L-DIN (0E to 19) and Pt100 (20 to 23 with 0.00385/K, 24 to 27 with 0.003916/K).
+    fn temperature(self) -> Option<FullScale> {
+        let (low, high) = match self.0 {
+            0x0E => (-210.0, 760.0),
+            0x0F => (-270.0, 1372.0),
+            0x10 => (-270.0, 400.0),
+            0x11 => (-270.0, 1000.0),
+            0x12 | 0x13 => (0.0, 1768.0),
+            0x14 => (0.0, 1820.0),
+            0x15 => (-270.0, 1300.0),
+            0x16 => (0.0, 2320.0),
+            0x17 => (-200.0, 800.0),
+            0x18 => (-200.0, 100.0),
+            0x19 => (-200.0, 900.0),
+            0x20 | 0x24 => (-100.0, 100.0),
+            0x21 | 0x25 => (0.0, 100.0),
+            0x22 | 0x26 => (0.0, 200.0),
+            0x23 | 0x27 => (0.0, 600.0),
+            _ => return None,
+        };
+        Some(FullScale::new(low, high, Unit::Celsius))
+    }
+
+    /// Inputs whose hex notation runs from 0000 at the lower to FFFF at the upper end, instead of two's complement.
+    pub fn unipolar_input(self) -> bool {
+        matches!(self.0, 0x07 | 0x1A)
+    }
+}

@@ -1,0 +1,133 @@
+//! What this rig's instruments were found to do: the factors that turn terminal volts, output
+//! commands and counts into quantities, each with its standard uncertainty.
+//!
+//! The factors come from the references on the interface board (5.000 V, 400 ohm, 50 mOhm, 1.000 ms)
+//! and from golden parts, never from the specimens they are later used on. A calibration without
+//! golden parts has no lag corrections and measures no threshold ([`Calibration::lags`] is `None`).
+
+use crate::units::Volt;
+use serde::{Deserialize, Serialize};
+
+/// A factor and how well it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Factor {
+    /// Value in the unit its field names.
+    pub value: f64,
+    /// Standard uncertainty in the same unit.
+    pub u: f64,
+}
+
+impl Factor {
+    /// A value with its standard uncertainty.
+    pub fn new(value: f64, u: f64) -> Self {
+        Self { value, u }
+    }
+}
+
+/// Reading of an analog input as a straight line of the true terminal voltage.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct InputLine {
+    /// Volts read per true volt.
+    pub gain: Factor,
+    /// Volts read with no signal.
+    pub offset_v: Factor,
+}
+
+impl InputLine {
+    /// Terminal voltage behind a reading.
+    pub fn correct(&self, read: Volt) -> Volt {
+        Volt((read.0 - self.offset_v.value) / self.gain.value)
+    }
+}
+
+/// Coil voltage that one of the three supply outputs adds, as a straight line of the wanted voltage.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct OutputLine {
+    /// Volts at the coil per wanted volt.
+    pub gain: Factor,
+    /// Volts at the coil when 0 V is wanted.
+    pub offset_v: Factor,
+}
+
+impl OutputLine {
+    /// An output that does exactly what is asked.
+    pub const IDEAL: Self = Self {
+        gain: Factor { value: 1.0, u: 0.0 },
+        offset_v: Factor { value: 0.0, u: 0.0 },
+    };
+
+    /// What must be asked of the module so that the coil gets `wanted`.
+    pub fn ask_for(&self, wanted: Volt) -> Volt {
+        Volt((wanted.0 - self.offset_v.value) / self.gain.value)
+    }
+
+    /// What the coil gets when `asked` is asked of the module.
+    pub fn delivers(&self, asked: Volt) -> Volt {
+        Volt(self.offset_v.value + self.gain.value * asked.0)
+    }
+}
+
+/// How far a ramp overshoots the quasi-static threshold, found on golden parts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Lag {
+    /// Indicated minus certified threshold on the fine ramp, volts; positive for operate, negative for release.
+    pub fine_v: Factor,
+    /// Coarse minus fine indication, volts: places the fine ramp.
+    pub coarse_v: f64,
+    /// Scatter of [`Lag::coarse_v`] from part to part, volts (1 sd).
+    pub coarse_sd_v: f64,
+}
+
+/// Lag of both directions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Lags {
+    /// Rising ramp to NO make.
+    pub operate: Lag,
+    /// Falling ramp to NO break.
+    pub release: Lag,
+}
+
+/// All factors of a rig, as kept in the history with their date.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Calibration {
+    /// When the factors were found, microseconds since 1970 UTC.
+    pub made_at_us: i64,
+    /// When they may no longer be used.
+    pub due_at_us: i64,
+    /// Coil voltage valid for golden lags: those of a 12 V set say nothing about a 6 V part.
+    pub nominal_v: f64,
+    /// Converter that reads the coil.
+    pub coil_input: InputLine,
+    /// Ohms per unit of (voltage reading / current reading) on the fine channels.
+    pub ohm_fine: Factor,
+    /// The same with the wide current channel, for coils that draw too much for the fine one.
+    pub ohm_wide: Factor,
+    /// Milliohms per volt of contact drop at the terminal, half the difference of both polarities.
+    pub contact_mohm_per_v: Factor,
+    /// Added to each gate by the counter, microseconds.
+    pub gate_delay_us: Factor,
+    /// Supply output for levels.
+    pub level: OutputLine,
+    /// Supply output for the coarse ramp.
+    pub coarse: OutputLine,
+    /// Supply output for the fine ramp.
+    pub fine: OutputLine,
+    /// Slope of the coarse ramp at the coil, volts per second.
+    pub coarse_v_per_s: Factor,
+    /// Slope of the fine ramp at the coil, volts per second.
+    pub fine_v_per_s: Factor,
+    /// Ramp lags, once golden parts were run.
+    pub lags: Option<Lags>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn asking_for_a_voltage_delivers_it() {
+        let line = OutputLine { gain: Factor::new(1.0004, 0.0), offset_v: Factor::new(-0.0021, 0.0) };
+        let asked = line.ask_for(Volt(7.9));
+        assert!((line.delivers(asked).0 - 7.9).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,34 @@
+//! From a sample to a verdict: scaling, corrections, uncertainty, limits, guard band.
+//!
+//! Every result is a [`Reading`]: a value at the reference temperature with a [`Budget`] of standard
+//! uncertainties after the GUM. [`verdict`] holds it against its limit; a value that is missing or
+//! not finite is never judged. Nothing here knows a bus, a clock or a sequence.
+//!
+//! | question | file |
+//! |---|---|
+//! | what is measured, in which unit | [`parameter`] |
+//! | what the part must do | [`recipe`] |
+//! | what the instruments are known to do | [`calibration`], [`settings`] |
+//! | coil resistance | [`coil`] |
+//! | operate and release voltage | [`threshold`] |
+//! | times and bounce | [`timing`] |
+//! | contact resistance | [`contact`] |
+//! | how sure | [`budget`] |
+//! | pass, fail, void; which bin | [`verdict`] |
+
+pub mod budget;
+pub mod calibration;
+pub mod coil;
+pub mod contact;
+pub mod parameter;
+pub mod recipe;
+pub mod settings;
+pub mod threshold;
+pub mod timing;
+pub mod verdict;
+
+pub use budget::{Budget, Reading};
+pub use calibration::Calibration;
+pub use parameter::Parameter;
+pub use recipe::Recipe;
+pub use verdict::{Bin, Judgement, Verdict};

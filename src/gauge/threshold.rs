@@ -1,0 +1,104 @@
+//! Operate and release voltage from a ramp and a gated counter.
+//!
+//! The window opens when the supply has moved [`WINDOW_V`] from the level it had at ARM, and the
+//! latch closes it at the contact event, so the indicated voltage is
+//! `start +- (WINDOW_V + slope x gate)`. A ramp overshoots the quasi-static threshold by its lag;
+//! golden parts tell the lag of the fine ramp, and the same number absorbs the tolerance of the
+//! 50 mV, the error of the level and the mean heating of the coil, all of which were there too.
+//! Pickup current does not depend on temperature, so the voltage scales like the coil (IEC 61810-7).
+
+use super::budget::{Budget, Reading, resolution};
+use super::calibration::{Factor, Lag};
+use super::coil::{relative_per_kelvin, to_reference};
+use crate::units::{Celsius, Second, Volt};
+
+/// Movement of the supply that opens the window of a ramp.
+pub const WINDOW_V: Volt = Volt(0.050);
+
+/// Which way the supply moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// Towards operate.
+    Rising,
+    /// Towards release.
+    Falling,
+}
+
+impl Direction {
+    /// +1 rising, -1 falling.
+    pub fn sign(self) -> f64 {
+        match self {
+            Direction::Rising => 1.0,
+            Direction::Falling => -1.0,
+        }
+    }
+}
+
+/// Supply voltage at the contact event of a ramp that began at `start`.
+pub fn indicated(start: Volt, slope_v_per_s: f64, gate: Second, direction: Direction) -> Volt {
+    start + (WINDOW_V + Volt(slope_v_per_s * gate.0)) * direction.sign()
+}
+
+/// What makes a threshold doubtful besides the golden parts' shift.
+#[derive(Debug, Clone, Copy)]
+pub struct RampDoubt {
+    /// Slope of the fine ramp, volts per second.
+    pub slope: Factor,
+    /// Scatter of the part's own threshold from operation to operation, volts.
+    pub operation_v: f64,
+    /// Step of the output while ramping, volts.
+    pub step_v: f64,
+    /// Standard uncertainty of the level at which the ramp starts, relative to the golden parts', volts.
+    pub level_v: f64,
+    /// Part's temperature against the track's, kelvin (1 sd).
+    pub temperature_k: f64,
+}
+
+/// Quasi-static threshold at the reference temperature from one fine ramp.
+pub fn quasi_static(
+    seen: Volt,
+    gate: Second,
+    lag: Lag,
+    part: Celsius,
+    reference: Celsius,
+    doubt: RampDoubt,
+) -> Reading {
+    let at_part = seen.0 - lag.fine_v.value;
+    let value = at_part * to_reference(part, reference);
+    let budget = Budget::default()
+        .with("golden parts", lag.fine_v.u)
+        .with("coil temperature", value * doubt.temperature_k * relative_per_kelvin(part))
+        .with_random("repeatability", doubt.operation_v)
+        .with("slope", doubt.slope.u * gate.0)
+        .with_random("resolution", resolution(doubt.step_v))
+        .with("level", doubt.level_v);
+    Reading { value, budget }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rising_ramp_indicates_start_plus_window_plus_slope_times_gate() {
+        let seen = indicated(Volt(7.8), 1.5, Second(0.04), Direction::Rising);
+        assert!((seen.0 - 7.91).abs() < 1e-12);
+        let seen = indicated(Volt(2.5), 1.5, Second(0.04), Direction::Falling);
+        assert!((seen.0 - 2.39).abs() < 1e-12);
+    }
+
+    #[test]
+    fn one_kelvin_is_thirty_millivolts_of_an_operate_voltage() {
+        let lag = Lag { fine_v: Factor::new(0.0, 0.0), coarse_v: 0.0, coarse_sd_v: 0.0 };
+        let doubt = RampDoubt {
+            slope: Factor::new(1.5, 0.0),
+            operation_v: 0.0,
+            step_v: 0.0,
+            level_v: 0.0,
+            temperature_k: 1.0,
+        };
+        let reading =
+            quasi_static(Volt(7.88), Second(0.04), lag, Celsius(23.0), Celsius(23.0), doubt);
+        assert!((reading.budget.combined() - 0.0306).abs() < 1e-4);
+    }
+}

@@ -1,0 +1,107 @@
+//! Which bodies a stroke takes along, and which parts are in the space meanwhile.
+//!
+//! - A part in the pocket is before the pusher as soon as the pusher moves or may have moved.
+//! - The pusher going forward takes the part before it along. Going back it leaves the part where it is: the part stays a body for everyone
+//!   else, but the pusher cannot run into what it is leaving behind.
+//! - The gripper takes its part wherever its carriers go. A closed gripper that is down at the
+//!   nest takes the part in the nest along, whatever the ledger calls it.
+//! - A released escapement lets a part run from the mouth into the pocket. Until it holds again
+//!   one may be anywhere on that way.
+//! - Bodies on the same moving actuator are one tool and are not tested against each other.
+
+use super::actuator::Actuator;
+use super::motion::Stroke;
+use super::part::Role;
+use super::scene::Scene;
+use super::situation::Situation;
+use super::space::Cast;
+
+/// The part's roles during one stroke.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Company {
+    /// Roles that are in the space.
+    pub cast: Cast,
+    /// Role that moves with the stroke.
+    pub taken: Option<Role>,
+    /// Role that the stroke leaves behind.
+    pub left: Option<Role>,
+}
+
+/// Sorts the parts of `situation` into roles for `stroke`.
+pub(super) fn company(scene: &Scene, situation: &Situation, stroke: &Stroke) -> Company {
+    let parts = situation.parts;
+    let released = scene.span_mm(Actuator::Escapement, situation).1 > 0.0;
+    let pusher = scene.span_mm(Actuator::Pusher, situation);
+    let mut company = Company {
+        cast: [
+            released,
+            parts.pocket,
+            parts.on_pusher,
+            parts.nest,
+            parts.gripper,
+        ],
+        taken: None,
+        left: None,
+    };
+    if pusher.0 <= 0.0 && (pusher.1 > 0.0 || stroke.actuator == Actuator::Pusher) {
+        company.put_before_pusher();
+    }
+    match stroke.actuator {
+        Actuator::Escapement => company.feeding(stroke.to_mm > 0.0),
+        Actuator::Pusher => company.pushing(stroke.to_mm > pusher.0),
+        Actuator::SortAxis | Actuator::SortZ => company.carrying(holds_nest_part(scene, situation)),
+        Actuator::JawLeft | Actuator::JawRight | Actuator::ProbeLift | Actuator::Gripper => {}
+    }
+    company
+}
+
+impl Company {
+    fn has(&self, role: Role) -> bool {
+        self.cast[role.index()]
+    }
+
+    /// The part changes its role for this stroke.
+    fn recast(&mut self, from: Role, to: Role) {
+        self.cast[from.index()] = false;
+        self.cast[to.index()] = true;
+    }
+
+    fn feeding(&mut self, releasing: bool) {
+        if releasing {
+            self.cast[Role::Feed.index()] = true;
+            self.taken = Some(Role::Feed);
+        }
+    }
+
+    /// Where the pusher may have left its rest end, the part in the pocket may be on its way.
+    fn put_before_pusher(&mut self) {
+        if self.has(Role::Pocket) && !self.has(Role::Pusher) {
+            self.recast(Role::Pocket, Role::Pusher);
+        }
+    }
+
+    fn pushing(&mut self, forward: bool) {
+        let before = self.has(Role::Pusher).then_some(Role::Pusher);
+        if forward {
+            self.taken = before;
+        } else {
+            self.left = before;
+        }
+    }
+
+    fn carrying(&mut self, holds_nest_part: bool) {
+        if holds_nest_part && self.has(Role::Nest) && !self.has(Role::Gripper) {
+            self.recast(Role::Nest, Role::Gripper);
+        }
+        self.taken = self.has(Role::Gripper).then_some(Role::Gripper);
+    }
+}
+
+/// Closed, all the way down, at the nest.
+fn holds_nest_part(scene: &Scene, situation: &Situation) -> bool {
+    let axis = scene.span_mm(Actuator::SortAxis, situation);
+    let down = scene.span_mm(Actuator::SortZ, situation);
+    let closed = scene.span_mm(Actuator::Gripper, situation);
+    let bottom = scene.axis(Actuator::SortZ).stroke_mm.1;
+    closed.0 > 0.0 && down == (bottom, bottom) && axis == (0.0, 0.0)
+}

@@ -1,0 +1,171 @@
+//! The collision guard: nothing on the rig moves without its word.
+//!
+//! **Question.** A [`Motion`] (one actuator, or several on one valve) in a [`Situation`]: what is
+//! known of every actuator, where parts are, how big they are. **Answer.** [`Cleared`], which only
+//! this module can make and which the drive asks for, or a [`Refusal`] with both bodies, the
+//! distance, the place, the last clear position and what would help.
+//!
+//! **Bodies.** Fixed elements, tooling that rides on actuators (sort z rides on the axis, the
+//! gripper on sort z) and the part, pins included, in each of its places; all from `scene.toml`.
+//!
+//! **How a situation is told.** Strokes count from the rest end. A jaw or finger that a part has
+//! stopped is `At` its full stroke. A moving actuator is `Between` where it was and where it goes
+//! until its end sensor has spoken. A part being pushed is `on_pusher`; a gripped one stays `nest`
+//! until the jaws are open.
+//!
+//! **Rules.**
+//! 1. Any two bodies keep the default margin, unless a pair rule says otherwise.
+//! 2. An actuator that is not known to stand occupies its whole span, and one of which nothing is
+//!    known its whole stroke. So motions that overlap in time are checked against each other's
+//!    swept room: a mover is [`Between`](Position::Between) for everyone else.
+//! 3. A mover of unknown start is swept from the far end of what is known.
+//! 4. NaN, a position off its stroke, a part without size: refused.
+//!
+//! **Why a cleared motion is clear.** For every combination of true positions that the situation
+//! allows, each standing body lies in its room (`occupancy`) and each moving one in the sweep of
+//! its room (`sweep`); the core proves that the sweep stays further than the margin from the
+//! rooms. The tests sample poses and look themselves.
+//!
+//! **Not handled.** Time: a body is never assumed to be out of the way already. Two actuators of
+//! unknown position that occupy the same room block each other; a person has to jog one of them.
+//! Parts that lie where no sensor says there is one.
+
+mod actuator;
+mod advice;
+mod axes;
+mod bodies;
+mod build;
+mod carried;
+mod error;
+mod judge;
+mod memory;
+mod motion;
+mod occupancy;
+mod part;
+mod refusal;
+mod rules;
+mod scene;
+mod settings;
+mod situation;
+mod space;
+mod sweep;
+#[cfg(test)]
+mod tests;
+
+pub use actuator::{Actuator, Position};
+pub use error::GuardError;
+pub use motion::{Cleared, Motion, Stroke};
+pub use refusal::{Blocked, Refusal};
+pub use settings::{
+    ActuatorSettings, Element, GuardSettings, Kind, PairRule, PairSettings, Piece, Policy,
+    PoseSettings,
+};
+pub use situation::{PartPlaces, PartSize, Situation};
+
+use memory::{Memory, Question};
+use scene::Scene;
+use space::Space;
+use sweep::Finding;
+
+/// The guard of one rig.
+#[derive(Debug, Clone)]
+pub struct Guard {
+    scene: Scene,
+    space: Space,
+    memory: Memory,
+}
+
+impl Guard {
+    /// Resolves the scene and tries every actuator's stroke in the empty rig at rest.
+    ///
+    /// # Errors
+    /// [`GuardError`] with the place in `scene.toml`.
+    pub fn build(settings: &GuardSettings) -> Result<Guard, GuardError> {
+        let scene = build::scene_of(settings)?;
+        let space = Space::of(&scene).map_err(|flaw| GuardError::Body {
+            path: "elements".to_owned(),
+            flaw,
+        })?;
+        let mut guard = Guard {
+            scene,
+            space,
+            memory: Memory::default(),
+        };
+        guard.try_every_stroke()?;
+        Ok(guard)
+    }
+
+    /// Whether `motion` may be driven in `situation`. The same question gets the same answer; a
+    /// repeated one is answered from memory.
+    ///
+    /// # Errors
+    /// [`Refusal`]: an answer, to be shown and obeyed.
+    pub fn clear(&mut self, motion: &Motion, situation: &Situation) -> Result<Cleared, Refusal> {
+        let question = Question::of(motion, situation);
+        let answer = match self.memory.answer(&question) {
+            Some(answer) => answer,
+            None => {
+                let answer = self.decide(motion, situation);
+                self.memory.keep(question, answer.clone());
+                answer
+            }
+        };
+        answer.map(|()| Cleared::new(*motion))
+    }
+
+    /// Low and high end of an actuator's stroke, mm.
+    pub fn stroke_mm(&self, actuator: Actuator) -> (f64, f64) {
+        self.scene.axis(actuator).stroke_mm
+    }
+
+    fn decide(&mut self, motion: &Motion, situation: &Situation) -> Result<(), Refusal> {
+        match judge::judge(&self.scene, &mut self.space, motion, situation)? {
+            None => Ok(()),
+            Some(finding) => {
+                let would_help =
+                    advice::advice(&self.scene, &mut self.space, situation, motion, &finding);
+                Err(self.refusal(&finding, would_help))
+            }
+        }
+    }
+
+    fn refusal(&self, finding: &Finding, would_help: String) -> Refusal {
+        let blocker = finding
+            .blocker
+            .map_or("(undecidable)", |number| self.scene.id(number));
+        Refusal::Blocked(Box::new(Blocked {
+            stroke: finding.stroke,
+            mover: self.scene.id(finding.mover).to_owned(),
+            blocker: blocker.to_owned(),
+            distance_mm: finding.distance_mm,
+            margin_mm: finding.margin_mm,
+            at_fraction: finding.at_fraction,
+            at: finding.at,
+            last_clear_mm: finding.last_clear_mm,
+            would_help,
+        }))
+    }
+
+    fn try_every_stroke(&mut self) -> Result<(), GuardError> {
+        // A part that is nowhere: only its size must be a size.
+        let nowhere = PartSize {
+            body_mm: [1.0; 3],
+            pin_length_mm: 0.0,
+        };
+        let rest = Situation::at_rest(nowhere);
+        for actuator in Actuator::ALL
+            .into_iter()
+            .filter(|actuator| *actuator != Actuator::Escapement)
+        {
+            let (low, high) = self.stroke_mm(actuator);
+            let start = rest.with(actuator, Position::At(low));
+            if let Err(refusal) = self.decide(&Motion::to(actuator, high), &start) {
+                return Err(GuardError::StrokeBlocked {
+                    actuator,
+                    refusal: Box::new(refusal),
+                });
+            }
+        }
+        Ok(())
+    }
+}

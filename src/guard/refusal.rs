@@ -1,0 +1,118 @@
+//! Why a motion is not allowed, in numbers and in words that a mechanic can use.
+
+use super::actuator::Actuator;
+use super::motion::Stroke;
+use std::fmt;
+
+/// The answer "no". It is an answer, not an error of the program.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Refusal {
+    /// Two bodies would come too near.
+    Blocked(Box<Blocked>),
+    /// A wanted or reported position lies outside the actuator's stroke, or is no number.
+    OutOfStroke {
+        /// Whose position.
+        actuator: Actuator,
+        /// The position, mm.
+        found_mm: f64,
+        /// Low and high end of the stroke, mm.
+        stroke_mm: (f64, f64),
+    },
+    /// The part has no size that a body can have.
+    PartSize {
+        /// Body and pin length as given, mm.
+        found_mm: [f64; 4],
+    },
+}
+
+/// Which bodies would come too near, where, and what would make the motion possible.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Blocked {
+    /// The stroke that is refused.
+    pub stroke: Stroke,
+    /// Body that would move, an id of the scene or of a part (`part_nest`).
+    pub mover: String,
+    /// Body in its way.
+    pub blocker: String,
+    /// Least distance the two would have during the motion, mm; 0 when they would meet.
+    pub distance_mm: f64,
+    /// Distance they must exceed, mm; 0 where they may touch.
+    pub margin_mm: f64,
+    /// Fraction of the motion at which the margin is reached, 0 to 1; 0 when the start is unknown.
+    pub at_fraction: f64,
+    /// Where, mm.
+    pub at: [f64; 3],
+    /// Furthest position of this stroke that is still clear, mm: back-tracking may go to here.
+    /// `None` when the start itself is not clear or not known.
+    pub last_clear_mm: Option<f64>,
+    /// What would make the motion possible: "raise sort z".
+    pub would_help: String,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Refusal::Blocked(blocked) => blocked.fmt(f),
+            Refusal::OutOfStroke {
+                actuator,
+                found_mm,
+                stroke_mm: (low, high),
+            } => write!(
+                f,
+                "{}: {found_mm} mm is not on its stroke of {low} to {high} mm",
+                words(actuator.name())
+            ),
+            Refusal::PartSize {
+                found_mm: [x, y, z, pins],
+            } => {
+                write!(
+                    f,
+                    "a part of {x} x {y} x {z} mm with pins of {pins} mm cannot be placed"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+impl fmt::Display for Blocked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.at;
+        write!(
+            f,
+            "{} to {:.1} mm refused: {} would {} {} at x {x:.1}, y {y:.1}, z {z:.1} mm, {:.0} % of the way; {}",
+            words(self.stroke.actuator.name()),
+            self.stroke.to_mm,
+            words(&self.mover),
+            self.nearness(),
+            words(&self.blocker),
+            100.0 * self.at_fraction,
+            self.would_help,
+        )
+    }
+}
+
+impl Blocked {
+    fn nearness(&self) -> String {
+        if self.distance_mm > 0.0 {
+            return format!(
+                "come within {:.2} mm (more than {:.2} mm needed) of",
+                self.distance_mm, self.margin_mm
+            );
+        }
+        "run into".to_owned()
+    }
+}
+
+/// An id as it is spoken on the shop floor.
+pub(super) fn words(id: &str) -> String {
+    match id {
+        "part_feed" => "the part coming from the magazine".to_owned(),
+        "part_pocket" => "the part in the pocket".to_owned(),
+        "part_pusher" => "the part before the pusher".to_owned(),
+        "part_nest" => "the part in the nest".to_owned(),
+        "part_gripper" => "the part in the gripper".to_owned(),
+        other => other.replace('_', " "),
+    }
+}

@@ -1,0 +1,204 @@
+//! The reader: parts that a filter leaves, one part with everything down to the raw replies.
+
+use super::error::{Doing, Result};
+use super::{CalibrationRecord, Filter, Measurement, Moment, Part, Sample, open, store};
+use rusqlite::{Connection, Row, params, params_from_iter};
+use std::path::{Path, PathBuf};
+
+/// A history opened for reading. Writers are not held up by it.
+#[derive(Debug)]
+pub struct Archive {
+    pub(super) connection: Connection,
+    pub(super) path: PathBuf,
+}
+
+impl Archive {
+    /// Opens an existing history. An older schema is migrated; a foreign or newer file is refused.
+    pub fn open(path: &Path) -> Result<Self> {
+        Ok(Self {
+            connection: open::reader(path)?,
+            path: path.to_owned(),
+        })
+    }
+
+    /// Hands every part that the filter leaves to `each`, in order of judgement, one at a time: memory
+    /// does not grow with the answer. Ends early when `each` fails, with its error.
+    pub fn each<E>(
+        &self,
+        filter: &Filter,
+        mut each: impl FnMut(Part) -> std::result::Result<(), E>,
+    ) -> Result<std::result::Result<(), E>> {
+        const DOING: &str = "reading parts";
+        let select = filter.parts();
+        let mut statement = self.connection.prepare(&select.sql).doing(DOING)?;
+        let mut rows = statement
+            .query(params_from_iter(&select.values))
+            .doing(DOING)?;
+        while let Some(row) = rows.next().doing(DOING)? {
+            let part = self.part(row).doing(DOING)?;
+            if let Err(stop) = each(part) {
+                return Ok(Err(stop));
+            }
+        }
+        Ok(Ok(()))
+    }
+
+    /// All parts that the filter leaves; for answers known to be short.
+    pub fn query(&self, filter: &Filter) -> Result<Vec<Part>> {
+        let mut parts = Vec::new();
+        let end = self.each(filter, |part| {
+            parts.push(part);
+            Ok::<(), std::convert::Infallible>(())
+        })?;
+        match end {
+            Ok(()) => Ok(parts),
+            Err(never) => match never {},
+        }
+    }
+
+    /// One part of each run that has it, latest run last, with all attempts and raw replies.
+    pub fn show(&self, lot: &str, seq: u64, kind: &str) -> Result<Vec<Part>> {
+        let filter = Filter {
+            lot: Some(lot.to_owned()),
+            kind: Some(kind.to_owned()),
+            ..Filter::default()
+        };
+        let mut select = filter.parts();
+        let seq = i64::try_from(seq).unwrap_or(i64::MAX);
+        select.sql = select
+            .sql
+            .replace(" ORDER BY", &format!(" AND part.seq = {seq} ORDER BY"));
+        self.shown(&select).doing("reading a part")
+    }
+
+    fn shown(&self, select: &super::filter::Select) -> rusqlite::Result<Vec<Part>> {
+        let mut statement = self.connection.prepare(&select.sql)?;
+        let mut rows = statement.query(params_from_iter(&select.values))?;
+        let mut parts = Vec::new();
+        while let Some(row) = rows.next()? {
+            let mut part = self.part(row)?;
+            part.measurements = self.measurements(part.row)?;
+            parts.push(part);
+        }
+        Ok(parts)
+    }
+
+    /// Parameter keys in the order of columns.
+    pub fn parameters(&self) -> Result<Vec<String>> {
+        self.connection
+            .prepare_cached("SELECT key FROM parameter ORDER BY id")
+            .and_then(|mut it| it.query_map([], |row| row.get(0))?.collect())
+            .doing("reading the parameters")
+    }
+
+    /// The calibration made last.
+    pub fn latest_calibration(&self) -> Result<Option<CalibrationRecord>> {
+        store::latest_calibration(&self.connection).doing("reading the latest calibration")
+    }
+
+    fn part(&self, row: &Row<'_>) -> rusqlite::Result<Part> {
+        let id: i64 = row.get(0)?;
+        let (lot, run, recipe) = self.run(row.get(1)?)?;
+        let reasons: serde_json::Value = row.get(7)?;
+        let (values, uncertainty) = self.values_of(id)?;
+        Ok(Part {
+            tag: "part",
+            lot,
+            run,
+            kind: row.get(2)?,
+            seq: row.get::<_, i64>(3)?.unsigned_abs(),
+            recipe,
+            serial: row.get(4)?,
+            verdict: row.get(5)?,
+            bin: row.get(6)?,
+            landed_bin: row.get(11)?,
+            landed_at: row.get::<_, Option<i64>>(12)?.map(Moment),
+            reasons: texts(&reasons),
+            time: Moment(row.get(8)?),
+            test_s: row.get(9)?,
+            cycle_s: row.get(10)?,
+            values,
+            uncertainty,
+            measurements: Vec::new(),
+            row: id,
+        })
+    }
+
+    fn run(&self, id: i64) -> rusqlite::Result<(String, u32, String)> {
+        self.connection
+            .prepare_cached(
+                "SELECT lot.name, run.number, recipe.name FROM run JOIN lot ON lot.id = run.lot_id
+                 JOIN recipe ON recipe.id = run.recipe_id WHERE run.id = ?1",
+            )?
+            .query_row([id], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))
+    }
+
+    /// A later attempt overwrites an earlier one in the map.
+    fn values_of(&self, part: i64) -> rusqlite::Result<(Map, Map)> {
+        let mut statement = self.connection.prepare_cached(
+            "SELECT parameter.key, m.value, m.uncertainty FROM measurement AS m
+             JOIN parameter ON parameter.id = m.parameter_id
+             WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt",
+        )?;
+        let mut rows = statement.query([part])?;
+        let (mut values, mut uncertainty) = (Map::new(), Map::new());
+        while let Some(row) = rows.next()? {
+            let key: String = row.get(0)?;
+            values.insert(key.clone(), row.get::<_, Option<f64>>(1)?.into());
+            uncertainty.insert(key, row.get::<_, Option<f64>>(2)?.into());
+        }
+        Ok((values, uncertainty))
+    }
+
+    fn measurements(&self, part: i64) -> rusqlite::Result<Vec<Measurement>> {
+        let mut statement = self.connection.prepare_cached(
+            "SELECT parameter.key, m.attempt, m.value, m.uncertainty, m.low, m.high, m.verdict,
+               m.budget, m.parameter_id
+             FROM measurement AS m JOIN parameter ON parameter.id = m.parameter_id
+             WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt",
+        )?;
+        let rows = statement.query_map([part], |row| {
+            let attempt = row.get(1)?;
+            Ok(Measurement {
+                parameter: row.get(0)?,
+                attempt,
+                value: row.get(2)?,
+                uncertainty: row.get(3)?,
+                low: row.get(4)?,
+                high: row.get(5)?,
+                verdict: row.get(6)?,
+                budget: row.get(7)?,
+                samples: self.samples(part, row.get(8)?, attempt)?,
+            })
+        })?;
+        rows.collect()
+    }
+
+    fn samples(&self, part: i64, parameter: i64, attempt: u32) -> rusqlite::Result<Vec<Sample>> {
+        let mut statement = self.connection.prepare_cached(
+            "SELECT line, module, channel, command, raw, at_us FROM sample
+             WHERE part_id = ?1 AND parameter_id = ?2 AND attempt = ?3 ORDER BY n",
+        )?;
+        let rows = statement.query_map(params![part, parameter, attempt], |row| {
+            Ok(Sample {
+                line: row.get(0)?,
+                module: row.get(1)?,
+                channel: row.get(2)?,
+                command: row.get(3)?,
+                raw: row.get(4)?,
+                at: Moment(row.get(5)?),
+            })
+        })?;
+        rows.collect()
+    }
+}
+
+type Map = serde_json::Map<String, serde_json::Value>;
+
+fn texts(array: &serde_json::Value) -> Vec<String> {
+    let texts = array.as_array().map(Vec::as_slice).unwrap_or_default();
+    texts
+        .iter()
+        .filter_map(|text| text.as_str().map(str::to_owned))
+        .collect()
+}

@@ -1,0 +1,92 @@
+//! An online copy and the file's own check. Writers go on during both.
+
+use super::error::{Doing, HistoryError, Result};
+use super::{Archive, open};
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+impl Archive {
+    /// Copies the history as it is at this instant to `target`, checks the copy, and only then gives
+    /// it its name. `target` must not exist. Returns the size of the copy in bytes.
+    pub fn backup(&self, target: &Path) -> Result<u64> {
+        if target.exists() {
+            return Err(HistoryError::Exists {
+                path: target.to_owned(),
+            });
+        }
+        let partial = beside(target);
+        let copied = self.copy(&partial, target);
+        if copied.is_err() && partial.exists() {
+            // The first error tells more than a failed clean-up would.
+            let _ = fs::remove_file(&partial);
+        }
+        copied
+    }
+
+    fn copy(&self, partial: &Path, target: &Path) -> Result<u64> {
+        let place = |source| HistoryError::Place {
+            path: target.to_owned(),
+            source,
+        };
+        if partial.exists() {
+            fs::remove_file(partial).map_err(place)?;
+        }
+        // A reader is query-only; writing another file needs that lifted for one statement.
+        self.connection
+            .pragma_update(None, "query_only", false)
+            .doing("copying the history")?;
+        let name = partial.to_string_lossy().into_owned();
+        let copied = self.connection.execute("VACUUM INTO ?1", [name]);
+        self.connection
+            .pragma_update(None, "query_only", true)
+            .doing("copying the history")?;
+        copied.doing("copying the history")?;
+        Archive {
+            connection: open::reader(partial)?,
+            path: partial.to_owned(),
+        }
+        .check()?;
+        let file = File::open(partial).map_err(place)?;
+        file.sync_all().map_err(place)?;
+        // A hard link fails when the name was taken meanwhile; a rename would overwrite.
+        fs::hard_link(partial, target).map_err(place)?;
+        if partial.exists() {
+            fs::remove_file(partial).map_err(place)?;
+        }
+        Ok(file.metadata().map_err(place)?.len())
+    }
+
+    /// SQLite's integrity check and the references between tables.
+    pub fn check(&self) -> Result<()> {
+        const DOING: &str = "checking the history";
+        let damaged = |finding: String| {
+            let path = self.path.clone();
+            Err(HistoryError::Damaged { path, finding })
+        };
+        let finding: String = self
+            .connection
+            .query_row("PRAGMA integrity_check(1)", [], |row| row.get(0))
+            .doing(DOING)?;
+        if finding != "ok" {
+            return damaged(finding);
+        }
+        let mut orphans = self
+            .connection
+            .prepare("PRAGMA foreign_key_check")
+            .doing(DOING)?;
+        let mut rows = orphans.query([]).doing(DOING)?;
+        match rows.next().doing(DOING)? {
+            None => Ok(()),
+            Some(row) => {
+                let table: String = row.get(0).doing(DOING)?;
+                damaged(format!("a row of {table} refers to nothing"))
+            }
+        }
+    }
+}
+
+fn beside(target: &Path) -> PathBuf {
+    let mut name = target.as_os_str().to_owned();
+    name.push(".partial");
+    PathBuf::from(name)
+}

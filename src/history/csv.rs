@@ -1,0 +1,193 @@
+//! Comma-separated values after RFC 4180, read strictly and written so that spreadsheets agree.
+//!
+//! Reading: UTF-8 with or without byte order mark, fields may be quoted, a quote inside is doubled,
+//! lines end with LF or CRLF. Every record carries the number of the line it begins on. A record
+//! with another number of fields than the header is an error, never padded.
+
+use std::io::{self, Write};
+
+/// What spreadsheets need in front to take a file for UTF-8.
+pub const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+/// A record and the line it begins on, from 1.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Record {
+    /// Line number in the file.
+    pub line: usize,
+    /// Fields without their quotes.
+    pub fields: Vec<String>,
+}
+
+/// Why a text is no CSV.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum CsvError {
+    /// Nothing at all.
+    #[error("line 1: expected a header, found an empty file")]
+    Empty,
+    /// Another number of fields than the header has.
+    #[error("line {line}: found {found} fields, expected {expected} as in the header")]
+    Ragged {
+        /// Line number in the file.
+        line: usize,
+        /// Fields found.
+        found: usize,
+        /// Fields of the header.
+        expected: usize,
+    },
+    /// A quoted field without its end, or with text after it.
+    #[error("line {line}: a quoted field must end with a quote before the next comma")]
+    Quote {
+        /// Line on which the record begins.
+        line: usize,
+    },
+}
+
+/// Header first, then the records; empty lines are passed over.
+pub fn read(text: &str) -> Result<Vec<Record>, CsvError> {
+    let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+    let mut records: Vec<Record> = Vec::new();
+    let mut rest = text;
+    let mut line = 1;
+    while !rest.is_empty() {
+        let (fields, consumed) = record(rest).ok_or(CsvError::Quote { line })?;
+        let (taken, left) = rest.split_at(consumed);
+        if fields.len() > 1 || fields.iter().any(|field| !field.is_empty()) {
+            let expected = records
+                .first()
+                .map_or(fields.len(), |header| header.fields.len());
+            if fields.len() != expected {
+                return Err(CsvError::Ragged {
+                    line,
+                    found: fields.len(),
+                    expected,
+                });
+            }
+            records.push(Record { line, fields });
+        }
+        line += taken.matches('\n').count();
+        rest = left;
+    }
+    if records.is_empty() {
+        Err(CsvError::Empty)
+    } else {
+        Ok(records)
+    }
+}
+
+/// Fields of the first record and the bytes it takes, line end included.
+fn record(text: &str) -> Option<(Vec<String>, usize)> {
+    let mut fields = Vec::new();
+    let mut at = 0;
+    loop {
+        let (field, length) = field(&text[at..])?;
+        fields.push(field);
+        at += length;
+        match text.as_bytes().get(at) {
+            Some(b',') => at += 1,
+            Some(b'\r') if text[at..].starts_with("\r\n") => return Some((fields, at + 2)),
+            Some(b'\n') => return Some((fields, at + 1)),
+            None => return Some((fields, at)),
+            Some(_) => return None,
+        }
+    }
+}
+
+/// The first field and the bytes it takes, without what ends it.
+fn field(text: &str) -> Option<(String, usize)> {
+    let Some(quoted) = text.strip_prefix('"') else {
+        let end = text.find([',', '\n']).unwrap_or(text.len());
+        let plain = &text[..end];
+        let plain = if text[end..].starts_with('\n') {
+            plain.strip_suffix('\r').unwrap_or(plain)
+        } else {
+            plain
+        };
+        return Some((plain.to_owned(), plain.len()));
+    };
+    let mut value = String::new();
+    let mut at = 0;
+    loop {
+        let quote = at + quoted[at..].find('"')?;
+        value.push_str(&quoted[at..quote]);
+        if !quoted[quote + 1..].starts_with('"') {
+            return Some((value, quote + 2));
+        }
+        value.push('"');
+        at = quote + 2;
+    }
+}
+
+/// One record with CRLF. A text field that a spreadsheet would take for a formula is not changed:
+/// figures first, whoever opens foreign lots in a spreadsheet must know.
+pub fn write<'a>(
+    out: &mut impl Write,
+    fields: impl IntoIterator<Item = &'a str>,
+) -> io::Result<()> {
+    for (n, field) in fields.into_iter().enumerate() {
+        if n > 0 {
+            out.write_all(b",")?;
+        }
+        if field.contains([',', '"', '\n', '\r']) {
+            write!(out, "\"{}\"", field.replace('"', "\"\""))?;
+        } else {
+            out.write_all(field.as_bytes())?;
+        }
+    }
+    out.write_all(b"\r\n")
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn what_was_written_is_read_back() {
+        let rows = [
+            ["a", "b"],
+            ["1,5", "he said \"no\""],
+            ["line\nbreak", ""],
+            ["继电器", " x "],
+        ];
+        let mut out = Vec::new();
+        rows.iter()
+            .for_each(|row| write(&mut out, row.iter().copied()).unwrap());
+        let text = format!("{BYTE_ORDER_MARK}{}", String::from_utf8(out).unwrap());
+        let back = read(&text).unwrap();
+        let fields: Vec<Vec<String>> = back.iter().map(|it| it.fields.clone()).collect();
+        assert_eq!(fields, rows.map(|row| row.map(str::to_owned).to_vec()));
+        assert_eq!(
+            back.iter().map(|it| it.line).collect::<Vec<_>>(),
+            [1, 2, 3, 5]
+        );
+    }
+
+    #[test]
+    fn unix_lines_and_a_missing_last_line_end_are_fine() {
+        let back = read("a,b\n1,2\n\n3,4").unwrap();
+        assert_eq!(back.len(), 3);
+        assert_eq!(
+            back[2],
+            Record {
+                line: 4,
+                fields: vec!["3".into(), "4".into()]
+            }
+        );
+    }
+
+    #[test]
+    fn a_short_row_is_named_by_its_line() {
+        let refusal = read("a,b\n1,2\n3\n").unwrap_err();
+        assert_eq!(
+            refusal,
+            CsvError::Ragged {
+                line: 3,
+                found: 1,
+                expected: 2
+            }
+        );
+        assert_eq!(read("a\n\"open\n"), Err(CsvError::Quote { line: 2 }));
+        assert_eq!(read("a\n\"x\"y\n"), Err(CsvError::Quote { line: 2 }));
+        assert_eq!(read(""), Err(CsvError::Empty));
+    }
+}

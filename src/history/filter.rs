@@ -1,0 +1,189 @@
+//! The one filter of command line, screens and sheets, and the SQL it becomes.
+//!
+//! Two ways through the file. Without a value range the parts are found by their own indexes. With
+//! one, `measurement_value` (parameter, population, run, verdict, value) is entered once per run and
+//! verdict at the first value of the range, so that only parts that match are touched.
+
+use super::Moment;
+use rusqlite::types::Value;
+use serde::Deserialize;
+
+/// What to look for; an absent member does not restrict.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Filter {
+    /// Name of the lot.
+    pub lot: Option<String>,
+    /// Number of the run within its lot.
+    pub run: Option<u32>,
+    /// Name of the recipe.
+    pub recipe: Option<String>,
+    /// Judged at this instant or later.
+    pub since: Option<Moment>,
+    /// Judged before this instant.
+    pub until: Option<Moment>,
+    /// `pass`, `fail`, `void` or `unjudged`.
+    pub verdict: Option<String>,
+    /// The bin asked for by the verdict.
+    pub bin: Option<String>,
+    /// `lot` (when absent), `golden` or `all`.
+    pub kind: Option<String>,
+    /// Parts that have a counted value of this parameter.
+    pub param: Option<String>,
+    /// Least value of `param`, included.
+    pub min: Option<f64>,
+    /// Greatest value of `param`, included.
+    pub max: Option<f64>,
+    /// At most so many parts, the first ones in order of judgement.
+    pub limit: Option<u64>,
+}
+
+/// A statement with its values.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Select {
+    /// Text with `?` in order of `values`.
+    pub sql: String,
+    /// What stands for each `?`.
+    pub values: Vec<Value>,
+}
+
+impl Select {
+    fn add(&mut self, sql: &str, value: impl Into<Value>) {
+        self.sql.push_str(sql);
+        self.values.push(value.into());
+    }
+}
+
+const COLUMNS: &str = "part.id, part.run_id, part.kind, part.seq, part.serial, part.verdict, \
+    part.bin, part.reasons, part.judged_at_us, part.test_s, part.cycle_s, part.landed_bin, \
+    part.landed_at_us";
+
+impl Filter {
+    /// Rows of `part` in order of judgement.
+    pub(super) fn parts(&self) -> Select {
+        let mut select = match &self.param {
+            Some(param) => {
+                let mut select = self.values(param, COLUMNS, true);
+                self.part_conditions(&mut select, true);
+                select
+            }
+            None => {
+                let sql = format!("SELECT {COLUMNS} FROM part WHERE 1");
+                let mut select = Select {
+                    sql,
+                    values: Vec::new(),
+                };
+                self.run_conditions(&mut select, "part");
+                self.part_conditions(&mut select, false);
+                select
+            }
+        };
+        select.sql.push_str(" ORDER BY part.id");
+        if let Some(limit) = self.limit {
+            select.add(" LIMIT ?", i64::try_from(limit).unwrap_or(i64::MAX));
+        }
+        select
+    }
+
+    /// Part row and value of one parameter, in no order. Reads the index alone unless the filter
+    /// asks for a bin or a time.
+    pub(super) fn series(&self, param: &str) -> Select {
+        let joined = self.bin.is_some() || self.since.is_some() || self.until.is_some();
+        let mut select = self.values(param, "m.part_id, m.value", joined);
+        if joined {
+            self.part_conditions(&mut select, true);
+        }
+        select
+    }
+
+    /// The runs that the filter leaves.
+    pub(super) fn runs(&self) -> Select {
+        let mut select = Select::default();
+        select.sql.push_str(
+            "SELECT run.id FROM run JOIN lot ON lot.id = run.lot_id \
+             JOIN recipe ON recipe.id = run.recipe_id WHERE 1",
+        );
+        if let Some(lot) = &self.lot {
+            select.add(" AND lot.name = ?", lot.clone());
+        }
+        if let Some(recipe) = &self.recipe {
+            select.add(" AND recipe.name = ?", recipe.clone());
+        }
+        if let Some(run) = self.run {
+            select.add(" AND run.number = ?", i64::from(run));
+        }
+        select
+    }
+
+    fn values(&self, param: &str, columns: &str, joined: bool) -> Select {
+        let join = if joined {
+            " CROSS JOIN part ON part.id = m.part_id"
+        } else {
+            ""
+        };
+        let sql = format!("SELECT {columns} FROM measurement AS m{join} WHERE ");
+        let mut select = Select {
+            sql,
+            values: Vec::new(),
+        };
+        select.add(
+            "m.parameter_id = (SELECT id FROM parameter WHERE key = ?)",
+            param.to_owned(),
+        );
+        let population = match self.kind.as_deref() {
+            Some("all") => " AND m.population IN ('lot', 'golden')",
+            Some("golden") => " AND m.population = 'golden'",
+            Some(_) | None => " AND m.population = 'lot'",
+        };
+        select.sql.push_str(population);
+        let runs = self.runs();
+        select
+            .sql
+            .push_str(&format!(" AND m.run_id IN ({})", runs.sql));
+        select.values.extend(runs.values);
+        match &self.verdict {
+            Some(verdict) => select.add(" AND m.part_verdict = ?", verdict.clone()),
+            None => {
+                select
+                    .sql
+                    .push_str(" AND m.part_verdict IN ('pass', 'fail', 'void', 'unjudged')");
+            }
+        }
+        select.add(" AND m.value >= ?", self.min.unwrap_or(f64::MIN));
+        select.add(" AND m.value <= ?", self.max.unwrap_or(f64::MAX));
+        select
+    }
+
+    fn run_conditions(&self, select: &mut Select, table: &str) {
+        if self.lot.is_some() || self.recipe.is_some() || self.run.is_some() {
+            let runs = self.runs();
+            select
+                .sql
+                .push_str(&format!(" AND {table}.run_id IN ({})", runs.sql));
+            select.values.extend(runs.values);
+        }
+    }
+
+    /// `by_value`: the index of values has dealt with kind and verdict.
+    fn part_conditions(&self, select: &mut Select, by_value: bool) {
+        if !by_value {
+            match self.kind.as_deref() {
+                Some("all") => {}
+                Some(kind) => select.add(" AND part.kind = ?", kind.to_owned()),
+                None => select.sql.push_str(" AND part.kind = 'lot'"),
+            }
+            if let Some(verdict) = &self.verdict {
+                select.add(" AND part.verdict = ?", verdict.clone());
+            }
+        }
+        if let Some(since) = self.since {
+            select.add(" AND part.judged_at_us >= ?", since.0);
+        }
+        if let Some(until) = self.until {
+            select.add(" AND part.judged_at_us < ?", until.0);
+        }
+        if let Some(bin) = &self.bin {
+            select.add(" AND part.bin = ?", bin.clone());
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! What is recorded about a part or the rig after the fact: where a part landed, when an alarm went.
+//! Both fill in what was null, once. Always inside a transaction of [`Store`](super::Store).
+
+use super::error::{Doing, HistoryError, Result};
+use super::insert::signed;
+use super::store::Known;
+use super::{AlarmRecord, LandingRecord};
+use rusqlite::{OptionalExtension, Transaction, params};
+
+/// Fills in where and when a part landed, once.
+pub(super) fn landing(tx: &Transaction<'_>, known: &Known, it: &LandingRecord) -> Result<()> {
+    const DOING: &str = "recording a landing";
+    let run = known.run(&it.lot)?;
+    let seq = signed("part", it.seq)?;
+    let changed = tx
+        .prepare_cached(
+            "UPDATE part SET landed_bin = ?4, landed_at_us = ?5, cycle_s = ifnull(?6, cycle_s)
+             WHERE run_id = ?1 AND kind = ?2 AND seq = ?3 AND landed_bin IS NULL",
+        )
+        .and_then(|mut statement| {
+            statement.execute(params![run, it.kind, seq, it.bin, it.at_us, it.cycle_s])
+        })
+        .doing(DOING)?;
+    if changed == 1 {
+        return Ok(());
+    }
+    let first: Option<String> = tx
+        .query_row(
+            "SELECT landed_bin FROM part WHERE run_id = ?1 AND kind = ?2 AND seq = ?3",
+            params![run, it.kind, seq],
+            |row| row.get(0),
+        )
+        .optional()
+        .doing(DOING)?;
+    landed_before(it, first)
+}
+
+fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {
+    let (lot, seq) = (it.lot.clone(), it.seq);
+    match first {
+        None => Err(HistoryError::NoSuchPart {
+            lot,
+            kind: it.kind.clone(),
+            seq,
+        }),
+        Some(first) if first == it.bin => Ok(()),
+        Some(first) => Err(HistoryError::LandedTwice {
+            lot,
+            seq,
+            first,
+            second: it.bin.clone(),
+        }),
+    }
+}
+
+/// One occurrence: a second record of it only fills in when it went.
+pub(super) fn alarm(tx: &Transaction<'_>, known: &Known, it: &AlarmRecord) -> Result<()> {
+    let run = it.lot.as_deref().map(|lot| known.run(lot)).transpose()?;
+    tx.prepare_cached(
+        "INSERT INTO alarm (run_id, code, line, text, raised_at_us, cleared_at_us)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6)
+         ON CONFLICT (raised_at_us, code, ifnull(line, ''), ifnull(run_id, 0))
+         DO UPDATE SET cleared_at_us = ifnull(cleared_at_us, excluded.cleared_at_us)",
+    )
+    .and_then(|mut statement| {
+        statement.execute(params![
+            run,
+            it.code,
+            it.line,
+            it.text,
+            it.raised_at_us,
+            it.cleared_at_us
+        ])
+    })
+    .doing("recording an alarm")?;
+    Ok(())
+}

@@ -1,0 +1,155 @@
+//! Summaries: every run with its counts, and the yield of a span of time.
+
+use super::error::{Doing, Result};
+use super::{Archive, Filter, Moment};
+use rusqlite::{params, params_from_iter};
+use serde::Serialize;
+
+/// One run of a lot with its counts of production parts.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LotSummary {
+    /// Name of the lot.
+    pub lot: String,
+    /// Number of the run within its lot.
+    pub run: u32,
+    /// Name of the recipe.
+    pub recipe: String,
+    /// Hash of the recipe text in force.
+    pub recipe_hash: String,
+    /// Hash of the calibration in force.
+    pub calibration_hash: Option<String>,
+    /// `rig`, `simulated` or `import`.
+    pub source: String,
+    /// Seed of the simulated rig.
+    pub seed: Option<String>,
+    /// Begin of the run.
+    pub opened: Moment,
+    /// End; none while it runs or when it was cut off.
+    pub closed: Option<Moment>,
+    /// Counts of production parts.
+    #[serde(flatten)]
+    pub counts: Yield,
+    /// Golden parts run before the lot.
+    pub golden: u64,
+    /// Occurrences of alarms.
+    pub alarms: u64,
+    /// Production parts per bin, as the verdicts ask.
+    pub bins: std::collections::BTreeMap<String, u64>,
+}
+
+/// Counts of verdicts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Yield {
+    /// All of them.
+    pub parts: u64,
+    /// Good.
+    pub pass: u64,
+    /// Bad.
+    pub fail: u64,
+    /// Could not be judged.
+    pub void: u64,
+    /// Imported without a verdict.
+    pub unjudged: u64,
+}
+
+impl Yield {
+    /// Good parts in percent of those with a verdict; none without any.
+    pub fn percent(&self) -> Option<f64> {
+        let judged = self.parts - self.unjudged;
+        (judged > 0).then(|| 100.0 * self.pass as f64 / judged as f64)
+    }
+
+    fn count(&mut self, verdict: &str, parts: u64) {
+        self.parts += parts;
+        match verdict {
+            "pass" => self.pass += parts,
+            "fail" => self.fail += parts,
+            "void" => self.void += parts,
+            _ => self.unjudged += parts,
+        }
+    }
+}
+
+impl Archive {
+    /// Runs that the filter leaves (lot, recipe, run), in order of opening.
+    pub fn lots(&self, filter: &Filter) -> Result<Vec<LotSummary>> {
+        self.summaries(filter).doing("reading the lots")
+    }
+
+    /// Counts of production parts judged from `since` up to, but not including, `until`.
+    pub fn yield_between(&self, since: Moment, until: Moment) -> Result<Yield> {
+        let mut counts = Yield::default();
+        self.connection
+            .prepare_cached(
+                "SELECT verdict, count(*) FROM part INDEXED BY part_time
+                 WHERE judged_at_us >= ?1 AND judged_at_us < ?2 AND kind = 'lot' GROUP BY verdict",
+            )
+            .and_then(|mut statement| {
+                let mut rows = statement.query(params![since.0, until.0])?;
+                while let Some(row) = rows.next()? {
+                    counts.count(
+                        &row.get::<_, String>(0)?,
+                        row.get::<_, i64>(1)?.unsigned_abs(),
+                    );
+                }
+                Ok(counts)
+            })
+            .doing("counting verdicts")
+    }
+
+    fn summaries(&self, filter: &Filter) -> rusqlite::Result<Vec<LotSummary>> {
+        let runs = filter.runs();
+        let mut statement = self.connection.prepare(&format!(
+            "SELECT lot.name, run.number, recipe.name, recipe.hash, run.calibration_hash,
+               run.source, run.seed, run.opened_at_us, run.closed_at_us, run.id
+             FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
+             WHERE run.id IN ({}) ORDER BY run.opened_at_us, run.id",
+            runs.sql
+        ))?;
+        let rows = statement.query_map(params_from_iter(&runs.values), |row| {
+            let mut summary = LotSummary {
+                lot: row.get(0)?,
+                run: row.get(1)?,
+                recipe: row.get(2)?,
+                recipe_hash: row.get(3)?,
+                calibration_hash: row.get(4)?,
+                source: row.get(5)?,
+                seed: row.get(6)?,
+                opened: Moment(row.get(7)?),
+                closed: row.get::<_, Option<i64>>(8)?.map(Moment),
+                counts: Yield::default(),
+                golden: 0,
+                alarms: 0,
+                bins: std::collections::BTreeMap::new(),
+            };
+            self.count(row.get(9)?, &mut summary)?;
+            Ok(summary)
+        })?;
+        rows.collect()
+    }
+
+    fn count(&self, run: i64, summary: &mut LotSummary) -> rusqlite::Result<()> {
+        let mut statement = self.connection.prepare_cached(
+            "SELECT kind, verdict, bin, count(*) FROM part WHERE run_id = ?1 GROUP BY 1, 2, 3",
+        )?;
+        let mut rows = statement.query([run])?;
+        while let Some(row) = rows.next()? {
+            let parts = row.get::<_, i64>(3)?.unsigned_abs();
+            if row.get::<_, String>(0)? == "golden" {
+                summary.golden += parts;
+                continue;
+            }
+            summary.counts.count(&row.get::<_, String>(1)?, parts);
+            if let Some(bin) = row.get::<_, Option<String>>(2)? {
+                *summary.bins.entry(bin).or_default() += parts;
+            }
+        }
+        let alarms = "SELECT count(*) FROM alarm WHERE run_id = ?1";
+        let alarms: i64 = self
+            .connection
+            .prepare_cached(alarms)?
+            .query_row([run], |row| row.get(0))?;
+        summary.alarms = alarms.unsigned_abs();
+        Ok(())
+    }
+}

@@ -1,0 +1,48 @@
+//! History: what was measured on which part, kept for good in one SQLite file.
+//!
+//! - [`Store`] is the one writer. It takes plain records ([`Row`]) in batches, one transaction each;
+//!   a batch that was acknowledged survives power loss, a batch that failed left nothing.
+//! - [`Archive`] is a reader. One [`Filter`] serves command line, screens and sheets.
+//! - A row is written once. The same part twice is no second row; a lot opened again gets a new run.
+//! - What a number was made of travels with it: attempt, limits, uncertainty and its budget, and the
+//!   raw replies with line, module and channel. The recipe and the calibration in force are found
+//!   from the run by their hashes.
+//! - The file may be opened by hand: the tables carry a remark per column, and the views `lots`,
+//!   `parts`, `measurements`, `samples` and `alarms` show local time and names instead of numbers.
+//!
+//! Not here: deciding anything (gauge, station), statistics (quality), a clock.
+
+mod archive;
+mod backup;
+pub mod csv;
+mod error;
+mod filter;
+mod import;
+mod insert;
+mod landing;
+mod lots;
+mod moment;
+mod open;
+mod part;
+mod record;
+mod store;
+mod values;
+mod views;
+
+pub use archive::Archive;
+pub use error::{HistoryError, Result};
+pub use filter::Filter;
+pub use import::{ImportError, ImportRow, parse_import};
+pub use lots::{LotSummary, Yield};
+pub use moment::{Moment, MomentError};
+pub use open::{APPLICATION_ID, SCHEMA};
+pub use part::{Measurement, Part, Sample};
+pub use record::{
+    AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, MeasurementRecord, PartRecord, Row,
+    SampleRecord, snapshot_hash,
+};
+pub use store::{Identity, Store};
+pub use values::{LimitsSeen, Values};
+
+#[cfg(test)]
+mod tests;

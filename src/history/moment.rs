@@ -1,0 +1,77 @@
+//! Instants at the border of the program: RFC 3339 outside, integer microseconds UTC inside.
+
+use jiff::Timestamp;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use std::fmt;
+use std::str::FromStr;
+
+/// Microseconds since 1970-01-01 UTC, shown as RFC 3339 with six digits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Moment(pub i64);
+
+/// A text that is no instant.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{found:?} is no RFC 3339 time: expected for example 2026-03-01T08:00:00+08:00")]
+pub struct MomentError {
+    /// The text found.
+    pub found: String,
+}
+
+impl FromStr for Moment {
+    type Err = MomentError;
+    fn from_str(text: &str) -> std::result::Result<Self, MomentError> {
+        text.trim()
+            .parse::<Timestamp>()
+            .map(|at| Self(at.as_microsecond()))
+            .map_err(|_| MomentError {
+                found: text.to_owned(),
+            })
+    }
+}
+
+impl fmt::Display for Moment {
+    /// An instant beyond the calendar (year 9999) is shown as its number.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match Timestamp::from_microsecond(self.0) {
+            Ok(at) => write!(f, "{at:.6}"),
+            Err(_) => write!(f, "{} us", self.0),
+        }
+    }
+}
+
+impl Serialize for Moment {
+    fn serialize<S: Serializer>(&self, out: S) -> std::result::Result<S::Ok, S::Error> {
+        out.collect_str(self)
+    }
+}
+
+impl<'de> Deserialize<'de> for Moment {
+    fn deserialize<D: Deserializer<'de>>(input: D) -> std::result::Result<Self, D::Error> {
+        String::deserialize(input)?
+            .parse()
+            .map_err(de::Error::custom)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn an_instant_keeps_its_microsecond_and_loses_its_zone() {
+        let moment: Moment = "2026-03-01T08:00:00.000001+08:00".parse().unwrap();
+        assert_eq!(moment.to_string(), "2026-03-01T00:00:00.000001Z");
+        assert_eq!(moment.to_string().parse(), Ok(moment));
+    }
+
+    #[test]
+    fn a_date_without_a_time_is_refused_by_name() {
+        let refusal = "2026-03-01".parse::<Moment>().unwrap_err();
+        assert!(
+            refusal
+                .to_string()
+                .contains("\"2026-03-01\" is no RFC 3339 time")
+        );
+    }
+}

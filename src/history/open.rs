@@ -1,0 +1,134 @@
+//! Opening the file: whose it is, which schema it has, how it is kept safe.
+//!
+//! 1. A file with rows but without our `application_id` belongs to another program and is refused
+//!    before anything is written to it.
+//! 2. A schema newer than this program is refused; an older one is migrated, one transaction a step.
+//! 3. Write-ahead log with `synchronous = FULL`: a batch that was acknowledged survives power loss.
+
+use super::error::{Doing, HistoryError, Result};
+use super::views;
+use rusqlite::{Connection, ErrorCode, OpenFlags};
+use std::path::Path;
+use std::time::Duration;
+
+/// `RRig`, in the header of the file: tells our files from those of other programs.
+pub const APPLICATION_ID: i64 = 0x5252_6967;
+
+/// Step `n` brings schema `n` to `n + 1`. Steps are only ever added.
+const MIGRATIONS: [&str; 1] = [include_str!("schema/v1.sql")];
+
+/// Latest schema this program knows.
+pub const SCHEMA: i64 = MIGRATIONS.len() as i64;
+
+/// How long a locked file is waited for: longer than any batch, shorter than an operator's patience.
+const BUSY: Duration = Duration::from_secs(5);
+
+/// Opens for writing, made when missing.
+pub(super) fn writer(path: &Path) -> Result<Connection> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
+        | OpenFlags::SQLITE_OPEN_CREATE
+        | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let connection = Connection::open_with_flags(path, flags).doing("opening the history")?;
+    prepare(&connection, path)?;
+    Ok(connection)
+}
+
+/// Opens for reading only; an older schema is migrated first.
+pub(super) fn reader(path: &Path) -> Result<Connection> {
+    if !path.exists() {
+        return Err(HistoryError::Missing {
+            path: path.to_owned(),
+        });
+    }
+    let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let connection = Connection::open_with_flags(path, flags).doing("opening the history")?;
+    connection.busy_timeout(BUSY).doing("opening the history")?;
+    if check(&connection, path)? < SCHEMA {
+        prepare(&connection, path)?;
+    }
+    connection
+        .pragma_update(None, "query_only", true)
+        .doing("opening the history")?;
+    connection.set_prepared_statement_cache_capacity(64);
+    Ok(connection)
+}
+
+fn prepare(connection: &Connection, path: &Path) -> Result<()> {
+    const DOING: &str = "preparing the history";
+    connection.busy_timeout(BUSY).doing(DOING)?;
+    let found = check(connection, path)?;
+    connection
+        .pragma_update_and_check(None, "journal_mode", "WAL", |_| Ok(()))
+        .doing(DOING)?;
+    connection
+        .pragma_update(None, "synchronous", "FULL")
+        .doing(DOING)?;
+    connection
+        .pragma_update(None, "foreign_keys", true)
+        .doing(DOING)?;
+    connection.set_prepared_statement_cache_capacity(64);
+    migrate(connection, found)
+}
+
+/// Schema of the file, 0 for an empty one.
+fn check(connection: &Connection, path: &Path) -> Result<i64> {
+    let foreign = |found: String| HistoryError::Foreign {
+        path: path.to_owned(),
+        found,
+    };
+    let (id, schema, tables) = match header(connection) {
+        Err(cause) if cause.sqlite_error_code() == Some(ErrorCode::NotADatabase) => {
+            return Err(foreign("no SQLite database".to_owned()));
+        }
+        answer => answer.doing("reading the header of the history")?,
+    };
+    match (id, schema, tables) {
+        (0, 0, 0) => Ok(0),
+        (APPLICATION_ID, 1..=SCHEMA, _) => Ok(schema),
+        (APPLICATION_ID, found, _) if found > SCHEMA => Err(HistoryError::Newer {
+            path: path.to_owned(),
+            found,
+            known: SCHEMA,
+        }),
+        (other, _, tables) => Err(foreign(format!(
+            "application id {other:#x}, {tables} tables and indexes"
+        ))),
+    }
+}
+
+/// Application id, schema, and how many tables and indexes there are.
+fn header(connection: &Connection) -> rusqlite::Result<(i64, i64, i64)> {
+    let tables = "SELECT count(*) FROM sqlite_schema";
+    Ok((
+        connection.pragma_query_value(None, "application_id", |row| row.get(0))?,
+        connection.pragma_query_value(None, "user_version", |row| row.get(0))?,
+        connection.query_row(tables, [], |row| row.get(0))?,
+    ))
+}
+
+fn migrate(connection: &Connection, found: i64) -> Result<()> {
+    const DOING: &str = "bringing the history to the schema of this program";
+    if found >= SCHEMA {
+        return Ok(());
+    }
+    connection.execute_batch("BEGIN IMMEDIATE").doing(DOING)?;
+    let done = steps(connection).doing(DOING);
+    let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
+    connection.execute_batch(end).doing(DOING)?;
+    done
+}
+
+/// Reads the schema again: another process may have migrated while this one waited for the lock.
+fn steps(connection: &Connection) -> rusqlite::Result<()> {
+    let from: i64 = connection.pragma_query_value(None, "user_version", |row| row.get(0))?;
+    for (step, sql) in MIGRATIONS
+        .iter()
+        .enumerate()
+        .skip(usize::try_from(from).unwrap_or(0))
+    {
+        connection.execute_batch(sql)?;
+        connection.pragma_update(None, "user_version", step as i64 + 1)?;
+    }
+    connection.pragma_update(None, "application_id", APPLICATION_ID)?;
+    views::rebuild(connection)
+}

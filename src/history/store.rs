@@ -1,0 +1,263 @@
+//! The writer: lots are opened, batches recorded, lots closed.
+//!
+//! One batch is one transaction and one wait for the disk. The caller decides how large a batch is:
+//! a rig makes about one part a second and records it alone, an import records hundreds at once.
+
+use super::error::{Doing, HistoryError, Result};
+use super::{
+    AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, PartRecord, Row, insert, landing,
+    open,
+};
+use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// Who writes; kept with every run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Identity {
+    /// Name of the program.
+    pub program: String,
+    /// Its version.
+    pub version: String,
+}
+
+/// The one writer of a history file. Blocking: about one disk flush per call.
+#[derive(Debug)]
+pub struct Store {
+    connection: Connection,
+    path: PathBuf,
+    written_by: String,
+    /// Row numbers that the batch inserts need again and again.
+    known: Known,
+}
+
+/// What the writer need not look up in the file.
+#[derive(Debug, Default)]
+pub(super) struct Known {
+    /// Open lots and the row of their run.
+    pub runs: HashMap<String, i64>,
+    /// Parameter keys and their row.
+    pub parameters: HashMap<String, i64>,
+}
+
+impl Known {
+    /// The run that rows of `lot` belong to.
+    pub fn run(&self, lot: &str) -> Result<i64> {
+        let missing = || HistoryError::LotNotOpen {
+            lot: lot.to_owned(),
+        };
+        self.runs.get(lot).copied().ok_or_else(missing)
+    }
+}
+
+impl Store {
+    /// Opens the file, made or migrated when needed. Refuses files of other programs and schemas
+    /// newer than [`SCHEMA`](super::SCHEMA).
+    pub fn open(path: &Path, identity: &Identity) -> Result<Self> {
+        Ok(Self {
+            connection: open::writer(path)?,
+            path: path.to_owned(),
+            written_by: format!("{} {}", identity.program, identity.version),
+            known: Known::default(),
+        })
+    }
+
+    /// The file written to.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Opens a run of the lot and gives its number: 1, or one more than the last time.
+    pub fn begin_lot(&mut self, lot: &LotRecord) -> Result<u32> {
+        const DOING: &str = "opening the lot";
+        let source = if lot.simulated { "simulated" } else { "rig" };
+        let written_by = self.written_by.clone();
+        let transaction = self.transaction(DOING)?;
+        let (run, number) = insert::run(&transaction, lot, source, &written_by).doing(DOING)?;
+        transaction.commit().doing(DOING)?;
+        self.known.runs.insert(lot.lot.clone(), run);
+        Ok(number)
+    }
+
+    /// Opens a run, records `parts` (whose lot and order must be those of `lot`) and closes it again,
+    /// in one transaction: all of a file or nothing. Gives the number of the run.
+    pub fn import(&mut self, lot: &LotRecord, parts: Vec<PartRecord>) -> Result<u32> {
+        const DOING: &str = "importing";
+        let Self {
+            connection,
+            written_by,
+            ..
+        } = self;
+        let transaction = connection
+            .transaction_with_behavior(TransactionBehavior::Immediate)
+            .doing(DOING)?;
+        let (run, number) = insert::run(&transaction, lot, "import", written_by).doing(DOING)?;
+        let mut known = Known::default();
+        known.runs.insert(lot.lot.clone(), run);
+        for part in &parts {
+            insert::part(&transaction, &mut known, part)?;
+        }
+        transaction
+            .execute(
+                "UPDATE run SET closed_at_us = opened_at_us WHERE id = ?1",
+                [run],
+            )
+            .doing(DOING)?;
+        transaction.commit().doing(DOING)?;
+        Ok(number)
+    }
+
+    /// Ends the run of the lot; rows for it are refused from now on.
+    pub fn close_lot(&mut self, lot: &str, at_us: i64) -> Result<()> {
+        let run = self.known.run(lot)?;
+        self.connection
+            .execute(
+                "UPDATE run SET closed_at_us = ?2 WHERE id = ?1",
+                params![run, at_us],
+            )
+            .doing("closing the lot")?;
+        self.known.runs.remove(lot);
+        Ok(())
+    }
+
+    /// Writes a batch in one transaction: all of it, or on any error nothing.
+    ///
+    /// A part or landing that is already there word for word is passed over, so a batch of unknown
+    /// fate may be sent again; one that contradicts its row is refused.
+    pub fn record(&mut self, rows: &[Row]) -> Result<()> {
+        const DOING: &str = "recording";
+        let Self {
+            connection, known, ..
+        } = self;
+        let transaction = connection
+            .transaction_with_behavior(TransactionBehavior::Immediate)
+            .doing(DOING)?;
+        let before = known.parameters.len();
+        let written =
+            write(&transaction, known, rows).and_then(|()| transaction.commit().doing(DOING));
+        if written.is_err() && known.parameters.len() != before {
+            known.parameters.clear();
+        }
+        written
+    }
+
+    /// The beam of `bin` saw production part `seq`.
+    pub fn landed(
+        &mut self,
+        lot: &str,
+        seq: u64,
+        bin: &str,
+        at_us: i64,
+        cycle_s: Option<f64>,
+    ) -> Result<()> {
+        self.record(&[Row::Landed(LandingRecord {
+            lot: lot.to_owned(),
+            kind: "lot".to_owned(),
+            seq,
+            bin: bin.to_owned(),
+            at_us,
+            cycle_s,
+        })])
+    }
+
+    /// An alarm came; the same one with `cleared_at_us` set: it went.
+    pub fn alarm(&mut self, alarm: &AlarmRecord) -> Result<()> {
+        self.record(&[Row::Alarm(alarm.clone())])
+    }
+
+    /// Keeps a calibration; the same one again only updates whether it was verified.
+    pub fn save_calibration(&mut self, calibration: &CalibrationRecord) -> Result<()> {
+        let CalibrationRecord {
+            made_at_us,
+            due_at_us,
+            hash,
+            body,
+            verified,
+        } = calibration;
+        self.connection
+            .execute(
+                "INSERT INTO calibration (made_at_us, due_at_us, hash, body, verified)
+                 VALUES (?1, ?2, ?3, ?4, ?5)
+                 ON CONFLICT (hash, made_at_us) DO UPDATE SET verified = excluded.verified",
+                params![made_at_us, due_at_us, hash, body, verified],
+            )
+            .doing("saving the calibration")?;
+        Ok(())
+    }
+
+    /// The calibration made last, whether or not it is still valid.
+    pub fn latest_calibration(&self) -> Result<Option<CalibrationRecord>> {
+        latest_calibration(&self.connection).doing("reading the latest calibration")
+    }
+
+    fn transaction(&mut self, doing: &'static str) -> Result<Transaction<'_>> {
+        self.connection
+            .transaction_with_behavior(TransactionBehavior::Immediate)
+            .doing(doing)
+    }
+}
+
+fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Result<()> {
+    rows.iter().try_for_each(|row| match row {
+        Row::Part(part) => insert::part(transaction, known, part),
+        Row::Landed(landed) => landing::landing(transaction, known, landed),
+        Row::Alarm(alarm) => landing::alarm(transaction, known, alarm),
+    })
+}
+
+/// Latest by the time it was made, then by the order of saving.
+pub(super) fn latest_calibration(
+    connection: &Connection,
+) -> rusqlite::Result<Option<CalibrationRecord>> {
+    connection
+        .query_row(
+            "SELECT made_at_us, due_at_us, hash, body, verified FROM calibration
+             ORDER BY made_at_us DESC, id DESC LIMIT 1",
+            [],
+            |row| {
+                Ok(CalibrationRecord {
+                    made_at_us: row.get(0)?,
+                    due_at_us: row.get(1)?,
+                    hash: row.get(2)?,
+                    body: row.get(3)?,
+                    verified: row.get(4)?,
+                })
+            },
+        )
+        .optional()
+}
+
+#[cfg(test)]
+impl Store {
+    /// Gives up at once on a locked file.
+    pub(super) fn impatient(&self) {
+        self.connection
+            .busy_timeout(std::time::Duration::ZERO)
+            .expect("a time-out can be set");
+    }
+    /// The file may not grow any more.
+    pub(super) fn no_more_pages(&self) {
+        let pages: i64 = self
+            .connection
+            .pragma_query_value(None, "page_count", |row| row.get(0))
+            .expect("an open file has a size");
+        self.connection
+            .pragma_update_and_check(None, "max_page_count", pages, |_| Ok(()))
+            .expect("a file can be kept from growing");
+    }
+    /// A pragma as text.
+    pub(super) fn pragma(&self, name: &str) -> String {
+        let read = |row: &rusqlite::Row<'_>| row.get::<_, rusqlite::types::Value>(0);
+        match self.connection.pragma_query_value(None, name, read) {
+            Ok(rusqlite::types::Value::Integer(number)) => number.to_string(),
+            Ok(rusqlite::types::Value::Text(text)) => text,
+            other => format!("{other:?}"),
+        }
+    }
+    /// Writes in a transaction that is never committed, and goes away.
+    pub(super) fn begin_and_forget(self) {
+        self.connection
+            .execute_batch("BEGIN IMMEDIATE; UPDATE part SET verdict = 'void'; DELETE FROM sample;")
+            .expect("an open file can be written");
+    }
+}

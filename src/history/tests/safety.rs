@@ -1,0 +1,163 @@
+//! Whose file it is, which schema, what survives.
+
+use super::*;
+
+#[test]
+fn a_file_of_another_program_is_refused_and_left_untouched() {
+    let file = File::new();
+    file.by_hand()
+        .execute_batch("CREATE TABLE invoices (id INTEGER)")
+        .unwrap();
+    let before = std::fs::read(&file.0).unwrap();
+    let refusal = Store::open(&file.0, &identity()).unwrap_err();
+    assert!(matches!(refusal, HistoryError::Foreign { .. }), "{refusal}");
+    assert!(matches!(
+        Archive::open(&file.0),
+        Err(HistoryError::Foreign { .. })
+    ));
+    assert_eq!(std::fs::read(&file.0).unwrap(), before);
+}
+
+#[test]
+fn a_file_that_is_no_database_is_refused_and_left_untouched() {
+    let file = File::new();
+    let text = "this is a letter, not a database\n".repeat(100);
+    std::fs::write(&file.0, &text).unwrap();
+    let refusal = Store::open(&file.0, &identity()).unwrap_err();
+    assert!(
+        refusal.to_string().contains("no SQLite database"),
+        "{refusal}"
+    );
+    assert_eq!(std::fs::read_to_string(&file.0).unwrap(), text);
+}
+
+#[test]
+fn a_newer_schema_is_refused_with_both_numbers() {
+    let file = File::new();
+    drop(file.store());
+    file.by_hand()
+        .pragma_update(None, "user_version", SCHEMA + 1)
+        .unwrap();
+    let refusal = Store::open(&file.0, &identity()).unwrap_err();
+    assert!(matches!(refusal, HistoryError::Newer { found, known, .. } if found == known + 1));
+    assert!(matches!(
+        Archive::open(&file.0),
+        Err(HistoryError::Newer { .. })
+    ));
+}
+
+#[test]
+fn reading_what_was_never_written_makes_no_file() {
+    let file = File::new();
+    assert!(matches!(
+        Archive::open(&file.0),
+        Err(HistoryError::Missing { .. })
+    ));
+    assert!(!file.0.exists());
+}
+
+#[test]
+fn a_file_locked_by_another_process_is_an_error_that_says_so() {
+    let file = File::new();
+    let mut store = file.store();
+    store.impatient();
+    let other = file.by_hand();
+    other.execute_batch("BEGIN IMMEDIATE").unwrap();
+    let refusal = store.begin_lot(&lot("A")).unwrap_err();
+    assert_eq!(
+        refusal.to_string(),
+        "opening the lot: the history is locked by another process"
+    );
+    other.execute_batch("ROLLBACK").unwrap();
+    store.begin_lot(&lot("A")).unwrap();
+}
+
+#[test]
+fn a_full_disk_is_an_error_that_says_so_and_loses_nothing_written() {
+    let file = File::new();
+    let mut store = filled(&file, 10);
+    store.no_more_pages();
+    let rows: Vec<Row> = (11..500)
+        .map(|seq| Row::Part(part("A", seq, "pass", 7.0)))
+        .collect();
+    let refusal = store.record(&rows).unwrap_err();
+    assert!(
+        matches!(refusal, HistoryError::DiskFull { .. }),
+        "{refusal}"
+    );
+    assert_eq!(count(&file.by_hand(), "part"), 10);
+    file.archive().check().unwrap();
+}
+
+#[test]
+fn the_file_is_marked_as_ours_and_written_durably() {
+    let file = File::new();
+    let store = file.store();
+    let pragma = |name: &str| store.pragma(name);
+    assert_eq!(pragma("application_id"), APPLICATION_ID.to_string());
+    assert_eq!(pragma("user_version"), SCHEMA.to_string());
+    assert_eq!(pragma("journal_mode"), "wal");
+    assert_eq!(pragma("synchronous"), "2", "FULL");
+    assert_eq!(pragma("foreign_keys"), "1");
+}
+
+#[test]
+fn every_table_is_strict_and_every_column_has_its_remark() {
+    let file = File::new();
+    drop(file.store());
+    let by_hand = file.by_hand();
+    let mut statement = by_hand
+        .prepare("SELECT name, sql FROM sqlite_schema WHERE type = 'table'")
+        .unwrap();
+    let tables: Vec<(String, String)> = statement
+        .query_map([], |row| Ok((row.get(0)?, row.get(1)?)))
+        .unwrap()
+        .collect::<rusqlite::Result<_>>()
+        .unwrap();
+    let mut names: Vec<&str> = tables.iter().map(|(name, _)| name.as_str()).collect();
+    names.sort_unstable();
+    assert_eq!(
+        names.join(" "),
+        "alarm calibration lot measurement parameter part recipe run sample"
+    );
+    for (table, sql) in &tables {
+        assert!(sql.contains(") STRICT"), "{table}");
+        let columns = sql.lines().filter(|line| {
+            line.starts_with("  ") && line.trim_start().starts_with(|it: char| it.is_lowercase())
+        });
+        for column in columns {
+            assert!(column.contains("-- "), "{table}: {column}");
+        }
+    }
+}
+
+#[test]
+fn a_backup_of_a_file_in_use_is_whole_and_never_overwrites() {
+    let (file, copy) = (File::new(), File::new());
+    let mut store = filled(&file, 25);
+    let archive = file.archive();
+    assert!(archive.backup(&copy.0).unwrap() > 0);
+    store
+        .record(&[Row::Part(part("A", 26, "pass", 7.0))])
+        .unwrap();
+    assert_eq!(copy.archive().query(&Filter::default()).unwrap().len(), 25);
+    assert_eq!(
+        copy.store().pragma("application_id"),
+        APPLICATION_ID.to_string()
+    );
+    assert!(matches!(
+        archive.backup(&copy.0),
+        Err(HistoryError::Exists { .. })
+    ));
+}
+
+#[test]
+fn a_batch_whose_process_died_before_the_end_left_nothing() {
+    let file = File::new();
+    let store = filled(&file, 5);
+    store.begin_and_forget();
+    let mut store = file.store();
+    assert_eq!(count(&file.by_hand(), "part"), 5);
+    assert_eq!(store.begin_lot(&lot("A")).unwrap(), 2);
+    file.archive().check().unwrap();
+}

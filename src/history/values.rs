@@ -1,0 +1,90 @@
+//! The values of one parameter in order of judgement, and the limits they were judged by: what the
+//! statistics need, read from the index of values alone.
+
+use super::error::{Doing, Result};
+use super::{Archive, Filter};
+use rusqlite::{OptionalExtension, params, params_from_iter};
+
+/// Values of one parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values {
+    /// Finite, in order of judgement (of the file, on import).
+    pub values: Vec<f64>,
+    /// Limits in force.
+    pub limits: LimitsSeen,
+}
+
+/// Limits found on the runs that the values come from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LimitsSeen {
+    /// No run had any.
+    None,
+    /// All runs agree.
+    Same {
+        /// Lower limit.
+        low: Option<f64>,
+        /// Upper limit.
+        high: Option<f64>,
+    },
+    /// Runs differ, so that a capability over all of them means nothing.
+    Differ,
+}
+
+impl Archive {
+    /// Values of `param` on the parts that the filter leaves. Superseded attempts, values that
+    /// could not be judged and (unless asked for) golden parts do not count. The filter's `limit`
+    /// keeps the first values.
+    pub fn values(&self, param: &str, filter: &Filter) -> Result<Values> {
+        let values = self.series(param, filter).doing("reading values")?;
+        let limits = self.limits(param, filter).doing("reading limits")?;
+        Ok(Values { values, limits })
+    }
+
+    fn series(&self, param: &str, filter: &Filter) -> rusqlite::Result<Vec<f64>> {
+        let select = filter.series(param);
+        let mut statement = self.connection.prepare(&select.sql)?;
+        let mut rows = statement.query(params_from_iter(&select.values))?;
+        let mut found: Vec<(i64, f64)> = Vec::new();
+        while let Some(row) = rows.next()? {
+            found.push((row.get(0)?, row.get(1)?));
+        }
+        found.sort_unstable_by_key(|&(part, _)| part);
+        let keep = filter.limit.map_or(found.len(), |limit| {
+            usize::try_from(limit)
+                .unwrap_or(usize::MAX)
+                .min(found.len())
+        });
+        Ok(found
+            .into_iter()
+            .take(keep)
+            .map(|(_, value)| value)
+            .collect())
+    }
+
+    /// A recipe is frozen during a run, so one measurement speaks for all of its run.
+    fn limits(&self, param: &str, filter: &Filter) -> rusqlite::Result<LimitsSeen> {
+        let runs = filter.runs();
+        let mut statement = self.connection.prepare(&runs.sql)?;
+        let runs: Vec<i64> = statement
+            .query_map(params_from_iter(&runs.values), |row| row.get(0))?
+            .collect::<rusqlite::Result<_>>()?;
+        let mut one = self.connection.prepare_cached(
+            "SELECT low, high FROM measurement
+             WHERE parameter_id = (SELECT id FROM parameter WHERE key = ?1)
+               AND population = 'lot' AND run_id = ?2 LIMIT 1",
+        )?;
+        let mut seen: Option<(Option<f64>, Option<f64>)> = None;
+        for run in runs {
+            let pair = one.query_row(params![param, run], |row| Ok((row.get(0)?, row.get(1)?)));
+            match (pair.optional()?, seen) {
+                (None, _) => {}
+                (Some(pair), Some(first)) if pair != first => return Ok(LimitsSeen::Differ),
+                (Some(pair), _) => seen = Some(pair),
+            }
+        }
+        Ok(match seen {
+            None | Some((None, None)) => LimitsSeen::None,
+            Some((low, high)) => LimitsSeen::Same { low, high },
+        })
+    }
+}

@@ -1,0 +1,75 @@
+//! Views for those who open the file by hand: plural names, local time, one column per parameter.
+//!
+//! They are derived, never part of a migration: rebuilt after each migration and whenever a
+//! parameter is seen for the first time, so that `parts` has its column.
+
+use rusqlite::Connection;
+
+const FIXED: &str = "
+DROP VIEW IF EXISTS lots;
+CREATE VIEW lots AS
+  SELECT lot.name AS lot, run.number AS run, recipe.name AS recipe, run.source, run.seed,
+    strftime('%Y-%m-%d %H:%M:%f', run.opened_at_us / 1e6, 'unixepoch', 'localtime') AS opened,
+    strftime('%Y-%m-%d %H:%M:%f', run.closed_at_us / 1e6, 'unixepoch', 'localtime') AS closed,
+    count(part.id) AS parts,
+    sum(ifnull(part.verdict = 'pass', 0)) AS pass, sum(ifnull(part.verdict = 'fail', 0)) AS fail,
+    sum(ifnull(part.verdict = 'void', 0)) AS void,
+    round(100.0 * sum(part.verdict = 'pass') / nullif(sum(part.verdict <> 'unjudged'), 0), 2)
+      AS yield_percent
+  FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
+    LEFT JOIN part ON part.run_id = run.id AND part.kind = 'lot'
+  GROUP BY run.id;
+DROP VIEW IF EXISTS measurements;
+CREATE VIEW measurements AS
+  SELECT lot.name AS lot, run.number AS run, part.kind, part.seq, parameter.key AS parameter,
+    m.attempt, m.value, m.uncertainty, m.low, m.high, m.verdict, m.budget
+  FROM measurement AS m JOIN part ON part.id = m.part_id JOIN run ON run.id = part.run_id
+    JOIN lot ON lot.id = run.lot_id JOIN parameter ON parameter.id = m.parameter_id;
+DROP VIEW IF EXISTS samples;
+CREATE VIEW samples AS
+  SELECT lot.name AS lot, run.number AS run, part.kind, part.seq, parameter.key AS parameter,
+    s.attempt, s.n, s.line, s.module, s.channel, s.command, s.raw,
+    strftime('%Y-%m-%d %H:%M:%f', s.at_us / 1e6, 'unixepoch', 'localtime') AS at
+  FROM sample AS s JOIN part ON part.id = s.part_id JOIN run ON run.id = part.run_id
+    JOIN lot ON lot.id = run.lot_id JOIN parameter ON parameter.id = s.parameter_id;
+DROP VIEW IF EXISTS alarms;
+CREATE VIEW alarms AS
+  SELECT lot.name AS lot, run.number AS run, alarm.code, alarm.line, alarm.text,
+    strftime('%Y-%m-%d %H:%M:%f', raised_at_us / 1e6, 'unixepoch', 'localtime') AS raised,
+    strftime('%Y-%m-%d %H:%M:%f', cleared_at_us / 1e6, 'unixepoch', 'localtime') AS cleared
+  FROM alarm LEFT JOIN run ON run.id = alarm.run_id LEFT JOIN lot ON lot.id = run.lot_id;
+DROP VIEW IF EXISTS parts;
+";
+
+/// Makes all views anew; called inside a write transaction.
+pub(super) fn rebuild(connection: &Connection) -> rusqlite::Result<()> {
+    connection.execute_batch(FIXED)?;
+    let parameters: Vec<(i64, String)> = connection
+        .prepare("SELECT id, key FROM parameter ORDER BY id")?
+        .query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?
+        .collect::<rusqlite::Result<_>>()?;
+    connection.execute_batch(&parts(&parameters))
+}
+
+/// The last attempt of each parameter as a column of its own.
+fn parts(parameters: &[(i64, String)]) -> String {
+    let columns: String = parameters
+        .iter()
+        .map(|(id, key)| {
+            let name = key.replace('"', "\"\"");
+            format!(
+                ",\n (SELECT m.value FROM measurement AS m WHERE m.part_id = part.id \
+                 AND m.parameter_id = {id} ORDER BY m.attempt DESC LIMIT 1) AS \"{name}\""
+            )
+        })
+        .collect();
+    format!(
+        "CREATE VIEW parts AS SELECT lot.name AS lot, run.number AS run, part.kind, part.seq,
+    strftime('%Y-%m-%d %H:%M:%f', judged_at_us / 1e6, 'unixepoch', 'localtime') AS judged,
+    recipe.name AS recipe, part.serial, part.verdict, part.bin, part.landed_bin,
+    (SELECT group_concat(value, '; ') FROM json_each(part.reasons)) AS reasons,
+    part.test_s, part.cycle_s{columns}
+  FROM part JOIN run ON run.id = part.run_id JOIN lot ON lot.id = run.lot_id
+    JOIN recipe ON recipe.id = run.recipe_id;"
+    )
+}

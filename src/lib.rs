@@ -1,0 +1,32 @@
+//! Controller of a JZC-22F relay performance tester with automatic feed and discharge.
+//!
+//! Modules in reading order:
+//!
+//! - [`units`]: volts, ohms, microseconds of rig time.
+//! - [`dcon`]: the protocol of the I-7000 modules; pure.
+//! - [`bus`]: a line; one transaction at a time, bounded, never a neighbour's answer.
+//! - [`lpm`]: the collision core: layers, projections, exact sweeps.
+//! - [`guard`]: every motion passes it and comes out cleared or refused with numbers.
+//! - [`rig`]: named points instead of addresses; process image; drive.
+//! - [`gauge`]: from a sample to a value with uncertainty to a verdict.
+//! - [`station`]: the sequence: feed, clamp, test, sort; parts and trouble.
+//! - [`cycle`]: one turn of the rig, top to bottom.
+//! - [`history`]: SQLite; [`quality`]: statistics that stay right.
+//! - [`view`]: what a screen may know.
+//! - [`config`]: files to settings, with the line of every mistake.
+//! - [`cli`]: one file per command; the only place that names the simulator.
+
+pub mod bus;
+pub mod cli;
+pub mod config;
+pub mod cycle;
+pub mod dcon;
+pub mod gauge;
+pub mod guard;
+pub mod history;
+pub mod lpm;
+pub mod quality;
+pub mod rig;
+pub mod station;
+pub mod units;
+pub mod view;

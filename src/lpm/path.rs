@@ -1,0 +1,74 @@
+//! The way of a mover: a straight translation, or position linear and rotation the shortest turn.
+
+use super::piece::{NOISE, Piece};
+use super::pose::{Frame, Pose, Turn};
+use super::space::SweptBox;
+use super::vector::{Vec3, along, is_finite, length, reach, sub};
+
+/// A move between two checked poses; `t` runs from 0 to 1.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Path {
+    from: Vec3,
+    /// Whole displacement of the origin, mm.
+    pub(crate) displacement: Vec3,
+    start: Frame,
+    /// `None`: the move is a translation.
+    pub(crate) turn: Option<Turn>,
+}
+
+impl Path {
+    /// `None` when a number is not finite: nothing can be said about such a move.
+    pub(crate) fn between(from: &Pose, to: &Pose) -> Option<Path> {
+        from.check().ok()?;
+        to.check().ok()?;
+        let turn = if from.rotation == to.rotation {
+            None
+        } else {
+            Turn::between(from.rotation, to.rotation)
+        };
+        let path = Path {
+            from: from.position,
+            displacement: sub(to.position, from.position),
+            start: Frame::of(from.rotation),
+            turn,
+        };
+        is_finite(path.displacement).then_some(path)
+    }
+
+    /// Origin of the mover at `t`.
+    pub(crate) fn origin(&self, t: f64) -> Vec3 {
+        along(self.from, t, self.displacement)
+    }
+
+    /// A piece of the mover where it stands at `t`.
+    pub(crate) fn piece_at(&self, local: &Piece, t: f64) -> Piece {
+        match &self.turn {
+            None => local.placed(&self.start, self.origin(t)),
+            Some(turn) => local.placed(&turn.frame_at(t), self.origin(t)),
+        }
+    }
+
+    /// The sum of magnitudes of everything that enters a position on the way, mm.
+    pub(crate) fn span(&self) -> f64 {
+        reach(self.from) + reach(self.displacement)
+    }
+
+    /// The box of a piece at the start, rounded outward and widened by `margin`, and how it moves.
+    ///
+    /// Of a turning piece: the box of the ball it stays in, whatever the turn.
+    pub(crate) fn swept(&self, local: &Piece, at_start: &Piece, margin: f64) -> SweptBox {
+        let (mut low, mut high) = at_start.bounds();
+        if self.turn.is_some() {
+            let ball = (length(local.centre) + local.radius()) * (1.0 + 8.0 * f64::EPSILON);
+            let round = ball + NOISE * at_start.span;
+            low = self.from.map(|member| member - round);
+            high = self.from.map(|member| member + round);
+        }
+        let wider = margin * (1.0 + 2.0 * f64::EPSILON) + NOISE * self.span();
+        SweptBox {
+            low: low.map(|member| member - wider),
+            high: high.map(|member| member + wider),
+            displacement: self.displacement,
+        }
+    }
+}

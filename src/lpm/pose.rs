@@ -1,0 +1,180 @@
+//! Where a body stands: position in millimetres and a unit quaternion, right-handed, z up.
+
+use super::vector::{Vec3, add, cross, dot, length, scale};
+
+/// Position and orientation of a body in its parent frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Origin of the body, mm.
+    pub position: [f64; 3],
+    /// Unit quaternion `[w, x, y, z]`; it is normalised wherever it is used, zero is a [`Flaw`](super::Flaw).
+    pub rotation: [f64; 4],
+}
+
+impl Pose {
+    /// The parent frame itself.
+    pub const IDENTITY: Pose = Pose {
+        position: [0.0; 3],
+        rotation: [1.0, 0.0, 0.0, 0.0],
+    };
+
+    /// Upright at `position` (mm).
+    pub fn at(position: [f64; 3]) -> Pose {
+        Pose {
+            position,
+            rotation: [1.0, 0.0, 0.0, 0.0],
+        }
+    }
+
+    /// Turned by `yaw_rad` about z, standing at `position` (mm).
+    pub fn yawed(position: [f64; 3], yaw_rad: f64) -> Pose {
+        let (sin, cos) = (yaw_rad / 2.0).sin_cos();
+        Pose {
+            position,
+            rotation: [cos, 0.0, 0.0, sin],
+        }
+    }
+
+    /// The same turn at another position (mm).
+    pub fn moved_to(self, position: [f64; 3]) -> Pose {
+        Pose { position, ..self }
+    }
+}
+
+/// Rotation as its three columns: the images of x, y and z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Frame {
+    pub(crate) x: Vec3,
+    pub(crate) y: Vec3,
+    pub(crate) z: Vec3,
+}
+
+impl Frame {
+    pub(crate) const IDENTITY: Frame = Frame {
+        x: [1.0, 0.0, 0.0],
+        y: [0.0, 1.0, 0.0],
+        z: [0.0, 0.0, 1.0],
+    };
+
+    /// Of a quaternion of any length but zero.
+    ///
+    /// Dividing by the squared length instead of normalising first keeps quarter turns exact:
+    /// `[0.7071067811865476, 0, 0, 0.7071067811865475]` must not tilt or stretch a block.
+    pub(crate) fn of(rotation: [f64; 4]) -> Frame {
+        let [w, x, y, z] = rotation;
+        let twice = 2.0 / (w * w + x * x + y * y + z * z);
+        let (xx, yy, zz) = (x * x * twice, y * y * twice, z * z * twice);
+        let (xy, xz, yz) = (x * y * twice, x * z * twice, y * z * twice);
+        let (wx, wy, wz) = (w * x * twice, w * y * twice, w * z * twice);
+        Frame {
+            x: [1.0 - (yy + zz), xy + wz, xz - wy],
+            y: [xy - wz, 1.0 - (xx + zz), yz + wx],
+            z: [xz + wy, yz - wx, 1.0 - (xx + yy)],
+        }
+    }
+
+    pub(crate) fn apply(&self, v: Vec3) -> Vec3 {
+        add(
+            add(scale(self.x, v[0]), scale(self.y, v[1])),
+            scale(self.z, v[2]),
+        )
+    }
+
+    pub(crate) fn then(&self, inner: &Frame) -> Frame {
+        Frame {
+            x: self.apply(inner.x),
+            y: self.apply(inner.y),
+            z: self.apply(inner.z),
+        }
+    }
+}
+
+/// The shortest turn from one orientation to another, as an axis in the parent frame.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Turn {
+    /// Unit axis in the parent frame.
+    pub(crate) axis: Vec3,
+    /// Whole angle in radians, 0 to pi.
+    pub(crate) angle: f64,
+    start: Frame,
+}
+
+impl Turn {
+    /// `None` when both orientations agree (also as `q` and `-q`): the move is a translation.
+    ///
+    /// Orientations agree when the turn between them is below 1e-15 rad for every part of the
+    /// machine, that is when the quaternions are proportional to rounding.
+    pub(crate) fn between(from: [f64; 4], to: [f64; 4]) -> Option<Turn> {
+        let (a, b) = (normalised(from), normalised(to));
+        let (va, vb) = ([a[1], a[2], a[3]], [b[1], b[2], b[3]]);
+        let w = a[0] * b[0] + dot(va, vb);
+        let v = add(
+            add(scale(vb, a[0]), scale(va, -b[0])),
+            scale(cross(vb, va), -1.0),
+        );
+        let v = if w < 0.0 { scale(v, -1.0) } else { v };
+        let sin = length(v);
+        // Two units in the last place of a normalised quaternion.
+        if sin <= 4.0 * f64::EPSILON {
+            return None;
+        }
+        Some(Turn {
+            axis: scale(v, 1.0 / sin),
+            angle: 2.0 * sin.atan2(w.abs()),
+            start: Frame::of(from),
+        })
+    }
+
+    /// Orientation after the fraction `t` of the turn.
+    pub(crate) fn frame_at(&self, t: f64) -> Frame {
+        let (sin, cos) = (self.angle * t).sin_cos();
+        Frame {
+            x: rotated(self.start.x, self.axis, sin, cos),
+            y: rotated(self.start.y, self.axis, sin, cos),
+            z: rotated(self.start.z, self.axis, sin, cos),
+        }
+    }
+}
+
+fn rotated(v: Vec3, axis: Vec3, sin: f64, cos: f64) -> Vec3 {
+    let across = cross(axis, v);
+    let lengthwise = scale(axis, dot(axis, v) * (1.0 - cos));
+    add(add(scale(v, cos), scale(across, sin)), lengthwise)
+}
+
+fn normalised(q: [f64; 4]) -> [f64; 4] {
+    let norm = (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]).sqrt();
+    [q[0] / norm, q[1] / norm, q[2] / norm, q[3] / norm]
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_quarter_turn_keeps_a_block_upright() {
+        let frame = Frame::of([0.7071067811865476, 0.0, 0.0, 0.7071067811865475]);
+        assert_eq!(frame.z, [0.0, 0.0, 1.0]);
+        assert!((frame.x[1] - 1.0).abs() < 1e-15 && frame.x[0].abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_turn_ends_where_it_was_told_to() {
+        let (from, to) = ([0.9, 0.1, -0.3, 0.2], [-0.2, 0.5, 0.4, 0.7]);
+        let turn = Turn::between(from, to).unwrap();
+        let (reached, wanted) = (turn.frame_at(1.0), Frame::of(to));
+        for (a, b) in [
+            (reached.x, wanted.x),
+            (reached.y, wanted.y),
+            (reached.z, wanted.z),
+        ] {
+            assert!(length([a[0] - b[0], a[1] - b[1], a[2] - b[2]]) < 1e-14);
+        }
+    }
+
+    #[test]
+    fn opposite_quaternions_are_no_turn() {
+        assert!(Turn::between([0.6, 0.0, 0.8, 0.0], [-0.6, 0.0, -0.8, 0.0]).is_none());
+    }
+}

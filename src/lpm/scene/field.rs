@@ -1,0 +1,146 @@
+//! A value and the path that leads to it: every complaint names the field.
+
+use super::node::Node;
+
+/// What is wrong with a scene or a move file.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SceneError {
+    /// The text is no TOML or JSON.
+    #[error("{place}not readable: {cause}")]
+    Syntax {
+        /// Empty, or the line of a move file with a colon and a space.
+        place: String,
+        /// What the reader of the format said.
+        cause: String,
+    },
+    /// A field holds what it must not.
+    #[error("{path}: found {found}, expected {expected}")]
+    Field {
+        /// Such as `elements[0].half[1]`; in move files behind `line 3: `.
+        path: String,
+        /// What is there.
+        found: String,
+        /// What should be there.
+        expected: String,
+    },
+}
+
+/// A node with its path.
+#[derive(Debug, Clone)]
+pub(super) struct Field<'a> {
+    pub(super) node: &'a Node,
+    pub(super) path: String,
+}
+
+impl<'a> Field<'a> {
+    pub(super) fn refuse<T>(&self, expected: impl Into<String>) -> Result<T, SceneError> {
+        refuse(self.path.clone(), self.node.to_string(), expected)
+    }
+
+    /// The keys of a table, every one of them known.
+    pub(super) fn table(&self, known: &[&str]) -> Result<Table<'a>, SceneError> {
+        let Node::Table(members) = self.node else {
+            return self.refuse("a table");
+        };
+        for (key, _) in members {
+            if !known.contains(&key.as_str()) {
+                let expected = format!("one of the keys {}", known.join(", "));
+                return refuse(self.below(key), "an unknown key".into(), expected);
+            }
+        }
+        Ok(Table {
+            members,
+            field: self.clone(),
+        })
+    }
+
+    pub(super) fn list(&self) -> Result<Vec<Field<'a>>, SceneError> {
+        let Node::List(members) = self.node else {
+            return self.refuse("a list");
+        };
+        let member = |(index, node)| Field {
+            node,
+            path: format!("{}[{index}]", self.path),
+        };
+        Ok(members.iter().enumerate().map(member).collect())
+    }
+
+    pub(super) fn number(&self) -> Result<f64, SceneError> {
+        match self.node {
+            Node::Number(number) if number.is_finite() => Ok(*number),
+            Node::Null
+            | Node::Flag(_)
+            | Node::Number(_)
+            | Node::Text(_)
+            | Node::List(_)
+            | Node::Table(_) => self.refuse("a finite number"),
+        }
+    }
+
+    pub(super) fn text(&self) -> Result<&'a str, SceneError> {
+        match self.node {
+            Node::Text(text) if !text.is_empty() => Ok(text),
+            Node::Null
+            | Node::Flag(_)
+            | Node::Number(_)
+            | Node::Text(_)
+            | Node::List(_)
+            | Node::Table(_) => self.refuse("a non-empty text"),
+        }
+    }
+
+    pub(super) fn numbers<const N: usize>(&self) -> Result<[f64; N], SceneError> {
+        let members = self.list()?;
+        if members.len() != N {
+            return self.refuse(format!("a list of {N} numbers"));
+        }
+        let mut numbers = [0.0; N];
+        for (number, member) in numbers.iter_mut().zip(&members) {
+            *number = member.number()?;
+        }
+        Ok(numbers)
+    }
+
+    pub(super) fn below(&self, key: &str) -> String {
+        match self.path.as_str() {
+            "" => key.to_owned(),
+            path if path.ends_with(": ") => format!("{path}{key}"),
+            path => format!("{path}.{key}"),
+        }
+    }
+}
+
+/// A table whose keys are known.
+pub(super) struct Table<'a> {
+    members: &'a [(String, Node)],
+    field: Field<'a>,
+}
+
+impl<'a> Table<'a> {
+    pub(super) fn optional(&self, key: &str) -> Option<Field<'a>> {
+        let found = self.members.iter().find(|(known, _)| known == key);
+        found.map(|(_, node)| Field {
+            node,
+            path: self.field.below(key),
+        })
+    }
+
+    pub(super) fn required(&self, key: &str, expected: &str) -> Result<Field<'a>, SceneError> {
+        match self.optional(key) {
+            Some(field) => Ok(field),
+            None => refuse(self.field.below(key), "nothing".into(), expected),
+        }
+    }
+}
+
+pub(super) fn refuse<T>(
+    path: String,
+    found: String,
+    expected: impl Into<String>,
+) -> Result<T, SceneError> {
+    Err(SceneError::Field {
+        path,
+        found,
+        expected: expected.into(),
+    })
+}

@@ -1,0 +1,134 @@
+//! One tree for TOML and JSON: values without a meaning yet, keys in the order of the file.
+
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use std::fmt;
+
+/// Prefix of a text that stands for a JSON number which is not finite.
+const NOT_FINITE: char = '\u{1}';
+
+/// A value of a scene or move file.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Node {
+    Null,
+    Flag(bool),
+    Number(f64),
+    Text(String),
+    List(Vec<Node>),
+    Table(Vec<(String, Node)>),
+}
+
+impl fmt::Display for Node {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Node::Null => f.write_str("null"),
+            Node::Flag(flag) => write!(f, "{flag}"),
+            Node::Number(number) => write!(f, "{number}"),
+            Node::Text(text) => match text.strip_prefix(NOT_FINITE) {
+                Some(token) => f.write_str(token),
+                None => write!(f, "\"{text}\""),
+            },
+            Node::List(members) => write!(f, "a list of {}", members.len()),
+            Node::Table(_) => f.write_str("a table"),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Node {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Node, D::Error> {
+        deserializer.deserialize_any(Reader)
+    }
+}
+
+struct Reader;
+
+impl<'de> Visitor<'de> for Reader {
+    type Value = Node;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a number, text, list or table")
+    }
+    fn visit_unit<E: Error>(self) -> Result<Node, E> {
+        Ok(Node::Null)
+    }
+    fn visit_bool<E: Error>(self, flag: bool) -> Result<Node, E> {
+        Ok(Node::Flag(flag))
+    }
+    fn visit_i64<E: Error>(self, number: i64) -> Result<Node, E> {
+        Ok(Node::Number(number as f64))
+    }
+    fn visit_u64<E: Error>(self, number: u64) -> Result<Node, E> {
+        Ok(Node::Number(number as f64))
+    }
+    fn visit_f64<E: Error>(self, number: f64) -> Result<Node, E> {
+        Ok(Node::Number(number))
+    }
+    fn visit_str<E: Error>(self, text: &str) -> Result<Node, E> {
+        Ok(Node::Text(text.to_owned()))
+    }
+    fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Node, A::Error> {
+        let mut members = Vec::new();
+        while let Some(member) = seq.next_element()? {
+            members.push(member);
+        }
+        Ok(Node::List(members))
+    }
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Node, A::Error> {
+        let mut members: Vec<(String, Node)> = Vec::new();
+        while let Some((key, value)) = map.next_entry::<String, Node>()? {
+            if members.iter().any(|(known, _)| *known == key) {
+                return Err(A::Error::custom(format!("key \"{key}\" is given twice")));
+            }
+            members.push((key, value));
+        }
+        Ok(Node::Table(members))
+    }
+}
+
+/// Reads TOML.
+pub(super) fn from_toml(text: &str) -> Result<Node, String> {
+    toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())
+}
+
+/// Reads JSON. `NaN`, `Infinity` and numbers beyond f64, which many programs write although JSON
+/// has no such thing, become values that no number is read from, so that the path of their field
+/// can be named.
+pub(super) fn from_json(text: &str) -> Result<Node, String> {
+    serde_json::from_str(&marked(text)).map_err(|error| error.to_string())
+}
+
+fn marked(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(first) = rest.chars().next() {
+        let length = match first {
+            '"' => quoted_length(rest),
+            '-' | '+' | '.' | '0'..='9' | 'a'..='z' | 'A'..='Z' => rest
+                .find(|c: char| !(c.is_ascii_alphanumeric() || "+-._".contains(c)))
+                .unwrap_or(rest.len()),
+            other => other.len_utf8(),
+        };
+        let (token, after) = rest.split_at(length);
+        if first != '"' && token.parse::<f64>().is_ok_and(|number| !number.is_finite()) {
+            out.push_str("\"\\u0001");
+            out.push_str(token);
+            out.push('"');
+        } else {
+            out.push_str(token);
+        }
+        rest = after;
+    }
+    out
+}
+
+/// Bytes of the quoted text at the beginning, quotes included.
+fn quoted_length(text: &str) -> usize {
+    let mut escaped = false;
+    for (index, c) in text.char_indices().skip(1) {
+        match c {
+            '"' if !escaped => return index + 1,
+            '\\' => escaped = !escaped,
+            _ => escaped = false,
+        }
+    }
+    text.len()
+}

@@ -1,0 +1,86 @@
+//! Facts about scene files.
+#![allow(clippy::unwrap_used)]
+use super::*;
+
+fn scene(text: &str) -> Result<Scene, SceneError> {
+    read_scene(text, Format::Json, &mut |_| Err("no files here".into()))
+}
+
+fn complaint(text: &str) -> String {
+    scene(text).unwrap_err().to_string()
+}
+
+const PIN: &str = r#"{"elements":[{"id":"pin","kind":"cylinder","radius":4,"height":30}],"movers":[{"id":"jaw","kind":"block","half":[1,2,3]}]}"#;
+
+#[test]
+fn toml_and_json_say_the_same() {
+    let toml = "units = \"mm\"\n[[elements]]\nid = \"pin\"\nkind = \"cylinder\"\nradius = 4\nheight = 30.0\n[[movers]]\nid = \"jaw\"\nkind = \"block\"\nhalf = [1, 2, 3]\n";
+    let read = read_scene(toml, Format::Toml, &mut |_| Err(String::new())).unwrap();
+    assert_eq!(read, scene(PIN).unwrap());
+}
+
+#[test]
+fn every_bad_field_is_named_by_its_path() {
+    let block = |half: &str| {
+        complaint(&format!(
+            r#"{{"elements":[{{"id":"b","kind":"block","half":{half}}}]}}"#
+        ))
+    };
+    assert!(block("[1,-2,3]").starts_with("elements[0].half[1]: found -2, expected"));
+    assert!(
+        block("[1,NaN,3]").starts_with("elements[0].half[1]: found NaN, expected a finite number")
+    );
+    assert!(block("[1,1e999,3]").starts_with("elements[0].half[1]: found 1e999"));
+    assert!(block("[1,-Infinity,3]").starts_with("elements[0].half[1]: found -Infinity"));
+    assert!(block("[1,2]").starts_with("elements[0].half: found a list of 2"));
+    assert!(block("[1,2,\"3\"]").starts_with("elements[0].half[2]: found \"3\""));
+    assert!(complaint(r#"{"units":"inch"}"#).starts_with("units: found \"inch\", expected \"mm\""));
+    assert!(complaint(r#"{"element":[]}"#).starts_with("element: found an unknown key"));
+    let part = r#"{"movers":[{"id":"m","kind":"compound","parts":[{"kind":"block","half":[1,1,1]},{"kind":"cylinder","radius":0,"height":1}]}]}"#;
+    assert!(complaint(part).starts_with("movers[0].parts[1].radius: found 0"));
+    let still =
+        r#"{"elements":[{"id":"b","kind":"block","half":[1,1,1],"pose":{"rotation":[0,0,0,0]}}]}"#;
+    assert!(complaint(still).starts_with("elements[0].pose.rotation: found [0.0, 0.0, 0.0, 0.0]"));
+    let twice = r#"{"elements":[{"id":"b","kind":"block","half":[1,1,1]},{"id":"b","kind":"block","half":[1,1,1]}]}"#;
+    assert!(complaint(twice).starts_with("elements[1].id: found \"b\" again"));
+}
+
+#[test]
+fn a_mesh_is_inline_or_in_a_file() {
+    let obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1 2/2 3/3 -1\n";
+    let text = r#"{"elements":[{"id":"m","kind":"mesh","file":"a.OBJ","scale":2.0}]}"#;
+    let read = read_scene(text, Format::Json, &mut |_| Ok(obj.as_bytes().to_vec())).unwrap();
+    let Shape::Mesh(mesh) = &read.elements[0].shape else {
+        panic!("no mesh")
+    };
+    assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(mesh.vertices[2], [2.0, 2.0, 0.0]);
+    let index =
+        r#"{"elements":[{"id":"m","kind":"mesh","vertices":[[0,0,0]],"triangles":[[0,0,1]]}]}"#;
+    assert!(
+        complaint(index)
+            .starts_with("elements[0].triangles[0][2]: found 1, expected an index below")
+    );
+}
+
+#[test]
+fn moves_are_complained_about_with_their_line() {
+    let scene = scene(PIN).unwrap();
+    let wrong = |text: &str| read_moves(text, &scene).unwrap_err().to_string();
+    let good = r#"{"id":"a","mover":"jaw","from":{},"to":{"position":[1,0,0]},"ignore":["pin"]}"#;
+    let read = read_moves(&format!("{good}\n\n"), &scene).unwrap();
+    assert_eq!(
+        (read.len(), read[0].margin_mm, read[0].ignore.as_slice()),
+        (1, 0.0, &[0][..])
+    );
+    assert!(wrong(&format!("{good}\n{good}")).starts_with("line 2: id: found \"a\" again"));
+    assert!(
+        wrong(&good.replace("\"jaw\"", "\"claw\""))
+            .starts_with("line 1: mover: found \"claw\", expected the id of a mover")
+    );
+    assert!(
+        wrong(&good.replace("[1,0,0]", "[1,2e6,0]"))
+            .starts_with("line 1: to.position[1]: found 2000000")
+    );
+    assert!(wrong("{").starts_with("line 1: not readable"));
+}

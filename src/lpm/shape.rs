@@ -1,0 +1,217 @@
+//! The bodies of the machine: block, cylinder, compound (block-cylinder elements) and mesh.
+//!
+//! Bodies are closed sets: their surface belongs to them, so touching is contact.
+
+use super::pose::Pose;
+use super::vector::is_finite;
+
+/// Largest coordinate or size the arithmetic is proven for, mm.
+pub const LARGEST_COORDINATE_MM: f64 = 1e6;
+
+/// Compounds may hold compounds this deep; deeper ones are refused.
+const DEEPEST_COMPOUND: usize = 16;
+
+/// A solid body in its own frame.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// Cuboid centred at the origin.
+    Block {
+        /// Half extents along x, y, z, mm, > 0.
+        half: [f64; 3],
+    },
+    /// Cylinder about z, centred at the origin.
+    Cylinder {
+        /// Radius, mm, > 0.
+        radius: f64,
+        /// Whole height along z, mm, > 0.
+        height: f64,
+    },
+    /// Several bodies in one frame that move as one; parts may overlap.
+    Compound(
+        /// Parts with their place in the frame of the compound.
+        Vec<(Pose, Shape)>,
+    ),
+    /// Triangles.
+    Mesh(Mesh),
+}
+
+/// Triangles over shared vertices. A closed surface is solid, an open one is its triangles only.
+/// Slivers and triangles shrunk to a segment or a point are legal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// Corners, mm.
+    pub vertices: Vec<[f64; 3]>,
+    /// Three indices into `vertices` each.
+    pub triangles: Vec<[usize; 3]>,
+}
+
+/// Why a body or a pose is not accepted; the path inside the body is part of the message.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Flaw {
+    /// A size is not a finite number above zero (or beyond what the arithmetic covers).
+    #[error("{path}: size is {found}, expected above 0 and at most 1e6 mm")]
+    Size {
+        /// Member of the shape.
+        path: String,
+        /// What it holds.
+        found: f64,
+    },
+    /// A coordinate is NaN, infinite or beyond 1e6 mm.
+    #[error("{path}: coordinate is {found}, expected a finite number within +-1e6 mm")]
+    Coordinate {
+        /// Member of the pose or vertex.
+        path: String,
+        /// What it holds.
+        found: f64,
+    },
+    /// A quaternion has no direction.
+    #[error(
+        "{path}: rotation {found:?} is no rotation, expected a finite non-zero quaternion [w, x, y, z]"
+    )]
+    Rotation {
+        /// Member of the pose.
+        path: String,
+        /// What it holds.
+        found: [f64; 4],
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("{path}: vertex {found} does not exist, expected below {vertices}")]
+    Index {
+        /// Member of the mesh.
+        path: String,
+        /// The index.
+        found: usize,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// A compound without parts, a mesh without triangles, or nesting without end.
+    #[error("{path}: {found}, expected {expected}")]
+    Structure {
+        /// Member of the shape.
+        path: String,
+        /// What is wrong.
+        found: &'static str,
+        /// What is right.
+        expected: &'static str,
+    },
+}
+
+impl Shape {
+    /// Accepts exactly the bodies the arithmetic is proven for.
+    ///
+    /// # Errors
+    /// The first [`Flaw`] with its path inside the shape (`half[1]`, `parts[2].radius`).
+    pub fn check(&self) -> Result<(), Flaw> {
+        check_shape(self, "", 0)
+    }
+}
+
+impl Pose {
+    /// Accepts finite positions within 1e6 mm and any non-zero quaternion.
+    ///
+    /// # Errors
+    /// [`Flaw::Coordinate`] or [`Flaw::Rotation`].
+    pub fn check(&self) -> Result<(), Flaw> {
+        check_pose(self, "")
+    }
+}
+
+fn check_shape(shape: &Shape, path: &str, depth: usize) -> Result<(), Flaw> {
+    match shape {
+        Shape::Block { half } => {
+            for (axis, size) in half.iter().enumerate() {
+                check_size(*size, || format!("{path}half[{axis}]"))?;
+            }
+            Ok(())
+        }
+        Shape::Cylinder { radius, height } => {
+            check_size(*radius, || format!("{path}radius"))?;
+            check_size(*height, || format!("{path}height"))
+        }
+        Shape::Compound(parts) => check_compound(parts, path, depth),
+        Shape::Mesh(mesh) => check_mesh(mesh, path),
+    }
+}
+
+fn check_compound(parts: &[(Pose, Shape)], path: &str, depth: usize) -> Result<(), Flaw> {
+    let flaw = |found, expected| Flaw::Structure {
+        path: format!("{path}parts"),
+        found,
+        expected,
+    };
+    if parts.is_empty() {
+        return Err(flaw("no parts", "at least one part"));
+    }
+    if depth >= DEEPEST_COMPOUND {
+        return Err(flaw("compounds nested too deep", "at most 16 levels"));
+    }
+    for (index, (pose, part)) in parts.iter().enumerate() {
+        check_shape(part, &format!("{path}parts[{index}]."), depth + 1)?;
+        check_pose(pose, &format!("{path}parts[{index}].pose."))?;
+    }
+    Ok(())
+}
+
+fn check_mesh(mesh: &Mesh, path: &str) -> Result<(), Flaw> {
+    if mesh.triangles.is_empty() {
+        return Err(Flaw::Structure {
+            path: format!("{path}triangles"),
+            found: "no triangles",
+            expected: "at least one triangle",
+        });
+    }
+    for (index, vertex) in mesh.vertices.iter().enumerate() {
+        check_point(*vertex, &format!("{path}vertices[{index}]"))?;
+    }
+    for (index, triangle) in mesh.triangles.iter().enumerate() {
+        for (corner, vertex) in triangle.iter().enumerate() {
+            if *vertex >= mesh.vertices.len() {
+                return Err(Flaw::Index {
+                    path: format!("{path}triangles[{index}][{corner}]"),
+                    found: *vertex,
+                    vertices: mesh.vertices.len(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_size(found: f64, path: impl Fn() -> String) -> Result<(), Flaw> {
+    if found > 0.0 && found <= LARGEST_COORDINATE_MM {
+        Ok(())
+    } else {
+        Err(Flaw::Size {
+            path: path(),
+            found,
+        })
+    }
+}
+
+fn check_point(point: [f64; 3], path: &str) -> Result<(), Flaw> {
+    match point
+        .iter()
+        .position(|member| !(member.abs() <= LARGEST_COORDINATE_MM))
+    {
+        None => Ok(()),
+        Some(axis) => Err(Flaw::Coordinate {
+            path: format!("{path}[{axis}]"),
+            found: point[axis],
+        }),
+    }
+}
+
+fn check_pose(pose: &Pose, path: &str) -> Result<(), Flaw> {
+    check_point(pose.position, &format!("{path}position"))?;
+    let [w, x, y, z] = pose.rotation;
+    let squared = w * w + x * x + y * y + z * z;
+    // Outside this range the squared length has lost its digits to under- or overflow.
+    if w.is_finite() && is_finite([x, y, z]) && squared > 1e-200 && squared < 1e200 {
+        Ok(())
+    } else {
+        Err(Flaw::Rotation {
+            path: format!("{path}rotation"),
+            found: pose.rotation,
+        })
+    }
+}

@@ -1,0 +1,67 @@
+//! Three-dimensional vector arithmetic on plain arrays, in millimetres or as pure directions.
+
+/// A point, a displacement or a direction.
+pub(crate) type Vec3 = [f64; 3];
+
+pub(crate) fn add(a: Vec3, b: Vec3) -> Vec3 {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+pub(crate) fn sub(a: Vec3, b: Vec3) -> Vec3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+pub(crate) fn scale(a: Vec3, factor: f64) -> Vec3 {
+    [a[0] * factor, a[1] * factor, a[2] * factor]
+}
+
+/// `a + factor * b`.
+pub(crate) fn along(a: Vec3, factor: f64, b: Vec3) -> Vec3 {
+    [
+        a[0] + factor * b[0],
+        a[1] + factor * b[1],
+        a[2] + factor * b[2],
+    ]
+}
+
+pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+pub(crate) fn length(a: Vec3) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Largest sum of magnitudes: an easy upper bound of the length.
+pub(crate) fn reach(a: Vec3) -> f64 {
+    a[0].abs() + a[1].abs() + a[2].abs()
+}
+
+/// Unit vector along `a`; `None` when `a` is so short (or not finite) that it has no direction.
+///
+/// The vector is first scaled by its largest member, so that directions of vectors as short as
+/// 1e-150 mm keep all their digits.
+pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
+    let largest = a[0].abs().max(a[1].abs()).max(a[2].abs());
+    if !(largest > 1e-150 && largest < 1e150) {
+        return None;
+    }
+    let scaled = [a[0] / largest, a[1] / largest, a[2] / largest];
+    Some(scale(scaled, 1.0 / length(scaled)))
+}
+
+pub(crate) fn negate(a: Vec3) -> Vec3 {
+    [-a[0], -a[1], -a[2]]
+}
+
+pub(crate) fn is_finite(a: Vec3) -> bool {
+    a.iter().all(|member| member.is_finite())
+}

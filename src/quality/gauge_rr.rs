@@ -1,0 +1,193 @@
+//! Gauge repeatability and reproducibility by analysis of variance with interaction.
+//!
+//! A crossed study: every operator measures every part the same number of times, at least twice. Sums
+//! of squares go to parts, operators, their interaction and what is left; the interaction is pooled
+//! with the rest when its F test gives p > 0.25. Negative components of variance count as zero. All
+//! results are standard deviations.
+
+use super::squares::{Sizes, Squares};
+use super::{crossing, fisher};
+use serde::Serialize;
+
+/// Above this p the interaction is taken for chance (AIAG MSA, 4th edition, appendix on ANOVA).
+const POOL_ABOVE: f64 = 0.25;
+
+/// Ratio between categories a gauge can tell apart and the ratio of deviations (AIAG: 1.41).
+const CATEGORIES: f64 = 1.41;
+
+/// One reading of the study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Which part.
+    pub part: String,
+    /// Who, or which rig, measured.
+    pub operator: String,
+    /// Which time.
+    pub trial: String,
+    /// What was read; finite.
+    pub value: f64,
+}
+
+/// Standard deviations of the sources of variation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct GaugeRr {
+    /// Always `anova`.
+    pub method: &'static str,
+    /// Same part, same operator.
+    pub repeatability: f64,
+    /// Between operators.
+    pub reproducibility: f64,
+    /// Between operators, other on other parts; 0 when pooled.
+    pub interaction: f64,
+    /// The three together.
+    pub grr: f64,
+    /// Between parts.
+    pub part: f64,
+    /// All together.
+    pub total: f64,
+    /// `grr` in percent of `total`; none when nothing varies.
+    pub pct_grr: Option<f64>,
+    /// Categories the gauge can tell apart, at least 1; none without gauge variation.
+    pub ndc: Option<u64>,
+    /// p of the F test of the interaction; none with one operator.
+    pub interaction_p: Option<f64>,
+}
+
+/// Why a study cannot be evaluated.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum GaugeRrError {
+    /// Fewer than two parts or two trials, or no operator.
+    #[error(
+        "found {parts} parts, {operators} operators, {trials} trials; expected 2 parts, 1 operator and 2 trials at least"
+    )]
+    TooSmall {
+        /// Parts found.
+        parts: usize,
+        /// Operators found.
+        operators: usize,
+        /// Trials found.
+        trials: usize,
+    },
+    /// A combination without its reading.
+    #[error(
+        "part {part:?}, operator {operator:?} has no trial {trial:?}: the study must be complete"
+    )]
+    Missing {
+        /// Which part.
+        part: String,
+        /// Which operator.
+        operator: String,
+        /// Which trial.
+        trial: String,
+    },
+    /// A combination with two readings.
+    #[error("part {part:?}, operator {operator:?} has trial {trial:?} twice")]
+    Twice {
+        /// Which part.
+        part: String,
+        /// Which operator.
+        operator: String,
+        /// Which trial.
+        trial: String,
+    },
+    /// A reading that is no number.
+    #[error("part {part:?}, operator {operator:?}, trial {trial:?} is not finite")]
+    NotFinite {
+        /// Which part.
+        part: String,
+        /// Which operator.
+        operator: String,
+        /// Which trial.
+        trial: String,
+    },
+}
+
+/// Evaluates a complete crossed study.
+pub fn anova(readings: &[Reading]) -> Result<GaugeRr, GaugeRrError> {
+    let cells = crossing::cells(readings)?;
+    let sizes = Sizes::of(&cells);
+    let squares = Squares::of(&cells, &sizes);
+    Ok(components(&sizes, &squares))
+}
+
+fn components(sizes: &Sizes, squares: &Squares) -> GaugeRr {
+    let Sizes {
+        parts,
+        operators,
+        trials,
+    } = *sizes;
+    let against = Against::of(sizes, squares);
+    let above = |mean_square: f64, each: f64| ((mean_square - against.main) / each).max(0.0);
+    let reproducibility = if operators > 1.0 {
+        above(squares.operators / (operators - 1.0), parts * trials)
+    } else {
+        0.0
+    };
+    let interaction = ((against.main - against.error) / trials).max(0.0);
+    let part = above(squares.parts / (parts - 1.0), operators * trials);
+    deviations(
+        [against.error, reproducibility, interaction, part],
+        against.interaction_p,
+    )
+}
+
+/// What the mean squares are compared with.
+struct Against {
+    /// For parts and operators: the interaction, or the pooled rest.
+    main: f64,
+    /// For the interaction: the repeats, or the pooled rest.
+    error: f64,
+    /// None with one operator.
+    interaction_p: Option<f64>,
+}
+
+impl Against {
+    fn of(sizes: &Sizes, squares: &Squares) -> Self {
+        let crossed = (sizes.parts - 1.0) * (sizes.operators - 1.0);
+        let repeats = sizes.parts * sizes.operators * (sizes.trials - 1.0);
+        let (main, error) = (squares.interaction / crossed, squares.repeats / repeats);
+        let interaction_p = (crossed > 0.0).then(|| {
+            let f = if main > 0.0 { main / error } else { 0.0 };
+            fisher::upper_tail(f, crossed, repeats)
+        });
+        if interaction_p.is_some_and(|p| p <= POOL_ABOVE) {
+            return Self {
+                main,
+                error,
+                interaction_p,
+            };
+        }
+        let pooled = (squares.interaction + squares.repeats) / (crossed + repeats);
+        Self {
+            main: pooled,
+            error: pooled,
+            interaction_p,
+        }
+    }
+}
+
+/// From variances.
+fn deviations(
+    [repeatability, reproducibility, interaction, part]: [f64; 4],
+    interaction_p: Option<f64>,
+) -> GaugeRr {
+    let grr = repeatability + reproducibility + interaction;
+    let total = (grr + part).sqrt();
+    let (grr, part) = (grr.sqrt(), part.sqrt());
+    GaugeRr {
+        method: "anova",
+        repeatability: repeatability.sqrt(),
+        reproducibility: reproducibility.sqrt(),
+        interaction: interaction.sqrt(),
+        grr,
+        part,
+        total,
+        pct_grr: (total > 0.0).then(|| 100.0 * grr / total),
+        ndc: (grr > 0.0).then(|| ((CATEGORIES * part / grr).floor() as u64).max(1)),
+        interaction_p,
+    }
+}
+
+#[cfg(test)]
+#[path = "gauge_rr_tests.rs"]
+mod tests;

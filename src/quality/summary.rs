@@ -1,0 +1,86 @@
+//! The figures of one parameter, in the shape of `history stats --json`.
+
+use super::capability::{Capability, D2_PAIR, Limits};
+use super::spread::{self, Spread};
+use serde::Serialize;
+
+/// Null in JSON where there is nothing to say.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// Parameter key.
+    pub param: String,
+    /// How many values.
+    pub n: u64,
+    /// Mean.
+    pub mean: Option<f64>,
+    /// Standard deviation with n - 1.
+    pub sd: Option<f64>,
+    /// Least value.
+    pub min: Option<f64>,
+    /// Greatest value.
+    pub max: Option<f64>,
+    /// Median.
+    pub median: Option<f64>,
+    /// Lag-1 autocorrelation in the given order.
+    pub lag1: Option<f64>,
+    /// From the mean moving range.
+    pub cp: Option<f64>,
+    /// From the mean moving range.
+    pub cpk: Option<f64>,
+    /// Lower end of the two-sided 95 % interval of `cpk`.
+    pub cpk_low95: Option<f64>,
+    /// From `sd`.
+    pub ppk: Option<f64>,
+}
+
+impl Summary {
+    /// Of values in order of time.
+    pub fn of(param: &str, values: &[f64], limits: Limits) -> Self {
+        let spread = Spread::of(values);
+        let within = spread::mean_moving_range(values).map(|range| range / D2_PAIR);
+        let able = Capability::of(limits, spread.n(), spread.mean(), within, spread.sd());
+        Self {
+            param: param.to_owned(),
+            n: spread.n(),
+            mean: spread.mean(),
+            sd: spread.sd(),
+            min: spread.min(),
+            max: spread.max(),
+            median: spread::median(values),
+            lag1: spread::lag1(values),
+            cp: able.cp,
+            cpk: able.cpk,
+            cpk_low95: able.cpk_low95,
+            ppk: able.ppk,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_summary_has_exactly_the_agreed_keys() {
+        let json = serde_json::to_value(Summary::of("x", &[1.0, 2.0], Limits::default())).unwrap();
+        let mut keys: Vec<_> = json.as_object().unwrap().keys().cloned().collect();
+        keys.sort();
+        let agreed = "cp cpk cpk_low95 lag1 max mean median min n param ppk sd";
+        assert_eq!(keys.join(" "), agreed);
+        assert!(json["cpk"].is_null());
+    }
+
+    #[test]
+    fn cpk_follows_the_moving_range_and_ppk_the_whole_spread() {
+        let limits = Limits {
+            low: Some(0.0),
+            high: Some(5.0),
+        };
+        let it = Summary::of("x", &[1.0, 2.0, 3.0, 4.0], limits);
+        let within = 1.0 / 1.128;
+        assert!((it.cp.unwrap() - 5.0 / (6.0 * within)).abs() < 1e-12);
+        assert!((it.cpk.unwrap() - 2.5 / (3.0 * within)).abs() < 1e-12);
+        assert!((it.ppk.unwrap() - 2.5 / (3.0 * (5.0_f64 / 3.0).sqrt())).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,169 @@
+//! `config/rig.toml` as it stands in the file, before names are resolved to modules and channels.
+//!
+//! [`super::wiring::Wiring::resolve`] turns it into the wiring; nothing else should read it.
+
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// The sections of the file that describe lines, modules, points and mechanism.
+#[derive(Debug, Clone, Deserialize)]
+pub struct RigSettings {
+    /// Bus lines by name.
+    pub line: BTreeMap<String, LineSettings>,
+    /// Times and counts of every line.
+    pub bus: BusSettings,
+    /// What the plant demands of the emergency stop.
+    pub safety: SafetySettings,
+    /// Modules by name.
+    pub module: BTreeMap<String, ModuleSettings>,
+    /// Analog inputs by point name.
+    pub analog_in: BTreeMap<String, AnalogInSettings>,
+    /// Thermometers by point name.
+    pub temperature: BTreeMap<String, ChannelSettings>,
+    /// Analog outputs by point name.
+    pub analog_out: BTreeMap<String, AnalogOutSettings>,
+    /// Gated counters by point name.
+    pub counter: BTreeMap<String, ChannelSettings>,
+    /// Digital inputs by point name.
+    pub digital_in: BTreeMap<String, DigitalInSettings>,
+    /// Digital outputs by point name.
+    pub digital_out: BTreeMap<String, ChannelSettings>,
+    /// Stroke supervision by actuator.
+    pub actuator: BTreeMap<String, ActuatorSettings>,
+    /// Stations of the sort axis that are not bins.
+    pub axis: BTreeMap<String, StationSettings>,
+    /// Bins by name.
+    pub bin: BTreeMap<String, BinSettings>,
+}
+
+/// One RS-485 line, always 8N1.
+#[derive(Debug, Clone, Deserialize)]
+pub struct LineSettings {
+    /// Path of the serial port.
+    pub port: String,
+    /// Bits per second.
+    pub baud: u32,
+    /// Whether the modules of this line check and send check sums.
+    pub checksum: bool,
+}
+
+/// Times and counts that hold on every line.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct BusSettings {
+    /// Reply time of a digital, counter or analog output module beyond the wire, ms.
+    pub digital_allowance_ms: f64,
+    /// The same of an analog input module, ms.
+    pub analog_allowance_ms: f64,
+    /// Attempts at a command that may be repeated.
+    pub tries: u8,
+    /// Period of host OK, ms.
+    pub heartbeat_ms: f64,
+    /// Host watchdog of the output modules, ms; the modules count tenths of a second.
+    pub host_watchdog_ms: f64,
+    /// Pause between two scans of the motion line, ms; 0 polls without rest.
+    pub scan_period_ms: f64,
+}
+
+/// What the plant demands of the emergency stop.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct SafetySettings {
+    /// Longest accepted time from the opening of the contact to outputs written, ms.
+    pub estop_reaction_ms: f64,
+}
+
+/// One module as the file names it.
+#[derive(Debug, Clone, Deserialize)]
+pub struct ModuleSettings {
+    /// Name of its line.
+    pub line: String,
+    /// Two hexadecimal digits.
+    pub address: String,
+    /// Model name, `I-7017F`.
+    pub model: String,
+    /// Type code TT of the configuration word, two hexadecimal digits.
+    #[serde(rename = "type")]
+    pub type_code: String,
+    /// `hex`, `engineering` or `percent`; analog modules only.
+    pub format: Option<String>,
+    /// Fast mode of an analog input module.
+    pub fast: Option<bool>,
+    /// Enabled channels of an analog input module, two hexadecimal digits.
+    pub mask: Option<String>,
+    /// Slew code of an analog output module, one hexadecimal digit.
+    pub slew: Option<String>,
+    /// Whether the host watchdog of this module must be on.
+    pub watchdog: Option<bool>,
+    /// Safe value of an analog output, V at its terminal.
+    pub safe: Option<f64>,
+    /// Safe value of digital outputs, four hexadecimal digits.
+    pub safe_outputs: Option<String>,
+}
+
+/// An analog input point.
+#[derive(Debug, Clone, Deserialize)]
+pub struct AnalogInSettings {
+    /// Name of the module.
+    pub module: String,
+    /// Channel, from 0.
+    pub channel: u8,
+    /// Unit of the quantity: `V` or `A`.
+    pub unit: String,
+    /// Volts at the terminal per unit of the quantity.
+    pub gain: f64,
+}
+
+/// An analog output point; always channel 0 of its module.
+#[derive(Debug, Clone, Deserialize)]
+pub struct AnalogOutSettings {
+    /// Name of the module.
+    pub module: String,
+    /// Volts of the coil supply per volt at the terminal.
+    pub gain: f64,
+}
+
+/// A point that is a module and a channel.
+#[derive(Debug, Clone, Deserialize)]
+pub struct ChannelSettings {
+    /// Name of the module.
+    pub module: String,
+    /// Channel, from 0.
+    pub channel: u8,
+}
+
+/// A digital input point.
+#[derive(Debug, Clone, Deserialize)]
+pub struct DigitalInSettings {
+    /// Name of the module.
+    pub module: String,
+    /// Channel, from 0.
+    pub channel: u8,
+    /// `low` when the bit reads 0 while the signal is present, else `high`.
+    pub active: String,
+}
+
+/// Supervision of an actuator.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct ActuatorSettings {
+    /// Longest stroke before it counts as trouble, ms.
+    pub timeout_ms: f64,
+}
+
+/// A point of the sort axis.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct StationSettings {
+    /// Number in the point table of the slide.
+    pub point: u8,
+    /// Position relative to the nest, mm.
+    pub x_mm: f64,
+}
+
+/// A bin: a point of the axis with a beam in its chute.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct BinSettings {
+    /// Number in the point table of the slide.
+    pub point: u8,
+    /// Position relative to the nest, mm.
+    pub x_mm: f64,
+    /// Digital input whose event counter counts falling parts.
+    pub beam: String,
+}

@@ -1,0 +1,276 @@
+//! What a test stage is made of: acts, each one transaction on the measuring line or one wait.
+//!
+//! A stage writes its acts down as a list before it begins; [`Runner`] carries them out and keeps what
+//! was read. So the order of a test can be read, printed and replayed, and no stage ever holds the bus.
+
+use crate::rig::image::Image;
+use crate::rig::sample::{CountSample, Sample};
+use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Temperature};
+use crate::units::{RigTime, Span, Volt};
+
+/// What one transaction (or one pair, for the gates) brings in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Read {
+    /// All inputs of the interface board.
+    Board,
+    /// The enabled channels of the coil converter, one scan.
+    Coil,
+    /// The contact drop.
+    Drop,
+    /// Both gate counters.
+    Gates,
+    /// Temperature of the magazine track, which the part has.
+    Track,
+}
+
+/// One step of a stage.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Act {
+    /// Outputs of the interface board, written together.
+    Board(Vec<(DigitalOut, bool)>),
+    /// Voltages asked of the supply outputs, in volts of the coil, written one after the other.
+    Supply(Vec<(AnalogOut, Volt)>),
+    /// One reading.
+    Read(Read),
+    /// Channel mask of the coil converter; only while a lot is prepared.
+    CoilMask(u8),
+    /// Remembers this instant for [`Act::WaitSinceMark`].
+    Mark,
+    /// Waits until so much time has passed since the mark.
+    WaitSinceMark(Span),
+    /// Waits so long after the previous act was answered.
+    Wait(Span),
+    /// Reads the board until the point is active, or gives up; which of both is kept.
+    Until {
+        /// Point of the interface board.
+        point: DigitalIn,
+        /// Longest wait.
+        within: Span,
+    },
+}
+
+/// Work for the measuring line.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Job {
+    /// See [`Act::Board`].
+    Board(Vec<(DigitalOut, bool)>),
+    /// See [`Act::Supply`].
+    Supply(Vec<(AnalogOut, Volt)>),
+    /// See [`Read`].
+    Read(Read),
+    /// Channel mask of the coil converter; only while a lot is prepared, never during a lot.
+    CoilMask(u8),
+}
+
+/// Answer to a [`Job`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct JobDone {
+    /// When the last reply of the job was complete.
+    pub at: RigTime,
+    /// Why it failed: line, address, command, how often.
+    pub trouble: Option<String>,
+}
+
+/// Inputs of the interface board at one instant; `None` is never read as open or closed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BoardInputs {
+    /// Coil A, coil B, COM, NO, NC: force to sense below 5 ohm.
+    pub kelvin: [bool; 5],
+    /// Normally open contact is made.
+    pub no_closed: bool,
+    /// Normally closed contact is made.
+    pub nc_closed: bool,
+    /// The contact source cannot drive its current.
+    pub compliance: bool,
+    /// Probes are up, by the hard-wired chain.
+    pub probe_chain: bool,
+}
+
+impl BoardInputs {
+    /// From the image, provided every bit was read at or after `since`.
+    fn take(image: &Image, now: RigTime) -> Option<Self> {
+        let get = |point| image.input(point, now, Span::ms(50));
+        Some(Self {
+            kelvin: [
+                get(DigitalIn::KelvinCoilA)?,
+                get(DigitalIn::KelvinCoilB)?,
+                get(DigitalIn::KelvinCom)?,
+                get(DigitalIn::KelvinNo)?,
+                get(DigitalIn::KelvinNc)?,
+            ],
+            no_closed: get(DigitalIn::NoClosed)?,
+            nc_closed: get(DigitalIn::NcClosed)?,
+            compliance: get(DigitalIn::SourceCompliance)?,
+            probe_chain: get(DigitalIn::ProbeChain)?,
+        })
+    }
+}
+
+/// One scan of the coil converter; a channel that is masked out is `None`.
+#[derive(Debug, Clone)]
+pub struct CoilScan {
+    /// Coil voltage, up to 6 V.
+    pub voltage_fine: Option<Sample>,
+    /// Coil current, up to 16 mA.
+    pub current_fine: Option<Sample>,
+    /// Coil current, up to 50 mA.
+    pub current_wide: Option<Sample>,
+    /// The 5 V reference.
+    pub reference: Option<Sample>,
+}
+
+/// Everything a stage has read, in order, by kind.
+#[derive(Debug, Clone, Default)]
+pub struct Readings {
+    /// Board inputs.
+    pub boards: Vec<BoardInputs>,
+    /// Scans of the coil converter.
+    pub coil: Vec<CoilScan>,
+    /// Contact drops.
+    pub drops: Vec<Sample>,
+    /// Gate counters 0 and 1.
+    pub gates: Vec<[CountSample; 2]>,
+    /// Outcomes of [`Act::Until`].
+    pub seen: Vec<bool>,
+    /// Track temperatures.
+    pub track: Vec<Sample>,
+}
+
+/// What the runner asks of its surroundings.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Doing {
+    /// Start this job; answer with [`JobDone`].
+    Job(Job),
+    /// A job is under way.
+    Busy,
+    /// Nothing to do before this instant.
+    Wait(RigTime),
+    /// All acts are done.
+    Done,
+    /// A job failed; the stage cannot be judged.
+    Trouble(String),
+}
+
+/// Carries out the acts of one stage.
+#[derive(Debug)]
+pub struct Runner {
+    acts: std::vec::IntoIter<Act>,
+    current: Option<Act>,
+    pending: bool,
+    began: RigTime,
+    since: RigTime,
+    mark: RigTime,
+    /// What was read so far.
+    pub readings: Readings,
+}
+
+impl Runner {
+    /// A runner that begins now.
+    pub fn new(acts: Vec<Act>, now: RigTime) -> Self {
+        let mut acts = acts.into_iter();
+        let current = acts.next();
+        Self { acts, current, pending: false, began: now, since: now, mark: now, readings: Readings::default() }
+    }
+
+    /// True when nothing is left to do.
+    pub fn is_done(&self) -> bool {
+        self.current.is_none() && !self.pending
+    }
+
+    /// Goes on as far as it can. `done` answers the job asked for before, once.
+    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Doing {
+        if self.pending {
+            let Some(done) = done else { return Doing::Busy };
+            if let Some(trouble) = &done.trouble {
+                return Doing::Trouble(trouble.clone());
+            }
+            self.pending = false;
+            self.since = done.at;
+            if let Err(trouble) = self.keep(image, now) {
+                return Doing::Trouble(trouble);
+            }
+        }
+        while let Some(act) = &self.current {
+            match act {
+                Act::Board(outputs) => return self.ask(Job::Board(outputs.clone())),
+                Act::Supply(outputs) => return self.ask(Job::Supply(outputs.clone())),
+                Act::Read(read) => return self.ask(Job::Read(*read)),
+                Act::CoilMask(mask) => return self.ask(Job::CoilMask(*mask)),
+                Act::Until { .. } => return self.ask(Job::Read(Read::Board)),
+                Act::Mark => {
+                    self.mark = self.since;
+                    self.next();
+                }
+                Act::Wait(span) => {
+                    let until = self.since + *span;
+                    if now < until {
+                        return Doing::Wait(until);
+                    }
+                    self.since = until;
+                    self.next();
+                }
+                Act::WaitSinceMark(span) => {
+                    let until = self.mark + *span;
+                    if now < until {
+                        return Doing::Wait(until);
+                    }
+                    self.since = self.since.max(until);
+                    self.next();
+                }
+            }
+        }
+        Doing::Done
+    }
+
+    fn ask(&mut self, job: Job) -> Doing {
+        self.pending = true;
+        Doing::Job(job)
+    }
+
+    fn next(&mut self) {
+        self.current = self.acts.next();
+        self.began = self.since;
+    }
+
+    /// Takes in what the finished job brought, and moves on unless a condition is still awaited.
+    fn keep(&mut self, image: &Image, now: RigTime) -> Result<(), String> {
+        match self.current.clone() {
+            Some(Act::Read(read)) => self.take(read, image, now)?,
+            Some(Act::Until { point, within }) => {
+                let active = image.input(point, now, Span::ms(50)).ok_or("a board input is stale")?;
+                if !active && self.since.since(self.began) < within {
+                    return Ok(());
+                }
+                self.readings.seen.push(active);
+            }
+            Some(Act::Board(_) | Act::Supply(_) | Act::CoilMask(_) | Act::Mark | Act::Wait(_) | Act::WaitSinceMark(_)) | None => {}
+        }
+        self.next();
+        Ok(())
+    }
+
+    fn take(&mut self, read: Read, image: &Image, now: RigTime) -> Result<(), String> {
+        let missing = || format!("{read:?} was answered without a value");
+        match read {
+            Read::Board => self.readings.boards.push(BoardInputs::take(image, now).ok_or_else(missing)?),
+            Read::Coil => self.readings.coil.push(CoilScan {
+                voltage_fine: image.analog(AnalogIn::CoilVoltageFine).cloned(),
+                current_fine: image.analog(AnalogIn::CoilCurrentFine).cloned(),
+                current_wide: image.analog(AnalogIn::CoilCurrent).cloned(),
+                reference: image.analog(AnalogIn::ReferenceVoltage).cloned(),
+            }),
+            Read::Drop => {
+                self.readings.drops.push(image.analog(AnalogIn::ContactDrop).cloned().ok_or_else(missing)?);
+            }
+            Read::Gates => {
+                let gate = |counter| image.counter(counter).cloned().ok_or_else(missing);
+                self.readings.gates.push([gate(Counter::Gate0)?, gate(Counter::Gate1)?]);
+            }
+            Read::Track => {
+                let sample = image.temperature(Temperature::Track).cloned();
+                self.readings.track.push(sample.ok_or_else(missing)?);
+            }
+        }
+        Ok(())
+    }
+}

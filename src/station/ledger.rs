@@ -1,0 +1,167 @@
+//! The part ledger: every part is in exactly one place, from the pocket to a bin.
+//!
+//! A place hands its part over; it never copies one. `in = out + inside` at every instant.
+
+use crate::gauge::verdict::Bin;
+use crate::units::{RigTime, Second};
+
+/// What a part is to the lot.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Kind {
+    /// A golden part, by its serial.
+    Golden(String),
+    /// A part of the lot, by the order in which it entered the nest, from 1.
+    Lot(u64),
+}
+
+/// A part inside the machine, from nest to bin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// Who it is.
+    pub kind: Kind,
+    /// Number over all parts of the run, golden parts included, from 1: order of the records.
+    pub ordinal: u64,
+    /// Where it belongs, once judged.
+    pub bin: Option<Bin>,
+    /// Time from probes up to verdict.
+    pub test: Option<Second>,
+    /// When its probes arrived.
+    pub probed_at: Option<RigTime>,
+}
+
+/// A part on its way down a chute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Falling {
+    /// Which part.
+    pub part: Part,
+    /// Bin it was let go over.
+    pub bin: Bin,
+    /// When the gripper opened.
+    pub since: RigTime,
+    /// Count of the bin's beam before.
+    pub beam_before: u32,
+}
+
+/// Places and counts.
+#[derive(Debug, Clone, Default)]
+pub struct Ledger {
+    /// A part in the pocket; it has no number before it enters the nest.
+    pub pocket: bool,
+    /// In the nest.
+    pub nest: Option<Part>,
+    /// In the gripper.
+    pub gripper: Option<Part>,
+    /// Between gripper and beam.
+    pub falling: Option<Falling>,
+    /// Parts that came into the pocket.
+    pub came_in: u64,
+    /// Parts that a beam confirmed.
+    pub went_out: u64,
+    /// Parts that are declared lost by an alarm.
+    pub lost: u64,
+    numbered: u64,
+    lot_numbered: u64,
+}
+
+impl Ledger {
+    /// Parts between pocket and beam.
+    pub fn inside(&self) -> u64 {
+        u64::from(self.pocket)
+            + u64::from(self.nest.is_some())
+            + u64::from(self.gripper.is_some())
+            + u64::from(self.falling.is_some())
+    }
+
+    /// `in = out + inside + lost`.
+    pub fn balances(&self) -> bool {
+        self.came_in == self.went_out + self.inside() + self.lost
+    }
+
+    /// A part has come into the empty pocket.
+    pub fn enter_pocket(&mut self) {
+        assert!(!self.pocket, "a part came into an occupied pocket");
+        self.pocket = true;
+        self.came_in += 1;
+    }
+
+    /// The part of the pocket is now in the nest and gets its number; `golden` names a golden part.
+    pub fn enter_nest(&mut self, golden: Option<String>) {
+        assert!(self.pocket && self.nest.is_none(), "pocket to nest without a part or a place");
+        self.pocket = false;
+        self.numbered += 1;
+        let kind = match golden {
+            Some(serial) => Kind::Golden(serial),
+            None => {
+                self.lot_numbered += 1;
+                Kind::Lot(self.lot_numbered)
+            }
+        };
+        self.nest =
+            Some(Part { kind, ordinal: self.numbered, bin: None, test: None, probed_at: None });
+    }
+
+    /// The part of the nest is now in the gripper.
+    pub fn lift(&mut self) {
+        assert!(self.gripper.is_none(), "two parts in the gripper");
+        self.gripper = self.nest.take();
+        assert!(self.gripper.is_some(), "lifted from an empty nest");
+    }
+
+    /// The gripper has let its part go over `bin`.
+    pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
+        assert!(self.falling.is_none(), "two parts on their way down");
+        if let Some(part) = self.gripper.take() {
+            self.falling = Some(Falling { part, bin, since, beam_before });
+        }
+    }
+
+    /// The beam saw the falling part.
+    pub fn land(&mut self) -> Option<Falling> {
+        let falling = self.falling.take()?;
+        self.went_out += 1;
+        Some(falling)
+    }
+
+    /// The part that was falling never reached its beam.
+    pub fn lose_falling(&mut self) -> Option<Falling> {
+        let falling = self.falling.take()?;
+        self.lost += 1;
+        Some(falling)
+    }
+
+    /// Parts of the lot that have entered the nest.
+    pub fn lot_parts(&self) -> u64 {
+        self.lot_numbered
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_in_exactly_one_place_from_pocket_to_bin() {
+        let mut ledger = Ledger::default();
+        ledger.enter_pocket();
+        assert!(ledger.balances() && ledger.inside() == 1);
+        ledger.enter_nest(None);
+        assert!(ledger.balances() && ledger.inside() == 1);
+        ledger.lift();
+        ledger.drop_over(Bin::Pass, RigTime(0), 0);
+        assert!(ledger.balances() && ledger.inside() == 1);
+        let landed = ledger.land().expect("it was falling");
+        assert_eq!(landed.part.kind, Kind::Lot(1));
+        assert!(ledger.balances() && ledger.inside() == 0);
+    }
+
+    #[test]
+    fn golden_parts_have_no_number_of_the_lot() {
+        let mut ledger = Ledger::default();
+        ledger.enter_pocket();
+        ledger.enter_nest(Some("G-12-1".into()));
+        ledger.lift();
+        ledger.enter_pocket();
+        ledger.enter_nest(None);
+        assert_eq!(ledger.nest.map(|part| part.kind), Some(Kind::Lot(1)));
+    }
+}

@@ -1,0 +1,130 @@
+//! The motions of the machine by their names on the shop floor, and how each shows that it has arrived.
+
+use crate::guard::{Actuator, Motion, Position, Stroke};
+use crate::rig::axis::AxisStation;
+use crate::rig::point::DigitalIn;
+
+/// One motion that a station may want.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Move {
+    /// Escapement lets one part into the pocket.
+    EscapementRelease,
+    /// Escapement holds the track again.
+    EscapementHold,
+    /// Pusher takes the part from the pocket to the nest.
+    PusherExtend,
+    /// Pusher goes back.
+    PusherRetract,
+    /// Both jaws close.
+    ClampClose,
+    /// Both jaws open.
+    ClampOpen,
+    /// Probes up to the pins.
+    ProbesUp,
+    /// Probes down.
+    ProbesDown,
+    /// Sort axis to a point of its table.
+    AxisTo(AxisStation),
+    /// Gripper down.
+    SortDown,
+    /// Gripper up.
+    SortUp,
+    /// Fingers close.
+    GripperClose,
+    /// Fingers open.
+    GripperOpen,
+}
+
+/// Lengths of all strokes, mm, in the order of [`Actuator::ALL`], and x of the axis points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Strokes {
+    /// Stroke of each actuator; the entry of the sort axis is not used.
+    pub length_mm: [f64; 8],
+    /// x of each point of the sort axis.
+    pub axis_mm: Vec<(AxisStation, f64)>,
+}
+
+impl Strokes {
+    /// Full stroke of an actuator.
+    pub fn of(&self, actuator: Actuator) -> f64 {
+        Actuator::ALL
+            .iter()
+            .position(|known| *known == actuator)
+            .map_or(f64::NAN, |index| self.length_mm[index])
+    }
+
+    /// x of a point; NaN for one that is not in the table, which the guard refuses.
+    pub fn axis(&self, station: AxisStation) -> f64 {
+        self.axis_mm.iter().find(|(known, _)| *known == station).map_or(f64::NAN, |(_, x)| *x)
+    }
+
+    /// Span of the whole axis.
+    pub fn axis_span(&self) -> Position {
+        let xs = self.axis_mm.iter().map(|(_, x)| *x);
+        Position::Between {
+            from_mm: xs.clone().fold(f64::INFINITY, f64::min),
+            to_mm: xs.fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}
+
+impl Move {
+    /// The motion as the guard and the drive know it.
+    pub fn motion(self, strokes: &Strokes) -> Motion {
+        let full = |actuator| Motion::to(actuator, strokes.of(actuator));
+        let rest = |actuator| Motion::to(actuator, 0.0);
+        let jaws = |to: fn(&Strokes, Actuator) -> f64| {
+            Motion::group(&[Actuator::JawLeft, Actuator::JawRight].map(|actuator| Stroke {
+                actuator,
+                to_mm: to(strokes, actuator),
+            }))
+        };
+        match self {
+            Move::EscapementRelease => full(Actuator::Escapement),
+            Move::EscapementHold => rest(Actuator::Escapement),
+            Move::PusherExtend => full(Actuator::Pusher),
+            Move::PusherRetract => rest(Actuator::Pusher),
+            Move::ClampClose => jaws(|strokes, actuator| strokes.of(actuator)),
+            Move::ClampOpen => jaws(|_, _| 0.0),
+            Move::ProbesUp => full(Actuator::ProbeLift),
+            Move::ProbesDown => rest(Actuator::ProbeLift),
+            Move::AxisTo(station) => Motion::to(Actuator::SortAxis, strokes.axis(station)),
+            Move::SortDown => full(Actuator::SortZ),
+            Move::SortUp => rest(Actuator::SortZ),
+            Move::GripperClose => full(Actuator::Gripper),
+            Move::GripperOpen => rest(Actuator::Gripper),
+        }
+    }
+
+    /// Sensors that show the end of the motion, each with the state it then has.
+    pub fn arrival(self) -> &'static [(DigitalIn, bool)] {
+        match self {
+            Move::EscapementRelease => &[(DigitalIn::EscapementHold, false)],
+            Move::EscapementHold => &[(DigitalIn::EscapementHold, true)],
+            Move::PusherExtend => &[(DigitalIn::PusherExtended, true), (DigitalIn::PusherRetracted, false)],
+            Move::PusherRetract => &[(DigitalIn::PusherRetracted, true), (DigitalIn::PusherExtended, false)],
+            Move::ClampClose => &[(DigitalIn::JawLeftClosed, true), (DigitalIn::JawRightClosed, true)],
+            Move::ClampOpen => &[(DigitalIn::JawLeftOpen, true), (DigitalIn::JawRightOpen, true)],
+            Move::ProbesUp => &[(DigitalIn::ProbeUp, true), (DigitalIn::ProbeDown, false)],
+            Move::ProbesDown => &[(DigitalIn::ProbeDown, true), (DigitalIn::ProbeUp, false)],
+            Move::AxisTo(_) => &[(DigitalIn::AxisInPosition, true), (DigitalIn::AxisBusy, false)],
+            Move::SortDown => &[(DigitalIn::SortZDown, true), (DigitalIn::SortZUp, false)],
+            Move::SortUp => &[(DigitalIn::SortZUp, true), (DigitalIn::SortZDown, false)],
+            Move::GripperClose => &[(DigitalIn::GripperPart, true), (DigitalIn::GripperOpen, false)],
+            Move::GripperOpen => &[(DigitalIn::GripperOpen, true)],
+        }
+    }
+
+    /// Key of the actuator's time-out in `config/rig.toml`.
+    pub fn actuator_key(self) -> &'static str {
+        match self {
+            Move::EscapementRelease | Move::EscapementHold => "escapement",
+            Move::PusherExtend | Move::PusherRetract => "pusher",
+            Move::ClampClose | Move::ClampOpen => "clamp",
+            Move::ProbesUp | Move::ProbesDown => "probe_lift",
+            Move::AxisTo(_) => "axis",
+            Move::SortDown | Move::SortUp => "sort_z",
+            Move::GripperClose | Move::GripperOpen => "gripper",
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! Sort: carry the part to its bin, let it go, see it pass the beam, come back over the nest.
+//!
+//! ```text
+//! returning -> over nest -> lowering -> at part -> (nest closes fingers, lifts) -> carrying
+//!           -> over bin -> opening -> returning
+//! ```
+//! A part is let go only when its rows are durable and the part before has passed its beam. z comes
+//! down early, during the test, once the pusher is back.
+
+use super::moves::Move;
+use super::trouble::Alarm;
+use super::turn::Turn;
+use super::wants::Landed;
+use crate::gauge::verdict::Bin;
+use crate::rig::axis::{AxisStation, AxisTable};
+use crate::units::{RigTime, Span};
+
+/// From the opening of the gripper to the beam at the latest.
+const FALL: Span = Span::ms(1500);
+
+/// Where the sorter stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sort {
+    /// Axis on its way back to the nest, fingers open, z up.
+    Returning,
+    /// Over the nest, z up.
+    OverNest,
+    /// z goes down over the clamped part.
+    Lowering,
+    /// Down with open fingers around the part; the nest commands from here until the part is up.
+    AtPart,
+    /// The part is up, the axis is to take it to its bin.
+    Loaded,
+    /// Axis on its way to the bin.
+    Carrying(Bin),
+    /// Over the bin since this instant.
+    OverBin(Bin, RigTime),
+    /// Fingers open.
+    Opening,
+}
+
+impl Sort {
+    /// One turn. `test_running`: the nest holds a clamped part, so z may come down.
+    pub fn step(self, turn: &mut Turn, table: &AxisTable, test_running: bool) -> Sort {
+        confirm(turn, table);
+        match self {
+            Sort::Returning if turn.arrived(Move::AxisTo(AxisStation::Nest)) => Sort::OverNest,
+            Sort::Returning => Sort::Returning,
+            Sort::OverNest if test_running && turn.arrived(Move::PusherRetract) && turn.arrived(Move::GripperOpen) => {
+                turn.drive(Move::SortDown);
+                Sort::Lowering
+            }
+            Sort::OverNest => Sort::OverNest,
+            Sort::Lowering if turn.arrived(Move::SortDown) => Sort::AtPart,
+            Sort::Lowering => Sort::Lowering,
+            Sort::AtPart => Sort::AtPart,
+            Sort::Loaded => {
+                let bin = turn.ledger.gripper.as_ref().and_then(|part| part.bin).unwrap_or(Bin::Retest);
+                turn.drive(Move::AxisTo(AxisStation::Bin(bin)));
+                Sort::Carrying(bin)
+            }
+            Sort::Carrying(bin) if turn.arrived(Move::AxisTo(AxisStation::Bin(bin))) => Sort::OverBin(bin, turn.now),
+            Sort::Carrying(bin) => Sort::Carrying(bin),
+            Sort::OverBin(bin, since) => over_bin(turn, table, bin, since),
+            Sort::Opening if turn.arrived(Move::GripperOpen) => {
+                turn.drive(Move::AxisTo(AxisStation::Nest));
+                Sort::Returning
+            }
+            Sort::Opening => Sort::Opening,
+        }
+    }
+
+    /// True when the open fingers stand around the part.
+    pub fn is_at_part(&self, turn: &Turn) -> bool {
+        *self == Sort::AtPart && turn.arrived(Move::SortDown) && turn.arrived(Move::GripperOpen)
+    }
+
+    /// The nest has handed its part over and z is up.
+    pub fn carry(&mut self) {
+        *self = Sort::Loaded;
+    }
+}
+
+/// Lets the part go once its rows are durable and the beam's count before is known.
+fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sort {
+    let stay = Sort::OverBin(bin, since);
+    if turn.ledger.falling.is_some() {
+        return stay;
+    }
+    let beam = table.beam(bin);
+    turn.wants.beam = Some(beam);
+    let durable = turn.ledger.gripper.as_ref().is_some_and(|part| part.ordinal <= turn.recorded);
+    let before = turn.image.events(beam).filter(|count| count.origin.at > since);
+    let (true, Some(before)) = (durable, before) else { return stay };
+    turn.ledger.drop_over(bin, turn.now, before.count);
+    turn.drive(Move::GripperOpen);
+    Sort::Opening
+}
+
+/// Watches the beam of the part that is falling.
+fn confirm(turn: &mut Turn, table: &AxisTable) {
+    let Some(falling) = &turn.ledger.falling else { return };
+    let (bin, since, before) = (falling.bin, falling.since, falling.beam_before);
+    let beam = table.beam(bin);
+    turn.wants.beam = Some(beam);
+    let now = turn.image.events(beam).filter(|count| count.origin.at > since).map(|count| count.count);
+    match now.map(|count| count.wrapping_sub(before) & 0xFFFF) {
+        Some(1) => {
+            if let Some(landed) = turn.ledger.land() {
+                turn.wants.landed.push(Landed { part: landed.part, bin, at: turn.now });
+            }
+        }
+        Some(several) if several > 1 => turn.alarm(Alarm::beam(bin.name(), several)),
+        Some(_) | None if turn.now.since(since) > FALL => {
+            turn.ledger.lose_falling();
+            turn.alarm(Alarm::beam(bin.name(), 0));
+        }
+        Some(_) | None => {}
+    }
+}

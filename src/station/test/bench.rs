@@ -1,0 +1,94 @@
+//! What a test needs to know beside the part: recipe, calibration and what the makers promise.
+
+use crate::gauge::calibration::{Calibration, Lag};
+use crate::gauge::coil::ScanDoubt;
+use crate::gauge::recipe::{CoilChannels, Recipe};
+use crate::gauge::settings::{AccuracySettings, ReferenceSettings};
+use crate::gauge::timing::Clock;
+use crate::units::{Celsius, Span};
+use std::sync::Arc;
+
+/// Span of a +-10 V input of 12 bits, volts per step.
+const LSB_V: f64 = 20.0 / 4096.0;
+
+/// Lag of a 96 V/s ramp before any golden part was run, in volts: only places the first fine ramp.
+const UNTAUGHT_OPERATE_V: f64 = 0.85;
+const UNTAUGHT_RELEASE_V: f64 = -1.05;
+/// How far that may be off (1 sd), volts.
+const UNTAUGHT_SD_V: f64 = 0.05;
+
+/// Recipe, calibration and instrument data of a test.
+#[derive(Debug, Clone)]
+pub struct Bench {
+    /// What the part must do.
+    pub recipe: Arc<Recipe>,
+    /// What the instruments do.
+    pub calibration: Arc<Calibration>,
+    /// References on the interface board.
+    pub reference: ReferenceSettings,
+    /// Promises of the makers.
+    pub accuracy: AccuracySettings,
+}
+
+impl Bench {
+    /// How long until a conversion that begins from now on is surely readable on each of `channels`
+    /// enabled channels: one round of all, one more conversion, and 3 % for the converter's clock.
+    pub fn fresh(&self, channels: usize) -> Span {
+        Span::seconds(1.03 * (channels + 1) as f64 / self.accuracy.conversions_per_s)
+    }
+
+    /// One round of conversions over `channels`.
+    pub fn round(&self, channels: usize) -> Span {
+        Span::seconds(1.03 * channels as f64 / self.accuracy.conversions_per_s)
+    }
+
+    /// Channel mask of the coil converter that the recipe asks for.
+    pub fn coil_mask(&self) -> u8 {
+        match self.recipe.test.coil_channels {
+            CoilChannels::Fine => 0b0110_0000,
+            CoilChannels::CoarseCurrent => 0b0010_0010,
+        }
+    }
+
+    /// Standard uncertainty of one reading at the terminal: noise and resolution.
+    pub fn reading_u_v(&self) -> f64 {
+        LSB_V * (self.accuracy.ai_noise_lsb.powi(2) + 1.0 / 12.0).sqrt()
+    }
+
+    /// Doubts of a coil scan.
+    pub fn scan_doubt(&self) -> ScanDoubt {
+        ScanDoubt {
+            reading_v: self.reading_u_v(),
+            offset_v: self.calibration.coil_input.offset_v.u,
+            temperature_k: self.accuracy.rtd_k.hypot(self.accuracy.part_minus_track_k),
+        }
+    }
+
+    /// Clock of the gated counters.
+    pub fn clock(&self) -> Clock {
+        Clock {
+            hz: self.reference.counter_clock_hz,
+            tolerance_ppm: self.reference.counter_clock_tolerance_ppm,
+        }
+    }
+
+    /// Reference temperature of the recipe.
+    pub fn reference_temperature(&self) -> Celsius {
+        Celsius(self.recipe.part.reference_temperature_c)
+    }
+
+    /// Lag of the operate ramps; before golden parts were run, a guess with a wide scatter.
+    pub fn operate_lag(&self) -> Lag {
+        self.calibration.lags.map_or(untaught(UNTAUGHT_OPERATE_V), |lags| lags.operate)
+    }
+
+    /// Lag of the release ramps.
+    pub fn release_lag(&self) -> Lag {
+        self.calibration.lags.map_or(untaught(UNTAUGHT_RELEASE_V), |lags| lags.release)
+    }
+}
+
+fn untaught(coarse_v: f64) -> Lag {
+    use crate::gauge::calibration::Factor;
+    Lag { fine_v: Factor::new(0.0, f64::INFINITY), coarse_v, coarse_sd_v: UNTAUGHT_SD_V }
+}

@@ -1,0 +1,118 @@
+//! Coil resistance at the pre-bias, below pickup: the armature is open and L/R short. The pre-bias is
+//! also where the operate ramp starts, so the coil stays on.
+
+use super::{Bench, Findings, Stage, board};
+use crate::gauge::coil::resistance;
+use crate::gauge::recipe::CoilChannels;
+use crate::gauge::verdict::Bin;
+use crate::gauge::Parameter;
+use crate::rig::sample::{Quality, Sample};
+use crate::rig::point::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
+use crate::station::act::{Act, CoilScan, Read, Readings};
+use crate::station::supply::Supply;
+use crate::units::{Span, Volt};
+
+/// Current settles to 0.05 % in 7.6 L/R; an open armature has L/R of 1.7 ms.
+const SETTLES: Span = Span::ms(13);
+/// Channels of the coil converter that a recipe has enabled.
+const CHANNELS: usize = 2;
+/// Below this terminal voltage of the fine current channel (0.25 mA) no current flows.
+const NO_CURRENT: Volt = Volt(0.15);
+/// Below this coil current the clamp may be switched and the probes may leave, ampere.
+const OFF_CURRENT_A: f64 = 0.001;
+
+pub(super) fn acts(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
+    let prebias = Volt(bench.recipe.test.prebias_v);
+    let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
+    let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
+    let mut acts = Vec::new();
+    if coarse_takes.max(fine_takes) > Span::ms(10) {
+        acts.extend([coarse, fine, Act::Wait(coarse_takes.max(fine_takes))]);
+    }
+    acts.extend([
+        supply.step_to(prebias),
+        board(&[(CoilDrive, true)]),
+        Act::Wait(SETTLES + bench.fresh(CHANNELS)),
+        Act::Read(Read::Coil),
+        Act::Wait(bench.round(CHANNELS)),
+        Act::Read(Read::Coil),
+    ]);
+    acts
+}
+
+pub(super) fn acts_off(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
+    let (coarse, _) = supply.ramp_coarse(Volt(0.0));
+    let (fine, _) = supply.ramp_fine(Volt(0.0));
+    vec![
+        board(&[(SourceOn, false)]),
+        board(&[
+            (CoilDrive, false),
+            (Arm, false),
+            (RampMode, false),
+            (SelectNo, false),
+            (EventNoBreak, false),
+            (SourceReverse, false),
+        ]),
+        Act::Mark,
+        coarse,
+        fine,
+        supply.step_to(Volt(bench.recipe.test.prebias_v)),
+        Act::WaitSinceMark(Span::ms(1) + bench.fresh(CHANNELS)),
+        Act::Read(Read::Coil),
+    ]
+}
+
+fn current_of(bench: &Bench, scan: &CoilScan) -> Option<Sample> {
+    match bench.recipe.test.coil_channels {
+        CoilChannels::Fine => scan.current_fine.clone(),
+        CoilChannels::CoarseCurrent => scan.current_wide.clone(),
+    }
+}
+
+pub(super) fn conclude(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+    let calibration = &bench.calibration;
+    let mut scans = Vec::new();
+    let mut samples = Vec::new();
+    for scan in &readings.coil {
+        let (Some(voltage), Some(current)) = (scan.voltage_fine.clone(), current_of(bench, scan)) else {
+            findings.void("coil converter gave no voltage or current");
+            return None;
+        };
+        if voltage.quality != Quality::Good {
+            findings.void("coil voltage not readable");
+            return None;
+        }
+        if current.quality == Quality::OverRange {
+            findings.fail("coil_resistance_ohm low: current over range", Bin::Coil);
+            return None;
+        }
+        let offset = Volt(calibration.coil_input.offset_v.value);
+        scans.push((Volt(voltage.terminal_volts) - offset, Volt(current.terminal_volts) - offset));
+        samples.extend([voltage, current]);
+    }
+    let ohm = match bench.recipe.test.coil_channels {
+        CoilChannels::Fine => calibration.ohm_fine,
+        CoilChannels::CoarseCurrent => calibration.ohm_wide,
+    };
+    if scans.iter().all(|(_, current)| current.abs() < NO_CURRENT) {
+        findings.fail("coil open", Bin::Coil);
+        return None;
+    }
+    let part = findings.track?;
+    match resistance(&scans, ohm, part, bench.reference_temperature(), bench.scan_doubt()) {
+        Some(reading) => findings.found(Parameter::CoilResistance, reading, &samples),
+        None => findings.fail("coil open", Bin::Coil),
+    }
+    None
+}
+
+pub(super) fn conclude_off(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+    let current = readings.coil.first().and_then(|scan| current_of(bench, scan));
+    match current {
+        Some(sample) if sample.quality == Quality::Good && sample.value.abs() < OFF_CURRENT_A => {}
+        Some(_) | None => findings.void("coil current not gone after the test"),
+    }
+    None
+}

@@ -1,0 +1,112 @@
+//! Contact resistance of a closure: source on, both polarities, each read from a conversion that began
+//! after the source had settled. The source is off 2 ms before anything else changes.
+
+use super::{Bench, Findings, Stage, board};
+use crate::gauge::contact::{Reversal, resistance};
+use crate::gauge::verdict::Bin;
+use crate::gauge::Parameter;
+use crate::rig::sample::{Quality, Sample};
+use crate::rig::point::DigitalOut::{SourceOn, SourceReverse};
+use crate::station::act::{Act, Read, Readings};
+use crate::units::{Span, Volt};
+
+/// The source is off so long before drive, select or reversal changes (interface board).
+const SOURCE_OFF: Span = Span::ms(2);
+/// Current and amplifier have settled.
+const SOURCE_SETTLES: Span = Span::ms(1);
+
+/// Source on, forward, one reading; the source stays on.
+pub(super) fn forward(bench: &Bench) -> Vec<Act> {
+    vec![
+        board(&[(SourceOn, true)]),
+        Act::Wait(SOURCE_SETTLES + bench.fresh(1)),
+        Act::Read(Read::Drop),
+        Act::Read(Read::Board),
+    ]
+}
+
+/// Source off for as long as the interlock asks.
+pub(super) fn off() -> Vec<Act> {
+    vec![board(&[(SourceOn, false)]), Act::Wait(SOURCE_OFF)]
+}
+
+/// Reversed reading after a forward one, and everything back.
+pub(super) fn reversed(bench: &Bench) -> Vec<Act> {
+    let mut acts = off();
+    acts.extend([
+        board(&[(SourceReverse, true)]),
+        board(&[(SourceOn, true)]),
+        Act::Wait(SOURCE_SETTLES + bench.fresh(1)),
+        Act::Read(Read::Drop),
+    ]);
+    acts.extend(off());
+    acts.push(board(&[(SourceReverse, false)]));
+    acts
+}
+
+pub(super) fn acts_nc(bench: &Bench) -> Vec<Act> {
+    let mut acts = forward(bench);
+    acts.extend(reversed(bench));
+    acts
+}
+
+/// Drop of a reading, or why there is none.
+pub(super) fn drop_of(sample: Option<&Sample>, compliance: bool) -> Result<Volt, Unread> {
+    let Some(sample) = sample else { return Err(Unread::Missing) };
+    match sample.quality {
+        Quality::Good if sample.terminal_volts.is_finite() => Ok(Volt(sample.terminal_volts)),
+        Quality::OverRange | Quality::UnderRange if compliance => Err(Unread::OpenContact),
+        Quality::OverRange | Quality::UnderRange => Err(Unread::OverRange),
+        Quality::Good | Quality::Blank => Err(Unread::Missing),
+    }
+}
+
+/// Why a drop could not be read.
+pub(super) enum Unread {
+    /// No usable sample.
+    Missing,
+    /// Over range though the source drives its current: far too high.
+    OverRange,
+    /// Over range with the source in compliance: open or far too high.
+    OpenContact,
+}
+
+impl Unread {
+    pub(super) fn tell(self, which: &str, findings: &mut Findings) {
+        match self {
+            Unread::Missing => findings.void(format!("{which} drop not readable")),
+            Unread::OverRange => findings.fail(&format!("{which} resistance over range"), Bin::Contact),
+            Unread::OpenContact => findings.fail(&format!("{which} open or far too high"), Bin::Contact),
+        }
+    }
+}
+
+/// Both polarities of one closure from the first two drops of a stage.
+pub(super) fn reversal(readings: &Readings) -> Result<Reversal, Unread> {
+    let compliance = readings.boards.iter().any(|board| board.compliance);
+    Ok(Reversal {
+        forward: drop_of(readings.drops.first(), compliance)?,
+        reverse: drop_of(readings.drops.get(1), compliance)?,
+    })
+}
+
+pub(super) fn conclude_nc(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+    match reversal(readings) {
+        Ok(closure) => {
+            findings.drop_zero = Some(closure.zero());
+            add_nc(bench, closure.drop(), &readings.drops, findings);
+        }
+        Err(unread) => unread.tell("NC contact", findings),
+    }
+    None
+}
+
+/// Adds one NC closure; the result is the mean of all closures read.
+pub(super) fn add_nc(bench: &Bench, drop: Volt, samples: &[Sample], findings: &mut Findings) {
+    findings.nc_drops.push(drop);
+    let u = bench.reading_u_v() / 2f64.sqrt();
+    if let Some(reading) = resistance(&findings.nc_drops, bench.calibration.contact_mohm_per_v, u) {
+        findings.forget(Parameter::ContactResistanceNc);
+        findings.found(Parameter::ContactResistanceNc, reading, samples);
+    }
+}

@@ -1,0 +1,126 @@
+//! What the stages of a test have found: results, the bytes they came from, and why it ended early.
+
+use super::ramp::Expected;
+use crate::gauge::budget::{self, Reading};
+use crate::gauge::verdict::{Bin, Reason};
+use crate::gauge::Parameter;
+use crate::rig::sample::{CountSample, Origin, Sample};
+use crate::units::{Celsius, Volt};
+
+/// What a result was made from: line, module, channel and raw text lead back to the bytes.
+pub trait Evidence {
+    /// Where it came from.
+    fn origin(&self) -> &Origin;
+}
+
+impl Evidence for Sample {
+    fn origin(&self) -> &Origin {
+        &self.origin
+    }
+}
+
+impl Evidence for CountSample {
+    fn origin(&self) -> &Origin {
+        &self.origin
+    }
+}
+
+/// Why a test ends before its last stage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Stop {
+    /// The part is bad.
+    Fail(Reason),
+    /// It cannot be judged.
+    Void(String),
+}
+
+/// A ramp as it was seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ramp {
+    /// Indicated voltage of the coarse ramp.
+    pub coarse: Volt,
+    /// Indicated voltage of the fine ramp.
+    pub fine: Option<Volt>,
+}
+
+/// Results so far.
+#[derive(Debug, Clone, Default)]
+pub struct Findings {
+    readings: Vec<(Parameter, Reading)>,
+    evidence: Vec<(Parameter, Origin)>,
+    stop: Option<Stop>,
+    /// Temperature of the magazine track when the test began.
+    pub track: Option<Celsius>,
+    /// Terminal voltage of the contact drop without current.
+    pub drop_zero: Option<Volt>,
+    /// NC drops of the closures read so far, free of offset.
+    pub nc_drops: Vec<Volt>,
+    /// Where the ramp under way began.
+    pub ramp_start: Option<Volt>,
+    /// Where the next fine ramp looks for its event.
+    pub expected: Option<Expected>,
+    /// Operate ramps.
+    pub operate: Option<Ramp>,
+    /// Release ramps.
+    pub release: Option<Ramp>,
+}
+
+impl Findings {
+    /// Adds one result of a stage with the replies it was made from.
+    pub fn found<'a, S: Evidence + 'a>(
+        &mut self,
+        parameter: Parameter,
+        reading: Reading,
+        samples: impl IntoIterator<Item = &'a S>,
+    ) {
+        self.readings.push((parameter, reading));
+        self.evidence.extend(samples.into_iter().map(|sample| (parameter, sample.origin().clone())));
+    }
+
+    /// Takes back the results of a parameter, which a later reading of more closures replaces.
+    pub fn forget(&mut self, parameter: Parameter) {
+        self.readings.retain(|(known, _)| *known != parameter);
+    }
+
+    /// Result of a parameter: the mean of its repetitions.
+    pub fn result(&self, parameter: Parameter) -> Option<Reading> {
+        let repetitions: Vec<Reading> =
+            self.readings.iter().filter(|(known, _)| *known == parameter).map(|(_, r)| r.clone()).collect();
+        budget::mean(&repetitions)
+    }
+
+    /// How often a parameter was measured.
+    pub fn attempts(&self, parameter: Parameter) -> usize {
+        self.readings.iter().filter(|(known, _)| *known == parameter).count()
+    }
+
+    /// Replies behind a parameter, in the order they came.
+    pub fn evidence(&self, parameter: Parameter) -> impl Iterator<Item = &Origin> {
+        self.evidence.iter().filter(move |(known, _)| *known == parameter).map(|(_, e)| e)
+    }
+
+    /// Ends the test early; the first cause stays.
+    pub fn stop(&mut self, why: Stop) {
+        self.stop.get_or_insert(why);
+    }
+
+    /// Ends the test early because the part is bad.
+    pub fn fail(&mut self, text: &str, bin: Bin) {
+        self.stop(Stop::Fail(Reason { text: text.to_string(), bin }));
+    }
+
+    /// Ends the test early because it cannot be judged.
+    pub fn void(&mut self, why: impl Into<String>) {
+        self.stop(Stop::Void(why.into()));
+    }
+
+    /// True once the test has ended early.
+    pub fn stopped(&self) -> bool {
+        self.stop.is_some()
+    }
+
+    /// Why it ended early.
+    pub fn why_stopped(&self) -> Option<&Stop> {
+        self.stop.as_ref()
+    }
+}

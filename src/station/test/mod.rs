@@ -1,0 +1,240 @@
+//! The test of one part: the order of stages, and what each leaves behind.
+//!
+//! ```text
+//! kelvin -> NC contact -> coil -> operate coarse, fine -> timed operate + NO contact
+//!        -> timed release + NC contact -> release coarse, fine -> off -> verdict
+//! ```
+//! A stage that finds the part unfit for the rest (open coil, contact that does not move) says why
+//! and the test goes straight to `off`. Results inside the guard band are measured again by the slow
+//! strategy: the same stage `slow_repeats` times, averaged. What is then still conditional fails.
+
+pub mod bench;
+mod coil;
+mod contact;
+pub mod findings;
+mod kelvin;
+mod operate;
+pub mod ramp;
+mod release;
+mod timing;
+
+use super::act::{Act, Doing, JobDone, Runner};
+use super::supply::Supply;
+use crate::gauge::verdict::{Judgement, Verdict, judge, of_part};
+use crate::gauge::Parameter;
+use crate::rig::image::Image;
+use crate::rig::point::DigitalOut;
+use crate::units::{RigTime, Span};
+pub use bench::Bench;
+pub use findings::{Evidence, Findings, Ramp, Stop};
+use std::collections::VecDeque;
+
+/// Release, bounce and the swing of the armature are over after this long without drive.
+const OFF: Span = Span::ms(12);
+
+/// One stage of the test.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Five Kelvin bits and the resting contacts.
+    Kelvin,
+    /// NC contact at rest, both polarities.
+    NcContact,
+    /// Coil resistance at the pre-bias.
+    Coil,
+    /// Coarse ramp from the pre-bias.
+    OperateCoarse,
+    /// Nominal voltage, when the coarse ramp saw no make.
+    PullIn,
+    /// Fine ramp from just below the coarse estimate; the number of the attempt widens it.
+    OperateFine(u8),
+    /// Step to nominal with both gates, and NO contact on that closure.
+    TimedOperate,
+    /// Drive off with both gates, and NC contact on that closure.
+    TimedRelease,
+    /// Coarse falling ramp from a sealed armature.
+    ReleaseCoarse,
+    /// Fine falling ramp; the number of the attempt widens it.
+    ReleaseFine(u8),
+    /// Everything off, coil current gone.
+    Off,
+}
+
+const ORDER: [Stage; 10] = [
+    Stage::Kelvin,
+    Stage::NcContact,
+    Stage::Coil,
+    Stage::OperateCoarse,
+    Stage::OperateFine(0),
+    Stage::TimedOperate,
+    Stage::TimedRelease,
+    Stage::ReleaseCoarse,
+    Stage::ReleaseFine(0),
+    Stage::Off,
+];
+
+/// What the test wants from its surroundings.
+#[derive(Debug)]
+pub enum Progress {
+    /// As the runner of the present stage says.
+    Doing(Doing),
+    /// The part is judged.
+    Judged,
+}
+
+/// A test under way.
+#[derive(Debug)]
+pub struct Test {
+    bench: Bench,
+    supply: Supply,
+    stages: VecDeque<Stage>,
+    stage: Stage,
+    runner: Runner,
+    slow_done: bool,
+    /// What has been found so far.
+    pub findings: Findings,
+}
+
+impl Test {
+    /// Begins with the Kelvin check; the probes are up.
+    pub fn begin(bench: Bench, now: RigTime) -> Self {
+        let mut supply = Supply::new(&bench.calibration);
+        let mut findings = Findings::default();
+        let runner = Runner::new(acts(Stage::Kelvin, &bench, &mut supply, &mut findings), now);
+        Self {
+            bench,
+            supply,
+            stages: ORDER[1..].iter().copied().collect(),
+            stage: Stage::Kelvin,
+            runner,
+            slow_done: false,
+            findings,
+        }
+    }
+
+    /// Stage under way, for screens.
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// Goes on as far as it can.
+    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
+        let mut done = done;
+        loop {
+            match self.runner.step(now, done.take(), image) {
+                Doing::Done => {}
+                Doing::Trouble(why) => {
+                    self.findings.stop(Stop::Void(why));
+                    self.runner = Runner::new(Vec::new(), now);
+                    return Progress::Judged;
+                }
+                other @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => return Progress::Doing(other),
+            }
+            self.conclude();
+            if self.stages.front() == Some(&Stage::Off) {
+                self.add_slow_repeats();
+            }
+            let Some(stage) = self.stages.pop_front() else { return Progress::Judged };
+            self.stage = stage;
+            let acts = acts(stage, &self.bench, &mut self.supply, &mut self.findings);
+            self.runner = Runner::new(acts, now);
+        }
+    }
+
+    /// Draws the conclusions of the stage that has just ended.
+    fn conclude(&mut self) {
+        let readings = std::mem::take(&mut self.runner.readings);
+        let (bench, findings) = (&self.bench, &mut self.findings);
+        let again = match self.stage {
+            Stage::Kelvin => kelvin::conclude(bench, &readings, findings),
+            Stage::NcContact => contact::conclude_nc(bench, &readings, findings),
+            Stage::Coil => coil::conclude(bench, &readings, findings),
+            Stage::OperateCoarse => operate::conclude_coarse(bench, &readings, findings),
+            Stage::PullIn => operate::conclude_pull_in(&readings, findings),
+            Stage::OperateFine(attempt) => operate::conclude_fine(bench, &readings, findings, attempt),
+            Stage::TimedOperate => timing::conclude_operate(bench, &readings, findings),
+            Stage::TimedRelease => timing::conclude_release(bench, &readings, findings),
+            Stage::ReleaseCoarse => release::conclude_coarse(bench, &readings, findings),
+            Stage::ReleaseFine(attempt) => release::conclude_fine(bench, &readings, findings, attempt),
+            Stage::Off => coil::conclude_off(bench, &readings, findings),
+        };
+        if findings.stopped() && self.stage != Stage::Off {
+            self.stages = VecDeque::from([Stage::Off]);
+        } else if let Some(stage) = again {
+            self.stages.push_front(stage);
+        }
+    }
+
+    /// Repeats the stages whose results lie inside the guard band, once per test.
+    fn add_slow_repeats(&mut self) {
+        if self.slow_done || self.findings.stopped() {
+            return;
+        }
+        self.slow_done = true;
+        let mut stages: Vec<Stage> = Vec::new();
+        for (parameter, judgement) in self.judgements() {
+            if !matches!(judgement, Judgement::Conditional(_)) {
+                continue;
+            }
+            let stage = slow_stage(parameter);
+            if !stages.contains(&stage) {
+                stages.push(stage);
+            }
+        }
+        for stage in stages {
+            for _ in 0..self.bench.recipe.decision.slow_repeats {
+                self.stages.push_front(stage);
+            }
+        }
+    }
+
+    /// Each result against its limit.
+    pub fn judgements(&self) -> Vec<(Parameter, Judgement)> {
+        let recipe = &self.bench.recipe;
+        let one = |parameter: &Parameter| {
+            let reading = self.findings.result(*parameter)?;
+            Some((*parameter, judge(&reading, &recipe.limits.of(*parameter), recipe.decision.rule)))
+        };
+        Parameter::ALL.iter().filter_map(one).collect()
+    }
+
+    /// Verdict of the part.
+    pub fn verdict(&self) -> Verdict {
+        match self.findings.why_stopped() {
+            Some(Stop::Void(why)) => Verdict::Void(vec![why.clone()]),
+            Some(Stop::Fail(reason)) => Verdict::Fail(vec![reason.clone()]),
+            None => of_part(&self.judgements()),
+        }
+    }
+}
+
+/// Stage that measures a parameter once more.
+fn slow_stage(parameter: Parameter) -> Stage {
+    match parameter {
+        Parameter::CoilResistance => Stage::Coil,
+        Parameter::OperateVoltage => Stage::OperateFine(0),
+        Parameter::ReleaseVoltage => Stage::ReleaseFine(0),
+        Parameter::OperateTime | Parameter::OperateBounce | Parameter::ContactResistanceNo => Stage::TimedOperate,
+        Parameter::ReleaseTime | Parameter::ReleaseBounce | Parameter::ContactResistanceNc => Stage::TimedRelease,
+    }
+}
+
+fn acts(stage: Stage, bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+    match stage {
+        Stage::Kelvin => kelvin::acts(),
+        Stage::NcContact => contact::acts_nc(bench),
+        Stage::Coil => coil::acts(bench, supply),
+        Stage::OperateCoarse => operate::acts_coarse(bench, supply, findings),
+        Stage::PullIn => operate::acts_pull_in(bench, supply),
+        Stage::OperateFine(_) => operate::acts_fine(bench, supply, findings),
+        Stage::TimedOperate => timing::acts_operate(bench, supply),
+        Stage::TimedRelease => timing::acts_release(bench, supply, findings),
+        Stage::ReleaseCoarse => release::acts_coarse(bench, supply, findings),
+        Stage::ReleaseFine(_) => release::acts_fine(bench, supply, findings),
+        Stage::Off => coil::acts_off(bench, supply),
+    }
+}
+
+/// One write of the interface board.
+fn board(outputs: &[(DigitalOut, bool)]) -> Act {
+    Act::Board(outputs.to_vec())
+}

@@ -1,0 +1,192 @@
+//! Operate voltage: a coarse ramp from the pre-bias finds it to some 10 mV, a fine ramp around that
+//! estimate measures it.
+//!
+//! Between both the relay drops. The approach has two steps (0.93 of the start, then the start) because
+//! a step from zero picks up some 30 mV below the quasi-static threshold: the armature swings over.
+
+use super::ramp::{ATTEMPTS, Expected, give_up};
+use super::{Bench, Findings, OFF, Ramp, Stage, board};
+use crate::gauge::threshold::{Direction, RampDoubt, indicated, quasi_static};
+use crate::gauge::timing::counts;
+use crate::gauge::verdict::Bin;
+use crate::gauge::Parameter;
+use crate::rig::point::DigitalIn;
+use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
+use crate::station::act::{Act, Read, Readings};
+use crate::station::supply::Supply;
+use crate::units::{Second, Span, Volt};
+
+/// First step of the approach, as a fraction of the start of the fine ramp.
+const APPROACH: f64 = 0.93;
+/// Time at the first step.
+const APPROACH_TIME: Span = Span::ms(12);
+/// Flux and armature are in equilibrium with the start level after this time.
+pub(super) const SETTLES: Span = Span::ms(25);
+/// Slowest operation after the end of a ramp that is still taken for its event.
+const LATE: Span = Span::ms(25);
+
+pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+    findings.ramp_start = Some(supply.total());
+    let (ramp, takes) = supply.ramp_coarse(Volt(bench.recipe.test.coarse_span_v));
+    let rest = Span(takes.0.saturating_sub((OFF + APPROACH_TIME).0));
+    vec![
+        board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false), (Arm, false)]),
+        Act::Read(Read::Gates),
+        board(&[(Arm, true)]),
+        Act::Mark,
+        ramp,
+        Act::Until { point: DigitalIn::Latch, within: takes + LATE },
+        Act::Read(Read::Board),
+        Act::Read(Read::Gates),
+        board(&[(CoilDrive, false), (Arm, false)]),
+        Act::WaitSinceMark(rest),
+    ]
+}
+
+/// Length of gate 0 between the first and the last reading of a stage.
+pub(super) fn gate0(bench: &Bench, readings: &Readings) -> Option<Second> {
+    let (before, after) = (readings.gates.first()?, readings.gates.last()?);
+    let gate = f64::from(counts(before[0].count, after[0].count)) / bench.clock().hz;
+    Some(Second(gate - bench.calibration.gate_delay_us.value * 1e-6))
+}
+
+pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+    let start = findings.ramp_start?;
+    if readings.seen.first() != Some(&true) {
+        let pulled = readings.boards.last().is_some_and(|board| board.no_closed);
+        if pulled {
+            findings.void("coarse operate ramp: contact made outside the window");
+        } else {
+            return Some(Stage::PullIn);
+        }
+        return None;
+    }
+    let Some(gate) = gate0(bench, readings) else {
+        findings.void("gate counters not read");
+        return None;
+    };
+    let coarse = indicated(start, bench.calibration.coarse_v_per_s.value, gate, Direction::Rising);
+    let lag = bench.operate_lag();
+    findings.operate = Some(Ramp { coarse, fine: None });
+    findings.expected = Some(Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v));
+    None
+}
+
+/// Nominal voltage, to tell a stuck contact from a threshold above the coarse ramp.
+pub(super) fn acts_pull_in(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
+    vec![
+        supply.step_to(Volt(bench.recipe.part.nominal_v)),
+        board(&[(CoilDrive, true)]),
+        Act::Wait(Span::ms(40)),
+        Act::Read(Read::Board),
+    ]
+}
+
+pub(super) fn conclude_pull_in(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+    match readings.boards.first() {
+        Some(board) if board.no_closed => {
+            findings.fail("operate_voltage_v high: above the coarse ramp", Bin::Voltage);
+        }
+        Some(board) if board.nc_closed => {
+            findings.fail("contact stuck: NC does not open at nominal voltage", Bin::Contact);
+        }
+        Some(_) => findings.fail("contact stuck: NO does not make at nominal voltage", Bin::Contact),
+        None => findings.void("interface board not read"),
+    }
+    None
+}
+
+pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+    let Some(expected) = findings.expected else { return Vec::new() };
+    let placed = expected.placed(Direction::Rising);
+    let mut acts = vec![board(&[(CoilDrive, false), (Arm, false)]), Act::Mark];
+    acts.extend(make_room(bench, supply, placed.start));
+    let approach = placed.start * APPROACH;
+    acts.extend([
+        supply.step_to(approach),
+        board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
+        Act::WaitSinceMark(OFF),
+        board(&[(CoilDrive, true)]),
+        Act::Wait(APPROACH_TIME),
+        supply.step_to(placed.start),
+        Act::Mark,
+        Act::Read(Read::Gates),
+        Act::WaitSinceMark(SETTLES),
+    ]);
+    findings.ramp_start = Some(supply.total());
+    let (ramp, takes) = supply.ramp_fine(supply.fine() + placed.span);
+    acts.extend([
+        board(&[(Arm, true)]),
+        Act::Mark,
+        ramp,
+        Act::Until { point: DigitalIn::Latch, within: takes + LATE },
+        Act::Read(Read::Board),
+        Act::Read(Read::Gates),
+        board(&[(CoilDrive, false), (Arm, false)]),
+        Act::WaitSinceMark(takes),
+    ]);
+    acts
+}
+
+/// Takes the ramps back when they stand higher than the approach needs, or the fine one stands at all.
+fn make_room(bench: &Bench, supply: &mut Supply, start: Volt) -> Vec<Act> {
+    let mut acts = Vec::new();
+    let mut wait = Span(0);
+    if supply.fine() > Volt(0.02) {
+        let (fine, takes) = supply.ramp_fine(Volt(0.0));
+        acts.push(fine);
+        wait = takes;
+    }
+    let room = (start.0 * APPROACH - 0.3).clamp(0.0, bench.recipe.test.coarse_span_v);
+    if supply.coarse().0 > room + 0.05 {
+        let (coarse, takes) = supply.ramp_coarse(Volt(room));
+        acts.push(coarse);
+        wait = wait.max(takes);
+    }
+    if wait > Span(0) {
+        acts.push(Act::Wait(wait));
+    }
+    acts
+}
+
+pub(super) fn conclude_fine(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+    attempt: u8,
+) -> Option<Stage> {
+    let (start, expected) = (findings.ramp_start?, findings.expected?);
+    if readings.seen.first() != Some(&true) {
+        let early = readings.boards.last().is_some_and(|board| board.no_closed);
+        findings.expected = Some(expected.next(Direction::Rising, early));
+        if attempt + 1 >= ATTEMPTS {
+            give_up("operate", findings);
+            return None;
+        }
+        return Some(Stage::OperateFine(attempt + 1));
+    }
+    let (Some(gate), Some(part)) = (gate0(bench, readings), findings.track) else {
+        findings.void("gate counters not read");
+        return None;
+    };
+    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, Direction::Rising);
+    if let Some(ramp) = &mut findings.operate {
+        ramp.fine = Some(seen);
+    }
+    let reference = bench.reference_temperature();
+    let reading = quasi_static(seen, gate, bench.operate_lag(), part, reference, doubt(bench));
+    let samples: Vec<_> = readings.gates.iter().flatten().collect();
+    findings.found(Parameter::OperateVoltage, reading, samples);
+    None
+}
+
+/// Doubts of a fine ramp beyond the golden parts' shift.
+pub(super) fn doubt(bench: &Bench) -> RampDoubt {
+    RampDoubt {
+        slope: bench.calibration.fine_v_per_s,
+        operation_v: bench.accuracy.operation_scatter_mv / 1e3,
+        step_v: bench.calibration.fine_v_per_s.value * 1e-3,
+        level_v: bench.calibration.level.gain.u,
+        temperature_k: bench.accuracy.part_minus_track_k,
+    }
+}

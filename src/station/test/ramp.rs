@@ -1,0 +1,85 @@
+//! What operate and release share: a fine ramp is placed around an estimate, and placed anew when the
+//! contact changed before the window opened or not at all.
+
+use super::findings::Findings;
+use crate::gauge::threshold::{Direction, WINDOW_V};
+use crate::units::Volt;
+
+/// The window opens after [`WINDOW_V`]; this much more keeps its comparator's tolerance out of the way.
+const WINDOW_MARGIN: Volt = Volt(0.005);
+/// Beyond the far end of the estimate, for the lag's own scatter.
+const FAR_MARGIN: Volt = Volt(0.015);
+/// Half width of a placed ramp in standard deviations of its estimate.
+const COVERAGE: f64 = 3.5;
+/// A fine ramp is placed so often before the test is void.
+pub(super) const ATTEMPTS: u8 = 4;
+
+/// Where a contact event is expected on the fine ramp.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Expected {
+    /// Most likely indicated voltage.
+    pub centre: Volt,
+    /// Half width of the interval that is searched.
+    pub half_width: Volt,
+}
+
+/// A fine ramp: from where, and over how much.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placed {
+    /// Supply before the ramp.
+    pub start: Volt,
+    /// Length of the ramp, positive.
+    pub span: Volt,
+}
+
+impl Expected {
+    /// From an estimate with its standard deviation.
+    pub fn new(centre: Volt, sd_v: f64) -> Self {
+        Self { centre, half_width: Volt(COVERAGE * sd_v) }
+    }
+
+    /// The ramp that searches this interval.
+    pub fn placed(&self, direction: Direction) -> Placed {
+        let lead = WINDOW_V + WINDOW_MARGIN;
+        Placed {
+            start: self.centre - (self.half_width + lead) * direction.sign(),
+            span: lead + self.half_width * 2.0 + FAR_MARGIN,
+        }
+    }
+
+    /// The interval to search next: beyond the far end when nothing happened, before the near end when
+    /// the contact had already changed; three times as wide.
+    pub fn next(&self, direction: Direction, changed_early: bool) -> Self {
+        let away = if changed_early { -direction.sign() } else { direction.sign() };
+        Self { centre: self.centre + self.half_width * (4.0 * away), half_width: self.half_width * 3.0 }
+    }
+}
+
+/// Says that the fine ramp never met its event.
+pub(super) fn give_up(which: &str, findings: &mut Findings) {
+    findings.void(format!("{which} threshold not found in {ATTEMPTS} fine ramps"));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_is_open_before_the_earliest_expected_event() {
+        let expected = Expected::new(Volt(7.9), 0.01);
+        let ramp = expected.placed(Direction::Rising);
+        assert!(ramp.start.0 + WINDOW_V.0 < 7.9 - 0.035);
+        assert!(ramp.start.0 + ramp.span.0 > 7.9 + 0.035);
+        let falling = expected.placed(Direction::Falling);
+        assert!(falling.start.0 - WINDOW_V.0 > 7.9 + 0.035);
+    }
+
+    #[test]
+    fn the_next_interval_begins_where_the_last_ended() {
+        let expected = Expected { centre: Volt(7.9), half_width: Volt(0.03) };
+        let beyond = expected.next(Direction::Rising, false);
+        assert!((beyond.centre.0 - beyond.half_width.0 - 7.93).abs() < 1e-12);
+        let before = expected.next(Direction::Falling, true);
+        assert!((before.centre.0 - before.half_width.0 - 7.93).abs() < 1e-12);
+    }
+}

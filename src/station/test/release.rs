@@ -1,0 +1,132 @@
+//! Release voltage: from a sealed armature the supply falls until NO breaks, coarse first, then fine.
+//!
+//! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
+//! voltage, so the timed one stays the last of those.
+
+use super::operate::{SETTLES, doubt, gate0};
+use super::ramp::{ATTEMPTS, Expected, give_up};
+use super::{Bench, Findings, Ramp, Stage, board};
+use crate::gauge::threshold::{Direction, indicated, quasi_static};
+use crate::gauge::Parameter;
+use crate::rig::point::DigitalIn;
+use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
+use crate::station::act::{Act, Read, Readings};
+use crate::station::supply::Supply;
+use crate::units::{Span, Volt};
+
+/// Fraction of nominal at which the armature is sealed.
+const SEAL: f64 = 0.95;
+/// Operate, bounce and settling of the flux.
+const SEAL_TIME: Span = Span::ms(25);
+/// Slowest break after the end of a ramp that is still taken for its event.
+const LATE: Span = Span::ms(12);
+
+/// Seals the armature and steps to the start of a falling ramp; the caller arms.
+fn seal(bench: &Bench, supply: &mut Supply, start: Volt) -> Vec<Act> {
+    vec![
+        board(&[(CoilDrive, false), (Arm, false)]),
+        supply.step_to(Volt(SEAL * bench.recipe.part.nominal_v)),
+        board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, true)]),
+        board(&[(CoilDrive, true)]),
+        Act::Mark,
+        Act::Read(Read::Gates),
+        Act::WaitSinceMark(SEAL_TIME),
+        supply.step_to(start),
+        Act::Wait(SETTLES),
+        board(&[(Arm, true)]),
+        Act::Mark,
+    ]
+}
+
+fn until_break(takes: Span) -> Vec<Act> {
+    vec![
+        Act::Until { point: DigitalIn::Latch, within: takes + LATE },
+        Act::Read(Read::Board),
+        Act::Read(Read::Gates),
+        board(&[(CoilDrive, false), (Arm, false)]),
+        Act::WaitSinceMark(takes),
+    ]
+}
+
+pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+    let mut acts = Vec::new();
+    let needed = Expected::new(Volt(0.0), bench.release_lag().coarse_sd_v).placed(Direction::Falling).span;
+    if supply.fine() < needed {
+        let (fine, takes) = supply.ramp_fine(needed);
+        acts.extend([fine, Act::Wait(takes)]);
+    }
+    let start = supply.coarse() + supply.fine();
+    acts.extend(seal(bench, supply, start));
+    findings.ramp_start = Some(supply.total());
+    let (ramp, takes) = supply.ramp_coarse(Volt(0.0));
+    acts.push(ramp);
+    acts.extend(until_break(takes));
+    acts
+}
+
+pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+    let (start, test) = (findings.ramp_start?, &bench.recipe.test);
+    let coarse_v_per_s = bench.calibration.coarse_v_per_s.value;
+    let height = Volt(test.coarse_span_v);
+    let seen = readings.seen.first() == Some(&true);
+    let gate = gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < height.0 - 0.1);
+    findings.expected = Some(match gate {
+        Some(gate) => {
+            let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
+            let lag = bench.release_lag();
+            findings.release = Some(Ramp { coarse, fine: None });
+            Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v)
+        }
+        None => Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v),
+    });
+    None
+}
+
+pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+    let Some(expected) = findings.expected else { return Vec::new() };
+    let placed = expected.placed(Direction::Falling);
+    let mut acts = Vec::new();
+    if supply.fine() < placed.span {
+        let (fine, takes) = supply.ramp_fine(placed.span);
+        acts.extend([fine, Act::Wait(takes)]);
+    }
+    let start = placed.start.0.max((supply.coarse() + supply.fine()).0);
+    acts.extend(seal(bench, supply, Volt(start)));
+    findings.ramp_start = Some(supply.total());
+    let (ramp, takes) = supply.ramp_fine(supply.fine() - placed.span);
+    acts.push(ramp);
+    acts.extend(until_break(takes));
+    acts
+}
+
+pub(super) fn conclude_fine(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+    attempt: u8,
+) -> Option<Stage> {
+    let (start, expected) = (findings.ramp_start?, findings.expected?);
+    if readings.seen.first() != Some(&true) {
+        let early = readings.boards.last().is_some_and(|board| !board.no_closed);
+        findings.expected = Some(expected.next(Direction::Falling, early));
+        if attempt + 1 >= ATTEMPTS {
+            give_up("release", findings);
+            return None;
+        }
+        return Some(Stage::ReleaseFine(attempt + 1));
+    }
+    let (Some(gate), Some(part)) = (gate0(bench, readings), findings.track) else {
+        findings.void("gate counters not read");
+        return None;
+    };
+    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, Direction::Falling);
+    match &mut findings.release {
+        Some(ramp) => ramp.fine = Some(seen),
+        None => findings.release = Some(Ramp { coarse: Volt(f64::NAN), fine: Some(seen) }),
+    }
+    let reference = bench.reference_temperature();
+    let reading = quasi_static(seen, gate, bench.release_lag(), part, reference, doubt(bench));
+    let samples: Vec<_> = readings.gates.iter().flatten().collect();
+    findings.found(Parameter::ReleaseVoltage, reading, samples);
+    None
+}

@@ -1,0 +1,72 @@
+//! What a step machine sees of one turn, and what it may ask for.
+
+use super::ledger::Ledger;
+use super::mechanism::{Mechanism, SENSOR_AGE};
+use super::moves::Move;
+use super::trouble::Alarm;
+use super::wants::Wants;
+use crate::gauge::settings::GoldenPart;
+use crate::rig::image::Image;
+use crate::rig::point::DigitalIn;
+use crate::units::RigTime;
+use std::collections::VecDeque;
+
+/// One turn of the station.
+pub struct Turn<'a> {
+    /// Time of this turn.
+    pub now: RigTime,
+    /// Process image.
+    pub image: &'a Image,
+    /// Sensors and motions.
+    pub mechanism: &'a Mechanism,
+    /// Where the parts are.
+    pub ledger: &'a mut Ledger,
+    /// What this turn asks for.
+    pub wants: &'a mut Wants,
+    /// Golden parts still to come, in the order of the magazine.
+    pub golden: &'a mut VecDeque<GoldenPart>,
+    /// Ordinal up to which parts are durably recorded.
+    pub recorded: u64,
+}
+
+impl Turn<'_> {
+    /// Asks for a motion.
+    pub fn drive(&mut self, movement: Move) {
+        self.wants.motions.push(movement);
+    }
+
+    /// Raises an alarm.
+    pub fn alarm(&mut self, alarm: Alarm) {
+        self.wants.alarms.push(alarm);
+    }
+
+    /// True when the sensors show the end of the motion, nothing of it is under way or asked for.
+    pub fn arrived(&self, movement: Move) -> bool {
+        self.mechanism.has_arrived(movement, self.now, self.image)
+    }
+
+    /// A sensor, when it is fresh enough to be believed.
+    pub fn input(&self, point: DigitalIn) -> Option<bool> {
+        self.image.input(point, self.now, SENSOR_AGE)
+    }
+
+    /// True when the sensor is fresh and in this state.
+    pub fn seen(&self, point: DigitalIn, state: bool) -> bool {
+        self.input(point) == Some(state)
+    }
+
+    /// True when a part may be pushed into the nest.
+    pub fn nest_is_free(&self) -> bool {
+        self.ledger.nest.is_none()
+            && self.seen(DigitalIn::NestPresent, false)
+            && self.arrived(Move::ClampOpen)
+            && self.arrived(Move::ProbesDown)
+            && self.arrived(Move::SortUp)
+            && self.arrived(Move::EscapementHold)
+    }
+
+    /// Serial of the next part when it is a golden one.
+    pub fn next_golden(&mut self) -> Option<String> {
+        self.golden.pop_front().map(|part| part.serial)
+    }
+}

@@ -1,0 +1,106 @@
+//! What one turn of the station asks for, and what it is told.
+
+use super::act::{Job, JobDone};
+use super::ledger::Part;
+use super::moves::Move;
+use super::test::{Bench, Findings};
+use super::trouble::Alarm;
+use crate::gauge::verdict::{Bin, Judgement, Verdict};
+use crate::gauge::{Calibration, Parameter};
+use crate::rig::image::Image;
+use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::units::{RigTime, Second};
+
+/// What the station is told in a turn beside the time.
+#[derive(Debug)]
+pub struct Inputs<'a> {
+    /// Process image.
+    pub image: &'a Image,
+    /// Answer to the job asked for, once.
+    pub job: Option<JobDone>,
+    /// Ordinal up to which parts are durably recorded.
+    pub recorded: u64,
+    /// Trouble of a line or module, once.
+    pub bus: Option<Alarm>,
+    /// The operator wants the lot to end after the parts inside.
+    pub stop: bool,
+}
+
+/// A judged part on its way to the history.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// Who it is, with test time and bin.
+    pub part: Part,
+    /// What is said of it.
+    pub verdict: Verdict,
+    /// Each result against its limit.
+    pub judgements: Vec<(Parameter, Judgement)>,
+    /// Results and the replies they came from.
+    pub findings: Findings,
+    /// What it was judged by.
+    pub bench: Bench,
+    /// When it was judged.
+    pub at: RigTime,
+}
+
+/// A part whose beam has confirmed it.
+#[derive(Debug, Clone)]
+pub struct Landed {
+    /// Who it is.
+    pub part: Part,
+    /// Bin whose beam saw it.
+    pub bin: Bin,
+    /// When.
+    pub at: RigTime,
+}
+
+/// A part that has left the nest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Left {
+    /// Ordinal of the part.
+    pub ordinal: u64,
+    /// Since the part before left; `None` for the first.
+    pub cycle: Option<Second>,
+}
+
+/// How a run ends.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Ending {
+    /// Every part was judged and binned.
+    Complete,
+    /// The operator stopped it; the parts inside were finished.
+    Stopped,
+    /// An alarm stopped it.
+    Alarm,
+}
+
+/// What one turn asks for.
+#[derive(Debug, Default)]
+pub struct Wants {
+    /// Motions, each to pass the guard.
+    pub motions: Vec<Move>,
+    /// Plain outputs.
+    pub outputs: Vec<(DigitalOut, bool)>,
+    /// Work for the measuring line.
+    pub job: Option<Job>,
+    /// Beam whose event counter is to be read with every scan.
+    pub beam: Option<DigitalIn>,
+    /// Alarms raised in this turn.
+    pub alarms: Vec<Alarm>,
+    /// Parts judged in this turn.
+    pub judged: Vec<Judged>,
+    /// Parts confirmed in this turn.
+    pub landed: Vec<Landed>,
+    /// Parts that left the nest in this turn.
+    pub left: Vec<Left>,
+    /// A calibration that is complete.
+    pub calibrated: Option<Calibration>,
+    /// All outputs to their safe values, now.
+    pub safe: bool,
+    /// The lot itself has begun (after calibration and golden parts).
+    pub lot_began: bool,
+    /// The run is over.
+    pub ending: Option<Ending>,
+    /// Next turn not later than this.
+    pub wake_at: Option<RigTime>,
+}

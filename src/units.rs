@@ -1,0 +1,151 @@
+//! Physical units as types, so that a volt is never judged against a limit in ohms.
+//!
+//! Arithmetic stays inside one unit; the only mixed operation is Ohm's law, spelled out as
+//! [`Volt::over`]. Rig time is integer microseconds: [`RigTime`] is an instant, [`Span`] a duration.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
+
+macro_rules! quantity {
+    ($(#[$doc:meta])* $name:ident, $symbol:literal) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default, Serialize, Deserialize)]
+        #[serde(transparent)]
+        pub struct $name(pub f64);
+
+        impl $name {
+            /// Magnitude without sign.
+            pub fn abs(self) -> Self {
+                Self(self.0.abs())
+            }
+            /// False for NaN and the infinities: such a value must never be judged.
+            pub fn is_finite(self) -> bool {
+                self.0.is_finite()
+            }
+        }
+        impl Add for $name {
+            type Output = Self;
+            fn add(self, other: Self) -> Self {
+                Self(self.0 + other.0)
+            }
+        }
+        impl Sub for $name {
+            type Output = Self;
+            fn sub(self, other: Self) -> Self {
+                Self(self.0 - other.0)
+            }
+        }
+        impl Neg for $name {
+            type Output = Self;
+            fn neg(self) -> Self {
+                Self(-self.0)
+            }
+        }
+        impl Mul<f64> for $name {
+            type Output = Self;
+            fn mul(self, factor: f64) -> Self {
+                Self(self.0 * factor)
+            }
+        }
+        impl Div<f64> for $name {
+            type Output = Self;
+            fn div(self, divisor: f64) -> Self {
+                Self(self.0 / divisor)
+            }
+        }
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                fmt::Display::fmt(&self.0, f)?;
+                f.write_str(concat!(" ", $symbol))
+            }
+        }
+    };
+}
+
+quantity!(/** Electric potential. */ Volt, "V");
+quantity!(/** Electric current. */ Ampere, "A");
+quantity!(/** Resistance. */ Ohm, "ohm");
+quantity!(/** Time as a measured quantity (an operate time), not an instant of the rig. */ Second, "s");
+quantity!(/** Temperature on the Celsius scale. */ Celsius, "C");
+quantity!(/** Length. */ Millimetre, "mm");
+
+impl Volt {
+    /// Ohm's law: the resistance that drops this voltage at `current`.
+    pub fn over(self, current: Ampere) -> Ohm {
+        Ohm(self.0 / current.0)
+    }
+}
+
+/// An instant of the rig: microseconds since the program's rig clock began.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
+)]
+#[serde(transparent)]
+pub struct RigTime(pub u64);
+
+/// A duration on the rig's clock, in microseconds.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
+)]
+#[serde(transparent)]
+pub struct Span(pub u64);
+
+impl Span {
+    /// From whole milliseconds.
+    pub const fn ms(ms: u64) -> Self {
+        Self(ms * 1000)
+    }
+    /// From seconds, rounded to the microsecond; negative and non-finite values become zero.
+    pub fn seconds(seconds: f64) -> Self {
+        Self((seconds * 1e6).round().max(0.0) as u64)
+    }
+    /// In seconds.
+    pub fn as_seconds(self) -> f64 {
+        self.0 as f64 / 1e6
+    }
+}
+
+impl RigTime {
+    /// Time since `earlier`; zero when `earlier` is in the future.
+    pub fn since(self, earlier: RigTime) -> Span {
+        Span(self.0.saturating_sub(earlier.0))
+    }
+}
+
+impl Add<Span> for RigTime {
+    type Output = RigTime;
+    fn add(self, span: Span) -> RigTime {
+        RigTime(self.0 + span.0)
+    }
+}
+
+impl Add for Span {
+    type Output = Span;
+    fn add(self, other: Span) -> Span {
+        Span(self.0 + other.0)
+    }
+}
+
+impl AddAssign for Span {
+    fn add_assign(&mut self, other: Span) {
+        self.0 += other.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ohms_law_is_the_only_way_between_units() {
+        assert_eq!(Volt(5.0).over(Ampere(0.0125)), Ohm(400.0));
+    }
+
+    #[test]
+    fn a_span_never_runs_backwards() {
+        assert_eq!(RigTime(5).since(RigTime(9)), Span(0));
+        assert_eq!(Span::seconds(f64::NAN), Span(0));
+        assert_eq!(Span::seconds(0.0000014), Span(1));
+    }
+}

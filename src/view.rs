@@ -1,0 +1,65 @@
+//! What a screen may know: plain serialisable types, filled by the cycle and the recorder.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The whole view.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct View {
+    /// The rig is simulated.
+    pub simulated: bool,
+    /// Lot under way.
+    pub lot: String,
+    /// Recipe of the lot.
+    pub recipe: String,
+    /// What the station is doing, in words.
+    pub state: String,
+    /// Parts of the lot judged so far.
+    pub judged: u64,
+    /// Parts wanted; none for an endless lot.
+    pub count: Option<u64>,
+    /// Parts between pocket and beam.
+    pub inside: u64,
+    /// Parts that came in, golden parts included.
+    pub came_in: u64,
+    /// Parts a beam confirmed, golden parts included.
+    pub went_out: u64,
+    /// Confirmed parts of the lot by bin.
+    pub bins: BTreeMap<String, u64>,
+    /// Verdicts of the lot by name.
+    pub verdicts: BTreeMap<String, u64>,
+    /// Parts per hour of rig time since the lot began.
+    pub parts_per_hour: Option<f64>,
+    /// The last verdict, kept until the next.
+    pub last: Option<LastPart>,
+    /// Alarms, first-out first.
+    pub alarms: Vec<AlarmLine>,
+}
+
+/// The part judged last.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct LastPart {
+    /// Number in the lot.
+    pub seq: u64,
+    /// `pass`, `fail`, `void`.
+    pub verdict: String,
+    /// Bin it goes to.
+    pub bin: String,
+    /// Why, worst first.
+    pub reasons: Vec<String>,
+    /// Results by parameter.
+    pub values: BTreeMap<String, f64>,
+    /// Expanded uncertainties (k = 2) by parameter.
+    pub uncertainty: BTreeMap<String, f64>,
+}
+
+/// An alarm on a screen.
+#[derive(Debug, Clone, Serialize)]
+pub struct AlarmLine {
+    /// Short name.
+    pub code: String,
+    /// English text.
+    pub text_en: String,
+    /// Chinese text.
+    pub text_zh: String,
+}
