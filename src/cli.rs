@@ -1,5 +1,85 @@
-//! The commands, one file each.
+//! The commands, one file each. The only place that names the simulator.
 
 pub mod check;
 pub mod config;
+#[cfg(feature = "sim")]
+pub mod demo;
 pub mod history;
+pub mod run;
+#[cfg(feature = "sim")]
+pub mod sim;
+
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Everything finished, whatever the verdicts.
+pub const DONE: i32 = 0;
+/// Bad input or configuration.
+pub const BAD_INPUT: i32 = 2;
+/// An alarm ended the run.
+pub const RIG_TROUBLE: i32 = 3;
+/// The operator stopped it.
+pub const STOPPED: i32 = 4;
+
+/// Controller of a JZC-22F relay performance tester with automatic feed and discharge.
+#[derive(Debug, Parser)]
+#[command(name = "relayrig", version, after_help = "Examples:
+  relayrig demo
+  relayrig run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 20
+  relayrig history list
+  relayrig config check
+
+Exit status: 0 done, 1 done and the answer is no, 2 bad input, 3 the rig has trouble, 4 stopped by the operator.")]
+pub struct Cli {
+    /// Directory with rig.toml, scene.toml, golden.toml, sim.toml and recipes/
+    #[arg(long, global = true, default_value = "config", value_name = "DIR")]
+    pub config: PathBuf,
+    /// History file
+    #[arg(long, global = true, default_value = "relayrig.db", value_name = "FILE")]
+    pub db: PathBuf,
+    /// What goes to the log on stderr: error, warn, info, debug, or a filter per module
+    #[arg(long, global = true, default_value = "info", value_name = "FILTER")]
+    pub log: String,
+    /// What to do
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// The main job with nothing to prepare: simulated rig, a lot running, a page on 127.0.0.1:8080
+    #[cfg(feature = "sim")]
+    Demo(demo::DemoArgs),
+    /// Run a lot, on a rig or on the simulated one
+    Run(Box<run::RunArgs>),
+    /// Only the simulated rig, on pseudo-terminals in real time
+    #[cfg(feature = "sim")]
+    Sim(sim::SimArgs),
+    /// Check the configuration, or print the schema of a file
+    #[command(subcommand)]
+    Config(config::Args),
+    /// Collision answers for a scene, no rig
+    Check(check::CheckArgs),
+    /// Lots, parts, filters, statistics
+    History(history::HistoryArgs),
+    /// Gauge repeatability and reproducibility
+    Quality(history::QualityArgs),
+}
+
+impl Cli {
+    /// Runs the command; the result is the exit status. An error is bad input, to be told once.
+    pub fn execute(self) -> anyhow::Result<i32> {
+        match self.command {
+            #[cfg(feature = "sim")]
+            Command::Demo(args) => demo::run(&self.config, &self.db, &args),
+            Command::Run(args) => run::run(&self.config, &self.db, &args),
+            #[cfg(feature = "sim")]
+            Command::Sim(args) => sim::run(&self.config, &args),
+            Command::Config(args) => config::run(&self.config, &args),
+            Command::Check(args) => check::run(args),
+            Command::History(args) => history::run(&self.db, args),
+            Command::Quality(args) => history::run_quality(args),
+        }
+    }
+}

@@ -1,1 +1,21 @@
-fn main(){}
+//! Parses the command line, nothing else.
+
+use clap::Parser;
+use relayrig::cli::{BAD_INPUT, Cli};
+use std::process::ExitCode;
+use tracing_subscriber::EnvFilter;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let filter = EnvFilter::try_new(&cli.log).unwrap_or_else(|_| EnvFilter::new("info"));
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(std::io::stderr)
+        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
+        .init();
+    let status = cli.execute().unwrap_or_else(|error| {
+        eprintln!("relayrig: {error:#}");
+        BAD_INPUT
+    });
+    ExitCode::from(u8::try_from(status).unwrap_or(1))
+}

@@ -146,20 +146,31 @@ pub fn read_rig(dir: &Path) -> Result<RigFile, ConfigError> {
 
 /// Reads a file of the configuration as text.
 pub(crate) fn read_text(path: &Path) -> Result<String, ConfigError> {
-    std::fs::read_to_string(path)
-        .map_err(|source| ConfigError::Read { path: path.to_path_buf(), source })
+    std::fs::read_to_string(path).map_err(|source| ConfigError::Read {
+        path: path.to_path_buf(),
+        source,
+    })
 }
 
 /// A TOML error with its line.
 pub(crate) fn content(path: &Path, text: &str, error: &toml::de::Error) -> ConfigError {
     let line = error.span().map_or(0, |s| line_of(text, s.start));
     let message = error.message().lines().collect::<Vec<_>>().join(" ");
-    ConfigError::Content { path: path.to_path_buf(), line, message }
+    ConfigError::Content {
+        path: path.to_path_buf(),
+        line,
+        message,
+    }
 }
 
 /// Line (from 1) of a byte offset.
 fn line_of(text: &str, offset: usize) -> usize {
-    text.as_bytes().iter().take(offset).filter(|&&b| b == b'\n').count() + 1
+    text.as_bytes()
+        .iter()
+        .take(offset)
+        .filter(|&&b| b == b'\n')
+        .count()
+        + 1
 }
 
 #[derive(Deserialize)]
@@ -249,23 +260,47 @@ fn resolve(raw: RawRig) -> RigFile {
         digital_out: points(raw.digital_out),
         counter: points(raw.counter),
         temperature: points(raw.temperature),
-        axis: raw.axis.into_iter().map(|(name, s)| (name, (s.point, s.x_mm))).collect(),
+        axis: raw
+            .axis
+            .into_iter()
+            .map(|(name, s)| (name, (s.point, s.x_mm)))
+            .collect(),
         bins: raw.bin.into_iter().map(bin).collect(),
         reference: raw.reference,
     }
 }
 
 fn line_spec((name, raw): (String, RawLine)) -> LineSpec {
-    LineSpec { name, baud: raw.baud, checksum: raw.checksum }
+    LineSpec {
+        name,
+        baud: raw.baud,
+        checksum: raw.checksum,
+    }
 }
 
 fn module_spec((id, raw): (String, RawModule)) -> ModuleSpec {
-    let RawModule { line, address, model, settings } = raw;
-    ModuleSpec { id, line, address, model, settings }
+    let RawModule {
+        line,
+        address,
+        model,
+        settings,
+    } = raw;
+    ModuleSpec {
+        id,
+        line,
+        address,
+        model,
+        settings,
+    }
 }
 
 fn bin((name, raw): (String, RawStop)) -> Bin {
-    Bin { name, point: raw.point, x_mm: raw.x_mm, beam: raw.beam }
+    Bin {
+        name,
+        point: raw.point,
+        x_mm: raw.x_mm,
+        beam: raw.beam,
+    }
 }
 
 fn points(raw: BTreeMap<String, RawPoint>) -> BTreeMap<String, Terminal> {
@@ -275,5 +310,7 @@ fn points(raw: BTreeMap<String, RawPoint>) -> BTreeMap<String, Terminal> {
         active_low: p.active == Active::Low,
         gain: p.gain,
     };
-    raw.into_iter().map(|(name, p)| (name, terminal(p))).collect()
+    raw.into_iter()
+        .map(|(name, p)| (name, terminal(p)))
+        .collect()
 }

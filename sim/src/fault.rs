@@ -30,7 +30,7 @@ pub struct FaultInfo {
 }
 
 /// Name, unit, default and effect of the faults of this layer.
-const LIST: [(&str, &str, &str, &str); 13] = [
+const LIST: [(&str, &str, &str, &str); 14] = [
     ("drop", "probability", "0.01", "a reply is lost"),
     ("late", "probability", "0.01", "a reply comes 200 ms late"),
     ("delay", "ms", "20", "every reply takes so much longer"),
@@ -77,6 +77,12 @@ const LIST: [(&str, &str, &str, &str); 13] = [
         "MODULE[@s]",
         "board_do@5",
         "a host watchdog expires early",
+    ),
+    (
+        "baud_mismatch",
+        "LINE[@s]",
+        "measure@0",
+        "the modules of a line run at another baud rate",
     ),
     (
         "line_cut",
@@ -129,7 +135,8 @@ pub struct Faults {
     noise: f64,
     echo: f64,
     silent: Vec<(String, u64)>,
-    cut: Vec<(String, u64)>,
+    /// Lines that carry nothing, from and until.
+    cut: Vec<(String, u64, u64)>,
     /// Modules that pose as another product.
     pub wrong_type: Vec<String>,
     clash: Vec<String>,
@@ -202,7 +209,8 @@ impl Faults {
         };
         match name {
             "silence" => self.silent.push((target, at_us)),
-            "line_cut" => self.cut.push((target, at_us)),
+            "line_cut" => self.cut.push((target, at_us, at_us + CUT_US)),
+            "baud_mismatch" => self.cut.push((target, at_us, u64::MAX)),
             "wrong_type" => self.wrong_type.push(target),
             "clash" => self.clash.push(target),
             "reset" => self.timed.push(timed(Event::Reset)),
@@ -214,21 +222,22 @@ impl Faults {
 
     /// Every module or line that a fault names, with the fault's unit.
     pub fn targets(&self) -> impl Iterator<Item = &str> {
-        let named = self
-            .silent
-            .iter()
-            .chain(&self.cut)
-            .map(|(target, _)| target);
+        let named = self.silent.iter().map(|(target, _)| target);
         let timed = self.timed.iter().map(|timed| &timed.target);
         let plain = self.wrong_type.iter().chain(&self.clash);
-        named.chain(timed).chain(plain).map(String::as_str)
+        let lines = self.cut.iter().map(|(target, ..)| target);
+        named
+            .chain(lines)
+            .chain(timed)
+            .chain(plain)
+            .map(String::as_str)
     }
 
     /// The line carries nothing now.
     pub fn line_dead(&self, line: &str, now_us: u64) -> bool {
         self.cut
             .iter()
-            .any(|(cut, from)| cut == line && (*from..*from + CUT_US).contains(&now_us))
+            .any(|(cut, from, until)| cut == line && (*from..*until).contains(&now_us))
     }
 
     /// The module hears, but is silent.

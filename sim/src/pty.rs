@@ -29,6 +29,9 @@ use crate::{SharedRig, SimError};
 /// Longest pause of a line's thread.
 const IDLE: Duration = Duration::from_millis(50);
 
+/// A sleeping thread wakes some 60 us late; it is woken so much earlier and yields until the deadline.
+const EARLY: Duration = Duration::from_micros(120);
+
 /// Bytes as they came, with the instant at which they were read.
 type Piece = (Instant, Vec<u8>);
 
@@ -232,19 +235,40 @@ impl Server {
         at.saturating_duration_since(self.origin).as_micros() as u64
     }
 
+    fn next_us(&self) -> Option<u64> {
+        let arrival = self.arrivals.iter().map(|arrival| arrival.at_us);
+        let reply = self.replies.iter().map(|reply| reply.at_us);
+        arrival.chain(reply).min()
+    }
+
     fn pause(&self) -> Duration {
-        let arrival = self.arrivals.iter().map(|arrival| arrival.at_us).min();
-        let reply = self.replies.iter().map(|reply| reply.at_us).min();
-        match arrival.into_iter().chain(reply).min() {
+        match self.next_us() {
             None => IDLE,
             Some(due_us) => (self.origin + Duration::from_micros(due_us))
                 .saturating_duration_since(Instant::now())
+                .saturating_sub(EARLY)
                 .min(IDLE),
         }
     }
 
+    /// Rig time; when a deadline is as near as the thread was woken early, at that deadline.
+    fn close_to_deadline(&self) -> u64 {
+        let next_us = self.next_us();
+        loop {
+            let now_us = self.rig_us(Instant::now());
+            match next_us {
+                Some(due_us)
+                    if (1..=EARLY.as_micros() as u64).contains(&due_us.saturating_sub(now_us)) =>
+                {
+                    std::thread::yield_now();
+                }
+                _ => return now_us,
+            }
+        }
+    }
+
     fn act(&mut self, master: &mut File) -> io::Result<()> {
-        let now_us = self.rig_us(Instant::now());
+        let now_us = self.close_to_deadline();
         while self
             .arrivals
             .first()

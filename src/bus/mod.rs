@@ -17,6 +17,7 @@
 //! `pace.rs` is the only place that knows how rig time maps to the timers; `wire.rs` how long characters take;
 //! `trace.rs` keeps the last bytes; `health.rs` counts.
 
+mod answer;
 mod exchange;
 mod health;
 mod line;
@@ -30,8 +31,9 @@ mod wire;
 #[cfg(test)]
 mod tests;
 
+pub use answer::{Answer, LineError, Request};
 pub use health::{Health, Histogram, ModuleHealth};
-pub use line::{Answer, LineError, Ports, Request, run, run_reopening};
+pub use line::{Ports, run, run_reopening};
 pub use log::LineLog;
 pub use pace::Pace;
 pub use port::{PortError, SerialPorts, open_serial};

@@ -129,3 +129,35 @@ fn schema_text(name: &str) -> anyhow::Result<String> {
     let text = serde_json::to_string_pretty(&schema(title, keys)).context("writing the schema")?;
     Ok(text + "\n")
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn wiring(rig: &str) -> Wiring {
+        Wiring::resolve(&toml::from_str(rig).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_line_without_checksum_is_pointed_out() {
+        let rig = include_str!("../../config/rig.toml");
+        let careless = wiring(&rig.replace("checksum = true", "checksum = false"));
+        assert!(describe_line(&careless, 0).contains("NO CHECKSUM"));
+        assert!(describe_line(&wiring(rig), 0).ends_with("9 modules, checksum on"));
+    }
+
+    #[test]
+    fn only_known_files_have_a_schema() {
+        assert!(
+            schema_text("recipe")
+                .unwrap()
+                .contains("expected_operate_sd_v")
+        );
+        let message = schema_text("sim").unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "config schema: found \"sim\", expected rig, golden or recipe"
+        );
+    }
+}

@@ -30,7 +30,9 @@ pub async fn verify(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Resu
             left -= 1;
             let Some(index) = pending.get_mut(&line.0).and_then(Vec::pop) else { continue };
             let reply = answer.outcome.map_err(|error| Alarm::bus(&error.to_string()))?;
-            judge(wiring, &checks[index], &reply).map_err(|mismatch| Alarm::bus(&mismatch.to_string()))?;
+            if let Some(mismatch) = judge(wiring, &checks[index], &reply) {
+                return Err(Alarm::bus(&mismatch.to_string()));
+            }
         }
     }
     traffic.start_scan();

@@ -47,6 +47,15 @@ impl Edge {
     }
 }
 
+/// How an alarm on both limits behaves (alarm mode 1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AlarmKind {
+    /// `L`: stays until cleared.
+    Latched,
+    /// `M`: goes with its cause.
+    Momentary,
+}
+
 /// Reply to `@AADI`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AlarmState {
@@ -99,6 +108,18 @@ pub enum Counter {
     WriteThreshold(Edge, UpTo<50>),
     /// `@AADI`.
     ReadAlarm,
+    /// `~AAAS`: true = both limits on counter 0 (mode 1), false = one limit per counter (mode 0).
+    WriteAlarmMode(bool),
+    /// `@AAEAT`, mode 1.
+    EnableAlarm(AlarmKind),
+    /// `@AADA`, mode 1.
+    DisableAlarm,
+    /// `@AACA`: ends a latched alarm, mode 1.
+    ClearAlarm,
+    /// `@AAEAN`, mode 0.
+    EnableAlarmOf(UpTo<1>),
+    /// `@AADAN`, mode 0.
+    DisableAlarmOf(UpTo<1>),
     /// `@AADO0D`: the two outputs; refused while an alarm owns them.
     WriteOutputs(UpTo<3>),
     /// `$AA8` of the 7080D: what the display shows.
@@ -138,6 +159,13 @@ impl Counter {
                 .text(side.letter())
                 .decimal(u32::from(tenths.get()), 2),
             Self::ReadAlarm => request.to(b'@', to).text(b"DI"),
+            Self::WriteAlarmMode(both) => request.to(b'~', to).text(b"A").flag(both),
+            Self::EnableAlarm(AlarmKind::Latched) => request.to(b'@', to).text(b"EAL"),
+            Self::EnableAlarm(AlarmKind::Momentary) => request.to(b'@', to).text(b"EAM"),
+            Self::DisableAlarm => request.to(b'@', to).text(b"DA"),
+            Self::ClearAlarm => request.to(b'@', to).text(b"CA"),
+            Self::EnableAlarmOf(n) => request.to(b'@', to).text(b"EA").digit(n),
+            Self::DisableAlarmOf(n) => request.to(b'@', to).text(b"DA").digit(n),
             Self::WriteOutputs(outputs) => request.to(b'@', to).text(b"DO0").digit(outputs),
             Self::ReadDisplay => request.to(b'$', to).text(b"8"),
             Self::WriteDisplay(what) => request.to(b'$', to).text(b"8").digit(what),
@@ -161,7 +189,7 @@ impl Counter {
             Self::ReadThreshold(_) => (Read, Shape::Decimal { digits: 2, max: 50 }),
             Self::ReadAlarm => (Read, Shape::Alarm),
             Self::ReadDisplay => (Read, Shape::Decimal { digits: 1, max: 2 }),
-            Self::Reset(_) | Self::Run(..) => (Act, Shape::Accepted),
+            Self::Reset(_) | Self::Run(..) | Self::ClearAlarm => (Act, Shape::Accepted),
             Self::WriteOutputs(_) => (Output, Shape::Accepted),
             Self::WritePreset(..)
             | Self::WriteMaximum(..)
@@ -170,6 +198,11 @@ impl Counter {
             | Self::WriteFilter(_)
             | Self::WriteFilterWidth(..)
             | Self::WriteThreshold(..)
+            | Self::WriteAlarmMode(_)
+            | Self::EnableAlarm(_)
+            | Self::DisableAlarm
+            | Self::EnableAlarmOf(_)
+            | Self::DisableAlarmOf(_)
             | Self::WriteDisplay(_) => (Store, Shape::Accepted),
         }
     }

@@ -51,7 +51,7 @@ pub use bounded::{Address, Channel, UpTo};
 pub use command::{Command, Nature};
 pub use common::Common;
 pub use config::{BaudCode, Config, DataFormat, FormatByte, ModuleName, SlewCode};
-pub use counter::{AlarmState, Counter, Edge, GateMode, InputMode};
+pub use counter::{AlarmKind, AlarmState, Counter, Edge, GateMode, InputMode};
 pub use digital::{Digital, GroupWrite, Stored};
 pub use error::ReplyError;
 pub use frame::{FRAME_LIMIT, checksum};

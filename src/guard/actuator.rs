@@ -14,9 +14,11 @@ pub enum Actuator {
     Escapement,
     /// Brings the part from the pocket to the nest.
     Pusher,
-    /// The clamp's jaw on the +y side.
+    /// The clamp's jaw on the +y side; a scene may also call it `clamp_left`.
+    #[serde(alias = "clamp_left")]
     JawLeft,
-    /// The clamp's jaw on the -y side.
+    /// The clamp's jaw on the -y side, or `clamp_right`.
+    #[serde(alias = "clamp_right")]
     JawRight,
     /// Lifts the Kelvin pin block to the relay's pins.
     ProbeLift,

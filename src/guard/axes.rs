@@ -61,9 +61,15 @@ fn axis_of(settings: &ActuatorSettings) -> Result<Axis, GuardError> {
         direction: settings.axis.map(|member| member / length),
         stroke_mm,
         rides: settings.rides,
-        to_rest: settings.to_rest.clone(),
-        to_end: settings.to_end.clone(),
+        to_rest: words(&settings.to_rest, settings.id, "rest"),
+        to_end: words(&settings.to_end, settings.id, "other"),
     })
+}
+
+fn words(given: &Option<String>, actuator: Actuator, end: &str) -> String {
+    given
+        .clone()
+        .unwrap_or_else(|| format!("move {actuator} to its {end} end"))
 }
 
 fn span_of(points: &[f64], path: &str) -> Result<(f64, f64), GuardError> {

@@ -5,7 +5,7 @@ use super::error::GuardError;
 use super::part::Role;
 use super::scene::{Axis, Body, Ride, carriers};
 use super::settings::{GuardSettings, Kind, Piece, PoseSettings};
-use crate::lpm::{Pose, Shape};
+use crate::lpm::{Mover, Pose, Shape};
 
 /// In the order of the file.
 pub(super) fn bodies_of(
@@ -34,7 +34,7 @@ pub(super) fn bodies_of(
             path: path.clone(),
             flaw,
         };
-        shape.check().map_err(flawed)?;
+        let mover = Mover::new(&shape).map_err(flawed)?;
         pose.check().map_err(flawed)?;
         let mut rides = element
             .rides
@@ -47,6 +47,7 @@ pub(super) fn bodies_of(
         bodies.push(Body {
             id: element.id.clone(),
             shape,
+            mover,
             pose,
             rides,
         });

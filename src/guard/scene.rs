@@ -7,7 +7,7 @@ use super::part::Role;
 use super::rules::Rules;
 use super::settings::Policy;
 use super::situation::Situation;
-use crate::lpm::{Pose, Shape};
+use crate::lpm::{Mover, Pose, Shape};
 
 /// An actuator's axis.
 #[derive(Debug, Clone)]
@@ -34,6 +34,8 @@ pub(super) struct Ride {
 pub(super) struct Body {
     pub id: String,
     pub shape: Shape,
+    /// The shape taken apart, for sweeps in its true form.
+    pub mover: Mover,
     /// With all actuators at rest.
     pub pose: Pose,
     /// Empty for a fixed element.

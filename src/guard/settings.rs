@@ -138,10 +138,10 @@ pub struct ActuatorSettings {
     /// Elements that ride on this actuator but move against its axis (the other finger).
     #[serde(default)]
     pub opposed: Vec<String>,
-    /// What a mechanic does to bring it to its rest end, as an order.
-    pub to_rest: String,
+    /// What a mechanic does to bring it to its rest end, as an order; said in refusals.
+    pub to_rest: Option<String>,
     /// The same for the other end.
-    pub to_end: String,
+    pub to_end: Option<String>,
 }
 
 /// One `[[pair]]` table.

@@ -17,7 +17,7 @@ use super::rules::Keep;
 use super::scene::Scene;
 use super::situation::Situation;
 use super::space::Space;
-use crate::lpm::{Answer, Contact, ElementKey, Flaw, Move, Pose, Shape};
+use crate::lpm::{Answer, Contact, ElementKey, Flaw, Move, Mover, Moving, Pose, Shape};
 use std::borrow::Cow;
 
 /// How far beyond the margin a refusal still measures the least distance, mm.
@@ -41,6 +41,8 @@ pub(super) struct Finding {
 struct Travel<'a> {
     number: usize,
     shape: Cow<'a, Shape>,
+    /// The same taken apart beforehand, where its place beside the stroke is known.
+    ready: Option<&'a Mover>,
     pose: Pose,
     /// Where it may be on the actuators that do not move.
     unsure: Offsets,
@@ -123,6 +125,11 @@ fn travels<'a>(
         Some(Travel {
             number,
             shape,
+            ready: scene
+                .bodies
+                .get(number)
+                .map(|body| &body.mover)
+                .filter(|_| unsure.is_point()),
             pose,
             unsure,
             from,
@@ -174,11 +181,32 @@ fn hit_in_group(
     kept: &[(ElementKey, Keep)],
 ) -> Option<Hit> {
     let (shape, margin_mm) = match keep {
-        Keep::Apart(margin_mm) => (Cow::Borrowed(&*travel.shape), margin_mm),
+        Keep::Apart(margin_mm) => {
+            if let Some(mover) = travel.ready {
+                let pose = travel
+                    .pose
+                    .moved_to(sum(travel.pose.position, travel.unsure.low));
+                return ask(space, travel, mover, pose, keep, margin_mm, kept);
+            }
+            (Cow::Borrowed(&*travel.shape), margin_mm)
+        }
         Keep::Depth(depth_mm) => (Cow::Owned(shrunk(&travel.shape, depth_mm)), 0.0),
         Keep::Nothing => return None,
     };
     let (shape, pose) = room(&shape, &travel.pose, &travel.unsure);
+    ask(space, travel, &*shape, pose, keep, margin_mm, kept)
+}
+
+/// First contact of `body`, standing at `pose` before the stroke, with those to which `keep` applies.
+fn ask(
+    space: &Space,
+    travel: &Travel<'_>,
+    body: &impl Moving,
+    pose: Pose,
+    keep: Keep,
+    margin_mm: f64,
+    kept: &[(ElementKey, Keep)],
+) -> Option<Hit> {
     let ignore: Vec<ElementKey> = kept
         .iter()
         .filter(|(_, other)| *other != keep)
@@ -187,7 +215,7 @@ fn hit_in_group(
     let from = pose.moved_to(sum(pose.position, travel.from));
     let to = pose.moved_to(sum(pose.position, travel.to));
     let contact = match space.model().first_contact(
-        &shape,
+        body,
         &Move {
             from,
             to,
@@ -211,7 +239,7 @@ fn hit_in_group(
     };
     let least = space
         .model()
-        .clearance(&shape, &alone, margin_mm + MEASURED_BEYOND_MM);
+        .clearance(body, &alone, margin_mm + MEASURED_BEYOND_MM);
     let distance_mm = least.map_or(contact.distance_mm, |least| least.distance_mm);
     Some(Hit {
         mover: travel.number,

@@ -34,8 +34,10 @@
 //!    invalid moves and bodies are blocked ([`ElementKey::UNDECIDABLE`]).
 //!
 //! # What a false blocked costs
-//! Straight: at most 1e-6 mm beyond the margin, for coordinates up to 1e6 mm (1e-9 mm near the
-//! origin). The searches for planes are tested against built truth, not proven to converge.
+//! Straight: meant to stay within 1e-6 mm of the margin for coordinates up to 1e6 mm. This rests on
+//! the searches for planes, which are tested against built truth, not proven to converge: of 60,000
+//! drawn pairs (needles, foils, tilts of 1e-12, places up to 1e6 mm) one loses 1.1e-6 mm, always to
+//! the safe side.
 //! Turning: at most 5e-4 mm.
 
 #![allow(

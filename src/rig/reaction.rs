@@ -3,25 +3,27 @@
 //! The module that carries the contact is asked in every second transaction of its line. The contact
 //! opens, at worst, just after it was asked. Then passes
 //!
-//! - one other transaction, the longest of that line, failing: request, time-out, and the silence that
-//!   must follow a time-out,
+//! - one other transaction, the longest of that line, failing: request, time-out, and the wait for silence that
+//!   must follow, itself broken once by a late reply,
 //! - the poll that sees the contact open, answered at the last moment,
-//! - one write that makes outputs safe, answered at the last moment.
+//! - one write that makes outputs safe, answered at the last moment,
 //!
-//! A poll that is not answered needs no separate bound: a stale contact counts as open, and the age limit
-//! of the contact is this same number. Commands on this line have one try ([`Wiring::tries_on`]).
-//! Wire times are those of 8N1, ten bits a character; reading commands, host OK and event counters of this
-//! line are all shorter than the frames assumed here.
+//! and a rest of two characters after each. A late reply is taken to begin at most one allowance after the
+//! time-out. A poll that is not answered needs no bound of its own: a contact not known for
+//! [`Wiring::emergency_stop_max_age`] counts as open. Commands on this line have one try ([`Wiring::tries_on`]).
+//! Wire times are those of 8N1, ten bits a character; reads, host OK and event counters of a running lot are no
+//! longer than the frames assumed here.
 
 use super::fault::Fault;
 use super::wiring::{LineId, Wiring};
 use crate::units::Span;
 
-/// Characters of the longest request sent while a lot runs, CR and check sum included: `#AABBDD`, a write of
-/// four digits, or a 16-bit level are at most this.
-const LONGEST_REQUEST: u64 = 10;
+/// Characters of the longest request sent while a lot runs: a level in percent, `#AA+ddd.dd` with check sum and CR.
+const LONGEST_REQUEST: u64 = 13;
 /// Characters of the longest reply of a module without analog inputs: a counter or a level, with lead, CR and check sum.
 const LONGEST_DIGITAL_REPLY: u64 = 12;
+/// Rest after a reply, characters.
+const TURNAROUND: u64 = 2;
 /// Characters of the longest reply at all: eight readings of seven characters, with lead, CR and check sum.
 const LONGEST_ANALOG_REPLY: u64 = 60;
 
@@ -34,6 +36,20 @@ impl Wiring {
     /// Worst time from the opening of the emergency-stop contact to outputs written.
     pub fn longest_reaction(&self) -> Span {
         let line = self.emergency_stop_line();
+        let write = self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance());
+        self.emergency_stop_max_age() + write
+    }
+
+    /// Age at which the emergency-stop contact no longer counts as known: by then the next answer must have come,
+    /// whatever befell the one transaction between.
+    pub fn emergency_stop_max_age(&self) -> Span {
+        let line = self.emergency_stop_line();
+        self.longest_failure(line)
+            + self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance())
+    }
+
+    /// The longest that one failing transaction can hold a line.
+    fn longest_failure(&self, line: LineId) -> Span {
         let analog = self
             .modules_on(line)
             .any(|module| self.module(module).model.is_analog_in());
@@ -47,18 +63,13 @@ impl Wiring {
         } else {
             self.digital_allowance()
         };
-        let answered =
-            |reply: u64, allowance: Span| self.wire(line, LONGEST_REQUEST + reply) + allowance;
         let silence = self.wire(line, longest) + allowance;
-        let other = answered(longest, allowance) + silence;
-        let poll = answered(LONGEST_DIGITAL_REPLY, self.digital_allowance());
-        let write = answered(LONGEST_DIGITAL_REPLY, self.digital_allowance());
-        other + poll + write
+        self.answered(line, longest, allowance) + silence + silence
     }
 
-    /// Age at which the emergency-stop contact no longer counts as known.
-    pub fn emergency_stop_max_age(&self) -> Span {
-        self.longest_reaction()
+    /// A transaction of this line that is answered at the last moment, with the rest after it.
+    fn answered(&self, line: LineId, reply: u64, allowance: Span) -> Span {
+        self.wire(line, LONGEST_REQUEST + reply + TURNAROUND) + allowance
     }
 
     fn digital_allowance(&self) -> Span {
@@ -92,4 +103,38 @@ pub(super) fn check_reaction(wiring: &Wiring) -> Result<(), Fault> {
         accepted_ms,
         expected,
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use crate::rig::settings::RigSettings;
+    use crate::rig::wiring::Wiring;
+    use crate::units::Span;
+
+    fn settings() -> RigSettings {
+        toml::from_str(include_str!("../../config/rig.toml")).unwrap()
+    }
+
+    #[test]
+    fn the_bound_is_failure_poll_and_write() {
+        // Frames of 13 + 12 + 2 characters with 30 ms, three times, and twice 12 characters with 30 ms;
+        // each wire time rounded up to the microsecond.
+        let bound = Wiring::resolve(&settings()).unwrap().longest_reaction();
+        assert_eq!(bound, Span(3 * (2_344 + 30_000) + 2 * (1_042 + 30_000)));
+    }
+
+    #[test]
+    fn a_slower_line_or_an_analog_module_beside_the_contact_lengthens_it() {
+        let mut slow = settings();
+        slow.line.get_mut("motion").unwrap().baud = 9600;
+        slow.safety.estop_reaction_ms = 300.0;
+        let bound = Wiring::resolve(&slow).unwrap().longest_reaction();
+        assert_eq!(bound, Span(3 * (28_125 + 30_000) + 2 * (12_500 + 30_000)));
+        let mut shared = settings();
+        let contact = shared.digital_in.get_mut("emergency_stop_ok").unwrap();
+        (contact.module, contact.channel) = ("board_di".to_owned(), 11);
+        let fault = Wiring::resolve(&shared).unwrap_err();
+        assert_eq!(fault.key, "safety.estop_reaction_ms");
+    }
 }

@@ -192,7 +192,7 @@ impl Station {
     pub fn situation(&self, now: RigTime, image: &Image) -> Situation {
         let pushing = matches!(self.feed, Feed::Pushing);
         let parts = PartPlaces {
-            pocket: self.ledger.pocket && !pushing || matches!(self.feed, Feed::Releasing { .. }),
+            pocket: self.ledger.pocket && !pushing,
             on_pusher: self.ledger.pocket && pushing,
             nest: self.ledger.nest.is_some() && !matches!(self.clamp, Clamp::Lifting),
             gripper: self.ledger.gripper.is_some() || matches!(self.clamp, Clamp::Lifting),

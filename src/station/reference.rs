@@ -102,13 +102,12 @@ fn contact(bench: &Bench, acts: &mut Vec<Act>) {
 }
 
 fn pulses(acts: &mut Vec<Act>) {
+    let pulse = [Act::Board(vec![(Arm, true)]), Act::Wait(Span::ms(2)), Act::Board(vec![(Arm, false)])];
+    // The first one closes a window that may still stand open from the switching before.
+    acts.extend(pulse.clone());
     acts.push(Act::Read(Read::Gates));
     for _ in 0..PULSES {
-        acts.extend([
-            Act::Board(vec![(Arm, true)]),
-            Act::Wait(Span::ms(2)),
-            Act::Board(vec![(Arm, false)]),
-        ]);
+        acts.extend(pulse.clone());
     }
     acts.push(Act::Read(Read::Gates));
 }

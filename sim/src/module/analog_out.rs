@@ -13,6 +13,7 @@
 //! right alphabet but the wrong width are refused with `?AA`; other text is not understood.
 
 use super::habit::Habit;
+use super::output::{Data, Model, Span, model, read, span, spell};
 use super::plate::{Commissioning, Plate};
 use super::ramp::{Ramp, nominal_rate};
 use super::range::Format;
@@ -27,20 +28,6 @@ struct AnalogOut {
     habit: Habit,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Model {
-    channels: u8,
-    bits: i32,
-    /// Data carry a sign (7024).
-    signed: bool,
-    /// Commands carry a channel digit.
-    numbered: bool,
-    /// Type and slew belong to the channel (7022).
-    own_slew: bool,
-    /// `$AA8` measures the terminals.
-    true_readback: bool,
-}
-
 #[derive(Debug, Clone)]
 struct Channel {
     ramp: Ramp,
@@ -48,62 +35,6 @@ struct Channel {
     safe: f64,
     /// Type nibble and slew code of a 7022 channel.
     own: (u8, u8),
-}
-
-/// Ends of an output range and whether it is a current.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Span {
-    low: f64,
-    high: f64,
-    is_current: bool,
-}
-
-fn span(model: Model, type_code: u8) -> Option<Span> {
-    let (low, high, is_current) = match type_code {
-        0x30 => (0.0, 20.0, true),
-        0x31 => (4.0, 20.0, true),
-        0x32 => (0.0, 10.0, false),
-        0x33 if model.signed => (-10.0, 10.0, false),
-        0x34 if model.signed => (0.0, 5.0, false),
-        0x35 if model.signed => (-5.0, 5.0, false),
-        _ => return None,
-    };
-    Some(Span {
-        low,
-        high,
-        is_current,
-    })
-}
-
-fn model(number: &str) -> Model {
-    let one = Model {
-        channels: 1,
-        bits: 12,
-        signed: false,
-        numbered: false,
-        own_slew: false,
-        true_readback: true,
-    };
-    let several = Model {
-        numbered: true,
-        true_readback: false,
-        ..one
-    };
-    match number {
-        "7021P" => Model { bits: 16, ..one },
-        "7022" => Model {
-            channels: 2,
-            own_slew: true,
-            ..several
-        },
-        "7024" => Model {
-            channels: 4,
-            bits: 14,
-            signed: true,
-            ..several
-        },
-        _ => one,
-    }
 }
 
 /// Commissions an analog output as its table says.
@@ -232,7 +163,7 @@ impl AnalogOut {
             return dcon::ignored();
         }
         let span = self.span(plate, channel);
-        let value = match self.read(plate, span, data) {
+        let value = match read(self.model, self.format(plate), span, data) {
             Data::Value(value) => value,
             Data::WrongWidth => return dcon::refused(plate.address),
             Data::Nonsense => return Answer::Unknown,
@@ -255,49 +186,10 @@ impl AnalogOut {
         }
     }
 
-    fn read(&self, plate: &Plate, span: Span, data: &[u8]) -> Data {
-        match self.format(plate) {
-            Format::Hex => {
-                let digits = if self.model.bits > 12 { 4 } else { 3 };
-                match dcon::hex(data) {
-                    Some(code) if data.len() == digits => {
-                        let top = 16f64.powi(digits as i32) - 1.0;
-                        Data::Value(span.low + f64::from(code) / top * (span.high - span.low))
-                    }
-                    Some(_) => Data::WrongWidth,
-                    None => Data::Nonsense,
-                }
-            }
-            Format::Percent => match fixed(data, true, 3, 2) {
-                Data::Value(percent) => {
-                    Data::Value(span.low + percent / 100.0 * (span.high - span.low))
-                }
-                other => other,
-            },
-            Format::Engineering => fixed(data, self.model.signed, 2, 3),
-        }
-    }
-
-    fn spelt(&self, plate: &Plate, channel: usize, value: f64) -> String {
-        let span = self.span(plate, channel);
-        let fraction = (value - span.low) / (span.high - span.low);
-        match self.format(plate) {
-            Format::Hex => {
-                let digits: u32 = if self.model.bits > 12 { 4 } else { 3 };
-                let top = 16f64.powi(digits as i32) - 1.0;
-                let mut text = String::new();
-                let code = (fraction.clamp(0.0, 1.0) * top).round() as u64;
-                dcon::push_hex(&mut text, code, digits);
-                text
-            }
-            Format::Percent => format!("{:+07.2}", (fraction * 100.0).max(0.0)),
-            Format::Engineering if self.model.signed => format!("{value:+07.3}"),
-            Format::Engineering => format!("{:06.3}", value.max(0.0)),
-        }
-    }
-
     fn shown(&self, plate: &Plate, channel: usize, value: f64) -> Answer {
-        dcon::done_with(plate.address, &self.spelt(plate, channel, value))
+        let span = self.span(plate, channel);
+        let text = spell(self.model, self.format(plate), span, value);
+        dcon::done_with(plate.address, &text)
     }
 
     fn present(&self, channel: usize) -> f64 {
@@ -357,37 +249,6 @@ impl AnalogOut {
             },
             _ => Answer::Unknown,
         }
-    }
-}
-
-enum Data {
-    Value(f64),
-    WrongWidth,
-    Nonsense,
-}
-
-/// `ddd.dd` and the like, with or without a leading sign.
-fn fixed(data: &[u8], signed: bool, whole: usize, decimals: usize) -> Data {
-    let alphabet = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'+' | b'-' | b'.');
-    if data.is_empty() || !data.iter().all(alphabet) {
-        return Data::Nonsense;
-    }
-    let (sign, digits) = match data {
-        [b'+', rest @ ..] if signed => (1.0, rest),
-        [b'-', rest @ ..] if signed => (-1.0, rest),
-        rest if !signed => (1.0, rest),
-        _ => return Data::WrongWidth,
-    };
-    let form = digits.len() == whole + 1 + decimals
-        && digits.iter().enumerate().all(|(place, byte)| {
-            (*byte == b'.') == (place == whole) && !matches!(byte, b'+' | b'-')
-        });
-    match std::str::from_utf8(digits)
-        .ok()
-        .and_then(|text| text.parse::<f64>().ok())
-    {
-        Some(value) if form => Data::Value(sign * value),
-        _ => Data::WrongWidth,
     }
 }
 

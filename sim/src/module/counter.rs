@@ -11,6 +11,7 @@
 //! outputs while they are enabled.
 
 use super::plate::{Commissioning, Plate};
+use super::pulse::{Channel, channels};
 use super::{Built, Family, Terminals, setting};
 use crate::dcon::{self, Answer, Request};
 use crate::error::SimError;
@@ -34,56 +35,6 @@ struct Counter {
     limits: [u32; 2],
     led: u8,
     has_led: bool,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Channel {
-    preset: u32,
-    maximum: u32,
-    running: bool,
-    overflowed: bool,
-    /// Time during which pulses were let through, microseconds.
-    counted_us: f64,
-    /// Gate time at the last look.
-    seen_us: f64,
-    /// Pulses that had passed when the counter stood at `start` above its preset.
-    zero_pulses: u64,
-    start: u64,
-    /// Frequency at a bench input; on a rig the reference clock of the plant.
-    bench_hz: Option<f64>,
-}
-
-impl Channel {
-    fn hz(&self, at: &Terminals<'_>) -> f64 {
-        self.bench_hz
-            .unwrap_or_else(|| at.plant.reference_clock_hz())
-    }
-
-    fn pulses(&self, hz: f64) -> u64 {
-        (hz * self.counted_us * 1e-6).floor() as u64
-    }
-
-    fn span(&self) -> u64 {
-        u64::from(self.maximum.saturating_sub(self.preset)) + 1
-    }
-
-    fn position(&self, hz: f64) -> u64 {
-        self.start + (self.pulses(hz) - self.zero_pulses)
-    }
-
-    fn value(&self, hz: f64) -> u64 {
-        u64::from(self.preset) + self.position(hz) % self.span()
-    }
-
-    fn overflow(&self, hz: f64) -> bool {
-        self.overflowed || self.position(hz) >= self.span()
-    }
-
-    fn reset(&mut self, hz: f64) {
-        self.zero_pulses = self.pulses(hz);
-        self.start = 0;
-        self.overflowed = false;
-    }
 }
 
 /// Commissions a counter module as its table says.
@@ -123,30 +74,6 @@ pub(super) fn build(
         has_led: model == "7080D",
     };
     Ok((Plate::new(spec, line, type_code, 0)?, Box::new(family)))
-}
-
-fn channels(spec: &ModuleSpec) -> Result<[Channel; 2], SimError> {
-    let preset = setting::numbers(spec, "preset")?;
-    let maximum = setting::numbers(spec, "maximum")?;
-    let counts = setting::numbers(spec, "counts")?;
-    let inputs = setting::numbers(spec, "inputs")?;
-    let running = setting::bits(spec, "enabled")?.unwrap_or(0b11);
-    let overflow = setting::bits(spec, "overflow")?.unwrap_or(0);
-    Ok([0usize, 1].map(|n| {
-        let preset = preset.get(n).map_or(0, |value| *value as u32);
-        let count = counts.get(n).map_or(preset, |value| *value as u32);
-        Channel {
-            preset,
-            maximum: maximum.get(n).map_or(u32::MAX, |value| *value as u32),
-            running: running & 1 << n != 0,
-            overflowed: overflow & 1 << n != 0,
-            counted_us: 0.0,
-            seen_us: 0.0,
-            zero_pulses: 0,
-            start: u64::from(count.saturating_sub(preset)),
-            bench_hz: inputs.get(n).copied(),
-        }
-    }))
 }
 
 fn gate_mode(spec: &ModuleSpec) -> Result<u8, SimError> {
@@ -417,10 +344,7 @@ impl Family for Counter {
     fn restart(&mut self, _plate: &Plate) {
         self.outputs = 0;
         for channel in &mut self.channels {
-            channel.start = 0;
-            channel.overflowed = false;
-            channel.zero_pulses = 0;
-            channel.counted_us = 0.0;
+            channel.power_cycle();
         }
     }
 

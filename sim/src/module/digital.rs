@@ -15,66 +15,11 @@
 //! input that merely stays as it was when the latches were cleared sets none.
 
 use super::plate::{Commissioning, Plate};
+use super::shape::{Shape, ones};
 use super::{Built, Family, Terminals, setting};
 use crate::dcon::{self, Answer, Request};
 use crate::error::SimError;
 use crate::terminal::ModuleSpec;
-
-/// Channels of a model.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shape {
-    /// Digital inputs.
-    pub inputs: u8,
-    /// Digital outputs.
-    pub outputs: u8,
-}
-
-/// Channels of a model number, `None` when it is no digital module.
-pub fn shape(number: &str) -> Option<Shape> {
-    let (inputs, outputs) = match number {
-        "7041" => (14, 0),
-        "7042" => (0, 13),
-        "7043" | "7045" => (0, 16),
-        "7044" => (4, 8),
-        "7050" => (7, 8),
-        "7051" | "7053" => (16, 0),
-        "7052" => (8, 0),
-        "7060" => (4, 4),
-        "7063" | "7063A" | "7063B" => (8, 3),
-        "7065" | "7065A" | "7065B" => (4, 5),
-        "7066" | "7067" => (0, 7),
-        _ => return None,
-    };
-    Some(Shape { inputs, outputs })
-}
-
-impl Shape {
-    fn all_outputs(self) -> u16 {
-        ones(self.outputs)
-    }
-
-    fn output_digits(self) -> usize {
-        match self.outputs {
-            0..=4 => 1,
-            5..=8 => 2,
-            _ => 4,
-        }
-    }
-
-    fn first_and_second(self, inputs: u16, outputs: u16) -> u16 {
-        if self.outputs == 0 {
-            inputs
-        } else if self.outputs > 8 {
-            outputs
-        } else {
-            outputs << 8 | (inputs & 0xFF)
-        }
-    }
-}
-
-fn ones(channels: u8) -> u16 {
-    ((1u32 << channels) - 1) as u16
-}
 
 struct Digital {
     shape: Shape,

@@ -17,10 +17,13 @@ pub mod converter;
 pub mod counter;
 pub mod digital;
 pub mod habit;
+mod output;
 pub mod plate;
+mod pulse;
 pub mod ramp;
 pub mod range;
 pub mod setting;
+pub mod shape;
 pub mod watchdog;
 
 use rand_chacha::ChaCha8Rng;
@@ -104,7 +107,7 @@ impl Module {
             }
             "7021" | "7021P" | "7022" | "7024" => analog_out::build(spec, model, line, &habit)?,
             "7080" | "7080B" | "7080D" => counter::build(spec, model, line)?,
-            other => match digital::shape(other) {
+            other => match shape::shape(other) {
                 Some(shape) => digital::build(spec, shape, line)?,
                 None => return Err(unknown_model(spec)),
             },

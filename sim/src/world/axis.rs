@@ -50,7 +50,11 @@ impl Axis {
             true => 0.5 * self.acceleration * t * t,
             false => self.acceleration * ramp * (t - 0.5 * ramp),
         };
-        let way = if run < left { risen(run) } else { whole - risen(left) };
+        let way = if run < left {
+            risen(run)
+        } else {
+            whole - risen(left)
+        };
         self.from + way.clamp(0.0, whole).copysign(self.to - self.from)
     }
 

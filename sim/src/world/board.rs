@@ -5,10 +5,12 @@
 //! then comes late. The clamp changes only while the coil is free of current. Part or no part,
 //! every terminal answers what its circuit would.
 
+mod circuit;
+
 use super::draw::Draw;
 use super::gates::Gates;
 use super::relay::{Contact, Relay, Supply};
-use super::signal::{Commands, In, Out, Quantity, Source};
+use super::signal::{Commands, In, Out, Source};
 use super::table::BoardTable;
 use crate::config::References;
 
@@ -49,13 +51,21 @@ pub struct Board {
 
 impl Board {
     /// A board with its errors drawn; `gain` is volts of supply per volt of each source.
-    pub fn new(table: &BoardTable, reference: &References, gain: [f64; 3], draw: &mut Draw) -> Self {
+    pub fn new(
+        table: &BoardTable,
+        reference: &References,
+        gain: [f64; 3],
+        draw: &mut Draw,
+    ) -> Self {
         let mut within = |value: f64, pct: f64| value * (1.0 + draw.half(pct / 100.0));
         let source_a = within(table.source_current_a, table.source_error_pct);
         let reference_coil_ohm = within(reference.coil_ohm, reference.coil_tolerance_pct);
         let contact = within(reference.contact_mohm, reference.contact_tolerance_pct);
         let reference_v = within(reference.voltage_v, reference.voltage_tolerance_pct);
-        let delay = [draw.half(table.gate_delay_us), draw.half(table.gate_delay_us)];
+        let delay = [
+            draw.half(table.gate_delay_us),
+            draw.half(table.gate_delay_us),
+        ];
         Self {
             table: table.clone(),
             gates: Gates::new(delay, table.window_after_latch_ms * 1000.0),
@@ -121,7 +131,9 @@ impl Board {
         if commands.rises(before, Out::Arm) {
             self.arm_level_v = self.supply_v();
             self.moved = false;
-            let pulse = commands.is_on(Out::ReferenceContact).then_some(self.pulse_us);
+            let pulse = commands
+                .is_on(Out::ReferenceContact)
+                .then_some(self.pulse_us);
             self.gates.arm(self.now_us, pulse);
         }
         if self.wanted() == self.switches || self.switch_at_us.is_some() {
@@ -174,30 +186,6 @@ impl Board {
         }
     }
 
-    /// A quantity in its own unit, before the gain of its terminal.
-    pub fn quantity(&self, quantity: Quantity, relay: Option<&Relay>) -> f64 {
-        match quantity {
-            Quantity::CoilVoltage | Quantity::CoilVoltageFine => {
-                self.coil_v(relay) * self.divider
-            }
-            Quantity::CoilCurrent | Quantity::CoilCurrentFine => self.coil_a(relay),
-            Quantity::ContactCurrent => self.contact_a(relay),
-            Quantity::SupplyVoltage => self.supply_v(),
-            Quantity::ReferenceVoltage => self.reference_v,
-            Quantity::ContactDrop => self.contact_v(relay),
-        }
-    }
-
-    /// Clips what an analog input can see, volts.
-    pub fn clip(&self, volts: f64) -> f64 {
-        volts.clamp(-self.table.input_limit_v, self.table.input_limit_v)
-    }
-
-    fn supply_v(&self) -> f64 {
-        let sum: f64 = self.volts.iter().zip(self.gain).map(|(v, g)| v * g).sum();
-        sum.clamp(0.0, self.table.supply_max_v)
-    }
-
     fn wanted(&self) -> Switches {
         Switches {
             drive: self.commands.is_on(Out::CoilDrive),
@@ -207,24 +195,11 @@ impl Board {
     }
 
     fn selected(&self) -> Contact {
-        if self.switches.select_no { Contact::No } else { Contact::Nc }
-    }
-
-    fn sees(&self, contact: Contact, relay: Option<&Relay>) -> bool {
-        self.touching
-            && relay.is_some_and(|r| {
-                let pins = r.specimen().pins;
-                let met = match contact {
-                    Contact::No => pins.no(),
-                    Contact::Nc => pins.nc(),
-                };
-                met && r.is_closed(contact) && self.monitor_trips(r, contact)
-            })
-    }
-
-    fn monitor_trips(&self, relay: &Relay, contact: Contact) -> bool {
-        let ohm = relay.record.contact_mohm(contact) * 1e-3;
-        ohm / (ohm + self.table.monitor_ohm) < self.table.monitor_threshold_pct / 100.0
+        if self.switches.select_no {
+            Contact::No
+        } else {
+            Contact::Nc
+        }
     }
 
     fn selected_closed(&self, relay: Option<&Relay>) -> bool {
@@ -233,13 +208,19 @@ impl Board {
 
     /// Next instant at which the board does something by itself.
     fn next_us(&self) -> Option<f64> {
-        let times = [self.switch_at_us, self.source_due_us(), self.gates.next_us()];
+        let times = [
+            self.switch_at_us,
+            self.source_due_us(),
+            self.gates.next_us(),
+        ];
         times.into_iter().flatten().min_by(f64::total_cmp)
     }
 
     fn source_due_us(&self) -> Option<f64> {
         let wanted = self.commands.is_on(Out::SourceOn) && self.chain && !self.source_live;
-        let since = self.closed_since_us.filter(|_| wanted && self.switch_at_us.is_none())?;
+        let since = self
+            .closed_since_us
+            .filter(|_| wanted && self.switch_at_us.is_none())?;
         Some((since + self.table.source_wait_ms * 1000.0).max(self.now_us))
     }
 
@@ -337,64 +318,11 @@ impl Board {
             return Supply::Volts(self.limited_v(relay.coil_ohm()));
         }
         let slow = self.clamp_diode && meets;
-        let clamp_v = if slow { self.table.diode_v } else { self.table.zener_v };
+        let clamp_v = if slow {
+            self.table.diode_v
+        } else {
+            self.table.zener_v
+        };
         Supply::Off { clamp_v, slow }
-    }
-
-    fn limited_v(&self, ohm: f64) -> f64 {
-        self.supply_v().min(self.table.supply_limit_ma * 1e-3 * ohm)
-    }
-
-    fn coil_a(&self, relay: Option<&Relay>) -> f64 {
-        if self.commands.is_on(Out::ReferenceCoil) {
-            let volts = if self.driving { self.limited_v(self.reference_coil_ohm) } else { 0.0 };
-            return volts / self.reference_coil_ohm;
-        }
-        let meets = |r: &&Relay| self.touching && r.specimen().pins.coil();
-        relay.filter(meets).map_or(0.0, |r| r.coil_current_a(self.now_us))
-    }
-
-    fn coil_v(&self, relay: Option<&Relay>) -> f64 {
-        let current = self.coil_a(relay);
-        match (self.driving, self.commands.is_on(Out::ReferenceCoil)) {
-            (true, true) => current * self.reference_coil_ohm,
-            (true, false) => self.limited_v(relay.map_or(f64::INFINITY, Relay::coil_ohm)),
-            (false, _) if current <= 0.0 => 0.0,
-            (false, _) if self.clamp_diode => -self.table.diode_v,
-            (false, _) => -self.table.zener_v,
-        }
-    }
-
-    /// Resistance between the sense wires, `None` when open.
-    fn contact_ohm(&self, relay: Option<&Relay>) -> Option<f64> {
-        if self.commands.is_on(Out::ReferenceContact) {
-            return Some(self.reference_contact_ohm);
-        }
-        let contact = self.selected();
-        let closed = self.sees(contact, relay);
-        relay.filter(|_| closed).map(|r| r.record.contact_mohm(contact) * 1e-3)
-    }
-
-    fn contact_a(&self, relay: Option<&Relay>) -> f64 {
-        let ohm = self.contact_ohm(relay).unwrap_or(f64::INFINITY);
-        let size = match self.source_live {
-            true => self.source_a.min(self.table.source_compliance_v / ohm),
-            false => 0.0,
-        };
-        if self.switches.reverse { -size } else { size }
-    }
-
-    fn source_limited(&self, relay: Option<&Relay>) -> bool {
-        self.source_live && self.contact_a(relay).abs() < self.source_a * 0.999
-    }
-
-    fn contact_v(&self, relay: Option<&Relay>) -> f64 {
-        let Some(ohm) = self.contact_ohm(relay) else {
-            return self.table.monitor_v;
-        };
-        let reference = self.commands.is_on(Out::ReferenceContact);
-        let emf = relay.filter(|_| !reference).map_or(0.0, |r| r.specimen().emf_v);
-        let monitor_a = self.table.monitor_v / (self.table.monitor_ohm + ohm);
-        (self.contact_a(relay) + monitor_a) * ohm + emf
     }
 }

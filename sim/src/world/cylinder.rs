@@ -15,7 +15,15 @@ pub struct Cylinder {
 impl Cylinder {
     /// At rest, with a mean stroke time.
     pub fn new(mean_ms: f64) -> Self {
-        Self { mean_us: mean_ms * 1000.0, from: 0.0, to: 0.0, start_us: 0, end_us: 0, far: false, arrived: true }
+        Self {
+            mean_us: mean_ms * 1000.0,
+            from: 0.0,
+            to: 0.0,
+            start_us: 0,
+            end_us: 0,
+            far: false,
+            arrived: true,
+        }
     }
 
     /// Where it is, 0 to 1.

@@ -40,7 +40,9 @@ impl Edges {
     }
 
     fn settle(&mut self, now_us: u64) {
-        let long = self.low_since_us.is_some_and(|since| now_us - since >= FILTER_US);
+        let long = self
+            .low_since_us
+            .is_some_and(|since| now_us - since >= FILTER_US);
         if long && !self.counted {
             self.counted = true;
             self.count += 1;

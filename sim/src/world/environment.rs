@@ -21,7 +21,11 @@ impl Environment {
         let track_c = ambient_c + draw.half(table.track_minus_ambient_half_k);
         let nest_c = ambient_c + draw.half(table.nest_minus_ambient_half_k);
         let read_c = [nest_c, ambient_c, track_c].map(|t| draw.normal(t, table.rtd_error_sd_k));
-        Self { ambient_c, track_c, read_c }
+        Self {
+            ambient_c,
+            track_c,
+            read_c,
+        }
     }
 
     /// What a sensor shows.

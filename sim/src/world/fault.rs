@@ -44,22 +44,30 @@ impl Faults {
         table: &BTreeMap<String, FaultSpec>,
         path: &Path,
     ) -> Result<Self, ConfigError> {
-        let resolve = |(name, value): &(String, f64)| match (Fault::from_name(name), table.get(name)) {
-            (Some(fault), Some(spec)) => {
-                Ok((fault, if value.is_nan() { spec.default } else { *value }))
-            }
-            (_, _) => Err(ConfigError::Value {
-                path: path.to_path_buf(),
-                key: format!("fault.{name}"),
-                message: format!("no such fault, expected one of {}", names(table)),
-            }),
-        };
-        asked.iter().map(resolve).collect::<Result<_, _>>().map(Self)
+        let resolve =
+            |(name, value): &(String, f64)| match (Fault::from_name(name), table.get(name)) {
+                (Some(fault), Some(spec)) => {
+                    Ok((fault, if value.is_nan() { spec.default } else { *value }))
+                }
+                (_, _) => Err(ConfigError::Value {
+                    path: path.to_path_buf(),
+                    key: format!("fault.{name}"),
+                    message: format!("no such fault, expected one of {}", names(table)),
+                }),
+            };
+        asked
+            .iter()
+            .map(resolve)
+            .collect::<Result<_, _>>()
+            .map(Self)
     }
 
     /// Values asked for under one name.
     pub fn values(&self, fault: Fault) -> impl Iterator<Item = f64> + '_ {
-        self.0.iter().filter(move |(f, _)| *f == fault).map(|(_, v)| *v)
+        self.0
+            .iter()
+            .filter(move |(f, _)| *f == fault)
+            .map(|(_, v)| *v)
     }
 
     /// Takes away a fault that strikes once at a part (counted from 1); true if it was asked for.
@@ -71,5 +79,9 @@ impl Faults {
 }
 
 fn names(table: &BTreeMap<String, FaultSpec>) -> String {
-    table.keys().map(String::as_str).collect::<Vec<_>>().join(", ")
+    table
+        .keys()
+        .map(String::as_str)
+        .collect::<Vec<_>>()
+        .join(", ")
 }

@@ -128,7 +128,11 @@ impl Gates {
     fn set(&mut self, gate: usize, t_us: f64, open: bool) {
         match (open, self.open_from_us[gate]) {
             (true, None) => {
-                let delay = if self.delayed[gate] { 0.0 } else { self.delay_us[gate] };
+                let delay = if self.delayed[gate] {
+                    0.0
+                } else {
+                    self.delay_us[gate]
+                };
                 self.delayed[gate] = true;
                 self.open_from_us[gate] = Some(t_us - delay);
             }

@@ -53,7 +53,11 @@ pub fn read_golden(dir: &Path, nominal_v: f64) -> Result<Vec<Certificate>, Confi
     let path = dir.join("golden.toml");
     let text = read_text(&path)?;
     let file: GoldenFile = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
-    Ok(file.golden.into_iter().filter(|g| (g.nominal_v - nominal_v).abs() < 1e-6).collect())
+    Ok(file
+        .golden
+        .into_iter()
+        .filter(|g| (g.nominal_v - nominal_v).abs() < 1e-6)
+        .collect())
 }
 
 /// Nominal volts and ohms of a recipe.
@@ -64,6 +68,12 @@ pub fn read_scale(dir: &Path, recipe: &str) -> Result<Scale, ConfigError> {
     let path = dir.join("recipes").join(format!("{recipe}.toml"));
     let text = read_text(&path)?;
     let file: RecipeFile = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
-    let RecipePart { nominal_v, nominal_coil_ohm } = file.part;
-    Ok(Scale { nominal_v, nominal_coil_ohm })
+    let RecipePart {
+        nominal_v,
+        nominal_coil_ohm,
+    } = file.part;
+    Ok(Scale {
+        nominal_v,
+        nominal_coil_ohm,
+    })
 }

@@ -7,7 +7,10 @@ use super::golden::{Certificate, read_golden, read_scale};
 use super::relay::{Contact, Relay};
 use super::specimen::{Scale, Specimen};
 use super::table::WorldTable;
-use super::{WorldOptions, fault::{Fault, Faults}};
+use super::{
+    WorldOptions,
+    fault::{Fault, Faults},
+};
 use crate::config::ConfigError;
 use crate::truth::PartTruth;
 
@@ -66,7 +69,12 @@ impl Magazine {
     ///
     /// # Errors
     /// The recipe or the certificates cannot be read.
-    pub fn load(options: &WorldOptions, world: &WorldTable, track_c: f64, ambient_c: f64) -> Result<Self, ConfigError> {
+    pub fn load(
+        options: &WorldOptions,
+        world: &WorldTable,
+        track_c: f64,
+        ambient_c: f64,
+    ) -> Result<Self, ConfigError> {
         let dir: &Path = &options.config_dir;
         let scale = read_scale(dir, &options.recipe)?;
         let golden = match options.golden {
@@ -74,18 +82,30 @@ impl Magazine {
             false => Vec::new(),
         };
         let (world, seed, lot) = (world.clone(), options.seed, options.parts);
-        Ok(Self { world, scale, seed, golden, lot, out: 0, track_c, ambient_c })
+        Ok(Self {
+            world,
+            scale,
+            seed,
+            golden,
+            lot,
+            out: 0,
+            track_c,
+            ambient_c,
+        })
     }
 
     /// Parts that still wait, `u64::MAX` for an endless lot.
     pub fn waiting(&self) -> u64 {
         let golden = self.golden.len() as u64;
-        self.lot.map_or(u64::MAX, |lot| (golden + lot).saturating_sub(self.out))
+        self.lot
+            .map_or(u64::MAX, |lot| (golden + lot).saturating_sub(self.out))
     }
 
     /// Place in the lot (from 1) of the part that leaves next.
     pub fn next_number(&self) -> Option<u64> {
-        (self.out + 1).checked_sub(self.golden.len() as u64).filter(|&n| n > 0)
+        (self.out + 1)
+            .checked_sub(self.golden.len() as u64)
+            .filter(|&n| n > 0)
     }
 
     /// The next part leaves; `None` from an empty track.
@@ -106,18 +126,29 @@ impl Magazine {
         let double = faults.strikes(Fault::DoublePart, number);
         let (track, air) = (self.track_c, self.ambient_c);
         let relay = Relay::new(specimen, &self.world, draw, now_us as f64, track, air);
-        Some(Part { relay, seq: 0, number, double, landed_in: None })
+        Some(Part {
+            relay,
+            seq: 0,
+            number,
+            double,
+            landed_in: None,
+        })
     }
 
     fn lot_part(&self, index: u64) -> (Specimen, Draw) {
         let specimen = Specimen::of_lot(&self.world, self.scale, self.seed, index);
-        (specimen, Draw::new(self.seed, Subject::LotOperations, index))
+        (
+            specimen,
+            Draw::new(self.seed, Subject::LotOperations, index),
+        )
     }
 
     fn golden_part(&self, index: u64) -> (Specimen, Draw) {
         let paper = &self.golden[index as usize];
-        let specimen =
-            Specimen::of_certificate(&self.world, self.scale, self.seed, index, paper);
-        (specimen, Draw::new(self.seed, Subject::GoldenOperations, index))
+        let specimen = Specimen::of_certificate(&self.world, self.scale, self.seed, index, paper);
+        (
+            specimen,
+            Draw::new(self.seed, Subject::GoldenOperations, index),
+        )
     }
 }

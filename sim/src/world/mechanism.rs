@@ -6,6 +6,9 @@
 //! it take it along once sort z rises, and it falls when they open. The emergency stop vents the
 //! air and takes the servo's power.
 
+mod parts;
+mod sensors;
+
 use super::axis::Axis;
 use super::cylinder::Cylinder;
 use super::draw::Draw;
@@ -79,7 +82,14 @@ pub struct Mechanism {
 
 impl Mechanism {
     /// Everything at rest, the axis braked at `park_mm`.
-    pub fn new(table: &MechanismTable, axis: Axis, bins: Vec<Bin>, magazine: Magazine, faults: Faults, draw: Draw) -> Self {
+    pub fn new(
+        table: &MechanismTable,
+        axis: Axis,
+        bins: Vec<Bin>,
+        magazine: Magazine,
+        faults: Faults,
+        draw: Draw,
+    ) -> Self {
         let means = [
             table.escapement_ms,
             table.pusher_ms,
@@ -140,7 +150,10 @@ impl Mechanism {
     pub fn command(&mut self, commands: Commands, now_us: u64) {
         let before = std::mem::replace(&mut self.commands, commands);
         self.move_cylinders(now_us);
-        self.axis.servo(commands.is_on(Out::AxisServoOn) && !self.is_disturbed(Fault::Estop), now_us);
+        self.axis.servo(
+            commands.is_on(Out::AxisServoOn) && !self.is_disturbed(Fault::Estop),
+            now_us,
+        );
         if commands.rises(before, Out::AxisReset) {
             self.axis.reset();
         }
@@ -168,45 +181,6 @@ impl Mechanism {
         self.schedule();
     }
 
-    /// A signal of the mechanism; `None` where it is none of its own.
-    pub fn signal(&self, signal: In, now_us: u64) -> Option<bool> {
-        let rest = |s: Stroke| Some(self.at(s).at_rest(now_us));
-        let far = |s: Stroke| Some(self.at(s).at_far(now_us));
-        match signal {
-            In::EmergencyStopOk => Some(!self.is_disturbed(Fault::Estop)),
-            In::DoorClosed => Some(!self.is_disturbed(Fault::Door)),
-            In::AirOk => Some(self.has_air()),
-            In::EscapementHold => rest(Stroke::Escapement),
-            In::PocketPresent => Some(self.places.pocket.is_some()),
-            In::TrackLevel => Some(self.magazine.waiting() >= self.table.track_level_parts),
-            In::PusherRetracted => rest(Stroke::Pusher),
-            In::PusherExtended => far(Stroke::Pusher),
-            In::NestPresent => Some(self.places.nest.is_some()),
-            In::JawLeftOpen => rest(Stroke::JawLeft),
-            In::JawLeftClosed => far(Stroke::JawLeft),
-            In::JawRightOpen => rest(Stroke::JawRight),
-            In::JawRightClosed => far(Stroke::JawRight),
-            In::ProbeDown => rest(Stroke::ProbeLift),
-            In::ProbeUp => far(Stroke::ProbeLift),
-            In::AxisInPosition => Some(self.axis.is_in_position()),
-            In::AxisBusy => Some(self.axis.is_moving()),
-            In::AxisAlarm => Some(self.axis.is_alarmed()),
-            In::SortZUp => rest(Stroke::SortZ),
-            In::SortZDown => far(Stroke::SortZ),
-            In::GripperOpen => rest(Stroke::Gripper),
-            In::GripperPart => Some(self.places.gripped || self.places.carried.is_some()),
-            In::ButtonStart | In::ButtonReset => Some(false),
-            In::ButtonStop => Some(self.is_disturbed(Fault::StopButton)),
-            In::BeamPass
-            | In::BeamCoil
-            | In::BeamVoltage
-            | In::BeamTime
-            | In::BeamContact
-            | In::BeamRetest => Some(self.dark.contains(&signal)),
-            _ => None,
-        }
-    }
-
     fn at(&self, stroke: Stroke) -> &Cylinder {
         &self.cylinders[stroke as usize]
     }
@@ -221,7 +195,11 @@ impl Mechanism {
 
     fn schedule(&mut self) {
         let strokes = self.cylinders.iter().filter_map(Cylinder::due_us);
-        let others = self.later.iter().map(|(due, _)| *due).chain(self.axis.due_us());
+        let others = self
+            .later
+            .iter()
+            .map(|(due, _)| *due)
+            .chain(self.axis.due_us());
         self.next_us = strokes.chain(others).min().unwrap_or(u64::MAX);
     }
 
@@ -272,74 +250,12 @@ impl Mechanism {
         }
     }
 
-    /// What a stroke does to the parts as it begins.
-    fn stroke_began(&mut self, stroke: Stroke, far: bool, now_us: u64) {
-        let share = |percent: u64, of: &Cylinder| now_us + of.stroke_us() * percent / 100;
-        match (stroke, far) {
-            (Stroke::Pusher, true) => {
-                self.check_pusher(now_us);
-                self.places.pushed = self.places.pocket.take();
-            }
-            (Stroke::Pusher, false) if self.places.pushed.is_some() => {
-                self.places.pocket = self.places.pushed.take();
-            }
-            (Stroke::SortZ, true) => self.check_lowering(now_us),
-            (Stroke::SortZ, false) if self.places.gripped => {
-                let at = share(25, self.at(Stroke::SortZ));
-                self.later.push((at, Later::LiftOff));
-            }
-            (Stroke::Gripper, false) => {
-                let at = share(30, self.at(Stroke::Gripper));
-                self.later.push((at, Later::LetGo));
-            }
-            (_, _) => {}
-        }
-    }
-
-    /// What a stroke does to the parts as it ends.
-    fn stroke_ended(&mut self, stroke: Stroke, now_us: u64) {
-        if !self.at(stroke).at_far(now_us) {
-            return;
-        }
-        match stroke {
-            Stroke::Escapement => self.drop_into_pocket(now_us),
-            Stroke::Pusher => self.push_into_nest(now_us),
-            Stroke::Gripper => self.grip(now_us),
-            Stroke::JawLeft | Stroke::JawRight | Stroke::ProbeLift | Stroke::SortZ => {}
-        }
-    }
-
-    fn drop_into_pocket(&mut self, now_us: u64) {
-        let free = self.places.pocket.is_none() && self.at(Stroke::Pusher).at_rest(now_us);
-        if !free || self.faults.strikes(Fault::NoPart, self.magazine.next_number()) {
-            return;
-        }
-        self.places.pocket = self.magazine.take(now_us, &mut self.faults).map(Box::new);
-    }
-
-    fn push_into_nest(&mut self, now_us: u64) {
-        let Some(part) = self.places.pushed.take() else {
-            return;
-        };
-        if self.places.nest.is_some() {
-            self.crash(now_us, "a part was pushed into an occupied nest");
-            self.places.finish(&part);
-        } else {
-            self.places.enter_nest(part, now_us);
-        }
-    }
-
-    fn grip(&mut self, now_us: u64) {
-        let over = !self.axis.is_moving() && self.axis.x_mm(now_us).abs() < self.table.axis_window_mm;
-        let empty = self.places.carried.is_none();
-        if over && empty && self.at(Stroke::SortZ).at_far(now_us) && self.places.nest.is_some() {
-            self.places.gripped = true;
-        }
-    }
-
     fn start_axis(&mut self, now_us: u64) {
         let bits = [Out::AxisPoint0, Out::AxisPoint1, Out::AxisPoint2];
-        let point = (0..3).filter(|&i| self.commands.is_on(bits[i])).map(|i| 1 << i).sum();
+        let point = (0..3)
+            .filter(|&i| self.commands.is_on(bits[i]))
+            .map(|i| 1 << i)
+            .sum();
         if !self.axis.go(point, now_us) {
             return;
         }
@@ -387,89 +303,8 @@ impl Mechanism {
         self.axis.servo(power, now_us);
     }
 
-    fn lift_off(&mut self, now_us: u64) {
-        if !self.places.gripped {
-            return;
-        }
-        if ![Stroke::JawLeft, Stroke::JawRight].iter().all(|&j| self.at(j).at_rest(now_us)) {
-            self.crash(now_us, "a part was torn out of jaws that were not open");
-        }
-        self.places.gripped = false;
-        self.places.carried = self.places.nest.take();
-    }
-
-    /// The fingers have opened far enough to let a part go.
-    fn let_go(&mut self, now_us: u64) {
-        self.places.gripped = false;
-        let x = self.axis.x_mm(now_us);
-        let near = |at: f64| (x - at).abs() <= self.table.axis_window_mm;
-        let bin = self.bins.iter().find(|b| near(b.x_mm) && !self.axis.is_moving());
-        let (name, beam) = match bin {
-            Some(bin) => (bin.name.clone(), In::from_name(&bin.beam)),
-            None if near(0.0) && self.at(Stroke::SortZ).at_far(now_us) => {
-                return self.put_back(now_us);
-            }
-            None => return self.lose(),
-        };
-        if let Some(part) = self.places.carried.take() {
-            self.fall(part, name, beam, now_us);
-        }
-    }
-
-    fn fall(&mut self, part: Box<Part>, bin: String, beam: Option<In>, now_us: u64) {
-        let us = |ms: f64| (ms * 1000.0) as u64;
-        let seen = !self.faults.strikes(Fault::BeamBlind, part.number);
-        let bodies = if part.double { 2 } else { 1 };
-        let mut dark = now_us + us(self.draw.between(self.table.fall_ms));
-        self.later.push((dark, Later::Land(bin, part)));
-        for _ in 0..bodies {
-            let lit = dark + us(self.draw.between(self.table.beam_dark_ms));
-            if let Some(beam) = beam.filter(|_| seen) {
-                self.later.push((dark, Later::Dark(beam)));
-                self.later.push((lit, Later::Lit(beam)));
-            }
-            dark = lit + us(25.0);
-        }
-    }
-
-    /// A carried part that is set down in the nest.
-    fn put_back(&mut self, now_us: u64) {
-        if let Some(part) = self.places.carried.take() {
-            match self.places.nest.is_some() {
-                true => {
-                    self.crash(now_us, "a part was set down on another one");
-                    self.places.finish(&part);
-                }
-                false => self.places.enter_nest(part, now_us),
-            }
-        }
-    }
-
-    /// A carried part falls on the floor.
-    fn lose(&mut self) {
-        if let Some(part) = self.places.carried.take() {
-            self.places.finish(&part);
-        }
-    }
-
-    fn check_pusher(&mut self, now_us: u64) {
-        if !self.at(Stroke::ProbeLift).at_rest(now_us) {
-            self.crash(now_us, "the pusher extended against raised probes");
-        }
-        let near = self.axis.x_mm(now_us).abs() < NEAR_NEST_MM;
-        if near && !self.at(Stroke::SortZ).at_rest(now_us) {
-            self.crash(now_us, "the pusher extended against a lowered gripper");
-        }
-    }
-
-    fn check_lowering(&mut self, now_us: u64) {
-        let near = self.axis.x_mm(now_us).abs() < NEAR_NEST_MM;
-        if near && !self.at(Stroke::Pusher).at_rest(now_us) {
-            self.crash(now_us, "sort z came down on an extended pusher");
-        }
-    }
-
     fn crash(&mut self, now_us: u64, what: &str) {
-        self.crashes.push(format!("{:.3} s: {what}", now_us as f64 * 1e-6));
+        self.crashes
+            .push(format!("{:.3} s: {what}", now_us as f64 * 1e-6));
     }
 }

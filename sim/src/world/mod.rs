@@ -98,15 +98,30 @@ impl World {
         let magazine = Magazine::load(options, &table, track, ambient)?;
         let drift = faults.values(Fault::Drift).next();
         let wiring = Wiring::new(&rig);
-        let board = Board::new(&table.board, &rig.reference, supply_gains(&wiring), &mut draw);
-        let clock_hz = rig.reference.counter_clock_hz * (1.0 + draw.half(table.devices.clock_ppm * 1e-6));
+        let board = Board::new(
+            &table.board,
+            &rig.reference,
+            supply_gains(&wiring),
+            &mut draw,
+        );
+        let clock_hz =
+            rig.reference.counter_clock_hz * (1.0 + draw.half(table.devices.clock_ppm * 1e-6));
         let strokes = Draw::new(options.seed, Subject::Mechanism, 0);
         let axis = sort_axis(&rig, &table);
         let mechanism = Mechanism::new(&table.mechanism, axis, rig.bins, magazine, faults, strokes);
         let commands = Commands::default();
         let edges = Vec::new();
-        let mut world =
-            Self { wiring, board, mechanism, environment, commands, edges, drift, clock_hz, now_us: 0 };
+        let mut world = Self {
+            wiring,
+            board,
+            mechanism,
+            environment,
+            commands,
+            edges,
+            drift,
+            clock_hz,
+            now_us: 0,
+        };
         world.begin_edges();
         Ok(world)
     }
@@ -114,7 +129,10 @@ impl World {
     /// Truth of every lot part that has entered the nest, in order.
     pub fn truth(&self) -> Vec<serde_json::Value> {
         let truths = self.mechanism.places.truth();
-        truths.into_iter().filter_map(|t| serde_json::to_value(t).ok()).collect()
+        truths
+            .into_iter()
+            .filter_map(|t| serde_json::to_value(t).ok())
+            .collect()
     }
 
     /// Bodies that touched where they must not, in order of time.
@@ -123,18 +141,28 @@ impl World {
     }
 
     fn relay(&self) -> Option<&Relay> {
-        self.mechanism.places.nest.as_deref().map(|part| &part.relay)
+        self.mechanism
+            .places
+            .nest
+            .as_deref()
+            .map(|part| &part.relay)
     }
 
     /// A signal at this instant.
     fn signal(&self, signal: In) -> bool {
         let own = self.mechanism.signal(signal, self.now_us);
-        own.or_else(|| self.board.signal(signal, self.relay())).unwrap_or(false)
+        own.or_else(|| self.board.signal(signal, self.relay()))
+            .unwrap_or(false)
     }
 
     fn begin_edges(&mut self) {
-        let wires: Vec<Wire<In>> =
-            self.wiring.inputs.values().flatten().map(|(_, wire)| *wire).collect();
+        let wires: Vec<Wire<In>> = self
+            .wiring
+            .inputs
+            .values()
+            .flatten()
+            .map(|(_, wire)| *wire)
+            .collect();
         for wire in wires {
             let mut edges = Edges::default();
             edges.begin(self.signal(wire.signal) != wire.active_low, self.now_us);
@@ -145,7 +173,10 @@ impl World {
     /// What follows from a change in the mechanism at this instant.
     fn mechanism_changed(&mut self) {
         let now = self.now_us;
-        let (up, touch) = (self.mechanism.probes_up(now), self.mechanism.probes_touch(now));
+        let (up, touch) = (
+            self.mechanism.probes_up(now),
+            self.mechanism.probes_touch(now),
+        );
         self.board.probe(up, touch, nest_relay(&mut self.mechanism));
         for (wire, edges) in &mut self.edges {
             if let Some(present) = self.mechanism.signal(wire.signal, now) {
@@ -164,13 +195,15 @@ impl Plant for World {
     fn advance(&mut self, t_us: u64) {
         while self.mechanism.next_us() <= t_us {
             self.now_us = self.mechanism.next_us().max(self.now_us);
-            self.board.advance(self.now_us as f64, nest_relay(&mut self.mechanism));
+            self.board
+                .advance(self.now_us as f64, nest_relay(&mut self.mechanism));
             self.mechanism.process(self.now_us);
             self.mechanism_changed();
         }
         if t_us > self.now_us {
             self.now_us = t_us;
-            self.board.advance(t_us as f64, nest_relay(&mut self.mechanism));
+            self.board
+                .advance(t_us as f64, nest_relay(&mut self.mechanism));
         }
     }
 
@@ -179,22 +212,27 @@ impl Plant for World {
             return self.environment.sensor_c(wire.signal);
         }
         match wiring::at(&self.wiring.quantities, module, channel) {
-            Some(wire) => self.board.clip(self.board.quantity(wire.signal, self.relay()) * wire.gain),
+            Some(wire) => self
+                .board
+                .clip(self.board.quantity(wire.signal, self.relay()) * wire.gain),
             None => f64::NAN,
         }
     }
 
     fn analog_out(&mut self, module: &str, volts: f64) {
         if let Some(wire) = wiring::at(&self.wiring.sources, module, 0) {
-            self.board.supply(wire.signal, volts, nest_relay(&mut self.mechanism));
+            self.board
+                .supply(wire.signal, volts, nest_relay(&mut self.mechanism));
         }
     }
 
     fn digital_in(&mut self, module: &str) -> u16 {
-        wiring::on(&self.wiring.inputs, module).iter().fold(0xFFFF, |bits, (channel, wire)| {
-            let high = self.signal(wire.signal) != wire.active_low;
-            if high { bits } else { bits & !(1 << channel) }
-        })
+        wiring::on(&self.wiring.inputs, module)
+            .iter()
+            .fold(0xFFFF, |bits, (channel, wire)| {
+                let high = self.signal(wire.signal) != wire.active_low;
+                if high { bits } else { bits & !(1 << channel) }
+            })
     }
 
     fn digital_out(&mut self, module: &str, bits: u16) {
@@ -209,7 +247,8 @@ impl Plant for World {
         self.commands = commands;
         self.mechanism.command(commands, self.now_us);
         self.mechanism_changed();
-        self.board.command(commands, nest_relay(&mut self.mechanism));
+        self.board
+            .command(commands, nest_relay(&mut self.mechanism));
     }
 
     fn edges(&mut self, module: &str, channel: u8) -> u64 {
@@ -232,7 +271,11 @@ impl Plant for World {
 }
 
 fn nest_relay(mechanism: &mut Mechanism) -> Option<&mut Relay> {
-    mechanism.places.nest.as_deref_mut().map(|part: &mut Part| &mut part.relay)
+    mechanism
+        .places
+        .nest
+        .as_deref_mut()
+        .map(|part: &mut Part| &mut part.relay)
 }
 
 /// Volts of supply per volt of each source; a source that is not wired gives none.
@@ -251,7 +294,11 @@ fn supply_gains(wiring: &Wiring) -> [f64; 3] {
 /// The slide with the stops and bins of the rig file, braked at its park position.
 fn sort_axis(rig: &RigFile, table: &WorldTable) -> Axis {
     let mut points = [None; 8];
-    let stops = rig.axis.values().copied().chain(rig.bins.iter().map(|b| (b.point, b.x_mm)));
+    let stops = rig
+        .axis
+        .values()
+        .copied()
+        .chain(rig.bins.iter().map(|b| (b.point, b.x_mm)));
     for (point, x_mm) in stops {
         if let Some(place) = points.get_mut(usize::from(point)) {
             *place = Some(x_mm);
@@ -259,7 +306,12 @@ fn sort_axis(rig: &RigFile, table: &WorldTable) -> Axis {
     }
     let park = rig.axis.get("park").map_or(0.0, |&(_, x)| x);
     let mechanism = &table.mechanism;
-    Axis::new(mechanism.axis_mm_per_s, mechanism.axis_mm_per_s2, points, park)
+    Axis::new(
+        mechanism.axis_mm_per_s,
+        mechanism.axis_mm_per_s2,
+        points,
+        park,
+    )
 }
 
 #[cfg(test)]

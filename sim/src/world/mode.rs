@@ -48,7 +48,14 @@ impl Stretch {
     pub fn new(laws: Laws, state: Lagged, u: f64) -> Self {
         let (a, b) = (1.0 / laws.coil_lag, 1.0 / laws.armature_lag);
         let amp_a = (state.flux - u) * b / (b - a);
-        Self { laws, u, a, b, amp_a, amp_b: state.armature - u - amp_a }
+        Self {
+            laws,
+            u,
+            a,
+            b,
+            amp_a,
+            amp_b: state.armature - u - amp_a,
+        }
     }
 
     /// State after `dt` milliseconds.
@@ -56,7 +63,10 @@ impl Stretch {
         let slow = self.amp_a * (-self.a * dt).exp();
         let fast = self.amp_b * (-self.b * dt).exp();
         let flux = self.u + slow * (self.b - self.a) / self.b;
-        Lagged { flux, armature: self.u + slow + fast }
+        Lagged {
+            flux,
+            armature: self.u + slow + fast,
+        }
     }
 
     /// Excess over the threshold in the direction of the mode, volts.
@@ -69,7 +79,10 @@ impl Stretch {
         let s = 1.0 / self.laws.growth;
         let k = self.laws.gain / threshold;
         let still = -k * (self.u - threshold) / s;
-        let (slow, fast) = (-k * self.amp_a / (self.a + s), -k * self.amp_b / (self.b + s));
+        let (slow, fast) = (
+            -k * self.amp_a / (self.a + s),
+            -k * self.amp_b / (self.b + s),
+        );
         (z0 - still - slow - fast) * (s * dt).exp()
             + still
             + slow * (-self.a * dt).exp()
@@ -86,7 +99,11 @@ impl Stretch {
 pub fn crossing(mut lo: f64, mut hi: f64, f: impl Fn(f64) -> f64) -> f64 {
     while hi - lo > 1e-6 {
         let middle = 0.5 * (lo + hi);
-        if f(middle) < 0.0 { lo = middle } else { hi = middle }
+        if f(middle) < 0.0 {
+            lo = middle
+        } else {
+            hi = middle
+        }
     }
     hi
 }
@@ -96,7 +113,14 @@ pub fn step_time(laws: Laws, from: f64, to: f64, threshold: f64) -> Option<f64> 
     if (to - threshold) * laws.gain <= 0.0 {
         return None;
     }
-    let stretch = Stretch::new(laws, Lagged { flux: from, armature: from }, to);
+    let stretch = Stretch::new(
+        laws,
+        Lagged {
+            flux: from,
+            armature: from,
+        },
+        to,
+    );
     let start = crossing(0.0, 200.0, |t| stretch.excess(t, threshold));
     let grown = stretch.later(start);
     Some(start + crossing(0.0, 200.0, |t| grown.mode(t, 0.0, threshold) - 1.0))

@@ -52,7 +52,11 @@ impl Places {
     /// Truth of every lot part that has entered the nest, in that order.
     pub fn truth(&self) -> Vec<PartTruth> {
         let inside = [&self.nest, &self.carried];
-        let live = inside.into_iter().flatten().filter(|p| p.seq > 0).map(|p| p.truth());
+        let live = inside
+            .into_iter()
+            .flatten()
+            .filter(|p| p.seq > 0)
+            .map(|p| p.truth());
         let mut all: Vec<PartTruth> = self.done.iter().cloned().chain(live).collect();
         all.sort_by_key(|t| t.seq);
         all

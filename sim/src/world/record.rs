@@ -38,7 +38,11 @@ pub struct Record {
 impl Record {
     /// Nothing seen yet.
     pub fn new(specimen: &Specimen) -> Self {
-        Self { nominal_v: specimen.nominal_v, closures: Default::default(), timing: Default::default() }
+        Self {
+            nominal_v: specimen.nominal_v,
+            closures: Default::default(),
+            timing: Default::default(),
+        }
     }
 
     /// Resistance of the present closure, milliohm.

@@ -7,10 +7,12 @@
 //! armature fall back on its stop and NC close again. Thresholds follow the copper's temperature
 //! and scatter from operation to operation.
 
+mod armature;
+
 use std::collections::VecDeque;
 
 use super::draw::Draw;
-use super::mode::{Lagged, Laws, Stretch, crossing};
+use super::mode::{Lagged, Laws, Stretch};
 use super::record::Record;
 use super::specimen::Specimen;
 use super::table::{RelayTable, WorldTable};
@@ -110,16 +112,33 @@ const STILL_US: f64 = 50_000.0;
 
 impl Relay {
     /// Puts a specimen into the world at an instant; `draw` is the chance of its operations.
-    pub fn new(specimen: Specimen, world: &WorldTable, mut draw: Draw, t_us: f64, track_c: f64, ambient_c: f64) -> Self {
+    pub fn new(
+        specimen: Specimen,
+        world: &WorldTable,
+        mut draw: Draw,
+        t_us: f64,
+        track_c: f64,
+        ambient_c: f64,
+    ) -> Self {
         let table = &world.relay;
         let (operate, release) = laws(table);
         let welded = specimen.defect == Some(Defect::StuckNo);
         let above = track_c + specimen.offset_k - ambient_c;
-        let film = if welded { specimen.film_no } else { specimen.film_nc };
+        let film = if welded {
+            specimen.film_no
+        } else {
+            specimen.film_nc
+        };
         let mut record = Record::new(&specimen);
-        record.close(if welded { Contact::No } else { Contact::Nc }, film.close(&mut draw));
+        record.close(
+            if welded { Contact::No } else { Contact::Nc },
+            film.close(&mut draw),
+        );
         let flight_us = [specimen.operate_flight_ms(operate), {
-            let zener = Laws { coil_lag: table.release_zener_lag_ms, ..release };
+            let zener = Laws {
+                coil_lag: table.release_zener_lag_ms,
+                ..release
+            };
             specimen.release_flight_ms(zener)
         }]
         .map(|ms| ms * 1000.0);
@@ -138,7 +157,10 @@ impl Relay {
             thermal: Thermal::new(table, above),
             draw,
             phase: if welded { Phase::Seated } else { Phase::Rest },
-            supply: Supply::Off { clamp_v: world.board.zener_v, slow: false },
+            supply: Supply::Off {
+                clamp_v: world.board.zener_v,
+                slow: false,
+            },
             stretch: Stretch::new(operate, Lagged::default(), 0.0),
             z0: 0.0,
             since_us: t_us,
@@ -209,11 +231,16 @@ impl Relay {
         loop {
             let until = t_us.min(self.since_us + STILL_US);
             let own = self.next_turn(until);
-            let bounce = self.bounce.front().filter(|c| c.t_us <= own.unwrap_or(until)).copied();
+            let bounce = self
+                .bounce
+                .front()
+                .filter(|c| c.t_us <= own.unwrap_or(until))
+                .copied();
             let change = match (bounce, own) {
                 (Some(change), _) => {
                     self.bounce.pop_front();
-                    self.record.bounce(change.contact, change.t_us, change.closed);
+                    self.record
+                        .bounce(change.contact, change.t_us, change.closed);
                     self.set(change)
                 }
                 (None, Some(at)) => self.turn(at),
@@ -247,7 +274,10 @@ impl Relay {
     fn settle(&mut self, t_us: f64) {
         let volts = self.supply.volts();
         self.current_a = self.coil_current_a(t_us);
-        self.thermal.advance((t_us - self.since_us) * 1e-6, volts * volts / self.coil_ohm());
+        self.thermal.advance(
+            (t_us - self.since_us) * 1e-6,
+            volts * volts / self.coil_ohm(),
+        );
     }
 
     /// A new stretch from `t_us`.
@@ -276,102 +306,6 @@ impl Relay {
             Phase::Seated | Phase::Leaving | Phase::Falling { .. } => self.specimen.release_v,
         };
         at_reference * self.copper_ratio() + self.operation_v
-    }
-
-    fn arrived(&self, t_us: f64) -> Lagged {
-        self.stretch.at((t_us - self.since_us) / 1000.0)
-    }
-
-    fn mode_at(&self, t_us: f64) -> f64 {
-        match self.phase {
-            Phase::Growing | Phase::Leaving => {
-                self.stretch.mode((t_us - self.since_us) / 1000.0, self.z0, self.threshold_v)
-            }
-            Phase::Rest | Phase::Seated | Phase::Flying { .. } | Phase::Falling { .. } => 0.0,
-        }
-    }
-
-    /// Instant of the next turn of the armature not after `until_us`.
-    fn next_turn(&self, until_us: f64) -> Option<f64> {
-        let [from, to] = [self.checked_us, until_us].map(|t| (t - self.since_us) / 1000.0);
-        let at = |dt: f64| Some(self.since_us + dt * 1000.0);
-        let mode = |dt: f64| self.stretch.mode(dt, self.z0, self.threshold_v);
-        match self.phase {
-            Phase::Rest | Phase::Seated if self.is_stuck() => None,
-            Phase::Rest | Phase::Seated => {
-                let excess = |dt: f64| self.stretch.excess(dt, self.threshold_v);
-                (excess(to) > 0.0).then(|| crossing(from, to, excess)).and_then(at)
-            }
-            Phase::Growing | Phase::Leaving => match mode(to) {
-                z if z >= 1.0 => at(crossing(from, to, |dt| mode(dt) - 1.0)),
-                z if z < -1e-9 => at(crossing(from, to, |dt| -mode(dt) - 1e-9)),
-                _ => None,
-            },
-            Phase::Flying { until_us: end } | Phase::Falling { until_us: end } => {
-                (end <= until_us).then_some(end)
-            }
-        }
-    }
-
-    fn is_stuck(&self) -> bool {
-        matches!(self.specimen.defect, Some(Defect::StuckNo | Defect::StuckNc))
-    }
-
-    /// The armature passes from one phase to the next.
-    fn turn(&mut self, at_us: f64) -> Option<Change> {
-        let (state, complete) = (self.arrived(at_us), self.mode_at(at_us) > 0.5);
-        self.settle(at_us);
-        let (phase, change) = match self.phase {
-            Phase::Rest => (Phase::Growing, self.part(Contact::Nc, at_us)),
-            Phase::Growing if complete => {
-                (Phase::Flying { until_us: at_us + self.flight_us[0] }, None)
-            }
-            Phase::Growing => {
-                (Phase::Rest, self.set(Change { t_us: at_us, contact: Contact::Nc, closed: true }))
-            }
-            Phase::Flying { .. } => (Phase::Seated, self.make(Contact::No, at_us)),
-            Phase::Seated => (Phase::Leaving, None),
-            Phase::Leaving if complete => (
-                Phase::Falling { until_us: at_us + self.flight_us[1] },
-                self.part(Contact::No, at_us),
-            ),
-            Phase::Leaving => (Phase::Seated, None),
-            Phase::Falling { .. } => (Phase::Rest, self.make(Contact::Nc, at_us)),
-        };
-        self.phase = phase;
-        self.restart(at_us, state, 0.0);
-        change
-    }
-
-    /// A contact opens for good; its bounce ends.
-    fn part(&mut self, contact: Contact, t_us: f64) -> Option<Change> {
-        self.bounce.clear();
-        self.record.part(contact);
-        self.set(Change { t_us, contact, closed: false })
-    }
-
-    /// First make after a flight: a new closure, a new operation, a new bounce.
-    fn make(&mut self, contact: Contact, t_us: f64) -> Option<Change> {
-        self.operation_v = self.draw.normal(0.0, self.scatter_v);
-        let (film, pattern) = match contact {
-            Contact::No => (self.specimen.film_no, &self.specimen.bounce_no_us),
-            Contact::Nc => (self.specimen.film_nc, &self.specimen.bounce_nc_us),
-        };
-        self.record.close(contact, film.close(&mut self.draw));
-        self.record.make(contact, t_us);
-        let mut at = t_us;
-        for (i, &us) in pattern.iter().enumerate() {
-            at += self.draw.lognormal(us, self.bounce_ln_sd);
-            self.bounce.push_back(Change { t_us: at, contact, closed: i % 2 == 1 });
-        }
-        self.set(Change { t_us, contact, closed: true })
-    }
-
-    fn set(&mut self, change: Change) -> Option<Change> {
-        let closed = &mut self.closed[change.contact as usize];
-        let news = *closed != change.closed;
-        *closed = change.closed;
-        news.then_some(change)
     }
 }
 

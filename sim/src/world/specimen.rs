@@ -123,7 +123,13 @@ impl Specimen {
     }
 
     /// A part with a certificate: certified values with their uncertainty, the rest typical.
-    pub fn of_certificate(world: &WorldTable, scale: Scale, seed: u64, index: u64, paper: &Certificate) -> Self {
+    pub fn of_certificate(
+        world: &WorldTable,
+        scale: Scale,
+        seed: u64,
+        index: u64,
+        paper: &Certificate,
+    ) -> Self {
         let mut draw = Draw::new(seed, Subject::GoldenPart, index);
         let mut part = Self::good(world, scale, &mut draw);
         part.index = index;
@@ -154,8 +160,14 @@ impl Specimen {
             release_v: volt_scale * draw.normal(lot.release_v_mean, lot.release_v_sd),
             operate_ms: lot.operate_ms_mean + lot.operate_ms_sd * slowness,
             release_ms: draw.normal(lot.release_ms_mean, lot.release_ms_sd),
-            bounce_no_us: bounce(&world.relay.bounce_no_us, draw.normal(lot.bounce_no_ms_mean, lot.bounce_no_ms_sd)),
-            bounce_nc_us: bounce(&world.relay.bounce_nc_us, draw.normal(lot.bounce_nc_ms_mean, lot.bounce_nc_ms_sd)),
+            bounce_no_us: bounce(
+                &world.relay.bounce_no_us,
+                draw.normal(lot.bounce_no_ms_mean, lot.bounce_no_ms_sd),
+            ),
+            bounce_nc_us: bounce(
+                &world.relay.bounce_nc_us,
+                draw.normal(lot.bounce_nc_ms_mean, lot.bounce_nc_ms_sd),
+            ),
             film_no: film(lot, lot.contact_no_mohm_median, draw),
             film_nc: film(lot, lot.contact_nc_mohm_median, draw),
             offset_k: draw.normal(0.0, world.environment.part_minus_track_sd_k),
@@ -171,7 +183,8 @@ impl Specimen {
         match defect {
             Defect::OpenCoil => self.coil_ohm = f64::INFINITY,
             Defect::ShortedTurns => {
-                self.coil_ohm = self.nominal_ohm(world) * draw.between(table.shorted_turns_coil_factor);
+                self.coil_ohm =
+                    self.nominal_ohm(world) * draw.between(table.shorted_turns_coil_factor);
             }
             Defect::WrongCoil => self.rewind(draw.between(table.wrong_coil_factor), world),
             Defect::WeakSpring => {
@@ -182,13 +195,17 @@ impl Specimen {
                 self.operate_v = volts(draw, table.stiff_spring_operate_v, self.volt_scale);
                 self.release_v = volts(draw, table.stiff_spring_release_v, self.volt_scale);
             }
-            Defect::Slow if draw.uniform() < 0.5 => self.operate_ms = draw.between(table.slow_operate_ms),
+            Defect::Slow if draw.uniform() < 0.5 => {
+                self.operate_ms = draw.between(table.slow_operate_ms)
+            }
             Defect::Slow => self.release_ms = draw.between(table.slow_release_ms),
             Defect::Bouncing if draw.uniform() < 0.5 => {
-                self.bounce_no_us = bounce(&world.relay.bounce_no_us, draw.between(table.bouncing_ms));
+                self.bounce_no_us =
+                    bounce(&world.relay.bounce_no_us, draw.between(table.bouncing_ms));
             }
             Defect::Bouncing => {
-                self.bounce_nc_us = bounce(&world.relay.bounce_nc_us, draw.between(table.bouncing_ms));
+                self.bounce_nc_us =
+                    bounce(&world.relay.bounce_nc_us, draw.between(table.bouncing_ms));
             }
             Defect::StuckNc | Defect::StuckNo => {}
             Defect::HighContact => {
@@ -196,7 +213,13 @@ impl Specimen {
                     true => 1000.0 * draw.between(table.far_too_high_ohm),
                     false => draw.between(table.high_contact_mohm),
                 };
-                self.spoil_contact(ContactFilm::Steady { median_mohm, ln_sd: 0.02 }, draw);
+                self.spoil_contact(
+                    ContactFilm::Steady {
+                        median_mohm,
+                        ln_sd: 0.02,
+                    },
+                    draw,
+                );
             }
             Defect::UnstableContact => {
                 self.spoil_contact(ContactFilm::Unstable(table.unstable_contact_mohm), draw);
@@ -248,7 +271,11 @@ impl Specimen {
 fn bounce(pattern: &[f64], open_ms: f64) -> Vec<f64> {
     let open: f64 = pattern.iter().skip(1).step_by(2).sum();
     let stretch = open_ms.max(0.0) * 1000.0 / open.max(1.0);
-    pattern.iter().enumerate().map(|(i, &us)| if i % 2 == 1 { us * stretch } else { us }).collect()
+    pattern
+        .iter()
+        .enumerate()
+        .map(|(i, &us)| if i % 2 == 1 { us * stretch } else { us })
+        .collect()
 }
 
 fn film(lot: &LotTable, median: f64, draw: &mut Draw) -> ContactFilm {

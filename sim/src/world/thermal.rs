@@ -15,11 +15,19 @@ pub struct Thermal {
 impl Thermal {
     /// Both stores `above_k` above the ambient.
     pub fn new(table: &RelayTable, above_k: f64) -> Self {
-        let (to_body, to_air) = (1.0 / table.coil_to_body_k_per_w, 1.0 / table.body_to_air_k_per_w);
+        let (to_body, to_air) = (
+            1.0 / table.coil_to_body_k_per_w,
+            1.0 / table.body_to_air_k_per_w,
+        );
         let (cu, body) = (table.coil_heat_j_per_k, table.body_heat_j_per_k);
-        let rate = [[-to_body / cu, to_body / cu], [to_body / body, -(to_body + to_air) / body]];
-        let (trace, det) =
-            (rate[0][0] + rate[1][1], rate[0][0] * rate[1][1] - rate[0][1] * rate[1][0]);
+        let rate = [
+            [-to_body / cu, to_body / cu],
+            [to_body / body, -(to_body + to_air) / body],
+        ];
+        let (trace, det) = (
+            rate[0][0] + rate[1][1],
+            rate[0][0] * rate[1][1] - rate[0][1] * rate[1][0],
+        );
         let root = (trace * trace / 4.0 - det).sqrt();
         let air = table.body_to_air_k_per_w;
         Self {

@@ -52,7 +52,10 @@ impl Wiring {
 
 /// What hangs on one terminal.
 pub fn at<S: Copy>(terminals: &Terminals<S>, module: &str, channel: u8) -> Option<Wire<S>> {
-    on(terminals, module).iter().find(|(c, _)| *c == channel).map(|(_, wire)| *wire)
+    on(terminals, module)
+        .iter()
+        .find(|(c, _)| *c == channel)
+        .map(|(_, wire)| *wire)
 }
 
 /// Everything on one module.
@@ -60,12 +63,21 @@ pub fn on<'a, S>(terminals: &'a Terminals<S>, module: &str) -> &'a [(u8, Wire<S>
     terminals.get(module).map_or(&[], Vec::as_slice)
 }
 
-fn terminals<S>(points: &BTreeMap<String, Terminal>, named: impl Fn(&str) -> Option<S>) -> Terminals<S> {
+fn terminals<S>(
+    points: &BTreeMap<String, Terminal>,
+    named: impl Fn(&str) -> Option<S>,
+) -> Terminals<S> {
     let mut all: Terminals<S> = BTreeMap::new();
     for (name, t) in points {
         if let Some(signal) = named(name) {
-            let wire = Wire { signal, active_low: t.active_low, gain: t.gain };
-            all.entry(t.module.clone()).or_default().push((t.channel, wire));
+            let wire = Wire {
+                signal,
+                active_low: t.active_low,
+                gain: t.gain,
+            };
+            all.entry(t.module.clone())
+                .or_default()
+                .push((t.channel, wire));
         }
     }
     all

@@ -81,17 +81,21 @@ fn the_reference_voltage_reads_within_what_the_makers_promise() {
         let code = i16::from_str_radix(&reply[1..], 16).expect("a code");
         let volts = f64::from(code) / 32_768.0 * 10.0;
         // Gain 0.1 %, offset 0.05 % of 10 V, reference 0.02 %, four steps of 12 bit for noise.
-        assert!((volts - 5.0).abs() < 0.005 + 0.005 + 0.001 + 0.02, "seed {seed}: {volts}");
+        assert!(
+            (volts - 5.0).abs() < 0.005 + 0.005 + 0.001 + 0.02,
+            "seed {seed}: {volts}"
+        );
     }
 }
 
 #[test]
 fn polling_faster_than_the_converter_only_reads_the_same_again() {
     let rig = rig(1, &[]);
+    assert_eq!(ask(&rig, MEASURE, "$01580", 0), "!01");
     let mut changes = 0;
     let mut last = String::new();
     for millisecond in 1..=2_000 {
-        let reply = ask(&rig, MEASURE, "#090", millisecond * 1_000);
+        let reply = ask(&rig, MEASURE, "#017", millisecond * 1_000);
         changes += u32::from(reply != last);
         last = reply;
     }
@@ -124,15 +128,24 @@ fn a_fault_of_a_module_that_does_not_exist_is_refused() {
         options.faults = vec![fault.into()];
         rigsim::build(&options).map(|_| ())
     };
-    assert!(matches!(build("no_such"), Err(SimError::UnknownFault { .. })));
-    assert!(matches!(build("silence=nobody"), Err(SimError::FaultValue { .. })));
+    assert!(matches!(
+        build("no_such"),
+        Err(SimError::UnknownFault { .. })
+    ));
+    assert!(matches!(
+        build("silence=nobody"),
+        Err(SimError::FaultValue { .. })
+    ));
     assert!(matches!(build("drop=2"), Err(SimError::FaultValue { .. })));
     assert!(build("silence=timer@3.5").is_ok());
 }
 
 #[test]
 fn a_silent_module_falls_silent_at_its_time_and_a_reset_shows() {
-    let rig = rig(1, &["silence=timer@1", "reset=board_do@2", "wrong_type=rtd"]);
+    let rig = rig(
+        1,
+        &["silence=timer@1", "reset=board_do@2", "wrong_type=rtd"],
+    );
     assert_eq!(ask(&rig, MEASURE, "$03M", 999_000), "!037080");
     assert_eq!(ask(&rig, MEASURE, "$03M", 1_000_000), "");
     assert_eq!(ask(&rig, MEASURE, "$045", 1_000_000), "!041");
@@ -168,8 +181,16 @@ fn session(seed: u64, faults: &[&str]) -> (Vec<u8>, Vec<u8>) {
     runtime.block_on(async {
         let mut ports = wire::in_process(&rig(seed, faults)).into_iter();
         let mut port = || ports.next().expect("a line").1;
-        let measure = poll(port(), &["#015", "#090", "@040101", "#024000", "#030", "@08", "~**"], 700);
-        let motion = poll(port(), &["@11", "@12", "@130010", "@140050", "@11", "~**"], 600);
+        let measure = poll(
+            port(),
+            &["#015", "#090", "@040101", "#024000", "#030", "@08", "~**"],
+            700,
+        );
+        let motion = poll(
+            port(),
+            &["@11", "@12", "@130010", "@140050", "@11", "~**"],
+            600,
+        );
         tokio::join!(measure, motion)
     })
 }
@@ -180,7 +201,13 @@ fn the_same_seed_gives_the_same_bytes_on_both_lines() {
     assert!(first.0.len() > 3_000 && first.1.len() > 2_000);
     assert_eq!(first, session(5, &[]));
     assert_ne!(first.0, session(6, &[]).0);
-    let faults = ["drop=0.02", "late=0.01", "flip=0.02", "truncate=0.02", "noise=0.02"];
+    let faults = [
+        "drop=0.02",
+        "late=0.01",
+        "flip=0.02",
+        "truncate=0.02",
+        "noise=0.02",
+    ];
     assert_eq!(session(5, &faults), session(5, &faults));
     assert_ne!(first, session(5, &faults));
 }

@@ -86,6 +86,22 @@ fn an_actuator_that_cannot_make_its_stroke_is_noticed_before_anything_moves() {
 }
 
 #[test]
+fn an_actuator_without_words_is_called_by_its_id() {
+    let mut settings = scene_settings();
+    settings.actuator[Actuator::SortZ.index()].to_rest = None;
+    let mut guard = Guard::build(&settings).unwrap();
+    let down = rest().with(Actuator::SortZ, at(40.0));
+    let no = guard
+        .clear(&Motion::to(Actuator::SortAxis, 150.0), &down)
+        .unwrap_err();
+    assert!(
+        no.to_string()
+            .ends_with("would help: move sort_z to its rest end"),
+        "{no}"
+    );
+}
+
+#[test]
 fn an_unknown_key_is_an_error_with_its_line() {
     let misspelt = SCENE.replacen("touch_depth_mm", "touch_deph_mm", 1);
     let message = toml::from_str::<GuardSettings>(&misspelt)

@@ -68,15 +68,33 @@ pub(crate) fn separation(a: &Piece, b: &Piece, shift: Vec3, n: Vec3) -> f64 {
 /// `hint` is a direction that may already be good (the last plane of the same pair).
 pub(crate) fn gap(element: &Piece, mover: &Piece, shift: Vec3, hint: Option<Vec3>) -> Gap {
     let c = between(element, mover, shift);
-    let proposal = if element.upright && mover.upright {
-        upright::propose(element, mover, c)
+    let (proposal, lower) = if element.upright && mover.upright {
+        closed_form(element, mover, shift, c)
     } else {
-        simplex::propose(element, mover, c, hint)
+        let proposal = simplex::propose(element, mover, c, hint);
+        (proposal, separation(element, mover, shift, proposal.normal))
     };
-    let lower = separation(element, mover, shift, proposal.normal);
     Gap {
         lower,
         normal: scale(proposal.normal, 1.0 / length(proposal.normal)),
         on_element: add(element.centre, proposal.on_a),
+    }
+}
+
+/// The closed form; where its direction is a difference of large numbers (two corners a micrometre
+/// apart) the general search sharpens it.
+fn closed_form(element: &Piece, mover: &Piece, shift: Vec3, c: Vec3) -> (Proposal, f64) {
+    let (proposal, distance) = upright::propose(element, mover, c);
+    let lower = separation(element, mover, shift, proposal.normal);
+    let lost = distance - lower - 2.0 * noise(element, mover, shift);
+    if lost <= RESOLUTION_MM || distance <= RESOLUTION_MM {
+        return (proposal, lower);
+    }
+    let sharper = simplex::propose(element, mover, c, Some(proposal.normal));
+    let better = separation(element, mover, shift, sharper.normal);
+    if better > lower {
+        (sharper, better)
+    } else {
+        (proposal, lower)
     }
 }

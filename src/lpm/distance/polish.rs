@@ -11,7 +11,7 @@ use crate::lpm::piece::Piece;
 use crate::lpm::vector::{Vec3, add, cross, dot, scale, unit};
 
 /// Directions tried.
-const MOST_TRIALS: usize = 100;
+const MOST_TRIALS: usize = 200;
 /// Support points remembered.
 const MOST_CUTS: usize = 14;
 /// First reach of a trial, as the tangent of its angle to the present direction.

@@ -133,7 +133,7 @@ fn the_distance_of_any_two_pieces_is_proven_to_half_a_nanometre() {
     }
     // Needles of 1 : 10,000 a few micrometres apart may lose digits, on the safe side.
     assert!(
-        poor <= 12 && worst < 1e-4,
+        poor <= 3 && worst < 2e-6,
         "{poor} poor planes, worst {worst:e} mm"
     );
 }

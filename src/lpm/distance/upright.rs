@@ -5,7 +5,7 @@
 
 use super::Proposal;
 use crate::lpm::piece::{Form, Piece};
-use crate::lpm::vector::{Vec3, unit};
+use crate::lpm::vector::{Vec3, length, unit};
 
 type Vec2 = [f64; 2];
 
@@ -24,8 +24,9 @@ struct Flat {
     on_a: Vec2,
 }
 
-/// The best plane between the upright pieces `a` and `b`, whose centres lie `c` apart.
-pub(crate) fn propose(a: &Piece, b: &Piece, c: Vec3) -> Proposal {
+/// The best plane between the upright pieces `a` and `b`, whose centres lie `c` apart, and their
+/// distance up to rounding, mm.
+pub(crate) fn propose(a: &Piece, b: &Piece, c: Vec3) -> (Proposal, f64) {
     let (foot_a, half_a) = footprint(a);
     let (foot_b, half_b) = footprint(b);
     let flat = footprints(foot_a, foot_b, [c[0], c[1]]);
@@ -33,7 +34,7 @@ pub(crate) fn propose(a: &Piece, b: &Piece, c: Vec3) -> Proposal {
     let apart = [flat.apart[0], flat.apart[1], z_apart];
     let on_a = [flat.on_a[0], flat.on_a[1], z_on_a];
     let normal = unit(apart).or_else(|| unit(c)).unwrap_or([0.0, 0.0, 1.0]);
-    Proposal { normal, on_a }
+    (Proposal { normal, on_a }, length(apart))
 }
 
 fn footprint(piece: &Piece) -> (Footprint, f64) {

@@ -1,0 +1,113 @@
+//! Ohm's law on the interface board: what every measuring point would show at this instant.
+
+use super::Board;
+use crate::world::relay::{Contact, Relay};
+use crate::world::signal::{Out, Quantity};
+
+impl Board {
+    /// A quantity in its own unit, before the gain of its terminal.
+    pub fn quantity(&self, quantity: Quantity, relay: Option<&Relay>) -> f64 {
+        match quantity {
+            Quantity::CoilVoltage | Quantity::CoilVoltageFine => self.coil_v(relay) * self.divider,
+            Quantity::CoilCurrent | Quantity::CoilCurrentFine => self.coil_a(relay),
+            Quantity::ContactCurrent => self.contact_a(relay),
+            Quantity::SupplyVoltage => self.supply_v(),
+            Quantity::ReferenceVoltage => self.reference_v,
+            Quantity::ContactDrop => self.contact_v(relay),
+        }
+    }
+
+    /// Clips what an analog input can see, volts.
+    pub fn clip(&self, volts: f64) -> f64 {
+        volts.clamp(-self.table.input_limit_v, self.table.input_limit_v)
+    }
+
+    pub(super) fn supply_v(&self) -> f64 {
+        let sum: f64 = self.volts.iter().zip(self.gain).map(|(v, g)| v * g).sum();
+        sum.clamp(0.0, self.table.supply_max_v)
+    }
+
+    pub(super) fn sees(&self, contact: Contact, relay: Option<&Relay>) -> bool {
+        self.touching
+            && relay.is_some_and(|r| {
+                let pins = r.specimen().pins;
+                let met = match contact {
+                    Contact::No => pins.no(),
+                    Contact::Nc => pins.nc(),
+                };
+                met && r.is_closed(contact) && self.monitor_trips(r, contact)
+            })
+    }
+
+    pub(super) fn monitor_trips(&self, relay: &Relay, contact: Contact) -> bool {
+        let ohm = relay.record.contact_mohm(contact) * 1e-3;
+        ohm / (ohm + self.table.monitor_ohm) < self.table.monitor_threshold_pct / 100.0
+    }
+
+    pub(super) fn limited_v(&self, ohm: f64) -> f64 {
+        self.supply_v().min(self.table.supply_limit_ma * 1e-3 * ohm)
+    }
+
+    pub(super) fn coil_a(&self, relay: Option<&Relay>) -> f64 {
+        if self.commands.is_on(Out::ReferenceCoil) {
+            let volts = if self.driving {
+                self.limited_v(self.reference_coil_ohm)
+            } else {
+                0.0
+            };
+            return volts / self.reference_coil_ohm;
+        }
+        let meets = |r: &&Relay| self.touching && r.specimen().pins.coil();
+        relay
+            .filter(meets)
+            .map_or(0.0, |r| r.coil_current_a(self.now_us))
+    }
+
+    pub(super) fn coil_v(&self, relay: Option<&Relay>) -> f64 {
+        let current = self.coil_a(relay);
+        match (self.driving, self.commands.is_on(Out::ReferenceCoil)) {
+            (true, true) => current * self.reference_coil_ohm,
+            (true, false) => self.limited_v(relay.map_or(f64::INFINITY, Relay::coil_ohm)),
+            (false, _) if current <= 0.0 => 0.0,
+            (false, _) if self.clamp_diode => -self.table.diode_v,
+            (false, _) => -self.table.zener_v,
+        }
+    }
+
+    /// Resistance between the sense wires, `None` when open.
+    pub(super) fn contact_ohm(&self, relay: Option<&Relay>) -> Option<f64> {
+        if self.commands.is_on(Out::ReferenceContact) {
+            return Some(self.reference_contact_ohm);
+        }
+        let contact = self.selected();
+        let closed = self.sees(contact, relay);
+        relay
+            .filter(|_| closed)
+            .map(|r| r.record.contact_mohm(contact) * 1e-3)
+    }
+
+    pub(super) fn contact_a(&self, relay: Option<&Relay>) -> f64 {
+        let ohm = self.contact_ohm(relay).unwrap_or(f64::INFINITY);
+        let size = match self.source_live {
+            true => self.source_a.min(self.table.source_compliance_v / ohm),
+            false => 0.0,
+        };
+        if self.switches.reverse { -size } else { size }
+    }
+
+    pub(super) fn source_limited(&self, relay: Option<&Relay>) -> bool {
+        self.source_live && self.contact_a(relay).abs() < self.source_a * 0.999
+    }
+
+    pub(super) fn contact_v(&self, relay: Option<&Relay>) -> f64 {
+        let Some(ohm) = self.contact_ohm(relay) else {
+            return self.table.monitor_v;
+        };
+        let reference = self.commands.is_on(Out::ReferenceContact);
+        let emf = relay
+            .filter(|_| !reference)
+            .map_or(0.0, |r| r.specimen().emf_v);
+        let monitor_a = self.table.monitor_v / (self.table.monitor_ohm + ohm);
+        (self.contact_a(relay) + monitor_a) * ohm + emf
+    }
+}

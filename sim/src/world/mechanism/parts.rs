@@ -1,0 +1,167 @@
+//! What strokes do to the parts, and to each other where they must not.
+
+use super::{Later, Mechanism, NEAR_NEST_MM, Stroke};
+use crate::world::cylinder::Cylinder;
+use crate::world::fault::Fault;
+use crate::world::magazine::Part;
+use crate::world::signal::In;
+
+impl Mechanism {
+    /// What a stroke does to the parts as it begins.
+    pub(super) fn stroke_began(&mut self, stroke: Stroke, far: bool, now_us: u64) {
+        let share = |percent: u64, of: &Cylinder| now_us + of.stroke_us() * percent / 100;
+        match (stroke, far) {
+            (Stroke::Pusher, true) => {
+                self.check_pusher(now_us);
+                self.places.pushed = self.places.pocket.take();
+            }
+            (Stroke::Pusher, false) if self.places.pushed.is_some() => {
+                self.places.pocket = self.places.pushed.take();
+            }
+            (Stroke::SortZ, true) => self.check_lowering(now_us),
+            (Stroke::SortZ, false) if self.places.gripped => {
+                let at = share(25, self.at(Stroke::SortZ));
+                self.later.push((at, Later::LiftOff));
+            }
+            (Stroke::Gripper, false) => {
+                let at = share(30, self.at(Stroke::Gripper));
+                self.later.push((at, Later::LetGo));
+            }
+            (_, _) => {}
+        }
+    }
+
+    /// What a stroke does to the parts as it ends.
+    pub(super) fn stroke_ended(&mut self, stroke: Stroke, now_us: u64) {
+        if !self.at(stroke).at_far(now_us) {
+            return;
+        }
+        match stroke {
+            Stroke::Escapement => self.drop_into_pocket(now_us),
+            Stroke::Pusher => self.push_into_nest(now_us),
+            Stroke::Gripper => self.grip(now_us),
+            Stroke::JawLeft | Stroke::JawRight | Stroke::ProbeLift | Stroke::SortZ => {}
+        }
+    }
+
+    pub(super) fn drop_into_pocket(&mut self, now_us: u64) {
+        let free = self.places.pocket.is_none() && self.at(Stroke::Pusher).at_rest(now_us);
+        if !free
+            || self
+                .faults
+                .strikes(Fault::NoPart, self.magazine.next_number())
+        {
+            return;
+        }
+        self.places.pocket = self.magazine.take(now_us, &mut self.faults).map(Box::new);
+    }
+
+    pub(super) fn push_into_nest(&mut self, now_us: u64) {
+        let Some(part) = self.places.pushed.take() else {
+            return;
+        };
+        if self.places.nest.is_some() {
+            self.crash(now_us, "a part was pushed into an occupied nest");
+            self.places.finish(&part);
+        } else {
+            self.places.enter_nest(part, now_us);
+        }
+    }
+
+    pub(super) fn grip(&mut self, now_us: u64) {
+        let over =
+            !self.axis.is_moving() && self.axis.x_mm(now_us).abs() < self.table.axis_window_mm;
+        let empty = self.places.carried.is_none();
+        if over && empty && self.at(Stroke::SortZ).at_far(now_us) && self.places.nest.is_some() {
+            self.places.gripped = true;
+        }
+    }
+
+    pub(super) fn lift_off(&mut self, now_us: u64) {
+        if !self.places.gripped {
+            return;
+        }
+        if ![Stroke::JawLeft, Stroke::JawRight]
+            .iter()
+            .all(|&j| self.at(j).at_rest(now_us))
+        {
+            self.crash(now_us, "a part was torn out of jaws that were not open");
+        }
+        self.places.gripped = false;
+        self.places.carried = self.places.nest.take();
+    }
+
+    /// The fingers have opened far enough to let a part go.
+    pub(super) fn let_go(&mut self, now_us: u64) {
+        self.places.gripped = false;
+        let x = self.axis.x_mm(now_us);
+        let near = |at: f64| (x - at).abs() <= self.table.axis_window_mm;
+        let bin = self
+            .bins
+            .iter()
+            .find(|b| near(b.x_mm) && !self.axis.is_moving());
+        let (name, beam) = match bin {
+            Some(bin) => (bin.name.clone(), In::from_name(&bin.beam)),
+            None if near(0.0) && self.at(Stroke::SortZ).at_far(now_us) => {
+                return self.put_back(now_us);
+            }
+            None => return self.lose(),
+        };
+        if let Some(part) = self.places.carried.take() {
+            self.fall(part, name, beam, now_us);
+        }
+    }
+
+    pub(super) fn fall(&mut self, part: Box<Part>, bin: String, beam: Option<In>, now_us: u64) {
+        let us = |ms: f64| (ms * 1000.0) as u64;
+        let seen = !self.faults.strikes(Fault::BeamBlind, part.number);
+        let bodies = if part.double { 2 } else { 1 };
+        let mut dark = now_us + us(self.draw.between(self.table.fall_ms));
+        self.later.push((dark, Later::Land(bin, part)));
+        for _ in 0..bodies {
+            let lit = dark + us(self.draw.between(self.table.beam_dark_ms));
+            if let Some(beam) = beam.filter(|_| seen) {
+                self.later.push((dark, Later::Dark(beam)));
+                self.later.push((lit, Later::Lit(beam)));
+            }
+            dark = lit + us(25.0);
+        }
+    }
+
+    /// A carried part that is set down in the nest.
+    pub(super) fn put_back(&mut self, now_us: u64) {
+        if let Some(part) = self.places.carried.take() {
+            match self.places.nest.is_some() {
+                true => {
+                    self.crash(now_us, "a part was set down on another one");
+                    self.places.finish(&part);
+                }
+                false => self.places.enter_nest(part, now_us),
+            }
+        }
+    }
+
+    /// A carried part falls on the floor.
+    pub(super) fn lose(&mut self) {
+        if let Some(part) = self.places.carried.take() {
+            self.places.finish(&part);
+        }
+    }
+
+    pub(super) fn check_pusher(&mut self, now_us: u64) {
+        if !self.at(Stroke::ProbeLift).at_rest(now_us) {
+            self.crash(now_us, "the pusher extended against raised probes");
+        }
+        let near = self.axis.x_mm(now_us).abs() < NEAR_NEST_MM;
+        if near && !self.at(Stroke::SortZ).at_rest(now_us) {
+            self.crash(now_us, "the pusher extended against a lowered gripper");
+        }
+    }
+
+    pub(super) fn check_lowering(&mut self, now_us: u64) {
+        let near = self.axis.x_mm(now_us).abs() < NEAR_NEST_MM;
+        if near && !self.at(Stroke::Pusher).at_rest(now_us) {
+            self.crash(now_us, "sort z came down on an extended pusher");
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! What the sensors of the mechanism say.
+
+use super::{Mechanism, Stroke};
+use crate::world::fault::Fault;
+use crate::world::signal::In;
+
+impl Mechanism {
+    /// A signal of the mechanism; `None` where it is none of its own.
+    pub fn signal(&self, signal: In, now_us: u64) -> Option<bool> {
+        let rest = |s: Stroke| Some(self.at(s).at_rest(now_us));
+        let far = |s: Stroke| Some(self.at(s).at_far(now_us));
+        match signal {
+            In::EmergencyStopOk => Some(!self.is_disturbed(Fault::Estop)),
+            In::DoorClosed => Some(!self.is_disturbed(Fault::Door)),
+            In::AirOk => Some(self.has_air()),
+            In::EscapementHold => rest(Stroke::Escapement),
+            In::PocketPresent => Some(self.places.pocket.is_some()),
+            In::TrackLevel => Some(self.magazine.waiting() >= self.table.track_level_parts),
+            In::PusherRetracted => rest(Stroke::Pusher),
+            In::PusherExtended => far(Stroke::Pusher),
+            In::NestPresent => Some(self.places.nest.is_some()),
+            In::JawLeftOpen => rest(Stroke::JawLeft),
+            In::JawLeftClosed => far(Stroke::JawLeft),
+            In::JawRightOpen => rest(Stroke::JawRight),
+            In::JawRightClosed => far(Stroke::JawRight),
+            In::ProbeDown => rest(Stroke::ProbeLift),
+            In::ProbeUp => far(Stroke::ProbeLift),
+            In::AxisInPosition => Some(self.axis.is_in_position()),
+            In::AxisBusy => Some(self.axis.is_moving()),
+            In::AxisAlarm => Some(self.axis.is_alarmed()),
+            In::SortZUp => rest(Stroke::SortZ),
+            In::SortZDown => far(Stroke::SortZ),
+            In::GripperOpen => rest(Stroke::Gripper),
+            In::GripperPart => Some(self.places.gripped || self.places.carried.is_some()),
+            In::ButtonStart | In::ButtonReset => Some(false),
+            In::ButtonStop => Some(self.is_disturbed(Fault::StopButton)),
+            In::BeamPass
+            | In::BeamCoil
+            | In::BeamVoltage
+            | In::BeamTime
+            | In::BeamContact
+            | In::BeamRetest => Some(self.dark.contains(&signal)),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,375 @@
+//! The line by hand: terminals in, terminals out.
+
+use super::*;
+use crate::config::{RigFile, read_rig, read_world};
+
+/// A hand on the terminals: commands by name, time in milliseconds.
+struct Hand {
+    world: World,
+    rig: RigFile,
+    bits: std::collections::BTreeMap<String, u16>,
+    t_us: u64,
+}
+
+impl Hand {
+    fn new(options: WorldOptions) -> Self {
+        let rig = read_rig(&config_dir()).unwrap();
+        let world = World::build(&options).unwrap();
+        Self {
+            world,
+            rig,
+            bits: std::collections::BTreeMap::new(),
+            t_us: 0,
+        }
+    }
+
+    fn set(&mut self, point: &str, on: bool) {
+        let terminal = self.rig.digital_out[point].clone();
+        let bits = self.bits.entry(terminal.module.clone()).or_default();
+        *bits = if on {
+            *bits | 1 << terminal.channel
+        } else {
+            *bits & !(1 << terminal.channel)
+        };
+        self.world.digital_out(&terminal.module, *bits);
+    }
+
+    fn wait(&mut self, ms: f64) {
+        self.t_us += (ms * 1000.0) as u64;
+        self.world.advance(self.t_us);
+    }
+
+    fn pulse(&mut self, point: &str, ms: f64) {
+        self.set(point, true);
+        self.wait(ms);
+        self.set(point, false);
+    }
+
+    fn sees(&mut self, point: &str) -> bool {
+        let terminal = self.rig.digital_in[point].clone();
+        let high = self.world.digital_in(&terminal.module) >> terminal.channel & 1 == 1;
+        high != terminal.active_low
+    }
+
+    fn level(&mut self, supply_v: f64) {
+        self.world.analog_out("ao_level", supply_v / 1.5);
+    }
+
+    fn reads(&mut self, point: &str) -> f64 {
+        let t = self.rig.analog_in[point].clone();
+        self.world.analog_in(&t.module, t.channel) / t.gain
+    }
+
+    fn gate_ms(&mut self, point: &str) -> f64 {
+        let t = self.rig.counter[point].clone();
+        self.world.gate_open_us(&t.module, t.channel) / 1000.0
+    }
+
+    fn axis(&mut self, point: u8) {
+        for (i, name) in ["axis_point_0", "axis_point_1", "axis_point_2"]
+            .into_iter()
+            .enumerate()
+        {
+            self.set(name, point >> i & 1 == 1);
+        }
+        self.pulse("axis_drive", 900.0);
+        assert!(self.sees("axis_in_position"));
+    }
+
+    /// Magazine to nest, clamped, probes up.
+    fn feed(&mut self) {
+        self.pulse("escapement_release", 300.0);
+        assert!(self.sees("pocket_present"));
+        self.pulse("pusher_extend", 500.0);
+        assert!(self.sees("nest_present") && !self.sees("pocket_present"));
+        self.wait(500.0);
+        self.pulse("clamp_close", 200.0);
+        assert!(self.sees("jaw_left_closed") && self.sees("jaw_right_closed"));
+        self.set("probe_lift", true);
+        self.wait(250.0);
+        assert!(self.sees("probe_up") && self.sees("probe_chain"));
+    }
+
+    /// Nest to bin, axis back at the nest.
+    fn sort(&mut self, point: u8) {
+        self.set("axis_servo_on", true);
+        self.axis(0);
+        self.set("sort_z_lower", true);
+        self.wait(400.0);
+        self.pulse("gripper_close", 200.0);
+        assert!(self.sees("gripper_part"));
+        self.set("probe_lift", false);
+        self.wait(250.0);
+        self.pulse("clamp_open", 200.0);
+        self.set("sort_z_lower", false);
+        self.wait(400.0);
+        assert!(!self.sees("nest_present") && self.sees("sort_z_up"));
+        self.axis(point);
+        self.pulse("gripper_release", 500.0);
+        self.axis(0);
+    }
+}
+
+fn options(golden: bool) -> WorldOptions {
+    WorldOptions {
+        config_dir: config_dir(),
+        seed: 3,
+        recipe: "jzc-22f-012".into(),
+        parts: Some(3),
+        golden,
+        ..WorldOptions::default()
+    }
+}
+
+/// Terminal of the beam over a bin.
+fn beam(hand: &Hand, bin: &str) -> (String, u8) {
+    let name = &hand.rig.bins.iter().find(|b| b.name == bin).unwrap().beam;
+    let t = &hand.rig.digital_in[name];
+    (t.module.clone(), t.channel)
+}
+
+#[test]
+fn a_part_goes_by_hand_from_the_magazine_through_a_timed_test_into_its_bin() {
+    let mut hand = Hand::new(options(false));
+    hand.feed();
+    hand.set("kelvin_test", true);
+    assert!(hand.sees("kelvin_com") && hand.sees("kelvin_no") && hand.sees("nc_closed"));
+    hand.level(12.0);
+    hand.set("select_no", true);
+    hand.set("arm", true);
+    hand.wait(1.0);
+    let before = hand.gate_ms("gate_0");
+    let before_1 = hand.gate_ms("gate_1");
+    hand.set("coil_drive", true);
+    hand.wait(40.0);
+    assert!(hand.sees("latch") && hand.sees("no_closed") && !hand.sees("nc_closed"));
+    assert!((hand.reads("coil_voltage") - 12.0).abs() < 1e-9);
+    assert!((hand.reads("coil_current") - 0.03).abs() < 0.002);
+    let operate = hand.gate_ms("gate_0") - before;
+    let bounce = hand.gate_ms("gate_1") - before_1 - operate;
+    hand.set("source_on", true);
+    hand.wait(10.0);
+    let plus = hand.reads("contact_drop");
+    hand.set("source_reverse", true);
+    hand.wait(10.0);
+    let mohm = (plus - hand.reads("contact_drop")) / 2.0 * 1000.0;
+    hand.set("source_on", false);
+    hand.set("coil_drive", false);
+    hand.wait(50.0);
+    assert!(hand.sees("nc_closed") && !hand.sees("no_closed"));
+    hand.sort(4);
+    let (module, channel) = beam(&hand, "voltage");
+    assert_eq!(hand.world.edges(&module, channel), 1);
+    let truth = &hand.world.truth()[0];
+    let value = |key: &str| truth[key].as_f64().unwrap();
+    assert_eq!(truth["seq"], 1);
+    assert_eq!(truth["landed_in"], "voltage");
+    assert!(
+        (value("operate_time_ms") - operate).abs() < 0.011,
+        "gate delay within 10 us"
+    );
+    assert!((value("operate_bounce_ms") - bounce).abs() < 0.021);
+    assert!((value("contact_resistance_no_mohm") / mohm - 1.0).abs() < 0.0015);
+    assert!(
+        hand.world.crashes().is_empty(),
+        "{:?}",
+        hand.world.crashes()
+    );
+}
+
+#[test]
+fn golden_parts_come_first_and_are_not_in_the_truth() {
+    let mut hand = Hand::new(options(true));
+    for _ in 0..5 {
+        hand.feed();
+        hand.sort(7);
+    }
+    assert!(hand.world.truth().is_empty());
+    hand.feed();
+    assert_eq!(hand.world.truth().len(), 1);
+}
+
+#[test]
+fn the_source_goes_off_two_milliseconds_before_the_drive_changes() {
+    let mut hand = Hand::new(options(false));
+    hand.feed();
+    hand.set("source_on", true);
+    hand.wait(10.0);
+    assert!((hand.reads("contact_current") - 1.0).abs() < 0.0011);
+    hand.level(12.0);
+    hand.set("coil_drive", true);
+    hand.wait(1.9);
+    assert_eq!(hand.reads("contact_current"), 0.0);
+    assert_eq!(hand.reads("coil_voltage"), 0.0);
+    hand.wait(0.2);
+    assert!((hand.reads("coil_voltage") - 12.0).abs() < 1e-9);
+}
+
+#[test]
+fn nothing_is_driven_without_the_probe_up_chain() {
+    let mut hand = Hand::new(options(false));
+    hand.level(12.0);
+    hand.set("coil_drive", true);
+    hand.wait(10.0);
+    assert_eq!(hand.reads("coil_voltage"), 0.0);
+    assert!((hand.reads("supply_voltage") - 12.0).abs() < 1e-9);
+}
+
+#[test]
+fn arm_on_the_reference_contact_gives_a_pulse_of_one_millisecond_on_both_gates() {
+    let mut hand = Hand::new(options(false));
+    hand.set("reference_contact", true);
+    hand.pulse("arm", 5.0);
+    for gate in ["gate_0", "gate_1"] {
+        let ms = hand.gate_ms(gate);
+        assert!((ms - 1.0).abs() <= 0.010, "{gate}: {ms}");
+    }
+}
+
+#[test]
+fn a_ramp_starts_the_window_when_the_supply_has_moved_fifty_millivolts() {
+    let mut hand = Hand::new(options(false));
+    hand.level(5.0);
+    hand.set("ramp_mode", true);
+    hand.set("select_no", true);
+    hand.set("arm", true);
+    hand.world.analog_out("ao_fine", 0.049 / 1.5);
+    hand.wait(1.0);
+    assert!(!hand.sees("window"));
+    hand.world.analog_out("ao_fine", 0.051 / 1.5);
+    assert!(hand.sees("window"));
+}
+
+#[test]
+fn the_pusher_against_raised_probes_is_a_crash() {
+    let mut hand = Hand::new(options(false));
+    hand.set("probe_lift", true);
+    hand.wait(300.0);
+    hand.set("pusher_extend", true);
+    hand.wait(10.0);
+    assert_eq!(hand.world.crashes().len(), 1);
+}
+
+#[test]
+fn without_air_the_pusher_returns_and_the_clamp_stays() {
+    let mut o = options(false);
+    o.faults = vec![("air".into(), 3.0)];
+    let mut hand = Hand::new(o);
+    hand.pulse("clamp_close", 300.0);
+    hand.set("pusher_extend", true);
+    hand.wait(1000.0);
+    assert!(hand.sees("pusher_extended"));
+    hand.wait(2500.0);
+    assert!(!hand.sees("air_ok") && hand.sees("pusher_retracted") && hand.sees("jaw_left_closed"));
+}
+
+#[test]
+fn a_double_part_darkens_the_beam_twice_and_a_fallen_one_lands_nowhere() {
+    let mut o = options(false);
+    o.faults = vec![("double_part".into(), 1.0), ("fall".into(), 2.0)];
+    let mut hand = Hand::new(o);
+    for _ in 0..2 {
+        hand.feed();
+        hand.sort(2);
+    }
+    let (module, channel) = beam(&hand, "pass");
+    assert_eq!(hand.world.edges(&module, channel), 2);
+    let truth = hand.world.truth();
+    assert_eq!(truth[0]["landed_in"], "pass");
+    assert!(truth[1]["landed_in"].is_null());
+}
+
+#[test]
+fn a_jammed_pusher_goes_through_at_the_second_stroke() {
+    let mut o = options(false);
+    o.faults = vec![("jam_pusher".into(), 1.0)];
+    let mut hand = Hand::new(o);
+    hand.pulse("escapement_release", 300.0);
+    hand.pulse("pusher_extend", 800.0);
+    assert!(!hand.sees("pusher_extended") && !hand.sees("nest_present"));
+    hand.wait(800.0);
+    hand.pulse("pusher_extend", 800.0);
+    assert!(hand.sees("nest_present"));
+}
+
+#[test]
+fn the_same_seed_and_stimuli_give_the_same_world() {
+    let run = || {
+        let mut hand = Hand::new(options(false));
+        hand.feed();
+        hand.level(12.0);
+        hand.set("coil_drive", true);
+        hand.wait(40.0);
+        hand.set("coil_drive", false);
+        hand.wait(40.0);
+        hand.sort(2);
+        (hand.world.truth(), hand.gate_ms("gate_0").to_bits())
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn an_unknown_key_of_a_world_file_is_named_with_file_and_line() {
+    let path = std::env::temp_dir().join(format!("rigsim-world-{}.toml", std::process::id()));
+    std::fs::write(&path, "[lot]\noperate_v_mean = 7.7\noperate_v_men = 7.8\n").unwrap();
+    let error = read_world(&config_dir(), Some(&path))
+        .unwrap_err()
+        .to_string();
+    std::fs::write(&path, "[lot]\noperate_v_mean = 7.7\n").unwrap();
+    let world = read_world(&config_dir(), Some(&path)).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    assert!(
+        error.contains(".toml:3: unknown field `operate_v_men`"),
+        "{error}"
+    );
+    assert_eq!(world.lot.operate_v_mean, 7.7);
+    assert_eq!(world.lot.release_v_mean, 2.35);
+}
+
+#[test]
+fn a_timed_release_counts_from_drive_off_to_the_first_make_of_nc() {
+    let mut hand = Hand::new(options(false));
+    hand.feed();
+    hand.level(12.0);
+    hand.set("coil_drive", true);
+    hand.wait(40.0);
+    hand.set("arm", true);
+    hand.wait(1.0);
+    let before = (hand.gate_ms("gate_0"), hand.gate_ms("gate_1"));
+    hand.set("coil_drive", false);
+    hand.wait(40.0);
+    let release = hand.gate_ms("gate_0") - before.0;
+    let bounce = hand.gate_ms("gate_1") - before.1 - release;
+    let truth = &hand.world.truth()[0];
+    assert!((truth["release_time_ms"].as_f64().unwrap() - release).abs() < 0.011);
+    assert!((truth["release_bounce_ms"].as_f64().unwrap() - bounce).abs() < 0.021);
+}
+
+#[test]
+fn a_falling_ramp_latches_on_the_break_of_no() {
+    let mut hand = Hand::new(options(false));
+    hand.feed();
+    hand.level(12.0);
+    for point in ["select_no", "ramp_mode", "event_no_break", "coil_drive"] {
+        hand.set(point, true);
+    }
+    hand.wait(40.0);
+    hand.level(4.0);
+    hand.wait(60.0);
+    hand.set("arm", true);
+    hand.wait(1.0);
+    let before = hand.gate_ms("gate_0");
+    let mut volts = 4.0;
+    while !hand.sees("latch") {
+        volts -= 0.0015;
+        assert!(volts > 0.5, "no release");
+        hand.level(volts);
+        hand.wait(1.0);
+    }
+    let seen = 4.0 - 0.0015 * (hand.gate_ms("gate_0") - before) - 0.050;
+    let truth = hand.world.truth()[0]["release_voltage_v"].as_f64().unwrap();
+    assert!(
+        (seen - truth).abs() < 0.12,
+        "lag and temperature: {seen} against {truth}"
+    );
+}

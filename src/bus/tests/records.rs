@@ -1,0 +1,90 @@
+//! What a line keeps about itself: trace, health, bounds, time.
+
+use super::*;
+
+#[test]
+fn health_counts_each_module_and_each_kind_of_trouble() {
+    let settings = settings();
+    let log = settings.log.clone();
+    let reset = Common::ReadResetStatus.to(Address(4));
+    let script = vec![
+        vec![(2_600, THIRTY)],
+        vec![(2_600, b">0000001FD4\r")],
+        vec![],
+        vec![(2_000, b"!041B6\r")],
+    ];
+    let asks = [(count(), 1), (count(), 1), (count(), 1), (reset, 1)];
+    let (got, _) = in_virtual_time(played(settings, script, &asks));
+    assert_eq!(got[3].outcome, Ok(Reply::Flag(true)));
+    let health = log.health();
+    let module = health.module(Address(3)).unwrap();
+    assert_eq!(
+        (
+            module.transactions,
+            module.time_outs,
+            module.checksum_errors
+        ),
+        (3, 1, 1)
+    );
+    let p50 = module.latency.percentile(0.5).unwrap().0;
+    // 2600 us, of which 19 characters are wire time.
+    assert!((950..1_200).contains(&p50), "{p50}");
+    assert_eq!(health.module(Address(4)).unwrap().resets, 1);
+}
+
+#[test]
+fn equal_traffic_has_an_equal_fingerprint_and_other_traffic_another() {
+    let fingerprint = |reply: &'static [u8]| {
+        let settings = settings();
+        let log = settings.log.clone();
+        in_virtual_time(played(
+            settings,
+            vec![vec![(2_000, reply)]; 3],
+            &[(count(), 1); 3],
+        ));
+        assert_eq!(log.trace().entries().count(), 6);
+        assert_eq!(log.trace().entries().nth(1).unwrap().bytes(), reply);
+        log.fingerprint()
+    };
+    assert_eq!(fingerprint(THIRTY), fingerprint(THIRTY));
+    assert_ne!(fingerprint(THIRTY), fingerprint(NINE));
+}
+
+#[test]
+fn the_trace_keeps_the_last_entries_only() {
+    let mut settings = settings();
+    settings.log = LineLog::with_trace(4);
+    let log = settings.log.clone();
+    in_virtual_time(played(
+        settings,
+        vec![vec![(2_000, THIRTY)]; 9],
+        &[(count(), 1); 9],
+    ));
+    assert_eq!(log.trace().entries().count(), 4);
+    assert_eq!(log.trace().byte_count(), 9 * 19);
+}
+
+#[test]
+fn the_longest_transaction_is_that_of_the_slowest_command() {
+    let settings = settings();
+    let both = longest_transaction(&settings, &[count(), write(), Command::HostOk]);
+    assert_eq!(both, longest_transaction(&settings, &[count()]));
+    // 7 + 12 characters and 30 ms, then twice 12 characters and 30 ms.
+    let wire = |characters| settings.wire().time(characters).0;
+    assert_eq!(
+        both.0,
+        wire(7) + wire(12) + 30_000 + 2 * (wire(12) + 30_000)
+    );
+    assert_eq!(longest_transaction(&settings, &[]), Span(0));
+}
+
+#[test]
+fn a_virtual_second_passes_without_a_real_one() {
+    in_virtual_time(async {
+        let pace = Pace::virtual_time();
+        pace.sleep_until(RigTime(3_560)).await;
+        assert_eq!(pace.now(), RigTime(3_560));
+        pace.rest_until(RigTime(3_600_000_000)).await;
+        assert_eq!(pace.now(), RigTime(3_600_000_000));
+    });
+}

@@ -1,0 +1,160 @@
+//! `relayrig run`: a lot on a rig, or on the simulated rig in real or virtual time.
+
+mod assemble;
+mod lines;
+mod recorder;
+mod rows;
+mod table;
+
+use crate::bus::Pace;
+use crate::config::{Plant, load_recipe};
+use crate::cycle::{Event, Outside};
+use crate::gauge::Recipe;
+use crate::station::wants::Ending;
+use crate::view::View;
+use anyhow::{Context, bail};
+use recorder::{Recorder, Setup};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use tokio::sync::{mpsc, watch};
+
+/// How rig time passes on the simulated rig.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum PaceArg {
+    /// As fast as the machine can: in-process streams, virtual time that starts at the wall clock
+    Virtual,
+    /// At real speed, through pseudo-terminals
+    Real,
+}
+
+/// A lot to run.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "Examples:
+  relayrig run --sim --lot A --recipe jzc-22f-012 --count 20
+  relayrig run --sim --pace real --lot A --recipe jzc-22f-012 --count 5 --json
+  relayrig run --lot A --recipe jzc-22f-012 --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1")]
+pub struct RunArgs {
+    /// On the simulated rig
+    #[arg(long)]
+    pub sim: bool,
+    /// How time passes on the simulated rig
+    #[arg(long, value_enum, default_value = "virtual", requires = "sim")]
+    pub pace: PaceArg,
+    /// Lot the parts belong to
+    #[arg(long, value_name = "ID")]
+    pub lot: String,
+    /// Recipe in config/recipes
+    #[arg(long, value_name = "NAME")]
+    pub recipe: String,
+    /// Parts of the lot; without it the lot goes on until it is stopped
+    #[arg(long, value_name = "N")]
+    pub count: Option<u64>,
+    /// Draws rig and lot of the simulated rig
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "sim")]
+    pub seed: u64,
+    /// World of the simulated rig instead of config/sim.toml
+    #[arg(long, value_name = "FILE", requires = "sim")]
+    pub world: Option<PathBuf>,
+    /// Fault of the simulated rig, see `relayrig sim --faults`
+    #[arg(long, value_name = "NAME[=VALUE]", requires = "sim")]
+    pub fault: Vec<String>,
+    /// True values of every specimen go to this file
+    #[arg(long, value_name = "FILE", requires = "sim")]
+    pub truth: Option<PathBuf>,
+    /// Port of a line instead of the one in rig.toml
+    #[arg(long, value_name = "NAME=PORT", conflicts_with = "sim")]
+    pub line: Vec<String>,
+    /// One JSON object per part, then a summary
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What outlives a run and is shared with a page.
+#[derive(Debug, Clone)]
+pub struct Controls {
+    /// Ends the lot after the parts inside.
+    pub stop: Arc<AtomicBool>,
+    /// What screens see.
+    pub view: watch::Sender<View>,
+    /// Rows to stdout.
+    pub quiet: bool,
+}
+
+impl Controls {
+    /// Nothing ordered, nothing seen.
+    pub fn new(quiet: bool) -> Self {
+        Self { stop: Arc::new(AtomicBool::new(false)), view: watch::channel(View::default()).0, quiet }
+    }
+}
+
+/// Runs the command; the result is the exit status.
+pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
+    run_with(config, db, args, &Controls::new(false))
+}
+
+/// As [`run`], with controls that somebody else holds too.
+pub fn run_with(config: &Path, db: &Path, args: &RunArgs, controls: &Controls) -> anyhow::Result<i32> {
+    if args.lot.is_empty() || args.lot.len() > 200 {
+        bail!("--lot: found {} characters, expected 1 to 200", args.lot.len());
+    }
+    if args.count == Some(0) {
+        bail!("--count: found 0, expected at least 1");
+    }
+    if args.sim && !cfg!(feature = "sim") {
+        bail!("--sim: this is a plant build without the simulated rig");
+    }
+    let plant = Plant::load(config)?;
+    let recipe = Arc::new(load_recipe(config, &args.recipe)?);
+    let is_virtual = args.sim && args.pace == PaceArg::Virtual;
+    let mut builder = tokio::runtime::Builder::new_current_thread();
+    builder.enable_all();
+    #[cfg(feature = "sim")]
+    builder.start_paused(is_virtual);
+    let runtime = builder.build().context("starting the runtime")?;
+    let status = runtime.block_on(run_lot(plant, recipe, config, db, args, controls, is_virtual));
+    runtime.shutdown_timeout(std::time::Duration::from_secs(1));
+    status
+}
+
+async fn run_lot(
+    plant: Plant,
+    recipe: Arc<Recipe>,
+    config: &Path,
+    db: &Path,
+    args: &RunArgs,
+    controls: &Controls,
+    is_virtual: bool,
+) -> anyhow::Result<i32> {
+    let pace = if is_virtual { Pace::virtual_time() } else { Pace::real() };
+    let epoch_us = jiff::Timestamp::now().as_microsecond();
+    let (mut lines, rig) = lines::open(&plant, config, args, &pace)?;
+    let setup = Setup { plant: &plant, recipe: &recipe, args, epoch_us };
+    let (mut recorder, calibration) = Recorder::open(db, &setup, controls, rig.eeprom_count())?;
+    let (events, received) = mpsc::unbounded_channel::<Event>();
+    let recorded = Arc::new(AtomicU64::new(0));
+    let outside = Outside {
+        events,
+        recorded: Arc::clone(&recorded),
+        stop: Arc::clone(&controls.stop),
+        view: controls.view.clone(),
+    };
+    let cycle = assemble::cycle(&setup, calibration, pace.clone(), std::mem::take(&mut lines.ends), outside)?;
+    let stop = Arc::clone(&controls.stop);
+    let interrupt = tokio::spawn(async move {
+        if tokio::signal::ctrl_c().await.is_ok() {
+            stop.store(true, Ordering::Release);
+        }
+    });
+    let running = tokio::spawn(cycle.run());
+    recorder.keep(received, &recorded).await?;
+    let ending = running.await.context("the control cycle ended by an assertion")?;
+    interrupt.abort();
+    rig.finish(args)?;
+    recorder.close(&ending, &lines.logs)?;
+    Ok(match ending {
+        Ending::Complete => super::DONE,
+        Ending::Stopped => super::STOPPED,
+        Ending::Alarm => super::RIG_TROUBLE,
+    })
+}

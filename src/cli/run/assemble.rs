@@ -1,0 +1,87 @@
+//! Puts a cycle together from configuration, recipe and calibration.
+
+use super::recorder::Setup;
+use crate::bus::Pace;
+use crate::cycle::{Cycle, LineEnds, Outside};
+use crate::gauge::Calibration;
+use crate::gauge::calibration::{Factor, InputLine, OutputLine};
+use crate::guard::{Actuator, Guard, PartSize};
+use crate::rig::axis::AxisStation;
+use crate::rig::point::AnalogIn;
+use crate::rig::wiring::StrokeLimits;
+use crate::station::mechanism::Mechanism;
+use crate::station::moves::Strokes;
+use crate::station::test::Bench;
+use crate::station::{Plan, Station};
+use crate::units::Span;
+use anyhow::Context;
+use std::sync::Arc;
+
+/// A cycle that is ready to run.
+pub fn cycle(
+    setup: &Setup,
+    calibration: Option<Calibration>,
+    pace: Pace,
+    lines: Vec<LineEnds>,
+    outside: Outside,
+) -> anyhow::Result<Cycle> {
+    let plant = setup.plant;
+    let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
+    let wiring = Arc::clone(&plant.wiring);
+    let recipe = Arc::clone(setup.recipe);
+    let strokes = Strokes {
+        length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),
+        axis_mm: wiring.axis.stations().map(|at| (at, wiring.axis.point(at).x_mm)).collect::<Vec<(AxisStation, f64)>>(),
+    };
+    let part = PartSize { body_mm: recipe.part.body_mm, pin_length_mm: recipe.part.pin_length_mm };
+    let plan = Plan {
+        count: setup.args.count,
+        golden: plant.golden.of_nominal(recipe.part.nominal_v).cloned().collect(),
+        calibrated: calibration.is_some(),
+        valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
+        epoch_us: setup.epoch_us,
+        voltage_gain: wiring.analog_in(AnalogIn::CoilVoltageFine).gain,
+    };
+    let bench = Bench {
+        calibration: Arc::new(calibration.unwrap_or_else(|| uncalibrated(recipe.part.nominal_v))),
+        recipe,
+        reference: plant.reference.clone(),
+        accuracy: plant.accuracy.clone(),
+    };
+    let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), part);
+    let station = Station::new(plan, bench, wiring.axis.clone(), mechanism);
+    Ok(Cycle::new(wiring, pace, station, guard, lines, outside))
+}
+
+fn timeouts(limits: &StrokeLimits) -> Vec<(&'static str, Span)> {
+    vec![
+        ("escapement", limits.escapement),
+        ("pusher", limits.pusher),
+        ("clamp", limits.clamp),
+        ("probe_lift", limits.probe_lift),
+        ("sort_z", limits.sort_z),
+        ("gripper", limits.gripper),
+        ("axis", limits.axis),
+    ]
+}
+
+/// Ideal factors of unknown quality: good enough to run the reference measurements, no more.
+fn uncalibrated(nominal_v: f64) -> Calibration {
+    let unknown = Factor::new(1.0, f64::INFINITY);
+    Calibration {
+        made_at_us: 0,
+        due_at_us: 0,
+        nominal_v,
+        coil_input: InputLine { gain: unknown, offset_v: Factor::new(0.0, f64::INFINITY) },
+        ohm_fine: unknown,
+        ohm_wide: unknown,
+        contact_mohm_per_v: unknown,
+        gate_delay_us: Factor::new(0.0, f64::INFINITY),
+        level: OutputLine::IDEAL,
+        coarse: OutputLine::IDEAL,
+        fine: OutputLine::IDEAL,
+        coarse_v_per_s: unknown,
+        fine_v_per_s: unknown,
+        lags: None,
+    }
+}

@@ -1,0 +1,171 @@
+//! Opens the lines of a run: serial ports, pseudo-terminals of the simulated rig, or in-process streams.
+
+use super::{PaceArg, RunArgs};
+use crate::bus::{self, LineLog, LineSettings, Pace, SerialPorts};
+use crate::config::Plant;
+use crate::cycle::LineEnds;
+use crate::rig::wiring::LineId;
+use anyhow::{anyhow, bail};
+use std::path::Path;
+use tokio::sync::mpsc;
+
+/// Open lines, ready for the cycle.
+pub struct Lines {
+    /// The cycle's ends.
+    pub ends: Vec<LineEnds>,
+    /// Trace and health of each line, by name.
+    pub logs: Vec<(String, LineLog)>,
+}
+
+/// The simulated rig behind the lines, or none.
+pub struct Behind {
+    #[cfg(feature = "sim")]
+    rig: Option<rigsim::SharedRig>,
+    #[cfg(feature = "sim")]
+    _ptys: Option<rigsim::pty::Ptys>,
+}
+
+impl Behind {
+    /// Counts the EEPROM writes of the simulated modules; nobody can on a rig.
+    pub fn eeprom_count(&self) -> super::recorder::EepromCount {
+        #[cfg(feature = "sim")]
+        if let Some(rig) = &self.rig {
+            let rig = rig.clone();
+            return Box::new(move || Some(rig.eeprom_writes()));
+        }
+        Box::new(|| None)
+    }
+
+    /// Writes the truth file and reports bodies that touched.
+    pub fn finish(&self, args: &RunArgs) -> anyhow::Result<()> {
+        #[cfg(feature = "sim")]
+        if let Some(rig) = &self.rig {
+            if let Some(path) = &args.truth {
+                let lines: String = rig.truth().iter().map(|part| format!("{part}\n")).collect();
+                std::fs::write(path, lines).map_err(|error| anyhow!("--truth {}: {error}", path.display()))?;
+            }
+            for crash in rig.crashes() {
+                tracing::error!("bodies touched: {crash}");
+            }
+        }
+        let _ = args;
+        Ok(())
+    }
+}
+
+fn settings(plant: &Plant, line: LineId) -> LineSettings {
+    let (wired, bus) = (plant.wiring.line(line), &plant.wiring.bus);
+    let mut settings = LineSettings::new(&wired.name, wired.baud);
+    settings.checksum = wired.checksum;
+    settings.digital_allowance_ms = bus.digital_allowance_ms as u64;
+    settings.analog_allowance_ms = bus.analog_allowance_ms as u64;
+    settings.log = LineLog::with_trace(4096);
+    settings
+}
+
+struct Queues {
+    ends: LineEnds,
+    requests: mpsc::Receiver<bus::Request>,
+    answers: mpsc::Sender<bus::Answer>,
+}
+
+fn queues(line: LineId) -> Queues {
+    let (request_in, request_out) = mpsc::channel(1);
+    let (answer_in, answer_out) = mpsc::channel(1);
+    Queues {
+        ends: LineEnds { line, requests: request_in, answers: answer_out },
+        requests: request_out,
+        answers: answer_in,
+    }
+}
+
+/// Opens every line of the plant.
+pub fn open(plant: &Plant, config: &Path, args: &RunArgs, pace: &Pace) -> anyhow::Result<(Lines, Behind)> {
+    #[cfg(feature = "sim")]
+    if args.sim {
+        return simulated::open(plant, config, args, pace);
+    }
+    let _ = config;
+    let mut lines = Lines { ends: Vec::new(), logs: Vec::new() };
+    let overrides = overrides(plant, &args.line)?;
+    for line in plant.wiring.line_ids() {
+        let port = overrides
+            .iter()
+            .find(|(known, _)| *known == line)
+            .map_or_else(|| plant.wiring.line(line).port.clone(), |(_, port)| port.clone());
+        serial(plant, line, &port, pace, &mut lines);
+    }
+    Ok((lines, Behind::none()))
+}
+
+impl Behind {
+    fn none() -> Self {
+        Self {
+            #[cfg(feature = "sim")]
+            rig: None,
+            #[cfg(feature = "sim")]
+            _ptys: None,
+        }
+    }
+}
+
+fn serial(plant: &Plant, line: LineId, port: &str, pace: &Pace, lines: &mut Lines) {
+    let settings = settings(plant, line);
+    lines.logs.push((settings.name.clone(), settings.log.clone()));
+    let queues = queues(line);
+    let ports = SerialPorts { path: port.to_string(), baud: settings.baud };
+    tokio::spawn(bus::run_reopening(ports, settings, pace.clone(), queues.requests, queues.answers));
+    lines.ends.push(queues.ends);
+}
+
+fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId, String)>> {
+    let one = |text: &String| {
+        let Some((name, port)) = text.split_once('=') else {
+            bail!("--line: found \"{text}\", expected NAME=PORT");
+        };
+        let known: Vec<&str> = plant.wiring.lines.iter().map(|line| line.name.as_str()).collect();
+        let line = plant
+            .wiring
+            .line_named(name)
+            .ok_or_else(|| anyhow!("--line: found \"{name}\", expected one of {}", known.join(", ")))?;
+        Ok((line, port.to_string()))
+    };
+    given.iter().map(one).collect()
+}
+
+#[cfg(feature = "sim")]
+mod simulated {
+    use super::{Behind, Lines, Pace, PaceArg, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings};
+    use rigsim::{Options, pty, wire};
+
+    /// The simulated rig behind its lines.
+    pub fn open(plant: &Plant, config: &Path, args: &RunArgs, pace: &Pace) -> anyhow::Result<(Lines, Behind)> {
+        let rig = rigsim::build(&Options {
+            config_dir: config.to_path_buf(),
+            world: args.world.clone(),
+            seed: args.seed,
+            recipe: args.recipe.clone(),
+            parts: args.count,
+            golden: true,
+            faults: args.fault.clone(),
+        })?;
+        let mut lines = Lines { ends: Vec::new(), logs: Vec::new() };
+        if args.pace == PaceArg::Real {
+            let ptys = pty::serve(&rig)?;
+            for (name, path) in ptys.paths() {
+                let line = plant.wiring.line_named(&name).ok_or_else(|| anyhow!("line {name} is not wired"))?;
+                serial(plant, line, &path.to_string_lossy(), pace, &mut lines);
+            }
+            return Ok((lines, Behind { rig: Some(rig), _ptys: Some(ptys) }));
+        }
+        for (name, stream) in wire::in_process(&rig) {
+            let line = plant.wiring.line_named(&name).ok_or_else(|| anyhow!("line {name} is not wired"))?;
+            let settings = settings(plant, line);
+            lines.logs.push((name, settings.log.clone()));
+            let queues = queues(line);
+            tokio::spawn(bus::run(stream, settings, pace.clone(), queues.requests, queues.answers));
+            lines.ends.push(queues.ends);
+        }
+        Ok((lines, Behind { rig: Some(rig), _ptys: None }))
+    }
+}

@@ -1,0 +1,378 @@
+//! Takes the events of a run to the history, the screen and stdout.
+//!
+//! Everything that has come in goes into one transaction; then the ordinal of the last judged part is
+//! published, which is what lets the sorter open its gripper. The database works on a blocking thread,
+//! one short task per transaction.
+
+use super::table::Table;
+use super::{Controls, RunArgs, rows};
+use crate::bus::LineLog;
+use crate::config::Plant;
+use crate::cycle::Event;
+use crate::gauge::{Calibration, Recipe};
+use crate::history::{
+    AlarmRecord, CalibrationRecord, Identity, LandingRecord, LotRecord, Row, Store, snapshot_hash,
+};
+use crate::station::ledger::Kind;
+use crate::station::wants::{Ending, Judged, Landed};
+use crate::units::RigTime;
+use crate::view::{AlarmLine, LastPart};
+use anyhow::Context;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+use tokio::sync::mpsc;
+
+/// What a run was started with.
+pub struct Setup<'a> {
+    /// Configuration.
+    pub plant: &'a Plant,
+    /// Recipe of the lot.
+    pub recipe: &'a Arc<Recipe>,
+    /// Command line.
+    pub args: &'a RunArgs,
+    /// Wall clock at rig time zero, microseconds since 1970 UTC.
+    pub epoch_us: i64,
+}
+
+/// A part that has not landed yet.
+struct Underway {
+    judged: Box<Judged>,
+    cycle_s: Option<f64>,
+    golden: u64,
+}
+
+/// Counts of the lot.
+#[derive(Debug, Default)]
+pub struct Counts {
+    /// Judged parts of the lot by verdict.
+    pub verdicts: BTreeMap<&'static str, u64>,
+    /// Confirmed parts of the lot by bin.
+    pub bins: BTreeMap<&'static str, u64>,
+    /// Alarms of the run.
+    pub alarms: u64,
+}
+
+impl Counts {
+    fn of(&self, verdict: &str) -> u64 {
+        self.verdicts.get(verdict).copied().unwrap_or(0)
+    }
+
+    /// Judged parts.
+    pub fn parts(&self) -> u64 {
+        self.verdicts.values().sum()
+    }
+}
+
+/// The recorder of one run.
+pub struct Recorder<'a> {
+    setup: &'a Setup<'a>,
+    controls: &'a Controls,
+    store: Option<Store>,
+    began: Instant,
+    lot_began: Option<RigTime>,
+    last_landed: Option<RigTime>,
+    underway: BTreeMap<u64, Underway>,
+    golden: u64,
+    counts: Counts,
+    table: Table,
+    bar: ProgressBar,
+    eeprom: EepromCount,
+    eeprom_at_start: Option<u64>,
+}
+
+/// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
+pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
+
+impl<'a> Recorder<'a> {
+    /// Opens the history and the lot's run; on a rig, a calibration that is still valid comes back.
+    pub fn open(
+        db: &Path,
+        setup: &'a Setup<'a>,
+        controls: &'a Controls,
+        eeprom: EepromCount,
+    ) -> anyhow::Result<(Self, Option<Calibration>)> {
+        let identity =
+            Identity { program: "relayrig".into(), version: env!("CARGO_PKG_VERSION").into() };
+        let mut store = Store::open(db, &identity)?;
+        let calibration = if setup.args.sim { None } else { valid_calibration(&store, setup)? };
+        store.begin_lot(&LotRecord {
+            lot: setup.args.lot.clone(),
+            recipe: setup.recipe.name.clone(),
+            recipe_snapshot: setup.recipe.source_text.clone(),
+            recipe_hash: rows::recipe_hash(setup),
+            calibration_hash: calibration.as_ref().map(|found| hash(found)),
+            opened_at_us: setup.epoch_us,
+            simulated: setup.args.sim,
+            seed: setup.args.sim.then_some(setup.args.seed),
+        })?;
+        controls.view.send_modify(|view| {
+            view.simulated = setup.args.sim;
+            view.lot.clone_from(&setup.args.lot);
+            view.recipe.clone_from(&setup.recipe.name);
+            view.count = setup.args.count;
+        });
+        let recorder = Self {
+            setup,
+            controls,
+            store: Some(store),
+            began: Instant::now(),
+            lot_began: None,
+            last_landed: None,
+            underway: BTreeMap::new(),
+            golden: 0,
+            counts: Counts::default(),
+            table: Table::default(),
+            bar: bar(setup.args.count),
+            eeprom,
+            eeprom_at_start: None,
+        };
+        Ok((recorder, calibration))
+    }
+
+    /// Keeps events until the cycle has ended.
+    pub async fn keep(
+        &mut self,
+        mut events: mpsc::UnboundedReceiver<Event>,
+        recorded: &AtomicU64,
+    ) -> anyhow::Result<()> {
+        let mut batch = Vec::new();
+        while events.recv_many(&mut batch, 64).await > 0 {
+            let mut rows = Vec::new();
+            let mut durable = None;
+            for event in batch.drain(..) {
+                durable = self.take(event, &mut rows)?.or(durable);
+            }
+            self.write(rows).await?;
+            if let Some(ordinal) = durable {
+                recorded.fetch_max(ordinal, Ordering::AcqRel);
+            }
+        }
+        Ok(())
+    }
+
+    async fn write(&mut self, rows: Vec<Row>) -> anyhow::Result<()> {
+        if rows.is_empty() {
+            return Ok(());
+        }
+        let mut store = self.store.take().context("the history is closed")?;
+        let (store, written) = tokio::task::spawn_blocking(move || {
+            let written = store.record(&rows);
+            (store, written)
+        })
+        .await
+        .context("the history writer ended")?;
+        self.store = Some(store);
+        Ok(written?)
+    }
+
+    /// Turns one event into rows; the ordinal of a judged part once its rows are in the batch.
+    fn take(&mut self, event: Event, rows: &mut Vec<Row>) -> anyhow::Result<Option<u64>> {
+        match event {
+            Event::Judged(judged) => return Ok(Some(self.judged(judged, rows))),
+            Event::Left(left) => {
+                if let Some(part) = self.underway.get_mut(&left.ordinal) {
+                    part.cycle_s = left.cycle.map(|cycle| cycle.0);
+                }
+            }
+            Event::Landed(landed) => self.landed(&landed, rows),
+            Event::Alarm(alarm, at) => {
+                self.counts.alarms += 1;
+                self.bar.suspend(|| tracing::error!(code = alarm.code, "{}", alarm.text_en));
+                self.controls.view.send_modify(|view| {
+                    view.alarms.push(AlarmLine {
+                        code: alarm.code.clone(),
+                        text_en: alarm.text_en.clone(),
+                        text_zh: alarm.text_zh.clone(),
+                    });
+                });
+                rows.push(Row::Alarm(AlarmRecord {
+                    lot: Some(self.setup.args.lot.clone()),
+                    code: alarm.code,
+                    line: None,
+                    text: alarm.text_en,
+                    raised_at_us: self.wall_us(at),
+                    cleared_at_us: None,
+                }));
+            }
+            Event::Calibrated(calibration) => self.calibrated(&calibration)?,
+            Event::LotBegan(at) => {
+                self.lot_began = Some(at);
+                self.eeprom_at_start = (self.eeprom)();
+            }
+        }
+        Ok(None)
+    }
+
+    fn wall_us(&self, at: RigTime) -> i64 {
+        self.setup.epoch_us + i64::try_from(at.0).unwrap_or(i64::MAX)
+    }
+
+    fn judged(&mut self, judged: Box<Judged>, rows: &mut Vec<Row>) -> u64 {
+        let ordinal = judged.part.ordinal;
+        if matches!(judged.part.kind, Kind::Golden(_)) {
+            self.golden += 1;
+        } else {
+            *self.counts.verdicts.entry(judged.verdict.name()).or_insert(0) += 1;
+            self.table.add(&judged);
+            self.show(&judged);
+        }
+        rows.push(Row::Part(rows::part(self.setup, &judged, self.golden)));
+        self.underway.insert(ordinal, Underway { judged, cycle_s: None, golden: self.golden });
+        ordinal
+    }
+
+    /// Progress bar and view.
+    fn show(&self, judged: &Judged) {
+        let parts = self.counts.parts();
+        self.bar.set_position(parts);
+        let pass = self.counts.of("pass");
+        let rate = self.rate(judged.at);
+        self.bar.set_message(format!(
+            "{:.0} parts/h, yield {:.1} %",
+            rate.unwrap_or(0.0),
+            100.0 * pass as f64 / parts.max(1) as f64
+        ));
+        let text = |map: &BTreeMap<&'static str, u64>| {
+            map.iter().map(|(name, n)| ((*name).to_string(), *n)).collect()
+        };
+        let json = rows::json(self.setup, judged, None, "");
+        let numbers = |key: &str| serde_json::from_value(json[key].clone()).unwrap_or_default();
+        self.controls.view.send_modify(|view| {
+            view.judged = parts;
+            view.verdicts = text(&self.counts.verdicts);
+            view.bins = text(&self.counts.bins);
+            view.parts_per_hour = rate;
+            view.last = Some(LastPart {
+                seq: rows::number(&judged.part.kind, 0).0,
+                verdict: judged.verdict.name().into(),
+                bin: judged.part.bin.map_or_else(String::new, |bin| bin.name().into()),
+                reasons: judged.verdict.reasons(),
+                values: numbers("values"),
+                uncertainty: numbers("uncertainty"),
+            });
+        });
+    }
+
+    fn rate(&self, now: RigTime) -> Option<f64> {
+        let elapsed = now.since(self.lot_began?).as_seconds();
+        (elapsed > 0.0).then(|| self.counts.parts() as f64 / elapsed * 3600.0)
+    }
+
+    fn landed(&mut self, landed: &Landed, rows: &mut Vec<Row>) {
+        let Some(part) = self.underway.remove(&landed.part.ordinal) else { return };
+        let (seq, kind) = rows::number(&landed.part.kind, part.golden);
+        rows.push(Row::Landed(LandingRecord {
+            lot: self.setup.args.lot.clone(),
+            kind: kind.into(),
+            seq,
+            bin: landed.bin.name().into(),
+            at_us: self.wall_us(landed.at),
+            cycle_s: part.cycle_s,
+        }));
+        if kind == "golden" {
+            return;
+        }
+        self.last_landed = Some(landed.at);
+        *self.counts.bins.entry(landed.bin.name()).or_insert(0) += 1;
+        self.print(&rows::json(self.setup, &part.judged, part.cycle_s, landed.bin.name()));
+    }
+
+    fn calibrated(&mut self, calibration: &Calibration) -> anyhow::Result<()> {
+        let body = serde_json::to_string(calibration)?;
+        let store = self.store.as_mut().context("the history is closed")?;
+        store.save_calibration(&CalibrationRecord {
+            made_at_us: calibration.made_at_us,
+            due_at_us: calibration.due_at_us,
+            hash: snapshot_hash(&body),
+            body,
+            verified: true,
+        })?;
+        Ok(())
+    }
+
+    fn print(&self, object: &Value) {
+        if !self.setup.args.json || self.controls.quiet {
+            return;
+        }
+        let line = format!("{object}\n");
+        // A reader that has gone away does not stop the line.
+        self.bar.suspend(|| std::io::stdout().write_all(line.as_bytes()).ok());
+    }
+
+    /// Parts that never landed, the summary, and the end of the lot's run.
+    pub fn close(
+        mut self,
+        ending: &Ending,
+        logs: &[(String, LineLog)],
+    ) -> anyhow::Result<()> {
+        for part in std::mem::take(&mut self.underway).into_values() {
+            if matches!(part.judged.part.kind, Kind::Lot(_)) {
+                self.print(&rows::json(self.setup, &part.judged, part.cycle_s, ""));
+            }
+        }
+        let end = self.last_landed.or(self.lot_began).unwrap_or_default();
+        let elapsed_s = self.lot_began.map_or(0.0, |began| end.since(began).as_seconds());
+        let mut summary = json!({
+            "type": "summary",
+            "parts": self.counts.parts(),
+            "pass": self.counts.of("pass"),
+            "fail": self.counts.of("fail"),
+            "void": self.counts.of("void"),
+            "bins": self.counts.bins,
+            "elapsed_s": rows::rounded(elapsed_s),
+            "wall_s": rows::rounded(self.began.elapsed().as_secs_f64()),
+            "parts_per_hour": if elapsed_s > 0.0 { (self.counts.parts() as f64 / elapsed_s * 3600.0).round() } else { 0.0 },
+            "alarms": self.counts.alarms,
+            "ended": format!("{ending:?}").to_lowercase(),
+        });
+        if let (Some(before), Some(after)) = (self.eeprom_at_start, (self.eeprom)()) {
+            summary["eeprom_writes"] = json!(after - before);
+        }
+        let bytes: BTreeMap<&str, String> =
+            logs.iter().map(|(name, log)| (name.as_str(), format!("{:016x}", log.fingerprint()))).collect();
+        summary["bytes"] = json!(bytes);
+        self.print(&summary);
+        self.bar.finish_and_clear();
+        if !self.setup.args.json && !self.controls.quiet {
+            let text = self.table.text(&self.counts, &summary);
+            std::io::stdout().write_all(text.as_bytes()).ok();
+        }
+        let end_us = self.wall_us(end);
+        if let Some(store) = &mut self.store {
+            store.close_lot(&self.setup.args.lot, end_us)?;
+        }
+        Ok(())
+    }
+}
+
+fn hash(calibration: &Calibration) -> String {
+    serde_json::to_string(calibration).map(|body| snapshot_hash(&body)).unwrap_or_default()
+}
+
+/// The stored calibration, provided it is not overdue and was made for this coil voltage.
+fn valid_calibration(store: &Store, setup: &Setup) -> anyhow::Result<Option<Calibration>> {
+    let Some(record) = store.latest_calibration()? else { return Ok(None) };
+    let calibration: Calibration =
+        serde_json::from_str(&record.body).context("the stored calibration cannot be read")?;
+    let fits = calibration.nominal_v == setup.recipe.part.nominal_v && calibration.lags.is_some();
+    Ok((record.verified && fits && record.due_at_us > setup.epoch_us).then_some(calibration))
+}
+
+fn bar(count: Option<u64>) -> ProgressBar {
+    let target = if std::io::stderr().is_terminal() {
+        ProgressDrawTarget::stderr()
+    } else {
+        ProgressDrawTarget::hidden()
+    };
+    let bar = ProgressBar::with_draw_target(count, target);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    bar
+}

@@ -1,0 +1,123 @@
+//! A judged part as rows of the history and as a JSON object.
+
+use super::recorder::Setup;
+use crate::gauge::Parameter;
+use crate::gauge::verdict::Judgement;
+use crate::history::{MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
+use crate::station::ledger::Kind;
+use crate::station::wants::Judged;
+use serde_json::{Map, Value, json};
+
+/// Number of a part within its kind, and the kind's name.
+pub fn number(kind: &Kind, golden: u64) -> (u64, &'static str) {
+    match kind {
+        Kind::Lot(seq) => (*seq, "lot"),
+        Kind::Golden(_) => (golden, "golden"),
+    }
+}
+
+/// Row of a part with its measurements and the replies behind them.
+pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
+    let (seq, kind) = number(&judged.part.kind, golden);
+    let at = |time: crate::units::RigTime| setup.epoch_us + i64::try_from(time.0).unwrap_or(i64::MAX);
+    PartRecord {
+        lot: setup.args.lot.clone(),
+        seq,
+        serial: match &judged.part.kind {
+            Kind::Golden(serial) => Some(serial.clone()),
+            Kind::Lot(_) => None,
+        },
+        verdict: judged.verdict.name().to_string(),
+        bin: judged.part.bin.map_or_else(String::new, |bin| bin.name().to_string()),
+        reasons: judged.verdict.reasons(),
+        judged_at_us: at(judged.at),
+        test_s: judged.part.test.map_or(f64::NAN, |test| test.0),
+        cycle_s: None,
+        landed_bin: None,
+        landed_at_us: None,
+        kind: kind.to_string(),
+        measurements: Parameter::ALL
+            .iter()
+            .filter_map(|parameter| measurement(setup, judged, *parameter))
+            .collect(),
+    }
+}
+
+fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<MeasurementRecord> {
+    let reading = judged.findings.result(parameter)?;
+    let limit = setup.recipe.limits.of(parameter);
+    let judgement = judged.judgements.iter().find(|(known, _)| *known == parameter).map(|(_, j)| *j);
+    let sample = |origin: &crate::rig::sample::Origin| SampleRecord {
+        line: setup.plant.wiring.line(origin.line).name.clone(),
+        module: setup.plant.wiring.module(origin.module).name.clone(),
+        channel: origin.channel.to_string(),
+        command: String::new(),
+        raw: origin.raw.to_string(),
+        at_us: setup.epoch_us + i64::try_from(origin.at.0).unwrap_or(i64::MAX),
+    };
+    Some(MeasurementRecord {
+        key: parameter.name().to_string(),
+        value: Some(reading.value).filter(|value| value.is_finite()),
+        uncertainty: Some(reading.expanded()).filter(|u| u.is_finite()),
+        low: limit.low,
+        high: limit.high,
+        verdict: match judgement {
+            Some(Judgement::Pass) => "pass",
+            Some(Judgement::Fail(_) | Judgement::Conditional(_)) => "fail",
+            Some(Judgement::Void) | None => "void",
+        }
+        .to_string(),
+        attempt: u32::try_from(judged.findings.attempts(parameter)).unwrap_or(u32::MAX),
+        budget: budget(&reading),
+        samples: judged.findings.evidence(parameter).map(sample).collect(),
+    })
+}
+
+/// The budget as JSON; `None` while it holds a term that is not a number (JSON has no infinity).
+fn budget(reading: &crate::gauge::Reading) -> Option<String> {
+    if !reading.expanded().is_finite() {
+        return None;
+    }
+    serde_json::to_string(&reading.budget).ok()
+}
+
+/// The part as one JSON object of `run --json`.
+pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> Value {
+    let mut values = Map::new();
+    let mut uncertainty = Map::new();
+    for parameter in Parameter::ALL {
+        let Some(reading) = judged.findings.result(parameter).filter(crate::gauge::Reading::is_usable) else {
+            continue;
+        };
+        values.insert(parameter.name().into(), json!(rounded(reading.value)));
+        uncertainty.insert(parameter.name().into(), json!(rounded(reading.expanded())));
+    }
+    let (seq, _) = number(&judged.part.kind, 0);
+    json!({
+        "type": "part",
+        "seq": seq,
+        "lot": setup.args.lot,
+        "recipe": setup.recipe.name,
+        "verdict": judged.verdict.name(),
+        "bin": bin,
+        "reasons": judged.verdict.reasons(),
+        "values": values,
+        "uncertainty": uncertainty,
+        "test_s": judged.part.test.map(|test| rounded(test.0)),
+        "cycle_s": cycle_s.map(rounded),
+    })
+}
+
+/// Seven digits are enough to read and to compare.
+pub fn rounded(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let scale = 10f64.powi(6 - value.abs().log10().floor() as i32);
+    (value * scale).round() / scale
+}
+
+/// Hash of what the lot is judged by.
+pub fn recipe_hash(setup: &Setup) -> String {
+    snapshot_hash(&setup.recipe.source_text)
+}

@@ -1,0 +1,59 @@
+//! Results and bins at the end of a run, for a person.
+
+use super::recorder::Counts;
+use crate::gauge::Parameter;
+use crate::quality::Spread;
+use crate::station::wants::Judged;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Values of the lot by parameter.
+#[derive(Debug, Default)]
+pub struct Table {
+    values: BTreeMap<Parameter, Vec<f64>>,
+}
+
+impl Table {
+    /// Takes in one part.
+    pub fn add(&mut self, judged: &Judged) {
+        for parameter in Parameter::ALL {
+            if let Some(reading) = judged.findings.result(parameter).filter(crate::gauge::Reading::is_usable) {
+                self.values.entry(parameter).or_default().push(reading.value);
+            }
+        }
+    }
+
+    /// The table.
+    pub fn text(&self, counts: &Counts, summary: &Value) -> String {
+        let mut text = String::new();
+        let _ = writeln!(text, "{:<30} {:>6} {:>12} {:>12} {:>12} {:>12}", "parameter", "n", "mean", "sd", "min", "max");
+        for (parameter, values) in &self.values {
+            let spread = Spread::of(values);
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let _ = writeln!(
+                text,
+                "{:<30} {:>6} {:>12.4} {:>12.4} {:>12.4} {:>12.4}",
+                parameter.name(),
+                values.len(),
+                spread.mean().unwrap_or(f64::NAN),
+                spread.sd().unwrap_or(0.0),
+                low,
+                high
+            );
+        }
+        let bins: Vec<String> = counts.bins.iter().map(|(bin, n)| format!("{bin} {n}")).collect();
+        let _ = writeln!(
+            text,
+            "\n{} parts: {} pass, {} fail, {} void   bins: {}",
+            summary["parts"], summary["pass"], summary["fail"], summary["void"], bins.join(", ")
+        );
+        let _ = writeln!(
+            text,
+            "{} parts/h, {} s of rig time in {} s, {} alarms",
+            summary["parts_per_hour"], summary["elapsed_s"], summary["wall_s"], summary["alarms"]
+        );
+        text
+    }
+}

@@ -1,0 +1,130 @@
+//! Every refusal of the screen's interface, with its status and a sentence for the one who asked.
+
+use crate::history::HistoryError;
+use axum::Json;
+use axum::extract::rejection::{JsonRejection, QueryRejection};
+use axum::http::{Method, StatusCode};
+use axum::response::{IntoResponse, Response};
+
+/// Why a request was not fulfilled.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum HmiError {
+    /// 404.
+    #[error("there is nothing at {path}")]
+    NoSuchRoute {
+        /// The path asked for.
+        path: String,
+    },
+    /// 405; the header `Allow` says what is.
+    #[error("{path} does not take {method}")]
+    WrongMethod {
+        /// The path asked for.
+        path: String,
+        /// The method used.
+        method: Method,
+    },
+    /// 403: a page from elsewhere wants something done.
+    #[error("orders are taken from this rig's own page only; found {found}")]
+    CrossSite {
+        /// The header that gave it away.
+        found: String,
+    },
+    /// 400, 413, 415 or 422 of axum, all of them with its own text.
+    #[error("{reason}")]
+    Body {
+        /// What is wrong with the body.
+        reason: String,
+        /// Which of them.
+        status: StatusCode,
+    },
+    /// 400.
+    #[error("there is no order {found:?}; known are {known}")]
+    UnknownOrder {
+        /// The word found.
+        found: String,
+        /// The words known.
+        known: String,
+    },
+    /// 409: known, but not now or not here.
+    #[error("{order}: {reason}")]
+    NotNow {
+        /// The order.
+        order: &'static str,
+        /// Why not.
+        reason: &'static str,
+    },
+    /// 400: a filter that cannot be meant.
+    #[error("{field}: {reason}")]
+    Filter {
+        /// Name in the query string.
+        field: &'static str,
+        /// Found and expected.
+        reason: String,
+    },
+    /// 400: a query string that is no filter.
+    #[error("{reason}")]
+    Query {
+        /// Found and expected.
+        reason: String,
+    },
+    /// 404: the lot, recipe or part asked for never was.
+    #[error("{what}")]
+    NotInHistory {
+        /// What is not there.
+        what: String,
+    },
+    /// 404, 503 or 500.
+    #[error(transparent)]
+    History(#[from] HistoryError),
+    /// 500: a reader ended without an answer.
+    #[error("the reader of the history ended without an answer")]
+    ReaderLost,
+}
+
+impl HmiError {
+    fn status(&self) -> StatusCode {
+        match self {
+            Self::NoSuchRoute { .. } | Self::NotInHistory { .. } => StatusCode::NOT_FOUND,
+            Self::WrongMethod { .. } => StatusCode::METHOD_NOT_ALLOWED,
+            Self::CrossSite { .. } => StatusCode::FORBIDDEN,
+            Self::Body { status, .. } => *status,
+            Self::UnknownOrder { .. } | Self::Filter { .. } | Self::Query { .. } => {
+                StatusCode::BAD_REQUEST
+            }
+            Self::NotNow { .. } => StatusCode::CONFLICT,
+            Self::History(HistoryError::Missing { .. }) => StatusCode::NOT_FOUND,
+            Self::History(HistoryError::Locked { .. }) => StatusCode::SERVICE_UNAVAILABLE,
+            Self::History(_) | Self::ReaderLost => StatusCode::INTERNAL_SERVER_ERROR,
+        }
+    }
+}
+
+impl IntoResponse for HmiError {
+    fn into_response(self) -> Response {
+        let status = self.status();
+        let word = status.canonical_reason().unwrap_or("refused");
+        let body = serde_json::json!({
+            "error": word.to_ascii_lowercase(),
+            "reason": self.to_string(),
+        });
+        (status, Json(body)).into_response()
+    }
+}
+
+impl From<JsonRejection> for HmiError {
+    fn from(found: JsonRejection) -> Self {
+        let status = match found.status() {
+            StatusCode::UNPROCESSABLE_ENTITY => StatusCode::BAD_REQUEST,
+            status => status,
+        };
+        let reason = found.body_text();
+        Self::Body { reason, status }
+    }
+}
+
+impl From<QueryRejection> for HmiError {
+    fn from(found: QueryRejection) -> Self {
+        let reason = found.body_text();
+        Self::Query { reason }
+    }
+}

@@ -1,0 +1,88 @@
+//! The screen: one status page, the view as JSON and as events, the history, figures for Prometheus.
+//!
+//! - A screen looks; it never writes to the rig. What it wants done it sends as an *order*, and the
+//!   only order that this page takes is `stop`: the line ends the part it has and makes its outputs
+//!   safe. Every other known order is refused with the reason.
+//! - The view comes through a watch channel, so that the cycle never waits for a screen: a slow one
+//!   skips to the latest view, and nobody's lateness is stored.
+//! - An answer in the range 4xx or 5xx is always JSON: `{"error": "<word>", "reason": "<sentence>"}`.
+//! - A body is at most 16 kB; a request that changes anything must come from this very page or from
+//!   no page at all.
+//! - When the program ends, every stream of events ends too, and a connection that will not finish
+//!   is left behind after [`GRACE`].
+//!
+//! | route | answer |
+//! |---|---|
+//! | `GET /` | the page, whole in one answer |
+//! | `GET /api/view` | the view |
+//! | `GET /api/events` | the view as server-sent events: at once, then on change; a beat each second |
+//! | `POST /api/orders` | `{"order":"stop"}` |
+//! | `GET /api/history/query\|list\|show\|stats` | JSON as the command `history` gives it |
+//! | `GET /metrics` | Prometheus text |
+//!
+//! Not here yet: users and roles. Whoever reaches the address may look and may stop, nothing more.
+
+mod error;
+mod events;
+mod history;
+mod history_feed;
+mod metrics;
+mod orders;
+mod origin;
+mod page;
+mod router;
+
+use std::future::Future;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+use tokio::net::TcpListener;
+use tokio::sync::watch;
+
+/// How long connections may take to finish after the end was announced.
+pub const GRACE: Duration = Duration::from_secs(1);
+
+/// What the screen shares with the rest of the program.
+#[derive(Debug, Clone)]
+pub struct Shared {
+    /// The latest view; once its sender is gone, screens are told that the values are the last ones.
+    pub view: watch::Receiver<crate::view::View>,
+    /// The history file; it need not exist yet.
+    pub db: PathBuf,
+    /// Set by the order `stop`, never cleared here.
+    pub stop: Arc<AtomicBool>,
+}
+
+/// Answers on `listener` until `ended` turns true or its sender is gone, then at most [`GRACE`] longer.
+///
+/// # Errors
+/// The listener's own, which end the service.
+pub async fn serve(
+    listener: TcpListener,
+    shared: Shared,
+    ended: watch::Receiver<bool>,
+) -> std::io::Result<()> {
+    let router = router::router(shared, ended.clone());
+    let service = axum::serve(listener, router).with_graceful_shutdown(over(ended.clone()));
+    tokio::select! {
+        served = service => served,
+        () = after_grace(ended) => Ok(()),
+    }
+}
+
+/// Resolves once the program ends.
+fn over(mut ended: watch::Receiver<bool>) -> impl Future<Output = ()> + Send + 'static {
+    async move {
+        // A sender that is gone says the same as one that says so.
+        let _ = ended.wait_for(|ended| *ended).await;
+    }
+}
+
+async fn after_grace(ended: watch::Receiver<bool>) {
+    over(ended).await;
+    tokio::time::sleep(GRACE).await;
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,114 @@
+//! Where an order comes from.
+//!
+//! A browser sends `Origin` with every POST and a script cannot forge it. An order is taken when
+//! - `Sec-Fetch-Site`, if there is one, says `same-origin` or `none`, and
+//! - `Origin`, if there is one, is `http://` or `https://` plus exactly the `Host` of this request, and
+//! - with an `Origin`, that host is an address, `localhost`, a name without a dot, or one under
+//!   `.local` or `.internal`: a public name that was made to point here could otherwise pass as ours.
+//!
+//! Without either header there is no browser, hence nobody to be misled by a foreign page.
+
+use super::error::HmiError;
+use axum::http::{HeaderMap, HeaderName, header, uri::Authority};
+use std::net::IpAddr;
+
+const SEC_FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
+
+/// Refuses an order that a page from elsewhere sends.
+pub(super) fn ours(headers: &HeaderMap) -> Result<(), HmiError> {
+    if let Some(site) = headers.get(SEC_FETCH_SITE)
+        && site != "same-origin"
+        && site != "none"
+    {
+        return Err(refusal("Sec-Fetch-Site", site.as_bytes()));
+    }
+    let mut origins = headers.get_all(header::ORIGIN).iter();
+    let Some(origin) = origins.next() else {
+        return Ok(());
+    };
+    let same = origin.to_str().is_ok_and(|it| is_of_host(it, headers));
+    if same && origins.next().is_none() {
+        return Ok(());
+    }
+    Err(refusal("Origin", origin.as_bytes()))
+}
+
+fn is_of_host(origin: &str, headers: &HeaderMap) -> bool {
+    let host = headers.get(header::HOST).and_then(|it| it.to_str().ok());
+    let authority = origin
+        .strip_prefix("http://")
+        .or_else(|| origin.strip_prefix("https://"));
+    let (Some(host), Some(authority)) = (host, authority) else {
+        return false;
+    };
+    authority.eq_ignore_ascii_case(host) && is_near(host)
+}
+
+fn is_near(host: &str) -> bool {
+    let Ok(authority) = host.parse::<Authority>() else {
+        return false;
+    };
+    let name = authority.host().to_ascii_lowercase();
+    let bare = name.trim_start_matches('[').trim_end_matches(']');
+    bare.parse::<IpAddr>().is_ok()
+        || !name.contains('.')
+        || name.ends_with(".local")
+        || name.ends_with(".internal")
+}
+
+fn refusal(header: &str, value: &[u8]) -> HmiError {
+    let value: String = String::from_utf8_lossy(value).chars().take(80).collect();
+    let found = format!("{header}: {value}");
+    HmiError::CrossSite { found }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn judged(pairs: &[(&'static str, &str)]) -> bool {
+        let mut headers = HeaderMap::new();
+        for (name, value) in pairs {
+            headers.append(*name, value.parse().unwrap());
+        }
+        ours(&headers).is_ok()
+    }
+
+    #[test]
+    fn the_own_page_and_a_script_may_order() {
+        assert!(judged(&[("host", "127.0.0.1:8080")]));
+        for host in ["127.0.0.1:8080", "[::1]:8080", "localhost:8080", "rig-3", "rig.local"] {
+            let origin = format!("http://{host}");
+            assert!(judged(&[("host", host), ("origin", &origin)]), "{host}");
+        }
+        assert!(judged(&[("host", "rig"), ("sec-fetch-site", "same-origin")]));
+    }
+
+    #[test]
+    fn a_page_from_elsewhere_may_not() {
+        let host = ("host", "127.0.0.1:8080");
+        for origin in [
+            "http://evil.example",
+            "http://127.0.0.1:8081",
+            "http://127.0.0.1:8080.evil.example",
+            "http://evil.example/127.0.0.1:8080",
+            "ftp://127.0.0.1:8080",
+            "null",
+            "",
+        ] {
+            assert!(!judged(&[host, ("origin", origin)]), "{origin}");
+        }
+        assert!(!judged(&[host, ("sec-fetch-site", "cross-site")]));
+        assert!(!judged(&[host, ("sec-fetch-site", "same-site")]));
+        assert!(!judged(&[("origin", "http://127.0.0.1:8080")]));
+        let own = ("origin", "http://127.0.0.1:8080");
+        assert!(!judged(&[host, own, ("origin", "http://evil.example")]));
+    }
+
+    #[test]
+    fn a_public_name_that_points_here_is_not_ours() {
+        let name = "rig.evil.example:8080";
+        assert!(!judged(&[("host", name), ("origin", "http://rig.evil.example:8080")]));
+    }
+}

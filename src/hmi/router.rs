@@ -1,0 +1,84 @@
+//! Which path leads where, and what holds for all of them.
+
+use super::error::HmiError;
+use super::history::Readers;
+use super::{Shared, events, history, metrics, orders, page};
+use axum::Router;
+use axum::extract::{DefaultBodyLimit, Request, State};
+use axum::http::{HeaderName, HeaderValue, Method, Uri, header};
+use axum::middleware::{Next, from_fn};
+use axum::response::Response;
+use axum::routing::{get, post};
+use axum::Json;
+use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
+use tokio::sync::watch;
+
+/// Largest body of a request, bytes.
+pub(super) const BODY_LIMIT: usize = 16 * 1024;
+
+/// What every route may use.
+#[derive(Debug, Clone)]
+pub(super) struct Desk {
+    pub shared: Shared,
+    /// True once the program ends.
+    pub ended: watch::Receiver<bool>,
+    /// Streams of events now open.
+    pub screens: Arc<AtomicUsize>,
+    pub readers: Readers,
+}
+
+/// All routes over `shared`.
+pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
+    let desk = Desk {
+        readers: Readers::new(shared.db.clone()),
+        shared,
+        ended,
+        screens: Arc::default(),
+    };
+    Router::new()
+        .route("/", get(page::page))
+        .route("/api/view", get(view))
+        .route("/api/events", get(events::events))
+        .route("/api/orders", post(orders::order))
+        .route("/api/history/query", get(history::query))
+        .route("/api/history/list", get(history::list))
+        .route("/api/history/show", get(history::show))
+        .route("/api/history/stats", get(history::stats))
+        .route("/metrics", get(metrics::metrics))
+        .fallback(nothing_there)
+        .method_not_allowed_fallback(wrong_method)
+        .layer(DefaultBodyLimit::max(BODY_LIMIT))
+        .layer(from_fn(plain_headers))
+        .with_state(desk)
+}
+
+async fn view(State(desk): State<Desk>) -> Json<crate::view::View> {
+    Json(desk.shared.view.borrow().clone())
+}
+
+async fn nothing_there(uri: Uri) -> HmiError {
+    let path = uri.path().to_owned();
+    HmiError::NoSuchRoute { path }
+}
+
+async fn wrong_method(method: Method, uri: Uri) -> HmiError {
+    let path = uri.path().to_owned();
+    HmiError::WrongMethod { path, method }
+}
+
+/// Nothing is kept by browsers or proxies, guessed at, or shown inside another page.
+async fn plain_headers(request: Request, next: Next) -> Response {
+    const ALWAYS: [(HeaderName, &str); 4] = [
+        (header::CACHE_CONTROL, "no-store"),
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::X_FRAME_OPTIONS, "DENY"),
+        (header::REFERRER_POLICY, "no-referrer"),
+    ];
+    let mut response = next.run(request).await;
+    for (name, value) in ALWAYS {
+        let value = HeaderValue::from_static(value);
+        response.headers_mut().insert(name, value);
+    }
+    response
+}

@@ -1,0 +1,180 @@
+//! What stands where: the top level, the length of files, their names.
+
+use super::tree::{assert_none, files, has_word, root, rust_files};
+use std::process::Command;
+
+/// All that may stand at the top of the repository.
+const TOP: &[&str] = &[
+    ".ci",
+    ".gitattributes",
+    ".github",
+    ".gitignore",
+    "ARCHITECTURE.md",
+    "CHANGELOG.md",
+    "Cargo.lock",
+    "Cargo.toml",
+    "LICENSE-APACHE",
+    "LICENSE-MIT",
+    "README.md",
+    "benches",
+    "clippy.toml",
+    "config",
+    "doc",
+    "rustfmt.toml",
+    "samples",
+    "sim",
+    "src",
+    "tests",
+];
+
+/// Past this a file has a second idea.
+const LONGEST: usize = 500;
+
+/// Tables of cases may be longer, but not without end.
+const LONGEST_TEST: usize = 900;
+
+/// Names that say nothing about what is inside.
+const EMPTY_NAMES: &[&str] = &[
+    "utils", "util", "common", "helpers", "helper", "manager", "misc", "types",
+];
+
+/// Files that bear such a name today. The list may only become shorter.
+const STILL_SO_CALLED: &[&str] = &["src/dcon/common.rs"];
+
+#[test]
+fn the_top_level_holds_what_it_should_and_nothing_else() {
+    let stray: Vec<String> = top_level()
+        .into_iter()
+        .filter(|name| !TOP.contains(&name.as_str()))
+        .collect();
+    assert!(
+        stray.is_empty(),
+        "at the top of the repository: {stray:?}, expected only {TOP:?}"
+    );
+}
+
+/// What is under version control; without it, what lies there and is no product of a build or a run.
+fn top_level() -> Vec<String> {
+    let git = Command::new("git")
+        .args(["ls-files", "-z"])
+        .current_dir(root())
+        .output();
+    let mut names: Vec<String> = match git {
+        Ok(listed) if listed.status.success() && !listed.stdout.is_empty() => {
+            let text = String::from_utf8_lossy(&listed.stdout).into_owned();
+            text.split('\0')
+                .filter_map(|path| path.split('/').next())
+                .map(str::to_owned)
+                .collect()
+        }
+        Ok(_) | Err(_) => root()
+            .read_dir()
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+            .filter(|name| ![".git", "target"].contains(&name.as_str()) && !name.contains(".db"))
+            .collect(),
+    };
+    names.retain(|name| !name.is_empty());
+    names.sort();
+    names.dedup();
+    names
+}
+
+#[test]
+fn a_file_is_about_one_idea() {
+    let mut broken = Vec::new();
+    for source in rust_files(&["src", "sim", "tests"]) {
+        let limit = if source.is_test() {
+            LONGEST_TEST
+        } else {
+            LONGEST
+        };
+        let lines = source.text.lines().count();
+        if lines > limit {
+            broken.push(format!(
+                "{}: {lines} lines, at most {limit}: there is a second idea in it",
+                source.path
+            ));
+        }
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn a_file_is_named_after_what_is_in_it() {
+    let mut broken = Vec::new();
+    for source in rust_files(&["src", "sim", "tests"]) {
+        let empty = source
+            .path
+            .split(['/', '.'])
+            .find(|part| EMPTY_NAMES.contains(part));
+        let known = STILL_SO_CALLED.contains(&source.path.as_str());
+        if let Some(name) = empty.filter(|_| !known) {
+            broken.push(format!(
+                "{}: `{name}` says nothing about what is inside",
+                source.path
+            ));
+        }
+    }
+    for path in STILL_SO_CALLED
+        .iter()
+        .filter(|path| !root().join(path).exists())
+    {
+        broken.push(format!(
+            "{path} is gone: strike it from the list in {}",
+            file!()
+        ));
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn every_module_says_what_it_is() {
+    let undocumented = rust_files(&["src", "sim/src"])
+        .into_iter()
+        .filter(|source| !source.is_test());
+    let broken: Vec<String> = undocumented
+        .filter(|source| !source.text.trim_start().starts_with("//!"))
+        .map(|source| {
+            format!(
+                "{}:1: the first line says what the file is for",
+                source.path
+            )
+        })
+        .collect();
+    assert_none(&broken);
+}
+
+/// Nothing of the place where it was written: no path of a home, no note to oneself.
+#[test]
+fn the_text_belongs_to_the_project_and_to_nobodys_desk() {
+    let homes = ["root", "home", "Users", "work"].map(|home| format!("/{home}/"));
+    let notes = [
+        concat!("TO", "DO"),
+        concat!("FIX", "ME"),
+        concat!("XX", "X"),
+        concat!("HA", "CK"),
+        concat!("WI", "P"),
+    ];
+    let mut broken = Vec::new();
+    for source in files(&["src", "sim", "tests", "config", ".ci"])
+        .iter()
+        .chain(&super::documents::documents())
+    {
+        for (line, text) in source.text.lines().enumerate() {
+            let word = homes
+                .iter()
+                .map(String::as_str)
+                .find(|home| text.contains(home));
+            let word = word.or_else(|| notes.into_iter().find(|note| has_word(text, note)));
+            if let Some(word) = word {
+                broken.push(format!(
+                    "{}:{}: {word:?} belongs to somebody's desk",
+                    source.path,
+                    line + 1
+                ));
+            }
+        }
+    }
+    assert_none(&broken);
+}

@@ -1,0 +1,127 @@
+//! What the pure modules may not name, where `unsafe` may stand, and what no test does.
+
+use super::tree::{assert_none, has_word, rust_files};
+
+/// No clock, no socket, no file, no `async`, no logging.
+const PURE: &[&str] = &[
+    "units", "dcon", "lpm", "guard", "gauge", "rig", "station", "quality", "plan", "view",
+];
+
+/// What only the outer modules may name.
+const OUTSIDE: &[&str] = &[
+    "std::fs",
+    "std::net",
+    "std::io",
+    "std::env",
+    "std::process",
+    "std::thread",
+    "tokio",
+    "async",
+    "await",
+    "tracing",
+    "SystemTime",
+    "Instant::now",
+    "println",
+    "eprintln",
+    "print",
+    "dbg",
+];
+
+/// Matches without `_`: a new state of the machine must be thought of everywhere.
+const TOTAL: &[&str] = &["station", "guard", "cycle", "gauge"];
+
+#[test]
+fn pure_modules_have_no_clock_no_file_no_socket_no_async_and_no_log() {
+    let mut broken = Vec::new();
+    for source in rust_files(&["src"]) {
+        let Some(module) = source.capability().filter(|name| PURE.contains(name)) else {
+            continue;
+        };
+        for (line, code) in source.code() {
+            for word in OUTSIDE.iter().filter(|word| has_word(code, word)) {
+                broken.push(format!(
+                    "{}:{line}: `{module}` is pure and must not name `{word}`",
+                    source.path
+                ));
+            }
+        }
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn unsafe_stands_in_the_collision_core_or_nowhere() {
+    let mut broken = Vec::new();
+    for source in rust_files(&["src", "sim"]) {
+        for (line, _) in source.code().filter(|(_, code)| has_word(code, "unsafe")) {
+            if source.capability() != Some("lpm") {
+                broken.push(format!("{}:{line}: `unsafe` outside src/lpm", source.path));
+            }
+        }
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn the_core_matches_every_state_by_name() {
+    let mut broken = Vec::new();
+    for source in rust_files(&["src"]) {
+        if source.is_test()
+            || !source
+                .capability()
+                .is_some_and(|name| TOTAL.contains(&name))
+        {
+            continue;
+        }
+        for (line, code) in source
+            .code()
+            .filter(|(_, code)| code.trim_start().starts_with("_ =>"))
+        {
+            broken.push(format!(
+                "{}:{line}: `{}` hides the states to come",
+                source.path,
+                code.trim()
+            ));
+        }
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn no_test_sleeps_and_none_is_ignored() {
+    let ignored = concat!("#[", "ignore");
+    let sleeps = concat!("thread::", "sleep");
+    let mut broken = Vec::new();
+    for source in rust_files(&["src", "sim", "tests"]) {
+        for (line, code) in source.code() {
+            if code.contains(ignored) {
+                broken.push(format!("{}:{line}: an ignored test", source.path));
+            }
+            if source.is_test() && code.contains(sleeps) {
+                broken.push(format!("{}:{line}: a test that sleeps", source.path));
+            }
+        }
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn only_the_guard_makes_a_clearance() {
+    let mut broken = Vec::new();
+    for source in rust_files(&["src"]) {
+        if source.capability() == Some("guard") {
+            continue;
+        }
+        for (line, code) in source.code() {
+            if code.contains("Cleared::new")
+                || code.contains("Cleared {") && !code.contains("struct")
+            {
+                broken.push(format!(
+                    "{}:{line}: a `Cleared` that no guard has made",
+                    source.path
+                ));
+            }
+        }
+    }
+    assert_none(&broken);
+}

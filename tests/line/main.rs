@@ -1,0 +1,19 @@
+//! The whole line from outside, and the rules of the house.
+//!
+//! - [`layout`]: what the source tree must look like: who imports whom, what a pure module may not name,
+//!   which files stand where, and that the documents speak of things that exist.
+//! - [`commands`]: the built program given wrong files and simple orders.
+//! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
+//! - [`picture`]: the picture in README.md is that of `config/scene.toml`.
+//! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
+
+#![allow(clippy::unwrap_used)]
+
+mod commands;
+mod layout;
+#[cfg(feature = "sim")]
+mod lots;
+mod picture;
+mod program;
+#[cfg(feature = "sim")]
+mod troubles;

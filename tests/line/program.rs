@@ -1,0 +1,136 @@
+//! The built program in a folder of its own, with its own copy of the configuration.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// A fresh folder that holds `config/` and whatever a command leaves; kept after the test for a look.
+pub struct Workshop {
+    /// Where the program is started.
+    pub folder: PathBuf,
+}
+
+/// What a command left behind.
+#[derive(Debug)]
+pub struct Said {
+    /// Exit status.
+    pub status: i32,
+    /// Standard output.
+    pub stdout: String,
+    /// Standard error.
+    pub stderr: String,
+}
+
+impl Workshop {
+    /// An empty one but for the configuration; `name` is used by one test only.
+    pub fn new(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+            .join("line")
+            .join(name);
+        if folder.exists() {
+            fs::remove_dir_all(&folder).unwrap();
+        }
+        copy(
+            &Path::new(env!("CARGO_MANIFEST_DIR")).join("config"),
+            &folder.join("config"),
+        );
+        Self { folder }
+    }
+
+    /// Runs `relayrig` with the words of `line`, which are separated by blanks.
+    pub fn run(&self, line: &str) -> Said {
+        let output = Command::new(env!("CARGO_BIN_EXE_relayrig"))
+            .args(["--log", "warn"])
+            .args(line.split_whitespace())
+            .current_dir(&self.folder)
+            .output()
+            .unwrap();
+        Said {
+            status: output.status.code().unwrap_or(-1),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
+        }
+    }
+
+    /// Text of a file.
+    pub fn read(&self, file: &str) -> String {
+        fs::read_to_string(self.folder.join(file)).unwrap()
+    }
+
+    /// Writes a file.
+    pub fn write(&self, file: &str, text: &str) {
+        fs::write(self.folder.join(file), text).unwrap();
+    }
+
+    /// True when the file is there.
+    pub fn has(&self, file: &str) -> bool {
+        self.folder.join(file).exists()
+    }
+
+    /// Puts `to` in the one place where `file` says `from`; gives the line of that place.
+    pub fn change(&self, file: &str, from: &str, to: &str) -> usize {
+        let text = self.read(file);
+        let found: Vec<usize> = text.match_indices(from).map(|(at, _)| at).collect();
+        assert_eq!(found.len(), 1, "{from:?} must stand once in {file}");
+        self.write(file, &text.replace(from, to));
+        text[..found[0]].matches('\n').count() + 1
+    }
+
+    /// One number from the history.
+    pub fn count(&self, query: &str) -> i64 {
+        let history = rusqlite::Connection::open(self.folder.join("relayrig.db")).unwrap();
+        history.query_row(query, [], |row| row.get(0)).unwrap()
+    }
+
+    /// One column of texts from the history.
+    pub fn texts(&self, query: &str) -> Vec<String> {
+        let history = rusqlite::Connection::open(self.folder.join("relayrig.db")).unwrap();
+        let mut rows = history.prepare(query).unwrap();
+        let texts = rows.query_map([], |row| row.get(0)).unwrap();
+        texts.collect::<Result<_, _>>().unwrap()
+    }
+}
+
+impl Said {
+    /// The same, after a look at the exit status.
+    pub fn with_status(self, expected: i32) -> Self {
+        assert_eq!(self.status, expected, "{self}");
+        self
+    }
+
+    /// Standard output as one JSON object per line.
+    pub fn objects(&self) -> Vec<Value> {
+        objects(&self.stdout)
+    }
+}
+
+impl std::fmt::Display for Said {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "status {}\n--- stdout\n{}--- stderr\n{}",
+            self.status, self.stdout, self.stderr
+        )
+    }
+}
+
+/// One JSON object per line.
+pub fn objects(text: &str) -> Vec<Value> {
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            fs::copy(&path, &target).unwrap();
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! Faults of the rig by name: each ends as `troubles.txt` says, with an alarm in the history and every row kept.
+
+use crate::program::{Said, Workshop};
+
+/// One line of the table.
+struct Trouble {
+    fault: &'static str,
+    status: i32,
+    alarm: Option<&'static str>,
+}
+
+fn table() -> Vec<Trouble> {
+    let lines = include_str!("troubles.txt").lines();
+    let rows = lines.filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let trouble = |line: &'static str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [fault, status, alarm] = words[..] else {
+            panic!("troubles.txt: {line:?}")
+        };
+        Trouble {
+            fault,
+            status: status.parse().unwrap(),
+            alarm: (alarm != "-").then_some(alarm),
+        }
+    };
+    rows.map(trouble).collect()
+}
+
+fn strike(name: &str, fault: &str) -> (Workshop, Said) {
+    let workshop = Workshop::new(name);
+    let said = workshop.run(&format!(
+        "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 6 --seed 1 --truth t.jsonl --json --fault {fault}"
+    ));
+    (workshop, said)
+}
+
+#[test]
+fn every_fault_ends_as_the_table_says() {
+    let mut broken = Vec::new();
+    for (number, trouble) in table().iter().enumerate() {
+        let (workshop, said) = strike(&format!("fault-{number}"), trouble.fault);
+        let alarms = workshop.texts("SELECT code FROM alarm ORDER BY id");
+        let first = alarms.first().map(String::as_str);
+        if said.status != trouble.status || first != trouble.alarm {
+            let expected = (trouble.status, trouble.alarm);
+            let found = (said.status, first);
+            broken.push(format!(
+                "{}: expected {expected:?}, found {found:?}\n{}",
+                trouble.fault, said.stderr
+            ));
+        }
+        broken.extend(lost_rows(trouble.fault, &workshop, &said));
+    }
+    assert!(broken.is_empty(), "\n{}", broken.join("\n"));
+}
+
+/// What was told on stdout stands in the history too, the summary is told whatever happens, nothing has touched.
+fn lost_rows(fault: &str, workshop: &Workshop, said: &Said) -> Vec<String> {
+    let mut lost = Vec::new();
+    let told = said
+        .objects()
+        .iter()
+        .filter(|object| object["type"] == "part")
+        .count();
+    let rows = workshop.count("SELECT count(*) FROM part WHERE kind = 'lot'");
+    if i64::try_from(told).unwrap() > rows {
+        lost.push(format!("{fault}: {told} parts told, {rows} rows kept"));
+    }
+    if said
+        .objects()
+        .last()
+        .is_none_or(|last| last["type"] != "summary")
+    {
+        lost.push(format!("{fault}: no summary at the end"));
+    }
+    if workshop.count("SELECT count(*) FROM run WHERE closed_at_us IS NULL") != 0 {
+        lost.push(format!("{fault}: the run was left open"));
+    }
+    if said.stderr.contains("touched") {
+        lost.push(format!("{fault}: {}", said.stderr));
+    }
+    lost
+}
+
+#[test]
+fn a_part_with_a_dirty_probe_is_void_and_never_failed() {
+    let (_, said) = strike("dirty-probe", "probe_dirty=2");
+    let parts = said.with_status(0).objects();
+    assert_eq!(
+        (parts[1]["verdict"].as_str(), parts[1]["bin"].as_str()),
+        (Some("void"), Some("retest"))
+    );
+}
+
+#[test]
+fn a_silent_module_is_named_with_its_line_and_command() {
+    let (workshop, said) = strike("silent-module", "silence=board_di@10");
+    let said = said.with_status(3);
+    let alarms = workshop.texts("SELECT text FROM alarm");
+    assert_eq!(alarms.len(), 1, "{alarms:?}");
+    assert!(
+        alarms[0].contains("measure") && alarms[0].contains("08"),
+        "{alarms:?}\n{said}"
+    );
+}
+
+#[test]
+fn a_fault_that_is_none_is_refused() {
+    for fault in ["jam_pushr", "drop=much", "silence=nobody@1"] {
+        let (workshop, said) = strike("no-such-fault", fault);
+        let said = said.with_status(2);
+        assert_eq!(said.stdout, "");
+        assert!(!workshop.has("relayrig.db"), "{fault}: a run was opened");
+    }
+}
+
+#[test]
+fn every_fault_of_the_table_is_one_that_the_rig_lists() {
+    let listed = Workshop::new("fault-list")
+        .run("sim --faults")
+        .with_status(0)
+        .stdout;
+    for trouble in table() {
+        let name = trouble.fault.split('=').next().unwrap_or_default();
+        assert!(
+            listed.lines().any(|line| line.starts_with(name)),
+            "{name} is not among\n{listed}"
+        );
+    }
+}
