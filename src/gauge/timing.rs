@@ -40,13 +40,12 @@ pub fn gate_ms(gate: u32, delay_us: Factor, clock: Clock) -> Reading {
 
 /// Bounce-open time in milliseconds from both gates.
 ///
-/// Each reopening of gate 1 draws a phase of its own; their number is unknown, so the count term is
-/// taken for `reopenings_expected` of them.
-pub fn bounce_ms(gate0: u32, gate1: u32, clock: Clock, reopenings_expected: f64) -> Reading {
+/// Both counts are floors of lengths on one clock, so each brings its own count error.
+pub fn bounce_ms(gate0: u32, gate1: u32, clock: Clock) -> Reading {
     let open = f64::from(gate1.saturating_sub(gate0));
     let value = open / clock.hz * 1e3;
     let budget = Budget::default()
-        .with_random("count", count_u_ms(clock) * (1.0 + reopenings_expected).sqrt())
+        .with_random("count", count_u_ms(clock) * 2f64.sqrt())
         .with("clock", value * rectangular(clock.tolerance_ppm) * 1e-6);
     Reading { value, budget }
 }
@@ -71,7 +70,7 @@ mod tests {
 
     #[test]
     fn bounce_is_what_the_raw_gate_counts_more_than_the_latched_one() {
-        let bounce = bounce_ms(236, 252, CLOCK, 3.0);
+        let bounce = bounce_ms(236, 252, CLOCK);
         assert!((bounce.value - 0.32).abs() < 1e-12);
     }
 }

@@ -110,8 +110,7 @@ impl Feed {
 /// Resolves at a view not sent yet, no sooner than `after`; never when none will come.
 async fn changed(view: &mut watch::Receiver<View>, after: Instant) {
     sleep_until(after).await;
-    // Asked without consuming: a beat that comes first must not swallow the change.
-    if view.wait_for_change().await.is_err() {
+    if view.changed().await.is_err() {
         std::future::pending::<()>().await;
     }
 }

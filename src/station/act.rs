@@ -40,6 +40,8 @@ pub enum Act {
     WaitSinceMark(Span),
     /// Waits so long after the previous act was answered.
     Wait(Span),
+    /// Waits as [`Act::WaitSinceMark`] does, for a conversion that began after the mark.
+    ConvertSinceMark(Span),
     /// Reads the board until the point is active, or gives up; which of both is kept.
     Until {
         /// Point of the interface board.
@@ -151,6 +153,29 @@ pub enum Doing {
     Trouble(String),
 }
 
+/// Where the time of a test goes.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Spent {
+    /// Transactions.
+    pub bus: Span,
+    /// Waiting for coil, armature, source and bounce to settle.
+    pub settling: Span,
+    /// Waiting for conversions.
+    pub conversion: Span,
+    /// Waiting for contact events, on ramps and timed operations.
+    pub ramp: Span,
+}
+
+impl Spent {
+    /// Adds the time of another stage.
+    pub fn add(&mut self, other: Spent) {
+        self.bus += other.bus;
+        self.settling += other.settling;
+        self.conversion += other.conversion;
+        self.ramp += other.ramp;
+    }
+}
+
 /// Carries out the acts of one stage.
 #[derive(Debug)]
 pub struct Runner {
@@ -160,6 +185,7 @@ pub struct Runner {
     began: RigTime,
     since: RigTime,
     mark: RigTime,
+    spent: Spent,
     /// What was read so far.
     pub readings: Readings,
 }
@@ -169,7 +195,7 @@ impl Runner {
     pub fn new(acts: Vec<Act>, now: RigTime) -> Self {
         let mut acts = acts.into_iter();
         let current = acts.next();
-        Self { acts, current, pending: false, began: now, since: now, mark: now, readings: Readings::default() }
+        Self { acts, current, pending: false, began: now, since: now, mark: now, spent: Spent::default(), readings: Readings::default() }
     }
 
     /// True when nothing is left to do.
@@ -209,7 +235,7 @@ impl Runner {
                     self.since = until;
                     self.next();
                 }
-                Act::WaitSinceMark(span) => {
+                Act::WaitSinceMark(span) | Act::ConvertSinceMark(span) => {
                     let until = self.mark + *span;
                     if now < until {
                         return Doing::Wait(until);
@@ -227,7 +253,20 @@ impl Runner {
         Doing::Job(job)
     }
 
+    /// Where the time went so far.
+    pub fn spent(&self) -> Spent {
+        self.spent
+    }
+
     fn next(&mut self) {
+        let took = self.since.since(self.began);
+        match &self.current {
+            Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_)) => self.spent.bus += took,
+            Some(Act::Wait(_) | Act::WaitSinceMark(_)) => self.spent.settling += took,
+            Some(Act::ConvertSinceMark(_)) => self.spent.conversion += took,
+            Some(Act::Until { .. }) => self.spent.ramp += took,
+            Some(Act::Mark) | None => {}
+        }
         self.current = self.acts.next();
         self.began = self.since;
     }
@@ -243,7 +282,7 @@ impl Runner {
                 }
                 self.readings.seen.push(active);
             }
-            Some(Act::Board(_) | Act::Supply(_) | Act::CoilMask(_) | Act::Mark | Act::Wait(_) | Act::WaitSinceMark(_)) | None => {}
+            Some(Act::Board(_) | Act::Supply(_) | Act::CoilMask(_) | Act::Mark | Act::Wait(_) | Act::WaitSinceMark(_) | Act::ConvertSinceMark(_)) | None => {}
         }
         self.next();
         Ok(())

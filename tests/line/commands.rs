@@ -147,7 +147,10 @@ fn a_word_the_program_does_not_know_is_bad_input() {
     ] {
         let said = workshop.run(line).with_status(2);
         assert_eq!(said.stdout, "", "{line}");
-        assert!(said.stderr.contains("Usage"), "{line}\n{said}");
+        assert!(
+            said.stderr.contains("--help") || said.stderr.contains("Usage"),
+            "{line}\n{said}"
+        );
     }
 }
 
@@ -239,9 +242,11 @@ fn a_move_is_answered_by_the_exit_status() {
         .run("check --scene scene.json --moves through.jsonl --json")
         .with_status(1)
         .objects()[0];
-    assert_eq!(
-        (blocked["blocker"].as_str(), blocked["t_stop"].as_f64()),
-        (Some("pin"), Some(0.375))
+    assert_eq!(blocked["blocker"].as_str(), Some("pin"));
+    let t_stop = blocked["t_stop"].as_f64().unwrap();
+    assert!(
+        t_stop <= 0.375 && t_stop > 0.375 - 1e-9,
+        "rounded down, never later: {t_stop}"
     );
     workshop
         .run("check --scene scene.json --moves touching.jsonl --json")

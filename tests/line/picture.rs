@@ -26,8 +26,8 @@ const MARKS: &[(&str, char)] = &[
     ("chute_contact", '5'),
     ("chute_retest", '6'),
     ("pusher_", 'p'),
-    ("part", 'R'),
     ("jaw_post_", 'j'),
+    ("part", 'R'),
     ("jaw_left_pad", 'J'),
     ("jaw_right_pad", 'J'),
     ("probe_", 'K'),
@@ -144,7 +144,7 @@ fn collect(id: &str, body: &Value, origin: [f64; 3], flats: &mut Vec<Flat>) {
     });
 }
 
-fn numbers<const N: usize>(list: &Value) -> [f64; N] {
+fn numbers(list: &Value) -> [f64; 3] {
     let numbers: Vec<f64> = list
         .as_array()
         .unwrap()

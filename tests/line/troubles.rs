@@ -29,7 +29,7 @@ fn table() -> Vec<Trouble> {
 fn strike(name: &str, fault: &str) -> (Workshop, Said) {
     let workshop = Workshop::new(name);
     let said = workshop.run(&format!(
-        "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 6 --seed 1 --truth t.jsonl --json --fault {fault}"
+        "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 4 --seed 1 --truth t.jsonl --json --fault {fault}"
     ));
     (workshop, said)
 }
@@ -93,15 +93,26 @@ fn a_part_with_a_dirty_probe_is_void_and_never_failed() {
 }
 
 #[test]
-fn a_silent_module_is_named_with_its_line_and_command() {
-    let (workshop, said) = strike("silent-module", "silence=board_di@10");
-    let said = said.with_status(3);
+fn a_silent_module_is_named_with_line_address_and_command() {
+    let (workshop, said) = strike("silent-module", "silence=mech_di_b@10");
+    said.with_status(3);
     let alarms = workshop.texts("SELECT text FROM alarm");
     assert_eq!(alarms.len(), 1, "{alarms:?}");
+    for part in ["motion", "12", "ReadPort"] {
+        assert!(alarms[0].contains(part), "{part} is not named: {alarms:?}");
+    }
+}
+
+#[test]
+fn a_module_of_another_type_is_refused_before_anything_moves() {
+    let (workshop, said) = strike("wrong-type", "wrong_type=board_di");
+    said.with_status(3);
+    let alarms = workshop.texts("SELECT text FROM alarm");
     assert!(
         alarms[0].contains("measure") && alarms[0].contains("08"),
-        "{alarms:?}\n{said}"
+        "{alarms:?}"
     );
+    assert_eq!(workshop.count("SELECT count(*) FROM part"), 0);
 }
 
 #[test]

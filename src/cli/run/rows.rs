@@ -93,6 +93,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
         uncertainty.insert(parameter.name().into(), json!(rounded(reading.expanded())));
     }
     let (seq, _) = number(&judged.part.kind, 0);
+    let spent = judged.findings.spent;
     json!({
         "type": "part",
         "seq": seq,
@@ -105,6 +106,12 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
         "uncertainty": uncertainty,
         "test_s": judged.part.test.map(|test| rounded(test.0)),
         "cycle_s": cycle_s.map(rounded),
+        "spent": {
+            "bus_s": spent.bus.as_seconds(),
+            "settling_s": spent.settling.as_seconds(),
+            "conversion_s": spent.conversion.as_seconds(),
+            "ramp_s": spent.ramp.as_seconds(),
+        },
     })
 }
 

@@ -34,9 +34,9 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
     acts.extend([
         supply.step_to(prebias),
         board(&[(CoilDrive, true)]),
-        Act::Wait(SETTLES + bench.fresh(CHANNELS)),
-        Act::Read(Read::Coil),
-        Act::Wait(bench.round(CHANNELS)),
+        Act::Wait(SETTLES),
+        Act::Mark,
+        Act::ConvertSinceMark(bench.fresh(CHANNELS)),
         Act::Read(Read::Coil),
     ]);
     acts
@@ -59,7 +59,7 @@ pub(super) fn acts_off(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
         coarse,
         fine,
         supply.step_to(Volt(bench.recipe.test.prebias_v)),
-        Act::WaitSinceMark(Span::ms(1) + bench.fresh(CHANNELS)),
+        Act::ConvertSinceMark(Span::ms(1) + bench.fresh(CHANNELS)),
         Act::Read(Read::Coil),
     ]
 }

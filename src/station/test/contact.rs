@@ -19,9 +19,10 @@ const SOURCE_SETTLES: Span = Span::ms(1);
 pub(super) fn forward(bench: &Bench) -> Vec<Act> {
     vec![
         board(&[(SourceOn, true)]),
-        Act::Wait(SOURCE_SETTLES + bench.fresh(1)),
-        Act::Read(Read::Drop),
+        Act::Mark,
         Act::Read(Read::Board),
+        Act::ConvertSinceMark(SOURCE_SETTLES + bench.fresh(1)),
+        Act::Read(Read::Drop),
     ]
 }
 
@@ -36,7 +37,8 @@ pub(super) fn reversed(bench: &Bench) -> Vec<Act> {
     acts.extend([
         board(&[(SourceReverse, true)]),
         board(&[(SourceOn, true)]),
-        Act::Wait(SOURCE_SETTLES + bench.fresh(1)),
+        Act::Mark,
+        Act::ConvertSinceMark(SOURCE_SETTLES + bench.fresh(1)),
         Act::Read(Read::Drop),
     ]);
     acts.extend(off());
@@ -104,7 +106,10 @@ pub(super) fn conclude_nc(bench: &Bench, readings: &Readings, findings: &mut Fin
 /// Adds one NC closure; the result is the mean of all closures read.
 pub(super) fn add_nc(bench: &Bench, drop: Volt, samples: &[Sample], findings: &mut Findings) {
     findings.nc_drops.push(drop);
-    let u = bench.reading_u_v() / 2f64.sqrt();
+    // The first closure is read with both polarities. A later one is read forward only and takes its zero
+    // from the first, so that half of the first's noise enters twice.
+    let one = bench.reading_u_v();
+    let u = if findings.nc_drops.len() == 1 { one / 2f64.sqrt() } else { one };
     if let Some(reading) = resistance(&findings.nc_drops, bench.calibration.contact_mohm_per_v, u) {
         findings.forget(Parameter::ContactResistanceNc);
         findings.found(Parameter::ContactResistanceNc, reading, samples);

@@ -5,6 +5,7 @@ use crate::gauge::budget::{self, Reading};
 use crate::gauge::verdict::{Bin, Reason};
 use crate::gauge::Parameter;
 use crate::rig::sample::{CountSample, Origin, Sample};
+use crate::station::act::Spent;
 use crate::units::{Celsius, Volt};
 
 /// What a result was made from: line, module, channel and raw text lead back to the bytes.
@@ -49,6 +50,8 @@ pub struct Findings {
     readings: Vec<(Parameter, Reading)>,
     evidence: Vec<(Parameter, Origin)>,
     stop: Option<Stop>,
+    /// Where the time went.
+    pub spent: Spent,
     /// Temperature of the magazine track when the test began.
     pub track: Option<Celsius>,
     /// Terminal voltage of the contact drop without current.

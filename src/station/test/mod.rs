@@ -142,6 +142,7 @@ impl Test {
 
     /// Draws the conclusions of the stage that has just ended.
     fn conclude(&mut self) {
+        self.findings.spent.add(self.runner.spent());
         let readings = std::mem::take(&mut self.runner.readings);
         let (bench, findings) = (&self.bench, &mut self.findings);
         let again = match self.stage {

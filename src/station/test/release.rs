@@ -16,6 +16,8 @@ use crate::units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
 const SEAL: f64 = 0.95;
+/// Below this indicated voltage the coarse ramp has ended or is about to: no estimate, volts.
+const FLOOR_V: f64 = 0.35;
 /// Operate, bounce and settling of the flux.
 const SEAL_TIME: Span = Span::ms(25);
 /// Slowest break after the end of a ramp that is still taken for its event.
@@ -44,7 +46,6 @@ fn until_break(takes: Span) -> Vec<Act> {
         Act::Read(Read::Board),
         Act::Read(Read::Gates),
         board(&[(CoilDrive, false), (Arm, false)]),
-        Act::WaitSinceMark(takes),
     ]
 }
 
@@ -67,9 +68,8 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
 pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
     let (start, test) = (findings.ramp_start?, &bench.recipe.test);
     let coarse_v_per_s = bench.calibration.coarse_v_per_s.value;
-    let height = Volt(test.coarse_span_v);
     let seen = readings.seen.first() == Some(&true);
-    let gate = gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < height.0 - 0.1);
+    let gate = gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - FLOOR_V);
     findings.expected = Some(match gate {
         Some(gate) => {
             let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);

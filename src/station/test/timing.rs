@@ -1,14 +1,14 @@
 //! Timed operation at exactly nominal voltage and timed release into the recipe's clamp, each with its
 //! bounce; the closure it ends on is then read for its contact resistance.
 
-use super::contact::{add_nc, drop_of, forward, off, reversal, reversed};
+use super::contact::{add_nc, drop_of, off, reversal, reversed};
 use super::{Bench, Findings, OFF, Stage, board};
 use crate::gauge::contact::resistance;
 use crate::gauge::timing::{bounce_ms, counts, gate_ms};
 use crate::gauge::verdict::Bin;
 use crate::gauge::Parameter;
 use crate::rig::point::DigitalIn;
-use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
+use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn};
 use crate::station::act::{Act, Read, Readings};
 use crate::station::supply::Supply;
 use crate::units::{Span, Volt};
@@ -17,8 +17,10 @@ use crate::units::{Span, Volt};
 const LONGEST: Span = Span::ms(60);
 /// The window closes 20 ms after the latch; gate 1 counts bounce until then.
 const WINDOW_AFTER_LATCH: Span = Span::ms(21);
-/// Reopenings of a typical closure, for the count term of the bounce.
-const REOPENINGS: f64 = 4.0;
+/// Start of the coarse release ramp above the highest threshold of the lot, volts.
+const RELEASE_HEADROOM_V: f64 = 0.8;
+/// Bounce is over and the contact has been closed for the 5 ms that the source asks for.
+const BOUNCE_OVER: Span = Span::ms(16);
 
 pub(super) fn acts_operate(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
     let mut acts = vec![
@@ -35,11 +37,8 @@ pub(super) fn acts_operate(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
         Act::WaitSinceMark(OFF),
         board(&[(Arm, true)]),
         board(&[(CoilDrive, true)]),
-        Act::Until { point: DigitalIn::Latch, within: LONGEST },
-        Act::Wait(WINDOW_AFTER_LATCH),
-        Act::Read(Read::Gates),
     ];
-    acts.extend(forward(bench));
+    acts.extend(event_and_drop(bench));
     acts.extend(reversed(bench));
     acts
 }
@@ -60,13 +59,32 @@ pub(super) fn acts_release(bench: &Bench, supply: &mut Supply, findings: &Findin
         Act::Read(Read::Gates),
         board(&[(Arm, true)]),
         board(&[(CoilDrive, false)]),
-        Act::Until { point: DigitalIn::Latch, within: LONGEST },
-        Act::Wait(WINDOW_AFTER_LATCH),
-        Act::Read(Read::Gates),
     ]);
-    acts.extend(forward(bench));
+    // With the coil off the supply is free: the coarse ramp goes to where the release ramp begins.
+    let test = &bench.recipe.test;
+    let above = test.expected_release_v + 4.0 * test.expected_release_sd_v + RELEASE_HEADROOM_V;
+    if Volt(above) < supply.coarse() {
+        acts.push(supply.ramp_coarse(Volt(above)).0);
+    }
+    acts.extend(event_and_drop(bench));
     acts.extend(off());
     acts
+}
+
+/// The contact event, then the forward drop; the gates are read while the conversion runs. The source
+/// drives the same way as the contact monitor, so that gate 1 does not take it for an open contact.
+fn event_and_drop(bench: &Bench) -> [Act; 9] {
+    [
+        Act::Until { point: DigitalIn::Latch, within: LONGEST },
+        Act::Mark,
+        Act::WaitSinceMark(BOUNCE_OVER),
+        board(&[(SourceOn, true)]),
+        Act::WaitSinceMark(WINDOW_AFTER_LATCH),
+        Act::Read(Read::Gates),
+        Act::Read(Read::Board),
+        Act::ConvertSinceMark(BOUNCE_OVER + Span::ms(6) + bench.fresh(1)),
+        Act::Read(Read::Drop),
+    ]
 }
 
 /// Both gates of a stage as time and bounce; `false` when the counters were not read twice.
@@ -86,7 +104,7 @@ fn time_and_bounce(
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
     let delay = bench.calibration.gate_delay_us;
     findings.found(time, gate_ms(gate0, delay, bench.clock()), samples.clone());
-    findings.found(bounce, bounce_ms(gate0, gate1, bench.clock(), REOPENINGS), samples);
+    findings.found(bounce, bounce_ms(gate0, gate1, bench.clock()), samples);
 }
 
 pub(super) fn conclude_operate(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {

@@ -31,7 +31,7 @@ const TABLE: &[(&str, &[&str])] = &[
             "units", "rig", "gauge", "station", "quality", "plan", "history",
         ],
     ),
-    ("hmi", &["view", "history", "report", "config"]),
+    ("hmi", &["view", "history", "report", "config", "quality"]),
     (
         "config",
         &[
@@ -180,14 +180,17 @@ fn leading_name(path: &str) -> Option<String> {
 fn climbs(source: &Source, depth: usize) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for (line, code) in source.code() {
-        for count in 1..=depth + 1 {
-            for (name, _) in TABLE {
-                let climb = format!("{}{name}::", "super::".repeat(count));
-                if code.contains(&climb) && count + 1 >= depth {
-                    found.push((line, (*name).to_owned()));
-                }
-            }
+        let Some(start) = code.find("super::") else {
+            continue;
+        };
+        let mut rest = &code[start..];
+        let mut height = 0;
+        while let Some(above) = rest.strip_prefix("super::") {
+            rest = above;
+            height += 1;
         }
+        let name = leading_name(rest).filter(|name| TABLE.iter().any(|(known, _)| known == name));
+        found.extend(name.filter(|_| height + 1 >= depth).map(|name| (line, name)));
     }
     found
 }

@@ -1,0 +1,247 @@
+
+"use strict";
+// Shows the view. Every text comes through textContent, every word from the table.
+const WORDS = JSON.parse(document.getElementById("words").textContent);
+const KEYS = ["coil_resistance_ohm", "operate_voltage_v", "release_voltage_v", "operate_time_ms",
+  "release_time_ms", "operate_bounce_ms", "release_bounce_ms", "contact_resistance_no_mohm",
+  "contact_resistance_nc_mohm"];
+const UNITS = {ohm: "Ω", v: "V", ms: "ms", mohm: "mΩ"};
+const BINS = ["pass", "coil", "contact", "voltage", "time", "retest"];
+const VERDICTS = ["pass", "fail", "void"];
+const STALE_MS = 2500;
+const AGAIN_MS = 1000;
+const NONE = "–";
+
+const asked = new URLSearchParams(location.search);
+const kept = {
+  get(name) { try { return localStorage.getItem(name); } catch { return null; } },
+  set(name, value) { try { localStorage.setItem(name, value); } catch { /* private window: not kept */ } },
+};
+let language = asked.get("lang") || kept.get("lang") || (navigator.language.startsWith("zh") ? "zh" : "en");
+let theme = asked.get("theme") || kept.get("theme") ||
+  (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+if (language !== "zh") language = "en";
+let view = null;
+let stop = null;
+let heard = -Infinity;
+let alive = true;
+let source = null;
+
+const at = (id) => document.getElementById(id);
+const word = (key) => WORDS[key][language];
+const known = (key, text) => (Object.hasOwn(WORDS, key) ? word(key) : text);
+
+function make(tag, text, name) {
+  const element = document.createElement(tag);
+  if (text !== undefined) element.textContent = text;
+  if (name) element.className = name;
+  return element;
+}
+
+// --- figures ---
+
+const whole = (value) => (Number.isFinite(value) ? value.toLocaleString("en").replaceAll(",", "\u202f") : NONE);
+
+// A value ends where its uncertainty ends, which has two significant digits.
+function measured(value, uncertainty) {
+  if (!Number.isFinite(value)) return [NONE, NONE];
+  if (!(uncertainty > 0)) return [String(Number(value.toPrecision(6))), NONE];
+  const digits = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(uncertainty))));
+  return [value.toFixed(digits), uncertainty.toFixed(digits)];
+}
+
+function share(part, all) {
+  return all > 0 ? (100 * part / all).toFixed(1) + "\u202f%" : NONE;
+}
+
+// --- words made of what the rig says ---
+
+function stateText(state) {
+  const testing = /^testing: (\w+)/.exec(state);
+  if (!testing) return known("state." + state, state);
+  return word("state.testing") + ": " + known("stage." + testing[1], testing[1]);
+}
+
+function reasonText(reason) {
+  if (Object.hasOwn(WORDS, "text." + reason)) return word("text." + reason);
+  const space = reason.indexOf(" ");
+  const key = reason.slice(0, space), rest = reason.slice(space + 1);
+  if (!KEYS.includes(key)) return reason;
+  return word("key." + key) + " " + known("reason." + rest, rest);
+}
+
+// --- the parts of the page ---
+
+function showAlarms(alarms) {
+  const lines = alarms.slice(0, 3).map((alarm, place) => {
+    const line = make("p");
+    line.append(make("b", "▲ " + alarm.code));
+    line.append(make("span", language === "zh" ? alarm.text_zh : alarm.text_en));
+    if (place === 0 && alarms.length > 1) line.append(make("b", "(" + word("first_out") + ")"));
+    return line;
+  });
+  if (alarms.length > 3) lines.push(make("p", "+ " + (alarms.length - 3) + " " + word("more_alarms")));
+  at("alarms").className = alarms.length ? "bad" : "";
+  at("alarms").replaceChildren(...(lines.length ? lines : [make("p", word("no_alarm"))]));
+}
+
+function showProgress() {
+  const {judged, count} = view;
+  const percent = count > 0 ? Math.min(100, 100 * judged / count) : 0;
+  at("judged").textContent = count === null ? whole(judged) + " " + word("judged")
+    : whole(judged) + " " + word("judged_of") + " " + whole(count) + " " + word("judged");
+  at("percent").textContent = count === null ? word("endless") : percent.toFixed(0) + "\u202f%";
+  at("bar").setAttribute("aria-valuenow", percent.toFixed(0));
+  at("bar").firstElementChild.style.width = percent + "%";
+}
+
+function showLast(last) {
+  at("seq").textContent = last ? whole(last.seq) : "";
+  const [, verdict, bin] = at("verdict").children;
+  at("verdict").className = last ? last.verdict : "";
+  verdict.textContent = last ? known("verdict." + last.verdict, last.verdict) : NONE;
+  bin.textContent = last ? word("to_bin") + " " + known("bin." + last.bin, last.bin) : word("no_part");
+  const reasons = last ? last.reasons : [];
+  at("reasons").replaceChildren(...reasons.slice(0, 3).map((reason) => make("li", reasonText(reason))));
+  at("values").replaceChildren(...KEYS.map((key) => valueRow(key, last)));
+}
+
+function valueRow(key, last) {
+  const [value, uncertainty] = last ? measured(last.values[key], last.uncertainty[key]) : [NONE, NONE];
+  const row = make("tr");
+  const blamed = last && last.verdict === "fail" && last.reasons.some((it) => it.startsWith(key + " "));
+  if (blamed) row.className = "bad";
+  const unit = UNITS[key.slice(key.lastIndexOf("_") + 1)];
+  row.append(make("td", word("key." + key)), make("td", value), make("td", uncertainty), make("td", unit));
+  return row;
+}
+
+// The usual names first, then whatever else there is.
+const ordered = (names, counts) => [...names, ...Object.keys(counts).filter((it) => !names.includes(it))];
+
+function showBins(bins) {
+  const most = Math.max(1, ...Object.values(bins));
+  at("bins").replaceChildren(...ordered(BINS, bins).map((name) => {
+    const item = make("li"), bar = make("div", undefined, "bar"), fill = make("i");
+    fill.style.width = 100 * (bins[name] || 0) / most + "%";
+    bar.append(fill);
+    item.append(make("span", known("bin." + name, name)), make("b", whole(bins[name] || 0)), bar);
+    return item;
+  }));
+}
+
+function showVerdicts(verdicts) {
+  at("verdicts").replaceChildren(...ordered(VERDICTS, verdicts).map((name) => {
+    const pair = make("div");
+    pair.append(make("dt", known("verdict." + name, name)), make("dd", whole(verdicts[name] || 0)));
+    return pair;
+  }));
+}
+
+function showView() {
+  if (!view) return;
+  at("simulated").hidden = !view.simulated;
+  for (const id of ["lot", "recipe"]) {
+    at(id).textContent = view[id] || NONE;
+    at(id).title = view[id];
+  }
+  at("state").textContent = stateText(view.state);
+  for (const id of ["came_in", "inside", "went_out"]) at(id).textContent = whole(view[id]);
+  at("rate").textContent = view.parts_per_hour === null ? NONE : whole(Math.round(view.parts_per_hour));
+  const judged = Object.values(view.verdicts).reduce((sum, it) => sum + it, 0);
+  at("yield").textContent = share(view.verdicts.pass || 0, judged);
+  showAlarms(view.alarms);
+  showProgress();
+  showLast(view.last);
+  showBins(view.bins);
+  showVerdicts(view.verdicts);
+}
+
+// Live, lost or ended; a page that is not live says so and is grey.
+function showLink() {
+  const lost = performance.now() - heard > STALE_MS;
+  const link = lost ? "lost" : alive ? "live" : "ended";
+  document.body.classList.toggle("stale", link !== "live");
+  at("link").className = link === "live" ? "" : "bad";
+  at("link").lastElementChild.textContent = word("link." + link);
+  document.title = (view && view.simulated ? word("simulation") + " · " : "") + "relayrig";
+  showStop(link);
+}
+
+function showStop(link) {
+  const ended = link === "ended" || (view !== null && view.state === "ended");
+  at("stop").disabled = link !== "live" || ended;
+  const why = ended ? word("stop.ended") : link === "lost" ? word("stop.stale") : "";
+  const answer = stop === null ? "" : word(stop.word) + " " + stop.more;
+  at("stop_answer").textContent = why || answer;
+}
+
+function showAll() {
+  document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
+  document.documentElement.dataset.theme = theme;
+  for (const element of document.querySelectorAll("[data-word]")) element.textContent = word(element.dataset.word);
+  showView();
+  showLink();
+}
+
+// --- from the rig ---
+
+function connect() {
+  if (source) source.close();
+  source = new EventSource("/api/events");
+  source.addEventListener("view", (event) => {
+    const before = view;
+    view = JSON.parse(event.data);
+    if (before && before.lot !== view.lot) stop = null;
+    heard = performance.now();
+    showView();
+    showLink();
+  });
+  source.addEventListener("beat", (event) => {
+    alive = JSON.parse(event.data).alive;
+    heard = performance.now();
+    showLink();
+  });
+}
+
+let tried = performance.now();
+setInterval(() => {
+  showLink();
+  const now = performance.now();
+  const dead = source.readyState === EventSource.CLOSED || now - heard > 2 * STALE_MS;
+  if (dead && now - tried > (source.readyState === EventSource.CLOSED ? AGAIN_MS : 2 * STALE_MS)) {
+    tried = now;
+    connect();
+  }
+}, 250);
+
+// --- to the rig ---
+
+async function orderStop() {
+  try {
+    const body = JSON.stringify({order: "stop"});
+    const headers = {"Content-Type": "application/json"};
+    const signal = AbortSignal.timeout(3000);
+    const answer = await fetch("/api/orders", {method: "POST", headers, body, signal});
+    stop = answer.ok ? {word: "stop.sent", more: ""}
+      : {word: "stop.refused", more: (await answer.json()).reason};
+  } catch {
+    stop = {word: "stop.lost", more: ""};
+  }
+  showLink();
+}
+
+at("stop").addEventListener("click", orderStop);
+at("language").addEventListener("click", () => {
+  language = language === "zh" ? "en" : "zh";
+  kept.set("lang", language);
+  showAll();
+});
+at("theme").addEventListener("click", () => {
+  theme = theme === "dark" ? "light" : "dark";
+  kept.set("theme", theme);
+  showAll();
+});
+
+showAll();
+connect();

@@ -1,0 +1,89 @@
+//! The page as text: whole, self-contained, and with every word in both languages.
+
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+type Table = BTreeMap<String, BTreeMap<String, String>>;
+
+fn table() -> Table {
+    serde_json::from_str(WORDS).unwrap()
+}
+
+/// Texts between `before` and the next `"`.
+fn quoted(text: &str, before: &str) -> BTreeSet<String> {
+    let pieces = text.split(before).skip(1);
+    pieces.map(|it| it.split('"').next().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn every_word_is_there_in_both_languages() {
+    for (key, word) in table() {
+        let languages: Vec<&str> = word.keys().map(String::as_str).collect();
+        assert_eq!(languages, ["en", "zh"], "{key}");
+        assert!(word.values().all(|it| !it.trim().is_empty()), "{key}");
+    }
+}
+
+#[test]
+fn every_word_that_the_page_uses_is_in_the_table() {
+    let table = table();
+    let mut used = quoted(FRAME, "data-word=\"");
+    used.extend(quoted(SCRIPT, "word(\""));
+    used.extend(quoted(SCRIPT, "{word: \""));
+    // A key that ends in a dot is the begin of a family, completed by what the rig says.
+    let (families, words): (Vec<_>, Vec<_>) = used.iter().partition(|it| it.ends_with('.'));
+    for word in words {
+        assert!(table.contains_key(word), "{word}");
+    }
+    for family in families {
+        assert!(table.keys().any(|it| it.starts_with(family.as_str())), "{family}");
+    }
+}
+
+#[test]
+fn every_word_in_the_table_is_used() {
+    let families = ["link", "state", "stage", "verdict", "bin", "key", "reason", "text"];
+    for key in table().keys() {
+        let family = key.split('.').next().unwrap();
+        let used = [FRAME, SCRIPT].iter().any(|it| it.contains(&format!("\"{key}\"")));
+        assert!(used || (key.contains('.') && families.contains(&family)), "{key}");
+    }
+}
+
+#[test]
+fn every_listed_quantity_bin_and_verdict_has_a_name() {
+    let table = table();
+    let list = |name: &str| {
+        let text = SCRIPT.split(&format!("const {name} = [")).nth(1).unwrap();
+        let text = text.split(']').next().unwrap();
+        text.split('"').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>()
+    };
+    for (name, family, count) in [("KEYS", "key", 9), ("BINS", "bin", 6), ("VERDICTS", "verdict", 3)] {
+        let names = list(name);
+        assert_eq!(names.len(), count);
+        assert!(names.iter().all(|it| table.contains_key(&format!("{family}.{it}"))), "{name}");
+    }
+}
+
+#[test]
+fn the_page_is_whole_small_and_asks_nobody_else() {
+    assert!(PAGE.len() < 150_000, "{}", PAGE.len());
+    for mark in ["/*look*/", "/*words*/", "/*script*/"] {
+        assert_eq!(FRAME.matches(mark).count(), 1);
+        assert!(!PAGE.contains(mark));
+    }
+    for foreign in ["http://", "https://", "//cdn", "@import", "src=", "url("] {
+        assert!(!PAGE.contains(foreign), "{foreign}");
+    }
+}
+
+#[test]
+fn nothing_inside_ends_its_element_early() {
+    for (text, end) in [(LOOK, "</style"), (WORDS, "</script"), (SCRIPT, "</script")] {
+        assert!(!text.to_ascii_lowercase().contains(end));
+    }
+    assert!(PAGE.contains(&format!("<style>{LOOK}</style>")));
+    assert!(PAGE.contains(&format!("<script>{SCRIPT}</script>")));
+}
