@@ -104,8 +104,8 @@ pub struct Calibration {
     pub ohm_wide: Factor,
     /// Milliohms per volt of contact drop at the terminal, half the difference of both polarities.
     pub contact_mohm_per_v: Factor,
-    /// Added to each gate by the counter, microseconds.
-    pub gate_delay_us: Factor,
+    /// Added to gate 0 and gate 1 by their counters, microseconds.
+    pub gate_delay_us: [Factor; 2],
     /// Supply output for levels.
     pub level: OutputLine,
     /// Supply output for the coarse ramp.

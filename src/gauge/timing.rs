@@ -41,11 +41,12 @@ pub fn gate_ms(gate: u32, delay_us: Factor, clock: Clock) -> Reading {
 /// Bounce-open time in milliseconds from both gates.
 ///
 /// Both counts are floors of lengths on one clock, so each brings its own count error.
-pub fn bounce_ms(gate0: u32, gate1: u32, clock: Clock) -> Reading {
-    let open = f64::from(gate1.saturating_sub(gate0));
-    let value = open / clock.hz * 1e3;
+pub fn bounce_ms(gate0: u32, gate1: u32, delay_us: [Factor; 2], clock: Clock) -> Reading {
+    let open_ms = (f64::from(gate1) - f64::from(gate0)) / clock.hz * 1e3;
+    let value = (open_ms - (delay_us[1].value - delay_us[0].value) / 1e3).max(0.0);
     let budget = Budget::default()
         .with_random("count", count_u_ms(clock) * 2f64.sqrt())
+        .with("gate delay", delay_us[0].u.hypot(delay_us[1].u) / 1e3)
         .with("clock", value * rectangular(clock.tolerance_ppm) * 1e-6);
     Reading { value, budget }
 }
@@ -70,7 +71,8 @@ mod tests {
 
     #[test]
     fn bounce_is_what_the_raw_gate_counts_more_than_the_latched_one() {
-        let bounce = bounce_ms(236, 252, CLOCK);
-        assert!((bounce.value - 0.32).abs() < 1e-12);
+        let delays = [Factor::new(10.0, 1.0), Factor::new(-5.0, 1.0)];
+        let bounce = bounce_ms(236, 252, delays, CLOCK);
+        assert!((bounce.value - 0.335).abs() < 1e-12);
     }
 }

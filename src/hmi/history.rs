@@ -62,7 +62,9 @@ impl Readers {
             drop(place);
             found
         };
-        spawn_blocking(work).await.map_err(|_| HmiError::ReaderLost)?
+        spawn_blocking(work)
+            .await
+            .map_err(|_| HmiError::ReaderLost)?
     }
 }
 
@@ -136,7 +138,10 @@ pub(super) async fn stats(
         return Err(refused("param", "missing: `stats` is about one parameter"));
     };
     if filter.min.is_some() || filter.max.is_some() {
-        return Err(refused("min, max", "`stats` is about all values, not a range of them"));
+        return Err(refused(
+            "min, max",
+            "`stats` is about all values, not a range of them",
+        ));
     }
     let read = move |archive: &Archive| {
         known_parameter(archive, &param)?;

@@ -51,7 +51,11 @@ fn streamed(archive: Archive, place: impl Send + 'static, filter: Filter) -> Res
         let piece = receiver.recv().await?;
         Some((piece, receiver))
     });
-    ([(CONTENT_TYPE, "application/json")], Body::from_stream(pieces)).into_response()
+    (
+        [(CONTENT_TYPE, "application/json")],
+        Body::from_stream(pieces),
+    )
+        .into_response()
 }
 
 fn write(archive: &Archive, filter: &Filter, out: &mut Pieces) -> io::Result<()> {
@@ -63,7 +67,8 @@ fn write(archive: &Archive, filter: &Filter, out: &mut Pieces) -> io::Result<()>
         out.full()
     });
     all.map_err(io::Error::other)??;
-    out.text.extend_from_slice(if lead == "[\n" { b"[]\n" } else { b"\n]\n" });
+    out.text
+        .extend_from_slice(if lead == "[\n" { b"[]\n" } else { b"\n]\n" });
     out.hand_over()
 }
 
@@ -77,7 +82,11 @@ struct Pieces {
 impl Pieces {
     fn new(runtime: Handle, sender: Sender<Piece>) -> Self {
         let text = Vec::with_capacity(PIECE + 4096);
-        Self { text, runtime, sender }
+        Self {
+            text,
+            runtime,
+            sender,
+        }
     }
 
     fn full(&mut self) -> io::Result<()> {

@@ -17,29 +17,87 @@ pub(super) async fn metrics(State(desk): State<Desk>) -> impl IntoResponse {
     let alive = desk.shared.view.has_changed().is_ok();
     let screens = desk.screens.load(Ordering::Relaxed);
     let text = text(&desk.shared.view.borrow(), alive, screens);
-    ([(CONTENT_TYPE, "text/plain; version=0.0.4; charset=utf-8")], text)
+    (
+        [(CONTENT_TYPE, "text/plain; version=0.0.4; charset=utf-8")],
+        text,
+    )
 }
 
 fn text(view: &View, alive: bool, screens: usize) -> String {
     let mut out = Figures::default();
-    let about = [("lot", view.lot.as_str()), ("recipe", &view.recipe), ("state", &view.state)];
-    out.named("relayrig_info", "What is being done; always 1.", &[(&about, 1)]);
-    out.one("relayrig_up", "1 while a controller makes views.", u8::from(alive));
-    out.one("relayrig_simulated", "1 if the rig is simulated.", u8::from(view.simulated));
+    let about = [
+        ("lot", view.lot.as_str()),
+        ("recipe", &view.recipe),
+        ("state", &view.state),
+    ];
+    out.named(
+        "relayrig_info",
+        "What is being done; always 1.",
+        &[(&about, 1)],
+    );
+    out.one(
+        "relayrig_up",
+        "1 while a controller makes views.",
+        u8::from(alive),
+    );
+    out.one(
+        "relayrig_simulated",
+        "1 if the rig is simulated.",
+        u8::from(view.simulated),
+    );
     out.one("relayrig_screens", "Open streams of events.", screens);
-    out.one("relayrig_lot_parts_judged", "Parts of the lot judged.", view.judged);
+    out.one(
+        "relayrig_lot_parts_judged",
+        "Parts of the lot judged.",
+        view.judged,
+    );
     if let Some(count) = view.count {
-        out.one("relayrig_lot_parts_wanted", "Parts of the lot wanted.", count);
+        out.one(
+            "relayrig_lot_parts_wanted",
+            "Parts of the lot wanted.",
+            count,
+        );
     }
-    out.one("relayrig_parts_inside", "Parts between pocket and beam.", view.inside);
-    out.one("relayrig_parts_came_in", "Parts that came in, golden ones too.", view.came_in);
-    out.one("relayrig_parts_went_out", "Parts a beam confirmed, golden ones too.", view.went_out);
+    out.one(
+        "relayrig_parts_inside",
+        "Parts between pocket and beam.",
+        view.inside,
+    );
+    out.one(
+        "relayrig_parts_came_in",
+        "Parts that came in, golden ones too.",
+        view.came_in,
+    );
+    out.one(
+        "relayrig_parts_went_out",
+        "Parts a beam confirmed, golden ones too.",
+        view.went_out,
+    );
     if let Some(rate) = view.parts_per_hour.filter(|it| it.is_finite()) {
-        out.one("relayrig_lot_parts_per_hour", "Parts per hour of rig time.", rate);
+        out.one(
+            "relayrig_lot_parts_per_hour",
+            "Parts per hour of rig time.",
+            rate,
+        );
     }
-    out.each("relayrig_lot_parts_in_bin", "Confirmed parts of the lot.", "bin", &view.bins);
-    out.each("relayrig_lot_verdicts", "Verdicts of the lot.", "verdict", &view.verdicts);
-    out.each("relayrig_alarms", "Alarms shown, by code.", "code", &alarms(view));
+    out.each(
+        "relayrig_lot_parts_in_bin",
+        "Confirmed parts of the lot.",
+        "bin",
+        &view.bins,
+    );
+    out.each(
+        "relayrig_lot_verdicts",
+        "Verdicts of the lot.",
+        "verdict",
+        &view.verdicts,
+    );
+    out.each(
+        "relayrig_alarms",
+        "Alarms shown, by code.",
+        "code",
+        &alarms(view),
+    );
     out.0
 }
 
@@ -63,8 +121,12 @@ impl Figures {
     }
 
     fn each(&mut self, name: &str, help: &str, label: &'static str, by: &BTreeMap<String, u64>) {
-        let labels: Vec<_> = by.iter().map(|(key, value)| ([(label, key.as_str())], value)).collect();
-        let rows: Vec<(&[Label<'_>], &u64)> = labels.iter().map(|(it, value)| (&it[..], *value)).collect();
+        let labels: Vec<_> = by
+            .iter()
+            .map(|(key, value)| ([(label, key.as_str())], value))
+            .collect();
+        let rows: Vec<(&[Label<'_>], &u64)> =
+            labels.iter().map(|(it, value)| (&it[..], *value)).collect();
         self.named(name, help, &rows);
     }
 
@@ -86,7 +148,10 @@ impl Figures {
 }
 
 fn label((name, value): &Label<'_>) -> String {
-    let value = value.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n");
+    let value = value
+        .replace('\\', "\\\\")
+        .replace('"', "\\\"")
+        .replace('\n', "\\n");
     format!("{name}=\"{value}\"")
 }
 
@@ -96,16 +161,24 @@ mod tests {
 
     #[test]
     fn figures_have_a_type_and_unknown_ones_are_left_out() {
-        let view = View { judged: 7, ..View::default() };
+        let view = View {
+            judged: 7,
+            ..View::default()
+        };
         let text = text(&view, true, 2);
-        assert!(text.contains("# TYPE relayrig_lot_parts_judged gauge\nrelayrig_lot_parts_judged 7\n"));
+        assert!(
+            text.contains("# TYPE relayrig_lot_parts_judged gauge\nrelayrig_lot_parts_judged 7\n")
+        );
         assert!(text.contains("relayrig_up 1\n") && text.contains("relayrig_screens 2\n"));
         assert!(!text.contains("wanted") && !text.contains("per_hour"));
     }
 
     #[test]
     fn a_lot_with_quotes_breaks_no_line() {
-        let view = View { lot: "a\"b\\c\nd".into(), ..View::default() };
+        let view = View {
+            lot: "a\"b\\c\nd".into(),
+            ..View::default()
+        };
         assert!(text(&view, true, 0).contains(r#"lot="a\"b\\c\nd""#));
     }
 }

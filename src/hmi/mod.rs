@@ -32,7 +32,6 @@ mod origin;
 mod page;
 mod router;
 
-use std::future::Future;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -72,11 +71,9 @@ pub async fn serve(
 }
 
 /// Resolves once the program ends.
-fn over(mut ended: watch::Receiver<bool>) -> impl Future<Output = ()> + Send + 'static {
-    async move {
-        // A sender that is gone says the same as one that says so.
-        let _ = ended.wait_for(|ended| *ended).await;
-    }
+async fn over(mut ended: watch::Receiver<bool>) {
+    // A sender that is gone says the same as one that says so.
+    let _ = ended.wait_for(|ended| *ended).await;
 }
 
 async fn after_grace(ended: watch::Receiver<bool>) {

@@ -78,11 +78,20 @@ mod tests {
     #[test]
     fn the_own_page_and_a_script_may_order() {
         assert!(judged(&[("host", "127.0.0.1:8080")]));
-        for host in ["127.0.0.1:8080", "[::1]:8080", "localhost:8080", "rig-3", "rig.local"] {
+        for host in [
+            "127.0.0.1:8080",
+            "[::1]:8080",
+            "localhost:8080",
+            "rig-3",
+            "rig.local",
+        ] {
             let origin = format!("http://{host}");
             assert!(judged(&[("host", host), ("origin", &origin)]), "{host}");
         }
-        assert!(judged(&[("host", "rig"), ("sec-fetch-site", "same-origin")]));
+        assert!(judged(&[
+            ("host", "rig"),
+            ("sec-fetch-site", "same-origin")
+        ]));
     }
 
     #[test]
@@ -109,6 +118,9 @@ mod tests {
     #[test]
     fn a_public_name_that_points_here_is_not_ours() {
         let name = "rig.evil.example:8080";
-        assert!(!judged(&[("host", name), ("origin", "http://rig.evil.example:8080")]));
+        assert!(!judged(&[
+            ("host", name),
+            ("origin", "http://rig.evil.example:8080")
+        ]));
     }
 }

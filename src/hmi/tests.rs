@@ -1,1 +1,140 @@
-//! Tests.
+//! Every route as a client sees it, without a browser.
+
+#![allow(clippy::unwrap_used)]
+
+mod events;
+mod history;
+mod orders;
+mod routes;
+mod shutdown;
+
+use super::{Shared, router};
+use crate::view::{LastPart, View};
+use axum::Router;
+use axum::body::{Body, to_bytes};
+use axum::http::{Request, StatusCode};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use tokio::sync::watch;
+use tower::ServiceExt;
+
+/// A screen with both ends of its channels.
+struct Bench {
+    view: watch::Sender<View>,
+    ended: watch::Sender<bool>,
+    stop: Arc<AtomicBool>,
+    router: Router,
+    db: PathBuf,
+}
+
+impl Bench {
+    fn new() -> Self {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("relayrig-hmi-{}-{number}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        Self::over(folder.join("history.db"))
+    }
+
+    fn over(db: PathBuf) -> Self {
+        let (view, looking) = watch::channel(some_view());
+        let (ended, over) = watch::channel(false);
+        let stop = Arc::new(AtomicBool::new(false));
+        let shared = Shared {
+            view: looking,
+            db: db.clone(),
+            stop: Arc::clone(&stop),
+        };
+        let router = router::router(shared, over);
+        Self {
+            view,
+            ended,
+            stop,
+            router,
+            db,
+        }
+    }
+
+    async fn ask(&self, request: Request<Body>) -> Answer {
+        let response = self.router.clone().oneshot(request).await.unwrap();
+        let (parts, body) = response.into_parts();
+        let body = to_bytes(body, usize::MAX).await.unwrap();
+        Answer {
+            status: parts.status,
+            headers: parts.headers,
+            body: body.to_vec(),
+        }
+    }
+
+    async fn get(&self, path: &str) -> Answer {
+        self.ask(Request::get(path).body(Body::empty()).unwrap())
+            .await
+    }
+
+    async fn order(&self, body: impl Into<Body>) -> Answer {
+        let request = Request::post("/api/orders").header("content-type", "application/json");
+        self.ask(request.body(body.into()).unwrap()).await
+    }
+
+    /// Nobody makes views any more.
+    fn end_of_the_controller(&mut self) {
+        self.view = watch::channel(View::default()).0;
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
+    }
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        if let Some(folder) = self.db.parent() {
+            let _ = std::fs::remove_dir_all(folder);
+        }
+    }
+}
+
+struct Answer {
+    status: StatusCode,
+    headers: axum::http::HeaderMap,
+    body: Vec<u8>,
+}
+
+impl Answer {
+    fn json(&self) -> serde_json::Value {
+        serde_json::from_slice(&self.body).unwrap()
+    }
+
+    fn text(&self) -> &str {
+        std::str::from_utf8(&self.body).unwrap()
+    }
+
+    /// The reason of a refusal with this status.
+    fn refused(&self, status: u16) -> String {
+        assert_eq!(self.status.as_u16(), status, "{}", self.text());
+        let json = self.json();
+        assert!(json["error"].is_string());
+        json["reason"].as_str().unwrap().to_owned()
+    }
+}
+
+fn some_view() -> View {
+    View {
+        simulated: true,
+        lot: "A".into(),
+        recipe: "jzc-22f-012".into(),
+        state: "running".into(),
+        judged: 3,
+        count: Some(20),
+        verdicts: [("pass".to_owned(), 2), ("fail".to_owned(), 1)].into(),
+        bins: [("pass".to_owned(), 2)].into(),
+        last: Some(LastPart {
+            seq: 3,
+            verdict: "pass".into(),
+            ..LastPart::default()
+        }),
+        ..View::default()
+    }
+}

@@ -348,8 +348,11 @@ impl Station {
     fn learn(&mut self, wants: &mut Wants) {
         for judged in &wants.judged {
             let findings = &judged.findings;
-            findings.operate.into_iter().for_each(|ramp| self.coarse.0.learn(ramp));
-            findings.release.into_iter().for_each(|ramp| self.coarse.1.learn(ramp));
+            // A slow or sticking part would spoil the place of the ramp for all that follow.
+            if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
+                findings.operate.into_iter().for_each(|ramp| self.coarse.0.learn(ramp));
+                findings.release.into_iter().for_each(|ramp| self.coarse.1.learn(ramp));
+            }
             if let Kind::Golden(serial) = &judged.part.kind {
                 let known = self.plan.golden.iter().find(|part| part.serial == *serial);
                 let reference = self.bench.reference_temperature();

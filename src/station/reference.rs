@@ -208,7 +208,7 @@ pub fn conclude(
         ohm_fine: ohm(|level| level.fine),
         ohm_wide: ohm(|level| level.wide),
         contact_mohm_per_v: contact_factor(bench, &readings.drops)?,
-        gate_delay_us: gate_delay(bench, readings)?,
+        gate_delay_us: [gate_delay(bench, readings, 0)?, gate_delay(bench, readings, 1)?],
         coil_input,
         lags: None,
     })
@@ -268,15 +268,15 @@ fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, String> {
     Ok(Factor::new(value, value * u_drop.hypot(rectangular(bench.reference.contact_tolerance_pct / 100.0))))
 }
 
-fn gate_delay(bench: &Bench, readings: &Readings) -> Result<Factor, String> {
+fn gate_delay(bench: &Bench, readings: &Readings, gate: usize) -> Result<Factor, String> {
     let (Some(before), Some(after)) = (readings.gates.first(), readings.gates.last()) else {
         return Err("gate counters not read".into());
     };
-    let total = f64::from(counts(before[0].count, after[0].count));
+    let total = f64::from(counts(before[gate].count, after[gate].count));
     let each_us = total / f64::from(PULSES) / bench.reference.counter_clock_hz * 1e6;
     let delay = each_us - bench.reference.gate_pulse_ms * 1e3;
     if delay.abs() > 5.0 * bench.accuracy.gate_delay_us {
-        return Err(format!("a gate pulse of 1.000 ms counts {each_us:.1} us"));
+        return Err(format!("a pulse of 1.000 ms at gate {gate} counts {each_us:.1} us"));
     }
     let count_us = 1e6 / bench.reference.counter_clock_hz / 6f64.sqrt();
     Ok(Factor::new(delay, count_us / f64::from(PULSES).sqrt()))

@@ -2,6 +2,7 @@
 
 use crate::program::{Said, Workshop, objects};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 const PARTS: u64 = 12;
@@ -188,9 +189,18 @@ const BIN_OF_DEFECT: &[(&str, &str)] = &[
     ("missing", "retest"),
 ];
 
+/// Some beginnings in the table stand for two kinds: stuck NC and NO.
+const KINDS_OF_DEFECT: usize = 13;
+
 #[test]
 fn every_defect_goes_to_the_bin_of_its_cause() {
     let lot = spoiled();
+    let kinds: BTreeSet<&str> = lot
+        .truth
+        .iter()
+        .filter_map(|truth| truth["defect"].as_str())
+        .collect();
+    assert_eq!(kinds.len(), KINDS_OF_DEFECT, "{kinds:?}");
     for (part, truth) in lot.parts.iter().zip(&lot.truth) {
         let Some(defect) = truth["defect"].as_str() else {
             continue;

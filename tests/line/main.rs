@@ -3,6 +3,7 @@
 //! - [`layout`]: what the source tree must look like: who imports whom, what a pure module may not name,
 //!   which files stand where, and that the documents speak of things that exist.
 //! - [`commands`]: the built program given wrong files and simple orders.
+//! - `interruptions`: lots that are stopped or killed, and what is left of them.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
 //! - [`picture`]: the picture in README.md is that of `config/scene.toml`.
 //! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
@@ -10,6 +11,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod commands;
+#[cfg(all(feature = "sim", unix))]
+mod interruptions;
 mod layout;
 #[cfg(feature = "sim")]
 mod lots;

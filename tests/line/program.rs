@@ -4,6 +4,8 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+#[cfg(all(feature = "sim", unix))]
+use std::process::{Child, Stdio};
 
 /// A fresh folder that holds `config/` and whatever a command leaves; kept after the test for a look.
 pub struct Workshop {
@@ -40,17 +42,32 @@ impl Workshop {
 
     /// Runs `relayrig` with the words of `line`, which are separated by blanks.
     pub fn run(&self, line: &str) -> Said {
-        let output = Command::new(env!("CARGO_BIN_EXE_relayrig"))
-            .args(["--log", "warn"])
-            .args(line.split_whitespace())
-            .current_dir(&self.folder)
-            .output()
-            .unwrap();
+        let output = self.command(line).output().unwrap();
         Said {
             status: output.status.code().unwrap_or(-1),
             stdout: String::from_utf8(output.stdout).unwrap(),
             stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
         }
+    }
+
+    /// Starts `relayrig` and lets it run; what it logs is thrown away.
+    #[cfg(all(feature = "sim", unix))]
+    pub fn start(&self, line: &str) -> Child {
+        let mut command = self.command(line);
+        command
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    }
+
+    fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_relayrig"));
+        command
+            .args(["--log", "warn"])
+            .args(line.split_whitespace())
+            .current_dir(&self.folder);
+        command
     }
 
     /// Text of a file.

@@ -76,7 +76,7 @@ fn uncalibrated(nominal_v: f64) -> Calibration {
         ohm_fine: unknown,
         ohm_wide: unknown,
         contact_mohm_per_v: unknown,
-        gate_delay_us: Factor::new(0.0, f64::INFINITY),
+        gate_delay_us: [Factor::new(0.0, f64::INFINITY); 2],
         level: OutputLine::IDEAL,
         coarse: OutputLine::IDEAL,
         fine: OutputLine::IDEAL,

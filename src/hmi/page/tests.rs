@@ -14,7 +14,9 @@ fn table() -> Table {
 /// Texts between `before` and the next `"`.
 fn quoted(text: &str, before: &str) -> BTreeSet<String> {
     let pieces = text.split(before).skip(1);
-    pieces.map(|it| it.split('"').next().unwrap().to_owned()).collect()
+    pieces
+        .map(|it| it.split('"').next().unwrap().to_owned())
+        .collect()
 }
 
 #[test]
@@ -38,17 +40,27 @@ fn every_word_that_the_page_uses_is_in_the_table() {
         assert!(table.contains_key(word), "{word}");
     }
     for family in families {
-        assert!(table.keys().any(|it| it.starts_with(family.as_str())), "{family}");
+        assert!(
+            table.keys().any(|it| it.starts_with(family.as_str())),
+            "{family}"
+        );
     }
 }
 
 #[test]
 fn every_word_in_the_table_is_used() {
-    let families = ["link", "state", "stage", "verdict", "bin", "key", "reason", "text"];
+    let families = [
+        "link", "state", "stage", "verdict", "bin", "key", "reason", "text",
+    ];
     for key in table().keys() {
         let family = key.split('.').next().unwrap();
-        let used = [FRAME, SCRIPT].iter().any(|it| it.contains(&format!("\"{key}\"")));
-        assert!(used || (key.contains('.') && families.contains(&family)), "{key}");
+        let used = [FRAME, SCRIPT]
+            .iter()
+            .any(|it| it.contains(&format!("\"{key}\"")));
+        assert!(
+            used || (key.contains('.') && families.contains(&family)),
+            "{key}"
+        );
     }
 }
 
@@ -58,12 +70,25 @@ fn every_listed_quantity_bin_and_verdict_has_a_name() {
     let list = |name: &str| {
         let text = SCRIPT.split(&format!("const {name} = [")).nth(1).unwrap();
         let text = text.split(']').next().unwrap();
-        text.split('"').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>()
+        text.split('"')
+            .skip(1)
+            .step_by(2)
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
     };
-    for (name, family, count) in [("KEYS", "key", 9), ("BINS", "bin", 6), ("VERDICTS", "verdict", 3)] {
+    for (name, family, count) in [
+        ("KEYS", "key", 9),
+        ("BINS", "bin", 6),
+        ("VERDICTS", "verdict", 3),
+    ] {
         let names = list(name);
         assert_eq!(names.len(), count);
-        assert!(names.iter().all(|it| table.contains_key(&format!("{family}.{it}"))), "{name}");
+        assert!(
+            names
+                .iter()
+                .all(|it| table.contains_key(&format!("{family}.{it}"))),
+            "{name}"
+        );
     }
 }
 

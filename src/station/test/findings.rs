@@ -60,6 +60,8 @@ pub struct Findings {
     pub nc_drops: Vec<Volt>,
     /// Where the ramp under way began.
     pub ramp_start: Option<Volt>,
+    /// Length of the ramp under way.
+    pub ramp_span: Option<Volt>,
     /// Where the next fine ramp looks for its event.
     pub expected: Option<Expected>,
     /// Operate ramps.

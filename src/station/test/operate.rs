@@ -4,7 +4,7 @@
 //! Between both the relay drops. The approach has two steps (0.93 of the start, then the start) because
 //! a step from zero picks up some 30 mV below the quasi-static threshold: the armature swings over.
 
-use super::ramp::{ATTEMPTS, Expected, give_up};
+use super::ramp::{ATTEMPTS, Expected, give_up, stopped_at};
 use super::{Bench, Findings, OFF, Ramp, Stage, board};
 use crate::gauge::threshold::{Direction, RampDoubt, indicated, quasi_static};
 use crate::gauge::timing::counts;
@@ -22,11 +22,14 @@ const APPROACH: f64 = 0.93;
 const APPROACH_TIME: Span = Span::ms(12);
 /// Flux and armature are in equilibrium with the start level after this time.
 pub(super) const SETTLES: Span = Span::ms(25);
+/// Scatter of a repeated fine ramp around the first, volts.
+pub(super) const REPEAT_SD_V: f64 = 0.008;
 /// Slowest operation after the end of a ramp that is still taken for its event.
 const LATE: Span = Span::ms(25);
 
 pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
     findings.ramp_start = Some(supply.total());
+    findings.ramp_span = Some(Volt(bench.recipe.test.coarse_span_v) - supply.coarse());
     let (ramp, takes) = supply.ramp_coarse(Volt(bench.recipe.test.coarse_span_v));
     let rest = Span(takes.0.saturating_sub((OFF + APPROACH_TIME).0));
     vec![
@@ -47,7 +50,7 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
 pub(super) fn gate0(bench: &Bench, readings: &Readings) -> Option<Second> {
     let (before, after) = (readings.gates.first()?, readings.gates.last()?);
     let gate = f64::from(counts(before[0].count, after[0].count)) / bench.clock().hz;
-    Some(Second(gate - bench.calibration.gate_delay_us.value * 1e-6))
+    Some(Second(gate - bench.calibration.gate_delay_us[0].value * 1e-6))
 }
 
 pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
@@ -65,7 +68,8 @@ pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut
         findings.void("gate counters not read");
         return None;
     };
-    let coarse = indicated(start, bench.calibration.coarse_v_per_s.value, gate, Direction::Rising);
+    let seen = indicated(start, bench.calibration.coarse_v_per_s.value, gate, Direction::Rising);
+    let coarse = findings.ramp_span.and_then(|span| stopped_at(start, span, seen)).unwrap_or(seen);
     let lag = bench.operate_lag();
     findings.operate = Some(Ramp { coarse, fine: None });
     findings.expected = Some(Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v));
@@ -97,7 +101,9 @@ pub(super) fn conclude_pull_in(readings: &Readings, findings: &mut Findings) -> 
 }
 
 pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let Some(expected) = findings.expected else { return Vec::new() };
+    let repeated = findings.operate.and_then(|ramp| ramp.fine).map(|fine| Expected::new(fine, REPEAT_SD_V));
+    let Some(expected) = repeated.or(findings.expected) else { return Vec::new() };
+    findings.expected = Some(expected);
     let placed = expected.placed(Direction::Rising);
     let mut acts = vec![board(&[(CoilDrive, false), (Arm, false)]), Act::Mark];
     acts.extend(make_room(bench, supply, placed.start));
@@ -114,6 +120,7 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
         Act::WaitSinceMark(SETTLES),
     ]);
     findings.ramp_start = Some(supply.total());
+    findings.ramp_span = Some(placed.span);
     let (ramp, takes) = supply.ramp_fine(supply.fine() + placed.span);
     acts.extend([
         board(&[(Arm, true)]),
@@ -157,20 +164,25 @@ pub(super) fn conclude_fine(
     attempt: u8,
 ) -> Option<Stage> {
     let (start, expected) = (findings.ramp_start?, findings.expected?);
-    if readings.seen.first() != Some(&true) {
+    let (Some(gate), Some(part)) = (gate0(bench, readings), findings.track) else {
+        findings.void("gate counters not read");
+        return None;
+    };
+    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, Direction::Rising);
+    let met = readings.seen.first() == Some(&true);
+    let stopped = findings.ramp_span.and_then(|span| stopped_at(start, span, seen));
+    if !met || stopped.is_some() {
         let early = readings.boards.last().is_some_and(|board| board.no_closed);
-        findings.expected = Some(expected.next(Direction::Rising, early));
+        findings.expected = Some(match stopped {
+            Some(end) if met => expected.around(end),
+            Some(_) | None => expected.next(Direction::Rising, early),
+        });
         if attempt + 1 >= ATTEMPTS {
             give_up("operate", findings);
             return None;
         }
         return Some(Stage::OperateFine(attempt + 1));
     }
-    let (Some(gate), Some(part)) = (gate0(bench, readings), findings.track) else {
-        findings.void("gate counters not read");
-        return None;
-    };
-    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, Direction::Rising);
     if let Some(ramp) = &mut findings.operate {
         ramp.fine = Some(seen);
     }

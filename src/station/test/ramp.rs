@@ -48,12 +48,23 @@ impl Expected {
         }
     }
 
+    /// The interval to search when the event came only after the ramp had stopped at `end`: the same
+    /// width, around the end. What the counter then shows is time at rest, not volts.
+    pub fn around(&self, end: Volt) -> Self {
+        Self { centre: end, half_width: self.half_width }
+    }
+
     /// The interval to search next: beyond the far end when nothing happened, before the near end when
     /// the contact had already changed; three times as wide.
     pub fn next(&self, direction: Direction, changed_early: bool) -> Self {
         let away = if changed_early { -direction.sign() } else { direction.sign() };
         Self { centre: self.centre + self.half_width * (4.0 * away), half_width: self.half_width * 3.0 }
     }
+}
+
+/// Where a ramp from `start` stops, when the indicated voltage lies beyond it.
+pub(super) fn stopped_at(start: Volt, span: Volt, seen: Volt) -> Option<Volt> {
+    ((seen - start).abs() > span).then_some(start + Volt(span.0.copysign((seen - start).0)))
 }
 
 /// Says that the fine ramp never met its event.
@@ -73,6 +84,13 @@ mod tests {
         assert!(ramp.start.0 + ramp.span.0 > 7.9 + 0.025);
         let falling = expected.placed(Direction::Falling);
         assert!(falling.start.0 - WINDOW_V.0 > 7.9 + 0.025);
+    }
+
+    #[test]
+    fn an_event_after_the_end_of_the_ramp_tells_time_not_volts() {
+        assert_eq!(stopped_at(Volt(7.8), Volt(0.1), Volt(7.95)), Some(Volt(7.8 + 0.1)));
+        assert_eq!(stopped_at(Volt(2.5), Volt(0.1), Volt(2.35)), Some(Volt(2.5 - 0.1)));
+        assert_eq!(stopped_at(Volt(7.8), Volt(0.1), Volt(7.89)), None);
     }
 
     #[test]

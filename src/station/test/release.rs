@@ -3,8 +3,8 @@
 //! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
 //! voltage, so the timed one stays the last of those.
 
-use super::operate::{SETTLES, doubt, gate0};
-use super::ramp::{ATTEMPTS, Expected, give_up};
+use super::operate::{REPEAT_SD_V, SETTLES, doubt, gate0};
+use super::ramp::{ATTEMPTS, Expected, give_up, stopped_at};
 use super::{Bench, Findings, Ramp, Stage, board};
 use crate::gauge::threshold::{Direction, indicated, quasi_static};
 use crate::gauge::Parameter;
@@ -83,7 +83,9 @@ pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut
 }
 
 pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let Some(expected) = findings.expected else { return Vec::new() };
+    let repeated = findings.release.and_then(|ramp| ramp.fine).map(|fine| Expected::new(fine, REPEAT_SD_V));
+    let Some(expected) = repeated.or(findings.expected) else { return Vec::new() };
+    findings.expected = Some(expected);
     let placed = expected.placed(Direction::Falling);
     let mut acts = Vec::new();
     if supply.fine() < placed.span {
@@ -93,6 +95,7 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
     let start = placed.start.0.max((supply.coarse() + supply.fine()).0);
     acts.extend(seal(bench, supply, Volt(start)));
     findings.ramp_start = Some(supply.total());
+    findings.ramp_span = Some(placed.span);
     let (ramp, takes) = supply.ramp_fine(supply.fine() - placed.span);
     acts.push(ramp);
     acts.extend(until_break(takes));
@@ -106,20 +109,25 @@ pub(super) fn conclude_fine(
     attempt: u8,
 ) -> Option<Stage> {
     let (start, expected) = (findings.ramp_start?, findings.expected?);
-    if readings.seen.first() != Some(&true) {
+    let (Some(gate), Some(part)) = (gate0(bench, readings), findings.track) else {
+        findings.void("gate counters not read");
+        return None;
+    };
+    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, Direction::Falling);
+    let met = readings.seen.first() == Some(&true);
+    let stopped = findings.ramp_span.and_then(|span| stopped_at(start, span, seen));
+    if !met || stopped.is_some() {
         let early = readings.boards.last().is_some_and(|board| !board.no_closed);
-        findings.expected = Some(expected.next(Direction::Falling, early));
+        findings.expected = Some(match stopped {
+            Some(end) if met => expected.around(end),
+            Some(_) | None => expected.next(Direction::Falling, early),
+        });
         if attempt + 1 >= ATTEMPTS {
             give_up("release", findings);
             return None;
         }
         return Some(Stage::ReleaseFine(attempt + 1));
     }
-    let (Some(gate), Some(part)) = (gate0(bench, readings), findings.track) else {
-        findings.void("gate counters not read");
-        return None;
-    };
-    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, Direction::Falling);
     match &mut findings.release {
         Some(ramp) => ramp.fine = Some(seen),
         None => findings.release = Some(Ramp { coarse: Volt(f64::NAN), fine: Some(seen) }),

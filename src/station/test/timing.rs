@@ -103,8 +103,8 @@ fn time_and_bounce(
     let gate1 = counts(before[1].count, after[1].count);
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
     let delay = bench.calibration.gate_delay_us;
-    findings.found(time, gate_ms(gate0, delay, bench.clock()), samples.clone());
-    findings.found(bounce, bounce_ms(gate0, gate1, bench.clock()), samples);
+    findings.found(time, gate_ms(gate0, delay[0], bench.clock()), samples.clone());
+    findings.found(bounce, bounce_ms(gate0, gate1, delay, bench.clock()), samples);
 }
 
 pub(super) fn conclude_operate(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {

@@ -1,6 +1,6 @@
 //! Who may import whom. A module that is not in the table has no place in the house yet.
 
-use super::tree::{Source, assert_none, has_word, rust_files};
+use super::tree::{Source, assert_none, files, has_word, rust_files};
 
 /// Everything but the command line.
 const BELOW_CLI: &[&str] = &[
@@ -87,15 +87,12 @@ fn every_module_imports_only_what_the_table_allows() {
 #[test]
 fn the_simulated_rig_and_the_controller_share_no_code() {
     let mut broken = Vec::new();
-    for source in rust_files(&["sim"])
-        .iter()
-        .chain(&super::tree::files(&["sim"]))
-    {
+    for source in files(&["sim"]) {
         let is_manifest = source.path.ends_with("Cargo.toml");
         for (line, code) in source.code() {
-            let names_us =
-                has_word(code, "relayrig") && (is_manifest || code.contains("relayrig::"));
-            if names_us || is_manifest && code.contains("path = \"..") {
+            let depends =
+                is_manifest && (has_word(code, "relayrig") || code.contains("path = \".."));
+            if depends || code.contains("relayrig::") {
                 broken.push(format!(
                     "{}:{line}: the simulated rig never depends on the controller",
                     source.path
@@ -141,8 +138,7 @@ fn imports(source: &Source) -> Vec<(usize, String)> {
             found.extend(names.into_iter().map(|name| (line, name)));
         }
     }
-    let depth = source.path.split('/').count();
-    found.extend(climbs(source, depth));
+    found.extend(climbs(source));
     found
 }
 
@@ -176,8 +172,14 @@ fn leading_name(path: &str) -> Option<String> {
     (end > 0).then(|| path[..end].to_owned())
 }
 
-/// A chain of `super::` long enough to leave the capability by the back door.
-fn climbs(source: &Source, depth: usize) -> Vec<(usize, String)> {
+/// A chain of `super::` that climbs to the root and leaves the capability by the back door.
+fn climbs(source: &Source) -> Vec<(usize, String)> {
+    let names = source.path.split('/').count();
+    let to_the_root = if source.path.ends_with("/mod.rs") {
+        names - 2
+    } else {
+        names - 1
+    };
     let mut found = Vec::new();
     for (line, code) in source.code() {
         let Some(start) = code.find("super::") else {
@@ -190,7 +192,10 @@ fn climbs(source: &Source, depth: usize) -> Vec<(usize, String)> {
             height += 1;
         }
         let name = leading_name(rest).filter(|name| TABLE.iter().any(|(known, _)| known == name));
-        found.extend(name.filter(|_| height + 1 >= depth).map(|name| (line, name)));
+        found.extend(
+            name.filter(|_| height >= to_the_root)
+                .map(|name| (line, name)),
+        );
     }
     found
 }
@@ -213,4 +218,20 @@ fn a_forbidden_import_is_found_with_its_line() {
     };
     let found = imports(&source);
     assert_eq!(found, [(4, "units".to_owned()), (4, "bus".to_owned())]);
+}
+
+#[test]
+fn an_import_through_the_parent_is_found_too() {
+    let found = |path: &str| {
+        let text = "use super::bus::Line;\nuse super::bounded::UpTo;\n".to_owned();
+        imports(&Source {
+            path: path.to_owned(),
+            text,
+        })
+    };
+    assert_eq!(found("src/dcon/mod.rs"), [(1, "bus".to_owned())]);
+    assert!(
+        found("src/dcon/level.rs").is_empty(),
+        "there it is a module beside"
+    );
 }

@@ -1,0 +1,111 @@
+//! The stream of events, under a clock that stands still unless waited for.
+
+use super::*;
+use axum::body::BodyDataStream;
+use futures_util::StreamExt;
+use std::time::Duration;
+use tokio::time::Instant;
+
+async fn stream(bench: &Bench) -> BodyDataStream {
+    let request = Request::get("/api/events").body(Body::empty()).unwrap();
+    let response = bench.router.clone().oneshot(request).await.unwrap();
+    assert_eq!(response.headers()["content-type"], "text/event-stream");
+    response.into_body().into_data_stream()
+}
+
+async fn next(stream: &mut BodyDataStream) -> Option<String> {
+    let piece = stream.next().await?.unwrap();
+    Some(String::from_utf8(piece.to_vec()).unwrap())
+}
+
+fn judged(event: &str) -> Option<u64> {
+    let data = event.lines().find_map(|line| line.strip_prefix("data: "))?;
+    serde_json::from_str::<serde_json::Value>(data).unwrap()["judged"].as_u64()
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_screen_gets_the_view_at_once_and_then_a_beat_each_second() {
+    let bench = Bench::new();
+    let (began, mut stream) = (Instant::now(), stream(&bench).await);
+    let first = next(&mut stream).await.unwrap();
+    assert!(first.contains("event: view\n") && first.contains("retry: 1000\n"));
+    assert_eq!((judged(&first), began.elapsed()), (Some(3), Duration::ZERO));
+    for second in 1..4 {
+        let beat = next(&mut stream).await.unwrap();
+        assert_eq!(beat, "event: beat\ndata: {\"alive\":true}\n\n");
+        assert_eq!(began.elapsed().as_secs(), second);
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn changes_come_at_most_20_times_a_second_and_the_last_one_always_comes() {
+    let bench = Bench::new();
+    let mut stream = stream(&bench).await;
+    next(&mut stream).await.unwrap();
+    let began = Instant::now();
+    for judged in 0..1000 {
+        bench.view.send_modify(|view| view.judged = judged);
+        tokio::task::yield_now().await;
+    }
+    assert_eq!(judged(&next(&mut stream).await.unwrap()), Some(999));
+    assert!(began.elapsed() >= Duration::from_millis(50));
+    assert!(next(&mut stream).await.unwrap().contains("beat"));
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_busy_rig_does_not_silence_the_beat() {
+    let bench = Bench::new();
+    let mut stream = stream(&bench).await;
+    let (mut views, mut beats) = (0, 0);
+    let end = Instant::now() + Duration::from_secs(10);
+    while Instant::now() < end {
+        let event = next(&mut stream).await.unwrap();
+        match event.contains("event: beat") {
+            true => beats += 1,
+            false => views += 1,
+        }
+        bench.view.send_modify(|view| view.judged += 1);
+    }
+    assert!((9..=11).contains(&beats), "{beats}");
+    assert!((190..=202).contains(&views), "{views}");
+}
+
+#[tokio::test(start_paused = true)]
+async fn a_controller_that_is_gone_is_not_called_alive() {
+    let mut bench = Bench::new();
+    let mut stream = stream(&bench).await;
+    next(&mut stream).await.unwrap();
+    bench.end_of_the_controller();
+    for _ in 0..3 {
+        assert!(next(&mut stream).await.unwrap().contains("\"alive\":false"));
+    }
+}
+
+#[tokio::test(start_paused = true)]
+async fn every_stream_ends_with_the_program_and_is_no_longer_counted() {
+    let bench = Bench::new();
+    let mut streams = Vec::new();
+    for _ in 0..50 {
+        let mut stream = stream(&bench).await;
+        next(&mut stream).await.unwrap();
+        streams.push(stream);
+    }
+    assert!(
+        bench
+            .get("/metrics")
+            .await
+            .text()
+            .contains("relayrig_screens 50\n")
+    );
+    bench.ended.send_replace(true);
+    for mut stream in streams {
+        assert_eq!(next(&mut stream).await, None);
+    }
+    assert!(
+        bench
+            .get("/metrics")
+            .await
+            .text()
+            .contains("relayrig_screens 0\n")
+    );
+}

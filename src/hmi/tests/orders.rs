@@ -1,0 +1,109 @@
+//! Orders: what is taken, what is refused, and that a refusal moves nothing.
+
+use super::*;
+
+#[tokio::test]
+async fn stop_stops_and_may_be_said_twice() {
+    let bench = Bench::new();
+    let first = bench.order(r#"{"order":"stop"}"#).await;
+    assert_eq!(first.status, 200);
+    assert_eq!(
+        first.json(),
+        serde_json::json!({"order": "stop", "already": false})
+    );
+    assert!(bench.stopped());
+    assert_eq!(
+        bench.order(r#"{"order":"stop","why":"x"}"#).await.json()["already"],
+        true
+    );
+}
+
+#[tokio::test]
+async fn a_known_order_that_is_not_for_here_says_why() {
+    let bench = Bench::new();
+    for order in ["start", "hold", "unhold", "abort", "clear", "reset"] {
+        let answer = bench.order(format!(r#"{{"order":"{order}"}}"#)).await;
+        assert!(
+            answer
+                .refused(409)
+                .starts_with(&format!("{order}: this page takes"))
+        );
+    }
+    assert!(!bench.stopped());
+}
+
+#[tokio::test]
+async fn an_unknown_order_is_answered_with_the_known_ones() {
+    let bench = Bench::new();
+    for order in ["STOP", "", "stop ", "halt"] {
+        let answer = bench.order(format!(r#"{{"order":"{order}"}}"#)).await;
+        assert!(answer.refused(400).contains("known are stop, start"));
+    }
+    assert!(!bench.stopped());
+}
+
+#[tokio::test]
+async fn a_body_that_is_no_order_is_refused() {
+    let bench = Bench::new();
+    for body in [
+        "",
+        "stop",
+        "{",
+        "[]",
+        "{}",
+        r#"{"order":1}"#,
+        r#"{"order":null}"#,
+        "\u{0}",
+    ] {
+        bench.order(body).await.refused(400);
+    }
+    let plain = Request::post("/api/orders").header("content-type", "text/plain");
+    let answer = bench
+        .ask(plain.body(r#"{"order":"stop"}"#.into()).unwrap())
+        .await;
+    answer.refused(415);
+    assert!(!bench.stopped());
+}
+
+#[tokio::test]
+async fn a_body_of_more_than_16_kb_is_refused() {
+    let bench = Bench::new();
+    let body = |length: usize| format!("{:<length$}", r#"{"order":"stop"}"#);
+    bench.order(body(router::BODY_LIMIT + 1)).await.refused(413);
+    assert!(!bench.stopped());
+    assert_eq!(bench.order(body(router::BODY_LIMIT)).await.status, 200);
+}
+
+#[tokio::test]
+async fn a_foreign_page_cannot_stop_the_line() {
+    let bench = Bench::new();
+    let request = |origin: &str| {
+        Request::post("/api/orders")
+            .header("content-type", "application/json")
+            .header("host", "127.0.0.1:8080")
+            .header("origin", origin)
+            .body(Body::from(r#"{"order":"stop"}"#))
+            .unwrap()
+    };
+    let answer = bench.ask(request("http://evil.example")).await;
+    assert!(answer.refused(403).contains("Origin: http://evil.example"));
+    assert!(!bench.stopped());
+    assert_eq!(
+        bench.ask(request("http://127.0.0.1:8080")).await.status,
+        200
+    );
+    assert!(bench.stopped());
+}
+
+#[tokio::test]
+async fn after_the_controller_ended_a_stop_is_told_so() {
+    let mut bench = Bench::new();
+    bench.end_of_the_controller();
+    assert!(
+        bench
+            .order(r#"{"order":"stop"}"#)
+            .await
+            .refused(409)
+            .contains("has ended")
+    );
+}

@@ -1,0 +1,87 @@
+//! The page, the view, the figures, and what is said where there is nothing.
+
+use super::*;
+
+#[tokio::test]
+async fn the_page_is_html_that_may_run_its_own_script_only() {
+    let answer = Bench::new().get("/").await;
+    assert_eq!(answer.status, 200);
+    assert_eq!(answer.headers["content-type"], "text/html; charset=utf-8");
+    let policy = answer.headers["content-security-policy"].to_str().unwrap();
+    assert!(policy.starts_with("default-src 'none'") && policy.contains("script-src 'sha256-"));
+    assert!(!policy.contains("unsafe"));
+    assert_eq!(answer.headers["x-frame-options"], "DENY");
+}
+
+#[tokio::test]
+async fn the_view_is_the_latest_one() {
+    let bench = Bench::new();
+    assert_eq!(bench.get("/api/view").await.json()["judged"], 3);
+    bench.view.send_modify(|view| view.judged = 4);
+    let answer = bench.get("/api/view").await;
+    assert_eq!(answer.json()["judged"], 4);
+    assert_eq!(answer.json()["simulated"], true);
+    assert_eq!(answer.headers["cache-control"], "no-store");
+}
+
+#[tokio::test]
+async fn the_figures_follow_the_view_and_say_when_the_controller_is_gone() {
+    let mut bench = Bench::new();
+    let answer = bench.get("/metrics").await;
+    assert!(
+        answer.headers["content-type"]
+            .to_str()
+            .unwrap()
+            .starts_with("text/plain; version=0.0.4")
+    );
+    assert!(
+        answer
+            .text()
+            .contains("relayrig_lot_verdicts{verdict=\"pass\"} 2\n")
+    );
+    assert!(answer.text().contains("relayrig_up 1\n"));
+    bench.end_of_the_controller();
+    assert!(
+        bench
+            .get("/metrics")
+            .await
+            .text()
+            .contains("relayrig_up 0\n")
+    );
+}
+
+#[tokio::test]
+async fn where_nothing_is_a_reason_is() {
+    let bench = Bench::new();
+    for path in [
+        "/nothing",
+        "/api",
+        "/api/history",
+        "/api/history/drop",
+        "/..%2f..%2fetc/passwd",
+        "//",
+    ] {
+        assert!(
+            bench.get(path).await.refused(404).contains("nothing at"),
+            "{path}"
+        );
+    }
+}
+
+#[tokio::test]
+async fn a_wrong_method_is_named_and_the_right_one_is_told() {
+    let bench = Bench::new();
+    let answer = bench.get("/api/orders").await;
+    assert_eq!(answer.refused(405), "/api/orders does not take GET");
+    assert_eq!(answer.headers["allow"], "POST");
+    for path in [
+        "/",
+        "/api/view",
+        "/api/events",
+        "/metrics",
+        "/api/history/list",
+    ] {
+        let request = Request::delete(path).body(Body::empty()).unwrap();
+        bench.ask(request).await.refused(405);
+    }
+}
