@@ -12,7 +12,7 @@ mod traffic;
 
 pub use traffic::LineEnds;
 
-use crate::bus::{Answer, Pace};
+use crate::bus::{Answer, LineError, Pace};
 use crate::dcon;
 use crate::guard::Guard;
 use crate::rig::drive::Outputs;
@@ -133,6 +133,12 @@ impl Cycle {
         while let Some((line, purpose, answer)) = self.traffic.next_answer() {
             self.take(line, purpose, answer);
         }
+        for module in self.image.take_resets() {
+            let module = self.wiring.module(module);
+            let line = &self.wiring.line(module.line).name;
+            let text = format!("line {line}, {}: {} has restarted, its outputs fell to their power-on value", module.address, module.name);
+            self.bus_alarm.get_or_insert(Alarm::bus(&text));
+        }
         self.traffic.note_time(now);
     }
 
@@ -143,8 +149,9 @@ impl Cycle {
                 .accept(line, &answer.command, reply, &answer.raw, answer.answered_at)
                 .err()
                 .map(|unexpected| format!("line {}: {unexpected}", self.wiring.line(line).name)),
-            Err(error) => Some(error.to_string()),
+            Err(error) => Some(format!("{error} ({} of {} tries)", answer.tries_used, self.traffic.tries(line))),
         };
+        let refused = matches!(&answer.outcome, Err(LineError::Reply { reason, .. }) if reason.is_answer());
         match (purpose, trouble) {
             (Purpose::Write { module, job }, None) => {
                 self.outputs.confirmed(module);
@@ -159,11 +166,22 @@ impl Cycle {
                     self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
                 }
             }
-            (Purpose::Job, trouble) => self.finish_job(true, answer.answered_at, trouble),
-            (Purpose::Scan | Purpose::Check, Some(trouble)) => {
+            (Purpose::Job, trouble) => {
+                if let Some(trouble) = trouble.as_ref().filter(|_| !refused) {
+                    self.bus_alarm.get_or_insert(Alarm::bus(trouble));
+                }
+                self.finish_job(true, answer.answered_at, trouble);
+            }
+            (Purpose::Scan, Some(trouble)) => {
+                if let Some(times) = self.traffic.scan_failed(line, &answer.command) {
+                    self.bus_alarm.get_or_insert(Alarm::bus(&format!("{trouble}, {times} times in a row")));
+                }
+            }
+            (Purpose::Scan, None) => self.traffic.scan_answered(line, &answer.command),
+            (Purpose::Check, Some(trouble)) => {
                 self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
             }
-            (Purpose::Scan | Purpose::Check | Purpose::Heartbeat, _) => {}
+            (Purpose::Check | Purpose::Heartbeat, _) => {}
         }
     }
 
@@ -272,6 +290,7 @@ impl Cycle {
             Read::Coil => vec![wiring.poll(wiring.analog_in(AnalogIn::CoilVoltageFine).module)],
             Read::Drop => vec![wiring.read_analog(AnalogIn::ContactDrop)],
             Read::Gates => vec![wiring.read_counter(Counter::Gate0), wiring.read_counter(Counter::Gate1)],
+            Read::Resets => self.traffic.measuring_resets(),
             Read::Track => vec![wiring.read_temperature(Temperature::Track)],
         }
     }

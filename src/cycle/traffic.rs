@@ -4,7 +4,7 @@
 //! every second transaction of its line's scan.
 
 use crate::bus::{Answer, Request};
-use crate::dcon::Command;
+use crate::dcon::{Address, Command, Common};
 use crate::rig::point::DigitalIn;
 use crate::rig::wiring::{LineId, ModuleId, Wiring};
 use crate::station::act::JobDone;
@@ -14,6 +14,18 @@ use std::future::poll_fn;
 use std::sync::Arc;
 use std::task::Poll;
 use tokio::sync::mpsc;
+
+/// One scan in so many asks a module whether it has restarted.
+const RESET_EVERY: usize = 32;
+
+fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
+    wiring
+        .modules_on(line)
+        .map(|id| wiring.module(id))
+        .filter(|module| module.model.has_outputs())
+        .map(|module| Common::ReadResetStatus.to(module.address))
+        .collect()
+}
 
 /// The cycle's ends of a line's queues.
 #[derive(Debug)]
@@ -54,6 +66,8 @@ struct Slot {
     queue: VecDeque<(Command, Purpose)>,
     heartbeat_due: RigTime,
     scan: Vec<Command>,
+    /// Reset status of every module with outputs.
+    resets: Vec<Command>,
     priority: Option<Command>,
     scan_turn: usize,
     scan_due: RigTime,
@@ -77,6 +91,7 @@ pub struct Traffic {
     beam: Option<Command>,
     beam_line: LineId,
     rewrites: Vec<u8>,
+    failed_scans: Vec<(LineId, Option<Address>, u8)>,
     tries: u8,
     scanning: bool,
     ticket: u64,
@@ -107,6 +122,7 @@ impl Traffic {
                     queue: VecDeque::new(),
                     heartbeat_due: RigTime(0),
                     scan: if is_board { Vec::new() } else { scan.into_iter().map(|m| wiring.poll(m)).collect() },
+                    resets: reset_questions(wiring, ends.line),
                     priority: (ends.line == estop_line).then(|| wiring.poll(estop)),
                     scan_turn: 0,
                     scan_due: RigTime(0),
@@ -123,6 +139,7 @@ impl Traffic {
             beam: None,
             beam_line: estop_line,
             rewrites: vec![0; wiring.modules.len()],
+            failed_scans: Vec::new(),
             tries: wiring.bus.tries,
             scanning: false,
             ticket: 0,
@@ -133,6 +150,37 @@ impl Traffic {
     /// The line with the interface board.
     pub fn measuring_line(&self) -> LineId {
         self.measuring
+    }
+
+    /// Reset status of every module with outputs on the measuring line.
+    pub fn measuring_resets(&self) -> Vec<Command> {
+        self.slots.iter().find(|slot| slot.ends.line == self.measuring).map_or_else(Vec::new, |slot| slot.resets.clone())
+    }
+
+    /// How often a command of this line is tried.
+    pub fn tries(&self, line: LineId) -> u8 {
+        self.slots.iter().find(|slot| slot.ends.line == line).map_or(1, |slot| slot.tries)
+    }
+
+    /// A scan was not answered; how often in a row, once that is as often as the bus settings allow.
+    pub fn scan_failed(&mut self, line: LineId, command: &Command) -> Option<u8> {
+        let address = command.address();
+        let known = self.failed_scans.iter().position(|(l, a, _)| *l == line && *a == address);
+        let index = known.unwrap_or_else(|| {
+            self.failed_scans.push((line, address, 0));
+            self.failed_scans.len() - 1
+        });
+        let times = &mut self.failed_scans[index].2;
+        *times += 1;
+        (*times >= self.tries).then_some(*times)
+    }
+
+    /// A scan was answered: failures before it no longer count.
+    pub fn scan_answered(&mut self, line: LineId, command: &Command) {
+        if !self.failed_scans.is_empty() {
+            let address = command.address();
+            self.failed_scans.retain(|(l, a, _)| *l != line || *a != address);
+        }
     }
 
     /// The time of this turn.
@@ -244,6 +292,10 @@ impl Traffic {
         if slot.ends.line == self.beam_line && turn % 4 == 3 && let Some(beam) = self.beam {
             slot.scan_due = now + self.scan_period;
             return Some((beam, Purpose::Scan));
+        }
+        if !slot.resets.is_empty() && turn % RESET_EVERY == RESET_EVERY - 1 {
+            slot.scan_due = now + self.scan_period;
+            return Some((slot.resets[(turn / RESET_EVERY) % slot.resets.len()], Purpose::Scan));
         }
         let others = slot.scan.len();
         if others == 0 {

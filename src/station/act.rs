@@ -21,6 +21,8 @@ pub enum Read {
     Gates,
     /// Temperature of the magazine track, which the part has.
     Track,
+    /// Whether a module with outputs has restarted since it was asked last; one that has is an alarm.
+    Resets,
 }
 
 /// One step of a stage.
@@ -305,6 +307,7 @@ impl Runner {
                 let gate = |counter| image.counter(counter).cloned().ok_or_else(missing);
                 self.readings.gates.push([gate(Counter::Gate0)?, gate(Counter::Gate1)?]);
             }
+            Read::Resets => {}
             Read::Track => {
                 let sample = image.temperature(Temperature::Track).cloned();
                 self.readings.track.push(sample.ok_or_else(missing)?);

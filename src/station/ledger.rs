@@ -40,6 +40,8 @@ pub struct Falling {
     pub since: RigTime,
     /// Count of the bin's beam before.
     pub beam_before: u32,
+    /// When the beam had first counted it.
+    pub seen: Option<RigTime>,
 }
 
 /// Places and counts.
@@ -111,7 +113,7 @@ impl Ledger {
     pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
         assert!(self.falling.is_none(), "two parts on their way down");
         if let Some(part) = self.gripper.take() {
-            self.falling = Some(Falling { part, bin, since, beam_before });
+            self.falling = Some(Falling { part, bin, since, beam_before, seen: None });
         }
     }
 

@@ -27,6 +27,8 @@ const RAMP_SCANS: usize = 44;
 /// Levels at the coil, volts: both within the fine channels with 400 ohm.
 const LOW_V: f64 = 1.5;
 const HIGH_V: f64 = 5.7;
+/// Only readings so far inside both ends of the fine ramp tell its slope.
+const SLOPE_MARGIN_V: f64 = 0.3;
 /// Drops read per polarity.
 const DROPS: usize = 8;
 /// Gate pulses: their fractions of a count add up, so one count of error is spread over all.
@@ -236,7 +238,11 @@ fn slope(scans: &[CoilScan], line: &InputLine, voltage_gain: f64) -> Result<Fact
         .filter_map(|scan| scan.voltage_fine.as_ref())
         .filter(|sample| sample.quality == Quality::Good)
         .map(|sample| (sample.origin.at.0 as f64 / 1e6, line.correct(Volt(sample.terminal_volts)).0 / voltage_gain))
+        .filter(|(_, volts)| (LOW_V + SLOPE_MARGIN_V..HIGH_V - SLOPE_MARGIN_V).contains(volts))
         .collect();
+    if points.len() < 10 {
+        return Err(format!("only {} readings on the fine ramp", points.len()));
+    }
     let n = points.len() as f64;
     let (mt, mv) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
     let stt = points.iter().map(|p| (p.0 - mt).powi(2)).sum::<f64>();

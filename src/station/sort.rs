@@ -18,6 +18,9 @@ use crate::units::{RigTime, Span};
 /// From the opening of the gripper to the beam at the latest.
 const FALL: Span = Span::ms(1500);
 
+/// A second body that clings to the part follows it through the beam within this time.
+const SECOND_BODY: Span = Span::ms(80);
+
 /// Where the sorter stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sort {
@@ -99,19 +102,21 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
 
 /// Watches the beam of the part that is falling.
 fn confirm(turn: &mut Turn, table: &AxisTable) {
-    let Some(falling) = &turn.ledger.falling else { return };
+    let now = turn.now;
+    let Some(falling) = &mut turn.ledger.falling else { return };
     let (bin, since, before) = (falling.bin, falling.since, falling.beam_before);
     let beam = table.beam(bin);
     turn.wants.beam = Some(beam);
-    let now = turn.image.events(beam).filter(|count| count.origin.at > since).map(|count| count.count);
-    match now.map(|count| count.wrapping_sub(before) & 0xFFFF) {
-        Some(1) => {
+    let count = turn.image.events(beam).filter(|count| count.origin.at > since).map(|count| count.count);
+    match count.map(|count| count.wrapping_sub(before) & 0xFFFF) {
+        Some(1) if now.since(*falling.seen.get_or_insert(now)) >= SECOND_BODY => {
             if let Some(landed) = turn.ledger.land() {
-                turn.wants.landed.push(Landed { part: landed.part, bin, at: turn.now });
+                turn.wants.landed.push(Landed { part: landed.part, bin, at: now });
             }
         }
+        Some(1) => {}
         Some(several) if several > 1 => turn.alarm(Alarm::beam(bin.name(), several)),
-        Some(_) | None if turn.now.since(since) > FALL => {
+        Some(_) | None if now.since(since) > FALL => {
             turn.ledger.lose_falling();
             turn.alarm(Alarm::beam(bin.name(), 0));
         }

@@ -1,5 +1,10 @@
 //! The built program in a folder of its own, with its own copy of the configuration.
 
+#![cfg_attr(
+    not(feature = "sim"),
+    allow(dead_code, reason = "lots need the simulated rig")
+)]
+
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -170,10 +170,10 @@ function showLink() {
 
 function showStop(link) {
   const ended = link === "ended" || (view !== null && view.state === "ended");
-  at("stop").disabled = link !== "live" || ended;
-  const why = ended ? word("stop.ended") : link === "lost" ? word("stop.stale") : "";
+  // Without a connection the order is still worth trying: it says itself whether it arrived.
+  at("stop").disabled = ended && link !== "lost";
   const answer = stop === null ? "" : word(stop.word) + " " + stop.more;
-  at("stop_answer").textContent = why || answer;
+  at("stop_answer").textContent = at("stop").disabled ? word("stop.ended") : answer;
 }
 
 function showAll() {

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+mod contrast;
+
 use super::*;
 use std::collections::{BTreeMap, BTreeSet};
 

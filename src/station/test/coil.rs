@@ -59,6 +59,7 @@ pub(super) fn acts_off(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
         coarse,
         fine,
         supply.step_to(Volt(bench.recipe.test.prebias_v)),
+        Act::Read(Read::Resets),
         Act::ConvertSinceMark(Span::ms(1) + bench.fresh(CHANNELS)),
         Act::Read(Read::Coil),
     ]

@@ -1,0 +1,186 @@
+//! `relayrig study`: figures that anyone can reprint.
+//!
+//! A study runs lots on the simulated rig in virtual time, each in a process of its own with this very
+//! program, sets what the rows say against what the specimens really were (`--truth`), and prints every
+//! figure beside the bar it has to keep.
+//!
+//! - Lot `n` of a study runs with seed `n`, so a figure can be traced back to one `relayrig run`.
+//! - A good part is one without a defect; only good parts count for errors and coverage.
+//! - A figure that could not be had (nothing measured, nothing reported) has missed its bar.
+//! - Rig time and wall time are never mixed: wall time appears in `pace` only.
+//!
+//! Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input or a lot that did not start.
+
+mod accuracy;
+mod bins;
+mod chart;
+mod coverage;
+mod cycle;
+mod error;
+mod figure;
+mod fleet;
+mod lot;
+mod output;
+mod pace;
+mod sorting;
+#[cfg(test)]
+mod tests;
+
+use anyhow::{Context, bail};
+use clap::ValueEnum;
+use fleet::Order;
+use output::Report;
+use serde_json::json;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Every bar is kept.
+const ALL_MET: i32 = 0;
+/// A bar is missed.
+const BAR_MISSED: i32 = 1;
+
+/// What can be studied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Study {
+    /// Error of every parameter against the truth, and where parts went
+    Accuracy,
+    /// How often the stated uncertainty covers the truth
+    Coverage,
+    /// Rig time of a test and of a cycle, and where it goes
+    Cycle,
+    /// Parts per second of wall time, and whether the same seed gives the same bytes
+    Pace,
+    /// Good parts rejected, defects by bin, over many lots
+    Sorting,
+}
+
+impl Study {
+    /// Lots and parts of a lot when nothing else is asked for.
+    const fn usual(self) -> (u64, u64) {
+        match self {
+            Self::Accuracy => (10, 500),
+            Self::Coverage => (40, 25),
+            Self::Cycle => (1, 100),
+            Self::Pace => (3, 300),
+            Self::Sorting => (100, 110),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Accuracy => "accuracy",
+            Self::Coverage => "coverage",
+            Self::Cycle => "cycle",
+            Self::Pace => "pace",
+            Self::Sorting => "sorting",
+        }
+    }
+
+    fn report(self, order: &Order) -> anyhow::Result<Report> {
+        match self {
+            Self::Accuracy => accuracy::study(order),
+            Self::Coverage => coverage::study(order),
+            Self::Cycle => cycle::study(order),
+            Self::Pace => pace::study(order),
+            Self::Sorting => sorting::study(order),
+        }
+    }
+}
+
+/// A study, or the list of them.
+#[derive(Debug, Clone, clap::Args)]
+#[command(after_help = "Examples:
+  relayrig study
+  relayrig study accuracy
+  relayrig study coverage --json
+  relayrig study cycle --out figures
+  relayrig study accuracy --seeds 2 --parts 50 --recipe jzc-22f-009
+
+Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input.")]
+pub struct StudyArgs {
+    /// What to study; without it the studies are listed
+    #[arg(value_enum, value_name = "NAME")]
+    pub name: Option<Study>,
+    /// One JSON object per figure, then a summary
+    #[arg(long)]
+    pub json: bool,
+    /// Also writes NAME.csv and NAME.svg into this directory
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Lots, with seeds 1 to N; `pace` runs seed 1 N times
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub seeds: Option<u64>,
+    /// Parts of each lot
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub parts: Option<u64>,
+    /// Recipe in config/recipes
+    #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
+    pub recipe: String,
+    /// World of the simulated rig instead of config/sim.toml
+    #[arg(long, value_name = "FILE")]
+    pub world: Option<PathBuf>,
+}
+
+/// Runs the command; the result is the exit status.
+///
+/// # Errors
+/// Bad input, a lot that ended with bad input, or an output that cannot be written.
+pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
+    let Some(study) = args.name else {
+        print(&listed(args.json))?;
+        return Ok(ALL_MET);
+    };
+    if !cfg!(feature = "sim") {
+        bail!("study: this is a plant build without the simulated rig");
+    }
+    if let Some(folder) = &args.out {
+        std::fs::create_dir_all(folder).with_context(|| format!("--out {}", folder.display()))?;
+    }
+    let (lots, parts) = study.usual();
+    let order = Order {
+        program: std::env::current_exe().context("finding this program")?,
+        config: config.to_owned(),
+        recipe: args.recipe.clone(),
+        world: args.world.clone(),
+        lots: args.seeds.unwrap_or(lots),
+        parts: args.parts.unwrap_or(parts),
+    };
+    let report = study.report(&order)?;
+    if let Some(folder) = &args.out {
+        written(&folder.join(format!("{}.csv", report.study)), &report.csv())?;
+        written(&folder.join(format!("{}.svg", report.study)), &report.chart.svg())?;
+    }
+    print(&if args.json { report.json() } else { report.text() })?;
+    Ok(if report.all_met() { ALL_MET } else { BAR_MISSED })
+}
+
+fn listed(as_json: bool) -> String {
+    let one = |study: &Study| {
+        let (lots, parts) = study.usual();
+        let about = study
+            .to_possible_value()
+            .and_then(|value| value.get_help().map(ToString::to_string))
+            .unwrap_or_default();
+        if as_json {
+            let it = json!({"study": study.name(), "about": about, "lots": lots, "parts": parts});
+            format!("{it}\n")
+        } else {
+            format!("{:<10} {about} ({lots} x {parts} parts)\n", study.name())
+        }
+    };
+    Study::value_variants().iter().map(one).collect()
+}
+
+fn written(path: &Path, text: &str) -> anyhow::Result<()> {
+    std::fs::write(path, text).with_context(|| format!("writing {}", path.display()))
+}
+
+/// A reader that has seen enough and closed the pipe is no error.
+fn print(text: &str) -> anyhow::Result<()> {
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(error).context("writing the figures")
+        }
+        _ => Ok(()),
+    }
+}

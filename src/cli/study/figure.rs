@@ -1,0 +1,114 @@
+//! One figure and the bar it has to keep.
+
+use serde_json::{Map, Value, json};
+
+/// What a figure has to keep. Every end is part of what is allowed, but for [`Bar::Below`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bar {
+    /// At most.
+    AtMost(f64),
+    /// Less than.
+    Below(f64),
+    /// At least.
+    AtLeast(f64),
+    /// From low to high.
+    Within(f64, f64),
+}
+
+impl Bar {
+    /// False for NaN.
+    pub fn is_met(self, value: f64) -> bool {
+        match self {
+            Self::AtMost(high) => value <= high,
+            Self::Below(high) => value < high,
+            Self::AtLeast(low) => value >= low,
+            Self::Within(low, high) => (low..=high).contains(&value),
+        }
+    }
+
+    /// As it stands in the column.
+    pub fn text(self) -> String {
+        match self {
+            Self::AtMost(high) => format!("<= {high}"),
+            Self::Below(high) => format!("< {high}"),
+            Self::AtLeast(low) => format!(">= {low}"),
+            Self::Within(low, high) => format!("{low} to {high}"),
+        }
+    }
+}
+
+/// One row of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// What it is.
+    pub name: String,
+    /// From how many (parts, lots, runs: the name says which).
+    pub n: u64,
+    /// The figure that is held against the bar; none when it could not be had.
+    pub value: Option<f64>,
+    /// Unit of `value` and of `more`, unless a column names its own.
+    pub unit: &'static str,
+    /// Further columns: key and number, no bar.
+    pub more: Vec<(&'static str, Option<f64>)>,
+    /// None where the figure is for information.
+    pub bar: Option<Bar>,
+}
+
+impl Figure {
+    /// A figure for information.
+    pub fn new(name: impl Into<String>, n: u64, value: Option<f64>, unit: &'static str) -> Self {
+        let value = value.filter(|it| it.is_finite());
+        Self { name: name.into(), n, value, unit, more: Vec::new(), bar: None }
+    }
+
+    /// A number of things.
+    pub fn count(name: impl Into<String>, n: u64, count: Option<u64>) -> Self {
+        Self::new(name, n, count.map(|it| it as f64), "")
+    }
+
+    /// The same, held against a bar.
+    pub fn bar(self, bar: Bar) -> Self {
+        Self { bar: Some(bar), ..self }
+    }
+
+    /// The same with one column more.
+    pub fn with(mut self, key: &'static str, value: Option<f64>) -> Self {
+        self.more.push((key, value.filter(|it| it.is_finite())));
+        self
+    }
+
+    /// None without a bar; a figure that could not be had has missed it.
+    pub fn met(&self) -> Option<bool> {
+        self.bar.map(|bar| self.value.is_some_and(|value| bar.is_met(value)))
+    }
+
+    /// As one JSON object.
+    pub fn json(&self, study: &str) -> Value {
+        let mut it = Map::new();
+        it.insert("type".into(), json!("figure"));
+        it.insert("study".into(), json!(study));
+        it.insert("figure".into(), json!(self.name));
+        it.insert("n".into(), json!(self.n));
+        it.insert("value".into(), json!(self.value));
+        it.insert("unit".into(), json!(self.unit));
+        for (key, value) in &self.more {
+            it.insert((*key).into(), json!(value));
+        }
+        it.insert("bar".into(), json!(self.bar.map(Bar::text)));
+        it.insert("met".into(), json!(self.met()));
+        Value::Object(it)
+    }
+}
+
+/// To five digits, without an exponent where a person would write none.
+pub fn shown(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 { "0".into() } else { "-".into() };
+    }
+    if value.fract() == 0.0 && value.abs() < 1e9 {
+        return format!("{value:.0}");
+    }
+    let before_point = value.abs().log10().floor() as i32 + 1;
+    let decimals = usize::try_from((5 - before_point).clamp(0, 6)).unwrap_or(0);
+    format!("{value:.decimals$}")
+}

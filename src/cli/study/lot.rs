@@ -1,0 +1,155 @@
+//! What one lot said about its parts, joined with what the parts really were.
+//!
+//! Two files of one run are read: the rows of `run --json` and the truth of `--truth`, both one JSON
+//! object per line. They are joined by `seq`. Keys that are not known are passed over, so that either file
+//! may grow.
+
+use crate::gauge::Parameter;
+use anyhow::{Context, bail};
+use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// One judged part.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+pub struct Part {
+    /// Order of entering the nest, from 1.
+    pub seq: u64,
+    /// `pass`, `fail` or `void`.
+    pub verdict: String,
+    /// Where the row says the part went; empty when it never landed.
+    pub bin: String,
+    #[serde(default)]
+    values: BTreeMap<String, Option<f64>>,
+    #[serde(default)]
+    uncertainty: BTreeMap<String, Option<f64>>,
+    /// Rig time from probes up to verdict.
+    pub test_s: Option<f64>,
+    /// Rig time between successive nest exits.
+    pub cycle_s: Option<f64>,
+    /// Where the test time went: what to seconds.
+    #[serde(default)]
+    pub spent: BTreeMap<String, f64>,
+    /// What the part really was; none when the truth file has no such part.
+    #[serde(skip)]
+    pub truth: Option<Truth>,
+}
+
+/// What a part really was.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+pub struct Truth {
+    seq: u64,
+    /// Name of the defect; none for a good part.
+    pub defect: Option<String>,
+    /// The bin where the body came to rest.
+    pub landed_in: Option<String>,
+    #[serde(flatten)]
+    values: BTreeMap<String, Value>,
+}
+
+/// A value beside its truth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// As measured.
+    pub value: f64,
+    /// Expanded, k = 2.
+    pub uncertainty: Option<f64>,
+    /// As it was.
+    pub truth: f64,
+}
+
+impl Part {
+    /// True when the truth knows the part and names no defect.
+    pub fn is_good(&self) -> bool {
+        self.truth.as_ref().is_some_and(|truth| truth.defect.is_none())
+    }
+
+    /// None when it was not measured, or the part never showed the quantity.
+    pub fn reading(&self, parameter: Parameter) -> Option<Reading> {
+        let key = parameter.name();
+        Some(Reading {
+            value: self.values.get(key).copied().flatten()?,
+            uncertainty: self.uncertainty.get(key).copied().flatten(),
+            truth: self.truth.as_ref()?.values.get(key)?.as_f64()?,
+        })
+    }
+
+    /// True when the row names the bin where the body came to rest.
+    pub fn is_where_it_says(&self) -> bool {
+        let landed = self.truth.as_ref().and_then(|truth| truth.landed_in.as_deref());
+        landed == Some(self.bin.as_str())
+    }
+}
+
+/// Figures of a lot as a whole.
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
+pub struct Summary {
+    /// Alarms raised.
+    pub alarms: u64,
+    /// Writes to any EEPROM during the lot; none when nobody counted.
+    pub eeprom_writes: Option<u64>,
+    /// Fingerprint of the bytes of each line.
+    #[serde(default)]
+    pub bytes: BTreeMap<String, String>,
+    /// Wall time by what it was spent on, seconds.
+    #[serde(default)]
+    pub wall_profile: BTreeMap<String, f64>,
+}
+
+/// One lot.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Lot {
+    /// Seed of rig and lot.
+    pub seed: u64,
+    /// Parts in order of entering the nest.
+    pub parts: Vec<Part>,
+    /// Parts of the truth file without a row.
+    pub unrecorded: u64,
+    /// Figures of the lot as a whole.
+    pub summary: Summary,
+    /// Lines logged as errors; bodies that touched are among them.
+    pub errors_logged: u64,
+    /// Wall time of the whole process, start and calibration included, seconds.
+    pub wall_s: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(tag = "type", rename_all = "lowercase")]
+enum Line {
+    Part(Part),
+    Summary(Summary),
+}
+
+impl Lot {
+    /// From the rows of `run --json` and the text of the truth file.
+    ///
+    /// # Errors
+    /// A line that is no such object, or a missing summary.
+    pub fn read(seed: u64, rows: &str, truth: &str) -> anyhow::Result<Self> {
+        let mut known = BTreeMap::new();
+        for (number, line) in truth.lines().enumerate() {
+            let it: Truth =
+                serde_json::from_str(line).with_context(|| format!("truth, line {}", number + 1))?;
+            known.insert(it.seq, it);
+        }
+        let mut parts = Vec::new();
+        let mut summary = None;
+        for (number, line) in rows.lines().enumerate() {
+            match serde_json::from_str(line).with_context(|| format!("rows, line {}", number + 1))? {
+                Line::Part(part) => parts.push(part),
+                Line::Summary(it) => summary = Some(it),
+            }
+        }
+        let Some(summary) = summary else { bail!("rows: found no summary after {} parts", parts.len()) };
+        for part in &mut parts {
+            part.truth = known.remove(&part.seq);
+        }
+        parts.sort_by_key(|part| part.seq);
+        Ok(Self { seed, parts, unrecorded: known.len() as u64, summary, ..Self::default() })
+    }
+
+    /// Parts without a defect.
+    pub fn good(&self) -> impl Iterator<Item = &Part> {
+        self.parts.iter().filter(|part| part.is_good())
+    }
+}

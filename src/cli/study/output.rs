@@ -1,0 +1,124 @@
+//! A report: as a table for a person, as JSON lines and as CSV for programs.
+
+use super::chart::Chart;
+use super::figure::{Bar, Figure, shown};
+use serde_json::json;
+use std::fmt::Write;
+
+/// The figures of a study, in groups that share their columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Name of the study.
+    pub study: &'static str,
+    /// What was run.
+    pub about: String,
+    /// Figures in groups; a group is a table of its own.
+    pub groups: Vec<Vec<Figure>>,
+    /// The plot.
+    pub chart: Chart,
+}
+
+impl Report {
+    /// True when no figure has missed its bar.
+    pub fn all_met(&self) -> bool {
+        self.figures().all(|figure| figure.met() != Some(false))
+    }
+
+    fn figures(&self) -> impl Iterator<Item = &Figure> {
+        self.groups.iter().flatten()
+    }
+
+    fn missed(&self) -> Vec<&str> {
+        let missed = self.figures().filter(|figure| figure.met() == Some(false));
+        missed.map(|figure| figure.name.as_str()).collect()
+    }
+
+    /// Aligned tables, then one line that says whether all bars are kept.
+    pub fn text(&self) -> String {
+        let mut text = format!("{}: {}\n", self.study, self.about);
+        for group in self.groups.iter().filter(|group| !group.is_empty()) {
+            text.push('\n');
+            aligned(&mut text, &cells(group, shown));
+        }
+        let missed = self.missed();
+        let bars = self.figures().filter(|figure| figure.bar.is_some()).count();
+        let _ = match missed.as_slice() {
+            [] => writeln!(text, "\nall {bars} bars met"),
+            some => writeln!(text, "\n{} of {bars} bars missed: {}", some.len(), some.join(", ")),
+        };
+        text
+    }
+
+    /// One object per figure, then a summary.
+    pub fn json(&self) -> String {
+        let mut text = String::new();
+        for figure in self.figures() {
+            let _ = writeln!(text, "{}", figure.json(self.study));
+        }
+        let summary = json!({
+            "type": "summary", "study": self.study, "about": self.about,
+            "figures": self.figures().count(), "met": self.all_met(), "missed": self.missed(),
+        });
+        let _ = writeln!(text, "{summary}");
+        text
+    }
+
+    /// All figures under one header; numbers in full.
+    pub fn csv(&self) -> String {
+        let all: Vec<Figure> = self.figures().cloned().collect();
+        let mut text = String::new();
+        for row in cells(&all, |value| value.to_string()) {
+            let quoted: Vec<String> = row.iter().map(|cell| quoted(cell)).collect();
+            text.push_str(&quoted.join(","));
+            text.push_str("\r\n");
+        }
+        text
+    }
+}
+
+/// Header and rows; the further columns in order of first appearance.
+fn cells(figures: &[Figure], number: impl Fn(f64) -> String) -> Vec<Vec<String>> {
+    let mut keys: Vec<&str> = Vec::new();
+    for (key, _) in figures.iter().flat_map(|figure| &figure.more) {
+        if !keys.contains(key) {
+            keys.push(key);
+        }
+    }
+    let mut header: Vec<String> = ["figure", "n", "value", "unit"].map(String::from).to_vec();
+    header.extend(keys.iter().map(ToString::to_string));
+    header.extend(["bar", "met"].map(String::from));
+    let mut table = vec![header];
+    for figure in figures {
+        let further = |key: &&str| figure.more.iter().find(|(known, _)| known == key).and_then(|(_, value)| *value);
+        let mut row = vec![
+            figure.name.clone(),
+            figure.n.to_string(),
+            figure.value.map_or_else(String::new, &number),
+            figure.unit.to_string(),
+        ];
+        row.extend(keys.iter().map(|key| further(key).map_or_else(String::new, &number)));
+        row.push(figure.bar.map_or_else(String::new, Bar::text));
+        row.push(figure.met().map_or("", |met| if met { "yes" } else { "NO" }).to_string());
+        table.push(row);
+    }
+    table
+}
+
+/// The first column and units to the left, numbers to the right.
+fn aligned(text: &mut String, table: &[Vec<String>]) {
+    let columns = table.first().map_or(0, Vec::len);
+    let width = |column: usize| table.iter().filter_map(|row| row.get(column)).map(|it| it.chars().count()).max();
+    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+    for row in table {
+        let mut line = String::new();
+        for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
+            let left = column == 0 || column == 3 || column + 2 >= columns;
+            let _ = if left { write!(line, "{cell:<width$}  ") } else { write!(line, "{cell:>width$}  ") };
+        }
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+}
+
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+}
