@@ -8,6 +8,8 @@ pub mod history;
 pub mod run;
 #[cfg(feature = "sim")]
 pub mod sim;
+#[cfg(feature = "sim")]
+pub mod study;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -56,6 +58,9 @@ pub enum Command {
     /// Only the simulated rig, on pseudo-terminals in real time
     #[cfg(feature = "sim")]
     Sim(sim::SimArgs),
+    /// Figures that anyone can reprint, each beside its bar
+    #[cfg(feature = "sim")]
+    Study(study::StudyArgs),
     /// Check the configuration, or print the schema of a file
     #[command(subcommand)]
     Config(config::Args),
@@ -76,6 +81,8 @@ impl Cli {
             Command::Run(args) => run::run(&self.config, &self.db, &args),
             #[cfg(feature = "sim")]
             Command::Sim(args) => sim::run(&self.config, &args),
+            #[cfg(feature = "sim")]
+            Command::Study(args) => study::run(&self.config, &args),
             Command::Config(args) => config::run(&self.config, &args),
             Command::Check(args) => check::run(args),
             Command::History(args) => history::run(&self.db, args),

@@ -13,7 +13,7 @@ mod traffic;
 pub use traffic::LineEnds;
 
 use crate::bus::{Answer, LineError, Pace};
-use crate::dcon;
+use crate::dcon::{self, Command};
 use crate::guard::Guard;
 use crate::rig::drive::Outputs;
 use crate::rig::image::Image;
@@ -143,7 +143,10 @@ impl Cycle {
     }
 
     fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
+        // Reading the reset status clears it, so it is never asked twice; a lost one is asked again anyway.
+        let asked_again = matches!(answer.command, Command::Common(_, dcon::Common::ReadResetStatus));
         let trouble = match &answer.outcome {
+            Err(_) if asked_again && purpose == Purpose::Job => None,
             Ok(reply) => self
                 .image
                 .accept(line, &answer.command, reply, &answer.raw, answer.answered_at)
@@ -155,6 +158,7 @@ impl Cycle {
         match (purpose, trouble) {
             (Purpose::Write { module, job }, None) => {
                 self.outputs.confirmed(module);
+                self.traffic.written(module);
                 self.finish_job(job, answer.answered_at, None);
             }
             (Purpose::Write { module, job }, Some(trouble)) => {
@@ -283,7 +287,7 @@ impl Cycle {
         }
     }
 
-    fn reads(&self, read: Read) -> Vec<dcon::Command> {
+    fn reads(&self, read: Read) -> Vec<Command> {
         let wiring = &self.wiring;
         match read {
             Read::Board => vec![wiring.poll(wiring.digital_in(DigitalIn::Latch).module)],

@@ -12,7 +12,7 @@
 //! - [`station`]: the sequence: feed, clamp, test, sort; parts and trouble.
 //! - [`cycle`]: one turn of the rig, top to bottom.
 //! - [`history`]: SQLite; [`quality`]: statistics that stay right.
-//! - [`view`]: what a screen may know.
+//! - [`view`]: what a screen may know; [`hmi`]: the page, its events and orders.
 //! - [`config`]: files to settings, with the line of every mistake.
 //! - [`cli`]: one file per command; the only place that names the simulator.
 
@@ -24,6 +24,7 @@ pub mod dcon;
 pub mod gauge;
 pub mod guard;
 pub mod history;
+pub mod hmi;
 pub mod lpm;
 pub mod quality;
 pub mod rig;

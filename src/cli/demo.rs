@@ -1,7 +1,12 @@
 //! `relayrig demo`: the main job with nothing to prepare.
 
 use super::run::{self, Controls, PaceArg, RunArgs};
+use crate::hmi;
+use anyhow::Context;
 use std::path::Path;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use tokio::sync::watch;
 
 /// The main job with nothing to prepare.
 #[derive(Debug, clap::Args)]
@@ -25,6 +30,8 @@ pub struct DemoArgs {
 
 /// Runs the command; the result is the exit status.
 pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
+    let listener = std::net::TcpListener::bind(args.listen)
+        .with_context(|| format!("--listen {}: the page cannot listen there", args.listen))?;
     let controls = Controls::new(false);
     let lot = format!("demo {}", jiff::Zoned::now().strftime("%Y-%m-%d %H:%M:%S"));
     let order = RunArgs {
@@ -40,5 +47,45 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
         line: Vec::new(),
         json: false,
     };
-    run::run_with(config, db, &order, &controls)
+    let page = Page::start(listener, &controls, db)?;
+    eprintln!("relayrig: simulated rig running, page at http://{}/, history in {}, Ctrl-C stops", args.listen, db.display());
+    let status = run::run_with(config, db, &order, &controls);
+    page.end();
+    status
+}
+
+/// The page on a thread of its own, so that the line never waits for a screen.
+struct Page {
+    ended: watch::Sender<bool>,
+    thread: JoinHandle<()>,
+}
+
+impl Page {
+    fn start(listener: std::net::TcpListener, controls: &Controls, db: &Path) -> anyhow::Result<Self> {
+        listener.set_nonblocking(true).context("the page's socket")?;
+        let shared = hmi::Shared {
+            view: controls.view.subscribe(),
+            db: db.to_path_buf(),
+            stop: Arc::clone(&controls.stop),
+        };
+        let (ended, seen) = watch::channel(false);
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        let thread = std::thread::spawn(move || {
+            let served = runtime.block_on(async {
+                let listener = tokio::net::TcpListener::from_std(listener)?;
+                hmi::serve(listener, shared, seen).await
+            });
+            if let Err(error) = served {
+                tracing::error!("the page ended: {error}");
+            }
+        });
+        Ok(Self { ended, thread })
+    }
+
+    fn end(self) {
+        self.ended.send_replace(true);
+        if self.thread.join().is_err() {
+            tracing::error!("the page ended by an assertion");
+        }
+    }
 }

@@ -219,6 +219,11 @@ impl Traffic {
         self.rewrites[module.0] < self.tries
     }
 
+    /// A write was confirmed: failures before it no longer count.
+    pub fn written(&mut self, module: ModuleId) {
+        self.rewrites[module.0] = 0;
+    }
+
     /// A new measuring job.
     pub fn begin_job(&mut self) {
         self.job = Some(JobUnderway::default());

@@ -54,7 +54,7 @@ fn every_fault_ends_as_the_table_says() {
 
 /// Every way in which a run under this fault differs from the table.
 fn told_otherwise(trouble: &Trouble) -> Vec<String> {
-    let (workshop, said) = strike(&format!("fault {}", trouble.fault), trouble.fault);
+    let (workshop, said) = strike(&format!("fault-{}", trouble.fault), trouble.fault);
     let alarms = workshop.texts("SELECT code FROM alarm ORDER BY id");
     let expected = (trouble.status, trouble.alarm);
     let found = (said.status, alarms.first().map(String::as_str));
@@ -108,12 +108,15 @@ fn a_part_with_a_dirty_probe_is_void_and_never_failed() {
 
 #[test]
 fn a_silent_module_is_named_with_line_address_and_command() {
-    let (workshop, said) = strike("silent-module", "silence=mech_di_b@10");
-    said.with_status(3);
-    let alarms = workshop.texts("SELECT text FROM alarm");
-    assert_eq!(alarms.len(), 1, "{alarms:?}");
-    for part in ["motion", "12", "ReadPort"] {
-        assert!(alarms[0].contains(part), "{part} is not named: {alarms:?}");
+    for (module, line, address) in [("mech_di_b", "motion", "12"), ("board_di", "measure", "08")] {
+        let fault = format!("silence={module}@10");
+        let (workshop, said) = strike(&format!("silent-{module}"), &fault);
+        said.with_status(3);
+        let alarms = workshop.texts("SELECT text FROM alarm");
+        assert_eq!(alarms.len(), 1, "{alarms:?}");
+        for part in [line, address, "ReadPort"] {
+            assert!(alarms[0].contains(part), "{part} is not named: {alarms:?}");
+        }
     }
 }
 

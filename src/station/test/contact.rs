@@ -12,6 +12,8 @@ use crate::units::{Span, Volt};
 
 /// The source is off so long before drive, select or reversal changes (interface board).
 const SOURCE_OFF: Span = Span::ms(2);
+/// The thermal EMF may have moved by 30 uV between two closures; at the terminal, behind the gain of 50.
+const EMF_MOVES_V: f64 = 30e-6 * 50.0;
 /// Current and amplifier have settled.
 const SOURCE_SETTLES: Span = Span::ms(1);
 
@@ -109,7 +111,7 @@ pub(super) fn add_nc(bench: &Bench, drop: Volt, samples: &[Sample], findings: &m
     // The first closure is read with both polarities. A later one is read forward only and takes its zero
     // from the first, so that half of the first's noise enters twice.
     let one = bench.reading_u_v();
-    let u = if findings.nc_drops.len() == 1 { one / 2f64.sqrt() } else { one };
+    let u = if findings.nc_drops.len() == 1 { one / 2f64.sqrt() } else { one.hypot(EMF_MOVES_V) };
     if let Some(reading) = resistance(&findings.nc_drops, bench.calibration.contact_mohm_per_v, u) {
         findings.forget(Parameter::ContactResistanceNc);
         findings.found(Parameter::ContactResistanceNc, reading, samples);

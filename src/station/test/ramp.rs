@@ -9,11 +9,11 @@ use crate::units::Volt;
 const WINDOW_MARGIN: Volt = Volt(0.005);
 /// Beyond the far end of the estimate, for the lag's own scatter.
 const FAR_MARGIN: Volt = Volt(0.015);
-/// Half width of a placed ramp in standard deviations of its estimate. One in eighty misses and costs a
-/// second ramp of 0.2 s; each further half deviation would cost every part some 7 ms.
-const COVERAGE: f64 = 2.5;
+/// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
+/// costs a second ramp of 0.2 s; each further half deviation would cost every part some 7 ms.
+const COVERAGE: f64 = 3.0;
 /// A fine ramp is placed so often before the test is void.
-pub(super) const ATTEMPTS: u8 = 4;
+pub(super) const ATTEMPTS: u8 = 5;
 
 /// Where a contact event is expected on the fine ramp.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,10 +55,14 @@ impl Expected {
     }
 
     /// The interval to search next: beyond the far end when nothing happened, before the near end when
-    /// the contact had already changed; three times as wide.
-    pub fn next(&self, direction: Direction, changed_early: bool) -> Self {
+    /// the contact had already changed. The first neighbour is as wide, later ones three times.
+    pub fn next(&self, direction: Direction, changed_early: bool, attempt: u8) -> Self {
         let away = if changed_early { -direction.sign() } else { direction.sign() };
-        Self { centre: self.centre + self.half_width * (4.0 * away), half_width: self.half_width * 3.0 }
+        let wider = if attempt == 0 { 1.0 } else { 3.0 };
+        Self {
+            centre: self.centre + self.half_width * ((1.0 + wider) * away),
+            half_width: self.half_width * wider,
+        }
     }
 }
 
@@ -96,9 +100,9 @@ mod tests {
     #[test]
     fn the_next_interval_begins_where_the_last_ended() {
         let expected = Expected { centre: Volt(7.9), half_width: Volt(0.03) };
-        let beyond = expected.next(Direction::Rising, false);
+        let beyond = expected.next(Direction::Rising, false, 0);
         assert!((beyond.centre.0 - beyond.half_width.0 - 7.93).abs() < 1e-12);
-        let before = expected.next(Direction::Falling, true);
+        let before = expected.next(Direction::Falling, true, 1);
         assert!((before.centre.0 - before.half_width.0 - 7.93).abs() < 1e-12);
     }
 }

@@ -120,7 +120,7 @@ pub(super) fn conclude_fine(
         let early = readings.boards.last().is_some_and(|board| !board.no_closed);
         findings.expected = Some(match stopped {
             Some(end) if met => expected.around(end),
-            Some(_) | None => expected.next(Direction::Falling, early),
+            Some(_) | None => expected.next(Direction::Falling, early, attempt),
         });
         if attempt + 1 >= ATTEMPTS {
             give_up("release", findings);

@@ -1,0 +1,90 @@
+//! What became of the parts: good ones rejected, bad ones passed, rows that do not agree with the floor.
+
+use super::error::percent;
+use super::figure::{Bar, Figure};
+use super::lot::{Lot, Part};
+use std::collections::BTreeMap;
+
+/// Good parts that make one lot of the bar "no good part rejected in 98 of 100".
+const GOOD_PARTS_OF_A_LOT: usize = 100;
+
+/// The bin a defect belongs to; none for a defect that is not in the table of the rig.
+pub fn bin_of(defect: &str) -> Option<&'static str> {
+    Some(match defect {
+        "open_coil" | "shorted_turns" | "wrong_coil" => "coil",
+        "weak_spring" | "stiff_spring" => "voltage",
+        "slow" | "bouncing" => "time",
+        "stuck_nc" | "stuck_no" | "high_contact" | "unstable_contact" => "contact",
+        "turned" | "missing_pin" => "retest",
+        _ => return None,
+    })
+}
+
+/// Verdicts and bins against the truth.
+pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
+    let good: Vec<&Part> = lots.iter().flat_map(Lot::good).collect();
+    let all: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();
+    let bad = all.iter().filter(|part| !part.is_good());
+    let rejected: Vec<bool> = good.iter().map(|part| part.verdict == "fail").collect();
+    let voids = good.iter().filter(|part| part.verdict == "void").count() as u64;
+    let (clean, hundreds) = lots_without(&rejected);
+    let n_good = good.len() as u64;
+    let n_bad = bad.clone().count() as u64;
+    let elsewhere = all.iter().filter(|part| !part.is_where_it_says()).count() as u64;
+    vec![
+        Figure::count("good parts rejected", n_good, Some(rejected.iter().filter(|it| **it).count() as u64)),
+        Figure::new("lots of 100 good parts without a reject", hundreds, percent(clean, hundreds), "%")
+            .bar(Bar::AtLeast(98.0)),
+        Figure::new("voids of good parts", n_good, percent(voids, n_good), "%").bar(Bar::Below(0.5)),
+        none("defective parts passed", n_bad, bad.filter(|part| has_passed(part)).count() as u64),
+        none("rows whose bin is not where the part is", all.len() as u64, elsewhere),
+        none("parts without a row", all.len() as u64, lots.iter().map(|lot| lot.unrecorded).sum()),
+    ]
+}
+
+/// What the rig had to say for itself.
+pub fn machine(lots: &[Lot]) -> Vec<Figure> {
+    let n = lots.len() as u64;
+    let writes: Option<u64> = lots.iter().map(|lot| lot.summary.eeprom_writes).sum();
+    vec![
+        Figure::count("EEPROM writes during the lots", n, writes).bar(Bar::AtMost(0.0)),
+        none("alarms", n, lots.iter().map(|lot| lot.summary.alarms).sum()),
+        none("errors logged, touching bodies included", n, lots.iter().map(|lot| lot.errors_logged).sum()),
+    ]
+}
+
+/// One figure per defect: percent that went to the bin of its table.
+pub fn defects(lots: &[Lot]) -> Vec<Figure> {
+    let mut seen: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
+    for part in lots.iter().flat_map(|lot| &lot.parts) {
+        let Some(defect) = part.truth.as_ref().and_then(|truth| truth.defect.as_deref()) else { continue };
+        let (right, all) = seen.entry(defect).or_default();
+        *all += 1;
+        *right += u64::from(bin_of(defect) == Some(part.bin.as_str()));
+    }
+    let row = |(defect, (right, all)): (&str, (u64, u64))| {
+        let bin = bin_of(defect).unwrap_or("no known bin");
+        Figure::new(format!("{defect} in {bin}"), all, percent(right, all), "%").bar(Bar::AtLeast(100.0))
+    };
+    seen.into_iter().map(row).collect()
+}
+
+/// A number of things that must not happen.
+fn none(name: &str, of: u64, count: u64) -> Figure {
+    Figure::count(name, of, Some(count)).bar(Bar::AtMost(0.0))
+}
+
+/// By row or by body: either is one too many.
+fn has_passed(part: &Part) -> bool {
+    let landed = part.truth.as_ref().and_then(|truth| truth.landed_in.as_deref());
+    part.bin == "pass" || landed == Some("pass")
+}
+
+/// Lots of 100 in the order of production, and how many are without a reject. A rest that does not fill a
+/// lot counts only when there is nothing else.
+pub fn lots_without(rejected: &[bool]) -> (u64, u64) {
+    let size = GOOD_PARTS_OF_A_LOT.min(rejected.len()).max(1);
+    let lots = rejected.chunks_exact(size);
+    let clean = lots.clone().filter(|lot| !lot.contains(&true)).count();
+    (clean as u64, lots.len() as u64)
+}

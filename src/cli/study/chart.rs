@@ -1,0 +1,96 @@
+//! A bar chart as SVG: one horizontal bar per row, marks where the bars of the study stand.
+//!
+//! Lengths in px. The text is plain and the colours are fixed, so that the file reads the same in a page, in a
+//! viewer and on paper.
+
+use super::figure::shown;
+use std::fmt::Write;
+
+/// What to draw.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Chart {
+    /// Above the chart.
+    pub title: String,
+    /// Behind every number.
+    pub unit: &'static str,
+    /// Value at the left end.
+    pub from: f64,
+    /// Values with a line across all bars.
+    pub marks: Vec<f64>,
+    /// Label and value, from top to bottom; none draws no bar.
+    pub bars: Vec<(String, Option<f64>)>,
+}
+
+const LABEL: f64 = 300.0;
+const PLOT: f64 = 480.0;
+const NUMBER: f64 = 100.0;
+const TOP: f64 = 44.0;
+const ROW: f64 = 24.0;
+
+impl Chart {
+    /// Value at the right end: the greatest one, or mark, and a little more.
+    fn to(&self) -> f64 {
+        let all = self.bars.iter().filter_map(|(_, value)| *value).chain(self.marks.iter().copied());
+        let greatest = all.filter(|it| it.is_finite()).fold(self.from, f64::max);
+        if greatest > self.from { greatest + 0.02 * (greatest - self.from) } else { self.from + 1.0 }
+    }
+
+    /// Place of a value, kept inside the plot.
+    fn x(&self, value: f64) -> f64 {
+        LABEL + PLOT * ((value - self.from) / (self.to() - self.from)).clamp(0.0, 1.0)
+    }
+
+    /// The file.
+    pub fn svg(&self) -> String {
+        let (width, bottom) = (LABEL + PLOT + NUMBER, TOP + ROW * self.bars.len() as f64);
+        let height = bottom + 28.0;
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+             viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"13\">\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
+             <text x=\"12\" y=\"22\" font-size=\"15\">{}</text>\n",
+            escaped(&self.title)
+        );
+        for (place, (label, value)) in self.bars.iter().enumerate() {
+            self.bar(&mut svg, TOP + ROW * place as f64, label, *value);
+        }
+        for mark in &self.marks {
+            let x = self.x(*mark);
+            let _ = writeln!(
+                svg,
+                "<line x1=\"{x:.1}\" y1=\"{TOP}\" x2=\"{x:.1}\" y2=\"{bottom}\" stroke=\"#b00\" stroke-dasharray=\"4 3\"/>\n\
+                 <text x=\"{x:.1}\" y=\"{:.1}\" fill=\"#b00\" text-anchor=\"middle\">{}</text>",
+                bottom + 16.0,
+                shown(*mark)
+            );
+        }
+        let _ = writeln!(svg, "<text x=\"{LABEL}\" y=\"{:.1}\">{}</text>\n</svg>", bottom + 16.0, shown(self.from));
+        svg
+    }
+
+    fn bar(&self, svg: &mut String, top: f64, label: &str, value: Option<f64>) {
+        let line = top + 16.0;
+        let _ = writeln!(
+            svg,
+            "<text x=\"{}\" y=\"{line}\" text-anchor=\"end\">{}</text>",
+            LABEL - 8.0,
+            escaped(label)
+        );
+        let Some(value) = value else { return };
+        let end = self.x(value);
+        let _ = writeln!(
+            svg,
+            "<rect x=\"{LABEL}\" y=\"{}\" width=\"{:.1}\" height=\"16\" fill=\"#4a7ba6\"/>\n\
+             <text x=\"{:.1}\" y=\"{line}\">{} {}</text>",
+            top + 4.0,
+            end - LABEL,
+            end + 6.0,
+            shown(value),
+            escaped(self.unit)
+        );
+    }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

@@ -1,0 +1,41 @@
+//! How often the stated uncertainty (k = 2) covers the truth, pooled over good parts of many lots.
+//!
+//! Every lot has a rig of its own, so errors that stay the same within a lot are sampled too. Too high
+//! is as wrong as too low: an uncertainty that covers always has been stated too large.
+
+use super::bins;
+use super::chart::Chart;
+use super::error::Pooled;
+use super::figure::{Bar, Figure};
+use super::fleet::Order;
+use super::lot::Lot;
+use super::output::Report;
+use crate::gauge::Parameter;
+
+/// Percent of values that may be covered.
+const ALLOWED: (f64, f64) = (93.0, 99.5);
+
+/// Runs the lots and draws the report up.
+///
+/// # Errors
+/// A lot that could not be run.
+pub fn study(order: &Order) -> anyhow::Result<Report> {
+    let lots = order.run_all()?;
+    let covered: Vec<Figure> = Parameter::ALL.iter().map(|parameter| row(*parameter, &lots)).collect();
+    let chart = Chart {
+        title: format!("coverage of the stated uncertainty: {}", order.about()),
+        unit: "%",
+        from: 80.0,
+        marks: vec![ALLOWED.0, ALLOWED.1],
+        bars: covered.iter().map(|figure| (figure.name.clone(), figure.value)).collect(),
+    };
+    let groups = vec![covered, bins::outcome(&lots), bins::machine(&lots)];
+    Ok(Report { study: "coverage", about: order.about(), groups, chart })
+}
+
+fn row(parameter: Parameter, lots: &[Lot]) -> Figure {
+    let errors = Pooled::of(parameter, lots);
+    Figure::new(parameter.name(), errors.n(), errors.coverage_pct(), "%")
+        .with("worst_lot", errors.worst_coverage_pct())
+        .bar(Bar::Within(ALLOWED.0, ALLOWED.1))
+}

@@ -1,0 +1,138 @@
+//! Errors of one parameter against the truth, over good parts.
+//!
+//! The units are those of the bars: thresholds in mV, the coil in percent of its true value, times and
+//! bounce in ms, contacts in mOhm. Covered means `|value - truth| <= U`, `U` expanded with k = 2; a value
+//! without an uncertainty covers nothing.
+
+use super::lot::{Lot, Reading};
+use crate::gauge::Parameter;
+use crate::quality::Spread;
+use crate::quality::spread::median;
+
+/// Unit in which the error of a parameter is told.
+pub fn unit(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::CoilResistance => "%",
+        Parameter::OperateVoltage | Parameter::ReleaseVoltage => "mV",
+        Parameter::OperateTime
+        | Parameter::ReleaseTime
+        | Parameter::OperateBounce
+        | Parameter::ReleaseBounce => "ms",
+        Parameter::ContactResistanceNo | Parameter::ContactResistanceNc => "mOhm",
+    }
+}
+
+/// The error of a reading in [`unit`].
+pub fn error(parameter: Parameter, reading: &Reading) -> f64 {
+    let difference = reading.value - reading.truth;
+    match parameter {
+        Parameter::CoilResistance => 100.0 * difference / reading.truth,
+        Parameter::OperateVoltage | Parameter::ReleaseVoltage => 1000.0 * difference,
+        Parameter::OperateTime
+        | Parameter::ReleaseTime
+        | Parameter::OperateBounce
+        | Parameter::ReleaseBounce
+        | Parameter::ContactResistanceNo
+        | Parameter::ContactResistanceNc => difference,
+    }
+}
+
+/// Errors of one parameter in one lot.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Errors {
+    spread: Spread,
+    covered: u64,
+}
+
+impl Errors {
+    /// Of the good parts of a lot.
+    pub fn of(parameter: Parameter, lot: &Lot) -> Self {
+        let readings: Vec<Reading> = lot.good().filter_map(|part| part.reading(parameter)).collect();
+        let errors: Vec<f64> = readings.iter().map(|reading| error(parameter, reading)).collect();
+        Self {
+            spread: Spread::of(&errors),
+            covered: readings.iter().filter(|reading| is_covered(reading)).count() as u64,
+        }
+    }
+
+    /// How many.
+    pub fn n(&self) -> u64 {
+        self.spread.n()
+    }
+
+    /// Mean error.
+    pub fn bias(&self) -> Option<f64> {
+        self.spread.mean()
+    }
+
+    /// Root of the mean square: `rms^2 = mean^2 + sd^2 (n - 1) / n`.
+    pub fn rms(&self) -> Option<f64> {
+        let mean = self.spread.mean()?;
+        let n = self.n() as f64;
+        let sd = self.spread.sd().unwrap_or(0.0);
+        Some((mean * mean + sd * sd * (n - 1.0) / n).sqrt())
+    }
+
+    /// Greatest error, sign taken off.
+    pub fn worst(&self) -> Option<f64> {
+        Some(self.spread.min()?.abs().max(self.spread.max()?.abs()))
+    }
+}
+
+fn is_covered(reading: &Reading) -> bool {
+    reading.uncertainty.is_some_and(|u| (reading.value - reading.truth).abs() <= u)
+}
+
+/// Errors of one parameter in every lot of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pooled(Vec<Errors>);
+
+impl Pooled {
+    /// Of the good parts of all lots.
+    pub fn of(parameter: Parameter, lots: &[Lot]) -> Self {
+        Self(lots.iter().map(|lot| Errors::of(parameter, lot)).collect())
+    }
+
+    /// How many in all lots.
+    pub fn n(&self) -> u64 {
+        self.0.iter().map(Errors::n).sum()
+    }
+
+    /// Median over lots of the rms error; none when a lot has no value at all.
+    pub fn median_rms(&self) -> Option<f64> {
+        let each: Option<Vec<f64>> = self.0.iter().map(Errors::rms).collect();
+        median(&each?)
+    }
+
+    /// Greatest rms error of a lot.
+    pub fn worst_rms(&self) -> Option<f64> {
+        self.0.iter().filter_map(Errors::rms).reduce(f64::max)
+    }
+
+    /// Median over lots of the mean error.
+    pub fn median_bias(&self) -> Option<f64> {
+        let each: Vec<f64> = self.0.iter().filter_map(Errors::bias).collect();
+        median(&each)
+    }
+
+    /// Greatest error of any part.
+    pub fn worst(&self) -> Option<f64> {
+        self.0.iter().filter_map(Errors::worst).reduce(f64::max)
+    }
+
+    /// Percent of all values whose stated uncertainty covers the truth.
+    pub fn coverage_pct(&self) -> Option<f64> {
+        let covered: u64 = self.0.iter().map(|errors| errors.covered).sum();
+        percent(covered, self.n())
+    }
+
+    /// Least coverage of a lot, percent.
+    pub fn worst_coverage_pct(&self) -> Option<f64> {
+        self.0.iter().filter_map(|errors| percent(errors.covered, errors.n())).reduce(f64::min)
+    }
+}
+
+/// None of nothing.
+pub fn percent(some: u64, all: u64) -> Option<f64> {
+    (all > 0).then(|| 100.0 * some as f64 / all as f64)
+}
