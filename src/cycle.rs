@@ -136,7 +136,10 @@ impl Cycle {
         for module in self.image.take_resets() {
             let module = self.wiring.module(module);
             let line = &self.wiring.line(module.line).name;
-            let text = format!("line {line}, {}: {} has restarted, its outputs fell to their power-on value", module.address, module.name);
+            let text = format!(
+                "line {line}, {}: {} has restarted, its outputs fell to their power-on value",
+                module.address, module.name
+            );
             self.bus_alarm.get_or_insert(Alarm::bus(&text));
         }
         self.traffic.note_time(now);
@@ -144,17 +147,31 @@ impl Cycle {
 
     fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
         // Reading the reset status clears it, so it is never asked twice; a lost one is asked again anyway.
-        let asked_again = matches!(answer.command, Command::Common(_, dcon::Common::ReadResetStatus));
+        let asked_again = matches!(
+            answer.command,
+            Command::Common(_, dcon::Common::ReadResetStatus)
+        );
         let trouble = match &answer.outcome {
             Err(_) if asked_again && purpose == Purpose::Job => None,
             Ok(reply) => self
                 .image
-                .accept(line, &answer.command, reply, &answer.raw, answer.answered_at)
+                .accept(
+                    line,
+                    &answer.command,
+                    reply,
+                    &answer.raw,
+                    answer.answered_at,
+                )
                 .err()
                 .map(|unexpected| format!("line {}: {unexpected}", self.wiring.line(line).name)),
-            Err(error) => Some(format!("{error} ({} of {} tries)", answer.tries_used, self.traffic.tries(line))),
+            Err(error) => Some(format!(
+                "{error} ({} of {} tries)",
+                answer.tries_used,
+                self.traffic.tries(line)
+            )),
         };
-        let refused = matches!(&answer.outcome, Err(LineError::Reply { reason, .. }) if reason.is_answer());
+        let refused =
+            matches!(&answer.outcome, Err(LineError::Reply { reason, .. }) if reason.is_answer());
         match (purpose, trouble) {
             (Purpose::Write { module, job }, None) => {
                 self.outputs.confirmed(module);
@@ -178,7 +195,8 @@ impl Cycle {
             }
             (Purpose::Scan, Some(trouble)) => {
                 if let Some(times) = self.traffic.scan_failed(line, &answer.command) {
-                    self.bus_alarm.get_or_insert(Alarm::bus(&format!("{trouble}, {times} times in a row")));
+                    self.bus_alarm
+                        .get_or_insert(Alarm::bus(&format!("{trouble}, {times} times in a row")));
                 }
             }
             (Purpose::Scan, None) => self.traffic.scan_answered(line, &answer.command),
@@ -213,13 +231,15 @@ impl Cycle {
             match self.guard.clear(&self.station.motion(movement), &situation) {
                 Ok(cleared) => {
                     if let Err(cannot) = self.outputs.apply(cleared) {
-                        self.station.refused(movement, &cannot.to_string(), now, wants);
+                        self.station
+                            .refused(movement, &cannot.to_string(), now, wants);
                         return;
                     }
                     self.station.driven(movement, now, &self.image);
                 }
                 Err(refusal) => {
-                    self.station.refused(movement, &refusal.to_string(), now, wants);
+                    self.station
+                        .refused(movement, &refusal.to_string(), now, wants);
                     return;
                 }
             }
@@ -237,14 +257,22 @@ impl Cycle {
                 self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
             }
         }
-        self.traffic.watch_beam(wants.beam.map(|beam| self.wiring.read_events(beam)));
+        self.traffic
+            .watch_beam(wants.beam.map(|beam| self.wiring.read_events(beam)));
         let is_job = wants.job.is_some();
         if let Some(job) = wants.job.take() {
             self.start(job, now);
         }
         for write in self.outputs.writes() {
             let job = is_job && self.is_measuring(write.line);
-            self.traffic.queue(write.line, write.command, Purpose::Write { module: write.module, job });
+            self.traffic.queue(
+                write.line,
+                write.command,
+                Purpose::Write {
+                    module: write.module,
+                    job,
+                },
+            );
         }
         if is_job && let Some(done) = self.traffic.job_if_empty(now) {
             self.job_done = Some(done);
@@ -271,7 +299,8 @@ impl Cycle {
             Job::Supply(outputs) => {
                 for (output, volts) in outputs {
                     if let Err(cannot) = self.outputs.set_supply(output, volts, Correction::NONE) {
-                        self.bus_alarm.get_or_insert(Alarm::bus(&cannot.to_string()));
+                        self.bus_alarm
+                            .get_or_insert(Alarm::bus(&cannot.to_string()));
                     }
                 }
                 Vec::new()
@@ -280,7 +309,7 @@ impl Cycle {
             Job::CoilMask(mask) => {
                 let module = self.wiring.analog_in(AnalogIn::CoilVoltageFine).module;
                 vec![dcon::AnalogIn::WriteMask(mask).to(self.wiring.module(module).address)]
-            },
+            }
         };
         for command in reads {
             self.traffic.queue(line, command, Purpose::Job);
@@ -293,7 +322,10 @@ impl Cycle {
             Read::Board => vec![wiring.poll(wiring.digital_in(DigitalIn::Latch).module)],
             Read::Coil => vec![wiring.poll(wiring.analog_in(AnalogIn::CoilVoltageFine).module)],
             Read::Drop => vec![wiring.read_analog(AnalogIn::ContactDrop)],
-            Read::Gates => vec![wiring.read_counter(Counter::Gate0), wiring.read_counter(Counter::Gate1)],
+            Read::Gates => vec![
+                wiring.read_counter(Counter::Gate0),
+                wiring.read_counter(Counter::Gate1),
+            ],
             Read::Resets => self.traffic.measuring_resets(),
             Read::Track => vec![wiring.read_temperature(Temperature::Track)],
         }
@@ -340,7 +372,9 @@ impl Cycle {
 
     /// Until an answer, the station's own deadline, or the next scan.
     async fn wait(&mut self, now: RigTime, wake_at: Option<RigTime>) {
-        let until = wake_at.unwrap_or(now + IDLE).min(self.traffic.next_due(now).unwrap_or(now + IDLE));
+        let until = wake_at
+            .unwrap_or(now + IDLE)
+            .min(self.traffic.next_due(now).unwrap_or(now + IDLE));
         tokio::select! {
             biased;
             () = self.traffic.answer() => {}
@@ -356,7 +390,10 @@ impl Cycle {
             let now = self.pace.now();
             self.scan(now);
             for write in self.outputs.writes() {
-                let purpose = Purpose::Write { module: write.module, job: false };
+                let purpose = Purpose::Write {
+                    module: write.module,
+                    job: false,
+                };
                 self.traffic.queue(write.line, write.command, purpose);
             }
             self.traffic.dispatch(now);

@@ -48,7 +48,11 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
         json: false,
     };
     let page = Page::start(listener, &controls, db)?;
-    eprintln!("relayrig: simulated rig running, page at http://{}/, history in {}, Ctrl-C stops", args.listen, db.display());
+    eprintln!(
+        "relayrig: simulated rig running, page at http://{}/, history in {}, Ctrl-C stops",
+        args.listen,
+        db.display()
+    );
     let status = run::run_with(config, db, &order, &controls);
     page.end();
     status
@@ -61,15 +65,23 @@ struct Page {
 }
 
 impl Page {
-    fn start(listener: std::net::TcpListener, controls: &Controls, db: &Path) -> anyhow::Result<Self> {
-        listener.set_nonblocking(true).context("the page's socket")?;
+    fn start(
+        listener: std::net::TcpListener,
+        controls: &Controls,
+        db: &Path,
+    ) -> anyhow::Result<Self> {
+        listener
+            .set_nonblocking(true)
+            .context("the page's socket")?;
         let shared = hmi::Shared {
             view: controls.view.subscribe(),
             db: db.to_path_buf(),
             stop: Arc::clone(&controls.stop),
         };
         let (ended, seen) = watch::channel(false);
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()?;
         let thread = std::thread::spawn(move || {
             let served = runtime.block_on(async {
                 let listener = tokio::net::TcpListener::from_std(listener)?;

@@ -84,7 +84,11 @@ pub struct Controls {
 impl Controls {
     /// Nothing ordered, nothing seen.
     pub fn new(quiet: bool) -> Self {
-        Self { stop: Arc::new(AtomicBool::new(false)), view: watch::channel(View::default()).0, quiet }
+        Self {
+            stop: Arc::new(AtomicBool::new(false)),
+            view: watch::channel(View::default()).0,
+            quiet,
+        }
     }
 }
 
@@ -94,9 +98,17 @@ pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
 }
 
 /// As [`run`], with controls that somebody else holds too.
-pub fn run_with(config: &Path, db: &Path, args: &RunArgs, controls: &Controls) -> anyhow::Result<i32> {
+pub fn run_with(
+    config: &Path,
+    db: &Path,
+    args: &RunArgs,
+    controls: &Controls,
+) -> anyhow::Result<i32> {
     if args.lot.is_empty() || args.lot.len() > 200 {
-        bail!("--lot: found {} characters, expected 1 to 200", args.lot.len());
+        bail!(
+            "--lot: found {} characters, expected 1 to 200",
+            args.lot.len()
+        );
     }
     if args.count == Some(0) {
         bail!("--count: found 0, expected at least 1");
@@ -112,7 +124,9 @@ pub fn run_with(config: &Path, db: &Path, args: &RunArgs, controls: &Controls) -
     #[cfg(feature = "sim")]
     builder.start_paused(is_virtual);
     let runtime = builder.build().context("starting the runtime")?;
-    let status = runtime.block_on(run_lot(plant, recipe, config, db, args, controls, is_virtual));
+    let status = runtime.block_on(run_lot(
+        plant, recipe, config, db, args, controls, is_virtual,
+    ));
     runtime.shutdown_timeout(std::time::Duration::from_secs(1));
     status
 }
@@ -126,10 +140,19 @@ async fn run_lot(
     controls: &Controls,
     is_virtual: bool,
 ) -> anyhow::Result<i32> {
-    let pace = if is_virtual { Pace::virtual_time() } else { Pace::real() };
+    let pace = if is_virtual {
+        Pace::virtual_time()
+    } else {
+        Pace::real()
+    };
     let epoch_us = jiff::Timestamp::now().as_microsecond();
     let (mut lines, rig) = lines::open(&plant, config, args, &pace)?;
-    let setup = Setup { plant: &plant, recipe: &recipe, args, epoch_us };
+    let setup = Setup {
+        plant: &plant,
+        recipe: &recipe,
+        args,
+        epoch_us,
+    };
     let (mut recorder, calibration) = Recorder::open(db, &setup, controls, rig.eeprom_count())?;
     let (events, received) = mpsc::unbounded_channel::<Event>();
     let recorded = Arc::new(AtomicU64::new(0));
@@ -139,7 +162,13 @@ async fn run_lot(
         stop: Arc::clone(&controls.stop),
         view: controls.view.clone(),
     };
-    let cycle = assemble::cycle(&setup, calibration, pace.clone(), std::mem::take(&mut lines.ends), outside)?;
+    let cycle = assemble::cycle(
+        &setup,
+        calibration,
+        pace,
+        std::mem::take(&mut lines.ends),
+        outside,
+    )?;
     let stop = Arc::clone(&controls.stop);
     let interrupt = tokio::spawn(async move {
         if tokio::signal::ctrl_c().await.is_ok() {
@@ -148,7 +177,9 @@ async fn run_lot(
     });
     let running = tokio::spawn(cycle.run());
     recorder.keep(received, &recorded).await?;
-    let ending = running.await.context("the control cycle ended by an assertion")?;
+    let ending = running
+        .await
+        .context("the control cycle ended by an assertion")?;
     interrupt.abort();
     rig.finish(args)?;
     recorder.close(&ending, &lines.logs)?;

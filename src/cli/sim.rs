@@ -43,7 +43,10 @@ pub struct SimArgs {
 pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
     if args.faults {
         for fault in rigsim::faults(config, args.world.as_deref())? {
-            println!("{:<20} {:<12} default {:<8} {}", fault.name, fault.unit, fault.default, fault.what);
+            println!(
+                "{:<20} {:<12} default {:<8} {}",
+                fault.name, fault.unit, fault.default, fault.what
+            );
         }
         return Ok(0);
     }
@@ -63,8 +66,11 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
     if let Some(dir) = &args.link {
         ptys.link(dir)?;
     }
-    let lines: serde_json::Map<String, Value> =
-        ptys.paths().into_iter().map(|(name, path)| (name, json!(path.to_string_lossy()))).collect();
+    let lines: serde_json::Map<String, Value> = ptys
+        .paths()
+        .into_iter()
+        .map(|(name, path)| (name, json!(path.to_string_lossy())))
+        .collect();
     println!("{}", json!({ "lines": lines }));
     wait()?;
     ptys.stop();
@@ -73,9 +79,12 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
 
 /// Until Ctrl-C or a termination signal.
 fn wait() -> anyhow::Result<()> {
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_all()
+        .build()?;
     runtime.block_on(async {
-        let mut terminate = tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate())?;
+        let mut terminate =
+            tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate())?;
         tokio::select! {
             interrupted = tokio::signal::ctrl_c() => interrupted?,
             _ = terminate.recv() => {}
@@ -87,7 +96,8 @@ fn wait() -> anyhow::Result<()> {
 fn write_truth(rig: &SharedRig, args: &SimArgs) -> anyhow::Result<i32> {
     if let Some(path) = &args.truth {
         let lines: String = rig.truth().iter().map(|part| format!("{part}\n")).collect();
-        std::fs::write(path, lines).map_err(|error| anyhow!("--truth {}: {error}", path.display()))?;
+        std::fs::write(path, lines)
+            .map_err(|error| anyhow!("--truth {}: {error}", path.display()))?;
     }
     Ok(0)
 }

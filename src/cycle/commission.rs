@@ -28,8 +28,12 @@ pub async fn verify(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Resu
                 continue;
             }
             left -= 1;
-            let Some(index) = pending.get_mut(&line.0).and_then(Vec::pop) else { continue };
-            let reply = answer.outcome.map_err(|error| Alarm::bus(&error.to_string()))?;
+            let Some(index) = pending.get_mut(&line.0).and_then(Vec::pop) else {
+                continue;
+            };
+            let reply = answer
+                .outcome
+                .map_err(|error| Alarm::bus(&error.to_string()))?;
             if let Some(mismatch) = judge(wiring, &checks[index], &reply) {
                 return Err(Alarm::bus(&mismatch.to_string()));
             }

@@ -103,7 +103,9 @@ impl Traffic {
     pub fn new(wiring: &Arc<Wiring>, lines: Vec<LineEnds>) -> Self {
         let estop = wiring.emergency_stop_module();
         let estop_line = wiring.module(estop).line;
-        let board_line = wiring.module(wiring.digital_in(DigitalIn::Latch).module).line;
+        let board_line = wiring
+            .module(wiring.digital_in(DigitalIn::Latch).module)
+            .line;
         let slots = lines
             .into_iter()
             .map(|ends| {
@@ -121,7 +123,11 @@ impl Traffic {
                     waiting: None,
                     queue: VecDeque::new(),
                     heartbeat_due: RigTime(0),
-                    scan: if is_board { Vec::new() } else { scan.into_iter().map(|m| wiring.poll(m)).collect() },
+                    scan: if is_board {
+                        Vec::new()
+                    } else {
+                        scan.into_iter().map(|m| wiring.poll(m)).collect()
+                    },
                     resets: reset_questions(wiring, ends.line),
                     priority: (ends.line == estop_line).then(|| wiring.poll(estop)),
                     scan_turn: 0,
@@ -154,18 +160,27 @@ impl Traffic {
 
     /// Reset status of every module with outputs on the measuring line.
     pub fn measuring_resets(&self) -> Vec<Command> {
-        self.slots.iter().find(|slot| slot.ends.line == self.measuring).map_or_else(Vec::new, |slot| slot.resets.clone())
+        self.slots
+            .iter()
+            .find(|slot| slot.ends.line == self.measuring)
+            .map_or_else(Vec::new, |slot| slot.resets.clone())
     }
 
     /// How often a command of this line is tried.
     pub fn tries(&self, line: LineId) -> u8 {
-        self.slots.iter().find(|slot| slot.ends.line == line).map_or(1, |slot| slot.tries)
+        self.slots
+            .iter()
+            .find(|slot| slot.ends.line == line)
+            .map_or(1, |slot| slot.tries)
     }
 
     /// A scan was not answered; how often in a row, once that is as often as the bus settings allow.
     pub fn scan_failed(&mut self, line: LineId, command: &Command) -> Option<u8> {
         let address = command.address();
-        let known = self.failed_scans.iter().position(|(l, a, _)| *l == line && *a == address);
+        let known = self
+            .failed_scans
+            .iter()
+            .position(|(l, a, _)| *l == line && *a == address);
         let index = known.unwrap_or_else(|| {
             self.failed_scans.push((line, address, 0));
             self.failed_scans.len() - 1
@@ -179,7 +194,8 @@ impl Traffic {
     pub fn scan_answered(&mut self, line: LineId, command: &Command) {
         if !self.failed_scans.is_empty() {
             let address = command.address();
-            self.failed_scans.retain(|(l, a, _)| *l != line || *a != address);
+            self.failed_scans
+                .retain(|(l, a, _)| *l != line || *a != address);
         }
     }
 
@@ -200,7 +216,9 @@ impl Traffic {
 
     /// Puts a command at the end of a line's queue.
     pub fn queue(&mut self, line: LineId, command: Command, purpose: Purpose) {
-        if matches!(purpose, Purpose::Job | Purpose::Write { job: true, .. }) && let Some(job) = &mut self.job {
+        if matches!(purpose, Purpose::Job | Purpose::Write { job: true, .. })
+            && let Some(job) = &mut self.job
+        {
             job.parts += 1;
         }
         if let Some(slot) = self.slots.iter_mut().find(|slot| slot.ends.line == line) {
@@ -233,13 +251,17 @@ impl Traffic {
     pub fn drop_job(&mut self) {
         self.job = None;
         for slot in &mut self.slots {
-            slot.queue.retain(|(_, purpose)| matches!(purpose, Purpose::Write { .. }));
+            slot.queue
+                .retain(|(_, purpose)| matches!(purpose, Purpose::Write { .. }));
         }
     }
 
     /// A job that needed no transaction is done at once.
     pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
-        self.job.take_if(|job| job.parts == 0).map(|_| JobDone { at: now, trouble: None })
+        self.job.take_if(|job| job.parts == 0).map(|_| JobDone {
+            at: now,
+            trouble: None,
+        })
     }
 
     /// One transaction of the job is over; the answer of the job when it was the last.
@@ -253,7 +275,10 @@ impl Traffic {
         if job.parts > 0 {
             return None;
         }
-        self.job.take().map(|job| JobDone { at: job.last, trouble: job.trouble })
+        self.job.take().map(|job| JobDone {
+            at: job.last,
+            trouble: job.trouble,
+        })
     }
 
     /// Starts the next transaction on every idle line.
@@ -262,10 +287,16 @@ impl Traffic {
             if self.slots[index].busy.is_some() {
                 continue;
             }
-            let Some((command, purpose)) = self.choose(index, now) else { continue };
+            let Some((command, purpose)) = self.choose(index, now) else {
+                continue;
+            };
             self.ticket += 1;
             let slot = &mut self.slots[index];
-            let request = Request { ticket: self.ticket, command, tries: slot.tries };
+            let request = Request {
+                ticket: self.ticket,
+                command,
+                tries: slot.tries,
+            };
             // The queue is one deep and the slot idle, so there is room; a closed queue means the line's task ended.
             if slot.ends.requests.try_send(request).is_ok() {
                 slot.busy = Some(purpose);
@@ -275,7 +306,10 @@ impl Traffic {
 
     fn choose(&mut self, index: usize, now: RigTime) -> Option<(Command, Purpose)> {
         let slot = &mut self.slots[index];
-        let write = slot.queue.iter().position(|(_, purpose)| matches!(purpose, Purpose::Write { .. }));
+        let write = slot
+            .queue
+            .iter()
+            .position(|(_, purpose)| matches!(purpose, Purpose::Write { .. }));
         if let Some(next) = write.and_then(|at| slot.queue.remove(at)) {
             return Some(next);
         }
@@ -291,16 +325,24 @@ impl Traffic {
         }
         let turn = slot.scan_turn;
         slot.scan_turn += 1;
-        if turn.is_multiple_of(2) && let Some(command) = slot.priority {
+        if turn.is_multiple_of(2)
+            && let Some(command) = slot.priority
+        {
             return Some((command, Purpose::Scan));
         }
-        if slot.ends.line == self.beam_line && turn % 4 == 3 && let Some(beam) = self.beam {
+        if slot.ends.line == self.beam_line
+            && turn % 4 == 3
+            && let Some(beam) = self.beam
+        {
             slot.scan_due = now + self.scan_period;
             return Some((beam, Purpose::Scan));
         }
         if !slot.resets.is_empty() && turn % RESET_EVERY == RESET_EVERY - 1 {
             slot.scan_due = now + self.scan_period;
-            return Some((slot.resets[(turn / RESET_EVERY) % slot.resets.len()], Purpose::Scan));
+            return Some((
+                slot.resets[(turn / RESET_EVERY) % slot.resets.len()],
+                Purpose::Scan,
+            ));
         }
         let others = slot.scan.len();
         if others == 0 {
@@ -313,7 +355,13 @@ impl Traffic {
     /// The next answer that has come in.
     pub fn next_answer(&mut self) -> Option<(LineId, Purpose, Answer)> {
         for slot in &mut self.slots {
-            let Some(answer) = slot.waiting.take().or_else(|| slot.ends.answers.try_recv().ok()) else { continue };
+            let Some(answer) = slot
+                .waiting
+                .take()
+                .or_else(|| slot.ends.answers.try_recv().ok())
+            else {
+                continue;
+            };
             let purpose = slot.busy.take().unwrap_or(Purpose::Check);
             return Some((slot.ends.line, purpose, answer));
         }
@@ -343,7 +391,12 @@ impl Traffic {
         self.slots
             .iter()
             .filter(|slot| slot.busy.is_none())
-            .flat_map(|slot| [Some(slot.heartbeat_due), self.scanning.then_some(slot.scan_due)])
+            .flat_map(|slot| {
+                [
+                    Some(slot.heartbeat_due),
+                    self.scanning.then_some(slot.scan_due),
+                ]
+            })
             .flatten()
             .filter(|due| *due > now)
             .min()
@@ -351,6 +404,8 @@ impl Traffic {
 
     /// Nothing queued, nothing under way.
     pub fn is_quiet(&self) -> bool {
-        self.slots.iter().all(|slot| slot.busy.is_none() && slot.queue.is_empty())
+        self.slots
+            .iter()
+            .all(|slot| slot.busy.is_none() && slot.queue.is_empty())
     }
 }

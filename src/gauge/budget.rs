@@ -35,19 +35,31 @@ pub struct Budget(pub Vec<Term>);
 impl Budget {
     /// Adds a term that stays the same however often one repeats; its sign does not matter.
     pub fn with(mut self, source: &'static str, u: f64) -> Self {
-        self.0.push(Term { source, u: u.abs(), random: false });
+        self.0.push(Term {
+            source,
+            u: u.abs(),
+            random: false,
+        });
         self
     }
 
     /// Adds a term that is drawn anew at each repetition.
     pub fn with_random(mut self, source: &'static str, u: f64) -> Self {
-        self.0.push(Term { source, u: u.abs(), random: true });
+        self.0.push(Term {
+            source,
+            u: u.abs(),
+            random: true,
+        });
         self
     }
 
     /// Combined standard uncertainty.
     pub fn combined(&self) -> f64 {
-        self.0.iter().map(|term| term.u * term.u).sum::<f64>().sqrt()
+        self.0
+            .iter()
+            .map(|term| term.u * term.u)
+            .sum::<f64>()
+            .sqrt()
     }
 
     /// Expanded uncertainty, k = 2.
@@ -64,10 +76,17 @@ pub fn mean(repetitions: &[Reading]) -> Option<Reading> {
     let n = repetitions.len() as f64;
     let value = repetitions.iter().map(|reading| reading.value).sum::<f64>() / n;
     let shrink = |term: &Term| Term {
-        u: if term.random { term.u / n.sqrt() } else { term.u },
+        u: if term.random {
+            term.u / n.sqrt()
+        } else {
+            term.u
+        },
         ..term.clone()
     };
-    Some(Reading { value, budget: Budget(first.budget.0.iter().map(shrink).collect()) })
+    Some(Reading {
+        value,
+        budget: Budget(first.budget.0.iter().map(shrink).collect()),
+    })
 }
 
 /// A result with its budget, both in the unit that the parameter's name ends in.
@@ -104,7 +123,9 @@ mod tests {
 
     #[test]
     fn repetition_helps_only_against_what_is_random() {
-        let budget = Budget::default().with("gain", 3.0).with_random("noise", 8.0);
+        let budget = Budget::default()
+            .with("gain", 3.0)
+            .with_random("noise", 8.0);
         let one = Reading { value: 1.0, budget };
         let four = mean(&[one.clone(), one.clone(), one.clone(), one]).expect("four repetitions");
         assert_eq!(four.budget.combined(), 5.0);
@@ -113,9 +134,15 @@ mod tests {
 
     #[test]
     fn a_reading_without_a_number_is_not_usable() {
-        let reading = Reading { value: f64::NAN, budget: Budget::default() };
+        let reading = Reading {
+            value: f64::NAN,
+            budget: Budget::default(),
+        };
         assert!(!reading.is_usable());
-        let endless = Reading { value: 1.0, budget: Budget::default().with("x", f64::INFINITY) };
+        let endless = Reading {
+            value: 1.0,
+            budget: Budget::default().with("x", f64::INFINITY),
+        };
         assert!(!endless.is_usable());
     }
 }

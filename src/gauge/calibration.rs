@@ -126,7 +126,10 @@ mod tests {
 
     #[test]
     fn asking_for_a_voltage_delivers_it() {
-        let line = OutputLine { gain: Factor::new(1.0004, 0.0), offset_v: Factor::new(-0.0021, 0.0) };
+        let line = OutputLine {
+            gain: Factor::new(1.0004, 0.0),
+            offset_v: Factor::new(-0.0021, 0.0),
+        };
         let asked = line.ask_for(Volt(7.9));
         assert!((line.delivers(asked).0 - 7.9).abs() < 1e-12);
     }

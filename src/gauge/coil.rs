@@ -53,9 +53,18 @@ pub fn resistance(
     let relative = |u_v: f64| u_v * (1.0 / (volts * volts) + 1.0 / (current * current)).sqrt();
     let budget = Budget::default()
         .with_random("reading", value * relative(doubt.reading_v) / n.sqrt())
-        .with("offset", value * doubt.offset_v * (1.0 / volts - 1.0 / current))
-        .with("reference resistor", value * ohm_per_ratio.u / ohm_per_ratio.value)
-        .with("coil temperature", value * doubt.temperature_k * relative_per_kelvin(part));
+        .with(
+            "offset",
+            value * doubt.offset_v * (1.0 / volts - 1.0 / current),
+        )
+        .with(
+            "reference resistor",
+            value * ohm_per_ratio.u / ohm_per_ratio.value,
+        )
+        .with(
+            "coil temperature",
+            value * doubt.temperature_k * relative_per_kelvin(part),
+        );
     Some(Reading { value, budget })
 }
 
@@ -63,7 +72,11 @@ pub fn resistance(
 mod tests {
     use super::*;
 
-    const DOUBT: ScanDoubt = ScanDoubt { reading_v: 0.003, offset_v: 0.0005, temperature_k: 0.18 };
+    const DOUBT: ScanDoubt = ScanDoubt {
+        reading_v: 0.003,
+        offset_v: 0.0005,
+        temperature_k: 0.18,
+    };
 
     #[test]
     fn twenty_degrees_instead_of_twenty_three_is_minus_1_17_percent() {
@@ -88,7 +101,25 @@ mod tests {
     #[test]
     fn an_open_coil_has_no_resistance() {
         let open = [(Volt(8.0), Volt(0.001))];
-        assert!(resistance(&open, Factor::new(375.0, 0.01), Celsius(23.0), Celsius(23.0), DOUBT).is_none());
-        assert!(resistance(&[], Factor::new(375.0, 0.01), Celsius(23.0), Celsius(23.0), DOUBT).is_none());
+        assert!(
+            resistance(
+                &open,
+                Factor::new(375.0, 0.01),
+                Celsius(23.0),
+                Celsius(23.0),
+                DOUBT
+            )
+            .is_none()
+        );
+        assert!(
+            resistance(
+                &[],
+                Factor::new(375.0, 0.01),
+                Celsius(23.0),
+                Celsius(23.0),
+                DOUBT
+            )
+            .is_none()
+        );
     }
 }

@@ -39,7 +39,10 @@ pub fn resistance(drops: &[Volt], mohm_per_v: Factor, reading_v: f64) -> Option<
     let value = mohm_per_v.value * drops.iter().map(|drop| drop.0).sum::<f64>() / n;
     let budget = Budget::default()
         .with_random("reading", mohm_per_v.value * reading_v / n.sqrt())
-        .with("reference resistor", value * mohm_per_v.u / mohm_per_v.value);
+        .with(
+            "reference resistor",
+            value * mohm_per_v.u / mohm_per_v.value,
+        );
     Some(Reading { value, budget })
 }
 
@@ -49,8 +52,12 @@ mod tests {
 
     #[test]
     fn reversal_removes_emf_and_offset() {
-        let closure = Reversal { forward: Volt(0.9 + 0.0105), reverse: Volt(-0.9 + 0.0105) };
-        let reading = resistance(&[closure.drop()], Factor::new(20.0, 0.005), 0.002).expect("one closure");
+        let closure = Reversal {
+            forward: Volt(0.9 + 0.0105),
+            reverse: Volt(-0.9 + 0.0105),
+        };
+        let reading =
+            resistance(&[closure.drop()], Factor::new(20.0, 0.005), 0.002).expect("one closure");
         assert!((reading.value - 18.0).abs() < 1e-12);
         assert!((closure.zero().0 - 0.0105).abs() < 1e-12);
     }

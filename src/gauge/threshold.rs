@@ -67,7 +67,10 @@ pub fn quasi_static(
     let value = at_part * to_reference(part, reference);
     let budget = Budget::default()
         .with("golden parts", lag.fine_v.u)
-        .with("coil temperature", value * doubt.temperature_k * relative_per_kelvin(part))
+        .with(
+            "coil temperature",
+            value * doubt.temperature_k * relative_per_kelvin(part),
+        )
         .with_random("repeatability", doubt.operation_v)
         .with("slope", doubt.slope.u * gate.0)
         .with_random("resolution", resolution(doubt.step_v))
@@ -89,7 +92,11 @@ mod tests {
 
     #[test]
     fn one_kelvin_is_thirty_millivolts_of_an_operate_voltage() {
-        let lag = Lag { fine_v: Factor::new(0.0, 0.0), coarse_v: 0.0, coarse_sd_v: 0.0 };
+        let lag = Lag {
+            fine_v: Factor::new(0.0, 0.0),
+            coarse_v: 0.0,
+            coarse_sd_v: 0.0,
+        };
         let doubt = RampDoubt {
             slope: Factor::new(1.5, 0.0),
             operation_v: 0.0,
@@ -97,8 +104,14 @@ mod tests {
             level_v: 0.0,
             temperature_k: 1.0,
         };
-        let reading =
-            quasi_static(Volt(7.88), Second(0.04), lag, Celsius(23.0), Celsius(23.0), doubt);
+        let reading = quasi_static(
+            Volt(7.88),
+            Second(0.04),
+            lag,
+            Celsius(23.0),
+            Celsius(23.0),
+            doubt,
+        );
         assert!((reading.budget.combined() - 0.0306).abs() < 1e-4);
     }
 }

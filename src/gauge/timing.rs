@@ -55,7 +55,10 @@ pub fn bounce_ms(gate0: u32, gate1: u32, delay_us: [Factor; 2], clock: Clock) ->
 mod tests {
     use super::*;
 
-    const CLOCK: Clock = Clock { hz: 50_000.0, tolerance_ppm: 50.0 };
+    const CLOCK: Clock = Clock {
+        hz: 50_000.0,
+        tolerance_ppm: 50.0,
+    };
 
     #[test]
     fn differences_survive_the_wrap_of_the_counter() {

@@ -55,7 +55,9 @@ pub fn judge(reading: &Reading, limit: &Limit, rule: Rule) -> Judgement {
         Rule::Simple => 0.0,
     };
     let inside_low = limit.low.map_or(f64::INFINITY, |low| reading.value - low);
-    let inside_high = limit.high.map_or(f64::INFINITY, |high| high - reading.value);
+    let inside_high = limit
+        .high
+        .map_or(f64::INFINITY, |high| high - reading.value);
     let (inside, side) = if inside_low < inside_high {
         (inside_low, Side::Low)
     } else {
@@ -160,7 +162,10 @@ pub fn of_part(judged: &[(Parameter, Judgement)]) -> Verdict {
                 Judgement::Conditional(side) => format!("{} {side} not proven", parameter.name()),
                 Judgement::Pass | Judgement::Void => return None,
             };
-            Some(Reason { text, bin: bin_of(*parameter) })
+            Some(Reason {
+                text,
+                bin: bin_of(*parameter),
+            })
         })
         .collect();
     if !reasons.is_empty() {
@@ -170,11 +175,17 @@ pub fn of_part(judged: &[(Parameter, Judgement)]) -> Verdict {
     let void: Vec<String> = Parameter::ALL
         .iter()
         .filter(|parameter| {
-            !judged.iter().any(|(known, judgement)| known == *parameter && *judgement == Judgement::Pass)
+            !judged
+                .iter()
+                .any(|(known, judgement)| known == *parameter && *judgement == Judgement::Pass)
         })
         .map(|parameter| format!("{} not measured", parameter.name()))
         .collect();
-    if void.is_empty() { Verdict::Pass } else { Verdict::Void(void) }
+    if void.is_empty() {
+        Verdict::Pass
+    } else {
+        Verdict::Void(void)
+    }
 }
 
 #[cfg(test)]
@@ -183,39 +194,69 @@ mod tests {
     use super::*;
 
     fn reading(value: f64, u: f64) -> Reading {
-        Reading { value, budget: Budget::default().with("test", u) }
+        Reading {
+            value,
+            budget: Budget::default().with("test", u),
+        }
     }
 
     fn high(high: f64) -> Limit {
-        Limit { low: None, high: Some(high) }
+        Limit {
+            low: None,
+            high: Some(high),
+        }
     }
 
     #[test]
     fn a_guard_band_moves_the_limit_inwards_by_u() {
         let rule = Rule::GuardBand;
-        assert_eq!(judge(&reading(8.97, 0.01), &high(9.0), rule), Judgement::Pass);
-        assert_eq!(judge(&reading(8.99, 0.01), &high(9.0), rule), Judgement::Conditional(Side::High));
-        assert_eq!(judge(&reading(9.01, 0.01), &high(9.0), rule), Judgement::Conditional(Side::High));
-        assert_eq!(judge(&reading(9.03, 0.01), &high(9.0), rule), Judgement::Fail(Side::High));
+        assert_eq!(
+            judge(&reading(8.97, 0.01), &high(9.0), rule),
+            Judgement::Pass
+        );
+        assert_eq!(
+            judge(&reading(8.99, 0.01), &high(9.0), rule),
+            Judgement::Conditional(Side::High)
+        );
+        assert_eq!(
+            judge(&reading(9.01, 0.01), &high(9.0), rule),
+            Judgement::Conditional(Side::High)
+        );
+        assert_eq!(
+            judge(&reading(9.03, 0.01), &high(9.0), rule),
+            Judgement::Fail(Side::High)
+        );
     }
 
     #[test]
     fn the_simple_rule_judges_the_bare_value() {
         let rule = Rule::Simple;
         assert_eq!(judge(&reading(9.0, 0.5), &high(9.0), rule), Judgement::Pass);
-        assert_eq!(judge(&reading(9.0001, 0.5), &high(9.0), rule), Judgement::Fail(Side::High));
+        assert_eq!(
+            judge(&reading(9.0001, 0.5), &high(9.0), rule),
+            Judgement::Fail(Side::High)
+        );
     }
 
     #[test]
     fn what_is_not_a_number_is_void_and_never_passes() {
         let rule = Rule::GuardBand;
-        assert_eq!(judge(&reading(f64::NAN, 0.01), &high(9.0), rule), Judgement::Void);
-        assert_eq!(judge(&reading(1.0, f64::NAN), &high(9.0), rule), Judgement::Void);
+        assert_eq!(
+            judge(&reading(f64::NAN, 0.01), &high(9.0), rule),
+            Judgement::Void
+        );
+        assert_eq!(
+            judge(&reading(1.0, f64::NAN), &high(9.0), rule),
+            Judgement::Void
+        );
     }
 
     #[test]
     fn a_part_passes_only_when_all_nine_results_pass() {
-        let all: Vec<_> = Parameter::ALL.iter().map(|p| (*p, Judgement::Pass)).collect();
+        let all: Vec<_> = Parameter::ALL
+            .iter()
+            .map(|p| (*p, Judgement::Pass))
+            .collect();
         assert_eq!(of_part(&all), Verdict::Pass);
         assert_eq!(of_part(&all[1..]).bin(), Bin::Retest);
     }

@@ -4,8 +4,8 @@
 //! was read. So the order of a test can be read, printed and replayed, and no stage ever holds the bus.
 
 use crate::rig::image::Image;
-use crate::rig::sample::{CountSample, Sample};
 use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Temperature};
+use crate::rig::sample::{CountSample, Sample};
 use crate::units::{RigTime, Span, Volt};
 
 /// What one transaction (or one pair, for the gates) brings in.
@@ -197,7 +197,16 @@ impl Runner {
     pub fn new(acts: Vec<Act>, now: RigTime) -> Self {
         let mut acts = acts.into_iter();
         let current = acts.next();
-        Self { acts, current, pending: false, began: now, since: now, mark: now, spent: Spent::default(), readings: Readings::default() }
+        Self {
+            acts,
+            current,
+            pending: false,
+            began: now,
+            since: now,
+            mark: now,
+            spent: Spent::default(),
+            readings: Readings::default(),
+        }
     }
 
     /// True when nothing is left to do.
@@ -263,7 +272,9 @@ impl Runner {
     fn next(&mut self) {
         let took = self.since.since(self.began);
         match &self.current {
-            Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_)) => self.spent.bus += took,
+            Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_)) => {
+                self.spent.bus += took
+            }
             Some(Act::Wait(_) | Act::WaitSinceMark(_)) => self.spent.settling += took,
             Some(Act::ConvertSinceMark(_)) => self.spent.conversion += took,
             Some(Act::Until { .. }) => self.spent.ramp += took,
@@ -278,13 +289,24 @@ impl Runner {
         match self.current.clone() {
             Some(Act::Read(read)) => self.take(read, image, now)?,
             Some(Act::Until { point, within }) => {
-                let active = image.input(point, now, Span::ms(50)).ok_or("a board input is stale")?;
+                let active = image
+                    .input(point, now, Span::ms(50))
+                    .ok_or("a board input is stale")?;
                 if !active && self.since.since(self.began) < within {
                     return Ok(());
                 }
                 self.readings.seen.push(active);
             }
-            Some(Act::Board(_) | Act::Supply(_) | Act::CoilMask(_) | Act::Mark | Act::Wait(_) | Act::WaitSinceMark(_) | Act::ConvertSinceMark(_)) | None => {}
+            Some(
+                Act::Board(_)
+                | Act::Supply(_)
+                | Act::CoilMask(_)
+                | Act::Mark
+                | Act::Wait(_)
+                | Act::WaitSinceMark(_)
+                | Act::ConvertSinceMark(_),
+            )
+            | None => {}
         }
         self.next();
         Ok(())
@@ -293,7 +315,10 @@ impl Runner {
     fn take(&mut self, read: Read, image: &Image, now: RigTime) -> Result<(), String> {
         let missing = || format!("{read:?} was answered without a value");
         match read {
-            Read::Board => self.readings.boards.push(BoardInputs::take(image, now).ok_or_else(missing)?),
+            Read::Board => self
+                .readings
+                .boards
+                .push(BoardInputs::take(image, now).ok_or_else(missing)?),
             Read::Coil => self.readings.coil.push(CoilScan {
                 voltage_fine: image.analog(AnalogIn::CoilVoltageFine).cloned(),
                 current_fine: image.analog(AnalogIn::CoilCurrentFine).cloned(),
@@ -301,11 +326,18 @@ impl Runner {
                 reference: image.analog(AnalogIn::ReferenceVoltage).cloned(),
             }),
             Read::Drop => {
-                self.readings.drops.push(image.analog(AnalogIn::ContactDrop).cloned().ok_or_else(missing)?);
+                self.readings.drops.push(
+                    image
+                        .analog(AnalogIn::ContactDrop)
+                        .cloned()
+                        .ok_or_else(missing)?,
+                );
             }
             Read::Gates => {
                 let gate = |counter| image.counter(counter).cloned().ok_or_else(missing);
-                self.readings.gates.push([gate(Counter::Gate0)?, gate(Counter::Gate1)?]);
+                self.readings
+                    .gates
+                    .push([gate(Counter::Gate0)?, gate(Counter::Gate1)?]);
             }
             Read::Resets => {}
             Read::Track => {

@@ -6,12 +6,12 @@
 //! Jaws close while the pusher goes back; probes rise only after it is back. The fingers close while the
 //! probes go down, the jaws open only when both are done, and the part changes hands when z is up.
 
+use super::act::{Doing, JobDone};
 use super::moves::Move;
 use super::sort::Sort;
 use super::test::{Bench, Progress, Test};
 use super::turn::Turn;
 use super::wants::{Judged, Left};
-use super::act::{Doing, JobDone};
 use crate::gauge::verdict::Bin;
 use crate::rig::point::DigitalIn;
 use crate::station::ledger::Kind;
@@ -59,7 +59,9 @@ impl Clamp {
                 Clamp::Clamping
             }
             Clamp::Empty => Clamp::Empty,
-            Clamp::Clamping if turn.arrived(Move::ClampClose) && turn.arrived(Move::PusherRetract) => {
+            Clamp::Clamping
+                if turn.arrived(Move::ClampClose) && turn.arrived(Move::PusherRetract) =>
+            {
                 turn.drive(Move::ProbesUp);
                 Clamp::Probing
             }
@@ -73,7 +75,9 @@ impl Clamp {
                 Clamp::Gripping
             }
             Clamp::Judged => Clamp::Judged,
-            Clamp::Gripping if turn.arrived(Move::ProbesDown) && turn.arrived(Move::GripperClose) => {
+            Clamp::Gripping
+                if turn.arrived(Move::ProbesDown) && turn.arrived(Move::GripperClose) =>
+            {
                 turn.drive(Move::ClampOpen);
                 Clamp::Unclamping
             }
@@ -83,7 +87,9 @@ impl Clamp {
                 Clamp::Lifting
             }
             Clamp::Unclamping => Clamp::Unclamping,
-            Clamp::Lifting if turn.arrived(Move::SortUp) && turn.seen(DigitalIn::NestPresent, false) => {
+            Clamp::Lifting
+                if turn.arrived(Move::SortUp) && turn.seen(DigitalIn::NestPresent, false) =>
+            {
                 lifted(turn, beside)
             }
             Clamp::Lifting => Clamp::Lifting,
@@ -110,7 +116,14 @@ fn begin(turn: &mut Turn, beside: Beside) -> Clamp {
         part.probed_at = Some(turn.now);
     }
     let test = Test::begin(beside.bench.clone(), turn.now);
-    testing(turn, Beside { job: None, ..beside }, Box::new(test))
+    testing(
+        turn,
+        Beside {
+            job: None,
+            ..beside
+        },
+        Box::new(test),
+    )
 }
 
 fn testing(turn: &mut Turn, beside: Beside, mut test: Box<Test>) -> Clamp {
@@ -130,7 +143,9 @@ fn judged(turn: &mut Turn, bench: &Bench, test: Test) {
     let verdict = test.verdict();
     let judgements = test.judgements();
     let now = turn.now;
-    let Some(part) = &mut turn.ledger.nest else { return };
+    let Some(part) = &mut turn.ledger.nest else {
+        return;
+    };
     part.test = part.probed_at.map(|at| Second(now.since(at).as_seconds()));
     part.bin = Some(match part.kind {
         Kind::Golden(_) => Bin::Retest,
@@ -149,8 +164,13 @@ fn judged(turn: &mut Turn, bench: &Bench, test: Test) {
 fn lifted(turn: &mut Turn, beside: Beside) -> Clamp {
     turn.ledger.lift();
     if let Some(part) = &turn.ledger.gripper {
-        let cycle = beside.last_left.map(|before| Second(turn.now.since(before).as_seconds()));
-        turn.wants.left.push(Left { ordinal: part.ordinal, cycle });
+        let cycle = beside
+            .last_left
+            .map(|before| Second(turn.now.since(before).as_seconds()));
+        turn.wants.left.push(Left {
+            ordinal: part.ordinal,
+            cycle,
+        });
     }
     *beside.last_left = Some(turn.now);
     beside.sort.carry();

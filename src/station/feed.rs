@@ -61,7 +61,9 @@ impl Feed {
 }
 
 fn releasing(turn: &mut Turn, since: RigTime) -> Feed {
-    if turn.seen(DigitalIn::PocketPresent, true) && turn.image.input_at(DigitalIn::PocketPresent) > Some(since) {
+    if turn.seen(DigitalIn::PocketPresent, true)
+        && turn.image.input_at(DigitalIn::PocketPresent) > Some(since)
+    {
         turn.ledger.enter_pocket();
         turn.drive(Move::EscapementHold);
         return Feed::Holding;

@@ -4,10 +4,10 @@
 //! the fine lag, which enters results, comes from the certificates alone.
 
 use super::test::{Findings, Ramp};
+use crate::gauge::Parameter;
 use crate::gauge::calibration::{Factor, Lag, Lags};
 use crate::gauge::coil::{relative_per_kelvin, to_reference};
 use crate::gauge::settings::{AccuracySettings, Certified, GoldenPart};
-use crate::gauge::Parameter;
 use crate::units::Celsius;
 
 /// The scatter of the coarse lag is never believed to be smaller, volts: one refresh of the ramp in ten.
@@ -45,7 +45,11 @@ impl CoarseLag {
             return (guess, FIRST_SCATTER_V);
         }
         let few = 1.0 + 2.0 / self.n;
-        let sd = if self.n < 2.0 { FIRST_SCATTER_V } else { (self.squares / (self.n - 1.0)).sqrt() };
+        let sd = if self.n < 2.0 {
+            FIRST_SCATTER_V
+        } else {
+            (self.squares / (self.n - 1.0)).sqrt()
+        };
         (self.mean, (sd * few).max(LEAST_SCATTER_V))
     }
 }
@@ -66,7 +70,12 @@ pub struct GoldenRun {
 
 impl GoldenRun {
     /// Takes in a tested golden part, or says why it cannot be used.
-    pub fn learn(&mut self, part: &GoldenPart, reference: Celsius, findings: &Findings) -> Result<(), String> {
+    pub fn learn(
+        &mut self,
+        part: &GoldenPart,
+        reference: Celsius,
+        findings: &Findings,
+    ) -> Result<(), String> {
         let serial = &part.serial;
         let why = |what: &str| format!("golden part {serial}: {what}");
         let track = findings.track.ok_or_else(|| why("no temperature"))?;
@@ -90,9 +99,22 @@ impl GoldenRun {
         accuracy: &AccuracySettings,
         coarse: (CoarseLag, CoarseLag),
     ) -> Result<Lags, String> {
-        let operate = self.fine(|shift| shift.operate, |part| part.operate_voltage_v, sets, accuracy)?;
-        let release = self.fine(|shift| shift.release, |part| part.release_voltage_v, sets, accuracy)?;
-        Ok(Lags { operate: place(operate, coarse.0), release: place(release, coarse.1) })
+        let operate = self.fine(
+            |shift| shift.operate,
+            |part| part.operate_voltage_v,
+            sets,
+            accuracy,
+        )?;
+        let release = self.fine(
+            |shift| shift.release,
+            |part| part.release_voltage_v,
+            sets,
+            accuracy,
+        )?;
+        Ok(Lags {
+            operate: place(operate, coarse.0),
+            release: place(release, coarse.1),
+        })
     }
 
     fn fine(
@@ -104,16 +126,27 @@ impl GoldenRun {
     ) -> Result<Factor, String> {
         let n = self.shifts.len() as f64;
         if self.shifts.len() < 3 {
-            return Err(format!("{} golden parts were measured, at least 3 are needed", self.shifts.len()));
+            return Err(format!(
+                "{} golden parts were measured, at least 3 are needed",
+                self.shifts.len()
+            ));
         }
         let mean = self.shifts.iter().map(shift).sum::<f64>() / n;
-        if let Some(odd) = self.shifts.iter().find(|one| (shift(one) - mean).abs() > BAND_V) {
+        if let Some(odd) = self
+            .shifts
+            .iter()
+            .find(|one| (shift(one) - mean).abs() > BAND_V)
+        {
             let off = (shift(odd) - mean) * 1e3;
-            return Err(format!("golden part {} is {off:+.1} mV away from the others", odd.serial));
+            return Err(format!(
+                "golden part {} is {off:+.1} mV away from the others",
+                odd.serial
+            ));
         }
         let of_part = |part: &GoldenPart| {
             let value = certified(part);
-            let kelvin = value.value * accuracy.part_minus_track_k * relative_per_kelvin(Celsius(23.0));
+            let kelvin =
+                value.value * accuracy.part_minus_track_k * relative_per_kelvin(Celsius(23.0));
             value.u.powi(2) + kelvin.powi(2) + (accuracy.operation_scatter_mv / 1e3).powi(2)
         };
         let promised = parts.iter().map(of_part).sum::<f64>() / parts.len().max(1) as f64;
@@ -140,12 +173,19 @@ fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
 /// Lag with the coarse part as learned so far.
 pub fn place(fine: Factor, coarse: CoarseLag) -> Lag {
     let (coarse_v, coarse_sd_v) = coarse.place(0.0);
-    Lag { fine_v: fine, coarse_v, coarse_sd_v }
+    Lag {
+        fine_v: fine,
+        coarse_v,
+        coarse_sd_v,
+    }
 }
 
 /// Lag while golden parts are being run: no fine correction yet, the coarse one as far as learned.
 pub fn interim(guess: Lag, coarse: CoarseLag) -> Lag {
     let (coarse_v, coarse_sd_v) = coarse.place(guess.coarse_v);
-    Lag { fine_v: Factor::new(0.0, f64::INFINITY), coarse_v, coarse_sd_v }
+    Lag {
+        fine_v: Factor::new(0.0, f64::INFINITY),
+        coarse_v,
+        coarse_sd_v,
+    }
 }
-

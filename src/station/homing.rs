@@ -31,8 +31,13 @@ impl Homing {
     /// One turn; true when everything is home.
     pub fn step(&mut self, turn: &mut Turn) -> bool {
         if !self.checked {
-            let (nest, gripper) = (turn.input(DigitalIn::NestPresent), turn.input(DigitalIn::GripperPart));
-            let (Some(nest), Some(gripper)) = (nest, gripper) else { return false };
+            let (nest, gripper) = (
+                turn.input(DigitalIn::NestPresent),
+                turn.input(DigitalIn::GripperPart),
+            );
+            let (Some(nest), Some(gripper)) = (nest, gripper) else {
+                return false;
+            };
             if nest {
                 turn.alarm(Alarm::not_empty("nest"));
             } else if gripper {
@@ -42,7 +47,9 @@ impl Homing {
             self.checked = true;
             return false;
         }
-        let Some(movement) = ORDER.get(self.step) else { return true };
+        let Some(movement) = ORDER.get(self.step) else {
+            return true;
+        };
         if turn.arrived(*movement) {
             self.step += 1;
             self.asked = false;

@@ -88,7 +88,10 @@ impl Ledger {
 
     /// The part of the pocket is now in the nest and gets its number; `golden` names a golden part.
     pub fn enter_nest(&mut self, golden: Option<String>) {
-        assert!(self.pocket && self.nest.is_none(), "pocket to nest without a part or a place");
+        assert!(
+            self.pocket && self.nest.is_none(),
+            "pocket to nest without a part or a place"
+        );
         self.pocket = false;
         self.numbered += 1;
         let kind = match golden {
@@ -98,8 +101,13 @@ impl Ledger {
                 Kind::Lot(self.lot_numbered)
             }
         };
-        self.nest =
-            Some(Part { kind, ordinal: self.numbered, bin: None, test: None, probed_at: None });
+        self.nest = Some(Part {
+            kind,
+            ordinal: self.numbered,
+            bin: None,
+            test: None,
+            probed_at: None,
+        });
     }
 
     /// The part of the nest is now in the gripper.
@@ -113,7 +121,13 @@ impl Ledger {
     pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
         assert!(self.falling.is_none(), "two parts on their way down");
         if let Some(part) = self.gripper.take() {
-            self.falling = Some(Falling { part, bin, since, beam_before, seen: None });
+            self.falling = Some(Falling {
+                part,
+                bin,
+                since,
+                beam_before,
+                seen: None,
+            });
         }
     }
 

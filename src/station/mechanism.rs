@@ -37,7 +37,13 @@ pub struct Mechanism {
 impl Mechanism {
     /// Nothing known, nothing under way.
     pub fn new(strokes: Strokes, timeout: Vec<(&'static str, Span)>, part_size: PartSize) -> Self {
-        Self { strokes, timeout, underway: Vec::new(), axis_at: None, part_size }
+        Self {
+            strokes,
+            timeout,
+            underway: Vec::new(),
+            axis_at: None,
+            part_size,
+        }
     }
 
     /// Lengths of the strokes.
@@ -58,21 +64,31 @@ impl Mechanism {
     }
 
     fn sensed(&self, movement: Move, now: RigTime, image: &Image) -> bool {
-        movement.arrival().iter().all(|(point, state)| image.input(*point, now, SENSOR_AGE) == Some(*state))
+        movement
+            .arrival()
+            .iter()
+            .all(|(point, state)| image.input(*point, now, SENSOR_AGE) == Some(*state))
     }
 
     /// True from the moment a motion of the same actuator was driven until it arrives.
     pub fn is_moving(&self, movement: Move) -> bool {
         let key = movement.actuator_key();
-        self.underway.iter().any(|underway| underway.movement.actuator_key() == key)
+        self.underway
+            .iter()
+            .any(|underway| underway.movement.actuator_key() == key)
     }
 
     /// A motion was driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         let from = self.positions(now, image);
         let key = movement.actuator_key();
-        self.underway.retain(|underway| underway.movement.actuator_key() != key);
-        self.underway.push(Underway { movement, since: now, from });
+        self.underway
+            .retain(|underway| underway.movement.actuator_key() != key);
+        self.underway.push(Underway {
+            movement,
+            since: now,
+            from,
+        });
         if let Move::AxisTo(station) = movement {
             self.axis_at = Some(station);
         }
@@ -87,7 +103,9 @@ impl Mechanism {
             let is_axis = matches!(underway.movement, Move::AxisTo(_));
             let believed = !is_axis || elapsed >= AXIS_REACTS;
             let fresh = underway.movement.arrival().iter().all(|(point, _)| {
-                image.input_at(*point).is_some_and(|at| at >= underway.since)
+                image
+                    .input_at(*point)
+                    .is_some_and(|at| at >= underway.since)
             });
             if believed && fresh && self.sensed(underway.movement, now, image) {
                 continue;
@@ -103,7 +121,10 @@ impl Mechanism {
 
     fn timeout_of(&self, movement: Move) -> Span {
         let key = movement.actuator_key();
-        self.timeout.iter().find(|(known, _)| *known == key).map_or(Span::ms(1000), |(_, span)| *span)
+        self.timeout
+            .iter()
+            .find(|(known, _)| *known == key)
+            .map_or(Span::ms(1000), |(_, span)| *span)
     }
 
     /// Position of every actuator, in the order of [`Actuator::ALL`].
@@ -115,7 +136,10 @@ impl Mechanism {
     pub fn position(&self, actuator: Actuator, now: RigTime, image: &Image) -> Position {
         for underway in &self.underway {
             if let Some(to_mm) = underway.movement.motion(&self.strokes).target_mm(actuator) {
-                let index = Actuator::ALL.iter().position(|known| *known == actuator).unwrap_or(0);
+                let index = Actuator::ALL
+                    .iter()
+                    .position(|known| *known == actuator)
+                    .unwrap_or(0);
                 return underway.from[index].reaching(to_mm);
             }
         }
@@ -126,14 +150,18 @@ impl Mechanism {
             (true, true) | (false, false) => None,
         };
         let known = match actuator {
-            Actuator::Escapement => is(DigitalIn::EscapementHold, true).then_some(Position::At(0.0)),
+            Actuator::Escapement => {
+                is(DigitalIn::EscapementHold, true).then_some(Position::At(0.0))
+            }
             Actuator::Pusher => ends(DigitalIn::PusherRetracted, DigitalIn::PusherExtended),
             Actuator::JawLeft => ends(DigitalIn::JawLeftOpen, DigitalIn::JawLeftClosed),
             Actuator::JawRight => ends(DigitalIn::JawRightOpen, DigitalIn::JawRightClosed),
             Actuator::ProbeLift => ends(DigitalIn::ProbeDown, DigitalIn::ProbeUp),
             Actuator::SortZ => ends(DigitalIn::SortZUp, DigitalIn::SortZDown),
             Actuator::Gripper => ends(DigitalIn::GripperOpen, DigitalIn::GripperPart),
-            Actuator::SortAxis => self.axis_at.filter(|_| is(DigitalIn::AxisInPosition, true))
+            Actuator::SortAxis => self
+                .axis_at
+                .filter(|_| is(DigitalIn::AxisInPosition, true))
                 .map(|station| Position::At(self.strokes.axis(station))),
         };
         known.unwrap_or_else(|| self.whole_stroke(actuator))
@@ -143,7 +171,10 @@ impl Mechanism {
         if actuator == Actuator::SortAxis {
             return self.strokes.axis_span();
         }
-        Position::Between { from_mm: 0.0, to_mm: self.strokes.of(actuator) }
+        Position::Between {
+            from_mm: 0.0,
+            to_mm: self.strokes.of(actuator),
+        }
     }
 
     /// The situation as the guard wants it.

@@ -115,7 +115,11 @@ pub struct Station {
 impl Station {
     /// A station that knows nothing of its sensors yet.
     pub fn new(plan: Plan, bench: Bench, table: AxisTable, mechanism: Mechanism) -> Self {
-        let golden_left = if plan.calibrated { VecDeque::new() } else { plan.golden.iter().cloned().collect() };
+        let golden_left = if plan.calibrated {
+            VecDeque::new()
+        } else {
+            plan.golden.iter().cloned().collect()
+        };
         Self {
             plan,
             bench,
@@ -165,7 +169,9 @@ impl Station {
         if matches!(self.phase, Phase::Ended) {
             return wants;
         }
-        wants.alarms.extend(self.mechanism.update(now, inputs.image));
+        wants
+            .alarms
+            .extend(self.mechanism.update(now, inputs.image));
         wants.alarms.extend(inputs.bus.clone());
         wants.alarms.extend(self.safety(now, began, inputs.image));
         if wants.alarms.is_empty() {
@@ -209,9 +215,24 @@ impl Station {
     /// Safety inputs: open is an alarm, unknown is one after the first scan.
     fn safety(&self, now: RigTime, began: RigTime, image: &Image) -> Option<Alarm> {
         let inputs = [
-            (DigitalIn::EmergencyStopOk, "emergency_stop", "Emergency stop pressed. Release it and start again.", "急停按下。请复位急停后重新启动。"),
-            (DigitalIn::DoorClosed, "door_open", "The door is open. Close it and start again.", "安全门打开。请关门后重新启动。"),
-            (DigitalIn::AirOk, "air_lost", "Air pressure is missing. Check the supply.", "气压不足。请检查气源。"),
+            (
+                DigitalIn::EmergencyStopOk,
+                "emergency_stop",
+                "Emergency stop pressed. Release it and start again.",
+                "急停按下。请复位急停后重新启动。",
+            ),
+            (
+                DigitalIn::DoorClosed,
+                "door_open",
+                "The door is open. Close it and start again.",
+                "安全门打开。请关门后重新启动。",
+            ),
+            (
+                DigitalIn::AirOk,
+                "air_lost",
+                "Air pressure is missing. Check the supply.",
+                "气压不足。请检查气源。",
+            ),
         ];
         for (point, code, en, zh) in inputs {
             match image.input(point, now, mechanism::SENSOR_AGE) {
@@ -242,7 +263,9 @@ impl Station {
                 };
             }
             Phase::ReferenceUp => {
-                let up = self.mechanism.has_arrived(Move::ProbesUp, now, inputs.image);
+                let up = self
+                    .mechanism
+                    .has_arrived(Move::ProbesUp, now, inputs.image);
                 self.phase = if up {
                     Phase::Reference(Box::new(Runner::new(reference::acts(&self.bench), now)))
                 } else {
@@ -250,10 +273,18 @@ impl Station {
                 };
                 wants.wake_at = up.then_some(now);
             }
-            Phase::Reference(runner) => self.phase = self.measure_references(now, &inputs, runner, wants),
+            Phase::Reference(runner) => {
+                self.phase = self.measure_references(now, &inputs, runner, wants)
+            }
             Phase::ReferenceDown => {
-                let down = self.mechanism.has_arrived(Move::ProbesDown, now, inputs.image);
-                self.phase = if down { Phase::Running } else { Phase::ReferenceDown };
+                let down = self
+                    .mechanism
+                    .has_arrived(Move::ProbesDown, now, inputs.image);
+                self.phase = if down {
+                    Phase::Running
+                } else {
+                    Phase::ReferenceDown
+                };
             }
             Phase::Running => {
                 self.phase = Phase::Running;
@@ -264,8 +295,16 @@ impl Station {
     }
 
     fn first_scan(&self, now: RigTime, image: &Image) -> Phase {
-        let seen = [DigitalIn::EmergencyStopOk, DigitalIn::SortZUp, DigitalIn::NestPresent, DigitalIn::GripperPart];
-        if seen.iter().all(|point| image.input(*point, now, mechanism::SENSOR_AGE).is_some()) {
+        let seen = [
+            DigitalIn::EmergencyStopOk,
+            DigitalIn::SortZUp,
+            DigitalIn::NestPresent,
+            DigitalIn::GripperPart,
+        ];
+        if seen
+            .iter()
+            .all(|point| image.input(*point, now, mechanism::SENSOR_AGE).is_some())
+        {
             Phase::Homing(Homing::default())
         } else {
             Phase::Waiting
@@ -320,7 +359,14 @@ impl Station {
     /// Feed, nest and sorter, once each.
     fn produce(&mut self, now: RigTime, mut inputs: Inputs, wants: &mut Wants) {
         let job: Option<JobDone> = inputs.job.take();
-        if !self.lot_began && self.golden_left.is_empty() && self.bench.calibration.lags.is_some_and(|lags| lags.operate.fine_v.u.is_finite()) {
+        if !self.lot_began
+            && self.golden_left.is_empty()
+            && self
+                .bench
+                .calibration
+                .lags
+                .is_some_and(|lags| lags.operate.fine_v.u.is_finite())
+        {
             self.lot_began = true;
             wants.lot_began = true;
         }
@@ -331,7 +377,12 @@ impl Station {
         let table = self.table.clone();
         let mut turn = self.turn(now, &inputs, wants);
         sort = sort.step(&mut turn, &table, test_running);
-        let beside = Beside { job, bench: &bench, sort: &mut sort, last_left: &mut last_left };
+        let beside = Beside {
+            job,
+            bench: &bench,
+            sort: &mut sort,
+            last_left: &mut last_left,
+        };
         let clamp = clamp.step(&mut turn, beside);
         let feed = feed.step(&mut turn, wanted);
         (self.feed, self.clamp, self.sort, self.last_left) = (feed, clamp, sort, last_left);
@@ -340,8 +391,14 @@ impl Station {
     }
 
     fn wants_more(&self) -> bool {
-        let golden = if self.plan.calibrated { 0 } else { self.plan.golden.len() as u64 };
-        self.plan.count.is_none_or(|count| self.ledger.came_in < golden + count)
+        let golden = if self.plan.calibrated {
+            0
+        } else {
+            self.plan.golden.len() as u64
+        };
+        self.plan
+            .count
+            .is_none_or(|count| self.ledger.came_in < golden + count)
     }
 
     /// Golden parts teach the lags, every part the place of the fine ramp.
@@ -350,8 +407,14 @@ impl Station {
             let findings = &judged.findings;
             // A slow or sticking part would spoil the place of the ramp for all that follow.
             if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
-                findings.operate.into_iter().for_each(|ramp| self.coarse.0.learn(ramp));
-                findings.release.into_iter().for_each(|ramp| self.coarse.1.learn(ramp));
+                findings
+                    .operate
+                    .into_iter()
+                    .for_each(|ramp| self.coarse.0.learn(ramp));
+                findings
+                    .release
+                    .into_iter()
+                    .for_each(|ramp| self.coarse.1.learn(ramp));
             }
             if let Kind::Golden(serial) = &judged.part.kind {
                 let known = self.plan.golden.iter().find(|part| part.serial == *serial);
@@ -368,7 +431,10 @@ impl Station {
             let still_golden = matches!(judged.part.kind, Kind::Golden(_));
             match self.new_lags(still_golden) {
                 Ok((lags, complete)) => {
-                    let calibration = Calibration { lags: Some(lags), ..(*self.bench.calibration).clone() };
+                    let calibration = Calibration {
+                        lags: Some(lags),
+                        ..(*self.bench.calibration).clone()
+                    };
                     if complete {
                         wants.calibrated = Some(calibration.clone());
                     }
@@ -391,7 +457,9 @@ impl Station {
             return Ok((lags, false));
         }
         if self.golden_left.is_empty() {
-            let lags = self.golden_run.lags(&self.plan.golden, &bench.accuracy, self.coarse)?;
+            let lags = self
+                .golden_run
+                .lags(&self.plan.golden, &bench.accuracy, self.coarse)?;
             return Ok((lags, true));
         }
         let lags = Lags {
@@ -404,14 +472,26 @@ impl Station {
     fn maybe_end(&mut self, recorded: u64, wants: &mut Wants) {
         let ledger = &self.ledger;
         let empty = ledger.nest.is_none() && ledger.gripper.is_none() && ledger.falling.is_none();
-        let feeding = matches!(self.feed, Feed::Releasing { .. } | Feed::Holding | Feed::Pushing | Feed::Retracting);
+        let feeding = matches!(
+            self.feed,
+            Feed::Releasing { .. } | Feed::Holding | Feed::Pushing | Feed::Retracting
+        );
         let at_rest = matches!(self.sort, Sort::Returning | Sort::OverNest | Sort::Opening);
         let waiting_part = ledger.pocket && !self.stopping;
-        if !empty || feeding || !at_rest || waiting_part || wants.judged.iter().any(|j| j.part.ordinal > recorded) {
+        if !empty
+            || feeding
+            || !at_rest
+            || waiting_part
+            || wants.judged.iter().any(|j| j.part.ordinal > recorded)
+        {
             return;
         }
         if self.stopping || !self.wants_more() {
-            wants.ending = Some(if self.wants_more() { Ending::Stopped } else { Ending::Complete });
+            wants.ending = Some(if self.wants_more() {
+                Ending::Stopped
+            } else {
+                Ending::Complete
+            });
             wants.safe = true;
             self.phase = Phase::Ended;
         }
@@ -425,16 +505,27 @@ impl Station {
         wants.outputs.push((DigitalOut::LampRed, true));
         wants.ending = Some(Ending::Alarm);
         self.phase = Phase::Ended;
-        let why = wants.alarms.first().map_or("alarm", |alarm| alarm.code.as_str()).to_string();
-        let Some(part) = &mut self.ledger.nest else { return };
+        let why = wants
+            .alarms
+            .first()
+            .map_or("alarm", |alarm| alarm.code.as_str())
+            .to_string();
+        let Some(part) = &mut self.ledger.nest else {
+            return;
+        };
         if part.bin.is_some() {
             return;
         }
         part.bin = Some(Bin::Retest);
         let (findings, judgements) = match std::mem::replace(&mut self.clamp, Clamp::Empty) {
             Clamp::Testing(test) => (test.findings.clone(), test.judgements()),
-            Clamp::Empty | Clamp::Clamping | Clamp::Probing | Clamp::Judged | Clamp::Gripping
-            | Clamp::Unclamping | Clamp::Lifting => Default::default(),
+            Clamp::Empty
+            | Clamp::Clamping
+            | Clamp::Probing
+            | Clamp::Judged
+            | Clamp::Gripping
+            | Clamp::Unclamping
+            | Clamp::Lifting => Default::default(),
         };
         wants.judged.push(Judged {
             part: part.clone(),

@@ -55,7 +55,10 @@ impl Strokes {
 
     /// x of a point; NaN for one that is not in the table, which the guard refuses.
     pub fn axis(&self, station: AxisStation) -> f64 {
-        self.axis_mm.iter().find(|(known, _)| *known == station).map_or(f64::NAN, |(_, x)| *x)
+        self.axis_mm
+            .iter()
+            .find(|(known, _)| *known == station)
+            .map_or(f64::NAN, |(_, x)| *x)
     }
 
     /// Span of the whole axis.
@@ -74,10 +77,12 @@ impl Move {
         let full = |actuator| Motion::to(actuator, strokes.of(actuator));
         let rest = |actuator| Motion::to(actuator, 0.0);
         let jaws = |to: fn(&Strokes, Actuator) -> f64| {
-            Motion::group(&[Actuator::JawLeft, Actuator::JawRight].map(|actuator| Stroke {
-                actuator,
-                to_mm: to(strokes, actuator),
-            }))
+            Motion::group(
+                &[Actuator::JawLeft, Actuator::JawRight].map(|actuator| Stroke {
+                    actuator,
+                    to_mm: to(strokes, actuator),
+                }),
+            )
         };
         match self {
             Move::EscapementRelease => full(Actuator::Escapement),
@@ -101,16 +106,34 @@ impl Move {
         match self {
             Move::EscapementRelease => &[(DigitalIn::EscapementHold, false)],
             Move::EscapementHold => &[(DigitalIn::EscapementHold, true)],
-            Move::PusherExtend => &[(DigitalIn::PusherExtended, true), (DigitalIn::PusherRetracted, false)],
-            Move::PusherRetract => &[(DigitalIn::PusherRetracted, true), (DigitalIn::PusherExtended, false)],
-            Move::ClampClose => &[(DigitalIn::JawLeftClosed, true), (DigitalIn::JawRightClosed, true)],
-            Move::ClampOpen => &[(DigitalIn::JawLeftOpen, true), (DigitalIn::JawRightOpen, true)],
+            Move::PusherExtend => &[
+                (DigitalIn::PusherExtended, true),
+                (DigitalIn::PusherRetracted, false),
+            ],
+            Move::PusherRetract => &[
+                (DigitalIn::PusherRetracted, true),
+                (DigitalIn::PusherExtended, false),
+            ],
+            Move::ClampClose => &[
+                (DigitalIn::JawLeftClosed, true),
+                (DigitalIn::JawRightClosed, true),
+            ],
+            Move::ClampOpen => &[
+                (DigitalIn::JawLeftOpen, true),
+                (DigitalIn::JawRightOpen, true),
+            ],
             Move::ProbesUp => &[(DigitalIn::ProbeUp, true), (DigitalIn::ProbeDown, false)],
             Move::ProbesDown => &[(DigitalIn::ProbeDown, true), (DigitalIn::ProbeUp, false)],
-            Move::AxisTo(_) => &[(DigitalIn::AxisInPosition, true), (DigitalIn::AxisBusy, false)],
+            Move::AxisTo(_) => &[
+                (DigitalIn::AxisInPosition, true),
+                (DigitalIn::AxisBusy, false),
+            ],
             Move::SortDown => &[(DigitalIn::SortZDown, true), (DigitalIn::SortZUp, false)],
             Move::SortUp => &[(DigitalIn::SortZUp, true), (DigitalIn::SortZDown, false)],
-            Move::GripperClose => &[(DigitalIn::GripperPart, true), (DigitalIn::GripperOpen, false)],
+            Move::GripperClose => &[
+                (DigitalIn::GripperPart, true),
+                (DigitalIn::GripperOpen, false),
+            ],
             Move::GripperOpen => &[(DigitalIn::GripperOpen, true)],
         }
     }

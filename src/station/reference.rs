@@ -9,11 +9,11 @@ use super::act::{Act, CoilScan, Read, Readings};
 use crate::gauge::budget::rectangular;
 use crate::gauge::calibration::{Calibration, Factor, InputLine, OutputLine};
 use crate::gauge::timing::counts;
-use crate::rig::sample::{Quality, Sample};
 use crate::rig::point::AnalogOut::{SupplyCoarse, SupplyFine, SupplyLevel};
 use crate::rig::point::DigitalOut::{
     Arm, CoilDrive, KelvinTest, RampMode, ReferenceCoil, ReferenceContact, SourceOn, SourceReverse,
 };
+use crate::rig::sample::{Quality, Sample};
 use crate::station::test::Bench;
 use crate::units::{Span, Volt};
 
@@ -41,7 +41,11 @@ pub fn acts(bench: &Bench) -> Vec<Act> {
     let mut acts = vec![
         Act::CoilMask(MASK),
         all_off(),
-        Act::Supply(vec![(SupplyLevel, Volt(0.0)), (SupplyCoarse, Volt(0.0)), (SupplyFine, Volt(0.0))]),
+        Act::Supply(vec![
+            (SupplyLevel, Volt(0.0)),
+            (SupplyCoarse, Volt(0.0)),
+            (SupplyFine, Volt(0.0)),
+        ]),
         Act::Wait(Span::ms(200) + bench.fresh(CHANNELS)),
     ];
     scans(bench, SCANS, &mut acts);
@@ -52,7 +56,10 @@ pub fn acts(bench: &Bench) -> Vec<Act> {
         vec![(SupplyLevel, Volt(HIGH_V))],
         vec![(SupplyLevel, Volt(LOW_V)), (SupplyCoarse, span)],
     ] {
-        acts.extend([Act::Supply(step), Act::Wait(Span::ms(60) + bench.fresh(CHANNELS))]);
+        acts.extend([
+            Act::Supply(step),
+            Act::Wait(Span::ms(60) + bench.fresh(CHANNELS)),
+        ]);
         scans(bench, SCANS, &mut acts);
     }
     acts.extend([
@@ -64,7 +71,11 @@ pub fn acts(bench: &Bench) -> Vec<Act> {
     scans(bench, RAMP_SCANS, &mut acts);
     acts.push(Act::Wait(Span::ms(1500)));
     scans(bench, SCANS, &mut acts);
-    acts.extend([Act::Supply(vec![(SupplyFine, Volt(0.0))]), all_off(), Act::Wait(Span::ms(5))]);
+    acts.extend([
+        Act::Supply(vec![(SupplyFine, Volt(0.0))]),
+        all_off(),
+        Act::Wait(Span::ms(5)),
+    ]);
     contact(bench, &mut acts);
     pulses(&mut acts);
     acts.extend([
@@ -77,7 +88,16 @@ pub fn acts(bench: &Bench) -> Vec<Act> {
 }
 
 fn all_off() -> Act {
-    let off = [CoilDrive, SourceOn, SourceReverse, ReferenceCoil, ReferenceContact, Arm, RampMode, KelvinTest];
+    let off = [
+        CoilDrive,
+        SourceOn,
+        SourceReverse,
+        ReferenceCoil,
+        ReferenceContact,
+        Arm,
+        RampMode,
+        KelvinTest,
+    ];
     Act::Board(off.map(|output| (output, false)).to_vec())
 }
 
@@ -88,7 +108,10 @@ fn scans(bench: &Bench, n: usize, acts: &mut Vec<Act>) {
 }
 
 fn contact(bench: &Bench, acts: &mut Vec<Act>) {
-    acts.extend([Act::Board(vec![(ReferenceContact, true)]), Act::Wait(Span::ms(10))]);
+    acts.extend([
+        Act::Board(vec![(ReferenceContact, true)]),
+        Act::Wait(Span::ms(10)),
+    ]);
     for reverse in [false, true] {
         acts.extend([
             Act::Board(vec![(SourceReverse, reverse)]),
@@ -104,7 +127,11 @@ fn contact(bench: &Bench, acts: &mut Vec<Act>) {
 }
 
 fn pulses(acts: &mut Vec<Act>) {
-    let pulse = [Act::Board(vec![(Arm, true)]), Act::Wait(Span::ms(2)), Act::Board(vec![(Arm, false)])];
+    let pulse = [
+        Act::Board(vec![(Arm, true)]),
+        Act::Wait(Span::ms(2)),
+        Act::Board(vec![(Arm, false)]),
+    ];
     // The first one closes a window that may still stand open from the switching before.
     acts.extend(pulse.clone());
     acts.push(Act::Read(Read::Gates));
@@ -115,18 +142,33 @@ fn pulses(acts: &mut Vec<Act>) {
 }
 
 /// Mean of one channel over scans, or which channel did not read.
-fn mean(scans: &[CoilScan], channel: fn(&CoilScan) -> &Option<Sample>, name: &str) -> Result<f64, String> {
+fn mean(
+    scans: &[CoilScan],
+    channel: fn(&CoilScan) -> &Option<Sample>,
+    name: &str,
+) -> Result<f64, String> {
     let mut sum = 0.0;
     for scan in scans {
         match channel(scan) {
-            Some(sample) if sample.quality == Quality::Good && sample.terminal_volts.is_finite() => {
+            Some(sample)
+                if sample.quality == Quality::Good && sample.terminal_volts.is_finite() =>
+            {
                 sum += sample.terminal_volts;
             }
-            Some(sample) => return Err(format!("{name} reads {} ({:?})", sample.origin.raw, sample.quality)),
+            Some(sample) => {
+                return Err(format!(
+                    "{name} reads {} ({:?})",
+                    sample.origin.raw, sample.quality
+                ));
+            }
             None => return Err(format!("{name} is not enabled")),
         }
     }
-    if scans.is_empty() { Err(format!("{name} was not read")) } else { Ok(sum / scans.len() as f64) }
+    if scans.is_empty() {
+        Err(format!("{name} was not read"))
+    } else {
+        Ok(sum / scans.len() as f64)
+    }
 }
 
 /// One level: terminal volts of voltage, fine current, wide current and reference.
@@ -155,8 +197,14 @@ pub fn conclude(
     voltage_gain: f64,
 ) -> Result<Calibration, String> {
     let expected = 4 * SCANS + RAMP_SCANS + SCANS;
-    if readings.coil.len() != expected || readings.drops.len() != 2 * DROPS || readings.gates.len() != 2 {
-        return Err(format!("{} scans where {expected} were expected", readings.coil.len()));
+    if readings.coil.len() != expected
+        || readings.drops.len() != 2 * DROPS
+        || readings.gates.len() != 2
+    {
+        return Err(format!(
+            "{} scans where {expected} were expected",
+            readings.coil.len()
+        ));
     }
     let part = |from: usize, n: usize| &readings.coil[from..from + n];
     let zero = level(part(0, SCANS))?;
@@ -167,7 +215,11 @@ pub fn conclude(
     let u_read = bench.reading_u_v() / (SCANS as f64).sqrt();
 
     let offset = (zero.voltage + zero.fine + zero.wide) / 3.0;
-    let reference = [&zero, &low, &high, &coarse, &fine].iter().map(|l| l.reference).sum::<f64>() / 5.0;
+    let reference = [&zero, &low, &high, &coarse, &fine]
+        .iter()
+        .map(|l| l.reference)
+        .sum::<f64>()
+        / 5.0;
     let known = &bench.reference;
     let coil_input = InputLine {
         gain: Factor::new(
@@ -183,22 +235,34 @@ pub fn conclude(
         let ratio = (current(&high) - offset) / (high.voltage - offset);
         let u = (u_read / (high.voltage - offset)).hypot(u_read / (current(&high) - offset));
         let value = known.coil_ohm * ratio;
-        Factor::new(value, value * u.hypot(rectangular(known.coil_tolerance_pct / 100.0)))
+        Factor::new(
+            value,
+            value * u.hypot(rectangular(known.coil_tolerance_pct / 100.0)),
+        )
     };
     let span = HIGH_V - LOW_V;
     let gain = |to: &Level| {
         let u = 2f64.sqrt() * u_read / voltage_gain / span;
-        Factor::new((volts(to.voltage) - volts(low.voltage)) / span, u.hypot(coil_input.gain.u))
+        Factor::new(
+            (volts(to.voltage) - volts(low.voltage)) / span,
+            u.hypot(coil_input.gain.u),
+        )
     };
     let level_gain = gain(&high);
-    let output = |gain: Factor| OutputLine { gain, offset_v: Factor::new(0.0, 0.0) };
+    let output = |gain: Factor| OutputLine {
+        gain,
+        offset_v: Factor::new(0.0, 0.0),
+    };
     Ok(Calibration {
         made_at_us,
         due_at_us: made_at_us + valid_us,
         nominal_v: bench.recipe.part.nominal_v,
         level: OutputLine {
             gain: level_gain,
-            offset_v: Factor::new(volts(low.voltage) - level_gain.value * LOW_V, u_read / voltage_gain),
+            offset_v: Factor::new(
+                volts(low.voltage) - level_gain.value * LOW_V,
+                u_read / voltage_gain,
+            ),
         },
         coarse: output(gain(&coarse)),
         fine: output(gain(&fine)),
@@ -210,7 +274,10 @@ pub fn conclude(
         ohm_fine: ohm(|level| level.fine),
         ohm_wide: ohm(|level| level.wide),
         contact_mohm_per_v: contact_factor(bench, &readings.drops)?,
-        gate_delay_us: [gate_delay(bench, readings, 0)?, gate_delay(bench, readings, 1)?],
+        gate_delay_us: [
+            gate_delay(bench, readings, 0)?,
+            gate_delay(bench, readings, 1)?,
+        ],
         coil_input,
         lags: None,
     })
@@ -237,41 +304,69 @@ fn slope(scans: &[CoilScan], line: &InputLine, voltage_gain: f64) -> Result<Fact
         .iter()
         .filter_map(|scan| scan.voltage_fine.as_ref())
         .filter(|sample| sample.quality == Quality::Good)
-        .map(|sample| (sample.origin.at.0 as f64 / 1e6, line.correct(Volt(sample.terminal_volts)).0 / voltage_gain))
+        .map(|sample| {
+            (
+                sample.origin.at.0 as f64 / 1e6,
+                line.correct(Volt(sample.terminal_volts)).0 / voltage_gain,
+            )
+        })
         .filter(|(_, volts)| (LOW_V + SLOPE_MARGIN_V..HIGH_V - SLOPE_MARGIN_V).contains(volts))
         .collect();
     if points.len() < 10 {
         return Err(format!("only {} readings on the fine ramp", points.len()));
     }
     let n = points.len() as f64;
-    let (mt, mv) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
+    let (mt, mv) = (
+        points.iter().map(|p| p.0).sum::<f64>() / n,
+        points.iter().map(|p| p.1).sum::<f64>() / n,
+    );
     let stt = points.iter().map(|p| (p.0 - mt).powi(2)).sum::<f64>();
     let stv = points.iter().map(|p| (p.0 - mt) * (p.1 - mv)).sum::<f64>();
     let value = stv / stt;
-    let rest = points.iter().map(|p| (p.1 - mv - value * (p.0 - mt)).powi(2)).sum::<f64>() / (n - 2.0);
+    let rest = points
+        .iter()
+        .map(|p| (p.1 - mv - value * (p.0 - mt)).powi(2))
+        .sum::<f64>()
+        / (n - 2.0);
     let u = (rest / stt).sqrt().hypot(value * line.gain.u);
     if !value.is_finite() || (value / 1.5 - 1.0).abs() > 0.02 {
-        return Err(format!("slope of the fine ramp is {value:.4} V/s where 1.5 V/s was expected"));
+        return Err(format!(
+            "slope of the fine ramp is {value:.4} V/s where 1.5 V/s was expected"
+        ));
     }
     Ok(Factor::new(value, u))
 }
 
 fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, String> {
     let mean = |samples: &[Sample]| -> Result<f64, String> {
-        let bad = samples.iter().find(|s| s.quality != Quality::Good || !s.terminal_volts.is_finite());
+        let bad = samples
+            .iter()
+            .find(|s| s.quality != Quality::Good || !s.terminal_volts.is_finite());
         if let Some(bad) = bad {
-            return Err(format!("drop of the reference contact reads {} ({:?})", bad.origin.raw, bad.quality));
+            return Err(format!(
+                "drop of the reference contact reads {} ({:?})",
+                bad.origin.raw, bad.quality
+            ));
         }
-        Ok(samples.iter().map(|sample| sample.terminal_volts).sum::<f64>() / samples.len() as f64)
+        Ok(samples
+            .iter()
+            .map(|sample| sample.terminal_volts)
+            .sum::<f64>()
+            / samples.len() as f64)
     };
     let drop = (mean(&drops[..DROPS])? - mean(&drops[DROPS..])?) / 2.0;
     let expected = bench.reference.contact_mohm * 1e-3 * 50.0;
     if !(0.8 * expected..1.2 * expected).contains(&drop) {
-        return Err(format!("reference contact drops {drop:.3} V where {expected:.3} V was expected"));
+        return Err(format!(
+            "reference contact drops {drop:.3} V where {expected:.3} V was expected"
+        ));
     }
     let value = bench.reference.contact_mohm / drop;
     let u_drop = bench.reading_u_v() / ((2 * DROPS) as f64).sqrt() / drop;
-    Ok(Factor::new(value, value * u_drop.hypot(rectangular(bench.reference.contact_tolerance_pct / 100.0))))
+    Ok(Factor::new(
+        value,
+        value * u_drop.hypot(rectangular(bench.reference.contact_tolerance_pct / 100.0)),
+    ))
 }
 
 fn gate_delay(bench: &Bench, readings: &Readings, gate: usize) -> Result<Factor, String> {
@@ -282,7 +377,9 @@ fn gate_delay(bench: &Bench, readings: &Readings, gate: usize) -> Result<Factor,
     let each_us = total / f64::from(PULSES) / bench.reference.counter_clock_hz * 1e6;
     let delay = each_us - bench.reference.gate_pulse_ms * 1e3;
     if delay.abs() > 5.0 * bench.accuracy.gate_delay_us {
-        return Err(format!("a pulse of 1.000 ms at gate {gate} counts {each_us:.1} us"));
+        return Err(format!(
+            "a pulse of 1.000 ms at gate {gate} counts {each_us:.1} us"
+        ));
     }
     let count_us = 1e6 / bench.reference.counter_clock_hz / 6f64.sqrt();
     Ok(Factor::new(delay, count_us / f64::from(PULSES).sqrt()))

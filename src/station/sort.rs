@@ -49,7 +49,11 @@ impl Sort {
         match self {
             Sort::Returning if turn.arrived(Move::AxisTo(AxisStation::Nest)) => Sort::OverNest,
             Sort::Returning => Sort::Returning,
-            Sort::OverNest if test_running && turn.arrived(Move::PusherRetract) && turn.arrived(Move::GripperOpen) => {
+            Sort::OverNest
+                if test_running
+                    && turn.arrived(Move::PusherRetract)
+                    && turn.arrived(Move::GripperOpen) =>
+            {
                 turn.drive(Move::SortDown);
                 Sort::Lowering
             }
@@ -58,11 +62,18 @@ impl Sort {
             Sort::Lowering => Sort::Lowering,
             Sort::AtPart => Sort::AtPart,
             Sort::Loaded => {
-                let bin = turn.ledger.gripper.as_ref().and_then(|part| part.bin).unwrap_or(Bin::Retest);
+                let bin = turn
+                    .ledger
+                    .gripper
+                    .as_ref()
+                    .and_then(|part| part.bin)
+                    .unwrap_or(Bin::Retest);
                 turn.drive(Move::AxisTo(AxisStation::Bin(bin)));
                 Sort::Carrying(bin)
             }
-            Sort::Carrying(bin) if turn.arrived(Move::AxisTo(AxisStation::Bin(bin))) => Sort::OverBin(bin, turn.now),
+            Sort::Carrying(bin) if turn.arrived(Move::AxisTo(AxisStation::Bin(bin))) => {
+                Sort::OverBin(bin, turn.now)
+            }
             Sort::Carrying(bin) => Sort::Carrying(bin),
             Sort::OverBin(bin, since) => over_bin(turn, table, bin, since),
             Sort::Opening if turn.arrived(Move::GripperOpen) => {
@@ -92,9 +103,18 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
     }
     let beam = table.beam(bin);
     turn.wants.beam = Some(beam);
-    let durable = turn.ledger.gripper.as_ref().is_some_and(|part| part.ordinal <= turn.recorded);
-    let before = turn.image.events(beam).filter(|count| count.origin.at > since);
-    let (true, Some(before)) = (durable, before) else { return stay };
+    let durable = turn
+        .ledger
+        .gripper
+        .as_ref()
+        .is_some_and(|part| part.ordinal <= turn.recorded);
+    let before = turn
+        .image
+        .events(beam)
+        .filter(|count| count.origin.at > since);
+    let (true, Some(before)) = (durable, before) else {
+        return stay;
+    };
     turn.ledger.drop_over(bin, turn.now, before.count);
     turn.drive(Move::GripperOpen);
     Sort::Opening
@@ -103,15 +123,25 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
 /// Watches the beam of the part that is falling.
 fn confirm(turn: &mut Turn, table: &AxisTable) {
     let now = turn.now;
-    let Some(falling) = &mut turn.ledger.falling else { return };
+    let Some(falling) = &mut turn.ledger.falling else {
+        return;
+    };
     let (bin, since, before) = (falling.bin, falling.since, falling.beam_before);
     let beam = table.beam(bin);
     turn.wants.beam = Some(beam);
-    let count = turn.image.events(beam).filter(|count| count.origin.at > since).map(|count| count.count);
+    let count = turn
+        .image
+        .events(beam)
+        .filter(|count| count.origin.at > since)
+        .map(|count| count.count);
     match count.map(|count| count.wrapping_sub(before) & 0xFFFF) {
         Some(1) if now.since(*falling.seen.get_or_insert(now)) >= SECOND_BODY => {
             if let Some(landed) = turn.ledger.land() {
-                turn.wants.landed.push(Landed { part: landed.part, bin, at: now });
+                turn.wants.landed.push(Landed {
+                    part: landed.part,
+                    bin,
+                    at: now,
+                });
             }
         }
         Some(1) => {}

@@ -17,8 +17,16 @@ pub struct Alarm {
 
 impl Alarm {
     /// An alarm with its texts.
-    pub fn new(code: impl Into<String>, text_en: impl Into<String>, text_zh: impl Into<String>) -> Self {
-        Self { code: code.into(), text_en: text_en.into(), text_zh: text_zh.into() }
+    pub fn new(
+        code: impl Into<String>,
+        text_en: impl Into<String>,
+        text_zh: impl Into<String>,
+    ) -> Self {
+        Self {
+            code: code.into(),
+            text_en: text_en.into(),
+            text_zh: text_zh.into(),
+        }
     }
 
     /// An actuator did not show the end of its motion in time.
@@ -32,8 +40,14 @@ impl Alarm {
             .collect();
         Self::new(
             format!("{key}_not_reached"),
-            format!("{movement:?} not finished after {ms} ms (expects {}). Check air, sensor and obstacles at the {key}.", wanted.join(", ")),
-            format!("{key} 动作 {movement:?} 在 {ms} 毫秒内未到位（应为 {}）。请检查气源、传感器和障碍物。", wanted.join("，")),
+            format!(
+                "{movement:?} not finished after {ms} ms (expects {}). Check air, sensor and obstacles at the {key}.",
+                wanted.join(", ")
+            ),
+            format!(
+                "{key} 动作 {movement:?} 在 {ms} 毫秒内未到位（应为 {}）。请检查气源、传感器和障碍物。",
+                wanted.join("，")
+            ),
         )
     }
 
@@ -77,7 +91,9 @@ impl Alarm {
     pub fn beam(bin: &str, seen: u32) -> Self {
         Self::new(
             "bin_beam",
-            format!("The beam of bin {bin} counted {seen} parts where one was let go. Check the bin and the chute."),
+            format!(
+                "The beam of bin {bin} counted {seen} parts where one was let go. Check the bin and the chute."
+            ),
             format!("料箱 {bin} 的光电传感器计到 {seen} 个工件，应为 1 个。请检查料箱和滑道。"),
         )
     }
@@ -98,6 +114,10 @@ impl Alarm {
 
     /// Calibration did not come out.
     pub fn calibration(text: &str) -> Self {
-        Self::new("calibration_failed", format!("Calibration failed: {text}"), format!("校准失败：{text}"))
+        Self::new(
+            "calibration_failed",
+            format!("Calibration failed: {text}"),
+            format!("校准失败：{text}"),
+        )
     }
 }

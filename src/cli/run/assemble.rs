@@ -31,12 +31,23 @@ pub fn cycle(
     let recipe = Arc::clone(setup.recipe);
     let strokes = Strokes {
         length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),
-        axis_mm: wiring.axis.stations().map(|at| (at, wiring.axis.point(at).x_mm)).collect::<Vec<(AxisStation, f64)>>(),
+        axis_mm: wiring
+            .axis
+            .stations()
+            .map(|at| (at, wiring.axis.point(at).x_mm))
+            .collect::<Vec<(AxisStation, f64)>>(),
     };
-    let part = PartSize { body_mm: recipe.part.body_mm, pin_length_mm: recipe.part.pin_length_mm };
+    let part = PartSize {
+        body_mm: recipe.part.body_mm,
+        pin_length_mm: recipe.part.pin_length_mm,
+    };
     let plan = Plan {
         count: setup.args.count,
-        golden: plant.golden.of_nominal(recipe.part.nominal_v).cloned().collect(),
+        golden: plant
+            .golden
+            .of_nominal(recipe.part.nominal_v)
+            .cloned()
+            .collect(),
         calibrated: calibration.is_some(),
         valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
         epoch_us: setup.epoch_us,
@@ -45,8 +56,8 @@ pub fn cycle(
     let bench = Bench {
         calibration: Arc::new(calibration.unwrap_or_else(|| uncalibrated(recipe.part.nominal_v))),
         recipe,
-        reference: plant.reference.clone(),
-        accuracy: plant.accuracy.clone(),
+        reference: plant.reference,
+        accuracy: plant.accuracy,
     };
     let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), part);
     let station = Station::new(plan, bench, wiring.axis.clone(), mechanism);
@@ -72,7 +83,10 @@ fn uncalibrated(nominal_v: f64) -> Calibration {
         made_at_us: 0,
         due_at_us: 0,
         nominal_v,
-        coil_input: InputLine { gain: unknown, offset_v: Factor::new(0.0, f64::INFINITY) },
+        coil_input: InputLine {
+            gain: unknown,
+            offset_v: Factor::new(0.0, f64::INFINITY),
+        },
         ohm_fine: unknown,
         ohm_wide: unknown,
         contact_mohm_per_v: unknown,

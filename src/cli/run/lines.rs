@@ -42,7 +42,8 @@ impl Behind {
         if let Some(rig) = &self.rig {
             if let Some(path) = &args.truth {
                 let lines: String = rig.truth().iter().map(|part| format!("{part}\n")).collect();
-                std::fs::write(path, lines).map_err(|error| anyhow!("--truth {}: {error}", path.display()))?;
+                std::fs::write(path, lines)
+                    .map_err(|error| anyhow!("--truth {}: {error}", path.display()))?;
             }
             for crash in rig.crashes() {
                 tracing::error!("bodies touched: {crash}");
@@ -73,26 +74,41 @@ fn queues(line: LineId) -> Queues {
     let (request_in, request_out) = mpsc::channel(1);
     let (answer_in, answer_out) = mpsc::channel(1);
     Queues {
-        ends: LineEnds { line, requests: request_in, answers: answer_out },
+        ends: LineEnds {
+            line,
+            requests: request_in,
+            answers: answer_out,
+        },
         requests: request_out,
         answers: answer_in,
     }
 }
 
 /// Opens every line of the plant.
-pub fn open(plant: &Plant, config: &Path, args: &RunArgs, pace: &Pace) -> anyhow::Result<(Lines, Behind)> {
+pub fn open(
+    plant: &Plant,
+    config: &Path,
+    args: &RunArgs,
+    pace: &Pace,
+) -> anyhow::Result<(Lines, Behind)> {
     #[cfg(feature = "sim")]
     if args.sim {
         return simulated::open(plant, config, args, pace);
     }
     let _ = config;
-    let mut lines = Lines { ends: Vec::new(), logs: Vec::new() };
+    let mut lines = Lines {
+        ends: Vec::new(),
+        logs: Vec::new(),
+    };
     let overrides = overrides(plant, &args.line)?;
     for line in plant.wiring.line_ids() {
         let port = overrides
             .iter()
             .find(|(known, _)| *known == line)
-            .map_or_else(|| plant.wiring.line(line).port.clone(), |(_, port)| port.clone());
+            .map_or_else(
+                || plant.wiring.line(line).port.clone(),
+                |(_, port)| port.clone(),
+            );
         serial(plant, line, &port, pace, &mut lines);
     }
     Ok((lines, Behind::none()))
@@ -111,10 +127,21 @@ impl Behind {
 
 fn serial(plant: &Plant, line: LineId, port: &str, pace: &Pace, lines: &mut Lines) {
     let settings = settings(plant, line);
-    lines.logs.push((settings.name.clone(), settings.log.clone()));
+    lines
+        .logs
+        .push((settings.name.clone(), settings.log.clone()));
     let queues = queues(line);
-    let ports = SerialPorts { path: port.to_string(), baud: settings.baud };
-    tokio::spawn(bus::run_reopening(ports, settings, pace.clone(), queues.requests, queues.answers));
+    let ports = SerialPorts {
+        path: port.to_string(),
+        baud: settings.baud,
+    };
+    tokio::spawn(bus::run_reopening(
+        ports,
+        settings,
+        *pace,
+        queues.requests,
+        queues.answers,
+    ));
     lines.ends.push(queues.ends);
 }
 
@@ -123,11 +150,18 @@ fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId, Str
         let Some((name, port)) = text.split_once('=') else {
             bail!("--line: found \"{text}\", expected NAME=PORT");
         };
-        let known: Vec<&str> = plant.wiring.lines.iter().map(|line| line.name.as_str()).collect();
-        let line = plant
+        let known: Vec<&str> = plant
             .wiring
-            .line_named(name)
-            .ok_or_else(|| anyhow!("--line: found \"{name}\", expected one of {}", known.join(", ")))?;
+            .lines
+            .iter()
+            .map(|line| line.name.as_str())
+            .collect();
+        let line = plant.wiring.line_named(name).ok_or_else(|| {
+            anyhow!(
+                "--line: found \"{name}\", expected one of {}",
+                known.join(", ")
+            )
+        })?;
         Ok((line, port.to_string()))
     };
     given.iter().map(one).collect()
@@ -135,11 +169,18 @@ fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId, Str
 
 #[cfg(feature = "sim")]
 mod simulated {
-    use super::{Behind, Lines, Pace, PaceArg, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings};
+    use super::{
+        Behind, Lines, Pace, PaceArg, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings,
+    };
     use rigsim::{Options, pty, wire};
 
     /// The simulated rig behind its lines.
-    pub fn open(plant: &Plant, config: &Path, args: &RunArgs, pace: &Pace) -> anyhow::Result<(Lines, Behind)> {
+    pub fn open(
+        plant: &Plant,
+        config: &Path,
+        args: &RunArgs,
+        pace: &Pace,
+    ) -> anyhow::Result<(Lines, Behind)> {
         let rig = rigsim::build(&Options {
             config_dir: config.to_path_buf(),
             world: args.world.clone(),
@@ -149,23 +190,50 @@ mod simulated {
             golden: true,
             faults: args.fault.clone(),
         })?;
-        let mut lines = Lines { ends: Vec::new(), logs: Vec::new() };
+        let mut lines = Lines {
+            ends: Vec::new(),
+            logs: Vec::new(),
+        };
         if args.pace == PaceArg::Real {
             let ptys = pty::serve(&rig)?;
             for (name, path) in ptys.paths() {
-                let line = plant.wiring.line_named(&name).ok_or_else(|| anyhow!("line {name} is not wired"))?;
+                let line = plant
+                    .wiring
+                    .line_named(&name)
+                    .ok_or_else(|| anyhow!("line {name} is not wired"))?;
                 serial(plant, line, &path.to_string_lossy(), pace, &mut lines);
             }
-            return Ok((lines, Behind { rig: Some(rig), _ptys: Some(ptys) }));
+            return Ok((
+                lines,
+                Behind {
+                    rig: Some(rig),
+                    _ptys: Some(ptys),
+                },
+            ));
         }
         for (name, stream) in wire::in_process(&rig) {
-            let line = plant.wiring.line_named(&name).ok_or_else(|| anyhow!("line {name} is not wired"))?;
+            let line = plant
+                .wiring
+                .line_named(&name)
+                .ok_or_else(|| anyhow!("line {name} is not wired"))?;
             let settings = settings(plant, line);
             lines.logs.push((name, settings.log.clone()));
             let queues = queues(line);
-            tokio::spawn(bus::run(stream, settings, pace.clone(), queues.requests, queues.answers));
+            tokio::spawn(bus::run(
+                stream,
+                settings,
+                *pace,
+                queues.requests,
+                queues.answers,
+            ));
             lines.ends.push(queues.ends);
         }
-        Ok((lines, Behind { rig: Some(rig), _ptys: None }))
+        Ok((
+            lines,
+            Behind {
+                rig: Some(rig),
+                _ptys: None,
+            },
+        ))
     }
 }

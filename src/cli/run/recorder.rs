@@ -97,16 +97,22 @@ impl<'a> Recorder<'a> {
         controls: &'a Controls,
         eeprom: EepromCount,
     ) -> anyhow::Result<(Self, Option<Calibration>)> {
-        let identity =
-            Identity { program: "relayrig".into(), version: env!("CARGO_PKG_VERSION").into() };
+        let identity = Identity {
+            program: "relayrig".into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+        };
         let mut store = Store::open(db, &identity)?;
-        let calibration = if setup.args.sim { None } else { valid_calibration(&store, setup)? };
+        let calibration = if setup.args.sim {
+            None
+        } else {
+            valid_calibration(&store, setup)?
+        };
         store.begin_lot(&LotRecord {
             lot: setup.args.lot.clone(),
             recipe: setup.recipe.name.clone(),
             recipe_snapshot: setup.recipe.source_text.clone(),
             recipe_hash: rows::recipe_hash(setup),
-            calibration_hash: calibration.as_ref().map(|found| hash(found)),
+            calibration_hash: calibration.as_ref().map(hash),
             opened_at_us: setup.epoch_us,
             simulated: setup.args.sim,
             seed: setup.args.sim.then_some(setup.args.seed),
@@ -183,7 +189,8 @@ impl<'a> Recorder<'a> {
             Event::Landed(landed) => self.landed(&landed, rows),
             Event::Alarm(alarm, at) => {
                 self.counts.alarms += 1;
-                self.bar.suspend(|| tracing::error!(code = alarm.code, "{}", alarm.text_en));
+                self.bar
+                    .suspend(|| tracing::error!(code = alarm.code, "{}", alarm.text_en));
                 self.controls.view.send_modify(|view| {
                     view.alarms.push(AlarmLine {
                         code: alarm.code.clone(),
@@ -218,12 +225,23 @@ impl<'a> Recorder<'a> {
         if matches!(judged.part.kind, Kind::Golden(_)) {
             self.golden += 1;
         } else {
-            *self.counts.verdicts.entry(judged.verdict.name()).or_insert(0) += 1;
+            *self
+                .counts
+                .verdicts
+                .entry(judged.verdict.name())
+                .or_insert(0) += 1;
             self.table.add(&judged);
             self.show(&judged);
         }
         rows.push(Row::Part(rows::part(self.setup, &judged, self.golden)));
-        self.underway.insert(ordinal, Underway { judged, cycle_s: None, golden: self.golden });
+        self.underway.insert(
+            ordinal,
+            Underway {
+                judged,
+                cycle_s: None,
+                golden: self.golden,
+            },
+        );
         ordinal
     }
 
@@ -239,7 +257,9 @@ impl<'a> Recorder<'a> {
             100.0 * pass as f64 / parts.max(1) as f64
         ));
         let text = |map: &BTreeMap<&'static str, u64>| {
-            map.iter().map(|(name, n)| ((*name).to_string(), *n)).collect()
+            map.iter()
+                .map(|(name, n)| ((*name).to_string(), *n))
+                .collect()
         };
         let json = rows::json(self.setup, judged, None, "");
         let numbers = |key: &str| serde_json::from_value(json[key].clone()).unwrap_or_default();
@@ -251,7 +271,10 @@ impl<'a> Recorder<'a> {
             view.last = Some(LastPart {
                 seq: rows::number(&judged.part.kind, 0).0,
                 verdict: judged.verdict.name().into(),
-                bin: judged.part.bin.map_or_else(String::new, |bin| bin.name().into()),
+                bin: judged
+                    .part
+                    .bin
+                    .map_or_else(String::new, |bin| bin.name().into()),
                 reasons: judged.verdict.reasons(),
                 values: numbers("values"),
                 uncertainty: numbers("uncertainty"),
@@ -265,7 +288,9 @@ impl<'a> Recorder<'a> {
     }
 
     fn landed(&mut self, landed: &Landed, rows: &mut Vec<Row>) {
-        let Some(part) = self.underway.remove(&landed.part.ordinal) else { return };
+        let Some(part) = self.underway.remove(&landed.part.ordinal) else {
+            return;
+        };
         let (seq, kind) = rows::number(&landed.part.kind, part.golden);
         rows.push(Row::Landed(LandingRecord {
             lot: self.setup.args.lot.clone(),
@@ -280,7 +305,12 @@ impl<'a> Recorder<'a> {
         }
         self.last_landed = Some(landed.at);
         *self.counts.bins.entry(landed.bin.name()).or_insert(0) += 1;
-        self.print(&rows::json(self.setup, &part.judged, part.cycle_s, landed.bin.name()));
+        self.print(&rows::json(
+            self.setup,
+            &part.judged,
+            part.cycle_s,
+            landed.bin.name(),
+        ));
     }
 
     fn calibrated(&mut self, calibration: &Calibration) -> anyhow::Result<()> {
@@ -302,22 +332,21 @@ impl<'a> Recorder<'a> {
         }
         let line = format!("{object}\n");
         // A reader that has gone away does not stop the line.
-        self.bar.suspend(|| std::io::stdout().write_all(line.as_bytes()).ok());
+        self.bar
+            .suspend(|| std::io::stdout().write_all(line.as_bytes()).ok());
     }
 
     /// Parts that never landed, the summary, and the end of the lot's run.
-    pub fn close(
-        mut self,
-        ending: &Ending,
-        logs: &[(String, LineLog)],
-    ) -> anyhow::Result<()> {
+    pub fn close(mut self, ending: &Ending, logs: &[(String, LineLog)]) -> anyhow::Result<()> {
         for part in std::mem::take(&mut self.underway).into_values() {
             if matches!(part.judged.part.kind, Kind::Lot(_)) {
                 self.print(&rows::json(self.setup, &part.judged, part.cycle_s, ""));
             }
         }
         let end = self.last_landed.or(self.lot_began).unwrap_or_default();
-        let elapsed_s = self.lot_began.map_or(0.0, |began| end.since(began).as_seconds());
+        let elapsed_s = self
+            .lot_began
+            .map_or(0.0, |began| end.since(began).as_seconds());
         let mut summary = json!({
             "type": "summary",
             "parts": self.counts.parts(),
@@ -334,8 +363,10 @@ impl<'a> Recorder<'a> {
         if let (Some(before), Some(after)) = (self.eeprom_at_start, (self.eeprom)()) {
             summary["eeprom_writes"] = json!(after - before);
         }
-        let bytes: BTreeMap<&str, String> =
-            logs.iter().map(|(name, log)| (name.as_str(), format!("{:016x}", log.fingerprint()))).collect();
+        let bytes: BTreeMap<&str, String> = logs
+            .iter()
+            .map(|(name, log)| (name.as_str(), format!("{:016x}", log.fingerprint())))
+            .collect();
         summary["bytes"] = json!(bytes);
         self.print(&summary);
         self.bar.finish_and_clear();
@@ -352,12 +383,16 @@ impl<'a> Recorder<'a> {
 }
 
 fn hash(calibration: &Calibration) -> String {
-    serde_json::to_string(calibration).map(|body| snapshot_hash(&body)).unwrap_or_default()
+    serde_json::to_string(calibration)
+        .map(|body| snapshot_hash(&body))
+        .unwrap_or_default()
 }
 
 /// The stored calibration, provided it is not overdue and was made for this coil voltage.
 fn valid_calibration(store: &Store, setup: &Setup) -> anyhow::Result<Option<Calibration>> {
-    let Some(record) = store.latest_calibration()? else { return Ok(None) };
+    let Some(record) = store.latest_calibration()? else {
+        return Ok(None);
+    };
     let calibration: Calibration =
         serde_json::from_str(&record.body).context("the stored calibration cannot be read")?;
     let fits = calibration.nominal_v == setup.recipe.part.nominal_v && calibration.lags.is_some();

@@ -19,7 +19,8 @@ pub fn number(kind: &Kind, golden: u64) -> (u64, &'static str) {
 /// Row of a part with its measurements and the replies behind them.
 pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
     let (seq, kind) = number(&judged.part.kind, golden);
-    let at = |time: crate::units::RigTime| setup.epoch_us + i64::try_from(time.0).unwrap_or(i64::MAX);
+    let at =
+        |time: crate::units::RigTime| setup.epoch_us + i64::try_from(time.0).unwrap_or(i64::MAX);
     PartRecord {
         lot: setup.args.lot.clone(),
         seq,
@@ -28,7 +29,10 @@ pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
             Kind::Lot(_) => None,
         },
         verdict: judged.verdict.name().to_string(),
-        bin: judged.part.bin.map_or_else(String::new, |bin| bin.name().to_string()),
+        bin: judged
+            .part
+            .bin
+            .map_or_else(String::new, |bin| bin.name().to_string()),
         reasons: judged.verdict.reasons(),
         judged_at_us: at(judged.at),
         test_s: judged.part.test.map_or(f64::NAN, |test| test.0),
@@ -46,7 +50,11 @@ pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
 fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<MeasurementRecord> {
     let reading = judged.findings.result(parameter)?;
     let limit = setup.recipe.limits.of(parameter);
-    let judgement = judged.judgements.iter().find(|(known, _)| *known == parameter).map(|(_, j)| *j);
+    let judgement = judged
+        .judgements
+        .iter()
+        .find(|(known, _)| *known == parameter)
+        .map(|(_, j)| *j);
     let sample = |origin: &crate::rig::sample::Origin| SampleRecord {
         line: setup.plant.wiring.line(origin.line).name.clone(),
         module: setup.plant.wiring.module(origin.module).name.clone(),
@@ -86,7 +94,11 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
     let mut values = Map::new();
     let mut uncertainty = Map::new();
     for parameter in Parameter::ALL {
-        let Some(reading) = judged.findings.result(parameter).filter(crate::gauge::Reading::is_usable) else {
+        let Some(reading) = judged
+            .findings
+            .result(parameter)
+            .filter(crate::gauge::Reading::is_usable)
+        else {
             continue;
         };
         values.insert(parameter.name().into(), json!(rounded(reading.value)));

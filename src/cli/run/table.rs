@@ -18,8 +18,15 @@ impl Table {
     /// Takes in one part.
     pub fn add(&mut self, judged: &Judged) {
         for parameter in Parameter::ALL {
-            if let Some(reading) = judged.findings.result(parameter).filter(crate::gauge::Reading::is_usable) {
-                self.values.entry(parameter).or_default().push(reading.value);
+            if let Some(reading) = judged
+                .findings
+                .result(parameter)
+                .filter(crate::gauge::Reading::is_usable)
+            {
+                self.values
+                    .entry(parameter)
+                    .or_default()
+                    .push(reading.value);
             }
         }
     }
@@ -27,7 +34,11 @@ impl Table {
     /// The table.
     pub fn text(&self, counts: &Counts, summary: &Value) -> String {
         let mut text = String::new();
-        let _ = writeln!(text, "{:<30} {:>6} {:>12} {:>12} {:>12} {:>12}", "parameter", "n", "mean", "sd", "min", "max");
+        let _ = writeln!(
+            text,
+            "{:<30} {:>6} {:>12} {:>12} {:>12} {:>12}",
+            "parameter", "n", "mean", "sd", "min", "max"
+        );
         for (parameter, values) in &self.values {
             let spread = Spread::of(values);
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -43,11 +54,19 @@ impl Table {
                 high
             );
         }
-        let bins: Vec<String> = counts.bins.iter().map(|(bin, n)| format!("{bin} {n}")).collect();
+        let bins: Vec<String> = counts
+            .bins
+            .iter()
+            .map(|(bin, n)| format!("{bin} {n}"))
+            .collect();
         let _ = writeln!(
             text,
             "\n{} parts: {} pass, {} fail, {} void   bins: {}",
-            summary["parts"], summary["pass"], summary["fail"], summary["void"], bins.join(", ")
+            summary["parts"],
+            summary["pass"],
+            summary["fail"],
+            summary["void"],
+            bins.join(", ")
         );
         let _ = writeln!(
             text,

@@ -82,7 +82,9 @@ pub fn read_scene(text: &str, format: Format, files: &mut MeshFiles) -> Result<S
         node: &node,
         path: String::new(),
     };
-    let table = root.table(&["units", "elements", "movers", "actuator", "pair", "mate", "guard"])?;
+    let table = root.table(&[
+        "units", "elements", "movers", "actuator", "pair", "mate", "guard",
+    ])?;
     if let Some(units) = table.optional("units")
         && units.text()? != "mm"
     {

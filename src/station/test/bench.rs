@@ -79,16 +79,24 @@ impl Bench {
 
     /// Lag of the operate ramps; before golden parts were run, a guess with a wide scatter.
     pub fn operate_lag(&self) -> Lag {
-        self.calibration.lags.map_or(untaught(UNTAUGHT_OPERATE_V), |lags| lags.operate)
+        self.calibration
+            .lags
+            .map_or(untaught(UNTAUGHT_OPERATE_V), |lags| lags.operate)
     }
 
     /// Lag of the release ramps.
     pub fn release_lag(&self) -> Lag {
-        self.calibration.lags.map_or(untaught(UNTAUGHT_RELEASE_V), |lags| lags.release)
+        self.calibration
+            .lags
+            .map_or(untaught(UNTAUGHT_RELEASE_V), |lags| lags.release)
     }
 }
 
 fn untaught(coarse_v: f64) -> Lag {
     use crate::gauge::calibration::Factor;
-    Lag { fine_v: Factor::new(0.0, f64::INFINITY), coarse_v, coarse_sd_v: UNTAUGHT_SD_V }
+    Lag {
+        fine_v: Factor::new(0.0, f64::INFINITY),
+        coarse_v,
+        coarse_sd_v: UNTAUGHT_SD_V,
+    }
 }

@@ -2,14 +2,14 @@
 //! also where the operate ramp starts, so the coil stays on.
 
 use super::{Bench, Findings, Stage, board};
+use crate::gauge::Parameter;
 use crate::gauge::coil::resistance;
 use crate::gauge::recipe::CoilChannels;
 use crate::gauge::verdict::Bin;
-use crate::gauge::Parameter;
-use crate::rig::sample::{Quality, Sample};
 use crate::rig::point::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
+use crate::rig::sample::{Quality, Sample};
 use crate::station::act::{Act, CoilScan, Read, Readings};
 use crate::station::supply::Supply;
 use crate::units::{Span, Volt};
@@ -72,12 +72,17 @@ fn current_of(bench: &Bench, scan: &CoilScan) -> Option<Sample> {
     }
 }
 
-pub(super) fn conclude(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+pub(super) fn conclude(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+) -> Option<Stage> {
     let calibration = &bench.calibration;
     let mut scans = Vec::new();
     let mut samples = Vec::new();
     for scan in &readings.coil {
-        let (Some(voltage), Some(current)) = (scan.voltage_fine.clone(), current_of(bench, scan)) else {
+        let (Some(voltage), Some(current)) = (scan.voltage_fine.clone(), current_of(bench, scan))
+        else {
             findings.void("coil converter gave no voltage or current");
             return None;
         };
@@ -90,7 +95,10 @@ pub(super) fn conclude(bench: &Bench, readings: &Readings, findings: &mut Findin
             return None;
         }
         let offset = Volt(calibration.coil_input.offset_v.value);
-        scans.push((Volt(voltage.terminal_volts) - offset, Volt(current.terminal_volts) - offset));
+        scans.push((
+            Volt(voltage.terminal_volts) - offset,
+            Volt(current.terminal_volts) - offset,
+        ));
         samples.extend([voltage, current]);
     }
     let ohm = match bench.recipe.test.coil_channels {
@@ -102,15 +110,28 @@ pub(super) fn conclude(bench: &Bench, readings: &Readings, findings: &mut Findin
         return None;
     }
     let part = findings.track?;
-    match resistance(&scans, ohm, part, bench.reference_temperature(), bench.scan_doubt()) {
+    match resistance(
+        &scans,
+        ohm,
+        part,
+        bench.reference_temperature(),
+        bench.scan_doubt(),
+    ) {
         Some(reading) => findings.found(Parameter::CoilResistance, reading, &samples),
         None => findings.fail("coil open", Bin::Coil),
     }
     None
 }
 
-pub(super) fn conclude_off(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
-    let current = readings.coil.first().and_then(|scan| current_of(bench, scan));
+pub(super) fn conclude_off(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+) -> Option<Stage> {
+    let current = readings
+        .coil
+        .first()
+        .and_then(|scan| current_of(bench, scan));
     match current {
         Some(sample) if sample.quality == Quality::Good && sample.value.abs() < OFF_CURRENT_A => {}
         Some(_) | None => findings.void("coil current not gone after the test"),

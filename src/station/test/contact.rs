@@ -2,11 +2,11 @@
 //! after the source had settled. The source is off 2 ms before anything else changes.
 
 use super::{Bench, Findings, Stage, board};
+use crate::gauge::Parameter;
 use crate::gauge::contact::{Reversal, resistance};
 use crate::gauge::verdict::Bin;
-use crate::gauge::Parameter;
-use crate::rig::sample::{Quality, Sample};
 use crate::rig::point::DigitalOut::{SourceOn, SourceReverse};
+use crate::rig::sample::{Quality, Sample};
 use crate::station::act::{Act, Read, Readings};
 use crate::units::{Span, Volt};
 
@@ -56,7 +56,9 @@ pub(super) fn acts_nc(bench: &Bench) -> Vec<Act> {
 
 /// Drop of a reading, or why there is none.
 pub(super) fn drop_of(sample: Option<&Sample>, compliance: bool) -> Result<Volt, Unread> {
-    let Some(sample) = sample else { return Err(Unread::Missing) };
+    let Some(sample) = sample else {
+        return Err(Unread::Missing);
+    };
     match sample.quality {
         Quality::Good if sample.terminal_volts.is_finite() => Ok(Volt(sample.terminal_volts)),
         Quality::OverRange | Quality::UnderRange if compliance => Err(Unread::OpenContact),
@@ -79,8 +81,12 @@ impl Unread {
     pub(super) fn tell(self, which: &str, findings: &mut Findings) {
         match self {
             Unread::Missing => findings.void(format!("{which} drop not readable")),
-            Unread::OverRange => findings.fail(&format!("{which} resistance over range"), Bin::Contact),
-            Unread::OpenContact => findings.fail(&format!("{which} open or far too high"), Bin::Contact),
+            Unread::OverRange => {
+                findings.fail(&format!("{which} resistance over range"), Bin::Contact)
+            }
+            Unread::OpenContact => {
+                findings.fail(&format!("{which} open or far too high"), Bin::Contact)
+            }
         }
     }
 }
@@ -94,7 +100,11 @@ pub(super) fn reversal(readings: &Readings) -> Result<Reversal, Unread> {
     })
 }
 
-pub(super) fn conclude_nc(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+pub(super) fn conclude_nc(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+) -> Option<Stage> {
     match reversal(readings) {
         Ok(closure) => {
             findings.drop_zero = Some(closure.zero());
@@ -111,7 +121,11 @@ pub(super) fn add_nc(bench: &Bench, drop: Volt, samples: &[Sample], findings: &m
     // The first closure is read with both polarities. A later one is read forward only and takes its zero
     // from the first, so that half of the first's noise enters twice.
     let one = bench.reading_u_v();
-    let u = if findings.nc_drops.len() == 1 { one / 2f64.sqrt() } else { one.hypot(EMF_MOVES_V) };
+    let u = if findings.nc_drops.len() == 1 {
+        one / 2f64.sqrt()
+    } else {
+        one.hypot(EMF_MOVES_V)
+    };
     if let Some(reading) = resistance(&findings.nc_drops, bench.calibration.contact_mohm_per_v, u) {
         findings.forget(Parameter::ContactResistanceNc);
         findings.found(Parameter::ContactResistanceNc, reading, samples);

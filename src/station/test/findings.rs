@@ -1,9 +1,9 @@
 //! What the stages of a test have found: results, the bytes they came from, and why it ended early.
 
 use super::ramp::Expected;
+use crate::gauge::Parameter;
 use crate::gauge::budget::{self, Reading};
 use crate::gauge::verdict::{Bin, Reason};
-use crate::gauge::Parameter;
 use crate::rig::sample::{CountSample, Origin, Sample};
 use crate::station::act::Spent;
 use crate::units::{Celsius, Volt};
@@ -79,7 +79,11 @@ impl Findings {
         samples: impl IntoIterator<Item = &'a S>,
     ) {
         self.readings.push((parameter, reading));
-        self.evidence.extend(samples.into_iter().map(|sample| (parameter, sample.origin().clone())));
+        self.evidence.extend(
+            samples
+                .into_iter()
+                .map(|sample| (parameter, sample.origin().clone())),
+        );
     }
 
     /// Takes back the results of a parameter, which a later reading of more closures replaces.
@@ -89,19 +93,29 @@ impl Findings {
 
     /// Result of a parameter: the mean of its repetitions.
     pub fn result(&self, parameter: Parameter) -> Option<Reading> {
-        let repetitions: Vec<Reading> =
-            self.readings.iter().filter(|(known, _)| *known == parameter).map(|(_, r)| r.clone()).collect();
+        let repetitions: Vec<Reading> = self
+            .readings
+            .iter()
+            .filter(|(known, _)| *known == parameter)
+            .map(|(_, r)| r.clone())
+            .collect();
         budget::mean(&repetitions)
     }
 
     /// How often a parameter was measured.
     pub fn attempts(&self, parameter: Parameter) -> usize {
-        self.readings.iter().filter(|(known, _)| *known == parameter).count()
+        self.readings
+            .iter()
+            .filter(|(known, _)| *known == parameter)
+            .count()
     }
 
     /// Replies behind a parameter, in the order they came.
     pub fn evidence(&self, parameter: Parameter) -> impl Iterator<Item = &Origin> {
-        self.evidence.iter().filter(move |(known, _)| *known == parameter).map(|(_, e)| e)
+        self.evidence
+            .iter()
+            .filter(move |(known, _)| *known == parameter)
+            .map(|(_, e)| e)
     }
 
     /// Ends the test early; the first cause stays.
@@ -111,7 +125,10 @@ impl Findings {
 
     /// Ends the test early because the part is bad.
     pub fn fail(&mut self, text: &str, bin: Bin) {
-        self.stop(Stop::Fail(Reason { text: text.to_string(), bin }));
+        self.stop(Stop::Fail(Reason {
+            text: text.to_string(),
+            bin,
+        }));
     }
 
     /// Ends the test early because it cannot be judged.

@@ -8,8 +8,8 @@
 
 use super::{Bench, Findings, Stage, board};
 use crate::gauge::verdict::Bin;
-use crate::rig::sample::Quality;
 use crate::rig::point::DigitalOut::KelvinTest;
+use crate::rig::sample::Quality;
 use crate::station::act::{Act, Read, Readings};
 use crate::units::{Celsius, Span};
 
@@ -43,7 +43,10 @@ pub(super) fn conclude(_: &Bench, readings: &Readings, findings: &mut Findings) 
         [] if seen.no_closed => findings.fail("contact stuck: NO closed at rest", Bin::Contact),
         [] => findings.fail("contact stuck: NC open at rest", Bin::Contact),
         [COM] => findings.void("part turned or COM probe without contact"),
-        [pin] => findings.void(format!("no Kelvin contact at {}: missing pin or dirty probe", PINS[*pin])),
+        [pin] => findings.void(format!(
+            "no Kelvin contact at {}: missing pin or dirty probe",
+            PINS[*pin]
+        )),
         several => {
             let names: Vec<&str> = several.iter().map(|pin| PINS[*pin]).collect();
             findings.void(format!("no Kelvin contact at {}", names.join(", ")));

@@ -20,8 +20,8 @@ mod timing;
 
 use super::act::{Act, Doing, JobDone, Runner};
 use super::supply::Supply;
-use crate::gauge::verdict::{Judgement, Verdict, judge, of_part};
 use crate::gauge::Parameter;
+use crate::gauge::verdict::{Judgement, Verdict, judge, of_part};
 use crate::rig::image::Image;
 use crate::rig::point::DigitalOut;
 use crate::units::{RigTime, Span};
@@ -127,13 +127,17 @@ impl Test {
                     self.runner = Runner::new(Vec::new(), now);
                     return Progress::Judged;
                 }
-                other @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => return Progress::Doing(other),
+                other @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
+                    return Progress::Doing(other);
+                }
             }
             self.conclude();
             if self.stages.front() == Some(&Stage::Off) {
                 self.add_slow_repeats();
             }
-            let Some(stage) = self.stages.pop_front() else { return Progress::Judged };
+            let Some(stage) = self.stages.pop_front() else {
+                return Progress::Judged;
+            };
             self.stage = stage;
             let acts = acts(stage, &self.bench, &mut self.supply, &mut self.findings);
             self.runner = Runner::new(acts, now);
@@ -151,11 +155,15 @@ impl Test {
             Stage::Coil => coil::conclude(bench, &readings, findings),
             Stage::OperateCoarse => operate::conclude_coarse(bench, &readings, findings),
             Stage::PullIn => operate::conclude_pull_in(&readings, findings),
-            Stage::OperateFine(attempt) => operate::conclude_fine(bench, &readings, findings, attempt),
+            Stage::OperateFine(attempt) => {
+                operate::conclude_fine(bench, &readings, findings, attempt)
+            }
             Stage::TimedOperate => timing::conclude_operate(bench, &readings, findings),
             Stage::TimedRelease => timing::conclude_release(bench, &readings, findings),
             Stage::ReleaseCoarse => release::conclude_coarse(bench, &readings, findings),
-            Stage::ReleaseFine(attempt) => release::conclude_fine(bench, &readings, findings, attempt),
+            Stage::ReleaseFine(attempt) => {
+                release::conclude_fine(bench, &readings, findings, attempt)
+            }
             Stage::Off => coil::conclude_off(bench, &readings, findings),
         };
         if findings.stopped() && self.stage != Stage::Off {
@@ -193,7 +201,14 @@ impl Test {
         let recipe = &self.bench.recipe;
         let one = |parameter: &Parameter| {
             let reading = self.findings.result(*parameter)?;
-            Some((*parameter, judge(&reading, &recipe.limits.of(*parameter), recipe.decision.rule)))
+            Some((
+                *parameter,
+                judge(
+                    &reading,
+                    &recipe.limits.of(*parameter),
+                    recipe.decision.rule,
+                ),
+            ))
         };
         Parameter::ALL.iter().filter_map(one).collect()
     }
@@ -214,8 +229,12 @@ fn slow_stage(parameter: Parameter) -> Stage {
         Parameter::CoilResistance => Stage::Coil,
         Parameter::OperateVoltage => Stage::OperateFine(0),
         Parameter::ReleaseVoltage => Stage::ReleaseFine(0),
-        Parameter::OperateTime | Parameter::OperateBounce | Parameter::ContactResistanceNo => Stage::TimedOperate,
-        Parameter::ReleaseTime | Parameter::ReleaseBounce | Parameter::ContactResistanceNc => Stage::TimedRelease,
+        Parameter::OperateTime | Parameter::OperateBounce | Parameter::ContactResistanceNo => {
+            Stage::TimedOperate
+        }
+        Parameter::ReleaseTime | Parameter::ReleaseBounce | Parameter::ContactResistanceNc => {
+            Stage::TimedRelease
+        }
     }
 }
 

@@ -6,10 +6,10 @@
 
 use super::ramp::{ATTEMPTS, Expected, give_up, stopped_at};
 use super::{Bench, Findings, OFF, Ramp, Stage, board};
+use crate::gauge::Parameter;
 use crate::gauge::threshold::{Direction, RampDoubt, indicated, quasi_static};
 use crate::gauge::timing::counts;
 use crate::gauge::verdict::Bin;
-use crate::gauge::Parameter;
 use crate::rig::point::DigitalIn;
 use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
 use crate::station::act::{Act, Read, Readings};
@@ -33,12 +33,20 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
     let (ramp, takes) = supply.ramp_coarse(Volt(bench.recipe.test.coarse_span_v));
     let rest = Span(takes.0.saturating_sub((OFF + APPROACH_TIME).0));
     vec![
-        board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false), (Arm, false)]),
+        board(&[
+            (RampMode, true),
+            (SelectNo, true),
+            (EventNoBreak, false),
+            (Arm, false),
+        ]),
         Act::Read(Read::Gates),
         board(&[(Arm, true)]),
         Act::Mark,
         ramp,
-        Act::Until { point: DigitalIn::Latch, within: takes + LATE },
+        Act::Until {
+            point: DigitalIn::Latch,
+            within: takes + LATE,
+        },
         Act::Read(Read::Board),
         Act::Read(Read::Gates),
         board(&[(CoilDrive, false), (Arm, false)]),
@@ -50,10 +58,16 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
 pub(super) fn gate0(bench: &Bench, readings: &Readings) -> Option<Second> {
     let (before, after) = (readings.gates.first()?, readings.gates.last()?);
     let gate = f64::from(counts(before[0].count, after[0].count)) / bench.clock().hz;
-    Some(Second(gate - bench.calibration.gate_delay_us[0].value * 1e-6))
+    Some(Second(
+        gate - bench.calibration.gate_delay_us[0].value * 1e-6,
+    ))
 }
 
-pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+pub(super) fn conclude_coarse(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+) -> Option<Stage> {
     let start = findings.ramp_start?;
     if readings.seen.first() != Some(&true) {
         let pulled = readings.boards.last().is_some_and(|board| board.no_closed);
@@ -68,8 +82,16 @@ pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut
         findings.void("gate counters not read");
         return None;
     };
-    let seen = indicated(start, bench.calibration.coarse_v_per_s.value, gate, Direction::Rising);
-    let coarse = findings.ramp_span.and_then(|span| stopped_at(start, span, seen)).unwrap_or(seen);
+    let seen = indicated(
+        start,
+        bench.calibration.coarse_v_per_s.value,
+        gate,
+        Direction::Rising,
+    );
+    let coarse = findings
+        .ramp_span
+        .and_then(|span| stopped_at(start, span, seen))
+        .unwrap_or(seen);
     let lag = bench.operate_lag();
     findings.operate = Some(Ramp { coarse, fine: None });
     findings.expected = Some(Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v));
@@ -89,20 +111,34 @@ pub(super) fn acts_pull_in(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
 pub(super) fn conclude_pull_in(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
     match readings.boards.first() {
         Some(board) if board.no_closed => {
-            findings.fail("operate_voltage_v high: above the coarse ramp", Bin::Voltage);
+            findings.fail(
+                "operate_voltage_v high: above the coarse ramp",
+                Bin::Voltage,
+            );
         }
         Some(board) if board.nc_closed => {
-            findings.fail("contact stuck: NC does not open at nominal voltage", Bin::Contact);
+            findings.fail(
+                "contact stuck: NC does not open at nominal voltage",
+                Bin::Contact,
+            );
         }
-        Some(_) => findings.fail("contact stuck: NO does not make at nominal voltage", Bin::Contact),
+        Some(_) => findings.fail(
+            "contact stuck: NO does not make at nominal voltage",
+            Bin::Contact,
+        ),
         None => findings.void("interface board not read"),
     }
     None
 }
 
 pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let repeated = findings.operate.and_then(|ramp| ramp.fine).map(|fine| Expected::new(fine, REPEAT_SD_V));
-    let Some(expected) = repeated.or(findings.expected) else { return Vec::new() };
+    let repeated = findings
+        .operate
+        .and_then(|ramp| ramp.fine)
+        .map(|fine| Expected::new(fine, REPEAT_SD_V));
+    let Some(expected) = repeated.or(findings.expected) else {
+        return Vec::new();
+    };
     findings.expected = Some(expected);
     let placed = expected.placed(Direction::Rising);
     let mut acts = vec![board(&[(CoilDrive, false), (Arm, false)]), Act::Mark];
@@ -126,7 +162,10 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
         board(&[(Arm, true)]),
         Act::Mark,
         ramp,
-        Act::Until { point: DigitalIn::Latch, within: takes + LATE },
+        Act::Until {
+            point: DigitalIn::Latch,
+            within: takes + LATE,
+        },
         Act::Read(Read::Board),
         Act::Read(Read::Gates),
         board(&[(CoilDrive, false), (Arm, false)]),
@@ -168,9 +207,16 @@ pub(super) fn conclude_fine(
         findings.void("gate counters not read");
         return None;
     };
-    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, Direction::Rising);
+    let seen = indicated(
+        start,
+        bench.calibration.fine_v_per_s.value,
+        gate,
+        Direction::Rising,
+    );
     let met = readings.seen.first() == Some(&true);
-    let stopped = findings.ramp_span.and_then(|span| stopped_at(start, span, seen));
+    let stopped = findings
+        .ramp_span
+        .and_then(|span| stopped_at(start, span, seen));
     if !met || stopped.is_some() {
         let early = readings.boards.last().is_some_and(|board| board.no_closed);
         findings.expected = Some(match stopped {
@@ -187,7 +233,14 @@ pub(super) fn conclude_fine(
         ramp.fine = Some(seen);
     }
     let reference = bench.reference_temperature();
-    let reading = quasi_static(seen, gate, bench.operate_lag(), part, reference, doubt(bench));
+    let reading = quasi_static(
+        seen,
+        gate,
+        bench.operate_lag(),
+        part,
+        reference,
+        doubt(bench),
+    );
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
     findings.found(Parameter::OperateVoltage, reading, samples);
     None

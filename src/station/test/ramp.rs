@@ -36,7 +36,10 @@ pub struct Placed {
 impl Expected {
     /// From an estimate with its standard deviation.
     pub fn new(centre: Volt, sd_v: f64) -> Self {
-        Self { centre, half_width: Volt(COVERAGE * sd_v) }
+        Self {
+            centre,
+            half_width: Volt(COVERAGE * sd_v),
+        }
     }
 
     /// The ramp that searches this interval.
@@ -51,13 +54,20 @@ impl Expected {
     /// The interval to search when the event came only after the ramp had stopped at `end`: the same
     /// width, around the end. What the counter then shows is time at rest, not volts.
     pub fn around(&self, end: Volt) -> Self {
-        Self { centre: end, half_width: self.half_width }
+        Self {
+            centre: end,
+            half_width: self.half_width,
+        }
     }
 
     /// The interval to search next: beyond the far end when nothing happened, before the near end when
     /// the contact had already changed. The first neighbour is as wide, later ones three times.
     pub fn next(&self, direction: Direction, changed_early: bool, attempt: u8) -> Self {
-        let away = if changed_early { -direction.sign() } else { direction.sign() };
+        let away = if changed_early {
+            -direction.sign()
+        } else {
+            direction.sign()
+        };
         let wider = if attempt == 0 { 1.0 } else { 3.0 };
         Self {
             centre: self.centre + self.half_width * ((1.0 + wider) * away),
@@ -73,7 +83,9 @@ pub(super) fn stopped_at(start: Volt, span: Volt, seen: Volt) -> Option<Volt> {
 
 /// Says that the fine ramp never met its event.
 pub(super) fn give_up(which: &str, findings: &mut Findings) {
-    findings.void(format!("{which} threshold not found in {ATTEMPTS} fine ramps"));
+    findings.void(format!(
+        "{which} threshold not found in {ATTEMPTS} fine ramps"
+    ));
 }
 
 #[cfg(test)]
@@ -92,14 +104,23 @@ mod tests {
 
     #[test]
     fn an_event_after_the_end_of_the_ramp_tells_time_not_volts() {
-        assert_eq!(stopped_at(Volt(7.8), Volt(0.1), Volt(7.95)), Some(Volt(7.8 + 0.1)));
-        assert_eq!(stopped_at(Volt(2.5), Volt(0.1), Volt(2.35)), Some(Volt(2.5 - 0.1)));
+        assert_eq!(
+            stopped_at(Volt(7.8), Volt(0.1), Volt(7.95)),
+            Some(Volt(7.8 + 0.1))
+        );
+        assert_eq!(
+            stopped_at(Volt(2.5), Volt(0.1), Volt(2.35)),
+            Some(Volt(2.5 - 0.1))
+        );
         assert_eq!(stopped_at(Volt(7.8), Volt(0.1), Volt(7.89)), None);
     }
 
     #[test]
     fn the_next_interval_begins_where_the_last_ended() {
-        let expected = Expected { centre: Volt(7.9), half_width: Volt(0.03) };
+        let expected = Expected {
+            centre: Volt(7.9),
+            half_width: Volt(0.03),
+        };
         let beyond = expected.next(Direction::Rising, false, 0);
         assert!((beyond.centre.0 - beyond.half_width.0 - 7.93).abs() < 1e-12);
         let before = expected.next(Direction::Falling, true, 1);

@@ -6,8 +6,8 @@
 use super::operate::{REPEAT_SD_V, SETTLES, doubt, gate0};
 use super::ramp::{ATTEMPTS, Expected, give_up, stopped_at};
 use super::{Bench, Findings, Ramp, Stage, board};
-use crate::gauge::threshold::{Direction, indicated, quasi_static};
 use crate::gauge::Parameter;
+use crate::gauge::threshold::{Direction, indicated, quasi_static};
 use crate::rig::point::DigitalIn;
 use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
 use crate::station::act::{Act, Read, Readings};
@@ -42,7 +42,10 @@ fn seal(bench: &Bench, supply: &mut Supply, start: Volt) -> Vec<Act> {
 
 fn until_break(takes: Span) -> Vec<Act> {
     vec![
-        Act::Until { point: DigitalIn::Latch, within: takes + LATE },
+        Act::Until {
+            point: DigitalIn::Latch,
+            within: takes + LATE,
+        },
         Act::Read(Read::Board),
         Act::Read(Read::Gates),
         board(&[(CoilDrive, false), (Arm, false)]),
@@ -51,7 +54,9 @@ fn until_break(takes: Span) -> Vec<Act> {
 
 pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
     let mut acts = Vec::new();
-    let needed = Expected::new(Volt(0.0), bench.release_lag().coarse_sd_v).placed(Direction::Falling).span;
+    let needed = Expected::new(Volt(0.0), bench.release_lag().coarse_sd_v)
+        .placed(Direction::Falling)
+        .span;
     if supply.fine() < needed {
         let (fine, takes) = supply.ramp_fine(needed);
         acts.extend([fine, Act::Wait(takes)]);
@@ -65,11 +70,16 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
     acts
 }
 
-pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+pub(super) fn conclude_coarse(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+) -> Option<Stage> {
     let (start, test) = (findings.ramp_start?, &bench.recipe.test);
     let coarse_v_per_s = bench.calibration.coarse_v_per_s.value;
     let seen = readings.seen.first() == Some(&true);
-    let gate = gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - FLOOR_V);
+    let gate =
+        gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - FLOOR_V);
     findings.expected = Some(match gate {
         Some(gate) => {
             let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
@@ -83,8 +93,13 @@ pub(super) fn conclude_coarse(bench: &Bench, readings: &Readings, findings: &mut
 }
 
 pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let repeated = findings.release.and_then(|ramp| ramp.fine).map(|fine| Expected::new(fine, REPEAT_SD_V));
-    let Some(expected) = repeated.or(findings.expected) else { return Vec::new() };
+    let repeated = findings
+        .release
+        .and_then(|ramp| ramp.fine)
+        .map(|fine| Expected::new(fine, REPEAT_SD_V));
+    let Some(expected) = repeated.or(findings.expected) else {
+        return Vec::new();
+    };
     findings.expected = Some(expected);
     let placed = expected.placed(Direction::Falling);
     let mut acts = Vec::new();
@@ -113,9 +128,16 @@ pub(super) fn conclude_fine(
         findings.void("gate counters not read");
         return None;
     };
-    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, Direction::Falling);
+    let seen = indicated(
+        start,
+        bench.calibration.fine_v_per_s.value,
+        gate,
+        Direction::Falling,
+    );
     let met = readings.seen.first() == Some(&true);
-    let stopped = findings.ramp_span.and_then(|span| stopped_at(start, span, seen));
+    let stopped = findings
+        .ramp_span
+        .and_then(|span| stopped_at(start, span, seen));
     if !met || stopped.is_some() {
         let early = readings.boards.last().is_some_and(|board| !board.no_closed);
         findings.expected = Some(match stopped {
@@ -130,10 +152,22 @@ pub(super) fn conclude_fine(
     }
     match &mut findings.release {
         Some(ramp) => ramp.fine = Some(seen),
-        None => findings.release = Some(Ramp { coarse: Volt(f64::NAN), fine: Some(seen) }),
+        None => {
+            findings.release = Some(Ramp {
+                coarse: Volt(f64::NAN),
+                fine: Some(seen),
+            })
+        }
     }
     let reference = bench.reference_temperature();
-    let reading = quasi_static(seen, gate, bench.release_lag(), part, reference, doubt(bench));
+    let reading = quasi_static(
+        seen,
+        gate,
+        bench.release_lag(),
+        part,
+        reference,
+        doubt(bench),
+    );
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
     findings.found(Parameter::ReleaseVoltage, reading, samples);
     None

@@ -3,10 +3,10 @@
 
 use super::contact::{add_nc, drop_of, off, reversal, reversed};
 use super::{Bench, Findings, OFF, Stage, board};
+use crate::gauge::Parameter;
 use crate::gauge::contact::resistance;
 use crate::gauge::timing::{bounce_ms, counts, gate_ms};
 use crate::gauge::verdict::Bin;
-use crate::gauge::Parameter;
 use crate::rig::point::DigitalIn;
 use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn};
 use crate::station::act::{Act, Read, Readings};
@@ -48,7 +48,12 @@ pub(super) fn acts_release(bench: &Bench, supply: &mut Supply, findings: &Findin
     let repeated = findings.attempts(Parameter::ReleaseTime) > 0;
     if repeated {
         acts.extend([
-            board(&[(RampMode, false), (SelectNo, true), (EventNoBreak, false), (Arm, false)]),
+            board(&[
+                (RampMode, false),
+                (SelectNo, true),
+                (EventNoBreak, false),
+                (Arm, false),
+            ]),
             supply.step_to(Volt(bench.recipe.part.nominal_v)),
             board(&[(CoilDrive, true)]),
             Act::Wait(Span::ms(40)),
@@ -75,7 +80,10 @@ pub(super) fn acts_release(bench: &Bench, supply: &mut Supply, findings: &Findin
 /// drives the same way as the contact monitor, so that gate 1 does not take it for an open contact.
 fn event_and_drop(bench: &Bench) -> [Act; 9] {
     [
-        Act::Until { point: DigitalIn::Latch, within: LONGEST },
+        Act::Until {
+            point: DigitalIn::Latch,
+            within: LONGEST,
+        },
         Act::Mark,
         Act::WaitSinceMark(BOUNCE_OVER),
         board(&[(SourceOn, true)]),
@@ -103,20 +111,43 @@ fn time_and_bounce(
     let gate1 = counts(before[1].count, after[1].count);
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
     let delay = bench.calibration.gate_delay_us;
-    findings.found(time, gate_ms(gate0, delay[0], bench.clock()), samples.clone());
-    findings.found(bounce, bounce_ms(gate0, gate1, delay, bench.clock()), samples);
+    findings.found(
+        time,
+        gate_ms(gate0, delay[0], bench.clock()),
+        samples.clone(),
+    );
+    findings.found(
+        bounce,
+        bounce_ms(gate0, gate1, delay, bench.clock()),
+        samples,
+    );
 }
 
-pub(super) fn conclude_operate(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+pub(super) fn conclude_operate(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+) -> Option<Stage> {
     if readings.seen.first() != Some(&true) {
-        findings.fail("operate_time_ms high: NO does not make at nominal voltage", Bin::Time);
+        findings.fail(
+            "operate_time_ms high: NO does not make at nominal voltage",
+            Bin::Time,
+        );
         return None;
     }
-    time_and_bounce(bench, readings, Parameter::OperateTime, Parameter::OperateBounce, findings);
+    time_and_bounce(
+        bench,
+        readings,
+        Parameter::OperateTime,
+        Parameter::OperateBounce,
+        findings,
+    );
     match reversal(readings) {
         Ok(closure) => {
             let u = bench.reading_u_v() / 2f64.sqrt();
-            if let Some(reading) = resistance(&[closure.drop()], bench.calibration.contact_mohm_per_v, u) {
+            if let Some(reading) =
+                resistance(&[closure.drop()], bench.calibration.contact_mohm_per_v, u)
+            {
                 findings.found(Parameter::ContactResistanceNo, reading, &readings.drops);
             }
         }
@@ -125,14 +156,30 @@ pub(super) fn conclude_operate(bench: &Bench, readings: &Readings, findings: &mu
     None
 }
 
-pub(super) fn conclude_release(bench: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+pub(super) fn conclude_release(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+) -> Option<Stage> {
     if readings.seen.first() != Some(&true) {
-        findings.fail("release_time_ms high: NC does not make after switch-off", Bin::Time);
+        findings.fail(
+            "release_time_ms high: NC does not make after switch-off",
+            Bin::Time,
+        );
         return None;
     }
-    time_and_bounce(bench, readings, Parameter::ReleaseTime, Parameter::ReleaseBounce, findings);
+    time_and_bounce(
+        bench,
+        readings,
+        Parameter::ReleaseTime,
+        Parameter::ReleaseBounce,
+        findings,
+    );
     let compliance = readings.boards.iter().any(|board| board.compliance);
-    match (drop_of(readings.drops.first(), compliance), findings.drop_zero) {
+    match (
+        drop_of(readings.drops.first(), compliance),
+        findings.drop_zero,
+    ) {
         (Ok(drop), Some(zero)) => add_nc(bench, drop - zero, &readings.drops, findings),
         (Ok(_), None) => findings.void("NC drop without its zero"),
         (Err(unread), _) => unread.tell("NC contact", findings),
