@@ -28,6 +28,7 @@ use crate::units::{RigTime, Span};
 use crate::view::View;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Instant;
 use tokio::sync::{mpsc, watch};
 use traffic::{Purpose, Traffic};
 
@@ -78,6 +79,30 @@ pub struct Cycle {
     outside: Outside,
     job_done: Option<JobDone>,
     bus_alarm: Option<Alarm>,
+    profile: Profile,
+}
+
+/// Wall time of the phases of all turns, seconds; what is left of a run is bus, history and, where there
+/// is one, the simulator.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Profile {
+    /// Turns.
+    pub turns: u64,
+    /// Answers into the image.
+    pub scan_s: f64,
+    /// The station.
+    pub step_s: f64,
+    /// The guard.
+    pub clear_s: f64,
+    /// Outputs to commands.
+    pub apply_s: f64,
+}
+
+/// Adds the time since `from` to `total` and begins anew.
+fn lap(total: &mut f64, from: &mut Instant) {
+    let now = Instant::now();
+    *total += now.duration_since(*from).as_secs_f64();
+    *from = now;
 }
 
 impl Cycle {
@@ -101,26 +126,33 @@ impl Cycle {
             outside,
             job_done: None,
             bus_alarm: None,
+            profile: Profile::default(),
         }
     }
 
     /// Verifies the modules, then turns until the station has ended and the outputs are safe.
-    pub async fn run(mut self) -> Ending {
+    pub async fn run(mut self) -> (Ending, Profile) {
         if let Err(alarm) = commission::verify(&self.wiring, &self.pace, &mut self.traffic).await {
             self.tell(Event::Alarm(alarm, self.pace.now()));
-            return Ending::Alarm;
+            return (Ending::Alarm, self.profile);
         }
         loop {
             let now = self.pace.now();
+            let mut clock = Instant::now();
+            self.profile.turns += 1;
             self.scan(now);
+            lap(&mut self.profile.scan_s, &mut clock);
             let mut wants = self.step(now);
+            lap(&mut self.profile.step_s, &mut clock);
             self.clear(now, &mut wants);
+            lap(&mut self.profile.clear_s, &mut clock);
             self.apply(now, &mut wants);
+            lap(&mut self.profile.apply_s, &mut clock);
             self.record(now, &mut wants);
             self.publish();
             if let Some(ending) = wants.ending.take() {
                 self.make_safe().await;
-                return ending;
+                return (ending, self.profile);
             }
             if self.job_done.is_none() && wants.wake_at.is_none_or(|at| at > now) {
                 self.wait(now, wants.wake_at).await;

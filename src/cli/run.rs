@@ -177,12 +177,12 @@ async fn run_lot(
     });
     let running = tokio::spawn(cycle.run());
     recorder.keep(received, &recorded).await?;
-    let ending = running
+    let (ending, profile) = running
         .await
         .context("the control cycle ended by an assertion")?;
     interrupt.abort();
     rig.finish(args)?;
-    recorder.close(&ending, &lines.logs)?;
+    recorder.close(&ending, &profile, &lines.logs)?;
     Ok(match ending {
         Ending::Complete => super::DONE,
         Ending::Stopped => super::STOPPED,

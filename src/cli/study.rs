@@ -17,6 +17,7 @@ mod chart;
 mod coverage;
 mod cycle;
 mod error;
+mod exception;
 mod figure;
 mod fleet;
 mod lot;
@@ -148,10 +149,21 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
     let report = study.report(&order)?;
     if let Some(folder) = &args.out {
         written(&folder.join(format!("{}.csv", report.study)), &report.csv())?;
-        written(&folder.join(format!("{}.svg", report.study)), &report.chart.svg())?;
+        written(
+            &folder.join(format!("{}.svg", report.study)),
+            &report.chart.svg(),
+        )?;
     }
-    print(&if args.json { report.json() } else { report.text() })?;
-    Ok(if report.all_met() { ALL_MET } else { BAR_MISSED })
+    print(&if args.json {
+        report.json()
+    } else {
+        report.text()
+    })?;
+    Ok(if report.all_met() {
+        ALL_MET
+    } else {
+        BAR_MISSED
+    })
 }
 
 fn listed(as_json: bool) -> String {

@@ -8,7 +8,7 @@ use super::table::Table;
 use super::{Controls, RunArgs, rows};
 use crate::bus::LineLog;
 use crate::config::Plant;
-use crate::cycle::Event;
+use crate::cycle::{Event, Profile};
 use crate::gauge::{Calibration, Recipe};
 use crate::history::{
     AlarmRecord, CalibrationRecord, Identity, LandingRecord, LotRecord, Row, Store, snapshot_hash,
@@ -25,7 +25,7 @@ use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
 
 /// What a run was started with.
@@ -84,6 +84,7 @@ pub struct Recorder<'a> {
     bar: ProgressBar,
     eeprom: EepromCount,
     eeprom_at_start: Option<u64>,
+    writing: Duration,
 }
 
 /// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
@@ -137,6 +138,7 @@ impl<'a> Recorder<'a> {
             bar: bar(setup.args.count),
             eeprom,
             eeprom_at_start: None,
+            writing: Duration::ZERO,
         };
         Ok((recorder, calibration))
     }
@@ -166,6 +168,7 @@ impl<'a> Recorder<'a> {
         if rows.is_empty() {
             return Ok(());
         }
+        let from = Instant::now();
         let mut store = self.store.take().context("the history is closed")?;
         let (store, written) = tokio::task::spawn_blocking(move || {
             let written = store.record(&rows);
@@ -174,6 +177,7 @@ impl<'a> Recorder<'a> {
         .await
         .context("the history writer ended")?;
         self.store = Some(store);
+        self.writing += from.elapsed();
         Ok(written?)
     }
 
@@ -336,8 +340,28 @@ impl<'a> Recorder<'a> {
             .suspend(|| std::io::stdout().write_all(line.as_bytes()).ok());
     }
 
+    /// Where the wall time of the run went, seconds by phase.
+    fn wall_profile(&self, profile: &Profile) -> Value {
+        let spent = profile.scan_s + profile.step_s + profile.clear_s + profile.apply_s;
+        let history_s = self.writing.as_secs_f64();
+        let rest = (self.began.elapsed().as_secs_f64() - spent - history_s).max(0.0);
+        json!({
+            "scan": rows::rounded(profile.scan_s),
+            "step": rows::rounded(profile.step_s),
+            "clear": rows::rounded(profile.clear_s),
+            "apply": rows::rounded(profile.apply_s),
+            "history": rows::rounded(history_s),
+            "bus_simulator_runtime": rows::rounded(rest),
+        })
+    }
+
     /// Parts that never landed, the summary, and the end of the lot's run.
-    pub fn close(mut self, ending: &Ending, logs: &[(String, LineLog)]) -> anyhow::Result<()> {
+    pub fn close(
+        mut self,
+        ending: &Ending,
+        profile: &Profile,
+        logs: &[(String, LineLog)],
+    ) -> anyhow::Result<()> {
         for part in std::mem::take(&mut self.underway).into_values() {
             if matches!(part.judged.part.kind, Kind::Lot(_)) {
                 self.print(&rows::json(self.setup, &part.judged, part.cycle_s, ""));
@@ -363,6 +387,7 @@ impl<'a> Recorder<'a> {
         if let (Some(before), Some(after)) = (self.eeprom_at_start, (self.eeprom)()) {
             summary["eeprom_writes"] = json!(after - before);
         }
+        summary["wall_profile"] = self.wall_profile(profile);
         let bytes: BTreeMap<&str, String> = logs
             .iter()
             .map(|(name, log)| (name.as_str(), format!("{:016x}", log.fingerprint())))

@@ -6,6 +6,7 @@
 use super::bins;
 use super::chart::Chart;
 use super::error::{Pooled, unit};
+use super::exception;
 use super::figure::{Bar, Figure};
 use super::fleet::Order;
 use super::lot::Lot;
@@ -30,9 +31,16 @@ pub const fn allowed(parameter: Parameter) -> f64 {
 /// A lot that could not be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
-    let errors: Vec<Figure> = Parameter::ALL.iter().map(|parameter| row(*parameter, &lots)).collect();
-    let share = |parameter: Parameter, figure: &Figure| Some(100.0 * figure.value? / allowed(parameter));
-    let bars = Parameter::ALL.iter().zip(&errors).map(|(it, figure)| (figure.name.clone(), share(*it, figure)));
+    let errors: Vec<Figure> = Parameter::ALL
+        .iter()
+        .map(|parameter| row(*parameter, &lots))
+        .collect();
+    let share =
+        |parameter: Parameter, figure: &Figure| Some(100.0 * figure.value? / allowed(parameter));
+    let bars = Parameter::ALL
+        .iter()
+        .zip(&errors)
+        .map(|(it, figure)| (figure.name.clone(), share(*it, figure)));
     let chart = Chart {
         title: format!("rms error as a share of what is allowed: {}", order.about()),
         unit: "%",
@@ -41,15 +49,26 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         bars: bars.collect(),
     };
     let groups = vec![errors, bins::outcome(&lots), bins::machine(&lots)];
-    Ok(Report { study: "accuracy", about: order.about(), groups, chart })
+    Ok(Report {
+        study: "accuracy",
+        about: order.about(),
+        groups,
+        notes: exception::outcome(&lots),
+        chart,
+    })
 }
 
 fn row(parameter: Parameter, lots: &[Lot]) -> Figure {
     let errors = Pooled::of(parameter, lots);
-    Figure::new(parameter.name(), errors.n(), errors.median_rms(), unit(parameter))
-        .with("worst_lot", errors.worst_rms())
-        .with("bias", errors.median_bias())
-        .with("max", errors.worst())
-        .with("coverage_pct", errors.coverage_pct())
-        .bar(Bar::AtMost(allowed(parameter)))
+    Figure::new(
+        parameter.name(),
+        errors.n(),
+        errors.median_rms(),
+        unit(parameter),
+    )
+    .with("worst_lot", errors.worst_rms())
+    .with("bias", errors.median_bias())
+    .with("max", errors.worst())
+    .with("coverage_pct", errors.coverage_pct())
+    .bar(Bar::AtMost(allowed(parameter)))
 }

@@ -32,13 +32,35 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
     let n_bad = bad.clone().count() as u64;
     let elsewhere = all.iter().filter(|part| !part.is_where_it_says()).count() as u64;
     vec![
-        Figure::count("good parts rejected", n_good, Some(rejected.iter().filter(|it| **it).count() as u64)),
-        Figure::new("lots of 100 good parts without a reject", hundreds, percent(clean, hundreds), "%")
-            .bar(Bar::AtLeast(98.0)),
-        Figure::new("voids of good parts", n_good, percent(voids, n_good), "%").bar(Bar::Below(0.5)),
-        none("defective parts passed", n_bad, bad.filter(|part| has_passed(part)).count() as u64),
-        none("rows whose bin is not where the part is", all.len() as u64, elsewhere),
-        none("parts without a row", all.len() as u64, lots.iter().map(|lot| lot.unrecorded).sum()),
+        Figure::count(
+            "good parts rejected",
+            n_good,
+            Some(rejected.iter().filter(|it| **it).count() as u64),
+        ),
+        Figure::new(
+            "lots of 100 good parts without a reject",
+            hundreds,
+            percent(clean, hundreds),
+            "%",
+        )
+        .bar(Bar::AtLeast(98.0)),
+        Figure::new("voids of good parts", n_good, percent(voids, n_good), "%")
+            .bar(Bar::Below(0.5)),
+        none(
+            "defective parts passed",
+            n_bad,
+            bad.filter(|part| has_passed(part)).count() as u64,
+        ),
+        none(
+            "rows whose bin is not where the part is",
+            all.len() as u64,
+            elsewhere,
+        ),
+        none(
+            "parts without a row",
+            all.len() as u64,
+            lots.iter().map(|lot| lot.unrecorded).sum(),
+        ),
     ]
 }
 
@@ -49,7 +71,11 @@ pub fn machine(lots: &[Lot]) -> Vec<Figure> {
     vec![
         Figure::count("EEPROM writes during the lots", n, writes).bar(Bar::AtMost(0.0)),
         none("alarms", n, lots.iter().map(|lot| lot.summary.alarms).sum()),
-        none("errors logged, touching bodies included", n, lots.iter().map(|lot| lot.errors_logged).sum()),
+        none(
+            "errors logged, touching bodies included",
+            n,
+            lots.iter().map(|lot| lot.errors_logged).sum(),
+        ),
     ]
 }
 
@@ -57,14 +83,21 @@ pub fn machine(lots: &[Lot]) -> Vec<Figure> {
 pub fn defects(lots: &[Lot]) -> Vec<Figure> {
     let mut seen: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
     for part in lots.iter().flat_map(|lot| &lot.parts) {
-        let Some(defect) = part.truth.as_ref().and_then(|truth| truth.defect.as_deref()) else { continue };
+        let Some(defect) = part
+            .truth
+            .as_ref()
+            .and_then(|truth| truth.defect.as_deref())
+        else {
+            continue;
+        };
         let (right, all) = seen.entry(defect).or_default();
         *all += 1;
         *right += u64::from(bin_of(defect) == Some(part.bin.as_str()));
     }
     let row = |(defect, (right, all)): (&str, (u64, u64))| {
         let bin = bin_of(defect).unwrap_or("no known bin");
-        Figure::new(format!("{defect} in {bin}"), all, percent(right, all), "%").bar(Bar::AtLeast(100.0))
+        Figure::new(format!("{defect} in {bin}"), all, percent(right, all), "%")
+            .bar(Bar::AtLeast(100.0))
     };
     seen.into_iter().map(row).collect()
 }
@@ -75,8 +108,11 @@ fn none(name: &str, of: u64, count: u64) -> Figure {
 }
 
 /// By row or by body: either is one too many.
-fn has_passed(part: &Part) -> bool {
-    let landed = part.truth.as_ref().and_then(|truth| truth.landed_in.as_deref());
+pub fn has_passed(part: &Part) -> bool {
+    let landed = part
+        .truth
+        .as_ref()
+        .and_then(|truth| truth.landed_in.as_deref());
     part.bin == "pass" || landed == Some("pass")
 }
 

@@ -30,9 +30,17 @@ const ROW: f64 = 24.0;
 impl Chart {
     /// Value at the right end: the greatest one, or mark, and a little more.
     fn to(&self) -> f64 {
-        let all = self.bars.iter().filter_map(|(_, value)| *value).chain(self.marks.iter().copied());
+        let all = self
+            .bars
+            .iter()
+            .filter_map(|(_, value)| *value)
+            .chain(self.marks.iter().copied());
         let greatest = all.filter(|it| it.is_finite()).fold(self.from, f64::max);
-        if greatest > self.from { greatest + 0.02 * (greatest - self.from) } else { self.from + 1.0 }
+        if greatest > self.from {
+            greatest + 0.02 * (greatest - self.from)
+        } else {
+            self.from + 1.0
+        }
     }
 
     /// Place of a value, kept inside the plot.
@@ -64,7 +72,12 @@ impl Chart {
                 shown(*mark)
             );
         }
-        let _ = writeln!(svg, "<text x=\"{LABEL}\" y=\"{:.1}\">{}</text>\n</svg>", bottom + 16.0, shown(self.from));
+        let _ = writeln!(
+            svg,
+            "<text x=\"{LABEL}\" y=\"{:.1}\">{}</text>\n</svg>",
+            bottom + 16.0,
+            shown(self.from)
+        );
         svg
     }
 
@@ -92,5 +105,8 @@ impl Chart {
 }
 
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
 }

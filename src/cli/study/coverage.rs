@@ -6,6 +6,7 @@
 use super::bins;
 use super::chart::Chart;
 use super::error::Pooled;
+use super::exception;
 use super::figure::{Bar, Figure};
 use super::fleet::Order;
 use super::lot::Lot;
@@ -21,16 +22,28 @@ const ALLOWED: (f64, f64) = (93.0, 99.5);
 /// A lot that could not be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
-    let covered: Vec<Figure> = Parameter::ALL.iter().map(|parameter| row(*parameter, &lots)).collect();
+    let covered: Vec<Figure> = Parameter::ALL
+        .iter()
+        .map(|parameter| row(*parameter, &lots))
+        .collect();
     let chart = Chart {
         title: format!("coverage of the stated uncertainty: {}", order.about()),
         unit: "%",
         from: 80.0,
         marks: vec![ALLOWED.0, ALLOWED.1],
-        bars: covered.iter().map(|figure| (figure.name.clone(), figure.value)).collect(),
+        bars: covered
+            .iter()
+            .map(|figure| (figure.name.clone(), figure.value))
+            .collect(),
     };
     let groups = vec![covered, bins::outcome(&lots), bins::machine(&lots)];
-    Ok(Report { study: "coverage", about: order.about(), groups, chart })
+    Ok(Report {
+        study: "coverage",
+        about: order.about(),
+        groups,
+        notes: exception::outcome(&lots),
+        chart,
+    })
 }
 
 fn row(parameter: Parameter, lots: &[Lot]) -> Figure {

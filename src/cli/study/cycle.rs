@@ -7,6 +7,7 @@
 use super::bins;
 use super::chart::Chart;
 use super::error::percent;
+use super::exception;
 use super::figure::{Bar, Figure};
 use super::fleet::Order;
 use super::lot::{Lot, Part};
@@ -19,8 +20,12 @@ const TEST_S: f64 = 1.0;
 /// Longest cycle with overlap, seconds of rig time.
 const CYCLE_S: f64 = 2.5;
 /// Pieces of a test as the rows name them, and as a person reads them.
-const PIECES: [(&str, &str); 4] =
-    [("bus_s", "bus"), ("settling_s", "settling"), ("conversion_s", "conversion"), ("ramp_s", "ramps")];
+const PIECES: [(&str, &str); 4] = [
+    ("bus_s", "bus"),
+    ("settling_s", "settling"),
+    ("conversion_s", "conversion"),
+    ("ramp_s", "ramps"),
+];
 
 /// Runs the lots and draws the report up.
 ///
@@ -34,10 +39,19 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         unit: "s",
         from: 0.0,
         marks: Vec::new(),
-        bars: pieces.iter().map(|figure| (figure.name.clone(), figure.value)).collect(),
+        bars: pieces
+            .iter()
+            .map(|figure| (figure.name.clone(), figure.value))
+            .collect(),
     };
     let groups = vec![times(&lots), pieces, bins::machine(&lots)];
-    Ok(Report { study: "cycle", about: order.about(), groups, chart })
+    Ok(Report {
+        study: "cycle",
+        about: order.about(),
+        groups,
+        notes: exception::slow(&lots, TEST_S, CYCLE_S),
+        chart,
+    })
 }
 
 /// Longest, mean and median of tests and cycles.
@@ -45,8 +59,17 @@ pub fn times(lots: &[Lot]) -> Vec<Figure> {
     let all = || lots.iter().flat_map(|lot| &lot.parts);
     let row = |name: &str, times: Vec<f64>| {
         let spread = Spread::of(&times);
-        let over = |bar: f64| percent(times.iter().filter(|it| **it > bar).count() as u64, spread.n());
-        let bar = if name.starts_with("test") { TEST_S } else { CYCLE_S };
+        let over = |bar: f64| {
+            percent(
+                times.iter().filter(|it| **it > bar).count() as u64,
+                spread.n(),
+            )
+        };
+        let bar = if name.starts_with("test") {
+            TEST_S
+        } else {
+            CYCLE_S
+        };
         Figure::new(name, spread.n(), spread.max(), "s")
             .with("mean", spread.mean())
             .with("median", median(&times))
@@ -54,10 +77,28 @@ pub fn times(lots: &[Lot]) -> Vec<Figure> {
             .bar(Bar::AtMost(bar))
     };
     vec![
-        row("test, longest of good parts", lots.iter().flat_map(Lot::good).filter_map(|it| it.test_s).collect()),
-        row("test, longest of all parts", all().filter_map(|it| it.test_s).collect()),
-        row("cycle, longest of good parts", lots.iter().flat_map(Lot::good).filter_map(|it| it.cycle_s).collect()),
-        row("cycle, longest of all parts", all().filter_map(|it| it.cycle_s).collect()),
+        row(
+            "test, longest of good parts",
+            lots.iter()
+                .flat_map(Lot::good)
+                .filter_map(|it| it.test_s)
+                .collect(),
+        ),
+        row(
+            "test, longest of all parts",
+            all().filter_map(|it| it.test_s).collect(),
+        ),
+        row(
+            "cycle, longest of good parts",
+            lots.iter()
+                .flat_map(Lot::good)
+                .filter_map(|it| it.cycle_s)
+                .collect(),
+        ),
+        row(
+            "cycle, longest of all parts",
+            all().filter_map(|it| it.cycle_s).collect(),
+        ),
     ]
 }
 
@@ -74,17 +115,35 @@ pub fn pieces(lots: &[Lot]) -> Vec<Figure> {
     };
     let cycle = mean(&|(_, _, cycle)| *cycle);
     let row = |name: &str, seconds: Option<f64>| {
-        let share = seconds.zip(cycle).filter(|(_, all)| *all > 0.0).map(|(some, all)| 100.0 * some / all);
+        let share = seconds
+            .zip(cycle)
+            .filter(|(_, all)| *all > 0.0)
+            .map(|(some, all)| 100.0 * some / all);
         Figure::new(name, parts.len() as u64, seconds, "s").with("share_pct", share)
     };
     let spent = |part: &Part, key: &str| part.spent.get(key).copied().unwrap_or(0.0);
-    let mut rows = vec![row("cycle", cycle), row("mechanics outside the test", mean(&|(_, test, cycle)| cycle - test))];
+    let mut rows = vec![
+        row("cycle", cycle),
+        row(
+            "mechanics outside the test",
+            mean(&|(_, test, cycle)| cycle - test),
+        ),
+    ];
     if !told {
         rows.push(row("test", mean(&|(_, test, _)| *test)));
         return rows;
     }
-    rows.extend(PIECES.map(|(key, name)| row(&format!("test: {name}"), mean(&|(part, ..)| spent(part, key)))));
-    let rest = |part: &Part, test: f64| test - PIECES.iter().map(|(key, _)| spent(part, key)).sum::<f64>();
-    rows.push(row("test: rest", mean(&|(part, test, _)| rest(part, *test))));
+    rows.extend(PIECES.map(|(key, name)| {
+        row(
+            &format!("test: {name}"),
+            mean(&|(part, ..)| spent(part, key)),
+        )
+    }));
+    let rest =
+        |part: &Part, test: f64| test - PIECES.iter().map(|(key, _)| spent(part, key)).sum::<f64>();
+    rows.push(row(
+        "test: rest",
+        mean(&|(part, test, _)| rest(part, *test)),
+    ));
     rows
 }

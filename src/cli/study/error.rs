@@ -47,11 +47,20 @@ pub struct Errors {
 impl Errors {
     /// Of the good parts of a lot.
     pub fn of(parameter: Parameter, lot: &Lot) -> Self {
-        let readings: Vec<Reading> = lot.good().filter_map(|part| part.reading(parameter)).collect();
-        let errors: Vec<f64> = readings.iter().map(|reading| error(parameter, reading)).collect();
+        let readings: Vec<Reading> = lot
+            .good()
+            .filter_map(|part| part.reading(parameter))
+            .collect();
+        let errors: Vec<f64> = readings
+            .iter()
+            .map(|reading| error(parameter, reading))
+            .collect();
         Self {
             spread: Spread::of(&errors),
-            covered: readings.iter().filter(|reading| is_covered(reading)).count() as u64,
+            covered: readings
+                .iter()
+                .filter(|reading| is_covered(reading))
+                .count() as u64,
         }
     }
 
@@ -80,7 +89,9 @@ impl Errors {
 }
 
 fn is_covered(reading: &Reading) -> bool {
-    reading.uncertainty.is_some_and(|u| (reading.value - reading.truth).abs() <= u)
+    reading
+        .uncertainty
+        .is_some_and(|u| (reading.value - reading.truth).abs() <= u)
 }
 
 /// Errors of one parameter in every lot of a study.
@@ -128,7 +139,10 @@ impl Pooled {
 
     /// Least coverage of a lot, percent.
     pub fn worst_coverage_pct(&self) -> Option<f64> {
-        self.0.iter().filter_map(|errors| percent(errors.covered, errors.n())).reduce(f64::min)
+        self.0
+            .iter()
+            .filter_map(|errors| percent(errors.covered, errors.n()))
+            .reduce(f64::min)
     }
 }
 

@@ -58,7 +58,14 @@ impl Figure {
     /// A figure for information.
     pub fn new(name: impl Into<String>, n: u64, value: Option<f64>, unit: &'static str) -> Self {
         let value = value.filter(|it| it.is_finite());
-        Self { name: name.into(), n, value, unit, more: Vec::new(), bar: None }
+        Self {
+            name: name.into(),
+            n,
+            value,
+            unit,
+            more: Vec::new(),
+            bar: None,
+        }
     }
 
     /// A number of things.
@@ -68,7 +75,10 @@ impl Figure {
 
     /// The same, held against a bar.
     pub fn bar(self, bar: Bar) -> Self {
-        Self { bar: Some(bar), ..self }
+        Self {
+            bar: Some(bar),
+            ..self
+        }
     }
 
     /// The same with one column more.
@@ -79,7 +89,8 @@ impl Figure {
 
     /// None without a bar; a figure that could not be had has missed it.
     pub fn met(&self) -> Option<bool> {
-        self.bar.map(|bar| self.value.is_some_and(|value| bar.is_met(value)))
+        self.bar
+            .map(|bar| self.value.is_some_and(|value| bar.is_met(value)))
     }
 
     /// As one JSON object.

@@ -32,8 +32,14 @@ pub struct Order {
 impl Order {
     /// What was run, for the head of a report.
     pub fn about(&self) -> String {
-        let world = self.world.as_ref().map_or_else(|| "the default world".into(), |it| it.display().to_string());
-        format!("{} x {} parts of {} in {world}", self.lots, self.parts, self.recipe)
+        let world = self
+            .world
+            .as_ref()
+            .map_or_else(|| "the default world".into(), |it| it.display().to_string());
+        format!(
+            "{} x {} parts of {} in {world}",
+            self.lots, self.parts, self.recipe
+        )
     }
 
     /// Lots with the given seeds, in their order, `at_once` processes at a time.
@@ -51,7 +57,9 @@ impl Order {
             if lot.is_err() {
                 next.store(seeds.len() as u64, Ordering::Relaxed);
             }
-            let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            let mut done = done
+                .lock()
+                .unwrap_or_else(std::sync::PoisonError::into_inner);
             done.push((place, lot));
             progress.show(done.len());
         };
@@ -61,7 +69,9 @@ impl Order {
             }
         });
         progress.clear();
-        let mut done = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut done = done
+            .into_inner()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
         done.sort_by_key(|(place, _)| *place);
         done.into_iter().map(|(_, lot)| lot).collect()
     }
@@ -80,7 +90,10 @@ impl Order {
         std::fs::create_dir(folder).with_context(told)?;
         let truth = folder.join("truth.jsonl");
         let began = Instant::now();
-        let output = self.command(seed, folder, &truth).output().with_context(told)?;
+        let output = self
+            .command(seed, folder, &truth)
+            .output()
+            .with_context(told)?;
         let wall_s = began.elapsed().as_secs_f64();
         let said = String::from_utf8_lossy(&output.stderr);
         match output.status.code() {
@@ -88,16 +101,23 @@ impl Order {
             _ => bail!("{}: {}, {}", told(), output.status, said.trim()),
         }
         let text = std::fs::read_to_string(&truth).with_context(told)?;
-        let lot = Lot::read(seed, &String::from_utf8_lossy(&output.stdout), &text).with_context(told)?;
+        let lot =
+            Lot::read(seed, &String::from_utf8_lossy(&output.stdout), &text).with_context(told)?;
         std::fs::remove_dir_all(folder).with_context(told)?;
-        Ok(Lot { errors_logged: said.lines().count() as u64, wall_s, ..lot })
+        Ok(Lot {
+            errors_logged: said.lines().count() as u64,
+            wall_s,
+            ..lot
+        })
     }
 
     fn command(&self, seed: u64, folder: &Path, truth: &Path) -> Command {
         let mut command = Command::new(&self.program);
         command.arg("--config").arg(&self.config);
         command.arg("--db").arg(folder.join("history.db"));
-        command.args(["--log", "error", "run", "--sim", "--pace", "virtual", "--json"]);
+        command.args([
+            "--log", "error", "run", "--sim", "--pace", "virtual", "--json",
+        ]);
         command.args(["--lot", "study", "--recipe", &self.recipe]);
         command.arg("--count").arg(self.parts.to_string());
         command.arg("--seed").arg(seed.to_string());
@@ -124,7 +144,10 @@ impl Folder {
                 Err(error) => return Err(error).with_context(|| path.display().to_string()),
             }
         }
-        Err(anyhow!("{}: no free name for a temporary directory", base.display()))
+        Err(anyhow!(
+            "{}: no free name for a temporary directory",
+            base.display()
+        ))
     }
 }
 
@@ -142,7 +165,10 @@ struct Progress {
 
 impl Progress {
     fn new(of: usize) -> Self {
-        let it = Self { of, seen: std::io::stderr().is_terminal() };
+        let it = Self {
+            of,
+            seen: std::io::stderr().is_terminal(),
+        };
         it.show(0);
         it
     }

@@ -19,6 +19,9 @@ pub struct Part {
     pub verdict: String,
     /// Where the row says the part went; empty when it never landed.
     pub bin: String,
+    /// Why it did not pass.
+    #[serde(default)]
+    pub reasons: Vec<String>,
     #[serde(default)]
     values: BTreeMap<String, Option<f64>>,
     #[serde(default)]
@@ -61,7 +64,9 @@ pub struct Reading {
 impl Part {
     /// True when the truth knows the part and names no defect.
     pub fn is_good(&self) -> bool {
-        self.truth.as_ref().is_some_and(|truth| truth.defect.is_none())
+        self.truth
+            .as_ref()
+            .is_some_and(|truth| truth.defect.is_none())
     }
 
     /// None when it was not measured, or the part never showed the quantity.
@@ -76,7 +81,10 @@ impl Part {
 
     /// True when the row names the bin where the body came to rest.
     pub fn is_where_it_says(&self) -> bool {
-        let landed = self.truth.as_ref().and_then(|truth| truth.landed_in.as_deref());
+        let landed = self
+            .truth
+            .as_ref()
+            .and_then(|truth| truth.landed_in.as_deref());
         landed == Some(self.bin.as_str())
     }
 }
@@ -128,24 +136,34 @@ impl Lot {
     pub fn read(seed: u64, rows: &str, truth: &str) -> anyhow::Result<Self> {
         let mut known = BTreeMap::new();
         for (number, line) in truth.lines().enumerate() {
-            let it: Truth =
-                serde_json::from_str(line).with_context(|| format!("truth, line {}", number + 1))?;
+            let it: Truth = serde_json::from_str(line)
+                .with_context(|| format!("truth, line {}", number + 1))?;
             known.insert(it.seq, it);
         }
         let mut parts = Vec::new();
         let mut summary = None;
         for (number, line) in rows.lines().enumerate() {
-            match serde_json::from_str(line).with_context(|| format!("rows, line {}", number + 1))? {
+            match serde_json::from_str(line)
+                .with_context(|| format!("rows, line {}", number + 1))?
+            {
                 Line::Part(part) => parts.push(part),
                 Line::Summary(it) => summary = Some(it),
             }
         }
-        let Some(summary) = summary else { bail!("rows: found no summary after {} parts", parts.len()) };
+        let Some(summary) = summary else {
+            bail!("rows: found no summary after {} parts", parts.len())
+        };
         for part in &mut parts {
             part.truth = known.remove(&part.seq);
         }
         parts.sort_by_key(|part| part.seq);
-        Ok(Self { seed, parts, unrecorded: known.len() as u64, summary, ..Self::default() })
+        Ok(Self {
+            seed,
+            parts,
+            unrecorded: known.len() as u64,
+            summary,
+            ..Self::default()
+        })
     }
 
     /// Parts without a defect.

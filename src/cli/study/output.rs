@@ -14,6 +14,8 @@ pub struct Report {
     pub about: String,
     /// Figures in groups; a group is a table of its own.
     pub groups: Vec<Vec<Figure>>,
+    /// Parts worth looking at, each with the seed that shows it again.
+    pub notes: Vec<String>,
     /// The plot.
     pub chart: Chart,
 }
@@ -40,11 +42,19 @@ impl Report {
             text.push('\n');
             aligned(&mut text, &cells(group, shown));
         }
+        if !self.notes.is_empty() {
+            let _ = writeln!(text, "\n{}", self.notes.join("\n"));
+        }
         let missed = self.missed();
         let bars = self.figures().filter(|figure| figure.bar.is_some()).count();
         let _ = match missed.as_slice() {
             [] => writeln!(text, "\nall {bars} bars met"),
-            some => writeln!(text, "\n{} of {bars} bars missed: {}", some.len(), some.join(", ")),
+            some => writeln!(
+                text,
+                "\n{} of {bars} bars missed: {}",
+                some.len(),
+                some.join(", ")
+            ),
         };
         text
     }
@@ -57,7 +67,7 @@ impl Report {
         }
         let summary = json!({
             "type": "summary", "study": self.study, "about": self.about,
-            "figures": self.figures().count(), "met": self.all_met(), "missed": self.missed(),
+            "figures": self.figures().count(), "met": self.all_met(), "missed": self.missed(), "notes": self.notes,
         });
         let _ = writeln!(text, "{summary}");
         text
@@ -89,16 +99,30 @@ fn cells(figures: &[Figure], number: impl Fn(f64) -> String) -> Vec<Vec<String>>
     header.extend(["bar", "met"].map(String::from));
     let mut table = vec![header];
     for figure in figures {
-        let further = |key: &&str| figure.more.iter().find(|(known, _)| known == key).and_then(|(_, value)| *value);
+        let further = |key: &&str| {
+            figure
+                .more
+                .iter()
+                .find(|(known, _)| known == key)
+                .and_then(|(_, value)| *value)
+        };
         let mut row = vec![
             figure.name.clone(),
             figure.n.to_string(),
             figure.value.map_or_else(String::new, &number),
             figure.unit.to_string(),
         ];
-        row.extend(keys.iter().map(|key| further(key).map_or_else(String::new, &number)));
+        row.extend(
+            keys.iter()
+                .map(|key| further(key).map_or_else(String::new, &number)),
+        );
         row.push(figure.bar.map_or_else(String::new, Bar::text));
-        row.push(figure.met().map_or("", |met| if met { "yes" } else { "NO" }).to_string());
+        row.push(
+            figure
+                .met()
+                .map_or("", |met| if met { "yes" } else { "NO" })
+                .to_string(),
+        );
         table.push(row);
     }
     table
@@ -107,18 +131,34 @@ fn cells(figures: &[Figure], number: impl Fn(f64) -> String) -> Vec<Vec<String>>
 /// The first column and units to the left, numbers to the right.
 fn aligned(text: &mut String, table: &[Vec<String>]) {
     let columns = table.first().map_or(0, Vec::len);
-    let width = |column: usize| table.iter().filter_map(|row| row.get(column)).map(|it| it.chars().count()).max();
-    let widths: Vec<usize> = (0..columns).map(|column| width(column).unwrap_or(0)).collect();
+    let width = |column: usize| {
+        table
+            .iter()
+            .filter_map(|row| row.get(column))
+            .map(|it| it.chars().count())
+            .max()
+    };
+    let widths: Vec<usize> = (0..columns)
+        .map(|column| width(column).unwrap_or(0))
+        .collect();
     for row in table {
         let mut line = String::new();
         for (column, (cell, width)) in row.iter().zip(&widths).enumerate() {
             let left = column == 0 || column == 3 || column + 2 >= columns;
-            let _ = if left { write!(line, "{cell:<width$}  ") } else { write!(line, "{cell:>width$}  ") };
+            let _ = if left {
+                write!(line, "{cell:<width$}  ")
+            } else {
+                write!(line, "{cell:>width$}  ")
+            };
         }
         let _ = writeln!(text, "{}", line.trim_end());
     }
 }
 
 fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+    if cell.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
 }

@@ -1,6 +1,6 @@
 //! Parts per second of wall time, and whether the same seed gives the same bytes.
 //!
-//! The same lot is run several times, one process at a time. The wall time is that of the whole
+//! The same lot is run at least twice, one process at a time. The wall time is that of the whole
 //! process: start, calibration, golden parts and history included.
 
 use super::bins;
@@ -22,52 +22,97 @@ const SEED: u64 = 1;
 /// # Errors
 /// A run that could not be made.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let runs: Vec<u64> = (0..order.lots.max(2)).map(|_| SEED).collect();
+    let order = &Order {
+        lots: order.lots.max(2),
+        ..order.clone()
+    };
+    let runs: Vec<u64> = (0..order.lots).map(|_| SEED).collect();
     let lots = order.run(&runs, 1)?;
     let rates = rates(&lots);
     let chart = Chart {
-        title: format!("parts per second of wall time, run by run: {}", order.about()),
+        title: format!(
+            "parts per second of wall time, run by run: {}",
+            order.about()
+        ),
         unit: "/s",
         from: 0.0,
         marks: vec![PARTS_PER_SECOND],
-        bars: rates.iter().zip(1..).map(|(rate, run)| (format!("run {run}"), Some(*rate))).collect(),
+        bars: rates
+            .iter()
+            .zip(1..)
+            .map(|(rate, run)| (format!("run {run}"), Some(*rate)))
+            .collect(),
     };
-    let groups = vec![vec![rate(&rates), same_bytes(&lots)], profile(&lots), bins::machine(&lots)];
-    Ok(Report { study: "pace", about: order.about(), groups, chart })
+    let groups = vec![
+        vec![rate(&rates), same_bytes(&lots)],
+        profile(&lots),
+        bins::machine(&lots),
+    ];
+    Ok(Report {
+        study: "pace",
+        about: order.about(),
+        groups,
+        notes: Vec::new(),
+        chart,
+    })
 }
 
 fn rates(lots: &[Lot]) -> Vec<f64> {
-    lots.iter().map(|lot| lot.parts.len() as f64 / lot.wall_s).collect()
+    lots.iter()
+        .map(|lot| lot.parts.len() as f64 / lot.wall_s)
+        .collect()
 }
 
 fn rate(rates: &[f64]) -> Figure {
     let spread = Spread::of(rates);
-    Figure::new("parts per second, median of runs", spread.n(), median(rates), "/s")
-        .with("slowest", spread.min())
-        .with("fastest", spread.max())
-        .bar(Bar::AtLeast(PARTS_PER_SECOND))
+    Figure::new(
+        "parts per second, median of runs",
+        spread.n(),
+        median(rates),
+        "/s",
+    )
+    .with("slowest", spread.min())
+    .with("fastest", spread.max())
+    .bar(Bar::AtLeast(PARTS_PER_SECOND))
 }
 
-/// Runs whose bytes differ from those of the first; none when a run told no bytes.
+/// Runs whose bytes differ from those of the run before; none when a run told no bytes, or was alone.
 pub fn same_bytes(lots: &[Lot]) -> Figure {
     let told = lots.iter().all(|lot| !lot.summary.bytes.is_empty());
-    let differ = lots.iter().zip(lots.iter().skip(1)).filter(|(a, b)| a.summary.bytes != b.summary.bytes).count();
+    let differ = lots
+        .iter()
+        .zip(lots.iter().skip(1))
+        .filter(|(a, b)| a.summary.bytes != b.summary.bytes)
+        .count();
     let count = (told && lots.len() > 1).then_some(differ as u64);
-    Figure::count("repeats of a seed with other bytes", lots.len() as u64, count).bar(Bar::AtMost(0.0))
+    Figure::count(
+        "repeats of a seed with other bytes",
+        lots.len() as u64,
+        count,
+    )
+    .bar(Bar::AtMost(0.0))
 }
 
 /// Mean wall seconds of every entry of the profiles, greatest first; empty without profiles.
 pub fn profile(lots: &[Lot]) -> Vec<Figure> {
-    let mut names: Vec<&String> = lots.iter().flat_map(|lot| lot.summary.wall_profile.keys()).collect();
+    let mut names: Vec<&String> = lots
+        .iter()
+        .flat_map(|lot| lot.summary.wall_profile.keys())
+        .collect();
     names.sort();
     names.dedup();
     let of = |name: &String| -> Vec<f64> {
-        lots.iter().map(|lot| lot.summary.wall_profile.get(name).copied().unwrap_or(0.0)).collect()
+        lots.iter()
+            .map(|lot| lot.summary.wall_profile.get(name).copied().unwrap_or(0.0))
+            .collect()
     };
     let wall = Spread::of(&lots.iter().map(|lot| lot.wall_s).collect::<Vec<f64>>()).mean();
     let row = |name: &String| {
         let mean = Spread::of(&of(name)).mean();
-        let share = mean.zip(wall).filter(|(_, all)| *all > 0.0).map(|(some, all)| 100.0 * some / all);
+        let share = mean
+            .zip(wall)
+            .filter(|(_, all)| *all > 0.0)
+            .map(|(some, all)| 100.0 * some / all);
         Figure::new(format!("wall: {name}"), lots.len() as u64, mean, "s").with("share_pct", share)
     };
     let mut rows: Vec<Figure> = names.into_iter().map(row).collect();

@@ -2,6 +2,7 @@
 
 use super::bins;
 use super::chart::Chart;
+use super::exception;
 use super::fleet::Order;
 use super::output::Report;
 
@@ -17,8 +18,17 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         unit: "%",
         from: 0.0,
         marks: vec![100.0],
-        bars: defects.iter().map(|figure| (figure.name.clone(), figure.value)).collect(),
+        bars: defects
+            .iter()
+            .map(|figure| (figure.name.clone(), figure.value))
+            .collect(),
     };
     let groups = vec![bins::outcome(&lots), defects, bins::machine(&lots)];
-    Ok(Report { study: "sorting", about: order.about(), groups, chart })
+    Ok(Report {
+        study: "sorting",
+        about: order.about(),
+        groups,
+        notes: exception::outcome(&lots),
+        chart,
+    })
 }

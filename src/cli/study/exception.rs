@@ -1,0 +1,80 @@
+//! Single parts behind a figure, each with the seed and the number that show it again.
+
+use super::bins::{bin_of, has_passed};
+use super::lot::{Lot, Part};
+
+/// Lines of a report at most; the figures count them all.
+const SHOWN: usize = 20;
+
+/// Good parts that did not pass, bad ones that did or that lie in the bin of another cause, and rows that
+/// do not name the bin where the part is.
+pub fn outcome(lots: &[Lot]) -> Vec<String> {
+    told(lots, |part| {
+        let defect = part
+            .truth
+            .as_ref()
+            .and_then(|truth| truth.defect.as_deref());
+        let right = match defect {
+            None => part.is_good() && part.verdict == "pass",
+            Some(defect) => bin_of(defect) == Some(part.bin.as_str()) && !has_passed(part),
+        };
+        (!right || !part.is_where_it_says()).then(String::new)
+    })
+}
+
+/// Parts with a test or a cycle longer than allowed, seconds of rig time.
+pub fn slow(lots: &[Lot], test_s: f64, cycle_s: f64) -> Vec<String> {
+    let over = |time: Option<f64>, bar: f64| time.is_some_and(|time| time > bar);
+    let text = |time: Option<f64>| time.map_or_else(|| "-".into(), |time| format!("{time:.3}"));
+    told(lots, |part| {
+        (over(part.test_s, test_s) || over(part.cycle_s, cycle_s)).then(|| {
+            format!(
+                ", test {} s, cycle {} s",
+                text(part.test_s),
+                text(part.cycle_s)
+            )
+        })
+    })
+}
+
+fn told(lots: &[Lot], why: impl Fn(&Part) -> Option<String>) -> Vec<String> {
+    let parts = lots
+        .iter()
+        .flat_map(|lot| lot.parts.iter().map(|part| (lot.seed, part)));
+    let mut found =
+        parts.filter_map(|(seed, part)| Some(format!("{}{}", line(seed, part), why(part)?)));
+    let mut lines: Vec<String> = found.by_ref().take(SHOWN).collect();
+    let more = found.count();
+    if more > 0 {
+        lines.push(format!("and {more} more"));
+    }
+    lines
+}
+
+fn line(seed: u64, part: &Part) -> String {
+    let was = part
+        .truth
+        .as_ref()
+        .map_or("not known to the truth", |truth| {
+            truth.defect.as_deref().unwrap_or("good")
+        });
+    let landed = part
+        .truth
+        .as_ref()
+        .and_then(|truth| truth.landed_in.as_deref())
+        .unwrap_or("nowhere");
+    let mut text = format!(
+        "seed {seed} part {}: {was}, {}, row says {}, lies in {landed}",
+        part.seq,
+        part.verdict,
+        if part.bin.is_empty() {
+            "nowhere"
+        } else {
+            &part.bin
+        }
+    );
+    if !part.reasons.is_empty() {
+        text.push_str(&format!(", because {}", part.reasons.join("; ")));
+    }
+    text
+}
