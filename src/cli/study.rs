@@ -5,7 +5,9 @@
 //! figure beside the bar it has to keep.
 //!
 //! - Lot `n` of a study runs with seed `n`, so a figure can be traced back to one `relayrig run`.
-//! - A good part is one without a defect; only good parts count for errors and coverage.
+//! - A good part is one without a defect; only good parts count for errors and coverage. One that was drawn
+//!   beyond a limit all the same is rejected with reason: it counts as neither good nor defective in the
+//!   figures about bins, and stands in a row of its own.
 //! - A figure that could not be had (nothing measured, nothing reported) has missed its bar.
 //! - Rig time and wall time are never mixed: wall time appears in `pace` only.
 //!
@@ -27,6 +29,8 @@ mod sorting;
 #[cfg(test)]
 mod tests;
 
+use crate::config::load_recipe;
+use crate::gauge::Parameter;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use fleet::Order;
@@ -142,6 +146,7 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         program: std::env::current_exe().context("finding this program")?,
         config: config.to_owned(),
         recipe: args.recipe.clone(),
+        admitted: admitted(config, &args.recipe)?,
         world: args.world.clone(),
         lots: args.seeds.unwrap_or(lots),
         parts: args.parts.unwrap_or(parts),
@@ -164,6 +169,20 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
     } else {
         BAR_MISSED
     })
+}
+
+/// What the recipe admits; a limit that it does not set is infinite.
+fn admitted(config: &Path, recipe: &str) -> anyhow::Result<lot::Admitted> {
+    let limits = load_recipe(config, recipe)?.limits;
+    let range = |parameter: &Parameter| {
+        let limit = limits.of(*parameter);
+        let (low, high) = (limit.low, limit.high);
+        (
+            *parameter,
+            low.unwrap_or(f64::NEG_INFINITY)..=high.unwrap_or(f64::INFINITY),
+        )
+    };
+    Ok(Parameter::ALL.iter().map(range).collect())
 }
 
 fn listed(as_json: bool) -> String {

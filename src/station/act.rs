@@ -295,6 +295,8 @@ impl Runner {
                 if !active && self.since.since(self.began) < within {
                     return Ok(());
                 }
+                let inputs = BoardInputs::take(image, now).ok_or("a board input is stale")?;
+                self.readings.boards.push(inputs);
                 self.readings.seen.push(active);
             }
             Some(

@@ -537,3 +537,6 @@ impl Station {
         });
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -22,7 +22,10 @@ pub fn bin_of(defect: &str) -> Option<&'static str> {
 
 /// Verdicts and bins against the truth.
 pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
-    let good: Vec<&Part> = lots.iter().flat_map(Lot::good).collect();
+    let (good, beyond): (Vec<&Part>, Vec<&Part>) = lots
+        .iter()
+        .flat_map(Lot::good)
+        .partition(|part| part.deserves_to_pass());
     let all: Vec<&Part> = lots.iter().flat_map(|lot| &lot.parts).collect();
     let bad = all.iter().filter(|part| !part.is_good());
     let rejected: Vec<bool> = good.iter().map(|part| part.verdict == "fail").collect();
@@ -46,6 +49,7 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
         .bar(Bar::AtLeast(98.0)),
         Figure::new("voids of good parts", n_good, percent(voids, n_good), "%")
             .bar(Bar::Below(0.5)),
+        beyond_a_limit(&beyond),
         none(
             "defective parts passed",
             n_bad,
@@ -62,6 +66,14 @@ pub fn outcome(lots: &[Lot]) -> Vec<Figure> {
             lots.iter().map(|lot| lot.unrecorded).sum(),
         ),
     ]
+}
+
+/// Parts without a defect that are truly beyond a limit, and how many of them passed.
+fn beyond_a_limit(parts: &[&Part]) -> Figure {
+    let passed = parts.iter().filter(|part| has_passed(part)).count();
+    let n = parts.len() as u64;
+    Figure::count("no defect, but truly beyond a limit", n, Some(n))
+        .with("passed", Some(passed as f64))
 }
 
 /// What the rig had to say for itself.

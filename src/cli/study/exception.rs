@@ -6,8 +6,8 @@ use super::lot::{Lot, Part};
 /// Lines of a report at most; the figures count them all.
 const SHOWN: usize = 20;
 
-/// Good parts that did not pass, bad ones that did or that lie in the bin of another cause, and rows that
-/// do not name the bin where the part is.
+/// Good parts that did not pass, others that did, defects in the bin of another cause, and rows that do not
+/// name the bin where the part is.
 pub fn outcome(lots: &[Lot]) -> Vec<String> {
     told(lots, |part| {
         let defect = part
@@ -15,6 +15,7 @@ pub fn outcome(lots: &[Lot]) -> Vec<String> {
             .as_ref()
             .and_then(|truth| truth.defect.as_deref());
         let right = match defect {
+            None if part.is_beyond => !has_passed(part),
             None => part.is_good() && part.verdict == "pass",
             Some(defect) => bin_of(defect) == Some(part.bin.as_str()) && !has_passed(part),
         };
@@ -56,7 +57,12 @@ fn line(seed: u64, part: &Part) -> String {
         .truth
         .as_ref()
         .map_or("not known to the truth", |truth| {
-            truth.defect.as_deref().unwrap_or("good")
+            let sound = if part.is_beyond {
+                "beyond a limit"
+            } else {
+                "good"
+            };
+            truth.defect.as_deref().unwrap_or(sound)
         });
     let landed = part
         .truth

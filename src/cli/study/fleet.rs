@@ -1,6 +1,6 @@
 //! Lots as processes of this very program, a few at a time, each with a history of its own that is thrown away.
 
-use super::lot::Lot;
+use super::lot::{Admitted, Lot};
 use anyhow::{Context, anyhow, bail};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -21,6 +21,8 @@ pub struct Order {
     pub config: PathBuf,
     /// Recipe of every lot.
     pub recipe: String,
+    /// What the recipe admits.
+    pub admitted: Admitted,
     /// World of the simulated rig; none is the one of the configuration.
     pub world: Option<PathBuf>,
     /// How many lots.
@@ -101,8 +103,9 @@ impl Order {
             _ => bail!("{}: {}, {}", told(), output.status, said.trim()),
         }
         let text = std::fs::read_to_string(&truth).with_context(told)?;
-        let lot =
+        let mut lot =
             Lot::read(seed, &String::from_utf8_lossy(&output.stdout), &text).with_context(told)?;
+        lot.hold_against(&self.admitted);
         std::fs::remove_dir_all(folder).with_context(told)?;
         Ok(Lot {
             errors_logged: said.lines().count() as u64,

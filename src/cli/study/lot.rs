@@ -9,6 +9,7 @@ use anyhow::{Context, bail};
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 /// One judged part.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -33,6 +34,9 @@ pub struct Part {
     /// Where the test time went: what to seconds.
     #[serde(default)]
     pub spent: BTreeMap<String, f64>,
+    /// True when a true value lies beyond a limit of the recipe, defect or not.
+    #[serde(skip)]
+    pub is_beyond: bool,
     /// What the part really was; none when the truth file has no such part.
     #[serde(skip)]
     pub truth: Option<Truth>,
@@ -48,6 +52,23 @@ pub struct Truth {
     pub landed_in: Option<String>,
     #[serde(flatten)]
     values: BTreeMap<String, Value>,
+}
+
+/// What the recipe admits, by parameter.
+pub type Admitted = Vec<(Parameter, RangeInclusive<f64>)>;
+
+impl Truth {
+    fn value(&self, parameter: Parameter) -> Option<f64> {
+        self.values.get(parameter.name())?.as_f64()
+    }
+
+    fn is_beyond(&self, admitted: &[(Parameter, RangeInclusive<f64>)]) -> bool {
+        let out = |(parameter, range): &(Parameter, RangeInclusive<f64>)| {
+            self.value(*parameter)
+                .is_some_and(|value| !range.contains(&value))
+        };
+        admitted.iter().any(out)
+    }
 }
 
 /// A value beside its truth.
@@ -69,13 +90,18 @@ impl Part {
             .is_some_and(|truth| truth.defect.is_none())
     }
 
+    /// True when there is no reason to reject it: no defect, and no true value beyond a limit.
+    pub fn deserves_to_pass(&self) -> bool {
+        self.is_good() && !self.is_beyond
+    }
+
     /// None when it was not measured, or the part never showed the quantity.
     pub fn reading(&self, parameter: Parameter) -> Option<Reading> {
         let key = parameter.name();
         Some(Reading {
             value: self.values.get(key).copied().flatten()?,
             uncertainty: self.uncertainty.get(key).copied().flatten(),
-            truth: self.truth.as_ref()?.values.get(key)?.as_f64()?,
+            truth: self.truth.as_ref()?.value(parameter)?,
         })
     }
 
@@ -164,6 +190,16 @@ impl Lot {
             summary,
             ..Self::default()
         })
+    }
+
+    /// Sets the true values against what the recipe admits.
+    pub fn hold_against(&mut self, admitted: &[(Parameter, RangeInclusive<f64>)]) {
+        for part in &mut self.parts {
+            part.is_beyond = part
+                .truth
+                .as_ref()
+                .is_some_and(|truth| truth.is_beyond(admitted));
+        }
     }
 
     /// Parts without a defect.

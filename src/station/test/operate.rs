@@ -47,7 +47,6 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
             point: DigitalIn::Latch,
             within: takes + LATE,
         },
-        Act::Read(Read::Board),
         Act::Read(Read::Gates),
         board(&[(CoilDrive, false), (Arm, false)]),
         Act::WaitSinceMark(rest),
@@ -166,7 +165,6 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
             point: DigitalIn::Latch,
             within: takes + LATE,
         },
-        Act::Read(Read::Board),
         Act::Read(Read::Gates),
         board(&[(CoilDrive, false), (Arm, false)]),
         // The ramp's rest runs out while the coil is off before the timed operation.

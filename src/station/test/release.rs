@@ -26,9 +26,14 @@ const LATE: Span = Span::ms(12);
 /// Seals the armature and steps to the start of a falling ramp; the caller arms.
 fn seal(bench: &Bench, supply: &mut Supply, start: Volt) -> Vec<Act> {
     vec![
-        board(&[(CoilDrive, false), (Arm, false)]),
+        board(&[
+            (CoilDrive, false),
+            (Arm, false),
+            (RampMode, true),
+            (SelectNo, true),
+            (EventNoBreak, true),
+        ]),
         supply.step_to(Volt(SEAL * bench.recipe.part.nominal_v)),
-        board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, true)]),
         board(&[(CoilDrive, true)]),
         Act::Mark,
         Act::Read(Read::Gates),
@@ -46,7 +51,6 @@ fn until_break(takes: Span) -> Vec<Act> {
             point: DigitalIn::Latch,
             within: takes + LATE,
         },
-        Act::Read(Read::Board),
         Act::Read(Read::Gates),
         board(&[(CoilDrive, false), (Arm, false)]),
     ]

@@ -4,6 +4,7 @@ use super::super::bins::{bin_of, defects, lots_without, machine, outcome};
 use super::super::exception;
 use super::super::lot::Lot;
 use super::{SUMMARY, figure, lot, near, row, three_good_one_bad, truth};
+use crate::gauge::Parameter;
 use serde_json::{Value, json};
 
 #[test]
@@ -147,4 +148,35 @@ fn parts_over_the_time_allowed_are_named_with_both_times() {
         notes[0]
     );
     assert!(exception::slow(&[three_good_one_bad()], 0.5, 2.0).is_empty());
+}
+
+#[test]
+fn a_part_drawn_beyond_a_limit_is_rejected_with_reason_and_not_called_good() {
+    let rows = [
+        row(1, "fail", "voltage", 9.1),
+        row(2, "pass", "pass", 9.0),
+        row(3, "pass", "pass", 9.0),
+    ];
+    let truths = [
+        truth(1, None, "voltage", 9.1),
+        truth(2, None, "pass", 9.0),
+        truth(3, None, "pass", 9.001),
+    ];
+    let mut it = lot(&rows, &truths);
+    it.hold_against(&[(Parameter::OperateVoltage, f64::NEG_INFINITY..=9.0)]);
+    let notes = exception::outcome(std::slice::from_ref(&it));
+    assert_eq!(notes.len(), 1);
+    assert!(
+        notes[0].starts_with("seed 1 part 3: beyond a limit, pass"),
+        "{}",
+        notes[0]
+    );
+    let figures = outcome(&[it]);
+    let rejected = figure(&figures, "good parts rejected");
+    assert_eq!((rejected.n, rejected.value), (1, Some(0.0)));
+    let beyond = figure(&figures, "no defect, but truly beyond a limit");
+    assert_eq!(
+        (beyond.value, beyond.more[0], beyond.met()),
+        (Some(2.0), ("passed", Some(1.0)), None)
+    );
 }

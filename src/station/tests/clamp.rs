@@ -1,0 +1,189 @@
+//! The nest takes a part, has it tested and hands it to the gripper, never letting it loose in between.
+
+use super::{Shop, bench};
+use crate::gauge::verdict::{Bin, Verdict};
+use crate::rig::axis::AxisStation;
+use crate::rig::point::DigitalIn;
+use crate::station::act::{Job, JobDone, Read};
+use crate::station::clamp::{Beside, Clamp};
+use crate::station::moves::Move;
+use crate::station::sort::Sort;
+use crate::units::{RigTime, Second};
+
+/// The nest with what stands beside it.
+struct Nest {
+    shop: Shop,
+    sort: Sort,
+    last_left: Option<RigTime>,
+}
+
+impl Nest {
+    /// A part was just pushed in; the pusher is still there, the axis waits over the nest.
+    fn loaded(golden: Option<String>) -> Self {
+        let mut shop = Shop::at_rest();
+        shop.carried_out(Move::AxisTo(AxisStation::Nest));
+        shop.ledger.enter_pocket();
+        shop.ledger.enter_nest(golden);
+        shop.set(DigitalIn::NestPresent, true);
+        shop.stands(Move::PusherExtend);
+        shop.scan();
+        Self {
+            shop,
+            sort: Sort::OverNest,
+            last_left: None,
+        }
+    }
+
+    fn step(&mut self, clamp: Clamp, job: Option<JobDone>) -> Clamp {
+        let bench = bench();
+        let beside = Beside {
+            job,
+            bench: &bench,
+            sort: &mut self.sort,
+            last_left: &mut self.last_left,
+        };
+        clamp.step(&mut self.shop.turn(), beside)
+    }
+
+    fn motions(&self) -> &[Move] {
+        &self.shop.wants.motions
+    }
+
+    /// Up to the first job of the test.
+    fn testing(&mut self) -> Clamp {
+        let clamp = self.step(Clamp::Empty, None);
+        assert_eq!(self.motions(), [Move::ClampClose]);
+        self.shop.carried_out(Move::ClampClose);
+        let clamp = self.step(clamp, None);
+        assert!(self.motions().is_empty(), "the pusher is not back");
+        self.shop.carried_out(Move::PusherRetract);
+        let clamp = self.step(clamp, None);
+        assert_eq!(self.motions(), [Move::ProbesUp]);
+        self.shop.carried_out(Move::ProbesUp);
+        self.step(clamp, None)
+    }
+
+    /// The test ends in trouble 40 ms after it began.
+    fn judged(&mut self) -> Clamp {
+        let clamp = self.testing();
+        self.shop.after(40);
+        let failed = JobDone {
+            at: self.shop.now,
+            trouble: Some("measure 05: silent".into()),
+        };
+        self.step(clamp, Some(failed))
+    }
+
+    /// The open fingers have come down around the part.
+    fn fingers_around(&mut self) {
+        self.shop.carried_out(Move::SortDown);
+        self.sort = Sort::AtPart;
+    }
+}
+
+#[test]
+fn an_empty_nest_asks_for_nothing() {
+    let mut nest = Nest::loaded(None);
+    nest.shop.ledger = Default::default();
+    let clamp = nest.step(Clamp::Empty, None);
+    assert!(matches!(clamp, Clamp::Empty) && nest.motions().is_empty());
+}
+
+#[test]
+fn the_test_begins_with_the_track_temperature_once_the_probes_are_up() {
+    let mut nest = Nest::loaded(None);
+    let clamp = nest.testing();
+    assert!(clamp.test().is_some());
+    assert_eq!(nest.shop.wants.job, Some(Job::Read(Read::Track)));
+    let part = nest.shop.ledger.nest.as_ref().unwrap();
+    assert_eq!(part.probed_at, Some(nest.shop.now));
+}
+
+#[test]
+fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
+    let mut nest = Nest::loaded(None);
+    let clamp = nest.judged();
+    assert!(matches!(clamp, Clamp::Judged));
+    let judged = &nest.shop.wants.judged[0];
+    let why = Verdict::Void(vec!["measure 05: silent".into()]);
+    assert_eq!(
+        (&judged.verdict, judged.part.bin),
+        (&why, Some(Bin::Retest))
+    );
+    assert_eq!(judged.part.test, Some(Second(0.04)));
+    let part = nest.shop.ledger.nest.as_ref();
+    assert_eq!(part, Some(&judged.part));
+}
+
+#[test]
+fn a_golden_part_ends_in_retest_under_its_serial() {
+    let mut nest = Nest::loaded(Some("G-12-1".into()));
+    nest.judged();
+    let part = &nest.shop.wants.judged[0].part;
+    assert_eq!(part.bin, Some(Bin::Retest));
+    assert_eq!(format!("{:?}", part.kind), "Golden(\"G-12-1\")");
+}
+
+#[test]
+fn a_judged_part_stays_clamped_until_the_gripper_has_it() {
+    let mut nest = Nest::loaded(None);
+    let clamp = nest.judged();
+    let clamp = nest.step(clamp, None);
+    assert!(nest.motions().is_empty(), "no fingers around it");
+    nest.fingers_around();
+    let clamp = nest.step(clamp, None);
+    assert_eq!(nest.motions(), [Move::ProbesDown, Move::GripperClose]);
+    nest.shop.carried_out(Move::ProbesDown);
+    let clamp = nest.step(clamp, None);
+    assert!(nest.motions().is_empty(), "the gripper is not closed");
+    nest.shop.carried_out(Move::GripperClose);
+    let clamp = nest.step(clamp, None);
+    assert_eq!(nest.motions(), [Move::ClampOpen]);
+    nest.shop.carried_out(Move::ClampOpen);
+    let clamp = nest.step(clamp, None);
+    assert_eq!(nest.motions(), [Move::SortUp]);
+    assert!(matches!(clamp, Clamp::Lifting));
+}
+
+/// Takes the part up and out of the nest.
+fn lift(nest: &mut Nest) -> Clamp {
+    let clamp = nest.judged();
+    nest.fingers_around();
+    let mut clamp = nest.step(clamp, None);
+    for movement in [Move::ProbesDown, Move::GripperClose, Move::ClampOpen] {
+        nest.shop.carried_out(movement);
+        clamp = nest.step(clamp, None);
+    }
+    nest.shop.carried_out(Move::SortUp);
+    clamp
+}
+
+#[test]
+fn the_part_changes_hands_when_z_is_up_and_the_nest_is_seen_empty() {
+    let mut nest = Nest::loaded(None);
+    let clamp = lift(&mut nest);
+    let clamp = nest.step(clamp, None);
+    assert!(matches!(clamp, Clamp::Lifting), "nest still occupied");
+    assert!(nest.shop.ledger.gripper.is_none());
+    nest.shop.set(DigitalIn::NestPresent, false);
+    nest.shop.after(8);
+    let clamp = nest.step(clamp, None);
+    assert!(matches!(clamp, Clamp::Empty));
+    assert!(nest.shop.ledger.gripper.is_some() && nest.shop.ledger.nest.is_none());
+    assert_eq!(nest.sort, Sort::Loaded);
+}
+
+#[test]
+fn the_first_part_has_no_cycle_and_the_next_counts_from_it() {
+    for (before_ms, cycle) in [(None, None), (Some(500), Some(0.5))] {
+        let mut nest = Nest::loaded(None);
+        let clamp = lift(&mut nest);
+        nest.shop.set(DigitalIn::NestPresent, false);
+        nest.shop.after(8);
+        nest.last_left = before_ms.map(|ms: u64| RigTime(nest.shop.now.0 - ms * 1000));
+        nest.step(clamp, None);
+        let left = nest.shop.wants.left[0];
+        assert_eq!((left.ordinal, left.cycle), (1, cycle.map(Second)));
+        assert_eq!(nest.last_left, Some(nest.shop.now));
+    }
+}

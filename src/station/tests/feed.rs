@@ -1,0 +1,153 @@
+//! One part at a time from the track into the pocket, and into a nest that is free in every respect.
+
+use super::Shop;
+use super::shop::golden_parts;
+use crate::rig::point::DigitalIn;
+use crate::station::feed::Feed;
+use crate::station::ledger::Kind;
+use crate::station::moves::Move;
+
+fn step(feed: Feed, shop: &mut Shop, wanted: bool) -> Feed {
+    feed.step(&mut shop.turn(), wanted)
+}
+
+/// A part waits in the pocket, escapement closed.
+fn ready() -> (Feed, Shop) {
+    let mut shop = Shop::at_rest();
+    shop.ledger.enter_pocket();
+    shop.set(DigitalIn::PocketPresent, true);
+    shop.scan();
+    (Feed::Ready, shop)
+}
+
+#[test]
+fn a_part_goes_from_track_to_nest_and_gets_its_number_there() {
+    let mut shop = Shop::at_rest();
+    let feed = step(Feed::Empty, &mut shop, true);
+    assert_eq!(shop.wants.motions, [Move::EscapementRelease]);
+    shop.carried_out(Move::EscapementRelease);
+    let feed = step(feed, &mut shop, true);
+    assert!(matches!(feed, Feed::Releasing { .. }));
+    shop.set(DigitalIn::PocketPresent, true);
+    shop.after(50);
+    let feed = step(feed, &mut shop, true);
+    assert_eq!(
+        (feed, &*shop.wants.motions),
+        (Feed::Holding, &[Move::EscapementHold][..])
+    );
+    shop.carried_out(Move::EscapementHold);
+    let feed = step(feed, &mut shop, true);
+    let feed = step(feed, &mut shop, true);
+    assert_eq!(
+        (feed, &*shop.wants.motions),
+        (Feed::Pushing, &[Move::PusherExtend][..])
+    );
+    shop.set(DigitalIn::NestPresent, true);
+    shop.carried_out(Move::PusherExtend);
+    let feed = step(feed, &mut shop, true);
+    assert_eq!(
+        (feed, &*shop.wants.motions),
+        (Feed::Retracting, &[Move::PusherRetract][..])
+    );
+    assert_eq!(
+        shop.ledger.nest.as_ref().map(|part| part.kind.clone()),
+        Some(Kind::Lot(1))
+    );
+    assert_eq!(step(feed, &mut shop, true), Feed::Retracting);
+    shop.carried_out(Move::PusherRetract);
+    assert_eq!(step(feed, &mut shop, false), Feed::Empty);
+    assert!(shop.ledger.balances());
+}
+
+#[test]
+fn no_part_is_released_when_none_is_wanted_or_the_pusher_is_not_back() {
+    let mut shop = Shop::at_rest();
+    assert_eq!(step(Feed::Empty, &mut shop, false), Feed::Empty);
+    shop.set(DigitalIn::PusherRetracted, false);
+    shop.scan();
+    assert_eq!(step(Feed::Empty, &mut shop, true), Feed::Empty);
+    assert!(shop.wants.motions.is_empty());
+}
+
+#[test]
+fn an_empty_magazine_is_an_alarm_after_a_second_and_a_half() {
+    let mut shop = Shop::at_rest();
+    let feed = step(Feed::Empty, &mut shop, true);
+    shop.after(1500);
+    step(feed, &mut shop, true);
+    assert!(shop.alarms().is_empty());
+    shop.after(1);
+    step(feed, &mut shop, true);
+    assert_eq!(shop.alarms(), ["part_not_arrived"]);
+    assert_eq!(shop.ledger.came_in, 0);
+}
+
+#[test]
+fn a_pocket_sensor_read_before_the_release_does_not_show_the_part() {
+    let mut shop = Shop::at_rest();
+    shop.set(DigitalIn::PocketPresent, true);
+    shop.scan();
+    let feed = step(Feed::Empty, &mut shop, true);
+    let feed = step(feed, &mut shop, true);
+    assert!(matches!(feed, Feed::Releasing { .. }));
+    assert!(!shop.ledger.pocket);
+}
+
+#[test]
+fn the_pusher_starts_only_into_a_nest_that_is_free_in_every_respect() {
+    let occupied: [(&str, &[(DigitalIn, bool)]); 6] = [
+        ("part in the nest", &[(DigitalIn::NestPresent, true)]),
+        ("left jaw closed", &[(DigitalIn::JawLeftOpen, false)]),
+        ("right jaw closed", &[(DigitalIn::JawRightOpen, false)]),
+        ("probes not down", &[(DigitalIn::ProbeDown, false)]),
+        ("z not up", &[(DigitalIn::SortZUp, false)]),
+        ("escapement open", &[(DigitalIn::EscapementHold, false)]),
+    ];
+    for (what, sensors) in occupied {
+        let (feed, mut shop) = ready();
+        for (point, state) in sensors {
+            shop.set(*point, *state);
+        }
+        shop.scan();
+        assert_eq!(step(feed, &mut shop, true), Feed::Ready, "{what}");
+        assert!(shop.wants.motions.is_empty(), "{what}");
+    }
+    let (feed, mut shop) = ready();
+    shop.now = shop.now + crate::units::Span::ms(401);
+    assert_eq!(step(feed, &mut shop, true), Feed::Ready, "stale sensors");
+    let (feed, mut shop) = ready();
+    assert_eq!(step(feed, &mut shop, false), Feed::Pushing, "nest is free");
+}
+
+#[test]
+fn the_ledger_keeps_a_second_part_out_of_the_nest_whatever_the_sensor_says() {
+    let (feed, mut shop) = ready();
+    shop.ledger.enter_nest(None);
+    shop.ledger.enter_pocket();
+    assert_eq!(step(feed, &mut shop, true), Feed::Ready);
+}
+
+#[test]
+fn a_pusher_at_an_empty_nest_is_an_alarm() {
+    let (feed, mut shop) = ready();
+    let feed = step(feed, &mut shop, true);
+    shop.carried_out(Move::PusherExtend);
+    assert_eq!(step(feed, &mut shop, true), Feed::Pushing);
+    assert_eq!(shop.alarms(), ["part_not_in_nest"]);
+    assert!(shop.ledger.pocket && shop.ledger.nest.is_none());
+}
+
+#[test]
+fn golden_parts_come_first_in_the_order_of_the_magazine() {
+    let (feed, mut shop) = ready();
+    shop.golden = golden_parts().into_iter().collect();
+    let feed = step(feed, &mut shop, true);
+    shop.set(DigitalIn::NestPresent, true);
+    shop.carried_out(Move::PusherExtend);
+    step(feed, &mut shop, true);
+    assert_eq!(
+        shop.ledger.nest.as_ref().map(|part| part.kind.clone()),
+        Some(Kind::Golden("G-12-1".into()))
+    );
+    assert_eq!(shop.golden.len(), 4);
+}

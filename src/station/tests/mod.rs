@@ -1,0 +1,28 @@
+//! Facts about the sequence, on the default rig with sensors set by hand.
+#![allow(clippy::unwrap_used)]
+
+mod act;
+mod clamp;
+mod feed;
+mod golden;
+mod homing;
+mod ledger;
+mod mechanism;
+mod run;
+mod safety;
+mod shop;
+mod sort;
+mod supply;
+
+pub(in crate::station) use shop::{Shop, bench};
+
+use crate::rig::settings::RigSettings;
+use crate::rig::wiring::Wiring;
+use std::sync::Arc;
+
+const RIG: &str = include_str!("../../../config/rig.toml");
+
+fn wiring() -> Arc<Wiring> {
+    let settings: RigSettings = toml::from_str(RIG).unwrap();
+    Arc::new(Wiring::resolve(&settings).unwrap())
+}

@@ -1,0 +1,122 @@
+//! Trouble makes everything safe, ends the run and voids the part inside.
+
+use super::run::{Machine, Specimen};
+use crate::gauge::verdict::{Bin, Verdict};
+use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::station::trouble::Alarm;
+use crate::station::wants::{Ending, Wants};
+use crate::units::Span;
+
+/// Runs until the nest holds a part under test.
+fn under_test() -> Machine {
+    let mut machine = Machine::new(Some(3), vec![Specimen::MissingPin; 3]);
+    for _ in 0..3000 {
+        machine.turn();
+        if machine.station.state().starts_with("testing") {
+            return machine;
+        }
+    }
+    panic!("no test began: {}", machine.station.state());
+}
+
+fn assert_safe(wants: &Wants, code: &str) {
+    assert!(wants.safe, "{code}");
+    assert!(wants.motions.is_empty() && wants.job.is_none(), "{code}");
+    assert!(wants.outputs.contains(&(DigitalOut::LampRed, true)));
+    assert_eq!(wants.ending, Some(Ending::Alarm));
+    assert_eq!(wants.alarms[0].code, code);
+}
+
+#[test]
+fn an_open_safety_input_makes_everything_safe_and_voids_the_part_inside() {
+    for (point, code) in [
+        (DigitalIn::EmergencyStopOk, "emergency_stop"),
+        (DigitalIn::DoorClosed, "door_open"),
+        (DigitalIn::AirOk, "air_lost"),
+    ] {
+        let mut machine = under_test();
+        machine.shop.set(point, false);
+        let wants = machine.turn();
+        assert_safe(&wants, code);
+        let judged = &wants.judged[0];
+        let why = Verdict::Void(vec![format!("interrupted: {code}")]);
+        assert_eq!(
+            (&judged.verdict, judged.part.bin),
+            (&why, Some(Bin::Retest))
+        );
+        assert!(machine.station.ledger().balances());
+        assert_eq!(machine.station.state(), "ended");
+    }
+}
+
+#[test]
+fn after_the_end_the_station_wants_nothing_whatever_happens() {
+    let mut machine = under_test();
+    machine.shop.set(DigitalIn::EmergencyStopOk, false);
+    machine.turn();
+    machine.shop.set(DigitalIn::EmergencyStopOk, true);
+    for _ in 0..20 {
+        let wants = format!("{:?}", machine.turn());
+        assert_eq!(wants, format!("{:?}", Wants::default()));
+    }
+}
+
+#[test]
+fn trouble_of_a_line_ends_the_run_like_an_emergency_stop() {
+    let mut machine = under_test();
+    machine.bus = Some(Alarm::bus("line motion is silent"));
+    let wants = machine.turn();
+    assert_safe(&wants, "bus_trouble");
+    assert_eq!(wants.judged.len(), 1);
+}
+
+#[test]
+fn a_refused_motion_makes_everything_safe() {
+    let mut machine = under_test();
+    let mut wants = Wants::default();
+    let movement = crate::station::moves::Move::PusherExtend;
+    let now = machine.shop.now;
+    machine
+        .station
+        .refused(movement, "probes are up", now, &mut wants);
+    assert_safe(&wants, "motion_refused");
+    assert!(wants.alarms[0].text_en.contains("probes are up"));
+}
+
+#[test]
+fn safety_inputs_that_are_no_longer_read_are_trouble() {
+    let mut machine = under_test();
+    machine.shop.now = machine.shop.now + Span::ms(3001);
+    let wants = machine.turn_without_scan();
+    assert_safe(&wants, "bus_trouble");
+}
+
+#[test]
+fn before_the_first_scan_the_station_waits_but_not_for_ever() {
+    let mut machine = Machine::new(Some(1), Vec::new());
+    machine.shop = super::Shop::unread();
+    let wants = machine.turn_without_scan();
+    assert_eq!(format!("{wants:?}"), format!("{:?}", Wants::default()));
+    assert_eq!(machine.station.state(), "waiting for sensors");
+    machine.shop.now = machine.shop.now + Span::ms(3000);
+    assert!(machine.turn_without_scan().alarms.is_empty());
+    machine.shop.now = machine.shop.now + Span(1);
+    assert_safe(&machine.turn_without_scan(), "bus_trouble");
+}
+
+#[test]
+fn an_actuator_that_sticks_ends_the_run_under_its_name() {
+    let mut machine = Machine::new(Some(1), vec![Specimen::MissingPin]);
+    machine.sticking = Some("pusher");
+    let ended = machine.run();
+    assert_safe(&ended, "pusher_not_reached");
+    assert!(ended.judged.is_empty(), "no part was in the nest");
+}
+
+#[test]
+fn an_empty_magazine_ends_the_run_with_its_own_alarm() {
+    let mut machine = Machine::new(Some(2), vec![Specimen::MissingPin]);
+    let ended = machine.run();
+    assert_safe(&ended, "part_not_arrived");
+    assert_eq!(machine.station.ledger().came_in, 1);
+}

@@ -1,0 +1,313 @@
+//! A rig whose sensors are set by hand: what a step machine sees and asks for, without any module.
+
+use super::{RIG, wiring};
+use crate::dcon::{Bits, Command, Reply};
+use crate::gauge::Calibration;
+use crate::gauge::calibration::{Factor, InputLine, Lag, Lags, OutputLine};
+use crate::gauge::recipe::Recipe;
+use crate::gauge::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
+use crate::guard::{Actuator, PartSize};
+use crate::rig::image::Image;
+use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
+use crate::rig::wiring::{ModuleId, Wiring};
+use crate::station::ledger::Ledger;
+use crate::station::mechanism::Mechanism;
+use crate::station::moves::{Move, Strokes};
+use crate::station::test::Bench;
+use crate::station::turn::Turn;
+use crate::station::wants::Wants;
+use crate::units::{RigTime, Span};
+use serde::Deserialize;
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::Arc;
+
+/// Longest stroke of every actuator in these tests.
+pub const TIMEOUT: Span = Span::ms(900);
+
+/// Sensors that are on with every actuator at its rest end, no part and safety as it should be.
+const AT_REST: [DigitalIn; 12] = [
+    DigitalIn::EmergencyStopOk,
+    DigitalIn::DoorClosed,
+    DigitalIn::AirOk,
+    DigitalIn::EscapementHold,
+    DigitalIn::PusherRetracted,
+    DigitalIn::JawLeftOpen,
+    DigitalIn::JawRightOpen,
+    DigitalIn::ProbeDown,
+    DigitalIn::AxisInPosition,
+    DigitalIn::SortZUp,
+    DigitalIn::GripperOpen,
+    DigitalIn::NcClosed,
+];
+
+/// Everything that a turn needs.
+pub struct Shop {
+    pub wiring: Arc<Wiring>,
+    pub image: Image,
+    pub now: RigTime,
+    pub mechanism: Mechanism,
+    pub ledger: Ledger,
+    pub wants: Wants,
+    pub golden: VecDeque<GoldenPart>,
+    pub recorded: u64,
+    on: BTreeSet<DigitalIn>,
+}
+
+impl Shop {
+    /// At rest, but no sensor was read yet.
+    pub fn unread() -> Self {
+        let wiring = wiring();
+        Self {
+            image: Image::new(Arc::clone(&wiring)),
+            now: RigTime(1_000_000),
+            mechanism: mechanism(&wiring),
+            wiring,
+            ledger: Ledger::default(),
+            wants: Wants::default(),
+            golden: VecDeque::new(),
+            recorded: 0,
+            on: AT_REST.into_iter().collect(),
+        }
+    }
+
+    /// At rest and read.
+    pub fn at_rest() -> Self {
+        let mut shop = Self::unread();
+        shop.scan();
+        shop
+    }
+
+    /// A sensor changes; nobody has read it yet.
+    pub fn set(&mut self, point: DigitalIn, state: bool) {
+        if state {
+            self.on.insert(point);
+        } else {
+            self.on.remove(&point);
+        }
+    }
+
+    /// Every digital module is read now.
+    pub fn scan(&mut self) {
+        let modules: BTreeSet<ModuleId> = DigitalIn::ALL
+            .iter()
+            .map(|point| self.wiring.digital_in(*point).module)
+            .collect();
+        for module in modules {
+            self.scan_module(module);
+        }
+    }
+
+    fn scan_module(&mut self, module: ModuleId) {
+        let mut word = 0;
+        for &point in DigitalIn::ALL {
+            let terminal = self.wiring.digital_in(point);
+            if terminal.module == module && self.on.contains(&point) != terminal.active_low {
+                word |= terminal.bit();
+            }
+        }
+        let [first, second] = u16::to_be_bytes(word);
+        let reply = Reply::Bits(Bits { first, second });
+        let line = self.wiring.module(module).line;
+        let command = self.wiring.poll(module);
+        self.image
+            .accept(line, &command, &reply, "", self.now)
+            .unwrap();
+    }
+
+    /// Time passes and everything is read.
+    pub fn after(&mut self, ms: u64) {
+        self.now = self.now + Span::ms(ms);
+        self.scan();
+    }
+
+    /// One module answers a command of the wiring in its own words.
+    pub fn answer(&mut self, command: Command, module: ModuleId, reply: &str) {
+        let decoded = command
+            .decode(format!("{reply}\r").as_bytes(), false)
+            .unwrap();
+        let line = self.wiring.module(module).line;
+        self.image
+            .accept(line, &command, &decoded, reply, self.now)
+            .unwrap();
+    }
+
+    /// Beam of a chute answers its count.
+    pub fn beam(&mut self, point: DigitalIn, count: u16) {
+        let command = self.wiring.read_events(point);
+        let module = self.wiring.digital_in(point).module;
+        let address = self.wiring.module(module).address;
+        self.answer(command, module, &format!("!{address}{count:05}"));
+    }
+
+    /// A converter answers volts at one terminal.
+    pub fn volts(&mut self, point: AnalogIn, volts: f64) {
+        let steps = (volts / 10.0 * 32768.0).round() as i16;
+        let command = self.wiring.read_analog(point);
+        let module = self.wiring.analog_in(point).module;
+        self.answer(command, module, &format!(">{steps:04X}"));
+    }
+
+    /// A gate counter answers.
+    pub fn gate(&mut self, counter: Counter, count: u32) {
+        let command = self.wiring.read_counter(counter);
+        let module = self.wiring.counter(counter).module;
+        self.answer(command, module, &format!(">{count:08X}"));
+    }
+
+    /// The thermometer of the track answers.
+    pub fn track(&mut self, celsius: f64) {
+        let command = self.wiring.read_temperature(Temperature::Track);
+        let module = self.wiring.temperature(Temperature::Track).module;
+        self.answer(command, module, &format!(">{celsius:+07.2}"));
+    }
+
+    /// The sensors of a motion's end, as if the actuator were there.
+    pub fn stands(&mut self, movement: Move) {
+        for (point, state) in opposite(movement).iter().chain(movement.arrival()) {
+            self.set(*point, *state);
+        }
+    }
+
+    /// A motion is driven and has arrived and been seen 100 ms later.
+    pub fn carried_out(&mut self, movement: Move) {
+        self.mechanism.driven(movement, self.now, &self.image);
+        self.stands(movement);
+        self.after(100);
+        assert_eq!(self.mechanism.update(self.now, &self.image), None);
+    }
+
+    /// A turn that begins with empty wants.
+    pub fn turn(&mut self) -> Turn<'_> {
+        self.wants = Wants::default();
+        Turn {
+            now: self.now,
+            image: &self.image,
+            mechanism: &self.mechanism,
+            ledger: &mut self.ledger,
+            wants: &mut self.wants,
+            golden: &mut self.golden,
+            recorded: self.recorded,
+        }
+    }
+
+    /// Codes of the alarms of the last turn.
+    pub fn alarms(&self) -> Vec<&str> {
+        self.wants
+            .alarms
+            .iter()
+            .map(|alarm| alarm.code.as_str())
+            .collect()
+    }
+}
+
+/// Sensors of the other end, which a motion leaves.
+fn opposite(movement: Move) -> &'static [(DigitalIn, bool)] {
+    match movement {
+        Move::ClampClose => &[
+            (DigitalIn::JawLeftOpen, false),
+            (DigitalIn::JawRightOpen, false),
+        ],
+        Move::ClampOpen => &[
+            (DigitalIn::JawLeftClosed, false),
+            (DigitalIn::JawRightClosed, false),
+        ],
+        Move::GripperOpen => &[(DigitalIn::GripperPart, false)],
+        Move::EscapementRelease
+        | Move::EscapementHold
+        | Move::PusherExtend
+        | Move::PusherRetract
+        | Move::ProbesUp
+        | Move::ProbesDown
+        | Move::AxisTo(_)
+        | Move::SortDown
+        | Move::SortUp
+        | Move::GripperClose => &[],
+    }
+}
+
+/// Strokes in the order of the actuators; the axis has its table.
+pub const LENGTH_MM: [f64; 8] = [12.0, 60.0, 8.0, 8.0, 12.0, 0.0, 40.0, 6.0];
+
+/// Nothing under way.
+pub fn mechanism(wiring: &Wiring) -> Mechanism {
+    assert_eq!(Actuator::ALL.len(), LENGTH_MM.len());
+    let strokes = Strokes {
+        length_mm: LENGTH_MM,
+        axis_mm: wiring
+            .axis
+            .stations()
+            .map(|at| (at, wiring.axis.point(at).x_mm))
+            .collect(),
+    };
+    let keys = [
+        "escapement",
+        "pusher",
+        "clamp",
+        "probe_lift",
+        "sort_z",
+        "gripper",
+        "axis",
+    ];
+    let part = PartSize {
+        body_mm: [22.5, 16.5, 16.5],
+        pin_length_mm: 3.5,
+    };
+    Mechanism::new(strokes, keys.map(|key| (key, TIMEOUT)).to_vec(), part)
+}
+
+#[derive(Deserialize)]
+struct Instruments {
+    reference: ReferenceSettings,
+    accuracy: AccuracySettings,
+}
+
+/// The default recipe on instruments that err by nothing, lags known.
+pub fn bench() -> Bench {
+    let recipe: Recipe =
+        toml::from_str(include_str!("../../../config/recipes/jzc-22f-012.toml")).unwrap();
+    let instruments: Instruments = toml::from_str(RIG).unwrap();
+    Bench {
+        recipe: Arc::new(recipe),
+        calibration: Arc::new(calibration()),
+        reference: instruments.reference,
+        accuracy: instruments.accuracy,
+    }
+}
+
+/// The golden parts of 12 V.
+pub fn golden_parts() -> Vec<GoldenPart> {
+    let set: GoldenSet = toml::from_str(include_str!("../../../config/golden.toml")).unwrap();
+    set.of_nominal(12.0).cloned().collect()
+}
+
+/// Channels with the gains of the default rig and no error.
+fn calibration() -> Calibration {
+    let exact = |value| Factor::new(value, 1e-6);
+    let lag = |coarse_v| Lag {
+        fine_v: exact(0.0),
+        coarse_v,
+        coarse_sd_v: 0.01,
+    };
+    Calibration {
+        made_at_us: 0,
+        due_at_us: i64::MAX,
+        nominal_v: 12.0,
+        coil_input: InputLine {
+            gain: exact(1.0),
+            offset_v: exact(0.0),
+        },
+        ohm_fine: exact(375.0),
+        ohm_wide: exact(125.0),
+        contact_mohm_per_v: exact(20.0),
+        gate_delay_us: [exact(0.0); 2],
+        level: OutputLine::IDEAL,
+        coarse: OutputLine::IDEAL,
+        fine: OutputLine::IDEAL,
+        coarse_v_per_s: exact(96.0),
+        fine_v_per_s: exact(1.5),
+        lags: Some(Lags {
+            operate: lag(0.85),
+            release: lag(-1.05),
+        }),
+    }
+}

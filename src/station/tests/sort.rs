@@ -1,0 +1,219 @@
+//! A part is let go only over its bin, when it is recorded, and its beam must see it: once.
+
+use super::Shop;
+use crate::gauge::verdict::Bin;
+use crate::rig::axis::AxisStation;
+use crate::rig::point::DigitalIn;
+use crate::station::moves::Move;
+use crate::station::sort::Sort;
+use crate::units::RigTime;
+
+const HOME: Move = Move::AxisTo(AxisStation::Nest);
+
+fn step(sort: Sort, shop: &mut Shop, test_running: bool) -> Sort {
+    let table = shop.wiring.axis.clone();
+    sort.step(&mut shop.turn(), &table, test_running)
+}
+
+fn beam(shop: &mut Shop, bin: Bin, count: u16) {
+    let point = shop.wiring.axis.beam(bin);
+    shop.beam(point, count);
+}
+
+/// The gripper holds a part for `bin`, z is up.
+fn loaded(bin: Bin) -> Shop {
+    let mut shop = Shop::at_rest();
+    shop.ledger.enter_pocket();
+    shop.ledger.enter_nest(None);
+    shop.ledger.lift();
+    if let Some(part) = &mut shop.ledger.gripper {
+        part.bin = Some(bin);
+    }
+    shop.stands(Move::GripperClose);
+    shop.scan();
+    shop
+}
+
+/// Over the bin, and its beam has been read after that.
+fn over(bin: Bin, count: u16) -> (Sort, Shop) {
+    let mut shop = loaded(bin);
+    let sort = step(Sort::Loaded, &mut shop, false);
+    assert_eq!(sort, Sort::Carrying(bin));
+    shop.carried_out(Move::AxisTo(AxisStation::Bin(bin)));
+    let sort = step(sort, &mut shop, false);
+    assert_eq!(sort, Sort::OverBin(bin, shop.now));
+    shop.after(8);
+    beam(&mut shop, bin, count);
+    (sort, shop)
+}
+
+/// The fingers have opened and the part falls.
+fn falling(bin: Bin, count: u16) -> (Sort, Shop) {
+    let (sort, mut shop) = over(bin, count);
+    shop.recorded = 1;
+    let sort = step(sort, &mut shop, false);
+    assert_eq!(
+        (sort, &*shop.wants.motions),
+        (Sort::Opening, &[Move::GripperOpen][..])
+    );
+    shop.carried_out(Move::GripperOpen);
+    (sort, shop)
+}
+
+#[test]
+fn z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open() {
+    let ready = || {
+        let mut shop = Shop::at_rest();
+        shop.carried_out(HOME);
+        shop
+    };
+    for (running, sensor, comes) in [
+        (true, None, true),
+        (false, None, false),
+        (true, Some(DigitalIn::PusherRetracted), false),
+        (true, Some(DigitalIn::GripperOpen), false),
+    ] {
+        let mut shop = ready();
+        if let Some(point) = sensor {
+            shop.set(point, false);
+        }
+        shop.scan();
+        assert_eq!(step(Sort::Returning, &mut shop, running), Sort::OverNest);
+        let sort = step(Sort::OverNest, &mut shop, running);
+        assert_eq!(sort == Sort::Lowering, comes, "{running} {sensor:?}");
+        assert_eq!(shop.wants.motions.contains(&Move::SortDown), comes);
+    }
+}
+
+#[test]
+fn the_fingers_stand_around_the_part_once_z_is_down() {
+    let mut shop = Shop::at_rest();
+    shop.carried_out(HOME);
+    let sort = step(Sort::OverNest, &mut shop, true);
+    shop.carried_out(Move::SortDown);
+    assert!(!sort.is_at_part(&shop.turn()));
+    let sort = step(sort, &mut shop, true);
+    assert_eq!(sort, Sort::AtPart);
+    assert!(sort.is_at_part(&shop.turn()));
+    shop.set(DigitalIn::SortZDown, false);
+    shop.scan();
+    assert!(!sort.is_at_part(&shop.turn()));
+}
+
+#[test]
+fn a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest() {
+    for bin in Bin::ALL {
+        let mut shop = loaded(*bin);
+        assert_eq!(step(Sort::Loaded, &mut shop, false), Sort::Carrying(*bin));
+        let station = AxisStation::Bin(*bin);
+        assert_eq!(shop.wants.motions, [Move::AxisTo(station)]);
+    }
+    let mut shop = loaded(Bin::Pass);
+    if let Some(part) = &mut shop.ledger.gripper {
+        part.bin = None;
+    }
+    let sort = step(Sort::Loaded, &mut shop, false);
+    assert_eq!(sort, Sort::Carrying(Bin::Retest));
+}
+
+#[test]
+fn a_part_is_let_go_only_when_its_record_is_durable() {
+    let (sort, mut shop) = over(Bin::Pass, 3);
+    for recorded in [0, 1] {
+        shop.recorded = recorded;
+        let next = step(sort, &mut shop, false);
+        assert_eq!(next == Sort::Opening, recorded == 1);
+        assert_eq!(shop.ledger.falling.is_some(), recorded == 1);
+    }
+}
+
+#[test]
+fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
+    let mut shop = loaded(Bin::Time);
+    shop.recorded = 1;
+    beam(&mut shop, Bin::Time, 5);
+    let since = shop.now;
+    let sort = step(Sort::OverBin(Bin::Time, since), &mut shop, false);
+    assert_eq!(sort, Sort::OverBin(Bin::Time, since), "read too early");
+    assert_eq!(shop.wants.beam, Some(DigitalIn::BeamTime));
+    shop.after(1);
+    beam(&mut shop, Bin::Time, 5);
+    assert_eq!(step(sort, &mut shop, false), Sort::Opening);
+    let falling = shop.ledger.falling.as_ref();
+    assert_eq!(falling.map(|falling| falling.beam_before), Some(5));
+}
+
+#[test]
+fn a_part_is_not_let_go_while_the_one_before_still_falls() {
+    let (sort, mut shop) = over(Bin::Pass, 0);
+    shop.recorded = 2;
+    let mut before = Shop::at_rest().ledger;
+    before.enter_pocket();
+    before.enter_nest(None);
+    before.lift();
+    before.drop_over(Bin::Coil, shop.now, 0);
+    shop.ledger.falling = before.falling;
+    assert_eq!(step(sort, &mut shop, false), sort);
+    assert!(shop.wants.motions.is_empty());
+}
+
+#[test]
+fn one_count_of_the_beam_lands_the_part_even_across_the_wrap() {
+    for (before, after) in [(3, 4), (u16::MAX, 0)] {
+        let (sort, mut shop) = falling(Bin::Voltage, before);
+        beam(&mut shop, Bin::Voltage, after);
+        let sort = step(sort, &mut shop, false);
+        assert_eq!((sort, &*shop.wants.motions), (Sort::Returning, &[HOME][..]));
+        assert!(shop.wants.landed.is_empty(), "a second body may follow");
+        shop.after(79);
+        step(sort, &mut shop, false);
+        assert!(shop.wants.landed.is_empty());
+        shop.after(1);
+        step(sort, &mut shop, false);
+        let landed = &shop.wants.landed[0];
+        assert_eq!((landed.bin, landed.part.ordinal), (Bin::Voltage, 1));
+        assert!(shop.ledger.falling.is_none() && shop.ledger.balances());
+    }
+}
+
+#[test]
+fn a_second_body_behind_the_part_is_an_alarm() {
+    for bodies in [2, 3] {
+        let (sort, mut shop) = falling(Bin::Pass, 10);
+        beam(&mut shop, Bin::Pass, 11);
+        step(sort, &mut shop, false);
+        shop.after(20);
+        beam(&mut shop, Bin::Pass, 10 + bodies);
+        step(sort, &mut shop, false);
+        assert_eq!(shop.alarms(), ["bin_beam"], "{bodies}");
+        assert!(shop.wants.landed.is_empty());
+    }
+}
+
+#[test]
+fn a_part_that_its_beam_does_not_see_is_lost_after_a_second_and_a_half() {
+    let (sort, mut shop) = falling(Bin::Pass, 10);
+    let since = shop.ledger.falling.as_ref().map(|f| f.since).unwrap();
+    shop.now = RigTime(since.0 + 1_500_000);
+    shop.scan();
+    beam(&mut shop, Bin::Pass, 10);
+    let sort = step(sort, &mut shop, false);
+    assert!(shop.alarms().is_empty());
+    shop.after(1);
+    step(sort, &mut shop, false);
+    assert_eq!(shop.alarms(), ["bin_beam"]);
+    assert_eq!((shop.ledger.lost, shop.ledger.went_out), (1, 0));
+    assert!(shop.ledger.balances());
+}
+
+#[test]
+fn a_count_read_before_the_fingers_opened_says_nothing() {
+    let (sort, mut shop) = over(Bin::Pass, 10);
+    shop.recorded = 1;
+    let sort = step(sort, &mut shop, false);
+    beam(&mut shop, Bin::Pass, 11);
+    step(sort, &mut shop, false);
+    assert!(shop.wants.landed.is_empty());
+    let falling = shop.ledger.falling.as_ref().unwrap();
+    assert_eq!(falling.seen, None);
+}
