@@ -25,19 +25,28 @@ pub const STOPPED: i32 = 4;
 
 /// Controller of a JZC-22F relay performance tester with automatic feed and discharge.
 #[derive(Debug, Parser)]
-#[command(name = "relayrig", version, after_help = "Examples:
+#[command(
+    name = "relayrig",
+    version,
+    after_help = "Examples:
   relayrig demo
   relayrig run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 20
   relayrig history list
   relayrig config check
 
-Exit status: 0 done, 1 done and the answer is no, 2 bad input, 3 the rig has trouble, 4 stopped by the operator.")]
+Exit status: 0 done, 1 done and the answer is no, 2 bad input, 3 the rig has trouble, 4 stopped by the operator."
+)]
 pub struct Cli {
     /// Directory with rig.toml, scene.toml, golden.toml, sim.toml and recipes/
     #[arg(long, global = true, default_value = "config", value_name = "DIR")]
     pub config: PathBuf,
     /// History file
-    #[arg(long, global = true, default_value = "relayrig.db", value_name = "FILE")]
+    #[arg(
+        long,
+        global = true,
+        default_value = "relayrig.db",
+        value_name = "FILE"
+    )]
     pub db: PathBuf,
     /// What goes to the log on stderr: error, warn, info, debug, or a filter per module
     #[arg(long, global = true, default_value = "info", value_name = "FILTER")]

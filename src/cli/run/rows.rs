@@ -85,14 +85,18 @@ fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<M
 /// The request that was answered, without checksum and end.
 fn request(setup: &Setup, origin: &crate::rig::sample::Origin) -> String {
     let wiring = &setup.plant.wiring;
-    let asked = |counter| wiring.counter(counter).module == origin.module && wiring.counter(counter).channel == origin.channel;
-    let command = if let Some(counter) = Counter::ALL.iter().copied().find(|counter| asked(*counter)) {
-        wiring.read_counter(counter)
-    } else if wiring.analog_in(AnalogIn::ContactDrop).module == origin.module {
-        wiring.read_analog(AnalogIn::ContactDrop)
-    } else {
-        wiring.poll(origin.module)
+    let asked = |counter| {
+        wiring.counter(counter).module == origin.module
+            && wiring.counter(counter).channel == origin.channel
     };
+    let command =
+        if let Some(counter) = Counter::ALL.iter().copied().find(|counter| asked(*counter)) {
+            wiring.read_counter(counter)
+        } else if wiring.analog_in(AnalogIn::ContactDrop).module == origin.module {
+            wiring.read_analog(AnalogIn::ContactDrop)
+        } else {
+            wiring.poll(origin.module)
+        };
     let mut bytes = Vec::new();
     command.encode(false, &mut bytes);
     String::from_utf8_lossy(&bytes).trim_end().to_string()
