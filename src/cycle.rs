@@ -63,6 +63,8 @@ pub struct Outside {
     pub recorded: Arc<AtomicU64>,
     /// Set by the operator's stop.
     pub stop: Arc<AtomicBool>,
+    /// Set when the history can no longer be written: the rig must not go on.
+    pub history_lost: Arc<AtomicBool>,
     /// What screens see.
     pub view: watch::Sender<View>,
 }
@@ -187,13 +189,7 @@ impl Cycle {
             Err(_) if asked_again && purpose == Purpose::Job => None,
             Ok(reply) => self
                 .image
-                .accept(
-                    line,
-                    &answer.command,
-                    reply,
-                    &answer.raw,
-                    answer.answered_at,
-                )
+                .accept(line, &answer.command, reply, &answer.raw, answer.asked_at)
                 .err()
                 .map(|unexpected| format!("line {}: {unexpected}", self.wiring.line(line).name)),
             Err(error) => Some(format!(
@@ -213,7 +209,9 @@ impl Cycle {
             (Purpose::Write { module, job }, Some(trouble)) => {
                 if self.traffic.may_rewrite(module) {
                     self.outputs.failed(module);
-                    self.finish_job(job, answer.answered_at, None);
+                    if job {
+                        self.traffic.rewrite_for_job(module);
+                    }
                 } else {
                     self.finish_job(job, answer.answered_at, Some(trouble.clone()));
                     self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
@@ -246,6 +244,9 @@ impl Cycle {
     }
 
     fn step(&mut self, now: RigTime) -> Wants {
+        if self.outside.history_lost.load(Ordering::Acquire) {
+            self.bus_alarm.get_or_insert(Alarm::history());
+        }
         let inputs = Inputs {
             image: &self.image,
             job: self.job_done.take(),
@@ -296,7 +297,8 @@ impl Cycle {
             self.start(job, now);
         }
         for write in self.outputs.writes() {
-            let job = is_job && self.is_measuring(write.line);
+            let again = self.traffic.is_rewrite_for_job(write.module);
+            let job = again || (is_job && self.is_measuring(write.line));
             self.traffic.queue(
                 write.line,
                 write.command,
@@ -420,6 +422,7 @@ impl Cycle {
         self.traffic.only_writes();
         while self.pace.now() < end {
             let now = self.pace.now();
+            self.traffic.forgive();
             self.scan(now);
             for write in self.outputs.writes() {
                 let purpose = Purpose::Write {
@@ -429,10 +432,11 @@ impl Cycle {
                 self.traffic.queue(write.line, write.command, purpose);
             }
             self.traffic.dispatch(now);
-            if self.traffic.is_quiet() {
+            if self.traffic.is_quiet() && self.outputs.all_settled() {
                 return;
             }
             self.wait(now, Some(end)).await;
         }
+        self.tell(Event::Alarm(Alarm::not_safe(), self.pace.now()));
     }
 }

@@ -116,6 +116,9 @@ pub fn run_with(
     if args.sim && !cfg!(feature = "sim") {
         bail!("--sim: this is a plant build without the simulated rig");
     }
+    if let Some(path) = &args.truth {
+        std::fs::File::create(path).with_context(|| format!("--truth {}", path.display()))?;
+    }
     let plant = Plant::load(config)?;
     let recipe = Arc::new(load_recipe(config, &args.recipe)?);
     let is_virtual = args.sim && args.pace == PaceArg::Virtual;
@@ -156,10 +159,12 @@ async fn run_lot(
     let (mut recorder, calibration) = Recorder::open(db, &setup, controls, rig.eeprom_count())?;
     let (events, received) = mpsc::unbounded_channel::<Event>();
     let recorded = Arc::new(AtomicU64::new(0));
+    let history_lost = Arc::new(AtomicBool::new(false));
     let outside = Outside {
         events,
         recorded: Arc::clone(&recorded),
         stop: Arc::clone(&controls.stop),
+        history_lost: Arc::clone(&history_lost),
         view: controls.view.clone(),
     };
     let cycle = assemble::cycle(
@@ -171,21 +176,43 @@ async fn run_lot(
     )?;
     let stop = Arc::clone(&controls.stop);
     let interrupt = tokio::spawn(async move {
-        if tokio::signal::ctrl_c().await.is_ok() {
+        if interrupted().await.is_ok() {
             stop.store(true, Ordering::Release);
         }
     });
     let running = tokio::spawn(cycle.run());
-    recorder.keep(received, &recorded).await?;
-    let (ending, profile) = running
-        .await
-        .context("the control cycle ended by an assertion")?;
+    let kept = recorder.keep(received, &recorded).await;
+    if let Err(error) = &kept {
+        tracing::error!("history: {error:#}");
+        history_lost.store(true, Ordering::Release);
+    }
+    let ended = running.await;
     interrupt.abort();
+    let Ok((ending, profile)) = ended else {
+        tracing::error!(
+            "the control cycle ended by an assertion; the modules' watchdogs make the outputs safe"
+        );
+        return Ok(super::RIG_TROUBLE);
+    };
+    let closed = recorder.close(&ending, &profile, &lines.logs);
     rig.finish(args)?;
-    recorder.close(&ending, &profile, &lines.logs)?;
+    if kept.is_err() {
+        return Ok(super::RIG_TROUBLE);
+    }
+    closed?;
     Ok(match ending {
         Ending::Complete => super::DONE,
         Ending::Stopped => super::STOPPED,
         Ending::Alarm => super::RIG_TROUBLE,
     })
+}
+
+/// Ctrl-C, or the signal that a service manager ends a program with.
+async fn interrupted() -> std::io::Result<()> {
+    use tokio::signal::unix::{SignalKind, signal};
+    let mut terminate = signal(SignalKind::terminate())?;
+    tokio::select! {
+        pressed = tokio::signal::ctrl_c() => pressed,
+        _ = terminate.recv() => Ok(()),
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::traffic::{Purpose, Traffic};
 use crate::bus::Pace;
+use crate::dcon::{Command, Common};
 use crate::rig::commission::{judge, verification};
 use crate::rig::wiring::Wiring;
 use crate::station::trouble::Alarm;
@@ -31,9 +32,15 @@ pub async fn verify(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Resu
             let Some(index) = pending.get_mut(&line.0).and_then(Vec::pop) else {
                 continue;
             };
-            let reply = answer
-                .outcome
-                .map_err(|error| Alarm::bus(&error.to_string()))?;
+            let lost_status = matches!(answer.command, Command::Common(_, Common::ReadResetStatus));
+            if lost_status && answer.outcome.is_err() {
+                continue;
+            }
+            let reply = answer.outcome.map_err(|error| {
+                let cause = std::error::Error::source(&error)
+                    .map_or_else(String::new, |cause| format!(": {cause}"));
+                Alarm::bus(&format!("{error}{cause} ({} tries)", answer.tries_used))
+            })?;
             if let Some(mismatch) = judge(wiring, &checks[index], &reply) {
                 return Err(Alarm::bus(&mismatch.to_string()));
             }

@@ -91,6 +91,7 @@ pub struct Traffic {
     beam: Option<Command>,
     beam_line: LineId,
     rewrites: Vec<u8>,
+    job_rewrites: Vec<ModuleId>,
     failed_scans: Vec<(LineId, Option<Address>, u8)>,
     tries: u8,
     scanning: bool,
@@ -145,6 +146,7 @@ impl Traffic {
             beam: None,
             beam_line: estop_line,
             rewrites: vec![0; wiring.modules.len()],
+            job_rewrites: Vec::new(),
             failed_scans: Vec::new(),
             tries: wiring.bus.tries,
             scanning: false,
@@ -237,6 +239,26 @@ impl Traffic {
         self.rewrites[module.0] < self.tries
     }
 
+    /// A lost write of the job will be written again; the job waits for it.
+    pub fn rewrite_for_job(&mut self, module: ModuleId) {
+        if let Some(job) = &mut self.job {
+            job.parts = job.parts.saturating_sub(1);
+            self.job_rewrites.push(module);
+        }
+    }
+
+    /// True once for a module whose lost write the job waits for.
+    pub fn is_rewrite_for_job(&mut self, module: ModuleId) -> bool {
+        let before = self.job_rewrites.len();
+        self.job_rewrites.retain(|known| *known != module);
+        before != self.job_rewrites.len() && self.job.is_some()
+    }
+
+    /// Forgets failed writes: at the end every module is written until it confirms.
+    pub fn forgive(&mut self) {
+        self.rewrites.fill(0);
+    }
+
     /// A write was confirmed: failures before it no longer count.
     pub fn written(&mut self, module: ModuleId) {
         self.rewrites[module.0] = 0;
@@ -250,6 +272,7 @@ impl Traffic {
     /// Forgets the job and what was queued for it.
     pub fn drop_job(&mut self) {
         self.job = None;
+        self.job_rewrites.clear();
         for slot in &mut self.slots {
             slot.queue
                 .retain(|(_, purpose)| matches!(purpose, Purpose::Write { .. }));

@@ -94,6 +94,8 @@ pub struct Calibration {
     pub made_at_us: i64,
     /// When they may no longer be used.
     pub due_at_us: i64,
+    /// Made on a simulated rig: never used on a real one.
+    pub simulated: bool,
     /// Coil voltage valid for golden lags: those of a 12 V set say nothing about a 6 V part.
     pub nominal_v: f64,
     /// Converter that reads the coil.

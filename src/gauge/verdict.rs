@@ -150,6 +150,14 @@ impl Verdict {
     }
 }
 
+/// A failure found outside the limits together with those against limits, worst bin first.
+pub fn failed_with(reason: &Reason, others: Vec<Reason>) -> Verdict {
+    let mut reasons = others;
+    reasons.push(reason.clone());
+    reasons.sort_by_key(|reason| rank(reason.bin));
+    Verdict::Fail(reasons)
+}
+
 /// Verdict of a part whose nine results were judged; conditional results have had their second chance.
 ///
 /// A proven failure outweighs a void: the part is bad whatever else could not be seen.

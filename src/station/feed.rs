@@ -39,6 +39,11 @@ impl Feed {
     /// One turn. `wanted`: a further part may enter the pocket.
     pub fn step(self, turn: &mut Turn, wanted: bool) -> Feed {
         match self {
+            Feed::Empty if wanted && turn.seen(DigitalIn::PocketPresent, true) => {
+                // Left there by the run before: it is fed like any other.
+                turn.ledger.enter_pocket();
+                Feed::Ready
+            }
             Feed::Empty if wanted && turn.arrived(Move::PusherRetract) => {
                 turn.drive(Move::EscapementRelease);
                 Feed::Releasing { since: turn.now }

@@ -72,6 +72,8 @@ pub struct Plan {
     pub valid_us: i64,
     /// Wall clock at rig time zero, microseconds since 1970 UTC.
     pub epoch_us: i64,
+    /// The rig is simulated.
+    pub simulated: bool,
     /// Volts at the terminal per volt of the coil, fine channel.
     pub voltage_gain: f64,
 }
@@ -169,6 +171,12 @@ impl Station {
         if matches!(self.phase, Phase::Ended) {
             return wants;
         }
+        if self.stopping && !matches!(self.phase, Phase::Running) {
+            wants.safe = true;
+            wants.ending = Some(Ending::Stopped);
+            self.phase = Phase::Ended;
+            return wants;
+        }
         wants
             .alarms
             .extend(self.mechanism.update(now, inputs.image));
@@ -238,7 +246,7 @@ impl Station {
             match image.input(point, now, mechanism::SENSOR_AGE) {
                 Some(true) => {}
                 Some(false) => return Some(Alarm::safety(code, en, zh)),
-                None if now.since(began) > FIRST_SCAN => {
+                None if now.since(began) > FIRST_SCAN || !matches!(self.phase, Phase::Waiting) => {
                     return Some(Alarm::bus(&format!("{point} was not read for too long")));
                 }
                 None => return None,
@@ -333,6 +341,10 @@ impl Station {
         let (valid, gain) = (self.plan.valid_us, self.plan.voltage_gain);
         match reference::conclude(&self.bench, &runner.readings, made_at, valid, gain) {
             Ok(calibration) => {
+                let calibration = Calibration {
+                    simulated: self.plan.simulated,
+                    ..calibration
+                };
                 self.bench.calibration = Arc::new(calibration);
                 wants.motions.push(Move::ProbesDown);
                 Phase::ReferenceDown

@@ -256,6 +256,7 @@ pub fn conclude(
     Ok(Calibration {
         made_at_us,
         due_at_us: made_at_us + valid_us,
+        simulated: false,
         nominal_v: bench.recipe.part.nominal_v,
         level: OutputLine {
             gain: level_gain,

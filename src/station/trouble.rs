@@ -69,6 +69,24 @@ impl Alarm {
         )
     }
 
+    /// The history cannot be written, so no part may go on.
+    pub fn history() -> Self {
+        Self::new(
+            "history_lost",
+            "The history file cannot be written. Check the disk and who holds the file, then start again.",
+            "无法写入历史数据库。请检查磁盘以及文件是否被占用，然后重新启动。",
+        )
+    }
+
+    /// Some output did not confirm its safe value.
+    pub fn not_safe() -> Self {
+        Self::new(
+            "outputs_not_confirmed",
+            "Not every output has confirmed its safe value. The modules' own watchdogs make them safe; check the lines.",
+            "并非所有输出都确认了安全值。模块自身的看门狗会使其安全；请检查通信线路。",
+        )
+    }
+
     /// No part came into the pocket.
     pub fn no_part() -> Self {
         Self::new(

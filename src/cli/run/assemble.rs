@@ -51,6 +51,7 @@ pub fn cycle(
         calibrated: calibration.is_some(),
         valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
         epoch_us: setup.epoch_us,
+        simulated: setup.args.sim,
         voltage_gain: wiring.analog_in(AnalogIn::CoilVoltageFine).gain,
     };
     let bench = Bench {
@@ -82,6 +83,7 @@ fn uncalibrated(nominal_v: f64) -> Calibration {
     Calibration {
         made_at_us: 0,
         due_at_us: 0,
+        simulated: false,
         nominal_v,
         coil_input: InputLine {
             gain: unknown,

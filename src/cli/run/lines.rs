@@ -9,6 +9,9 @@ use anyhow::{anyhow, bail};
 use std::path::Path;
 use tokio::sync::mpsc;
 
+/// How late a module may still answer after its time-out on a measuring line.
+const LATE_REPLY_MS: u64 = 250;
+
 /// Open lines, ready for the cycle.
 pub struct Lines {
     /// The cycle's ends.
@@ -60,6 +63,16 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
     settings.checksum = wired.checksum;
     settings.digital_allowance_ms = bus.digital_allowance_ms as u64;
     settings.analog_allowance_ms = bus.analog_allowance_ms as u64;
+    if line
+        != plant
+            .wiring
+            .module(plant.wiring.emergency_stop_module())
+            .line
+    {
+        // A reply without address that comes late must not be taken for the next one. The line with the
+        // emergency stop keeps the shorter grace that its reaction bound is derived from.
+        settings.late_reply_ms = LATE_REPLY_MS;
+    }
     settings.log = LineLog::with_trace(4096);
     settings
 }

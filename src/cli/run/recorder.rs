@@ -380,7 +380,7 @@ impl<'a> Recorder<'a> {
             "bins": self.counts.bins,
             "elapsed_s": rows::rounded(elapsed_s),
             "wall_s": rows::rounded(self.began.elapsed().as_secs_f64()),
-            "parts_per_hour": if elapsed_s > 0.0 { (self.counts.parts() as f64 / elapsed_s * 3600.0).round() } else { 0.0 },
+            "parts_per_hour": if elapsed_s > 0.0 { (self.counts.parts() as f64 / elapsed_s * 3600.0).round() as u64 } else { 0 },
             "alarms": self.counts.alarms,
             "ended": format!("{ending:?}").to_lowercase(),
         });
@@ -420,7 +420,10 @@ fn valid_calibration(store: &Store, setup: &Setup) -> anyhow::Result<Option<Cali
     };
     let calibration: Calibration =
         serde_json::from_str(&record.body).context("the stored calibration cannot be read")?;
-    let fits = calibration.nominal_v == setup.recipe.part.nominal_v && calibration.lags.is_some();
+    let fits = calibration.nominal_v == setup.recipe.part.nominal_v
+        && calibration.lags.is_some()
+        && !calibration.simulated
+        && calibration.made_at_us <= setup.epoch_us;
     Ok((record.verified && fits && record.due_at_us > setup.epoch_us).then_some(calibration))
 }
 

@@ -18,6 +18,8 @@ use crate::units::{Span, Volt};
 const SETTLES: Span = Span::ms(13);
 /// Channels of the coil converter that a recipe has enabled.
 const CHANNELS: usize = 2;
+/// Below this fraction of the pre-bias the supply or the probe-up chain is in trouble, not the coil.
+const LEAST_PREBIAS: f64 = 0.5;
 /// Below this terminal voltage of the fine current channel (0.25 mA) no current flows.
 const NO_CURRENT: Volt = Volt(0.15);
 /// Below this coil current the clamp may be switched and the probes may leave, ampere.
@@ -28,8 +30,9 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
     let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
     let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
     let mut acts = Vec::new();
+    acts.extend([coarse, fine]);
     if coarse_takes.max(fine_takes) > Span::ms(10) {
-        acts.extend([coarse, fine, Act::Wait(coarse_takes.max(fine_takes))]);
+        acts.push(Act::Wait(coarse_takes.max(fine_takes)));
     }
     acts.extend([
         supply.step_to(prebias),
@@ -88,6 +91,13 @@ pub(super) fn conclude(
         };
         if voltage.quality != Quality::Good {
             findings.void("coil voltage not readable");
+            return None;
+        }
+        if voltage.value < LEAST_PREBIAS * bench.recipe.test.prebias_v {
+            findings.void(format!(
+                "coil supply gives {:.2} V at the pre-bias",
+                voltage.value
+            ));
             return None;
         }
         if current.quality == Quality::OverRange {

@@ -12,6 +12,8 @@ use crate::units::{Span, Volt};
 
 /// The source is off so long before drive, select or reversal changes (interface board).
 const SOURCE_OFF: Span = Span::ms(2);
+/// No contact of 10 A class is below this, milliohms; a source that is off reads about 0.
+const LEAST_MOHM: f64 = 0.5;
 /// The thermal EMF may have moved by 30 uV between two closures; at the terminal, behind the gain of 50.
 const EMF_MOVES_V: f64 = 30e-6 * 50.0;
 /// Current and amplifier have settled.
@@ -115,6 +117,17 @@ pub(super) fn conclude_nc(
     None
 }
 
+/// Voids a resistance that no contact has: the source was off, or a reply was not its own.
+pub(super) fn is_implausible(which: &str, mohm: f64, findings: &mut Findings) -> bool {
+    let implausible = !(mohm >= LEAST_MOHM);
+    if implausible {
+        findings.void(format!(
+            "{which} reads {mohm:.2} mOhm: no contact does, check the 1 A source"
+        ));
+    }
+    implausible
+}
+
 /// Adds one NC closure; the result is the mean of all closures read.
 pub(super) fn add_nc(bench: &Bench, drop: Volt, samples: &[Sample], findings: &mut Findings) {
     findings.nc_drops.push(drop);
@@ -127,6 +140,9 @@ pub(super) fn add_nc(bench: &Bench, drop: Volt, samples: &[Sample], findings: &m
         one.hypot(EMF_MOVES_V)
     };
     if let Some(reading) = resistance(&findings.nc_drops, bench.calibration.contact_mohm_per_v, u) {
+        if is_implausible("NC contact", reading.value, findings) {
+            return;
+        }
         findings.forget(Parameter::ContactResistanceNc);
         findings.found(Parameter::ContactResistanceNc, reading, samples);
     }

@@ -37,6 +37,10 @@ pub(super) fn conclude(_: &Bench, readings: &Readings, findings: &mut Findings) 
         findings.void("interface board not read");
         return None;
     };
+    if !seen.probe_chain {
+        findings.void("probe-up chain open");
+        return None;
+    }
     let open: Vec<usize> = (0..5).filter(|pin| !seen.kelvin[*pin]).collect();
     match open.as_slice() {
         [] if seen.nc_closed && !seen.no_closed => {}

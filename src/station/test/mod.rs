@@ -21,7 +21,7 @@ mod timing;
 use super::act::{Act, Doing, JobDone, Runner};
 use super::supply::Supply;
 use crate::gauge::Parameter;
-use crate::gauge::verdict::{Judgement, Verdict, judge, of_part};
+use crate::gauge::verdict::{Judgement, Verdict, failed_with, judge, of_part};
 use crate::rig::image::Image;
 use crate::rig::point::DigitalOut;
 use crate::units::{RigTime, Span};
@@ -124,8 +124,12 @@ impl Test {
                 Doing::Done => {}
                 Doing::Trouble(why) => {
                     self.findings.stop(Stop::Void(why));
-                    self.runner = Runner::new(Vec::new(), now);
-                    return Progress::Judged;
+                    if self.stage == Stage::Off {
+                        return Progress::Judged;
+                    }
+                    self.enter(Stage::Off, now);
+                    self.stages.clear();
+                    continue;
                 }
                 other @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
                     return Progress::Doing(other);
@@ -138,10 +142,14 @@ impl Test {
             let Some(stage) = self.stages.pop_front() else {
                 return Progress::Judged;
             };
-            self.stage = stage;
-            let acts = acts(stage, &self.bench, &mut self.supply, &mut self.findings);
-            self.runner = Runner::new(acts, now);
+            self.enter(stage, now);
         }
+    }
+
+    fn enter(&mut self, stage: Stage, now: RigTime) {
+        self.stage = stage;
+        let acts = acts(stage, &self.bench, &mut self.supply, &mut self.findings);
+        self.runner = Runner::new(acts, now);
     }
 
     /// Draws the conclusions of the stage that has just ended.
@@ -213,12 +221,23 @@ impl Test {
         Parameter::ALL.iter().filter_map(one).collect()
     }
 
-    /// Verdict of the part.
+    /// Verdict of the part. A proven failure outweighs whatever ended the test early.
     pub fn verdict(&self) -> Verdict {
-        match self.findings.why_stopped() {
-            Some(Stop::Void(why)) => Verdict::Void(vec![why.clone()]),
-            Some(Stop::Fail(reason)) => Verdict::Fail(vec![reason.clone()]),
-            None => of_part(&self.judgements()),
+        let judged = self.judgements();
+        let Some(stop) = self.findings.why_stopped() else {
+            return of_part(&judged);
+        };
+        let failed: Vec<(Parameter, Judgement)> = judged
+            .into_iter()
+            .filter(|(_, judgement)| matches!(judgement, Judgement::Fail(_)))
+            .collect();
+        match (stop, of_part(&failed)) {
+            (Stop::Fail(reason), Verdict::Fail(reasons)) => failed_with(reason, reasons),
+            (Stop::Fail(reason), Verdict::Pass | Verdict::Void(_)) => {
+                Verdict::Fail(vec![reason.clone()])
+            }
+            (Stop::Void(_), Verdict::Fail(reasons)) => Verdict::Fail(reasons),
+            (Stop::Void(why), Verdict::Pass | Verdict::Void(_)) => Verdict::Void(vec![why.clone()]),
         }
     }
 }
@@ -258,3 +277,6 @@ fn acts(stage: Stage, bench: &Bench, supply: &mut Supply, findings: &mut Finding
 fn board(outputs: &[(DigitalOut, bool)]) -> Act {
     Act::Board(outputs.to_vec())
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! Timed operation at exactly nominal voltage and timed release into the recipe's clamp, each with its
 //! bounce; the closure it ends on is then read for its contact resistance.
 
-use super::contact::{add_nc, drop_of, off, reversal, reversed};
+use super::contact::{add_nc, drop_of, is_implausible, off, reversal, reversed};
 use super::{Bench, Findings, OFF, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::contact::resistance;
@@ -19,6 +19,8 @@ const LONGEST: Span = Span::ms(60);
 const WINDOW_AFTER_LATCH: Span = Span::ms(21);
 /// Start of the coarse release ramp above the highest threshold of the lot, volts.
 const RELEASE_HEADROOM_V: f64 = 0.8;
+/// Gate 1 is open whenever gate 0 is; their delays may differ by so many counts.
+const GATE_SKEW: u32 = 4;
 /// Bounce is over and the contact has been closed for the 5 ms that the source asks for.
 const BOUNCE_OVER: Span = Span::ms(16);
 
@@ -109,6 +111,13 @@ fn time_and_bounce(
     };
     let gate0 = counts(before[0].count, after[0].count);
     let gate1 = counts(before[1].count, after[1].count);
+    let longest = (LONGEST + WINDOW_AFTER_LATCH).as_seconds() * bench.clock().hz;
+    if f64::from(gate0.max(gate1)) > longest || gate1 + GATE_SKEW < gate0 {
+        findings.void(format!(
+            "gate counters implausible: {gate0} and {gate1} counts"
+        ));
+        return;
+    }
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
     let delay = bench.calibration.gate_delay_us;
     findings.found(
@@ -148,7 +157,9 @@ pub(super) fn conclude_operate(
             if let Some(reading) =
                 resistance(&[closure.drop()], bench.calibration.contact_mohm_per_v, u)
             {
-                findings.found(Parameter::ContactResistanceNo, reading, &readings.drops);
+                if !is_implausible("NO contact", reading.value, findings) {
+                    findings.found(Parameter::ContactResistanceNo, reading, &readings.drops);
+                }
             }
         }
         Err(unread) => unread.tell("NO contact", findings),

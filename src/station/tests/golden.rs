@@ -1,7 +1,7 @@
 //! What golden parts teach, and which of them are refused.
 
 use super::bench;
-use super::shop::golden_parts;
+use super::instruments::golden_parts;
 use crate::gauge::Parameter;
 use crate::gauge::budget::{Budget, Reading};
 use crate::gauge::calibration::Factor;
@@ -21,12 +21,10 @@ fn tested(part: &GoldenPart, operate_v: f64, release_v: f64, coil_off_ohm: f64) 
             fine: Some(Volt(volts)),
         })
     };
-    let mut findings = Findings {
-        track: Some(REFERENCE),
-        operate: fine(part.operate_voltage_v.value + operate_v),
-        release: fine(part.release_voltage_v.value + release_v),
-        ..Findings::default()
-    };
+    let mut findings = Findings::default();
+    findings.track = Some(REFERENCE);
+    findings.operate = fine(part.operate_voltage_v.value + operate_v);
+    findings.release = fine(part.release_voltage_v.value + release_v);
     let reading = Reading {
         value: part.coil_resistance_ohm.value + coil_off_ohm,
         budget: Budget::default().with("test", 0.1),
@@ -116,38 +114,18 @@ fn more_golden_parts_make_the_lag_surer() {
 fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
     let part = golden_parts()[1].clone();
     let good = || tested(&part, 0.014, -0.009, 0.0);
-    let coarse_only = Some(Ramp {
-        coarse: Volt(8.5),
-        fine: None,
-    });
+    let spoilt = |spoil: fn(&mut Findings)| {
+        let mut findings = good();
+        spoil(&mut findings);
+        findings
+    };
     let cases = [
-        (
-            "temperature",
-            Findings {
-                track: None,
-                ..good()
-            },
-        ),
-        (
-            "operate",
-            Findings {
-                operate: None,
-                ..good()
-            },
-        ),
-        (
-            "operate",
-            Findings {
-                operate: coarse_only,
-                ..good()
-            },
-        ),
+        ("temperature", spoilt(|found| found.track = None)),
+        ("operate", spoilt(|found| found.operate = None)),
+        ("release", spoilt(|found| found.release = None)),
         (
             "release",
-            Findings {
-                release: None,
-                ..good()
-            },
+            spoilt(|found| found.release = found.release.map(|r| Ramp { fine: None, ..r })),
         ),
         ("coil", tested(&part, 0.014, -0.009, 3.0)),
         ("coil", tested(&part, 0.014, -0.009, -3.0)),

@@ -6,7 +6,9 @@ mod clamp;
 mod feed;
 mod golden;
 mod homing;
+mod instruments;
 mod ledger;
+mod machine;
 mod mechanism;
 mod run;
 mod safety;
@@ -14,7 +16,8 @@ mod shop;
 mod sort;
 mod supply;
 
-pub(in crate::station) use shop::{Shop, bench};
+pub(in crate::station) use instruments::bench;
+pub(in crate::station) use shop::Shop;
 
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::Wiring;

@@ -1,0 +1,235 @@
+//! Conclusions on a moving armature: ramps, timed operation and release.
+
+use super::super::{Stage, operate, release, timing};
+use super::{PULLED, RESTING, assert_ends, at_23_c, bench, drop_of, ended, gates};
+use crate::gauge::Parameter;
+use crate::gauge::threshold::Direction;
+use crate::gauge::verdict::Bin;
+use crate::rig::sample::Quality;
+use crate::station::act::{BoardInputs, Readings};
+use crate::station::test::Findings;
+use crate::station::test::ramp::Expected;
+use crate::units::Volt;
+
+/// A stage that waited for the latch: seen or not, the board after it, gate 0 open for so long.
+fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
+    let counts = (gate_ms * 50.0).round() as u32;
+    Readings {
+        seen: vec![seen],
+        boards: vec![board],
+        gates: vec![gates([u32::MAX, 5]), gates([counts.wrapping_sub(1), 5])],
+        ..Readings::default()
+    }
+}
+
+fn ramp_from(start: f64, span: f64) -> Findings {
+    let mut findings = at_23_c();
+    findings.ramp_start = Some(Volt(start));
+    findings.ramp_span = Some(Volt(span));
+    findings.expected = Some(Expected::new(Volt(7.9), 0.02));
+    findings
+}
+
+#[test]
+fn the_coarse_ramp_places_the_fine_one_by_its_learned_lag() {
+    let mut findings = ramp_from(5.0, 6.0);
+    let readings = watched(true, PULLED, 40.0);
+    let next = operate::conclude_coarse(&bench(), &readings, &mut findings);
+    assert_eq!((next, ended(&findings)), (None, None));
+    let seen = 5.0 + 0.05 + 96.0 * 0.04;
+    let coarse = findings.operate.unwrap().coarse;
+    assert!((coarse.0 - seen).abs() < 1e-9);
+    let expected = findings.expected.unwrap();
+    assert!((expected.centre.0 - (seen - 0.85)).abs() < 1e-9);
+}
+
+#[test]
+fn a_coarse_ramp_without_a_make_tries_nominal_voltage_unless_the_contact_made_unseen() {
+    let mut findings = ramp_from(5.0, 6.0);
+    let silent = watched(false, RESTING, 0.0);
+    let next = operate::conclude_coarse(&bench(), &silent, &mut findings);
+    assert_eq!((next, ended(&findings)), (Some(Stage::PullIn), None));
+    let made = watched(false, PULLED, 0.0);
+    let next = operate::conclude_coarse(&bench(), &made, &mut findings);
+    assert_eq!(next, None);
+    assert_ends(&findings, Bin::Retest, "outside the window");
+}
+
+#[test]
+fn nominal_voltage_tells_a_stuck_contact_from_a_high_threshold() {
+    let between = BoardInputs {
+        nc_closed: false,
+        ..RESTING
+    };
+    for (board, bin, word) in [
+        (PULLED, Bin::Voltage, "above the coarse ramp"),
+        (RESTING, Bin::Contact, "NC does not open"),
+        (between, Bin::Contact, "NO does not make"),
+    ] {
+        let mut findings = at_23_c();
+        operate::conclude_pull_in(&watched(false, board, 0.0), &mut findings);
+        assert_ends(&findings, bin, word);
+    }
+    let mut findings = at_23_c();
+    operate::conclude_pull_in(&Readings::default(), &mut findings);
+    assert_ends(&findings, Bin::Retest, "not read");
+}
+
+#[test]
+fn a_fine_ramp_that_meets_its_event_gives_the_threshold() {
+    let mut findings = ramp_from(7.8, 0.2);
+    findings.operate = Some(super::super::Ramp {
+        coarse: Volt(8.8),
+        fine: None,
+    });
+    let readings = watched(true, PULLED, 40.0);
+    let next = operate::conclude_fine(&bench(), &readings, &mut findings, 0);
+    assert_eq!((next, ended(&findings)), (None, None));
+    let result = findings.result(Parameter::OperateVoltage).unwrap();
+    assert!((result.value - 7.91).abs() < 1e-9 && result.expanded() < 0.02);
+    let mut findings = ramp_from(2.5, 0.2);
+    let readings = watched(true, RESTING, 40.0);
+    let next = release::conclude_fine(&bench(), &readings, &mut findings, 0);
+    assert_eq!((next, ended(&findings)), (None, None));
+    let result = findings.result(Parameter::ReleaseVoltage).unwrap();
+    assert!((result.value - 2.39).abs() < 1e-9 && result.expanded() < 0.02);
+}
+
+#[test]
+fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
+    let miss = |readings: &Readings| {
+        let mut findings = ramp_from(7.8, 0.2);
+        for attempt in 0..4 {
+            let next = operate::conclude_fine(&bench(), readings, &mut findings, attempt);
+            assert_eq!(next, Some(Stage::OperateFine(attempt + 1)));
+            assert_eq!(ended(&findings), None);
+        }
+        let centre = findings.expected.unwrap().centre;
+        let last = operate::conclude_fine(&bench(), readings, &mut findings, 4);
+        assert_eq!(last, None);
+        assert_ends(&findings, Bin::Retest, "not found in 5 fine ramps");
+        centre
+    };
+    assert!(miss(&watched(false, RESTING, 30.0)) > Volt(7.9), "later");
+    assert!(miss(&watched(false, PULLED, 30.0)) < Volt(7.9), "earlier");
+}
+
+#[test]
+fn a_release_that_came_too_early_is_looked_for_higher() {
+    for (board, higher) in [(RESTING, true), (PULLED, false)] {
+        let mut findings = ramp_from(8.0, 0.2);
+        let readings = watched(false, board, 30.0);
+        let next = release::conclude_fine(&bench(), &readings, &mut findings, 0);
+        assert_eq!(next, Some(Stage::ReleaseFine(1)));
+        let centre = findings.expected.unwrap().centre;
+        assert_eq!(centre > Volt(7.9), higher, "{centre}");
+    }
+}
+
+#[test]
+fn an_event_after_the_ramp_has_stopped_is_looked_for_around_its_end() {
+    let mut findings = ramp_from(7.8, 0.1);
+    let readings = watched(true, PULLED, 80.0);
+    let next = operate::conclude_fine(&bench(), &readings, &mut findings, 0);
+    assert_eq!(next, Some(Stage::OperateFine(1)));
+    let expected = findings.expected.unwrap();
+    assert!((expected.centre.0 - 7.9).abs() < 1e-9);
+    assert_eq!(findings.attempts(Parameter::OperateVoltage), 0);
+}
+
+#[test]
+fn a_coarse_release_without_a_break_falls_back_on_the_lot() {
+    let test = bench().recipe.test.clone();
+    for readings in [
+        watched(false, PULLED, 0.0),
+        // The ramp has ended long before: the time is no voltage.
+        watched(true, RESTING, 60.0),
+    ] {
+        let mut findings = ramp_from(4.0, 4.0);
+        release::conclude_coarse(&bench(), &readings, &mut findings);
+        let lot = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
+        assert_eq!((findings.expected, findings.release), (Some(lot), None));
+    }
+    let mut findings = ramp_from(4.0, 4.0);
+    let readings = watched(true, RESTING, 25.0);
+    release::conclude_coarse(&bench(), &readings, &mut findings);
+    let coarse = findings.release.unwrap().coarse;
+    assert!((coarse.0 - (4.0 - 0.05 - 2.4)).abs() < 1e-9);
+    let expected = findings.expected.unwrap();
+    assert!((expected.centre.0 - (coarse.0 + 1.05)).abs() < 1e-9);
+    let start = expected.placed(Direction::Falling).start;
+    assert!(start > expected.centre);
+}
+
+/// A timed stage: gate 0 and 1 in counts of 20 us, drops of both polarities.
+fn timed(seen: bool, counts: [u32; 2]) -> Readings {
+    Readings {
+        seen: vec![seen],
+        boards: vec![PULLED],
+        gates: vec![gates([100, 200]), gates([100 + counts[0], 200 + counts[1]])],
+        drops: [0.9, -0.9].map(|v| drop_of(Quality::Good, v)).to_vec(),
+        ..Readings::default()
+    }
+}
+
+#[test]
+fn a_timed_operation_gives_time_bounce_and_the_contact_it_ends_on() {
+    let mut findings = at_23_c();
+    timing::conclude_operate(&bench(), &timed(true, [236, 252]), &mut findings);
+    assert_eq!(ended(&findings), None);
+    for (parameter, value) in [
+        (Parameter::OperateTime, 4.72),
+        (Parameter::OperateBounce, 0.32),
+        (Parameter::ContactResistanceNo, 18.0),
+    ] {
+        let found = findings.result(parameter).unwrap().value;
+        assert!((found - value).abs() < 1e-9, "{parameter}: {found}");
+        assert!(findings.evidence(parameter).count() > 0, "{parameter}");
+    }
+}
+
+#[test]
+fn a_timed_release_adds_its_closure_to_the_nc_contact() {
+    let mut findings = at_23_c();
+    findings.drop_zero = Some(Volt(0.1));
+    findings.nc_drops = vec![Volt(1.2)];
+    timing::conclude_release(&bench(), &timed(true, [145, 150]), &mut findings);
+    assert_eq!(ended(&findings), None);
+    let time = findings.result(Parameter::ReleaseTime).unwrap().value;
+    assert!((time - 2.9).abs() < 1e-9);
+    let nc = findings.result(Parameter::ContactResistanceNc).unwrap();
+    assert!((nc.value - 20.0).abs() < 1e-9, "mean of 24 and 16");
+}
+
+#[test]
+fn a_contact_that_never_makes_fails_by_time_and_an_unread_counter_is_void() {
+    type Conclude = fn(&crate::station::test::Bench, &Readings, &mut Findings) -> Option<Stage>;
+    let stages: [(Conclude, &str); 2] = [
+        (timing::conclude_operate, "operate_time_ms"),
+        (timing::conclude_release, "release_time_ms"),
+    ];
+    for (conclude, word) in stages {
+        let mut findings = at_23_c();
+        conclude(&bench(), &timed(false, [3000, 3000]), &mut findings);
+        assert_ends(&findings, Bin::Time, word);
+        let mut findings = at_23_c();
+        let mut unread = timed(true, [236, 252]);
+        unread.gates.truncate(1);
+        conclude(&bench(), &unread, &mut findings);
+        assert_ends(&findings, Bin::Retest, "gate counters");
+    }
+}
+
+#[test]
+fn a_closure_with_the_source_in_compliance_fails_by_contact() {
+    let mut readings = timed(true, [236, 252]);
+    readings.boards[0].compliance = true;
+    readings.drops[0] = drop_of(Quality::OverRange, 0.0);
+    let mut findings = at_23_c();
+    timing::conclude_operate(&bench(), &readings, &mut findings);
+    assert_ends(&findings, Bin::Contact, "NO contact");
+    let mut findings = at_23_c();
+    findings.drop_zero = Some(Volt(0.0));
+    timing::conclude_release(&bench(), &readings, &mut findings);
+    assert_ends(&findings, Bin::Contact, "NC contact");
+}

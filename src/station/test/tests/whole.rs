@@ -1,0 +1,212 @@
+//! The acts of all stages against the rules of the interface board, and how a test ends early.
+
+use super::super::{ORDER, Progress, Stage, Test, acts};
+use super::{at_23_c, bench};
+use crate::gauge::budget::{Budget, Reading};
+use crate::gauge::verdict::{Bin, Reason, Verdict};
+use crate::gauge::{Parameter, parameter};
+use crate::rig::point::DigitalOut;
+use crate::rig::sample::Sample;
+use crate::station::act::{Act, Doing, Job, JobDone, Read};
+use crate::station::supply::Supply;
+use crate::station::test::ramp::Expected;
+use crate::station::tests::Shop;
+use crate::units::{Span, Volt};
+
+/// Acts of every stage in the order of a good part.
+fn all_acts() -> Vec<(Stage, Vec<Act>)> {
+    let bench = bench();
+    let mut supply = Supply::new(&bench.calibration);
+    let mut findings = at_23_c();
+    ORDER
+        .map(|stage| {
+            let centre = match stage {
+                Stage::ReleaseFine(_) => 2.35,
+                _ => 7.88,
+            };
+            findings.expected = Some(Expected::new(Volt(centre), 0.01));
+            (stage, acts(stage, &bench, &mut supply, &mut findings))
+        })
+        .to_vec()
+}
+
+#[test]
+fn every_stage_leaves_source_arm_and_kelvin_test_off() {
+    for (stage, acts) in all_acts() {
+        for point in [DigitalOut::SourceOn, DigitalOut::KelvinTest] {
+            let mut writes = acts.iter().filter_map(|act| match act {
+                Act::Board(outputs) => outputs.iter().find(|(known, _)| *known == point),
+                _ => None,
+            });
+            assert!(
+                writes.next_back().is_none_or(|(_, on)| !on),
+                "{stage:?} {point}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_source_is_off_for_two_milliseconds_before_drive_select_or_reversal_change() {
+    let watched = [
+        DigitalOut::CoilDrive,
+        DigitalOut::SelectNo,
+        DigitalOut::SourceReverse,
+    ];
+    let (mut on, mut off_for) = (false, Span::ms(1000));
+    for (stage, acts) in all_acts() {
+        for act in acts {
+            match &act {
+                Act::Board(outputs) => {
+                    let changes = outputs.iter().any(|(point, _)| watched.contains(point));
+                    let may = stage == Stage::Off || !on && off_for >= Span::ms(2);
+                    assert!(!changes || may, "{stage:?}: {act:?}");
+                    for (point, state) in outputs {
+                        if *point == DigitalOut::SourceOn {
+                            (on, off_for) = (*state, Span(0));
+                        }
+                    }
+                }
+                Act::Wait(span) => off_for += *span,
+                Act::Supply(_)
+                | Act::Read(_)
+                | Act::CoilMask(_)
+                | Act::Mark
+                | Act::WaitSinceMark(_)
+                | Act::ConvertSinceMark(_)
+                | Act::Until { .. } => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn no_stage_of_a_part_changes_the_channel_mask() {
+    for (stage, acts) in all_acts() {
+        let masks = acts.iter().any(|act| matches!(act, Act::CoilMask(_)));
+        assert!(!masks, "{stage:?} would write an EEPROM");
+    }
+}
+
+#[test]
+fn every_supply_output_asked_for_is_one_that_it_can_give() {
+    for (stage, acts) in all_acts() {
+        for act in acts {
+            if let Act::Supply(outputs) = act {
+                for (point, volts) in outputs {
+                    let can = (0.0..=15.0).contains(&volts.0);
+                    assert!(can, "{stage:?}: {point} {volts}");
+                }
+            }
+        }
+    }
+}
+
+/// Steps a test through good answers up to a job, then lets that job fail.
+fn fails_at(job: &Job) -> Test {
+    let mut shop = Shop::at_rest();
+    shop.track(23.0);
+    let mut test = Test::begin(bench(), shop.now);
+    let mut done = None;
+    for _ in 0..200 {
+        match test.step(shop.now, done.take().as_ref(), &shop.image) {
+            Progress::Doing(Doing::Job(asked)) => {
+                shop.after(4);
+                let trouble = (asked == *job).then(|| "module answers ?AA".to_string());
+                done = Some(JobDone {
+                    at: shop.now,
+                    trouble,
+                });
+            }
+            Progress::Doing(Doing::Wait(until)) => {
+                shop.now = until;
+                shop.scan();
+            }
+            Progress::Doing(other) => panic!("{other:?}"),
+            Progress::Judged => return test,
+        }
+    }
+    panic!("the test does not end");
+}
+
+#[test]
+fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
+    // No Kelvin bit is set, so the test goes from the pins straight to off.
+    for job in [Job::Read(Read::Track), Job::Read(Read::Board)] {
+        let test = fails_at(&job);
+        let why = Verdict::Void(vec!["module answers ?AA".into()]);
+        assert_eq!(test.verdict(), why, "{job:?}");
+        assert_eq!(test.verdict().bin(), Bin::Retest);
+    }
+    let restarted = fails_at(&Job::Read(Read::Resets));
+    assert_eq!(restarted.verdict().name(), "void");
+    assert_eq!(restarted.stage(), Stage::Off);
+}
+
+#[test]
+fn the_first_cause_of_an_early_end_stays() {
+    let mut findings = at_23_c();
+    findings.fail("coil open", Bin::Coil);
+    findings.void("coil current not gone after the test");
+    let mut test = Test::begin(bench(), Shop::at_rest().now);
+    test.findings = findings;
+    let reason = Reason {
+        text: "coil open".into(),
+        bin: Bin::Coil,
+    };
+    assert_eq!(test.verdict(), Verdict::Fail(vec![reason]));
+}
+
+fn measured(values: &[(Parameter, f64)]) -> Test {
+    let mut test = Test::begin(bench(), Shop::at_rest().now);
+    for (parameter, value) in values {
+        let reading = Reading {
+            value: *value,
+            budget: Budget::default().with("test", 0.005),
+        };
+        test.findings.found::<Sample>(*parameter, reading, []);
+    }
+    test
+}
+
+/// A good part.
+const GOOD: [(Parameter, f64); 9] = [
+    (Parameter::CoilResistance, 400.0),
+    (Parameter::OperateVoltage, 7.88),
+    (Parameter::ReleaseVoltage, 2.35),
+    (Parameter::OperateTime, 4.7),
+    (Parameter::ReleaseTime, 2.9),
+    (Parameter::OperateBounce, 0.6),
+    (Parameter::ReleaseBounce, 0.8),
+    (Parameter::ContactResistanceNo, 18.0),
+    (Parameter::ContactResistanceNc, 22.0),
+];
+
+#[test]
+fn a_part_passes_with_all_nine_results_and_is_void_without_one() {
+    assert_eq!(GOOD.len(), parameter::Parameter::ALL.len());
+    assert_eq!(measured(&GOOD).verdict(), Verdict::Pass);
+    for missing in 0..GOOD.len() {
+        let mut values = GOOD.to_vec();
+        let (parameter, _) = values.remove(missing);
+        let verdict = measured(&values).verdict();
+        let why = format!("{parameter} not measured");
+        assert_eq!(verdict, Verdict::Void(vec![why]));
+    }
+}
+
+#[test]
+fn only_results_inside_the_guard_band_are_measured_again_and_only_once() {
+    let slow = |value: f64| {
+        let mut values = GOOD;
+        values[1].1 = value;
+        let mut test = measured(&values);
+        test.stages.clear();
+        test.add_slow_repeats();
+        test.add_slow_repeats();
+        test.stages.into_iter().collect::<Vec<_>>()
+    };
+    assert_eq!(slow(8.9), []);
+    assert_eq!(slow(9.1), []);
+    assert_eq!(slow(8.995), [Stage::OperateFine(0); 3]);
+}

@@ -1,0 +1,67 @@
+//! Recipe, golden parts and instruments that err by nothing.
+
+use super::RIG;
+use crate::gauge::Calibration;
+use crate::gauge::calibration::{Factor, InputLine, Lag, Lags, OutputLine};
+use crate::gauge::recipe::Recipe;
+use crate::gauge::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
+use crate::station::test::Bench;
+use serde::Deserialize;
+use std::sync::Arc;
+
+#[derive(Deserialize)]
+struct Instruments {
+    reference: ReferenceSettings,
+    accuracy: AccuracySettings,
+}
+
+/// The default recipe on instruments that err by nothing, lags known.
+pub fn bench() -> Bench {
+    let recipe: Recipe =
+        toml::from_str(include_str!("../../../config/recipes/jzc-22f-012.toml")).unwrap();
+    let instruments: Instruments = toml::from_str(RIG).unwrap();
+    Bench {
+        recipe: Arc::new(recipe),
+        calibration: Arc::new(calibration()),
+        reference: instruments.reference,
+        accuracy: instruments.accuracy,
+    }
+}
+
+/// The golden parts of 12 V.
+pub fn golden_parts() -> Vec<GoldenPart> {
+    let set: GoldenSet = toml::from_str(include_str!("../../../config/golden.toml")).unwrap();
+    set.of_nominal(12.0).cloned().collect()
+}
+
+/// Channels with the gains of the default rig and no error.
+fn calibration() -> Calibration {
+    let exact = |value| Factor::new(value, 1e-6);
+    let lag = |coarse_v| Lag {
+        fine_v: exact(0.0),
+        coarse_v,
+        coarse_sd_v: 0.01,
+    };
+    Calibration {
+        made_at_us: 0,
+        due_at_us: i64::MAX,
+        nominal_v: 12.0,
+        coil_input: InputLine {
+            gain: exact(1.0),
+            offset_v: exact(0.0),
+        },
+        ohm_fine: exact(375.0),
+        ohm_wide: exact(125.0),
+        contact_mohm_per_v: exact(20.0),
+        gate_delay_us: [exact(0.0); 2],
+        level: OutputLine::IDEAL,
+        coarse: OutputLine::IDEAL,
+        fine: OutputLine::IDEAL,
+        coarse_v_per_s: exact(96.0),
+        fine_v_per_s: exact(1.5),
+        lags: Some(Lags {
+            operate: lag(0.85),
+            release: lag(-1.05),
+        }),
+    }
+}

@@ -1,0 +1,272 @@
+//! A machine whose actuators always arrive and whose parts are bad in a known way, with its station.
+
+use super::shop::mechanism;
+use super::{Shop, bench};
+use crate::gauge::verdict::Bin;
+use crate::rig::axis::AxisStation;
+use crate::rig::image::Image;
+use crate::rig::point::{AnalogIn, Counter, DigitalIn, DigitalOut};
+use crate::station::act::{Job, JobDone, Read};
+use crate::station::moves::Move;
+use crate::station::trouble::Alarm;
+use crate::station::wants::{Inputs, Wants};
+use crate::station::{Plan, Station};
+use crate::units::{RigTime, Span};
+use std::collections::{BTreeMap, VecDeque};
+
+/// How a part of the magazine is bad.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Specimen {
+    /// No pin at NO: void.
+    MissingPin,
+    /// NO is welded: fails at rest.
+    StuckNo,
+    /// Its coil is broken: no current.
+    OpenCoil,
+}
+
+impl Specimen {
+    /// Where it belongs.
+    pub fn bin(self) -> Bin {
+        match self {
+            Self::MissingPin => Bin::Retest,
+            Self::StuckNo => Bin::Contact,
+            Self::OpenCoil => Bin::Coil,
+        }
+    }
+}
+
+/// What the station was told in one turn, and what was driven after it.
+pub struct Told {
+    pub now: RigTime,
+    pub image: Image,
+    pub job: Option<JobDone>,
+    pub recorded: u64,
+    pub bus: Option<Alarm>,
+    pub stop: bool,
+    pub driven: Vec<Move>,
+    pub wants: String,
+}
+
+/// A station with its machine.
+pub struct Machine {
+    pub station: Station,
+    pub shop: Shop,
+    pub bus: Option<Alarm>,
+    pub stop: bool,
+    /// Key of an actuator that never arrives.
+    pub sticking: Option<&'static str>,
+    magazine: VecDeque<Specimen>,
+    under_way: Vec<(RigTime, Move)>,
+    job: Option<Job>,
+    reversed: bool,
+    axis: AxisStation,
+    beams: BTreeMap<DigitalIn, u16>,
+    beam: Option<DigitalIn>,
+    recorded: u64,
+    /// Every turn.
+    pub told: Vec<Told>,
+    /// Ordinals and bins in the order of landing.
+    pub landed: Vec<(u64, Bin)>,
+    /// Parts that left the nest.
+    pub left: usize,
+}
+
+/// A calibrated station that knows nothing yet.
+pub fn station(count: Option<u64>, shop: &Shop) -> Station {
+    let plan = Plan {
+        count,
+        golden: Vec::new(),
+        calibrated: true,
+        valid_us: 0,
+        epoch_us: 0,
+        voltage_gain: 1.6,
+    };
+    let mechanism = mechanism(&shop.wiring);
+    Station::new(plan, bench(), shop.wiring.axis.clone(), mechanism)
+}
+
+impl Machine {
+    pub fn new(count: Option<u64>, magazine: Vec<Specimen>) -> Self {
+        let mut shop = Shop::at_rest();
+        shop.track(23.0);
+        Self {
+            station: station(count, &shop),
+            shop,
+            bus: None,
+            stop: false,
+            sticking: None,
+            magazine: magazine.into(),
+            under_way: Vec::new(),
+            job: None,
+            reversed: false,
+            axis: AxisStation::Park,
+            beams: BTreeMap::new(),
+            beam: None,
+            recorded: 0,
+            told: Vec::new(),
+            landed: Vec::new(),
+            left: 0,
+        }
+    }
+
+    /// 4 ms pass, everything is read, the station has its turn and gets what it asks for.
+    pub fn turn(&mut self) -> Wants {
+        self.shop.now = self.shop.now + Span::ms(4);
+        let now = self.shop.now;
+        let (there, still): (Vec<_>, Vec<_>) =
+            self.under_way.iter().partition(|(at, _)| *at <= now);
+        self.under_way = still;
+        there.into_iter().for_each(|(_, m)| self.arrive(m));
+        self.shop.scan();
+        if let Some(beam) = self.beam {
+            let count = self.beams.get(&beam).copied().unwrap_or(0);
+            self.shop.beam(beam, count);
+        }
+        self.turn_without_scan()
+    }
+
+    /// A turn on what was read before.
+    pub fn turn_without_scan(&mut self) -> Wants {
+        let job = self.job.take().map(|job| self.answer(&job));
+        let image = self.shop.image.clone();
+        let (now, recorded, stop) = (self.shop.now, self.recorded, self.stop);
+        let bus = self.bus.take();
+        let inputs = Inputs {
+            image: &image,
+            job: job.clone(),
+            recorded,
+            bus: bus.clone(),
+            stop,
+        };
+        let wants = self.station.step(now, inputs);
+        for movement in &wants.motions {
+            self.drive(*movement);
+        }
+        self.obey(&wants);
+        self.told.push(Told {
+            now,
+            image,
+            job,
+            recorded,
+            bus,
+            stop,
+            driven: wants.motions.clone(),
+            wants: format!("{wants:?}"),
+        });
+        wants
+    }
+
+    fn obey(&mut self, wants: &Wants) {
+        if wants.job.is_some() {
+            assert!(self.job.is_none(), "two jobs at once");
+            self.job.clone_from(&wants.job);
+        }
+        self.beam = wants.beam;
+        for judged in &wants.judged {
+            self.recorded = judged.part.ordinal;
+        }
+        let landed = wants.landed.iter();
+        self.landed
+            .extend(landed.map(|landed| (landed.part.ordinal, landed.bin)));
+        self.left += wants.left.len();
+    }
+
+    fn drive(&mut self, movement: Move) {
+        self.station
+            .driven(movement, self.shop.now, &self.shop.image);
+        if let Move::AxisTo(_) = movement {
+            self.shop.set(DigitalIn::AxisInPosition, false);
+        }
+        if self.sticking != Some(movement.actuator_key()) {
+            let at = self.shop.now + Span::ms(60);
+            self.under_way.push((at, movement));
+        }
+    }
+
+    fn arrive(&mut self, movement: Move) {
+        let held = self.station.ledger().falling.is_some();
+        self.shop.stands(movement);
+        match movement {
+            Move::EscapementRelease if !self.magazine.is_empty() => {
+                self.shop.set(DigitalIn::PocketPresent, true);
+            }
+            Move::PusherExtend => {
+                self.shop.set(DigitalIn::PocketPresent, false);
+                self.shop.set(DigitalIn::NestPresent, true);
+                self.insert();
+            }
+            Move::SortUp => self.shop.set(DigitalIn::NestPresent, false),
+            Move::AxisTo(station) => self.axis = station,
+            Move::GripperOpen if held => {
+                let AxisStation::Bin(bin) = self.axis else {
+                    panic!("a part was let go over {:?}", self.axis);
+                };
+                let beam = self.shop.wiring.axis.beam(bin);
+                *self.beams.entry(beam).or_default() += 1;
+            }
+            _ => {}
+        }
+    }
+
+    /// The next part of the magazine lies in the nest.
+    fn insert(&mut self) {
+        let specimen = self.magazine.pop_front().unwrap();
+        let kelvin = [
+            DigitalIn::KelvinCoilA,
+            DigitalIn::KelvinCoilB,
+            DigitalIn::KelvinCom,
+            DigitalIn::KelvinNo,
+            DigitalIn::KelvinNc,
+        ];
+        for point in kelvin {
+            self.shop.set(point, true);
+        }
+        let missing = specimen == Specimen::MissingPin;
+        self.shop.set(DigitalIn::KelvinNo, !missing);
+        let stuck = specimen == Specimen::StuckNo;
+        self.shop.set(DigitalIn::NoClosed, stuck);
+    }
+
+    fn answer(&mut self, job: &Job) -> JobDone {
+        match job {
+            Job::Board(outputs) => {
+                for (point, state) in outputs {
+                    if *point == DigitalOut::SourceReverse {
+                        self.reversed = *state;
+                    }
+                }
+            }
+            Job::Read(Read::Coil) => {
+                self.shop.volts(AnalogIn::CoilVoltageFine, 8.0);
+                self.shop.volts(AnalogIn::CoilCurrentFine, 0.0);
+            }
+            Job::Read(Read::Drop) => {
+                let volts = if self.reversed { -1.1 } else { 1.1 };
+                self.shop.volts(AnalogIn::ContactDrop, volts);
+            }
+            Job::Read(Read::Gates) => {
+                self.shop.gate(Counter::Gate0, 0);
+                self.shop.gate(Counter::Gate1, 0);
+            }
+            Job::Read(Read::Track) => self.shop.track(23.0),
+            Job::Read(Read::Board | Read::Resets) | Job::Supply(_) | Job::CoilMask(_) => {}
+        }
+        JobDone {
+            at: self.shop.now,
+            trouble: None,
+        }
+    }
+
+    /// Turns until the run is over.
+    pub fn run(&mut self) -> Wants {
+        for _ in 0..10_000 {
+            let wants = self.turn();
+            assert!(self.station.ledger().balances());
+            if wants.ending.is_some() {
+                return wants;
+            }
+        }
+        panic!("the run does not end: {}", self.station.state());
+    }
+}
