@@ -432,7 +432,7 @@ impl Cycle {
                 self.traffic.queue(write.line, write.command, purpose);
             }
             self.traffic.dispatch(now);
-            if self.traffic.is_quiet() && self.outputs.all_settled() {
+            if self.traffic.is_quiet() {
                 return;
             }
             self.wait(now, Some(end)).await;

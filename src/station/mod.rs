@@ -20,6 +20,7 @@ pub mod clamp;
 pub mod feed;
 pub mod golden;
 pub mod homing;
+mod learning;
 pub mod ledger;
 pub mod mechanism;
 pub mod moves;
@@ -31,8 +32,6 @@ pub mod trouble;
 pub mod turn;
 pub mod wants;
 
-use crate::gauge::Calibration;
-use crate::gauge::calibration::Lags;
 use crate::gauge::settings::GoldenPart;
 use crate::gauge::verdict::{Bin, Verdict};
 use crate::guard::{PartPlaces, Situation};
@@ -40,17 +39,16 @@ use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::units::{RigTime, Span};
-use act::{Doing, JobDone, Runner};
+use act::{JobDone, Runner};
 use clamp::{Beside, Clamp};
 use feed::Feed;
 use golden::{CoarseLag, GoldenRun};
 use homing::Homing;
-use ledger::{Kind, Ledger};
+use ledger::Ledger;
 use mechanism::Mechanism;
 use moves::Move;
 use sort::Sort;
 use std::collections::VecDeque;
-use std::sync::Arc;
 use test::Bench;
 use trouble::Alarm;
 use turn::Turn;
@@ -319,43 +317,6 @@ impl Station {
         }
     }
 
-    fn measure_references(
-        &mut self,
-        now: RigTime,
-        inputs: &Inputs,
-        mut runner: Box<Runner>,
-        wants: &mut Wants,
-    ) -> Phase {
-        match runner.step(now, inputs.job.as_ref(), inputs.image) {
-            Doing::Job(job) => wants.job = Some(job),
-            Doing::Wait(until) => wants.wake_at = Some(until),
-            Doing::Busy => {}
-            Doing::Trouble(why) => wants.alarms.push(Alarm::calibration(&why)),
-            Doing::Done => return self.conclude_references(now, &runner, wants),
-        }
-        Phase::Reference(runner)
-    }
-
-    fn conclude_references(&mut self, now: RigTime, runner: &Runner, wants: &mut Wants) -> Phase {
-        let made_at = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
-        let (valid, gain) = (self.plan.valid_us, self.plan.voltage_gain);
-        match reference::conclude(&self.bench, &runner.readings, made_at, valid, gain) {
-            Ok(calibration) => {
-                let calibration = Calibration {
-                    simulated: self.plan.simulated,
-                    ..calibration
-                };
-                self.bench.calibration = Arc::new(calibration);
-                wants.motions.push(Move::ProbesDown);
-                Phase::ReferenceDown
-            }
-            Err(why) => {
-                wants.alarms.push(Alarm::calibration(&why));
-                Phase::Ended
-            }
-        }
-    }
-
     fn turn<'a>(&'a mut self, now: RigTime, inputs: &'a Inputs, wants: &'a mut Wants) -> Turn<'a> {
         Turn {
             now,
@@ -411,74 +372,6 @@ impl Station {
         self.plan
             .count
             .is_none_or(|count| self.ledger.came_in < golden + count)
-    }
-
-    /// Golden parts teach the lags, every part the place of the fine ramp.
-    fn learn(&mut self, wants: &mut Wants) {
-        for judged in &wants.judged {
-            let findings = &judged.findings;
-            // A slow or sticking part would spoil the place of the ramp for all that follow.
-            if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
-                findings
-                    .operate
-                    .into_iter()
-                    .for_each(|ramp| self.coarse.0.learn(ramp));
-                findings
-                    .release
-                    .into_iter()
-                    .for_each(|ramp| self.coarse.1.learn(ramp));
-            }
-            if let Kind::Golden(serial) = &judged.part.kind {
-                let known = self.plan.golden.iter().find(|part| part.serial == *serial);
-                let reference = self.bench.reference_temperature();
-                let learned = match known {
-                    Some(part) => self.golden_run.learn(part, reference, findings),
-                    None => Err(format!("golden part {serial} has no certificate")),
-                };
-                if let Err(why) = learned {
-                    wants.alarms.push(Alarm::calibration(&why));
-                    return;
-                }
-            }
-            let still_golden = matches!(judged.part.kind, Kind::Golden(_));
-            match self.new_lags(still_golden) {
-                Ok((lags, complete)) => {
-                    let calibration = Calibration {
-                        lags: Some(lags),
-                        ..(*self.bench.calibration).clone()
-                    };
-                    if complete {
-                        wants.calibrated = Some(calibration.clone());
-                    }
-                    self.bench.calibration = Arc::new(calibration);
-                }
-                Err(why) => wants.alarms.push(Alarm::calibration(&why)),
-            }
-        }
-    }
-
-    /// Lags for the next part, and whether the golden run is complete with this one.
-    fn new_lags(&self, golden: bool) -> Result<(Lags, bool), String> {
-        let bench = &self.bench;
-        if !golden {
-            let fine = (bench.operate_lag().fine_v, bench.release_lag().fine_v);
-            let lags = Lags {
-                operate: golden::place(fine.0, self.coarse.0),
-                release: golden::place(fine.1, self.coarse.1),
-            };
-            return Ok((lags, false));
-        }
-        if self.golden_left.is_empty() {
-            let lags = self
-                .golden_run
-                .lags(&self.plan.golden, &bench.accuracy, self.coarse)?;
-            return Ok((lags, true));
-        }
-        let lags = Lags {
-            operate: golden::interim(bench.operate_lag(), self.coarse.0),
-            release: golden::interim(bench.release_lag(), self.coarse.1),
-        };
-        Ok((lags, false))
     }
 
     fn maybe_end(&mut self, recorded: u64, wants: &mut Wants) {

@@ -294,6 +294,7 @@ fn a_lot_writes_nothing_to_an_eeprom_and_touches_nothing() {
 fn without_wall_clock(lot: &Lot) -> (Vec<Value>, Value) {
     let mut summary = lot.summary.clone();
     summary.as_object_mut().unwrap().remove("wall_s");
+    summary.as_object_mut().unwrap().remove("wall_profile");
     (lot.parts.clone(), summary)
 }
 

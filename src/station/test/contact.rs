@@ -119,7 +119,7 @@ pub(super) fn conclude_nc(
 
 /// Voids a resistance that no contact has: the source was off, or a reply was not its own.
 pub(super) fn is_implausible(which: &str, mohm: f64, findings: &mut Findings) -> bool {
-    let implausible = !(mohm >= LEAST_MOHM);
+    let implausible = mohm.is_nan() || mohm < LEAST_MOHM;
     if implausible {
         findings.void(format!(
             "{which} reads {mohm:.2} mOhm: no contact does, check the 1 A source"

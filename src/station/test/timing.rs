@@ -156,10 +156,9 @@ pub(super) fn conclude_operate(
             let u = bench.reading_u_v() / 2f64.sqrt();
             if let Some(reading) =
                 resistance(&[closure.drop()], bench.calibration.contact_mohm_per_v, u)
+                && !is_implausible("NO contact", reading.value, findings)
             {
-                if !is_implausible("NO contact", reading.value, findings) {
-                    findings.found(Parameter::ContactResistanceNo, reading, &readings.drops);
-                }
+                findings.found(Parameter::ContactResistanceNo, reading, &readings.drops);
             }
         }
         Err(unread) => unread.tell("NO contact", findings),

@@ -71,6 +71,9 @@ impl Nest {
             at: self.shop.now,
             trouble: Some("measure 05: silent".into()),
         };
+        // The first one ends the stage, the second one the switching off that follows.
+        let clamp = self.step(clamp, Some(failed.clone()));
+        assert!(matches!(clamp, Clamp::Testing(_)));
         self.step(clamp, Some(failed))
     }
 

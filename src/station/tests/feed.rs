@@ -83,14 +83,13 @@ fn an_empty_magazine_is_an_alarm_after_a_second_and_a_half() {
 }
 
 #[test]
-fn a_pocket_sensor_read_before_the_release_does_not_show_the_part() {
+fn a_part_left_in_the_pocket_is_fed_before_another_is_let_in() {
     let mut shop = Shop::at_rest();
     shop.set(DigitalIn::PocketPresent, true);
     shop.scan();
     let feed = step(Feed::Empty, &mut shop, true);
-    let feed = step(feed, &mut shop, true);
-    assert!(matches!(feed, Feed::Releasing { .. }));
-    assert!(!shop.ledger.pocket);
+    assert!(matches!(feed, Feed::Ready));
+    assert!(shop.ledger.pocket && shop.ledger.came_in == 1);
 }
 
 #[test]

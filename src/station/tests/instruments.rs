@@ -43,6 +43,7 @@ fn calibration() -> Calibration {
         coarse_sd_v: 0.01,
     };
     Calibration {
+        simulated: true,
         made_at_us: 0,
         due_at_us: i64::MAX,
         nominal_v: 12.0,

@@ -75,6 +75,7 @@ pub struct Machine {
 /// A calibrated station that knows nothing yet.
 pub fn station(count: Option<u64>, shop: &Shop) -> Station {
     let plan = Plan {
+        simulated: true,
         count,
         golden: Vec::new(),
         calibrated: true,
@@ -219,6 +220,7 @@ impl Machine {
             DigitalIn::KelvinNo,
             DigitalIn::KelvinNc,
         ];
+        self.shop.set(DigitalIn::ProbeChain, true);
         for point in kelvin {
             self.shop.set(point, true);
         }
