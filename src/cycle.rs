@@ -82,6 +82,8 @@ pub struct Cycle {
     job_done: Option<JobDone>,
     bus_alarm: Option<Alarm>,
     profile: Profile,
+    /// The run is over; only safe values are written.
+    making_safe: bool,
 }
 
 /// Wall time of the phases of all turns, seconds; what is left of a run is bus, history and, where there
@@ -129,6 +131,7 @@ impl Cycle {
             job_done: None,
             bus_alarm: None,
             profile: Profile::default(),
+            making_safe: false,
         }
     }
 
@@ -205,6 +208,10 @@ impl Cycle {
                 self.outputs.confirmed(module);
                 self.traffic.written(module);
                 self.finish_job(job, answer.answered_at, None);
+            }
+            // A module that ignores writes has had its host watchdog trip: it stands at its safe value.
+            (Purpose::Write { module, .. }, Some(_)) if self.making_safe && refused => {
+                self.outputs.confirmed(module);
             }
             (Purpose::Write { module, job }, Some(trouble)) => {
                 if self.traffic.may_rewrite(module) {
@@ -420,6 +427,7 @@ impl Cycle {
     async fn make_safe(&mut self) {
         let end = self.pace.now() + SAFE_WITHIN;
         self.traffic.only_writes();
+        self.making_safe = true;
         while self.pace.now() < end {
             let now = self.pace.now();
             self.traffic.forgive();
