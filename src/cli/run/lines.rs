@@ -1,6 +1,6 @@
 //! Opens the lines of a run: serial ports, pseudo-terminals of the simulated rig, or in-process streams.
 
-use super::{PaceArg, RunArgs};
+use super::RunArgs;
 use crate::bus::{self, LineLog, LineSettings, Pace, SerialPorts};
 use crate::config::Plant;
 use crate::cycle::LineEnds;
@@ -183,9 +183,8 @@ fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId, Str
 
 #[cfg(feature = "sim")]
 mod simulated {
-    use super::{
-        Behind, Lines, Pace, PaceArg, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings,
-    };
+    use super::super::PaceArg;
+    use super::{Behind, Lines, Pace, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings};
     use rigsim::{Options, pty, wire};
 
     /// The simulated rig behind its lines.
