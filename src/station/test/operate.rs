@@ -4,7 +4,7 @@
 //! Between both the relay drops. The approach has two steps (0.93 of the start, then the start) because
 //! a step from zero picks up some 30 mV below the quasi-static threshold: the armature swings over.
 
-use super::ramp::{ATTEMPTS, Expected, give_up, stopped_at};
+use super::ramp::{self, Expected, Met, stopped_at};
 use super::{Bench, Findings, OFF, Ramp, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::threshold::{Direction, RampDoubt, indicated, quasi_static};
@@ -200,33 +200,11 @@ pub(super) fn conclude_fine(
     findings: &mut Findings,
     attempt: u8,
 ) -> Option<Stage> {
-    let (start, expected) = (findings.ramp_start?, findings.expected?);
-    let (Some(gate), Some(part)) = (gate0(bench, readings), findings.track) else {
-        findings.void("gate counters not read");
-        return None;
+    let (seen, gate) = match ramp::meet(bench, readings, findings, Direction::Rising, attempt)? {
+        Met::At(seen, gate) => (seen, gate),
+        Met::Again => return Some(Stage::OperateFine(attempt + 1)),
     };
-    let seen = indicated(
-        start,
-        bench.calibration.fine_v_per_s.value,
-        gate,
-        Direction::Rising,
-    );
-    let met = readings.seen.first() == Some(&true);
-    let stopped = findings
-        .ramp_span
-        .and_then(|span| stopped_at(start, span, seen));
-    if !met || stopped.is_some() {
-        let early = readings.boards.last().is_some_and(|board| board.no_closed);
-        findings.expected = Some(match stopped {
-            Some(end) if met => expected.around(end),
-            Some(_) | None => expected.next(Direction::Rising, early, attempt),
-        });
-        if attempt + 1 >= ATTEMPTS {
-            give_up("operate", findings);
-            return None;
-        }
-        return Some(Stage::OperateFine(attempt + 1));
-    }
+    let part = findings.track?;
     if let Some(ramp) = &mut findings.operate {
         ramp.fine = Some(seen);
     }

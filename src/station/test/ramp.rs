@@ -1,9 +1,12 @@
 //! What operate and release share: a fine ramp is placed around an estimate, and placed anew when the
 //! contact changed before the window opened or not at all.
 
+use super::Bench;
 use super::findings::Findings;
-use crate::gauge::threshold::{Direction, WINDOW_V};
-use crate::units::Volt;
+use super::operate::gate0;
+use crate::gauge::threshold::{Direction, WINDOW_V, indicated};
+use crate::station::act::Readings;
+use crate::units::{Second, Volt};
 
 /// The window opens after [`WINDOW_V`]; this much more keeps its comparator's tolerance out of the way.
 const WINDOW_MARGIN: Volt = Volt(0.005);
@@ -81,11 +84,52 @@ pub(super) fn stopped_at(start: Volt, span: Volt, seen: Volt) -> Option<Volt> {
     ((seen - start).abs() > span).then_some(start + Volt(span.0.copysign((seen - start).0)))
 }
 
-/// Says that the fine ramp never met its event.
-pub(super) fn give_up(which: &str, findings: &mut Findings) {
+/// What came of a fine ramp.
+pub(super) enum Met {
+    /// The indicated voltage at the contact event, and the length of the gate.
+    At(Volt, Second),
+    /// The event was missed; the next ramp looks where [`Findings::expected`] now says.
+    Again,
+}
+
+/// Holds a fine ramp against its event; `None` once the test is void.
+pub(super) fn meet(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+    direction: Direction,
+    attempt: u8,
+) -> Option<Met> {
+    let (start, expected) = (findings.ramp_start?, findings.expected?);
+    let (Some(gate), Some(_)) = (gate0(bench, readings), findings.track) else {
+        findings.void("gate counters not read");
+        return None;
+    };
+    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, direction);
+    let met = readings.seen.first() == Some(&true);
+    let stopped = findings
+        .ramp_span
+        .and_then(|span| stopped_at(start, span, seen));
+    if met && stopped.is_none() {
+        return Some(Met::At(seen, gate));
+    }
+    let operated = direction == Direction::Rising;
+    let early = readings
+        .boards
+        .last()
+        .is_some_and(|board| board.no_closed == operated);
+    findings.expected = Some(match stopped {
+        Some(end) if met => expected.around(end),
+        Some(_) | None => expected.next(direction, early, attempt),
+    });
+    if attempt + 1 < ATTEMPTS {
+        return Some(Met::Again);
+    }
+    let which = if operated { "operate" } else { "release" };
     findings.void(format!(
         "{which} threshold not found in {ATTEMPTS} fine ramps"
     ));
+    None
 }
 
 #[cfg(test)]

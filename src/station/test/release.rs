@@ -4,7 +4,7 @@
 //! voltage, so the timed one stays the last of those.
 
 use super::operate::{REPEAT_SD_V, SETTLES, doubt, gate0};
-use super::ramp::{ATTEMPTS, Expected, give_up, stopped_at};
+use super::ramp::{self, Expected, Met};
 use super::{Bench, Findings, Ramp, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::threshold::{Direction, indicated, quasi_static};
@@ -127,33 +127,11 @@ pub(super) fn conclude_fine(
     findings: &mut Findings,
     attempt: u8,
 ) -> Option<Stage> {
-    let (start, expected) = (findings.ramp_start?, findings.expected?);
-    let (Some(gate), Some(part)) = (gate0(bench, readings), findings.track) else {
-        findings.void("gate counters not read");
-        return None;
+    let (seen, gate) = match ramp::meet(bench, readings, findings, Direction::Falling, attempt)? {
+        Met::At(seen, gate) => (seen, gate),
+        Met::Again => return Some(Stage::ReleaseFine(attempt + 1)),
     };
-    let seen = indicated(
-        start,
-        bench.calibration.fine_v_per_s.value,
-        gate,
-        Direction::Falling,
-    );
-    let met = readings.seen.first() == Some(&true);
-    let stopped = findings
-        .ramp_span
-        .and_then(|span| stopped_at(start, span, seen));
-    if !met || stopped.is_some() {
-        let early = readings.boards.last().is_some_and(|board| !board.no_closed);
-        findings.expected = Some(match stopped {
-            Some(end) if met => expected.around(end),
-            Some(_) | None => expected.next(Direction::Falling, early, attempt),
-        });
-        if attempt + 1 >= ATTEMPTS {
-            give_up("release", findings);
-            return None;
-        }
-        return Some(Stage::ReleaseFine(attempt + 1));
-    }
+    let part = findings.track?;
     match &mut findings.release {
         Some(ramp) => ramp.fine = Some(seen),
         None => {
