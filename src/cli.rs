@@ -10,6 +10,7 @@ pub mod run;
 pub mod sim;
 #[cfg(feature = "sim")]
 pub mod study;
+pub mod user;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -77,6 +78,8 @@ pub enum Command {
     Check(check::CheckArgs),
     /// Lots, parts, filters, statistics
     History(history::HistoryArgs),
+    /// People who may log in at the screen
+    User(user::UserArgs),
     /// Gauge repeatability and reproducibility
     Quality(history::QualityArgs),
 }
@@ -95,6 +98,7 @@ impl Cli {
             Command::Config(args) => config::run(&self.config, &args),
             Command::Check(args) => check::run(args),
             Command::History(args) => history::run(&self.db, args),
+            Command::User(args) => user::run(&self.db, args),
             Command::Quality(args) => history::run_quality(args),
         }
     }

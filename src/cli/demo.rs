@@ -1,7 +1,7 @@
 //! `relayrig demo`: the main job with nothing to prepare.
 
 use super::run::{self, Controls, PaceArg, RunArgs};
-use crate::hmi;
+use crate::hmi::{self, access};
 use anyhow::Context;
 use std::path::Path;
 use std::sync::Arc;
@@ -73,7 +73,16 @@ impl Page {
         listener
             .set_nonblocking(true)
             .context("the page's socket")?;
+        let people = access::beside(db);
+        let (gate, first) = hmi::Gate::open(&people)?;
+        if let Some((name, password)) = first {
+            eprintln!(
+                "relayrig: log in as {name} with {password} (told this once; people are in {})",
+                people.display()
+            );
+        }
         let shared = hmi::Shared {
+            gate,
             view: controls.view.subscribe(),
             db: db.to_path_buf(),
             stop: Arc::clone(&controls.stop),

@@ -1,10 +1,12 @@
 //! Every refusal of the screen's interface, with its status and a sentence for the one who asked.
 
+use super::access::{AccessError, Role};
 use crate::history::HistoryError;
 use axum::Json;
 use axum::extract::rejection::{JsonRejection, QueryRejection};
-use axum::http::{Method, StatusCode};
+use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use std::time::Duration;
 
 /// Why a request was not fulfilled.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +31,32 @@ pub(super) enum HmiError {
         /// The header that gave it away.
         found: String,
     },
+    /// 401.
+    #[error("{reason}: log in first")]
+    NotLoggedIn {
+        /// Why the request counts as a stranger's.
+        reason: &'static str,
+    },
+    /// 401: which of them is not said.
+    #[error("user name or password is wrong")]
+    WrongPassword,
+    /// 403: known, but not trusted with this.
+    #[error("this takes the role {needed}; you are {found}")]
+    NotAllowed {
+        /// The role that the person has.
+        found: Role,
+        /// The weakest role that may.
+        needed: Role,
+    },
+    /// 429; the header `Retry-After` says it in seconds.
+    #[error("too many wrong passwords; try again in {} s", .wait.as_secs() + 1)]
+    TooManyTries {
+        /// Until the next try.
+        wait: Duration,
+    },
+    /// 500: the people could not be looked up.
+    #[error(transparent)]
+    Access(#[from] AccessError),
     /// 400, 413, 415 or 422 of axum, all of them with its own text.
     #[error("{reason}")]
     Body {
@@ -86,7 +114,9 @@ impl HmiError {
         match self {
             Self::NoSuchRoute { .. } | Self::NotInHistory { .. } => StatusCode::NOT_FOUND,
             Self::WrongMethod { .. } => StatusCode::METHOD_NOT_ALLOWED,
-            Self::CrossSite { .. } => StatusCode::FORBIDDEN,
+            Self::CrossSite { .. } | Self::NotAllowed { .. } => StatusCode::FORBIDDEN,
+            Self::NotLoggedIn { .. } | Self::WrongPassword => StatusCode::UNAUTHORIZED,
+            Self::TooManyTries { .. } => StatusCode::TOO_MANY_REQUESTS,
             Self::Body { status, .. } => *status,
             Self::UnknownOrder { .. } | Self::Filter { .. } | Self::Query { .. } => {
                 StatusCode::BAD_REQUEST
@@ -94,7 +124,9 @@ impl HmiError {
             Self::NotNow { .. } => StatusCode::CONFLICT,
             Self::History(HistoryError::Missing { .. }) => StatusCode::NOT_FOUND,
             Self::History(HistoryError::Locked { .. }) => StatusCode::SERVICE_UNAVAILABLE,
-            Self::History(_) | Self::ReaderLost => StatusCode::INTERNAL_SERVER_ERROR,
+            Self::History(_) | Self::Access(_) | Self::ReaderLost => {
+                StatusCode::INTERNAL_SERVER_ERROR
+            }
         }
     }
 }
@@ -107,7 +139,12 @@ impl IntoResponse for HmiError {
             "error": word.to_ascii_lowercase(),
             "reason": self.to_string(),
         });
-        (status, Json(body)).into_response()
+        let mut response = (status, Json(body)).into_response();
+        if let Self::TooManyTries { wait } = self {
+            let seconds = HeaderValue::from(wait.as_secs() + 1);
+            response.headers_mut().insert(header::RETRY_AFTER, seconds);
+        }
+        response
     }
 }
 

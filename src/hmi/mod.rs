@@ -16,22 +16,27 @@
 //! | `GET /` | the page, whole in one answer |
 //! | `GET /api/view` | the view |
 //! | `GET /api/events` | the view as server-sent events: at once, then on change; a beat each second |
+//! | `POST /api/login\|logout`, `GET /api/me` | who is asking |
 //! | `POST /api/orders` | `{"order":"stop"}` |
 //! | `GET /api/history/query\|list\|show\|stats` | JSON as the command `history` gives it |
 //! | `GET /metrics` | Prometheus text |
 //!
-//! Not here yet: users and roles. Whoever reaches the address may look and may stop, nothing more.
+//! Whoever reaches the address may look; who wants something done logs in (`gate.rs`).
 
+pub mod access;
 mod error;
 mod events;
+mod gate;
 mod history;
 mod history_feed;
+mod login;
 mod metrics;
 mod orders;
 mod origin;
 mod page;
 mod router;
 
+pub use gate::Gate;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -49,6 +54,8 @@ pub struct Shared {
     pub view: watch::Receiver<crate::view::View>,
     /// The history file; it need not exist yet.
     pub db: PathBuf,
+    /// Who may order what.
+    pub gate: Gate,
     /// Set by the order `stop`, never cleared here.
     pub stop: Arc<AtomicBool>,
 }

@@ -4,6 +4,7 @@
 //! orders of the state model (ISA-TR88.00.02) are known by name and refused with the reason, so that
 //! a client can tell "not here" from "no such thing".
 
+use super::access::Role;
 use super::error::HmiError;
 use super::origin;
 use super::router::Desk;
@@ -48,6 +49,7 @@ pub(super) async fn order(
     body: Result<Json<Order>, JsonRejection>,
 ) -> Result<Json<Taken>, HmiError> {
     origin::ours(&headers)?;
+    desk.shared.gate.at_least(Role::Operator, &headers).await?;
     let Json(order) = body?;
     if order.order == "stop" {
         return stop(&desk).map(Json);

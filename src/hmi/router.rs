@@ -2,7 +2,7 @@
 
 use super::error::HmiError;
 use super::history::Readers;
-use super::{Shared, events, history, metrics, orders, page};
+use super::{Shared, events, history, login, metrics, orders, page};
 use axum::Json;
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, Request, State};
@@ -40,6 +40,9 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
         .route("/", get(page::page))
         .route("/api/view", get(view))
         .route("/api/events", get(events::events))
+        .route("/api/login", post(login::log_in))
+        .route("/api/logout", post(login::log_out))
+        .route("/api/me", get(login::me))
         .route("/api/orders", post(orders::order))
         .route("/api/history/query", get(history::query))
         .route("/api/history/list", get(history::list))

@@ -4,11 +4,13 @@
 
 mod events;
 mod history;
+mod login;
 mod orders;
 mod routes;
 mod shutdown;
 
-use super::{Shared, router};
+use super::access::{Register, Role};
+use super::{Gate, Shared, router};
 use crate::view::{LastPart, View};
 use axum::Router;
 use axum::body::{Body, to_bytes};
@@ -19,6 +21,9 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use tokio::sync::watch;
 use tower::ServiceExt;
 
+/// Of everybody at the bench.
+const PASSWORD: &str = "open sesame";
+
 /// A screen with both ends of its channels.
 struct Bench {
     view: watch::Sender<View>,
@@ -26,6 +31,9 @@ struct Bench {
     stop: Arc<AtomicBool>,
     router: Router,
     db: PathBuf,
+    gate: Gate,
+    /// Session of an operator.
+    token: String,
 }
 
 impl Bench {
@@ -42,7 +50,16 @@ impl Bench {
         let (view, looking) = watch::channel(some_view());
         let (ended, over) = watch::channel(false);
         let stop = Arc::new(AtomicBool::new(false));
+        let people = db.with_file_name("people.db");
+        let mut register = Register::open(&people).unwrap();
+        for (name, role) in [("li", Role::Operator), ("wang", Role::Maintainer)] {
+            register.add(name, role, PASSWORD, 0).unwrap();
+        }
+        let now_us = jiff::Timestamp::now().as_microsecond();
+        let (_, token) = register.log_in("li", PASSWORD, now_us).unwrap().unwrap();
+        let (gate, _) = Gate::open(&people).unwrap();
         let shared = Shared {
+            gate: gate.clone(),
             view: looking,
             db: db.clone(),
             stop: Arc::clone(&stop),
@@ -54,6 +71,8 @@ impl Bench {
             stop,
             router,
             db,
+            gate,
+            token,
         }
     }
 
@@ -75,7 +94,12 @@ impl Bench {
 
     async fn order(&self, body: impl Into<Body>) -> Answer {
         let request = Request::post("/api/orders").header("content-type", "application/json");
+        let request = request.header("authorization", self.bearer());
         self.ask(request.body(body.into()).unwrap()).await
+    }
+
+    fn bearer(&self) -> String {
+        format!("Bearer {}", self.token)
     }
 
     /// Nobody makes views any more.

@@ -23,6 +23,7 @@ let theme = asked.get("theme") || kept.get("theme") ||
 if (language !== "zh") language = "en";
 let view = null;
 let stop = null;
+let me = null;
 let heard = -Infinity;
 let alive = true;
 let source = null;
@@ -171,9 +172,10 @@ function showLink() {
 function showStop(link) {
   const ended = link === "ended" || (view !== null && view.state === "ended");
   // Without a connection the order is still worth trying: it says itself whether it arrived.
-  at("stop").disabled = ended && link !== "lost";
+  at("stop").disabled = (ended && link !== "lost") || me === null;
   const answer = stop === null ? "" : word(stop.word) + " " + stop.more;
-  at("stop_answer").textContent = at("stop").disabled ? word("stop.ended") : answer;
+  at("stop_answer").textContent = ended && link !== "lost" ? word("stop.ended")
+    : me === null ? word("stop.login") : answer;
 }
 
 function showAll() {
@@ -181,7 +183,7 @@ function showAll() {
   document.documentElement.dataset.theme = theme;
   for (const element of document.querySelectorAll("[data-word]")) element.textContent = word(element.dataset.word);
   showView();
-  showLink();
+  showWho();
 }
 
 // --- from the rig ---
@@ -219,10 +221,7 @@ setInterval(() => {
 
 async function orderStop() {
   try {
-    const body = JSON.stringify({order: "stop"});
-    const headers = {"Content-Type": "application/json"};
-    const signal = AbortSignal.timeout(3000);
-    const answer = await fetch("/api/orders", {method: "POST", headers, body, signal});
+    const answer = await post("/api/orders", {order: "stop"});
     stop = answer.ok ? {word: "stop.sent", more: ""}
       : {word: "stop.refused", more: (await answer.json()).reason};
   } catch {
@@ -230,6 +229,53 @@ async function orderStop() {
   }
   showLink();
 }
+
+// --- who is here ---
+
+async function post(path, body) {
+  const headers = {"Content-Type": "application/json"};
+  const signal = AbortSignal.timeout(5000);
+  return fetch(path, {method: "POST", headers, body: JSON.stringify(body), signal});
+}
+
+async function askWho() {
+  try { me = await (await fetch("/api/me")).json(); } catch { /* asked again when the link is back */ }
+  showWho();
+}
+
+function showWho() {
+  at("who").textContent = me ? me.name + " · " + word("logout") : word("login");
+  showLink();
+}
+
+at("who").addEventListener("click", async () => {
+  if (me) {
+    try { await post("/api/logout", {}); } catch { return; }
+    me = null;
+    showWho();
+    return;
+  }
+  at("login_answer").textContent = "";
+  at("login").showModal();
+});
+at("login_cancel").addEventListener("click", () => at("login").close());
+at("login").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  try {
+    const answer = await post("/api/login", {user: at("user").value, password: at("password").value});
+    const body = await answer.json();
+    if (answer.ok) {
+      me = body;
+      at("password").value = "";
+      at("login").close();
+    } else {
+      at("login_answer").textContent = known("login." + answer.status, body.reason);
+    }
+  } catch {
+    at("login_answer").textContent = word("stop.lost");
+  }
+  showWho();
+});
 
 at("stop").addEventListener("click", orderStop);
 at("language").addEventListener("click", () => {
@@ -244,4 +290,5 @@ at("theme").addEventListener("click", () => {
 });
 
 showAll();
+askWho();
 connect();

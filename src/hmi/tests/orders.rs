@@ -58,6 +58,7 @@ async fn a_body_that_is_no_order_is_refused() {
         bench.order(body).await.refused(400);
     }
     let plain = Request::post("/api/orders").header("content-type", "text/plain");
+    let plain = plain.header("authorization", bench.bearer());
     let answer = bench
         .ask(plain.body(r#"{"order":"stop"}"#.into()).unwrap())
         .await;
@@ -80,6 +81,7 @@ async fn a_foreign_page_cannot_stop_the_line() {
     let request = |origin: &str| {
         Request::post("/api/orders")
             .header("content-type", "application/json")
+            .header("authorization", bench.bearer())
             .header("host", "127.0.0.1:8080")
             .header("origin", origin)
             .body(Body::from(r#"{"order":"stop"}"#))

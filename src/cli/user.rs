@@ -1,0 +1,95 @@
+//! `relayrig user`: who may order what at the screen.
+
+use super::DONE;
+use crate::hmi::access::{Register, Role, beside};
+use anyhow::Context;
+use std::io::BufRead;
+use std::path::Path;
+
+/// People who may log in at the screen.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  relayrig user list
+  relayrig user add li --role operator
+  relayrig user password li --stdin < new-password.txt
+  relayrig user remove li
+
+Without --stdin a random password is made and told once. People are kept beside the history (--db).")]
+pub struct UserArgs {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Action {
+    /// Names and roles
+    List,
+    /// Add somebody
+    Add {
+        /// Letters, digits, `.`, `-`, `_`
+        name: String,
+        /// operator, maintainer or engineer
+        #[arg(long)]
+        role: Role,
+        /// Read the password from the first line of stdin
+        #[arg(long)]
+        stdin: bool,
+    },
+    /// Give a new password and end the person's sessions
+    Password {
+        /// Whose
+        name: String,
+        /// Read the password from the first line of stdin
+        #[arg(long)]
+        stdin: bool,
+    },
+    /// Remove somebody
+    Remove {
+        /// Whom
+        name: String,
+    },
+}
+
+/// Runs the command; the result is the exit status.
+pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<i32> {
+    let mut register = Register::open(&beside(db))?;
+    match args.action {
+        Action::List => {
+            for person in register.people()? {
+                println!("{:<12}{}", person.role, person.name);
+            }
+        }
+        Action::Add { name, role, stdin } => {
+            let password = password(stdin)?;
+            let now_us = jiff::Timestamp::now().as_microsecond();
+            register.add(&name, role, &password, now_us)?;
+            tell(&name, &password, stdin);
+        }
+        Action::Password { name, stdin } => {
+            let password = password(stdin)?;
+            register.set_password(&name, &password)?;
+            tell(&name, &password, stdin);
+        }
+        Action::Remove { name } => register.remove(&name)?,
+    }
+    Ok(DONE)
+}
+
+fn password(from_stdin: bool) -> anyhow::Result<String> {
+    if !from_stdin {
+        return Ok(Register::drawn_password()?);
+    }
+    let mut line = String::new();
+    std::io::stdin()
+        .lock()
+        .read_line(&mut line)
+        .context("reading the password from stdin")?;
+    Ok(line.trim_end_matches(['\r', '\n']).to_owned())
+}
+
+/// A password of the person's own choice is not repeated.
+fn tell(name: &str, password: &str, chosen: bool) {
+    if !chosen {
+        println!("{name} logs in with {password}");
+    }
+}

@@ -1,0 +1,258 @@
+//! The file of people and sessions.
+//!
+//! Times are microseconds UTC and come from the caller. Names are compared as typed.
+
+use super::error::{AccessError, Doing, Result};
+use super::{Role, SESSION_S, password};
+use rusqlite::{Connection, OptionalExtension, params};
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// `RRac`, in the header of the file.
+const APPLICATION_ID: i64 = 0x5252_6163;
+const SCHEMA: i64 = 1;
+/// Name of the one who is made at the first start.
+const FIRST: &str = "engineer";
+/// A hash of nobody's password, of the same cost as a real one.
+const NOBODY: &str = "$argon2id$v=19$m=19456,t=2,p=1$c29tZSBzYWx0IGhlcmU$\
+                      zY2ZxH5hG1m3pV0Q3mCkGd5dTn0l2yq0hXo1m3u9m6E";
+
+/// Somebody who has logged in.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Person {
+    /// As typed at login.
+    pub name: String,
+    /// What the person may do.
+    pub role: Role,
+}
+
+/// The open file. Blocking; a login takes some 20 ms of work.
+#[derive(Debug)]
+pub struct Register {
+    connection: Connection,
+}
+
+/// Where the people of a history file are kept: `relayrig-access.db` for `relayrig.db`.
+#[must_use]
+pub fn beside(history: &Path) -> PathBuf {
+    let stem = history.file_stem().unwrap_or_default().to_string_lossy();
+    history.with_file_name(format!("{stem}-access.db"))
+}
+
+impl Register {
+    /// Opens the file, made when missing.
+    ///
+    /// # Errors
+    /// A file of another program or a later version is refused and left untouched.
+    pub fn open(path: &Path) -> Result<Self> {
+        const DOING: &str = "opening the list of people";
+        let connection = Connection::open(path).doing(DOING)?;
+        connection
+            .busy_timeout(Duration::from_secs(5))
+            .doing(DOING)?;
+        let pragma = |name| connection.pragma_query_value(None, name, |row| row.get::<_, i64>(0));
+        let tables =
+            connection.query_row("SELECT count(*) FROM sqlite_schema", [], |row| row.get(0));
+        let (id, schema, tables): (i64, i64, i64) = (
+            pragma("application_id").doing(DOING)?,
+            pragma("user_version").doing(DOING)?,
+            tables.doing(DOING)?,
+        );
+        match (id, schema, tables) {
+            (0, 0, 0) => make(&connection).doing("making the list of people")?,
+            (APPLICATION_ID, SCHEMA, _) => {}
+            _ => {
+                let found = format!("application id {id:#x}, schema {schema}");
+                let path = path.to_owned();
+                return Err(AccessError::Foreign { path, found });
+            }
+        }
+        connection
+            .pragma_update(None, "foreign_keys", true)
+            .doing(DOING)?;
+        Ok(Self { connection })
+    }
+
+    /// Makes the first engineer when there is nobody; gives name and password, which is told nowhere
+    /// else and never again.
+    pub fn first_engineer(&mut self, now_us: i64) -> Result<Option<(String, String)>> {
+        if self.count("SELECT count(*) FROM person", "counting people")? > 0 {
+            return Ok(None);
+        }
+        let drawn = Self::drawn_password()?;
+        self.add(FIRST, Role::Engineer, &drawn, now_us)?;
+        Ok(Some((FIRST.to_owned(), drawn)))
+    }
+
+    /// A password that nobody has to think of: 64 random bits.
+    pub fn drawn_password() -> Result<String> {
+        password::random(8)
+    }
+
+    /// Everybody, by name.
+    pub fn people(&self) -> Result<Vec<Person>> {
+        const DOING: &str = "listing people";
+        let mut rows = self
+            .connection
+            .prepare("SELECT name, role FROM person ORDER BY name")
+            .doing(DOING)?;
+        let people = rows.query_map([], person).doing(DOING)?;
+        people.collect::<rusqlite::Result<_>>().doing(DOING)
+    }
+
+    /// Adds somebody.
+    pub fn add(&mut self, name: &str, role: Role, password: &str, now_us: i64) -> Result<()> {
+        let typed = |it: char| it.is_alphanumeric() || ".-_".contains(it);
+        if !(1..=40).contains(&name.chars().count()) || !name.chars().all(typed) {
+            let found = name.chars().take(60).collect();
+            return Err(AccessError::Name { found });
+        }
+        let hash = password::hash(password)?;
+        let sql = "INSERT INTO person VALUES (?1, ?2, ?3, ?4) ON CONFLICT DO NOTHING";
+        let row = params![name, role.word(), hash, now_us];
+        match self.connection.execute(sql, row).doing("adding a person")? {
+            0 => Err(AccessError::Taken {
+                name: name.to_owned(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Gives a new password and ends the person's sessions.
+    pub fn set_password(&mut self, name: &str, password: &str) -> Result<()> {
+        const DOING: &str = "changing a password";
+        let hash = password::hash(password)?;
+        let change = self.connection.transaction().doing(DOING)?;
+        let sql = "UPDATE person SET password = ?2 WHERE name = ?1";
+        let found = change.execute(sql, params![name, hash]).doing(DOING)?;
+        change
+            .execute("DELETE FROM session WHERE person = ?1", [name])
+            .doing(DOING)?;
+        change.commit().doing(DOING)?;
+        known(found, name)
+    }
+
+    /// Removes somebody with all sessions; never the last engineer.
+    pub fn remove(&mut self, name: &str) -> Result<()> {
+        let others = "SELECT count(*) FROM person WHERE role = 'engineer' AND name <> ?1";
+        let others: i64 = self
+            .connection
+            .query_row(others, [name], |row| row.get(0))
+            .doing("counting engineers")?;
+        let is_engineer = self
+            .people()?
+            .iter()
+            .any(|it| it.name == name && it.role == Role::Engineer);
+        if is_engineer && others == 0 {
+            return Err(AccessError::LastEngineer {
+                name: name.to_owned(),
+            });
+        }
+        let sql = "DELETE FROM person WHERE name = ?1";
+        let found = self
+            .connection
+            .execute(sql, [name])
+            .doing("removing a person")?;
+        known(found, name)
+    }
+
+    /// A session for name and password: the person and the token; `None` when they do not fit.
+    pub fn log_in(
+        &mut self,
+        name: &str,
+        password: &str,
+        now_us: i64,
+    ) -> Result<Option<(Person, String)>> {
+        const DOING: &str = "logging in";
+        let sql = "SELECT name, role, password FROM person WHERE name = ?1";
+        let found = self
+            .connection
+            .query_row(sql, [name], |row| {
+                Ok((person(row)?, row.get::<_, String>(2)?))
+            })
+            .optional()
+            .doing(DOING)?;
+        let kept = found.as_ref().map_or(NOBODY, |(_, hash)| hash.as_str());
+        let fits = password::fits(password, kept)?;
+        let Some((person, _)) = found.filter(|_| fits) else {
+            return Ok(None);
+        };
+        let token = password::random(32)?;
+        let until_us = now_us + SESSION_S * 1_000_000;
+        let begin = self.connection.transaction().doing(DOING)?;
+        begin
+            .execute("DELETE FROM session WHERE until_us <= ?1", [now_us])
+            .doing(DOING)?;
+        let row = params![digest(&token), person.name, until_us];
+        begin
+            .execute("INSERT INTO session VALUES (?1, ?2, ?3)", row)
+            .doing(DOING)?;
+        begin.commit().doing(DOING)?;
+        Ok(Some((person, token)))
+    }
+
+    /// Whose session `token` is, while it lasts.
+    pub fn holder(&self, token: &str, now_us: i64) -> Result<Option<Person>> {
+        let sql = "SELECT name, role FROM session JOIN person ON person = name
+                   WHERE token_sha256 = ?1 AND until_us > ?2";
+        let row = params![digest(token), now_us];
+        let found = self.connection.query_row(sql, row, person).optional();
+        found.doing("looking up a session")
+    }
+
+    /// Ends a session; an unknown one is over already.
+    pub fn log_out(&mut self, token: &str) -> Result<()> {
+        let sql = "DELETE FROM session WHERE token_sha256 = ?1";
+        self.connection
+            .execute(sql, [digest(token)])
+            .doing("logging out")?;
+        Ok(())
+    }
+
+    fn count(&self, sql: &str, doing: &'static str) -> Result<i64> {
+        self.connection
+            .query_row(sql, [], |row| row.get(0))
+            .doing(doing)
+    }
+}
+
+fn make(connection: &Connection) -> rusqlite::Result<()> {
+    connection.execute_batch(&format!(
+        "BEGIN IMMEDIATE; {} PRAGMA user_version = {SCHEMA}; PRAGMA application_id = {APPLICATION_ID}; COMMIT;",
+        include_str!("people.sql")
+    ))
+}
+
+fn person(row: &rusqlite::Row<'_>) -> rusqlite::Result<Person> {
+    let role: String = row.get(1)?;
+    let role = role.parse().map_err(|reason: String| {
+        rusqlite::Error::FromSqlConversionFailure(1, rusqlite::types::Type::Text, reason.into())
+    })?;
+    let name = row.get(0)?;
+    Ok(Person { name, role })
+}
+
+fn known(rows: usize, name: &str) -> Result<()> {
+    match rows {
+        0 => Err(AccessError::Unknown {
+            name: name.to_owned(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn digest(token: &str) -> String {
+    Sha256::digest(token.as_bytes())
+        .iter()
+        .fold(String::new(), |mut text, byte| {
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{byte:02x}");
+            text
+        })
+}
+
+#[cfg(test)]
+mod tests;

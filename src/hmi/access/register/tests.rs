@@ -1,0 +1,107 @@
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+
+const HOUR_US: i64 = 3_600_000_000;
+
+fn fresh(name: &str) -> (Register, PathBuf) {
+    let folder =
+        std::env::temp_dir().join(format!("relayrig-access-{}-{name}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("people.db");
+    (Register::open(&path).unwrap(), path)
+}
+
+#[test]
+fn the_first_start_makes_one_engineer_whose_password_is_told_once() {
+    let (mut register, path) = fresh("first");
+    let (name, password) = register.first_engineer(0).unwrap().unwrap();
+    assert!(register.first_engineer(0).unwrap().is_none());
+    let (person, _) = register.log_in(&name, &password, 0).unwrap().unwrap();
+    assert_eq!(person.role, Role::Engineer);
+    let bytes = std::fs::read(path).unwrap();
+    let told = bytes
+        .windows(password.len())
+        .any(|it| it == password.as_bytes());
+    assert!(!told, "the password itself stands in the file");
+}
+
+#[test]
+fn wrong_name_and_wrong_password_get_the_same_answer() {
+    let (mut register, _) = fresh("wrong");
+    register.add("li", Role::Operator, "secret-12", 0).unwrap();
+    assert_eq!(register.log_in("li", "secret-13", 0).unwrap(), None);
+    assert_eq!(register.log_in("nobody", "secret-12", 0).unwrap(), None);
+    assert!(register.log_in("li", "secret-12", 0).unwrap().is_some());
+}
+
+#[test]
+fn a_session_ends_after_its_shift_at_log_out_and_with_a_new_password() {
+    let (mut register, _) = fresh("session");
+    register.add("li", Role::Operator, "secret-12", 0).unwrap();
+    let enter = |register: &mut Register| register.log_in("li", "secret-12", 0).unwrap().unwrap().1;
+    let first = enter(&mut register);
+    assert_eq!(
+        register.holder(&first, 11 * HOUR_US).unwrap().unwrap().name,
+        "li"
+    );
+    assert_eq!(register.holder(&first, 12 * HOUR_US).unwrap(), None);
+    assert_eq!(register.holder("0000", 0).unwrap(), None);
+    register.log_out(&first).unwrap();
+    assert_eq!(register.holder(&first, 0).unwrap(), None);
+    let second = enter(&mut register);
+    register.set_password("li", "another-1").unwrap();
+    assert_eq!(register.holder(&second, 0).unwrap(), None);
+}
+
+#[test]
+fn a_removed_person_has_no_session_left_and_the_last_engineer_stays() {
+    let (mut register, _) = fresh("removed");
+    register.first_engineer(0).unwrap();
+    register
+        .add("zhao", Role::Maintainer, "secret-12", 0)
+        .unwrap();
+    let (_, token) = register.log_in("zhao", "secret-12", 0).unwrap().unwrap();
+    register.remove("zhao").unwrap();
+    assert_eq!(register.holder(&token, 0).unwrap(), None);
+    assert!(matches!(
+        register.remove("zhao"),
+        Err(AccessError::Unknown { .. })
+    ));
+    assert!(matches!(
+        register.remove("engineer"),
+        Err(AccessError::LastEngineer { .. })
+    ));
+}
+
+#[test]
+fn names_that_cannot_be_typed_or_are_taken_are_refused() {
+    let (mut register, _) = fresh("names");
+    for name in ["", "a b", "a\"", "a\n", &"x".repeat(41)] {
+        let refused = register.add(name, Role::Operator, "secret-12", 0);
+        assert!(matches!(refused, Err(AccessError::Name { .. })), "{name:?}");
+    }
+    register
+        .add("李工", Role::Engineer, "secret-12", 0)
+        .unwrap();
+    let twice = register.add("李工", Role::Operator, "secret-12", 0);
+    assert!(matches!(twice, Err(AccessError::Taken { .. })));
+}
+
+#[test]
+fn a_file_of_another_program_is_refused_and_left_as_it_is() {
+    let (register, path) = fresh("foreign");
+    drop(register);
+    std::fs::remove_file(&path).unwrap();
+    Connection::open(&path)
+        .unwrap()
+        .execute_batch("CREATE TABLE t (a)")
+        .unwrap();
+    let before = std::fs::read(&path).unwrap();
+    assert!(matches!(
+        Register::open(&path),
+        Err(AccessError::Foreign { .. })
+    ));
+    assert_eq!(before, std::fs::read(&path).unwrap());
+}

@@ -1,0 +1,47 @@
+//! What a person is trusted with. A role may do all that the ones before it may.
+
+use serde::Serialize;
+use std::fmt;
+use std::str::FromStr;
+
+/// The three roles, weakest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Role {
+    /// Runs lots: every command of the state model, acknowledging alarms.
+    Operator,
+    /// Also moves single actuators, changes the mode, shelves alarms.
+    Maintainer,
+    /// Also changes recipes and people.
+    Engineer,
+}
+
+impl Role {
+    /// All of them, weakest first.
+    pub const ALL: [Self; 3] = [Self::Operator, Self::Maintainer, Self::Engineer];
+
+    /// The word in the file, on the command line and over HTTP.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Operator => "operator",
+            Self::Maintainer => "maintainer",
+            Self::Engineer => "engineer",
+        }
+    }
+}
+
+impl fmt::Display for Role {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(self.word())
+    }
+}
+
+impl FromStr for Role {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|role| role.word() == text);
+        found.ok_or_else(|| format!("{text:?}: expected operator, maintainer or engineer"))
+    }
+}

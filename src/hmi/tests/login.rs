@@ -1,0 +1,109 @@
+//! Who may do what, and how a session begins and ends.
+
+use super::*;
+use axum::http::header::{COOKIE, RETRY_AFTER, SET_COOKIE};
+
+fn post(path: &str, body: String) -> Request<Body> {
+    let request = Request::post(path).header("content-type", "application/json");
+    request.body(body.into()).unwrap()
+}
+
+fn login(user: &str, password: &str) -> Request<Body> {
+    let body = serde_json::json!({ "user": user, "password": password });
+    post("/api/login", body.to_string())
+}
+
+fn with_cookie(mut request: Request<Body>, cookie: &str) -> Request<Body> {
+    request
+        .headers_mut()
+        .insert(COOKIE, cookie.parse().unwrap());
+    request
+}
+
+#[tokio::test]
+async fn a_login_opens_a_session_for_the_page_and_for_scripts() {
+    let bench = Bench::new();
+    let answer = bench.ask(login("li", PASSWORD)).await;
+    assert_eq!(answer.status, 200, "{}", answer.text());
+    assert_eq!(answer.json()["name"], "li");
+    assert_eq!(answer.json()["role"], "operator");
+    let cookie = answer.headers[SET_COOKIE].to_str().unwrap();
+    for part in ["HttpOnly", "SameSite=Strict", "Path=/", "Max-Age=43200"] {
+        assert!(cookie.contains(part), "{cookie}");
+    }
+    let pair = cookie.split(';').next().unwrap();
+    let me = Request::get("/api/me").body(Body::empty()).unwrap();
+    let me = bench
+        .ask(with_cookie(me, &format!("theme=dark; {pair}")))
+        .await;
+    assert_eq!(me.json()["name"], "li");
+    let token = answer.json()["token"].as_str().unwrap().to_owned();
+    let me = Request::get("/api/me").header("authorization", format!("Bearer {token}"));
+    let me = bench.ask(me.body(Body::empty()).unwrap()).await;
+    assert_eq!(me.json()["role"], "operator");
+}
+
+#[tokio::test]
+async fn a_stranger_may_look_and_may_not_order() {
+    let bench = Bench::new();
+    assert!(bench.get("/api/me").await.json().is_null());
+    assert_eq!(bench.get("/api/view").await.status, 200);
+    let order = post("/api/orders", r#"{"order":"stop"}"#.to_owned());
+    assert!(bench.ask(order).await.refused(401).contains("log in first"));
+    let stolen = post("/api/orders", r#"{"order":"stop"}"#.to_owned());
+    let stolen = with_cookie(stolen, &format!("relayrig_session={}", "0".repeat(64)));
+    bench.ask(stolen).await.refused(401);
+    assert!(!bench.stopped());
+}
+
+#[tokio::test]
+async fn after_log_out_the_session_is_nobodys() {
+    let bench = Bench::new();
+    let cookie = format!("relayrig_session={}", bench.token);
+    let out = bench
+        .ask(with_cookie(post("/api/logout", String::new()), &cookie))
+        .await;
+    assert_eq!(out.status, 200);
+    assert!(
+        out.headers[SET_COOKIE]
+            .to_str()
+            .unwrap()
+            .contains("Max-Age=0")
+    );
+    bench.order(r#"{"order":"stop"}"#).await.refused(401);
+    assert!(!bench.stopped());
+}
+
+#[tokio::test]
+async fn the_sixth_wrong_password_waits_even_if_it_were_right() {
+    let bench = Bench::new();
+    for _ in 0..5 {
+        let refused = bench.ask(login("wang", "guess no. 1")).await.refused(401);
+        assert_eq!(refused, "user name or password is wrong");
+    }
+    let answer = bench.ask(login("wang", PASSWORD)).await;
+    answer.refused(429);
+    let seconds: u64 = answer.headers[RETRY_AFTER]
+        .to_str()
+        .unwrap()
+        .parse()
+        .unwrap();
+    assert!((1..=300).contains(&seconds), "{seconds}");
+    assert_eq!(bench.ask(login("li", PASSWORD)).await.status, 200);
+}
+
+#[tokio::test]
+async fn a_login_from_a_foreign_page_or_without_a_password_is_refused() {
+    let bench = Bench::new();
+    let mut foreign = login("li", PASSWORD);
+    foreign
+        .headers_mut()
+        .insert("sec-fetch-site", "cross-site".parse().unwrap());
+    bench.ask(foreign).await.refused(403);
+    for body in ["", "{}", r#"{"user":"li"}"#, r#"{"user":1,"password":"x"}"#] {
+        bench
+            .ask(post("/api/login", body.to_owned()))
+            .await
+            .refused(400);
+    }
+}
