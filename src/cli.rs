@@ -5,6 +5,8 @@ pub mod config;
 #[cfg(feature = "sim")]
 pub mod demo;
 pub mod history;
+#[cfg(feature = "sim")]
+mod plug;
 pub mod run;
 #[cfg(feature = "sim")]
 pub mod sim;

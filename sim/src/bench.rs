@@ -84,25 +84,25 @@ const KEYS: [&str; 30] = [
 ///
 /// # Errors
 /// The file cannot be read, or a module in it has a key or value that it cannot take.
-pub fn build(file: &Path) -> Result<Rig, SimError> {
+pub fn build(file: &Path, faults: Faults) -> Result<Rig, SimError> {
     let text = std::fs::read_to_string(file).map_err(|error| bench(file, error.to_string()))?;
     parse(&text)
         .map_err(|why| bench(file, why.to_string().trim().to_owned()))?
-        .build()
+        .build(faults)
         .map_err(|error| match error {
             SimError::Bench { why, .. } => bench(file, why),
             other => bench(file, other.to_string()),
         })
 }
 
-/// Builds a bench from its text.
+/// Builds a bench without faults from its text.
 ///
 /// # Errors
 /// As [`build`].
 pub fn build_text(text: &str) -> Result<Rig, SimError> {
     parse(text)
         .map_err(|why| bench(Path::new("-"), why.to_string().trim().to_owned()))?
-        .build()
+        .build(Faults::none(0))
 }
 
 fn parse(text: &str) -> Result<BenchFile, toml::de::Error> {
@@ -117,7 +117,7 @@ fn bench(file: &Path, why: String) -> SimError {
 }
 
 impl BenchFile {
-    fn build(self) -> Result<Rig, SimError> {
+    fn build(self, faults: Faults) -> Result<Rig, SimError> {
         let mut signals = Signals::default();
         let mut modules = Vec::new();
         for (number, module) in self.module.into_iter().enumerate() {
@@ -139,12 +139,16 @@ impl BenchFile {
             baud: self.baud,
             checksum: false,
         };
-        Ok(Rig::new(
-            Box::new(signals),
-            modules,
-            vec![line],
-            Faults::none(0),
-        ))
+        let known =
+            |target: &str| target == LINE || modules.iter().any(|module| module.id() == target);
+        if let Some(target) = faults.targets().find(|target| !known(target)) {
+            return Err(SimError::FaultValue {
+                name: "target".into(),
+                found: target.into(),
+                expected: format!("a module of the file, module[0] and on, or the line {LINE}"),
+            });
+        }
+        Ok(Rig::new(Box::new(signals), modules, vec![line], faults))
     }
 }
 

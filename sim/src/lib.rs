@@ -24,6 +24,7 @@ pub mod rig;
 mod shared;
 pub mod terminal;
 pub mod truth;
+mod uart;
 pub mod wire;
 pub mod world;
 

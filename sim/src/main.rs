@@ -36,7 +36,7 @@ fn main() -> ExitCode {
 
 fn serve(arguments: &Arguments) -> Result<(SharedRig, Ptys), SimError> {
     let rig = match &arguments.bench {
-        Some(file) => rigsim::build_bench(file)?,
+        Some(file) => rigsim::build_bench(file, &arguments.options.faults)?,
         None => rigsim::build(&arguments.options)?,
     };
     let ptys = pty::serve(&rig)?;

@@ -12,6 +12,7 @@ use crate::fault::{Event, Faults};
 use crate::line::wire_us;
 use crate::module::Module;
 use crate::terminal::Plant;
+use crate::uart;
 
 /// What the world knows and no module ever tells.
 pub trait Record {
@@ -66,7 +67,7 @@ impl Rig {
         rig.scene.advance(0);
         for place in 0..rig.modules.len() {
             let module = &mut rig.modules[place];
-            if rig.faults.wrong_type.iter().any(|id| id == module.id()) {
+            if rig.faults.is_wrong_type(module.id()) {
                 module.plate_mut().pose_as("7000");
             }
             module.energise(rig.scene.as_mut(), 0);
@@ -97,35 +98,61 @@ impl Rig {
     pub fn exchange(&mut self, line: usize, text: &[u8], t_us: u64) -> Option<Reply> {
         self.advance(t_us);
         let now_us = self.now_us;
-        let address = dcon::addressee(text)?;
         let spec = self.lines.get(line)?;
-        if self.faults.line_dead(&spec.name, now_us) {
+        let (name, baud) = (spec.name.clone(), spec.baud);
+        self.faults.may_lose_port(&name, now_us);
+        if self.faults.line_dead(&name, now_us)
+            || self.faults.port_back_us(&name, now_us).is_some()
+            || self.faults.swallows(now_us)
+        {
             return None;
         }
+        let address = dcon::addressee(text)?;
         let mut reply: Option<(u64, Vec<u8>)> = None;
-        for (place, module) in self.modules.iter_mut().enumerate() {
-            if module.line() != spec.name || !module.hears(address) {
+        for place in 0..self.modules.len() {
+            let module = &self.modules[place];
+            if module.line() != name || !module.hears(address) {
                 continue;
             }
-            let silent = self.faults.silent(module.id(), now_us);
-            let heard = module.hear(text, self.scene.as_mut(), now_us);
-            self.due_us[place] = module.next_us();
-            let Some(mut bytes) = heard.filter(|_| !silent) else {
-                continue;
+            let answer = self.answer(place, text);
+            reply = match (reply, answer) {
+                (Some(first), Some(second)) => Some(together(first, second, baud)),
+                (first, second) => first.or(second),
             };
-            let latency_us = module.next_latency_us();
-            if self.faults.clashes(module.id()) {
-                Faults::collide(&mut bytes, b"?00\r");
-            }
-            match &mut reply {
-                None => reply = Some((latency_us, bytes)),
-                Some((_, first)) => Faults::collide(first, &bytes),
-            }
         }
         let (latency_us, bytes) = reply?;
-        let (extra_us, bytes) = self.faults.strike(text, bytes)?;
-        let at_us = now_us + latency_us + extra_us + wire_us(bytes.len(), spec.baud);
+        let (extra_us, bytes) = self.faults.strike(text, bytes, now_us)?;
+        let at_us = now_us + latency_us + extra_us + wire_us(bytes.len(), baud);
         Some(Reply { at_us, bytes })
+    }
+
+    /// What one module sends, and after how many microseconds.
+    fn answer(&mut self, place: usize, text: &[u8]) -> Option<(u64, Vec<u8>)> {
+        let now_us = self.now_us;
+        let upset = self.faults.before_a_request(now_us);
+        let module = &mut self.modules[place];
+        if let Some(event) = upset {
+            happen(module, event, self.scene.as_mut(), now_us);
+        }
+        let silent = self.faults.silent(module.id(), now_us);
+        let heard = module.hear(text, self.scene.as_mut(), now_us);
+        self.due_us[place] = module.next_us();
+        let mut bytes = heard.filter(|_| !silent)?;
+        let latency_us = module.next_latency_us();
+        self.faults.clash(module.id(), &mut bytes, now_us);
+        Some((latency_us, bytes))
+    }
+
+    /// When the port of a line is back, if it is away at `t_us`.
+    pub fn port_back_us(&self, line: usize, t_us: u64) -> Option<u64> {
+        let spec = self.lines.get(line)?;
+        self.faults.port_back_us(&spec.name, t_us)
+    }
+
+    /// When the port of a line goes away next, after `t_us`.
+    pub fn next_port_loss_us(&self, line: usize, t_us: u64) -> Option<u64> {
+        let spec = self.lines.get(line)?;
+        self.faults.next_port_loss_us(&spec.name, t_us)
     }
 
     /// EEPROM writes of all modules so far.
@@ -175,25 +202,31 @@ impl Rig {
     }
 
     fn strike_timed(&mut self, t_us: u64) {
-        while self
-            .faults
-            .timed
-            .first()
-            .is_some_and(|timed| timed.at_us <= t_us)
-        {
-            let timed = self.faults.timed.remove(0);
+        while let Some(timed) = self.faults.due(t_us) {
             self.run_events(timed.at_us);
             self.now_us = self.now_us.max(timed.at_us);
             self.scene.advance(self.now_us);
             let target = |module: &Module| module.id() == timed.target;
             if let Some(place) = self.modules.iter().position(target) {
                 let module = &mut self.modules[place];
-                match timed.event {
-                    Event::Reset => module.reset(self.scene.as_mut(), self.now_us),
-                    Event::Trip => module.trip(self.scene.as_mut(), self.now_us),
-                }
+                happen(module, timed.event, self.scene.as_mut(), self.now_us);
                 self.due_us[place] = module.next_us();
             }
         }
     }
+}
+
+fn happen(module: &mut Module, event: Event, plant: &mut dyn Plant, now_us: u64) {
+    match event {
+        Event::Reset => module.reset(plant, now_us),
+        Event::Trip => module.trip(plant, now_us),
+    }
+}
+
+/// Two modules at one address: what is heard of both, from the first one on.
+fn together(first: (u64, Vec<u8>), second: (u64, Vec<u8>), baud: u32) -> (u64, Vec<u8>) {
+    let apart_us = second.0 as i64 - first.0 as i64;
+    let apart_bits = apart_us * i64::from(baud) / 1_000_000;
+    let heard = uart::superposed(&first.1, &second.1, apart_bits);
+    (first.0.min(second.0), heard)
 }

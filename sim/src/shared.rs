@@ -67,12 +67,20 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
     Ok(SharedRig::new(rig))
 }
 
-/// Builds the modules of a bench file with fixed signals at their terminals, on one line `bench`.
+/// Builds the modules of a bench file with fixed signals at their terminals, on one line `bench`. Faults are
+/// those of lines and modules; a bench has no world.
 ///
 /// # Errors
-/// As [`bench::build`].
-pub fn build_bench(file: &Path) -> Result<SharedRig, SimError> {
-    Ok(SharedRig::new(bench::build(file)?))
+/// As [`bench::build`], or a fault is unknown or its value unfit.
+pub fn build_bench(file: &Path, faults: &[String]) -> Result<SharedRig, SimError> {
+    let mut on_the_line = Faults::none(0);
+    for text in faults {
+        let (name, value) = split(text);
+        if !on_the_line.add(name, value)? {
+            return Err(SimError::UnknownFault { name: name.into() });
+        }
+    }
+    Ok(SharedRig::new(bench::build(file, on_the_line)?))
 }
 
 /// Every fault that `--fault` takes.
@@ -187,6 +195,16 @@ impl SharedRig {
     pub fn lines(&self) -> Vec<(String, u32)> {
         let name = |line: &LineSpec| (line.name.clone(), line.baud);
         self.rig().lines().iter().map(name).collect()
+    }
+
+    /// When the port of a line is back, if it is away at `t_us`.
+    pub fn port_back_us(&self, line: usize, t_us: u64) -> Option<u64> {
+        self.rig().port_back_us(line, t_us)
+    }
+
+    /// When the port of a line goes away next, after `t_us`.
+    pub fn next_port_loss_us(&self, line: usize, t_us: u64) -> Option<u64> {
+        self.rig().next_port_loss_us(line, t_us)
     }
 
     /// EEPROM writes of all modules so far.

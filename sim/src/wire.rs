@@ -2,9 +2,11 @@
 //!
 //! A task per line reads requests, waits until their last character has arrived, lets the rig
 //! answer, waits until the reply's last character has arrived and hands the reply over in one
-//! piece. Replies that are on their way never hinder the next request.
+//! piece. Replies that are on their way never hinder the next request. A lost port ends the stream;
+//! when it is back, its [`Plug`] has another one.
 
 use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream};
 use tokio::time::sleep_until;
@@ -17,25 +19,54 @@ use crate::rig::Reply;
 /// Room of a stream in each direction; a reply is at most 64 characters.
 const ROOM: usize = 4_096;
 
+/// Where the host gets the stream of a line from, again after the port was lost or closed.
+#[derive(Clone, Default)]
+pub struct Plug(Arc<Mutex<Option<DuplexStream>>>);
+
+impl Plug {
+    /// The stream, if the port is there and nobody has it.
+    pub fn open(&self) -> Option<DuplexStream> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    fn put(&self, stream: Option<DuplexStream>) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = stream;
+    }
+
+    /// Somebody may still want to open it.
+    fn is_held(&self) -> bool {
+        Arc::strong_count(&self.0) > 1
+    }
+}
+
 /// Opens every line of the rig and spawns its task on the current runtime. Rig time goes on from
-/// where the rig stands.
+/// where the rig stands. A stream that has ended cannot be had again.
 pub fn in_process(rig: &SharedRig) -> Vec<(String, DuplexStream)> {
+    let opened = |(name, plug): (String, Plug)| plug.open().map(|stream| (name, stream));
+    plugs(rig).into_iter().filter_map(opened).collect()
+}
+
+/// As [`in_process`], with streams that can be had again.
+pub fn plugs(rig: &SharedRig) -> Vec<(String, Plug)> {
     let pace = Pace::start();
     let lines = rig.lines();
     let from_us = rig.now_us();
     let open = |(number, (name, baud)): (usize, (String, u32))| {
-        let (host, device) = tokio::io::duplex(ROOM);
+        let plug = Plug::default();
         let line = Line {
             rig: rig.clone(),
             number,
             pace,
             from_us,
+            baud,
+            plug: plug.clone(),
             receiver: Receiver::new(baud),
             arrivals: VecDeque::new(),
             replies: Vec::new(),
         };
+        let device = line.plugged();
         tokio::spawn(line.serve(device));
-        (name, host)
+        (name, plug)
     };
     lines.into_iter().enumerate().map(open).collect()
 }
@@ -45,6 +76,8 @@ struct Line {
     number: usize,
     pace: Pace,
     from_us: u64,
+    baud: u32,
+    plug: Plug,
     receiver: Receiver,
     arrivals: VecDeque<Arrival>,
     /// Few and mostly one: late replies overtake each other.
@@ -52,28 +85,53 @@ struct Line {
 }
 
 impl Line {
-    /// Until the host closes its end.
+    /// A fresh stream; the host's end is in the plug.
+    fn plugged(&self) -> DuplexStream {
+        let (host, device) = tokio::io::duplex(ROOM);
+        self.plug.put(Some(host));
+        device
+    }
+
+    /// Until the host has closed its end and nobody can open it again.
     async fn serve(mut self, mut device: DuplexStream) {
-        let mut bytes = [0u8; 256];
         loop {
+            // An error is a host that went away, just as an end is.
+            let _ = self.converse(&mut device).await;
+            drop(device);
+            self.plug.put(None);
+            if !self.plug.is_held() {
+                return;
+            }
+            if let Some(back_us) = self.rig.port_back_us(self.number, self.now_us()) {
+                sleep_until(self.at(back_us)).await;
+            }
+            self.receiver = Receiver::new(self.baud);
+            self.arrivals.clear();
+            self.replies.clear();
+            device = self.plugged();
+        }
+    }
+
+    /// Until the host closes its end or the port is lost.
+    async fn converse(&mut self, device: &mut DuplexStream) -> std::io::Result<()> {
+        let mut bytes = [0u8; 256];
+        while self.rig.port_back_us(self.number, self.now_us()).is_none() {
             let next_us = self.next_us();
-            let due = sleep_until(
-                self.pace
-                    .at(next_us.unwrap_or(0).saturating_sub(self.from_us)),
-            );
+            let due = sleep_until(self.at(next_us.unwrap_or(0)));
             tokio::select! {
                 biased;
-                count = device.read(&mut bytes) => match count {
-                    Ok(0) | Err(_) => return,
-                    Ok(count) => self.take(&bytes[..count]),
+                count = device.read(&mut bytes) => match count? {
+                    0 => return Ok(()),
+                    count => self.take(&bytes[..count]),
                 },
-                () = due, if next_us.is_some() => {
-                    if self.act(&mut device).await.is_err() {
-                        return;
-                    }
-                }
+                () = due, if next_us.is_some() => self.act(device).await?,
             }
         }
+        Ok(())
+    }
+
+    fn at(&self, t_us: u64) -> tokio::time::Instant {
+        self.pace.at(t_us.saturating_sub(self.from_us))
     }
 
     fn now_us(&self) -> u64 {
@@ -88,7 +146,8 @@ impl Line {
     fn next_us(&self) -> Option<u64> {
         let arrival = self.arrivals.front().map(|arrival| arrival.at_us);
         let reply = self.replies.iter().map(|reply| reply.at_us).min();
-        arrival.into_iter().chain(reply).min()
+        let loss = self.rig.next_port_loss_us(self.number, self.now_us());
+        arrival.into_iter().chain(reply).chain(loss).min()
     }
 
     async fn act(&mut self, device: &mut DuplexStream) -> std::io::Result<()> {

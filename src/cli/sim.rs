@@ -51,7 +51,7 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
         return Ok(0);
     }
     let rig = match &args.bench {
-        Some(file) => rigsim::build_bench(file)?,
+        Some(file) => rigsim::build_bench(file, &args.fault)?,
         None => rigsim::build(&Options {
             config_dir: config.to_path_buf(),
             world: args.world.clone(),

@@ -185,6 +185,7 @@ fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId, Str
 mod simulated {
     use super::super::PaceArg;
     use super::{Behind, Lines, Pace, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings};
+    use crate::cli::plug::PlugPorts;
     use rigsim::{Options, pty, wire};
 
     /// The simulated rig behind its lines.
@@ -224,7 +225,7 @@ mod simulated {
                 },
             ));
         }
-        for (name, stream) in wire::in_process(&rig) {
+        for (name, plug) in wire::plugs(&rig) {
             let line = plant
                 .wiring
                 .line_named(&name)
@@ -232,8 +233,8 @@ mod simulated {
             let settings = settings(plant, line);
             lines.logs.push((name, settings.log.clone()));
             let queues = queues(line);
-            tokio::spawn(bus::run(
-                stream,
+            tokio::spawn(bus::run_reopening(
+                PlugPorts(plug),
                 settings,
                 *pace,
                 queues.requests,

@@ -1,0 +1,182 @@
+//! Replies that arrive as something else: disturbed bits, foreign bytes, the own echo, a second transmitter,
+//! a wrong baud rate.
+//!
+//! Two transmitters and wrong baud rates work on the bits of the wire ([`crate::uart`]), so that what comes out
+//! is what a receiver makes of them: characters shifted into each other, broken stop bits.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use super::value::{Asked, Chances, Strikes, Targets};
+use super::{Family, Known};
+use crate::dcon;
+use crate::error::SimError;
+use crate::uart;
+
+const LIST: [Known; 5] = [
+    Known {
+        name: "flip",
+        unit: "probability",
+        default: "0.01",
+        what: "one bit of a reply is flipped",
+    },
+    Known {
+        name: "noise",
+        unit: "probability",
+        default: "0.01",
+        what: "one to four random bytes before a reply",
+    },
+    Known {
+        name: "echo",
+        unit: "probability",
+        default: "1",
+        what: "the request comes back before the reply",
+    },
+    Known {
+        name: "clash",
+        unit: "MODULE[@s] or probability",
+        default: "board_di",
+        what: "a second module of the kind answers at the same address",
+    },
+    Known {
+        name: "garble",
+        unit: "probability",
+        default: "0.01",
+        what: "a reply is sent at half or a third of the baud rate",
+    },
+];
+
+/// How far apart two modules at one address begin to answer at most, bits: two characters.
+const APART_BITS: i64 = 20;
+
+#[derive(Default)]
+pub(super) struct Damage {
+    flip: Chances,
+    noise: Chances,
+    echo: Chances,
+    garble: Chances,
+    clash: Chances,
+    clashing: Targets,
+}
+
+impl Family for Damage {
+    fn list(&self) -> &'static [Known] {
+        &LIST
+    }
+
+    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
+        let chances = match asked.name {
+            "flip" => &mut self.flip,
+            "noise" => &mut self.noise,
+            "echo" => &mut self.echo,
+            "garble" => &mut self.garble,
+            _ => match asked.strikes()? {
+                Strikes::Chance(_) => &mut self.clash,
+                Strikes::Target(module) => {
+                    self.clashing.add(module, asked.window);
+                    return Ok(());
+                }
+            },
+        };
+        chances.add(asked.probability()?, asked.window);
+        Ok(())
+    }
+
+    fn targets(&self) -> Vec<&str> {
+        self.clashing.names().collect()
+    }
+}
+
+impl Damage {
+    /// A second module at the address of `module` answers too.
+    pub(super) fn clash(
+        &self,
+        module: &str,
+        reply: &mut Vec<u8>,
+        rng: &mut ChaCha8Rng,
+        now_us: u64,
+    ) {
+        if self.clashing.hold(module, now_us) || self.clash.strike(rng, now_us) {
+            let twin = twin(reply, rng);
+            let apart = rng.random_range(-APART_BITS..=APART_BITS);
+            *reply = uart::superposed(reply, &twin, apart);
+        }
+    }
+
+    /// What a reply has become on its way.
+    pub(super) fn strike(
+        &self,
+        request: &[u8],
+        reply: &mut Vec<u8>,
+        rng: &mut ChaCha8Rng,
+        now_us: u64,
+    ) {
+        if self.flip.strike(rng, now_us) && !reply.is_empty() {
+            let bit = rng.random_range(0..reply.len() * 8);
+            reply[bit / 8] ^= 1 << (bit % 8);
+        }
+        if self.garble.strike(rng, now_us) {
+            *reply = uart::heard_faster(reply, rng.random_range(2..=3));
+        }
+        if self.noise.strike(rng, now_us) {
+            let count = rng.random_range(1..=4);
+            let noise: Vec<u8> = (0..count).map(|_| rng.random()).collect();
+            reply.splice(0..0, noise);
+        }
+        if self.echo.strike(rng, now_us) {
+            reply.splice(0..0, request.iter().copied().chain([dcon::CR]));
+        }
+    }
+}
+
+/// What another module of the same kind and address would say: other digits, a good checksum if there is one.
+fn twin(reply: &[u8], rng: &mut ChaCha8Rng) -> Vec<u8> {
+    let text = reply.strip_suffix(&[dcon::CR]).unwrap_or(reply);
+    let bare = dcon::without_checksum(text);
+    let mut other: String = String::new();
+    for byte in bare.unwrap_or(text) {
+        other.push(match byte {
+            b'0'..=b'9' | b'A'..=b'F' => char::from(b"0123456789"[rng.random_range(0..10)]),
+            _ => char::from(*byte),
+        });
+    }
+    dcon::framed(other, bare.is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::Faults;
+
+    fn struck(fault: &str) -> Vec<u8> {
+        let mut faults = Faults::none(7);
+        faults.add(fault, Some("1")).unwrap();
+        let mut reply = b">+05.123\r".to_vec();
+        faults.clash("timer", &mut reply, 0);
+        faults.strike(b"#010", reply, 0).unwrap().1
+    }
+
+    #[test]
+    fn a_flip_changes_one_bit() {
+        let bytes = struck("flip");
+        let both = bytes.iter().zip(b">+05.123\r");
+        let differing: u32 = both.map(|(a, b)| (a ^ b).count_ones()).sum();
+        assert_eq!((bytes.len(), differing), (9, 1));
+    }
+
+    #[test]
+    fn noise_and_echo_come_before_the_reply() {
+        let noisy = struck("noise");
+        assert!(noisy.ends_with(b">+05.123\r") && (10..=13).contains(&noisy.len()));
+        assert_eq!(struck("echo"), b"#010\r>+05.123\r");
+    }
+
+    #[test]
+    fn a_second_transmitter_and_a_wrong_baud_rate_leave_no_reply() {
+        for fault in ["clash", "garble"] {
+            let bytes = struck(fault);
+            assert_ne!(bytes, b">+05.123\r", "{fault}");
+            assert!(!bytes.is_empty(), "{fault}");
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Lines that carry nothing, and ports that vanish.
+//!
+//! A cut line is silent and stays open; a lost port ends every open descriptor, as an unplugged converter does,
+//! and is there again after two seconds unless something else was said.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::value::{Asked, Chances, Strikes, Targets, Window};
+use super::{Family, Known};
+use crate::error::SimError;
+
+const LIST: [Known; 3] = [
+    Known {
+        name: "line_cut",
+        unit: "LINE[@s]",
+        default: "measure@5",
+        what: "a line is dead for two seconds, or until ..s",
+    },
+    Known {
+        name: "baud_mismatch",
+        unit: "LINE[@s]",
+        default: "measure@0",
+        what: "the modules of a line run at another baud rate and understand nothing",
+    },
+    Known {
+        name: "port_lost",
+        unit: "LINE[@s] or probability",
+        default: "measure@5",
+        what: "a port vanishes and is back after two seconds, or at ..s",
+    },
+];
+
+/// How long a cut line stays dead and a port away when nothing is said, microseconds.
+const AWAY_US: u64 = 2_000_000;
+
+#[derive(Default)]
+pub(super) struct Port {
+    dead: Targets,
+    lost: Targets,
+    loss: Chances,
+}
+
+impl Family for Port {
+    fn list(&self) -> &'static [Known] {
+        &LIST
+    }
+
+    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
+        let line = asked.value.to_owned();
+        match asked.name {
+            "line_cut" => self.dead.add(line, ended(asked.window)),
+            "baud_mismatch" => self.dead.add(line, asked.window),
+            _ => match asked.strikes()? {
+                Strikes::Chance(probability) => self.loss.add(probability, asked.window),
+                Strikes::Target(line) => self.lost.add(line, ended(asked.window)),
+            },
+        }
+        Ok(())
+    }
+
+    fn targets(&self) -> Vec<&str> {
+        self.dead.names().chain(self.lost.names()).collect()
+    }
+}
+
+fn ended(window: Window) -> Window {
+    Window {
+        until_us: window.until_us.or(Some(window.from_us + AWAY_US)),
+        ..window
+    }
+}
+
+impl Port {
+    /// The line carries nothing now.
+    pub(super) fn line_dead(&self, line: &str, now_us: u64) -> bool {
+        self.dead.hold(line, now_us)
+    }
+
+    /// May take the port away while a request is on the line.
+    pub(super) fn may_lose(&mut self, line: &str, rng: &mut ChaCha8Rng, now_us: u64) {
+        if self.loss.strike(rng, now_us) {
+            let window = Window {
+                from_us: now_us,
+                until_us: Some(now_us + AWAY_US),
+            };
+            self.lost.forget_before(now_us);
+            self.lost.add(line.to_owned(), window);
+        }
+    }
+
+    /// The instant at which the port is back, when it is away now.
+    pub(super) fn back_us(&self, line: &str, now_us: u64) -> Option<u64> {
+        let away = self
+            .lost
+            .windows(line)
+            .filter(|window| window.holds(now_us));
+        away.filter_map(|window| window.until_us).max()
+    }
+
+    /// The next instant at which the port goes away.
+    pub(super) fn next_loss_us(&self, line: &str, now_us: u64) -> Option<u64> {
+        let to_come = self.lost.windows(line).map(|window| window.from_us);
+        to_come.filter(|from_us| *from_us > now_us).min()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::Faults;
+
+    #[test]
+    fn a_cut_line_comes_back_after_two_seconds() {
+        let mut faults = Faults::none(1);
+        faults.add("line_cut", Some("motion@1")).unwrap();
+        assert!(!faults.line_dead("motion", 999_999));
+        assert!(faults.line_dead("motion", 1_000_000));
+        assert!(!faults.line_dead("measure", 1_000_000));
+        assert!(!faults.line_dead("motion", 3_000_000));
+    }
+
+    #[test]
+    fn a_lost_port_says_when_it_goes_and_when_it_is_back() {
+        let mut faults = Faults::none(1);
+        faults.add("port_lost", Some("motion@1..1.5")).unwrap();
+        assert_eq!(faults.next_port_loss_us("motion", 0), Some(1_000_000));
+        assert_eq!(faults.next_port_loss_us("measure", 0), None);
+        assert_eq!(faults.port_back_us("motion", 999_999), None);
+        assert_eq!(faults.port_back_us("motion", 1_000_000), Some(1_500_000));
+        assert_eq!(faults.port_back_us("motion", 1_500_000), None);
+        faults.add("port_lost", Some("1@7")).unwrap();
+        faults.may_lose_port("measure", 7_000_000);
+        assert_eq!(faults.port_back_us("measure", 7_000_001), Some(9_000_000));
+    }
+}

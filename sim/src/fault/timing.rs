@@ -1,0 +1,90 @@
+//! Replies that come, but not when they should.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::value::{Asked, Chances, Window};
+use super::{Family, Known};
+use crate::error::SimError;
+
+const LIST: [Known; 2] = [
+    Known {
+        name: "delay",
+        unit: "ms",
+        default: "20",
+        what: "every reply takes so much longer",
+    },
+    Known {
+        name: "late",
+        unit: "probability[/ms]",
+        default: "0.01/200",
+        what: "a reply comes so late that nobody waits for it any more",
+    },
+];
+
+/// Lateness when only a probability is given, microseconds: beyond any time-out.
+const LATE_US: u64 = 200_000;
+
+#[derive(Default)]
+pub(super) struct Timing {
+    delays: Vec<(u64, Window)>,
+    late: Vec<(u64, Chances)>,
+}
+
+impl Family for Timing {
+    fn list(&self) -> &'static [Known] {
+        &LIST
+    }
+
+    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
+        if asked.name == "delay" {
+            self.delays.push((asked.ms(asked.value)?, asked.window));
+            return Ok(());
+        }
+        let (probability, late_us) = match asked.value.split_once('/') {
+            Some((probability, ms)) => (probability, asked.ms(ms)?),
+            None => (asked.value, LATE_US),
+        };
+        let mut chances = Chances::default();
+        chances.add(asked.probability_in(probability)?, asked.window);
+        self.late.push((late_us, chances));
+        Ok(())
+    }
+
+    fn targets(&self) -> Vec<&str> {
+        Vec::new()
+    }
+}
+
+impl Timing {
+    /// What a reply takes longer, microseconds.
+    pub(super) fn extra_us(&self, rng: &mut ChaCha8Rng, now_us: u64) -> u64 {
+        let delays = self
+            .delays
+            .iter()
+            .filter(|(_, window)| window.holds(now_us));
+        let delay_us: u64 = delays.map(|(us, _)| us).sum();
+        let late = self.late.iter().map(|(us, chances)| {
+            let strikes = chances.strike(rng, now_us);
+            u64::from(strikes) * us
+        });
+        delay_us + late.sum::<u64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::Faults;
+
+    #[test]
+    fn delays_add_up_and_lateness_is_what_was_asked_for() {
+        let mut faults = Faults::none(1);
+        faults.add("delay", Some("5")).unwrap();
+        faults.add("delay", Some("2.5@1")).unwrap();
+        let mut extra = |now_us| faults.strike(b"#01", b">\r".to_vec(), now_us).unwrap().0;
+        assert_eq!((extra(0), extra(1_000_000)), (5_000, 7_500));
+        faults.add("late", Some("1/350")).unwrap();
+        let (extra_us, bytes) = faults.strike(b"#01", b">\r".to_vec(), 0).unwrap();
+        assert_eq!((extra_us, bytes), (355_000, b">\r".to_vec()));
+    }
+}

@@ -1,0 +1,140 @@
+//! Modules that are not what they were: restarted, tripped, exchanged for another product.
+//!
+//! A module by name is upset once, at its instant; with a probability it is upset just before a request to it.
+
+use rand_chacha::ChaCha8Rng;
+
+use super::value::{Asked, Chances, Strikes};
+use super::{Family, Known};
+use crate::error::SimError;
+
+const LIST: [Known; 3] = [
+    Known {
+        name: "reset",
+        unit: "MODULE[@s] or probability",
+        default: "board_do@5",
+        what: "a module restarts",
+    },
+    Known {
+        name: "watchdog_trip",
+        unit: "MODULE[@s] or probability",
+        default: "board_do@5",
+        what: "a host watchdog expires early",
+    },
+    Known {
+        name: "wrong_type",
+        unit: "MODULE",
+        default: "board_di",
+        what: "another product sits at the address",
+    },
+];
+
+/// What happens to a module.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Event {
+    /// It restarts.
+    Reset,
+    /// Its host watchdog expires.
+    Trip,
+}
+
+/// A thing that happens to one module at an instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Timed {
+    /// Rig time, microseconds.
+    pub at_us: u64,
+    /// Identifier of the module.
+    pub target: String,
+    /// What happens.
+    pub event: Event,
+}
+
+#[derive(Default)]
+pub(super) struct Upset {
+    reset: Chances,
+    trip: Chances,
+    /// In order of time.
+    timed: Vec<Timed>,
+    wrong_type: Vec<String>,
+}
+
+impl Family for Upset {
+    fn list(&self) -> &'static [Known] {
+        &LIST
+    }
+
+    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
+        if asked.name == "wrong_type" {
+            self.wrong_type.push(asked.value.to_owned());
+            return Ok(());
+        }
+        let (event, chances) = match asked.name {
+            "reset" => (Event::Reset, &mut self.reset),
+            _ => (Event::Trip, &mut self.trip),
+        };
+        match asked.strikes()? {
+            Strikes::Chance(probability) => chances.add(probability, asked.window),
+            Strikes::Target(target) => self.timed.push(Timed {
+                at_us: asked.window.from_us,
+                target,
+                event,
+            }),
+        }
+        self.timed.sort_by_key(|timed| timed.at_us);
+        Ok(())
+    }
+
+    fn targets(&self) -> Vec<&str> {
+        let timed = self.timed.iter().map(|timed| timed.target.as_str());
+        timed
+            .chain(self.wrong_type.iter().map(String::as_str))
+            .collect()
+    }
+}
+
+impl Upset {
+    /// What happens to a module just before it hears a request.
+    pub(super) fn before_a_request(&self, rng: &mut ChaCha8Rng, now_us: u64) -> Option<Event> {
+        if self.reset.strike(rng, now_us) {
+            return Some(Event::Reset);
+        }
+        self.trip.strike(rng, now_us).then_some(Event::Trip)
+    }
+
+    /// The next event that is due, taken out.
+    pub(super) fn due(&mut self, now_us: u64) -> Option<Timed> {
+        let is_due = self.timed.first().is_some_and(|next| next.at_us <= now_us);
+        is_due.then(|| self.timed.remove(0))
+    }
+
+    pub(super) fn is_wrong_type(&self, module: &str) -> bool {
+        self.wrong_type.iter().any(|wrong| wrong == module)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::super::Faults;
+    use super::Event;
+
+    #[test]
+    fn events_by_name_strike_once_and_in_order_of_time() {
+        let mut faults = Faults::none(1);
+        faults.add("reset", Some("timer@3")).unwrap();
+        faults.add("watchdog_trip", Some("board_do@2")).unwrap();
+        assert_eq!(faults.due(1_999_999), None);
+        assert_eq!(faults.due(5_000_000).unwrap().event, Event::Trip);
+        assert_eq!(faults.due(5_000_000).unwrap().target, "timer");
+        assert_eq!(faults.due(5_000_000), None);
+    }
+
+    #[test]
+    fn events_by_chance_strike_before_a_request() {
+        let mut faults = Faults::none(1);
+        assert_eq!(faults.before_a_request(0), None);
+        faults.add("watchdog_trip", Some("1@1")).unwrap();
+        assert_eq!(faults.before_a_request(0), None);
+        assert_eq!(faults.before_a_request(1_000_000), Some(Event::Trip));
+    }
+}

@@ -1,0 +1,187 @@
+//! How the value of a fault is written, and when it strikes.
+//!
+//! | form | example | means |
+//! |---|---|---|
+//! | probability | `drop=0.01` | each time on its own |
+//! | ms | `delay=20` | milliseconds |
+//! | MODULE or LINE | `reset=board_do@5` | a table of `rig.toml`; on a bench `module[N]` from 0, and `bench` |
+//!
+//! After `@` comes the second of rig time from which it strikes, and after `..` the one at which it ends:
+//! `drop=0.5@10..12`. Without them: from the start, and for good.
+
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+
+use crate::error::SimError;
+
+/// From when until when, microseconds of rig time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Window {
+    pub(super) from_us: u64,
+    /// `None` when nothing was said.
+    pub(super) until_us: Option<u64>,
+}
+
+impl Window {
+    pub(super) fn holds(self, now_us: u64) -> bool {
+        self.from_us <= now_us && self.until_us.is_none_or(|until| now_us < until)
+    }
+}
+
+/// A fault as it was asked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Asked<'a> {
+    pub(super) name: &'a str,
+    /// What stands before `@`.
+    pub(super) value: &'a str,
+    pub(super) window: Window,
+}
+
+/// Whom a fault strikes: anybody now and then, or one by name.
+pub(super) enum Strikes {
+    Chance(f64),
+    Target(String),
+}
+
+impl<'a> Asked<'a> {
+    /// Takes `VALUE[@FROM[..UNTIL]]` apart.
+    pub(super) fn read(name: &'a str, text: &'a str) -> Result<Self, SimError> {
+        let (value, times) = match text.split_once('@') {
+            Some((value, times)) => (value, times),
+            None => (text, "0"),
+        };
+        let instant = |seconds: &str| match seconds.parse::<f64>() {
+            Ok(s) if (0.0..1e9).contains(&s) => Ok((s * 1e6).round() as u64),
+            _ => Err(wrong(name, seconds, "seconds from 0 behind `@`")),
+        };
+        let window = match times.split_once("..") {
+            None => Window {
+                from_us: instant(times)?,
+                until_us: None,
+            },
+            Some((from, until)) => Window {
+                from_us: instant(from)?,
+                until_us: Some(instant(until)?),
+            },
+        };
+        Ok(Self {
+            name,
+            value,
+            window,
+        })
+    }
+
+    pub(super) fn probability(&self) -> Result<f64, SimError> {
+        self.probability_in(self.value)
+    }
+
+    pub(super) fn probability_in(&self, text: &str) -> Result<f64, SimError> {
+        match text.parse::<f64>() {
+            Ok(probability) if (0.0..=1.0).contains(&probability) => Ok(probability),
+            _ => Err(wrong(self.name, text, "a probability from 0 to 1")),
+        }
+    }
+
+    /// Milliseconds, as microseconds.
+    pub(super) fn ms(&self, text: &str) -> Result<u64, SimError> {
+        match text.parse::<f64>() {
+            Ok(ms) if (0.0..1e9).contains(&ms) => Ok((ms * 1e3).round() as u64),
+            _ => Err(wrong(self.name, text, "milliseconds from 0")),
+        }
+    }
+
+    /// A number is a probability, everything else the name of a module or line.
+    pub(super) fn strikes(&self) -> Result<Strikes, SimError> {
+        if self.value.parse::<f64>().is_ok() {
+            Ok(Strikes::Chance(self.probability()?))
+        } else {
+            Ok(Strikes::Target(self.value.to_owned()))
+        }
+    }
+}
+
+/// Probabilities, each in its window.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Chances(Vec<(f64, Window)>);
+
+impl Chances {
+    pub(super) fn add(&mut self, probability: f64, window: Window) {
+        self.0.push((probability, window));
+    }
+
+    /// Draws; nothing is drawn where nothing can strike.
+    pub(super) fn strike(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
+        self.0.iter().any(|(probability, window)| {
+            window.holds(now_us) && *probability > 0.0 && rng.random::<f64>() < *probability
+        })
+    }
+}
+
+/// Modules or lines by name, each in its window.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Targets(Vec<(String, Window)>);
+
+impl Targets {
+    pub(super) fn add(&mut self, name: String, window: Window) {
+        self.0.push((name, window));
+    }
+
+    pub(super) fn hold(&self, name: &str, now_us: u64) -> bool {
+        self.windows(name).any(|window| window.holds(now_us))
+    }
+
+    /// Every window of one name.
+    pub(super) fn windows(&self, name: &str) -> impl Iterator<Item = Window> {
+        let mine = self.0.iter().filter(move |(known, _)| known == name);
+        mine.map(|(_, window)| *window)
+    }
+
+    /// Drops windows that have ended.
+    pub(super) fn forget_before(&mut self, now_us: u64) {
+        self.0
+            .retain(|(_, window)| window.until_us.is_none_or(|until| now_us < until));
+    }
+
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.0.iter().map(|(name, _)| name.as_str())
+    }
+}
+
+/// The error of a value that does not fit.
+pub(super) fn wrong(name: &str, found: &str, expected: &str) -> SimError {
+    SimError::FaultValue {
+        name: name.into(),
+        found: found.into(),
+        expected: expected.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_value_may_say_from_when_until_when() {
+        let asked = Asked::read("drop", "0.5@10..12.5").unwrap();
+        assert_eq!(asked.probability().unwrap(), 0.5);
+        assert!(!asked.window.holds(9_999_999));
+        assert!(asked.window.holds(10_000_000));
+        assert!(!asked.window.holds(12_500_000));
+        assert!(Asked::read("drop", "0.5").unwrap().window.holds(0));
+    }
+
+    #[test]
+    fn a_value_that_does_not_fit_names_itself() {
+        for text in ["much", "-0.1", "1.5", "NaN"] {
+            let asked = Asked::read("drop", text).unwrap();
+            let error = asked.probability().unwrap_err().to_string();
+            assert!(error.contains("drop") && error.contains(text), "{error}");
+        }
+        for times in ["soon", "-1", "1..", "..", "inf"] {
+            let text = format!("timer@{times}");
+            assert!(Asked::read("silence", &text).is_err(), "{text}");
+        }
+        assert!(Asked::read("delay", "x").unwrap().ms("x").is_err());
+    }
+}

@@ -1,0 +1,201 @@
+//! One line in real time: reads stamped as they come, answers at absolute deadlines, a port that may vanish.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use super::socket::Socket;
+use super::tty::Tty;
+use crate::SharedRig;
+use crate::line::{self, Arrival};
+use crate::rig::Reply;
+
+/// Longest pause of a line's thread.
+const IDLE: Duration = Duration::from_millis(50);
+
+/// A sleeping thread wakes some 60 us late; it is woken so much earlier and yields until the deadline.
+const EARLY: Duration = Duration::from_micros(120);
+
+/// Bytes as they came, with the instant at which they were read.
+type Piece = (Instant, Vec<u8>);
+
+pub(super) struct Server {
+    pub(super) rig: SharedRig,
+    pub(super) number: usize,
+    pub(super) baud: u32,
+    /// Instant of rig time 0.
+    pub(super) origin: Instant,
+    pub(super) socket: Arc<Socket>,
+    pub(super) stop: Arc<AtomicBool>,
+    pub(super) receiver: line::Receiver,
+    pub(super) arrivals: Vec<Arrival>,
+    pub(super) replies: Vec<Reply>,
+}
+
+/// The thread that reads the master until it is told to end.
+struct Reader {
+    thread: JoinHandle<()>,
+    pieces: Receiver<Piece>,
+    end: Arc<AtomicBool>,
+}
+
+impl Reader {
+    fn start(master: &File) -> io::Result<Self> {
+        let (sender, pieces) = mpsc::channel();
+        let end = Arc::new(AtomicBool::new(false));
+        let (reading, ended) = (master.try_clone()?, Arc::clone(&end));
+        let thread = std::thread::Builder::new()
+            .name("line reader".into())
+            .spawn(move || read(reading, &sender, &ended))?;
+        Ok(Self {
+            thread,
+            pieces,
+            end,
+        })
+    }
+
+    fn finish(self, socket: &Socket) {
+        self.end.store(true, Ordering::Release);
+        socket.wake_reader();
+        // A thread that panicked has said so already.
+        let _ = self.thread.join();
+    }
+}
+
+fn read(mut master: File, pieces: &Sender<Piece>, end: &AtomicBool) {
+    let mut bytes = [0u8; 512];
+    while !end.load(Ordering::Acquire) {
+        let Ok(count) = master.read(&mut bytes) else {
+            return;
+        };
+        let piece = (Instant::now(), bytes[..count].to_vec());
+        if count == 0 || pieces.send(piece).is_err() {
+            return;
+        }
+    }
+}
+
+impl Server {
+    /// Until told to stop; a port that was lost is opened anew when it is back.
+    pub(super) fn serve(mut self, mut master: File) {
+        loop {
+            // A terminal that fails is a port that is lost.
+            let _ = self.converse(master);
+            self.socket.unplug();
+            self.stay_away();
+            if self.stopped() {
+                return;
+            }
+            self.receiver = line::Receiver::new(self.baud);
+            self.arrivals.clear();
+            self.replies.clear();
+            let again = Tty::open().and_then(|tty| {
+                self.socket.plug(&tty.path, tty.slave)?;
+                Ok(tty.master)
+            });
+            master = match again {
+                Ok(master) => master,
+                Err(why) => {
+                    eprintln!("a lost port cannot be opened again: {why}");
+                    return;
+                }
+            };
+        }
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::Acquire)
+    }
+
+    fn away(&self) -> bool {
+        let now_us = self.rig_us(Instant::now());
+        self.rig.port_back_us(self.number, now_us).is_some()
+    }
+
+    /// While the port is lost the rig goes on.
+    fn stay_away(&self) {
+        while self.away() && !self.stopped() {
+            std::thread::sleep(IDLE);
+            self.rig.advance(self.rig_us(Instant::now()));
+        }
+    }
+
+    /// Until told to stop, or until the port is lost.
+    fn converse(&mut self, mut master: File) -> io::Result<()> {
+        let reader = Reader::start(&master)?;
+        let mut outcome = Ok(());
+        while outcome.is_ok() && !self.stopped() && !self.away() {
+            match reader.pieces.recv_timeout(self.pause()) {
+                Ok((at, bytes)) => {
+                    let at_us = self.rig_us(at);
+                    self.arrivals.extend(self.receiver.take(&bytes, at_us));
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+            outcome = self.act(&mut master);
+        }
+        reader.finish(&self.socket);
+        outcome
+    }
+
+    fn rig_us(&self, at: Instant) -> u64 {
+        at.saturating_duration_since(self.origin).as_micros() as u64
+    }
+
+    fn next_us(&self) -> Option<u64> {
+        let arrival = self.arrivals.iter().map(|arrival| arrival.at_us);
+        let reply = self.replies.iter().map(|reply| reply.at_us);
+        arrival.chain(reply).min()
+    }
+
+    fn pause(&self) -> Duration {
+        match self.next_us() {
+            None => IDLE,
+            Some(due_us) => (self.origin + Duration::from_micros(due_us))
+                .saturating_duration_since(Instant::now())
+                .saturating_sub(EARLY)
+                .min(IDLE),
+        }
+    }
+
+    /// Rig time; when a deadline is as near as the thread was woken early, at that deadline.
+    fn close_to_deadline(&self) -> u64 {
+        let next_us = self.next_us();
+        loop {
+            let now_us = self.rig_us(Instant::now());
+            match next_us {
+                Some(due_us)
+                    if (1..=EARLY.as_micros() as u64).contains(&due_us.saturating_sub(now_us)) =>
+                {
+                    std::thread::yield_now();
+                }
+                _ => return now_us,
+            }
+        }
+    }
+
+    fn act(&mut self, master: &mut File) -> io::Result<()> {
+        let now_us = self.close_to_deadline();
+        while self
+            .arrivals
+            .first()
+            .is_some_and(|next| next.at_us <= now_us)
+        {
+            let arrival = self.arrivals.remove(0);
+            let reply = self.rig.exchange(self.number, &arrival.text, arrival.at_us);
+            self.replies.extend(reply);
+        }
+        while let Some(place) = self.replies.iter().position(|reply| reply.at_us <= now_us) {
+            master.write_all(&self.replies.remove(place).bytes)?;
+        }
+        if self.arrivals.is_empty() && self.replies.is_empty() {
+            self.rig.advance(now_us);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,38 @@
+//! One pseudo-terminal, as a client that knows nothing of terminals expects it.
+
+use std::fs::File;
+use std::io;
+use std::os::fd::OwnedFd;
+use std::os::unix::ffi::OsStringExt;
+use std::path::PathBuf;
+
+use rustix::fs::{Mode, OFlags};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+
+/// Both ends; the slave is in raw mode and stays open while clients come and go.
+pub(super) struct Tty {
+    pub(super) master: File,
+    pub(super) slave: OwnedFd,
+    pub(super) path: PathBuf,
+}
+
+impl Tty {
+    pub(super) fn open() -> io::Result<Self> {
+        let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+        grantpt(&master)?;
+        unlockpt(&master)?;
+        let name = ptsname(&master, Vec::new())?;
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+        let slave = rustix::fs::open(name.as_c_str(), flags, Mode::empty())?;
+        let mut mode = tcgetattr(&slave)?;
+        mode.make_raw();
+        tcsetattr(&slave, OptionalActions::Now, &mode)?;
+        let path = PathBuf::from(std::ffi::OsString::from_vec(name.into_bytes()));
+        Ok(Self {
+            master: File::from(master),
+            slave,
+            path,
+        })
+    }
+}

@@ -1,0 +1,16 @@
+//! In-process streams of the simulated rig as ports of a line: lost and opened again like serial ports.
+
+use crate::bus::{PortError, Ports};
+use rigsim::wire::Plug;
+use tokio::io::DuplexStream;
+
+/// The plug of one line.
+pub struct PlugPorts(pub Plug);
+
+impl Ports for PlugPorts {
+    type Port = DuplexStream;
+
+    async fn open(&mut self) -> Result<DuplexStream, PortError> {
+        self.0.open().ok_or(PortError::Gone)
+    }
+}
