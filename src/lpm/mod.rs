@@ -47,6 +47,8 @@
 
 mod answer;
 mod distance;
+#[cfg(any(test, feature = "study"))]
+pub mod exact;
 mod model;
 mod mover;
 mod path;

@@ -38,7 +38,8 @@ pub(crate) struct Piece {
     pub(crate) centre: Vec3,
     pub(crate) frame: Frame,
     pub(crate) form: Form,
-    /// Sum of the magnitudes that entered centre and extents, mm: the scale of rounding errors.
+    /// Sum of the magnitudes that were rounded on the way to centre and extents, mm: the scale of
+    /// rounding errors. A place that was reached by exact sums adds nothing.
     pub(crate) span: f64,
     /// Block or cylinder whose own z is exactly vertical: closed forms apply.
     pub(crate) upright: bool,
@@ -68,12 +69,17 @@ impl Piece {
             Form::Block(_) | Form::Cylinder { .. } => self.form,
             Form::Triangle(corners) => Form::Triangle(corners.map(|corner| frame.apply(corner))),
         };
-        let centre = add(frame.apply(self.centre), position);
+        let turned = frame.apply(self.centre);
+        let rounded = if is_exact_sum(turned, position) {
+            0.0
+        } else {
+            reach(position)
+        };
         Piece::new(
-            centre,
+            add(turned, position),
             frame.then(&self.frame),
             form,
-            self.span + reach(position),
+            self.span + rounded,
         )
     }
 
@@ -137,7 +143,7 @@ impl Piece {
 
     /// Bounding box `(low, high)` at its place, rounded outward by the noise of the piece.
     pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
-        let noise = NOISE * self.span;
+        let noise = NOISE * (self.span + reach(self.centre));
         let mut low = self.centre;
         let mut high = self.centre;
         for axis in 0..3 {
@@ -148,6 +154,15 @@ impl Piece {
         }
         (low, high)
     }
+}
+
+/// Whether `a + b` lost nothing to rounding (the error term of an exact sum, after Knuth).
+fn is_exact_sum(a: Vec3, b: Vec3) -> bool {
+    (0..3).all(|axis| {
+        let sum = a[axis] + b[axis];
+        let second = sum - a[axis];
+        (a[axis] - (sum - second)) + (b[axis] - second) == 0.0
+    })
 }
 
 /// All pieces of a checked shape in its own frame.

@@ -2,9 +2,12 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 
+mod built_pairs;
 mod hard_cases;
 mod meshes_and_turns;
 mod properties;
+mod small_world;
+mod truth;
 
 fn block(x: f64, y: f64, z: f64) -> Shape {
     Shape::Block { half: [x, y, z] }

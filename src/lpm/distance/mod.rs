@@ -43,8 +43,10 @@ pub(crate) struct Proposal {
 }
 
 /// Bounds of rounding for one evaluated plane between the two pieces, mm.
+///
+/// Of the places only their difference counts: a kilometre that both have in common costs no digit.
 pub(crate) fn noise(a: &Piece, b: &Piece, shift: Vec3) -> f64 {
-    NOISE * (a.span + b.span + reach(shift))
+    NOISE * (a.span + b.span + reach(shift) + reach(between(a, b, shift)))
 }
 
 /// Vector from the centre of `a` to the centre of `b` after `shift`.

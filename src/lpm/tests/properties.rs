@@ -1,4 +1,4 @@
-//! Properties over many drawn scenes, and a small world in whole numbers.
+//! Properties over many drawn scenes.
 use super::*;
 use crate::lpm::distance::tests::Dice;
 
@@ -111,71 +111,4 @@ fn there_and_back_and_in_two_halves_give_the_same_verdict() {
             "seed {seed}: {clearance}"
         );
     }
-}
-
-#[test]
-fn every_box_and_move_of_a_small_world_is_judged_as_whole_numbers_say() {
-    let mut counted = 0;
-    let element = standing(&block(1.0, 0.5, 1.5), Pose::IDENTITY);
-    for size in [[1, 1, 1], [2, 1, 3], [1, 4, 2]] {
-        let mover = block(
-            f64::from(size[0]) / 2.0,
-            f64::from(size[1]) / 2.0,
-            f64::from(size[2]) / 2.0,
-        );
-        // Everything doubled: whole numbers. Sum of the half extents of both bodies.
-        let reach = [2 + size[0], 1 + size[1], 3 + size[2]];
-        for code in 0..7 * 7 * 7 * 5 * 5 * 5 {
-            let digit = |index: u32, base: i32| {
-                code / 7_i32.pow(index.min(3)) / 5_i32.pow(index.saturating_sub(3)) % base
-            };
-            let start = [
-                2 * digit(0, 7) - 6,
-                2 * digit(1, 7) - 6,
-                2 * digit(2, 7) - 6,
-            ];
-            let run = [
-                4 * digit(3, 5) - 8,
-                4 * digit(4, 5) - 8,
-                4 * digit(5, 5) - 8,
-            ];
-            let from = start.map(|member| f64::from(member) / 2.0);
-            let to = [0, 1, 2].map(|axis| f64::from(start[axis] + run[axis]) / 2.0);
-            let found = stop(&element, &mover, &straight(from, to));
-            assert_eq!(
-                found.is_some(),
-                slabs_meet(start, run, reach),
-                "{start:?} {run:?} {reach:?}"
-            );
-            counted += 1;
-        }
-    }
-    assert_eq!(counted, 3 * 343 * 125);
-}
-
-/// Exact: is there a `t` in 0..=1 with `|start + t run| <= reach` on every axis?
-fn slabs_meet(start: [i32; 3], run: [i32; 3], reach: [i32; 3]) -> bool {
-    // t as a fraction (numerator, positive denominator).
-    let (mut low, mut high) = ((0, 1), (1, 1));
-    for axis in 0..3 {
-        let (s, r, limit) = (start[axis], run[axis], reach[axis]);
-        if r == 0 {
-            if s.abs() > limit {
-                return false;
-            }
-            continue;
-        }
-        let ends = [(-limit - s) * r.signum(), (limit - s) * r.signum()];
-        let (enter, leave) = (
-            (ends[0].min(ends[1]), r.abs()),
-            (ends[0].max(ends[1]), r.abs()),
-        );
-        if enter.0 * low.1 > low.0 * enter.1 {
-            low = enter;
-        }
-        if leave.0 * high.1 < high.0 * leave.1 {
-            high = leave;
-        }
-    }
-    low.0 * high.1 <= high.0 * low.1
 }
