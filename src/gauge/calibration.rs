@@ -72,6 +72,10 @@ impl OutputLine {
 pub struct Lag {
     /// Indicated minus certified threshold on the fine ramp, volts; positive for operate, negative for release.
     pub fine_v: Factor,
+    /// Mean certified threshold of those parts, volts: a gain error of the supply was in [`Lag::fine_v`] there,
+    /// and only away from it is left over.
+    #[serde(default)]
+    pub at_v: f64,
     /// Coarse minus fine indication, volts: places the fine ramp.
     pub coarse_v: f64,
     /// Scatter of [`Lag::coarse_v`] from part to part, volts (1 sd).

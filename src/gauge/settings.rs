@@ -41,6 +41,8 @@ pub struct AccuracySettings {
     pub ao_offset_mv: f64,
     /// Slope of analog outputs, %.
     pub ao_slope_pct: f64,
+    /// Time between two steps of an analog output while it ramps, ms.
+    pub ao_refresh_ms: f64,
     /// Delay of the counter gates, us.
     pub gate_delay_us: f64,
     /// Thermometers, K (standard deviation).

@@ -46,10 +46,10 @@ pub struct RampDoubt {
     pub slope: Factor,
     /// Scatter of the part's own threshold from operation to operation, volts.
     pub operation_v: f64,
-    /// Step of the output while ramping, volts.
-    pub step_v: f64,
-    /// Standard uncertainty of the level at which the ramp starts, relative to the golden parts', volts.
-    pub level_v: f64,
+    /// Time between two steps of the output while it ramps.
+    pub refresh: Second,
+    /// Relative standard uncertainty of the gain of the level at which the ramp starts.
+    pub level: f64,
     /// Part's temperature against the track's, kelvin (1 sd).
     pub temperature_k: f64,
 }
@@ -73,8 +73,11 @@ pub fn quasi_static(
         )
         .with_random("repeatability", doubt.operation_v)
         .with("slope", doubt.slope.u * gate.0)
-        .with_random("resolution", resolution(doubt.step_v))
-        .with("level", doubt.level_v);
+        .with_random(
+            "resolution",
+            resolution(doubt.slope.value * doubt.refresh.0),
+        )
+        .with("level", (at_part - lag.at_v) * doubt.level);
     Reading { value, budget }
 }
 
@@ -94,14 +97,15 @@ mod tests {
     fn one_kelvin_is_thirty_millivolts_of_an_operate_voltage() {
         let lag = Lag {
             fine_v: Factor::new(0.0, 0.0),
+            at_v: 7.88,
             coarse_v: 0.0,
             coarse_sd_v: 0.0,
         };
         let doubt = RampDoubt {
             slope: Factor::new(1.5, 0.0),
             operation_v: 0.0,
-            step_v: 0.0,
-            level_v: 0.0,
+            refresh: Second(0.0),
+            level: 0.0,
             temperature_k: 1.0,
         };
         let reading = quasi_static(

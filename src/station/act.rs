@@ -214,6 +214,20 @@ impl Runner {
         self.current.is_none() && !self.pending
     }
 
+    /// A runner that begins now and remembers what the one before it marked and counted: a mark outlives
+    /// its stage, and counters that stand still need not be read twice.
+    pub fn after(
+        acts: Vec<Act>,
+        now: RigTime,
+        before: &Runner,
+        gates: Option<[CountSample; 2]>,
+    ) -> Self {
+        let mut runner = Self::new(acts, now);
+        runner.mark = before.mark;
+        runner.readings.gates.extend(gates);
+        runner
+    }
+
     /// Goes on as far as it can. `done` answers the job asked for before, once.
     pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Doing {
         if self.pending {

@@ -112,8 +112,8 @@ impl GoldenRun {
             accuracy,
         )?;
         Ok(Lags {
-            operate: place(operate, coarse.0),
-            release: place(release, coarse.1),
+            operate: place(operate, mean(sets, |part| part.operate_voltage_v), coarse.0),
+            release: place(release, mean(sets, |part| part.release_voltage_v), coarse.1),
         })
     }
 
@@ -154,6 +154,10 @@ impl GoldenRun {
     }
 }
 
+fn mean(parts: &[GoldenPart], certified: fn(&GoldenPart) -> Certified) -> f64 {
+    parts.iter().map(|part| certified(part).value).sum::<f64>() / parts.len().max(1) as f64
+}
+
 fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
     let serial = &part.serial;
     let coil = findings
@@ -171,10 +175,11 @@ fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
 }
 
 /// Lag with the coarse part as learned so far.
-pub fn place(fine: Factor, coarse: CoarseLag) -> Lag {
+pub fn place(fine: Factor, at_v: f64, coarse: CoarseLag) -> Lag {
     let (coarse_v, coarse_sd_v) = coarse.place(0.0);
     Lag {
         fine_v: fine,
+        at_v,
         coarse_v,
         coarse_sd_v,
     }
@@ -185,6 +190,7 @@ pub fn interim(guess: Lag, coarse: CoarseLag) -> Lag {
     let (coarse_v, coarse_sd_v) = coarse.place(guess.coarse_v);
     Lag {
         fine_v: Factor::new(0.0, f64::INFINITY),
+        at_v: 0.0,
         coarse_v,
         coarse_sd_v,
     }

@@ -99,10 +99,10 @@ impl Station {
     fn new_lags(&self, golden: bool) -> Result<(Lags, bool), String> {
         let bench = &self.bench;
         if !golden {
-            let fine = (bench.operate_lag().fine_v, bench.release_lag().fine_v);
+            let known = (bench.operate_lag(), bench.release_lag());
             let lags = Lags {
-                operate: golden::place(fine.0, self.coarse.0),
-                release: golden::place(fine.1, self.coarse.1),
+                operate: golden::place(known.0.fine_v, known.0.at_v, self.coarse.0),
+                release: golden::place(known.1.fine_v, known.1.at_v, self.coarse.1),
             };
             return Ok((lags, false));
         }

@@ -10,7 +10,7 @@ use crate::rig::point::AnalogOut;
 use crate::units::{Span, Volt};
 
 /// Slowest settling of an output after its last refresh.
-const RAMP_MARGIN: Span = Span::ms(4);
+pub const RAMP_MARGIN: Span = Span::ms(4);
 
 /// Voltages that each output contributes at the coil.
 #[derive(Debug, Clone)]
@@ -71,6 +71,21 @@ impl Supply {
         self.coarse_at = self.coarse_at + way;
         let takes = Span::seconds(way.0.abs() / self.coarse_v_per_s) + RAMP_MARGIN;
         (Act::Supply(vec![(AnalogOut::SupplyCoarse, asked)]), takes)
+    }
+
+    /// Act that steps the level by `jump` and starts the fine ramp over `way`, both with their signs, and
+    /// how long the ramp takes. The level is written first: modules are written in the order of their address.
+    pub fn jump_and_ramp(&mut self, jump: Volt, way: Volt) -> (Act, Span) {
+        let total = self.total() + jump;
+        let mut outputs = Vec::new();
+        if let Act::Supply(step) = self.step_to(total) {
+            outputs.extend(step);
+        }
+        let (ramp, takes) = self.ramp_fine(self.fine_at + way);
+        if let Act::Supply(ramp) = ramp {
+            outputs.extend(ramp);
+        }
+        (Act::Supply(outputs), takes)
     }
 
     /// Act that starts the fine ramp towards `volts`, and how long the ramp takes.

@@ -96,6 +96,7 @@ fn untaught(coarse_v: f64) -> Lag {
     use crate::gauge::calibration::Factor;
     Lag {
         fine_v: Factor::new(0.0, f64::INFINITY),
+        at_v: 0.0,
         coarse_v,
         coarse_sd_v: UNTAUGHT_SD_V,
     }

@@ -1,13 +1,13 @@
 //! Coil resistance at the pre-bias, below pickup: the armature is open and L/R short. The pre-bias is
 //! also where the operate ramp starts, so the coil stays on.
 
-use super::{Bench, Findings, Stage, board};
+use super::{Bench, Findings, INTERLOCK, OFF, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::coil::resistance;
 use crate::gauge::recipe::CoilChannels;
 use crate::gauge::verdict::Bin;
 use crate::rig::point::DigitalOut::{
-    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+    self, Arm, CoilDrive, EventNoBreak, KelvinTest, RampMode, SelectNo, SourceOn, SourceReverse,
 };
 use crate::rig::sample::{Quality, Sample};
 use crate::station::act::{Act, CoilScan, Read, Readings};
@@ -24,48 +24,74 @@ const LEAST_PREBIAS: f64 = 0.5;
 const NO_CURRENT: Volt = Volt(0.15);
 /// Below this coil current the clamp may be switched and the probes may leave, ampere.
 const OFF_CURRENT_A: f64 = 0.001;
+/// Nothing driven, nothing selected.
+const IDLE: [(DigitalOut, bool); 8] = [
+    (SourceOn, false),
+    (SourceReverse, false),
+    (CoilDrive, false),
+    (Arm, false),
+    (RampMode, false),
+    (SelectNo, false),
+    (EventNoBreak, false),
+    (KelvinTest, false),
+];
 
-pub(super) fn acts(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
+/// The board is prepared for the operate ramp while the coil is converted: nothing moves the supply
+/// between arming and the ramp.
+pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
     let prebias = Volt(bench.recipe.test.prebias_v);
     let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
     let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
+    let repeated = findings.attempts(Parameter::CoilResistance) > 0;
+    (findings.operated, findings.released) = (false, false);
     let mut acts = Vec::new();
-    acts.extend([coarse, fine]);
-    if coarse_takes.max(fine_takes) > Span::ms(10) {
-        acts.push(Act::Wait(coarse_takes.max(fine_takes)));
+    if repeated {
+        let down = OFF.max(coarse_takes).max(fine_takes);
+        acts.extend([coarse, fine, Act::Board(IDLE.to_vec()), Act::Wait(down)]);
     }
     acts.extend([
         supply.step_to(prebias),
-        board(&[(CoilDrive, true)]),
-        Act::Wait(SETTLES),
+        board(&[
+            (SourceOn, false),
+            (SourceReverse, false),
+            (RampMode, true),
+            (EventNoBreak, false),
+            (Arm, false),
+            (SelectNo, true),
+            (CoilDrive, true),
+        ]),
+        Act::Wait(INTERLOCK + SETTLES),
         Act::Mark,
+        board(&[(Arm, true)]),
+        Act::Read(Read::Gates),
         Act::ConvertSinceMark(bench.fresh(CHANNELS)),
         Act::Read(Read::Coil),
     ]);
     acts
 }
 
-pub(super) fn acts_off(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
+/// Everything off, and the supply where the next part begins. After a timed release the coil has been
+/// free for longer than a conversion takes, so its current is read at once.
+pub(super) fn acts_off(bench: &Bench, supply: &mut Supply, findings: &Findings) -> Vec<Act> {
+    let mut acts = vec![Act::Board(IDLE.to_vec())];
+    if !findings.rested {
+        acts.push(Act::Mark);
+        acts.extend(rest(bench, supply));
+    }
+    acts.extend([
+        Act::ConvertSinceMark(INTERLOCK + bench.fresh(CHANNELS)),
+        Act::Read(Read::Coil),
+    ]);
+    acts
+}
+
+/// The supply goes where the next part begins: pre-bias on the level, both ramps down. Then every module
+/// with outputs is asked whether it has restarted under this part.
+pub(super) fn rest(bench: &Bench, supply: &mut Supply) -> [Act; 4] {
     let (coarse, _) = supply.ramp_coarse(Volt(0.0));
     let (fine, _) = supply.ramp_fine(Volt(0.0));
-    vec![
-        board(&[(SourceOn, false)]),
-        board(&[
-            (CoilDrive, false),
-            (Arm, false),
-            (RampMode, false),
-            (SelectNo, false),
-            (EventNoBreak, false),
-            (SourceReverse, false),
-        ]),
-        Act::Mark,
-        coarse,
-        fine,
-        supply.step_to(Volt(bench.recipe.test.prebias_v)),
-        Act::Read(Read::Resets),
-        Act::ConvertSinceMark(Span::ms(1) + bench.fresh(CHANNELS)),
-        Act::Read(Read::Coil),
-    ]
+    let level = supply.step_to(Volt(bench.recipe.test.prebias_v));
+    [coarse, fine, level, Act::Read(Read::Resets)]
 }
 
 fn current_of(bench: &Bench, scan: &CoilScan) -> Option<Sample> {

@@ -1,57 +1,42 @@
 //! Contact resistance of a closure: source on, both polarities, each read from a conversion that began
-//! after the source had settled. The source is off 2 ms before anything else changes.
+//! after the source had settled.
 
-use super::{Bench, Findings, Stage, board};
+use super::{Bench, Findings, INTERLOCK, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::contact::{Reversal, resistance};
 use crate::gauge::verdict::Bin;
-use crate::rig::point::DigitalOut::{SourceOn, SourceReverse};
+use crate::rig::point::DigitalOut::{KelvinTest, SourceOn, SourceReverse};
 use crate::rig::sample::{Quality, Sample};
 use crate::station::act::{Act, Read, Readings};
-use crate::units::{Span, Volt};
+use crate::units::{Celsius, Span, Volt};
 
-/// The source is off so long before drive, select or reversal changes (interface board).
-const SOURCE_OFF: Span = Span::ms(2);
 /// No contact of 10 A class is below this, milliohms; a source that is off reads about 0.
 const LEAST_MOHM: f64 = 0.5;
 /// The thermal EMF may have moved by 30 uV between two closures; at the terminal, behind the gain of 50.
 const EMF_MOVES_V: f64 = 30e-6 * 50.0;
 /// Current and amplifier have settled.
-const SOURCE_SETTLES: Span = Span::ms(1);
+pub(super) const SOURCE_SETTLES: Span = Span::ms(1);
 
-/// Source on, forward, one reading; the source stays on.
-pub(super) fn forward(bench: &Bench) -> Vec<Act> {
-    vec![
-        board(&[(SourceOn, true)]),
+/// The reversed reading after a forward one; the source stays on and reversed.
+pub(super) fn reversed(bench: &Bench) -> [Act; 4] {
+    [
+        board(&[(SourceReverse, true)]),
         Act::Mark,
-        Act::Read(Read::Board),
-        Act::ConvertSinceMark(SOURCE_SETTLES + bench.fresh(1)),
+        Act::ConvertSinceMark(INTERLOCK + SOURCE_SETTLES + bench.fresh(1)),
         Act::Read(Read::Drop),
     ]
 }
 
-/// Source off for as long as the interlock asks.
-pub(super) fn off() -> Vec<Act> {
-    vec![board(&[(SourceOn, false)]), Act::Wait(SOURCE_OFF)]
-}
-
-/// Reversed reading after a forward one, and everything back.
-pub(super) fn reversed(bench: &Bench) -> Vec<Act> {
-    let mut acts = off();
-    acts.extend([
-        board(&[(SourceReverse, true)]),
-        board(&[(SourceOn, true)]),
+/// Both polarities at rest. The temperature of the part is read while the first one is converted.
+pub(super) fn acts_nc(bench: &Bench) -> Vec<Act> {
+    let mut acts = vec![
+        board(&[(KelvinTest, false), (SourceOn, true)]),
         Act::Mark,
+        Act::Read(Read::Track),
+        Act::Read(Read::Board),
         Act::ConvertSinceMark(SOURCE_SETTLES + bench.fresh(1)),
         Act::Read(Read::Drop),
-    ]);
-    acts.extend(off());
-    acts.push(board(&[(SourceReverse, false)]));
-    acts
-}
-
-pub(super) fn acts_nc(bench: &Bench) -> Vec<Act> {
-    let mut acts = forward(bench);
+    ];
     acts.extend(reversed(bench));
     acts
 }
@@ -107,6 +92,12 @@ pub(super) fn conclude_nc(
     readings: &Readings,
     findings: &mut Findings,
 ) -> Option<Stage> {
+    match readings.track.first() {
+        Some(track) if track.quality == Quality::Good && track.value.is_finite() => {
+            findings.track = Some(Celsius(track.value));
+        }
+        Some(_) | None => findings.void("track temperature not readable"),
+    }
     match reversal(readings) {
         Ok(closure) => {
             findings.drop_zero = Some(closure.zero());

@@ -3,10 +3,11 @@
 use super::ramp::Expected;
 use crate::gauge::Parameter;
 use crate::gauge::budget::{self, Reading};
+use crate::gauge::threshold::Direction;
 use crate::gauge::verdict::{Bin, Reason};
 use crate::rig::sample::{CountSample, Origin, Sample};
 use crate::station::act::Spent;
-use crate::units::{Celsius, Volt};
+use crate::units::{Celsius, Span, Volt};
 
 /// What a result was made from: line, module, channel and raw text lead back to the bytes.
 pub trait Evidence {
@@ -62,8 +63,20 @@ pub struct Findings {
     pub ramp_start: Option<Volt>,
     /// Length of the ramp under way.
     pub ramp_span: Option<Volt>,
-    /// Where the next fine ramp looks for its event.
-    pub expected: Option<Expected>,
+    /// The armature is still operated from the stage before, at the instant that stage has marked.
+    pub operated: bool,
+    /// The drive went off in the stage before, at the instant it has marked or earlier.
+    pub released: bool,
+    /// Coil free, supply where the next part begins: nothing is left for the last stage but to see it.
+    pub rested: bool,
+    /// How long after that mark a ramp goes on that nobody waits for.
+    pub still_ramping: Span,
+    /// Longest time of the ramp under way.
+    pub ramp_takes: Span,
+    /// Where the next fine operate ramp looks for its event.
+    pub expected_operate: Option<Expected>,
+    /// The same for release.
+    pub expected_release: Option<Expected>,
     /// Operate ramps.
     pub operate: Option<Ramp>,
     /// Release ramps.
@@ -71,6 +84,14 @@ pub struct Findings {
 }
 
 impl Findings {
+    /// Where the next fine ramp of this direction looks for its event.
+    pub fn expected(&mut self, direction: Direction) -> &mut Option<Expected> {
+        match direction {
+            Direction::Rising => &mut self.expected_operate,
+            Direction::Falling => &mut self.expected_release,
+        }
+    }
+
     /// Adds one result of a stage with the replies it was made from.
     pub fn found<'a, S: Evidence + 'a>(
         &mut self,

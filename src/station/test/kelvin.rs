@@ -9,30 +9,21 @@
 use super::{Bench, Findings, Stage, board};
 use crate::gauge::verdict::Bin;
 use crate::rig::point::DigitalOut::KelvinTest;
-use crate::rig::sample::Quality;
 use crate::station::act::{Act, Read, Readings};
-use crate::units::{Celsius, Span};
+use crate::units::Span;
 
 const PINS: [&str; 5] = ["coil A", "coil B", "COM", "NO", "NC"];
 const COM: usize = 2;
 
 pub(super) fn acts() -> Vec<Act> {
     vec![
-        Act::Read(Read::Track),
         board(&[(KelvinTest, true)]),
         Act::Wait(Span::ms(1)),
         Act::Read(Read::Board),
-        board(&[(KelvinTest, false)]),
     ]
 }
 
 pub(super) fn conclude(_: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
-    match readings.track.first() {
-        Some(track) if track.quality == Quality::Good && track.value.is_finite() => {
-            findings.track = Some(Celsius(track.value));
-        }
-        Some(_) | None => findings.void("track temperature not readable"),
-    }
     let Some(seen) = readings.boards.first() else {
         findings.void("interface board not read");
         return None;

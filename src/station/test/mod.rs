@@ -1,9 +1,15 @@
 //! The test of one part: the order of stages, and what each leaves behind.
 //!
 //! ```text
-//! kelvin -> NC contact -> coil -> operate coarse, fine -> timed operate + NO contact
-//!        -> timed release + NC contact -> release coarse, fine -> off -> verdict
+//! kelvin -> NC contact -> coil -> operate coarse -> release coarse -> operate fine -> release fine
+//!        -> timed operate + NO contact -> timed release + NC contact -> off -> verdict
 //! ```
+//! Each release follows on the operation before it, so that a part operates three times and not five.
+//! What needs no waiting (arming, counters, selections) is done while something else settles or converts;
+//! a mark therefore outlives the stage that set it, and so does the last reading of the counters.
+//! The board takes the source off by itself, 2 ms ahead of a change of drive, selection or direction;
+//! whoever makes such a change allows for it ([`INTERLOCK`]).
+//!
 //! A stage that finds the part unfit for the rest (open coil, contact that does not move) says why
 //! and the test goes straight to `off`. Results inside the guard band are measured again by the slow
 //! strategy: the same stage `slow_repeats` times, averaged. What is then still conditional fails.
@@ -24,6 +30,7 @@ use crate::gauge::Parameter;
 use crate::gauge::verdict::{Judgement, Verdict, failed_with, judge, of_part};
 use crate::rig::image::Image;
 use crate::rig::point::DigitalOut;
+use crate::rig::sample::CountSample;
 use crate::units::{RigTime, Span};
 pub use bench::Bench;
 pub use findings::{Evidence, Findings, Ramp, Stop};
@@ -31,6 +38,8 @@ use std::collections::VecDeque;
 
 /// Release, bounce and the swing of the armature are over after this long without drive.
 const OFF: Span = Span::ms(12);
+/// A change of drive, selection or direction comes so late while the source is on.
+const INTERLOCK: Span = Span::ms(2);
 
 /// One stage of the test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,11 +73,11 @@ const ORDER: [Stage; 10] = [
     Stage::NcContact,
     Stage::Coil,
     Stage::OperateCoarse,
+    Stage::ReleaseCoarse,
     Stage::OperateFine(0),
+    Stage::ReleaseFine(0),
     Stage::TimedOperate,
     Stage::TimedRelease,
-    Stage::ReleaseCoarse,
-    Stage::ReleaseFine(0),
     Stage::Off,
 ];
 
@@ -90,6 +99,7 @@ pub struct Test {
     stage: Stage,
     runner: Runner,
     slow_done: bool,
+    gates: Option<[CountSample; 2]>,
     /// What has been found so far.
     pub findings: Findings,
 }
@@ -107,6 +117,7 @@ impl Test {
             stage: Stage::Kelvin,
             runner,
             slow_done: false,
+            gates: None,
             findings,
         }
     }
@@ -148,14 +159,16 @@ impl Test {
 
     fn enter(&mut self, stage: Stage, now: RigTime) {
         self.stage = stage;
+        self.findings.rested &= stage == Stage::Off;
         let acts = acts(stage, &self.bench, &mut self.supply, &mut self.findings);
-        self.runner = Runner::new(acts, now);
+        self.runner = Runner::after(acts, now, &self.runner, self.gates.clone());
     }
 
     /// Draws the conclusions of the stage that has just ended.
     fn conclude(&mut self) {
         self.findings.spent.add(self.runner.spent());
         let readings = std::mem::take(&mut self.runner.readings);
+        self.gates = readings.gates.last().cloned().or(self.gates.take());
         let (bench, findings) = (&self.bench, &mut self.findings);
         let again = match self.stage {
             Stage::Kelvin => kelvin::conclude(bench, &readings, findings),
@@ -261,15 +274,15 @@ fn acts(stage: Stage, bench: &Bench, supply: &mut Supply, findings: &mut Finding
     match stage {
         Stage::Kelvin => kelvin::acts(),
         Stage::NcContact => contact::acts_nc(bench),
-        Stage::Coil => coil::acts(bench, supply),
+        Stage::Coil => coil::acts(bench, supply, findings),
         Stage::OperateCoarse => operate::acts_coarse(bench, supply, findings),
         Stage::PullIn => operate::acts_pull_in(bench, supply),
         Stage::OperateFine(_) => operate::acts_fine(bench, supply, findings),
-        Stage::TimedOperate => timing::acts_operate(bench, supply),
+        Stage::TimedOperate => timing::acts_operate(bench, supply, findings),
         Stage::TimedRelease => timing::acts_release(bench, supply, findings),
         Stage::ReleaseCoarse => release::acts_coarse(bench, supply, findings),
         Stage::ReleaseFine(_) => release::acts_fine(bench, supply, findings),
-        Stage::Off => coil::acts_off(bench, supply),
+        Stage::Off => coil::acts_off(bench, supply, findings),
     }
 }
 

@@ -5,17 +5,21 @@
 //! a step from zero picks up some 30 mV below the quasi-static threshold: the armature swings over.
 
 use super::ramp::{self, Expected, Met, stopped_at};
-use super::{Bench, Findings, OFF, Ramp, Stage, board};
+use super::{Bench, Findings, INTERLOCK, OFF, Ramp, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::threshold::{Direction, RampDoubt, indicated, quasi_static};
 use crate::gauge::timing::counts;
 use crate::gauge::verdict::Bin;
 use crate::rig::point::DigitalIn;
-use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
+use crate::rig::point::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
 use crate::station::act::{Act, Read, Readings};
-use crate::station::supply::Supply;
+use crate::station::supply::{RAMP_MARGIN, Supply};
 use crate::units::{Second, Span, Volt};
 
+/// The coarse release ramp begins so far above the highest threshold of the lot, volts.
+const RELEASE_HEADROOM_V: f64 = 0.8;
 /// First step of the approach, as a fraction of the start of the fine ramp.
 const APPROACH: f64 = 0.93;
 /// Time at the first step.
@@ -24,38 +28,42 @@ const APPROACH_TIME: Span = Span::ms(12);
 pub(super) const SETTLES: Span = Span::ms(25);
 /// Scatter of a repeated fine ramp around the first, volts.
 pub(super) const REPEAT_SD_V: f64 = 0.008;
+/// Poll of the latch and write of the turn, at the longest.
+const TURNS: Span = Span::ms(10);
 /// Slowest operation after the end of a ramp that is still taken for its event.
 const LATE: Span = Span::ms(25);
 
+/// Height of the coarse output at which the release ramp begins.
+pub(super) fn release_start(bench: &Bench) -> Volt {
+    let test = &bench.recipe.test;
+    let above = test.expected_release_v + 4.0 * test.expected_release_sd_v + RELEASE_HEADROOM_V;
+    Volt(above.min(test.coarse_span_v))
+}
+
+/// The board was armed while the coil was converted. Once the contact has made, the ramp turns round to
+/// where the release begins; the armature stays.
 pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
     findings.ramp_start = Some(supply.total());
     findings.ramp_span = Some(Volt(bench.recipe.test.coarse_span_v) - supply.coarse());
     let (ramp, takes) = supply.ramp_coarse(Volt(bench.recipe.test.coarse_span_v));
-    let rest = Span(takes.0.saturating_sub((OFF + APPROACH_TIME).0));
+    let (turn, _) = supply.ramp_coarse(release_start(bench));
     vec![
-        board(&[
-            (RampMode, true),
-            (SelectNo, true),
-            (EventNoBreak, false),
-            (Arm, false),
-        ]),
-        Act::Read(Read::Gates),
-        board(&[(Arm, true)]),
-        Act::Mark,
         ramp,
         Act::Until {
             point: DigitalIn::Latch,
             within: takes + LATE,
         },
+        Act::Mark,
+        turn,
         Act::Read(Read::Gates),
-        board(&[(CoilDrive, false), (Arm, false)]),
-        Act::WaitSinceMark(rest),
     ]
 }
 
-/// Length of gate 0 between the first and the last reading of a stage.
+/// Length of gate 0 between the last two readings.
 pub(super) fn gate0(bench: &Bench, readings: &Readings) -> Option<Second> {
-    let (before, after) = (readings.gates.first()?, readings.gates.last()?);
+    let [.., before, after] = readings.gates.as_slice() else {
+        return None;
+    };
     let gate = f64::from(counts(before[0].count, after[0].count)) / bench.clock().hz;
     Some(Second(
         gate - bench.calibration.gate_delay_us[0].value * 1e-6,
@@ -93,8 +101,19 @@ pub(super) fn conclude_coarse(
         .unwrap_or(seen);
     let lag = bench.operate_lag();
     findings.operate = Some(Ramp { coarse, fine: None });
-    findings.expected = Some(Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v));
+    findings.operated = true;
+    findings.still_ramping = turning(bench, coarse - start);
+    findings.expected_operate = Some(Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v));
     None
+}
+
+/// How long the coarse ramp needs from its event back down to [`release_start`]: it has gone on while the
+/// event was polled for and the turn written.
+fn turning(bench: &Bench, climbed: Volt) -> Span {
+    let per_s = bench.calibration.coarse_v_per_s.value;
+    let over = climbed.0 + per_s * TURNS.as_seconds();
+    let back = over.min(bench.recipe.test.coarse_span_v) - release_start(bench).0;
+    TURNS + Span::seconds(back.abs() / per_s) + RAMP_MARGIN
 }
 
 /// Nominal voltage, to tell a stuck contact from a threshold above the coarse ramp.
@@ -135,12 +154,12 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
         .operate
         .and_then(|ramp| ramp.fine)
         .map(|fine| Expected::new(fine, REPEAT_SD_V));
-    let Some(expected) = repeated.or(findings.expected) else {
+    let Some(expected) = repeated.or(findings.expected_operate) else {
         return Vec::new();
     };
-    findings.expected = Some(expected);
+    findings.expected_operate = Some(expected);
     let placed = expected.placed(Direction::Rising);
-    let mut acts = vec![board(&[(CoilDrive, false), (Arm, false)]), Act::Mark];
+    let mut acts = dropped(findings);
     acts.extend(make_room(bench, supply, placed.start));
     let approach = placed.start * APPROACH;
     acts.extend([
@@ -151,26 +170,39 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
         Act::Wait(APPROACH_TIME),
         supply.step_to(placed.start),
         Act::Mark,
+        board(&[(Arm, true)]),
         Act::Read(Read::Gates),
         Act::WaitSinceMark(SETTLES),
     ]);
     findings.ramp_start = Some(supply.total());
     findings.ramp_span = Some(placed.span);
-    let (ramp, takes) = supply.ramp_fine(supply.fine() + placed.span);
+    let (ramp, takes) = supply.jump_and_ramp(ramp::JUMP, placed.span - ramp::JUMP);
+    findings.ramp_takes = takes;
     acts.extend([
-        board(&[(Arm, true)]),
-        Act::Mark,
         ramp,
         Act::Until {
             point: DigitalIn::Latch,
             within: takes + LATE,
         },
+        Act::Mark,
         Act::Read(Read::Gates),
-        board(&[(CoilDrive, false), (Arm, false)]),
-        // The ramp's rest runs out while the coil is off before the timed operation.
-        Act::WaitSinceMark(Span(takes.0.saturating_sub(OFF.0))),
     ]);
     acts
+}
+
+/// Drive off, unless the stage before has switched it off already; [`OFF`] counts from the mark.
+pub(super) fn dropped(findings: &mut Findings) -> Vec<Act> {
+    if std::mem::take(&mut findings.released) {
+        return Vec::new();
+    }
+    findings.operated = false;
+    let off = [
+        (SourceOn, false),
+        (SourceReverse, false),
+        (CoilDrive, false),
+        (Arm, false),
+    ];
+    vec![board(&off), Act::Wait(INTERLOCK), Act::Mark]
 }
 
 /// Takes the ramps back when they stand higher than the approach needs, or the fine one stands at all.
@@ -204,6 +236,13 @@ pub(super) fn conclude_fine(
         Met::At(seen, gate) => (seen, gate),
         Met::Again => return Some(Stage::OperateFine(attempt + 1)),
     };
+    findings.operated = true;
+    findings.still_ramping = Span(
+        findings
+            .ramp_takes
+            .0
+            .saturating_sub(Span::seconds(gate.0).0),
+    );
     let part = findings.track?;
     if let Some(ramp) = &mut findings.operate {
         ramp.fine = Some(seen);
@@ -227,8 +266,8 @@ pub(super) fn doubt(bench: &Bench) -> RampDoubt {
     RampDoubt {
         slope: bench.calibration.fine_v_per_s,
         operation_v: bench.accuracy.operation_scatter_mv / 1e3,
-        step_v: bench.calibration.fine_v_per_s.value * 1e-3,
-        level_v: bench.calibration.level.gain.u,
+        refresh: Second(bench.accuracy.ao_refresh_ms * 1e-3),
+        level: bench.calibration.level.gain.u,
         temperature_k: bench.accuracy.part_minus_track_k,
     }
 }

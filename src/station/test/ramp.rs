@@ -4,12 +4,16 @@
 use super::Bench;
 use super::findings::Findings;
 use super::operate::gate0;
-use crate::gauge::threshold::{Direction, WINDOW_V, indicated};
+use crate::gauge::threshold::{Direction, indicated};
 use crate::station::act::Readings;
 use crate::units::{Second, Volt};
 
-/// The window opens after [`WINDOW_V`]; this much more keeps its comparator's tolerance out of the way.
-const WINDOW_MARGIN: Volt = Volt(0.005);
+/// The level jumps by this much as the ramp begins: the window opens after [`WINDOW_V`], and on the fine
+/// ramp alone that would take 33 ms. What is left keeps the comparator's tolerance out of the way.
+pub(super) const JUMP: Volt = Volt(0.045);
+/// The quasi-static threshold lies so far before the event of a fine ramp (its lag is some 27 mV at
+/// 1.5 V/s, 35 mV at 2 V/s): the ramp must have begun before that, or it is a step.
+const RUN_UP: Volt = Volt(0.035);
 /// Beyond the far end of the estimate, for the lag's own scatter.
 const FAR_MARGIN: Volt = Volt(0.015);
 /// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
@@ -47,7 +51,7 @@ impl Expected {
 
     /// The ramp that searches this interval.
     pub fn placed(&self, direction: Direction) -> Placed {
-        let lead = WINDOW_V + WINDOW_MARGIN;
+        let lead = JUMP + RUN_UP;
         Placed {
             start: self.centre - (self.half_width + lead) * direction.sign(),
             span: lead + self.half_width * 2.0 + FAR_MARGIN,
@@ -100,7 +104,7 @@ pub(super) fn meet(
     direction: Direction,
     attempt: u8,
 ) -> Option<Met> {
-    let (start, expected) = (findings.ramp_start?, findings.expected?);
+    let (start, expected) = (findings.ramp_start?, (*findings.expected(direction))?);
     let (Some(gate), Some(_)) = (gate0(bench, readings), findings.track) else {
         findings.void("gate counters not read");
         return None;
@@ -118,7 +122,7 @@ pub(super) fn meet(
         .boards
         .last()
         .is_some_and(|board| board.no_closed == operated);
-    findings.expected = Some(match stopped {
+    *findings.expected(direction) = Some(match stopped {
         Some(end) if met => expected.around(end),
         Some(_) | None => expected.next(direction, early, attempt),
     });
@@ -135,6 +139,7 @@ pub(super) fn meet(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gauge::threshold::WINDOW_V;
 
     #[test]
     fn the_window_is_open_before_the_earliest_expected_event() {

@@ -3,13 +3,15 @@
 //! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
 //! voltage, so the timed one stays the last of those.
 
-use super::operate::{REPEAT_SD_V, SETTLES, doubt, gate0};
+use super::operate::{REPEAT_SD_V, SETTLES, doubt, gate0, release_start};
 use super::ramp::{self, Expected, Met};
-use super::{Bench, Findings, Ramp, Stage, board};
+use super::{Bench, Findings, INTERLOCK, Ramp, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::threshold::{Direction, indicated, quasi_static};
 use crate::rig::point::DigitalIn;
-use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
+use crate::rig::point::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
 use crate::station::act::{Act, Read, Readings};
 use crate::station::supply::Supply;
 use crate::units::{Span, Volt};
@@ -23,50 +25,67 @@ const SEAL_TIME: Span = Span::ms(25);
 /// Slowest break after the end of a ramp that is still taken for its event.
 const LATE: Span = Span::ms(12);
 
-/// Seals the armature and steps to the start of a falling ramp; the caller arms.
-fn seal(bench: &Bench, supply: &mut Supply, start: Volt) -> Vec<Act> {
-    vec![
-        board(&[
-            (CoilDrive, false),
-            (Arm, false),
-            (RampMode, true),
-            (SelectNo, true),
-            (EventNoBreak, true),
-        ]),
-        supply.step_to(Volt(SEAL * bench.recipe.part.nominal_v)),
-        board(&[(CoilDrive, true)]),
-        Act::Mark,
-        Act::Read(Read::Gates),
-        Act::WaitSinceMark(SEAL_TIME),
+/// Seals the armature and steps to the start of a falling ramp, armed. An armature that is still operated
+/// from the stage before is sealed from there; `ramp_left` says how long a ramp still runs after its mark.
+fn seal(bench: &Bench, supply: &mut Supply, findings: &mut Findings, start: Volt) -> Vec<Act> {
+    let operated = std::mem::take(&mut findings.operated);
+    findings.released = false;
+    let seal = supply.step_to(Volt(SEAL * bench.recipe.part.nominal_v));
+    let falling = [
+        (RampMode, true),
+        (SelectNo, true),
+        (EventNoBreak, true),
+        (Arm, false),
+    ];
+    let mut acts = Vec::new();
+    if operated {
+        acts.extend([seal, board(&falling)]);
+    } else {
+        acts.extend([
+            board(&[
+                (CoilDrive, false),
+                (SourceOn, false),
+                (SourceReverse, false),
+            ]),
+            Act::Wait(INTERLOCK),
+            board(&falling),
+            seal,
+            board(&[(CoilDrive, true)]),
+            Act::Mark,
+        ]);
+    }
+    let still_ramping = std::mem::take(&mut findings.still_ramping);
+    acts.extend([
+        Act::WaitSinceMark(SEAL_TIME.max(still_ramping)),
         supply.step_to(start),
-        Act::Wait(SETTLES),
-        board(&[(Arm, true)]),
         Act::Mark,
-    ]
+        board(&[(Arm, true)]),
+        Act::Read(Read::Gates),
+        Act::WaitSinceMark(SETTLES),
+    ]);
+    acts
 }
 
-fn until_break(takes: Span) -> Vec<Act> {
-    vec![
+fn until_break(takes: Span) -> [Act; 4] {
+    [
         Act::Until {
             point: DigitalIn::Latch,
             within: takes + LATE,
         },
-        Act::Read(Read::Gates),
         board(&[(CoilDrive, false), (Arm, false)]),
+        Act::Mark,
+        Act::Read(Read::Gates),
     ]
 }
 
 pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
     let mut acts = Vec::new();
-    let needed = Expected::new(Volt(0.0), bench.release_lag().coarse_sd_v)
-        .placed(Direction::Falling)
-        .span;
-    if supply.fine() < needed {
-        let (fine, takes) = supply.ramp_fine(needed);
-        acts.extend([fine, Act::Wait(takes)]);
+    if supply.coarse() != release_start(bench) {
+        let (ramp, takes) = supply.ramp_coarse(release_start(bench));
+        acts.extend([ramp, Act::Wait(takes)]);
     }
     let start = supply.coarse() + supply.fine();
-    acts.extend(seal(bench, supply, start));
+    acts.extend(seal(bench, supply, findings, start));
     findings.ramp_start = Some(supply.total());
     let (ramp, takes) = supply.ramp_coarse(Volt(0.0));
     acts.push(ramp);
@@ -84,7 +103,8 @@ pub(super) fn conclude_coarse(
     let seen = readings.seen.first() == Some(&true);
     let gate =
         gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - FLOOR_V);
-    findings.expected = Some(match gate {
+    findings.released = true;
+    findings.expected_release = Some(match gate {
         Some(gate) => {
             let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
             let lag = bench.release_lag();
@@ -101,21 +121,24 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
         .release
         .and_then(|ramp| ramp.fine)
         .map(|fine| Expected::new(fine, REPEAT_SD_V));
-    let Some(expected) = repeated.or(findings.expected) else {
+    let Some(expected) = repeated.or(findings.expected_release) else {
         return Vec::new();
     };
-    findings.expected = Some(expected);
+    findings.expected_release = Some(expected);
     let placed = expected.placed(Direction::Falling);
+    let way = placed.span - ramp::JUMP;
     let mut acts = Vec::new();
-    if supply.fine() < placed.span {
-        let (fine, takes) = supply.ramp_fine(placed.span);
-        acts.extend([fine, Act::Wait(takes)]);
+    if supply.fine() < way {
+        let (fine, takes) = supply.ramp_fine(way);
+        findings.still_ramping += takes;
+        acts.push(fine);
     }
-    let start = placed.start.0.max((supply.coarse() + supply.fine()).0);
-    acts.extend(seal(bench, supply, Volt(start)));
+    let least = supply.coarse() + supply.fine() + ramp::JUMP;
+    let start = placed.start.0.max(least.0);
+    acts.extend(seal(bench, supply, findings, Volt(start)));
     findings.ramp_start = Some(supply.total());
     findings.ramp_span = Some(placed.span);
-    let (ramp, takes) = supply.ramp_fine(supply.fine() - placed.span);
+    let (ramp, takes) = supply.jump_and_ramp(-ramp::JUMP, -way);
     acts.push(ramp);
     acts.extend(until_break(takes));
     acts
@@ -127,6 +150,7 @@ pub(super) fn conclude_fine(
     findings: &mut Findings,
     attempt: u8,
 ) -> Option<Stage> {
+    findings.released = true;
     let (seen, gate) = match ramp::meet(bench, readings, findings, Direction::Falling, attempt)? {
         Met::At(seen, gate) => (seen, gate),
         Met::Again => return Some(Stage::ReleaseFine(attempt + 1)),

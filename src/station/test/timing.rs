@@ -1,14 +1,18 @@
 //! Timed operation at exactly nominal voltage and timed release into the recipe's clamp, each with its
 //! bounce; the closure it ends on is then read for its contact resistance.
 
-use super::contact::{add_nc, drop_of, is_implausible, off, reversal, reversed};
+use super::coil::rest;
+use super::contact::{SOURCE_SETTLES, add_nc, drop_of, is_implausible, reversal, reversed};
+use super::operate::dropped;
 use super::{Bench, Findings, OFF, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::contact::resistance;
 use crate::gauge::timing::{bounce_ms, counts, gate_ms};
 use crate::gauge::verdict::Bin;
 use crate::rig::point::DigitalIn;
-use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn};
+use crate::rig::point::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
 use crate::station::act::{Act, Read, Readings};
 use crate::station::supply::Supply;
 use crate::units::{Span, Volt};
@@ -17,82 +21,92 @@ use crate::units::{Span, Volt};
 const LONGEST: Span = Span::ms(60);
 /// The window closes 20 ms after the latch; gate 1 counts bounce until then.
 const WINDOW_AFTER_LATCH: Span = Span::ms(21);
-/// Start of the coarse release ramp above the highest threshold of the lot, volts.
-const RELEASE_HEADROOM_V: f64 = 0.8;
 /// Gate 1 is open whenever gate 0 is; their delays may differ by so many counts.
 const GATE_SKEW: u32 = 4;
-/// Bounce is over and the contact has been closed for the 5 ms that the source asks for.
-const BOUNCE_OVER: Span = Span::ms(16);
+/// Bounce is over (6 ms is twice what the sheet class allows) and the contact has been closed for the 5 ms
+/// that the source asks for.
+const SOURCE_FLOWS: Span = Span::ms(11);
 
-pub(super) fn acts_operate(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
-    let mut acts = vec![
-        board(&[
-            (CoilDrive, false),
-            (Arm, false),
-            (RampMode, false),
-            (SelectNo, true),
-            (EventNoBreak, false),
-        ]),
-        Act::Mark,
+/// A stage that follows on a contact event takes its counters over: the latch of that event keeps both
+/// gates shut until ARM. Any other start reads them after ARM.
+pub(super) fn acts_operate(
+    bench: &Bench,
+    supply: &mut Supply,
+    findings: &mut Findings,
+) -> Vec<Act> {
+    let counted = findings.released;
+    let mut acts = dropped(findings);
+    let off = OFF.max(std::mem::take(&mut findings.still_ramping));
+    acts.extend([
+        board(&[(RampMode, false), (SelectNo, true), (EventNoBreak, false)]),
         supply.step_to(Volt(bench.recipe.part.nominal_v)),
-        Act::Read(Read::Gates),
-        Act::WaitSinceMark(OFF),
         board(&[(Arm, true)]),
-        board(&[(CoilDrive, true)]),
-    ];
-    acts.extend(event_and_drop(bench));
+    ]);
+    acts.extend((!counted).then_some(Act::Read(Read::Gates)));
+    acts.extend([
+        Act::WaitSinceMark(off),
+        board(&[(CoilDrive, true), (SourceOn, true)]),
+    ]);
+    acts.extend(until_made());
+    acts.extend(drop_of_closure(bench));
     acts.extend(reversed(bench));
     acts
 }
 
-pub(super) fn acts_release(bench: &Bench, supply: &mut Supply, findings: &Findings) -> Vec<Act> {
+pub(super) fn acts_release(
+    bench: &Bench,
+    supply: &mut Supply,
+    findings: &mut Findings,
+) -> Vec<Act> {
     let mut acts = Vec::new();
-    let repeated = findings.attempts(Parameter::ReleaseTime) > 0;
-    if repeated {
+    if !findings.operated {
+        acts.extend(dropped(findings));
         acts.extend([
-            board(&[
-                (RampMode, false),
-                (SelectNo, true),
-                (EventNoBreak, false),
-                (Arm, false),
-            ]),
+            board(&[(RampMode, false), (EventNoBreak, false)]),
             supply.step_to(Volt(bench.recipe.part.nominal_v)),
             board(&[(CoilDrive, true)]),
             Act::Wait(Span::ms(40)),
         ]);
     }
+    let counted = std::mem::take(&mut findings.operated);
     acts.extend([
-        board(&[(SelectNo, false), (Arm, false)]),
-        Act::Read(Read::Gates),
+        board(&[
+            (SourceOn, false),
+            (SourceReverse, false),
+            (SelectNo, false),
+            (Arm, false),
+        ]),
         board(&[(Arm, true)]),
-        board(&[(CoilDrive, false)]),
     ]);
-    // With the coil off the supply is free: the coarse ramp goes to where the release ramp begins.
-    let test = &bench.recipe.test;
-    let above = test.expected_release_v + 4.0 * test.expected_release_sd_v + RELEASE_HEADROOM_V;
-    if Volt(above) < supply.coarse() {
-        acts.push(supply.ramp_coarse(Volt(above)).0);
-    }
-    acts.extend(event_and_drop(bench));
-    acts.extend(off());
+    acts.extend((!counted).then_some(Act::Read(Read::Gates)));
+    acts.push(board(&[(CoilDrive, false), (SourceOn, true)]));
+    acts.extend(until_made());
+    // With the coil off the supply is free, and until the window closes so is the bus.
+    acts.extend(rest(bench, supply));
+    acts.extend(drop_of_closure(bench));
     acts
 }
 
-/// The contact event, then the forward drop; the gates are read while the conversion runs. The source
-/// drives the same way as the contact monitor, so that gate 1 does not take it for an open contact.
-fn event_and_drop(bench: &Bench) -> [Act; 9] {
+/// The contact event; from its mark the bounce, the window and the source take their time.
+fn until_made() -> [Act; 2] {
     [
         Act::Until {
             point: DigitalIn::Latch,
             within: LONGEST,
         },
         Act::Mark,
-        Act::WaitSinceMark(BOUNCE_OVER),
-        board(&[(SourceOn, true)]),
+    ]
+}
+
+/// Gates once the window has closed, then the forward drop. The source has been asked for before the
+/// contact made: the board lets it flow once the contact has been closed for 5 ms. It drives the same way
+/// as the contact monitor, so that gate 1 does not take it for an open contact.
+fn drop_of_closure(bench: &Bench) -> [Act; 5] {
+    [
         Act::WaitSinceMark(WINDOW_AFTER_LATCH),
         Act::Read(Read::Gates),
         Act::Read(Read::Board),
-        Act::ConvertSinceMark(BOUNCE_OVER + Span::ms(6) + bench.fresh(1)),
+        Act::ConvertSinceMark(SOURCE_FLOWS + SOURCE_SETTLES + bench.fresh(1)),
         Act::Read(Read::Drop),
     ]
 }
@@ -105,7 +119,7 @@ fn time_and_bounce(
     bounce: Parameter,
     findings: &mut Findings,
 ) {
-    let (Some(before), Some(after)) = (readings.gates.first(), readings.gates.get(1)) else {
+    let [.., before, after] = readings.gates.as_slice() else {
         findings.void("gate counters not read");
         return;
     };
@@ -118,7 +132,7 @@ fn time_and_bounce(
         ));
         return;
     }
-    let samples: Vec<_> = readings.gates.iter().flatten().collect();
+    let samples: Vec<_> = before.iter().chain(after).collect();
     let delay = bench.calibration.gate_delay_us;
     findings.found(
         time,
@@ -151,6 +165,7 @@ pub(super) fn conclude_operate(
         Parameter::OperateBounce,
         findings,
     );
+    findings.operated = true;
     match reversal(readings) {
         Ok(closure) => {
             let u = bench.reading_u_v() / 2f64.sqrt();
@@ -185,6 +200,7 @@ pub(super) fn conclude_release(
         Parameter::ReleaseBounce,
         findings,
     );
+    (findings.released, findings.rested) = (true, true);
     let compliance = readings.boards.iter().any(|board| board.compliance);
     match (
         drop_of(readings.drops.first(), compliance),

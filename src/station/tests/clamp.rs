@@ -3,8 +3,8 @@
 use super::{Shop, bench};
 use crate::gauge::verdict::{Bin, Verdict};
 use crate::rig::axis::AxisStation;
-use crate::rig::point::DigitalIn;
-use crate::station::act::{Job, JobDone, Read};
+use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::station::act::{Job, JobDone};
 use crate::station::clamp::{Beside, Clamp};
 use crate::station::moves::Move;
 use crate::station::sort::Sort;
@@ -93,11 +93,12 @@ fn an_empty_nest_asks_for_nothing() {
 }
 
 #[test]
-fn the_test_begins_with_the_track_temperature_once_the_probes_are_up() {
+fn the_test_begins_with_the_pins_once_the_probes_are_up() {
     let mut nest = Nest::loaded(None);
     let clamp = nest.testing();
     assert!(clamp.test().is_some());
-    assert_eq!(nest.shop.wants.job, Some(Job::Read(Read::Track)));
+    let pins = Job::Board(vec![(DigitalOut::KelvinTest, true)]);
+    assert_eq!(nest.shop.wants.job, Some(pins));
     let part = nest.shop.ledger.nest.as_ref().unwrap();
     assert_eq!(part.probed_at, Some(nest.shop.now));
 }

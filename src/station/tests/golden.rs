@@ -153,7 +153,7 @@ fn taught(lags: &[f64]) -> CoarseLag {
 #[test]
 fn the_scatter_of_the_coarse_lag_is_never_believed_below_the_least() {
     let fine = Factor::new(0.0, 0.0);
-    let lag = place(fine, taught(&[0.85; 40]));
+    let lag = place(fine, 7.88, taught(&[0.85; 40]));
     assert!((lag.coarse_v - 0.85).abs() < 1e-9);
     assert_eq!(lag.coarse_sd_v, 0.010);
 }
@@ -163,11 +163,11 @@ fn few_parts_widen_the_coarse_scatter_and_many_settle_it() {
     let fine = Factor::new(0.0, 0.0);
     let pairs = |n: usize| [0.83, 0.87].repeat(n);
     let sds: Vec<f64> = [1, 2, 5, 50]
-        .map(|n| place(fine, taught(&pairs(n))).coarse_sd_v)
+        .map(|n| place(fine, 7.88, taught(&pairs(n))).coarse_sd_v)
         .to_vec();
     assert!(sds.windows(2).all(|two| two[0] > two[1]), "{sds:?}");
     assert!((sds[3] - 0.02).abs() < 0.001, "{sds:?}");
-    let one = place(fine, taught(&[0.85])).coarse_sd_v;
+    let one = place(fine, 7.88, taught(&[0.85])).coarse_sd_v;
     assert!(one > sds[0], "{one} after one part");
 }
 

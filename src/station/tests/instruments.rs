@@ -39,6 +39,7 @@ fn calibration() -> Calibration {
     let exact = |value| Factor::new(value, 1e-6);
     let lag = |coarse_v| Lag {
         fine_v: exact(0.0),
+        at_v: 0.0,
         coarse_v,
         coarse_sd_v: 0.01,
     };

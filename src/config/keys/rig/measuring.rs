@@ -97,6 +97,12 @@ pub(super) const ACCURACY: &[Key] = &[
         "slope of ramps",
     ),
     key(
+        "ao_refresh_ms",
+        from_to(0.0, 100.0, "ms"),
+        "gauge",
+        "time between two steps of a ramping analog output; above 2 no coarse ramp is trusted",
+    ),
+    key(
         "gate_delay_us",
         from_to(0.0, 1000.0, "us"),
         "gauge",

@@ -11,10 +11,9 @@ use crate::station::test::Findings;
 use crate::units::Celsius;
 use std::sync::Arc;
 
-fn kelvin_of(boards: Vec<BoardInputs>, track: Option<Sample>) -> Findings {
+fn kelvin_of(boards: Vec<BoardInputs>) -> Findings {
     let readings = Readings {
         boards,
-        track: track.into_iter().collect(),
         ..Readings::default()
     };
     let mut findings = Findings::default();
@@ -54,23 +53,36 @@ fn the_pin_map_tells_missing_pins_turned_parts_and_stuck_contacts_apart() {
         (nc_open, Bin::Contact, "NC open at rest"),
     ];
     for (board, bin, word) in cases {
-        let findings = kelvin_of(vec![board], Some(good(23.0, 1.0)));
+        let findings = kelvin_of(vec![board]);
         assert_ends(&findings, bin, word);
     }
-    let findings = kelvin_of(vec![RESTING], Some(good(23.4, 1.0)));
-    assert_eq!(ended(&findings), None);
-    assert_eq!(findings.track, Some(Celsius(23.4)));
+    assert_eq!(ended(&kelvin_of(vec![RESTING])), None);
 }
 
 #[test]
 fn a_part_of_unknown_temperature_or_unread_pins_is_void() {
-    let over = Some(drop_of(Quality::OverRange, 0.0));
-    for track in [None, over] {
-        let findings = kelvin_of(vec![RESTING], track);
-        assert_ends(&findings, Bin::Retest, "temperature");
-        assert_eq!(findings.track, None);
+    let over = drop_of(Quality::OverRange, 0.0);
+    let drops = || [1.1, -1.1].map(|volts| drop_of(Quality::Good, volts));
+    for (track, known) in [
+        (vec![], None),
+        (vec![over], None),
+        (vec![good(23.4, 1.0)], Some(Celsius(23.4))),
+    ] {
+        let readings = Readings {
+            boards: vec![RESTING],
+            drops: drops().to_vec(),
+            track,
+            ..Readings::default()
+        };
+        let mut findings = Findings::default();
+        contact::conclude_nc(&bench(), &readings, &mut findings);
+        assert_eq!(findings.track, known);
+        match known {
+            Some(_) => assert_eq!(ended(&findings), None),
+            None => assert_ends(&findings, Bin::Retest, "temperature"),
+        }
     }
-    let findings = kelvin_of(Vec::new(), Some(good(23.0, 1.0)));
+    let findings = kelvin_of(Vec::new());
     assert_ends(&findings, Bin::Retest, "board not read");
 }
 
@@ -82,6 +94,7 @@ fn nc_of(forward: Sample, reverse: Option<Sample>, compliance: bool) -> Findings
     let readings = Readings {
         boards: vec![board],
         drops: [Some(forward), reverse].into_iter().flatten().collect(),
+        track: vec![good(23.0, 1.0)],
         ..Readings::default()
     };
     let mut findings = at_23_c();

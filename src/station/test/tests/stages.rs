@@ -26,7 +26,8 @@ fn ramp_from(start: f64, span: f64) -> Findings {
     let mut findings = at_23_c();
     findings.ramp_start = Some(Volt(start));
     findings.ramp_span = Some(Volt(span));
-    findings.expected = Some(Expected::new(Volt(7.9), 0.02));
+    findings.expected_operate = Some(Expected::new(Volt(7.9), 0.02));
+    findings.expected_release = findings.expected_operate;
     findings
 }
 
@@ -39,7 +40,7 @@ fn the_coarse_ramp_places_the_fine_one_by_its_learned_lag() {
     let seen = 5.0 + 0.05 + 96.0 * 0.04;
     let coarse = findings.operate.unwrap().coarse;
     assert!((coarse.0 - seen).abs() < 1e-9);
-    let expected = findings.expected.unwrap();
+    let expected = findings.expected_operate.unwrap();
     assert!((expected.centre.0 - (seen - 0.85)).abs() < 1e-9);
 }
 
@@ -104,7 +105,7 @@ fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
             assert_eq!(next, Some(Stage::OperateFine(attempt + 1)));
             assert_eq!(ended(&findings), None);
         }
-        let centre = findings.expected.unwrap().centre;
+        let centre = findings.expected_operate.unwrap().centre;
         let last = operate::conclude_fine(&bench(), readings, &mut findings, 4);
         assert_eq!(last, None);
         assert_ends(&findings, Bin::Retest, "not found in 5 fine ramps");
@@ -121,7 +122,7 @@ fn a_release_that_came_too_early_is_looked_for_higher() {
         let readings = watched(false, board, 30.0);
         let next = release::conclude_fine(&bench(), &readings, &mut findings, 0);
         assert_eq!(next, Some(Stage::ReleaseFine(1)));
-        let centre = findings.expected.unwrap().centre;
+        let centre = findings.expected_release.unwrap().centre;
         assert_eq!(centre > Volt(7.9), higher, "{centre}");
     }
 }
@@ -132,7 +133,7 @@ fn an_event_after_the_ramp_has_stopped_is_looked_for_around_its_end() {
     let readings = watched(true, PULLED, 80.0);
     let next = operate::conclude_fine(&bench(), &readings, &mut findings, 0);
     assert_eq!(next, Some(Stage::OperateFine(1)));
-    let expected = findings.expected.unwrap();
+    let expected = findings.expected_operate.unwrap();
     assert!((expected.centre.0 - 7.9).abs() < 1e-9);
     assert_eq!(findings.attempts(Parameter::OperateVoltage), 0);
 }
@@ -148,14 +149,17 @@ fn a_coarse_release_without_a_break_falls_back_on_the_lot() {
         let mut findings = ramp_from(4.0, 4.0);
         release::conclude_coarse(&bench(), &readings, &mut findings);
         let lot = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
-        assert_eq!((findings.expected, findings.release), (Some(lot), None));
+        assert_eq!(
+            (findings.expected_release, findings.release),
+            (Some(lot), None)
+        );
     }
     let mut findings = ramp_from(4.0, 4.0);
     let readings = watched(true, RESTING, 25.0);
     release::conclude_coarse(&bench(), &readings, &mut findings);
     let coarse = findings.release.unwrap().coarse;
     assert!((coarse.0 - (4.0 - 0.05 - 2.4)).abs() < 1e-9);
-    let expected = findings.expected.unwrap();
+    let expected = findings.expected_release.unwrap();
     assert!((expected.centre.0 - (coarse.0 + 1.05)).abs() < 1e-9);
     let start = expected.placed(Direction::Falling).start;
     assert!(start > expected.centre);
