@@ -6,8 +6,10 @@
 //! - [`world`], [`config`], [`truth`]: interface board, mechanism, specimens and what they really were
 //! - [`rig`]: everything together, from event to event
 //! - [`fault`]: what can go wrong between a module and its host
+//! - [`journal`]: what the outputs do, for tests of safety
 //! - [`wire`], [`pace`]: lines as streams in virtual time; [`pty`]: as pseudo-terminals in real time
 //! - [`bench`]: modules alone with fixed signals
+//! - [`fingerprint`]: a line on which every value tells whose it is
 //!
 //! The controller shares nothing with this crate but bytes and the files in `config/`.
 
@@ -16,6 +18,8 @@ pub mod config;
 pub mod dcon;
 mod error;
 pub mod fault;
+pub mod fingerprint;
+pub mod journal;
 pub mod line;
 pub mod module;
 pub mod pace;

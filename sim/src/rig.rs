@@ -6,9 +6,12 @@
 //! each of these instants. Rig time never runs backwards: a request that comes in with an earlier
 //! time than something already done is taken as coming now.
 
+use std::sync::mpsc::Receiver;
+
 use crate::config::LineSpec;
 use crate::dcon;
 use crate::fault::{Event, Faults};
+use crate::journal::{Entry, Watched};
 use crate::line::wire_us;
 use crate::module::Module;
 use crate::terminal::Plant;
@@ -39,7 +42,7 @@ pub struct Reply {
 
 /// Modules, lines and world.
 pub struct Rig {
-    scene: Box<dyn Scene>,
+    scene: Watched,
     modules: Vec<Module>,
     /// Next event of each module.
     due_us: Vec<u64>,
@@ -58,7 +61,7 @@ impl Rig {
     ) -> Self {
         let mut rig = Self {
             due_us: vec![u64::MAX; modules.len()],
-            scene,
+            scene: Watched::new(scene),
             modules,
             lines,
             faults,
@@ -70,7 +73,7 @@ impl Rig {
             if rig.faults.is_wrong_type(module.id()) {
                 module.plate_mut().pose_as("7000");
             }
-            module.energise(rig.scene.as_mut(), 0);
+            module.energise(&mut rig.scene, 0);
             rig.due_us[place] = module.next_us();
         }
         rig
@@ -98,6 +101,7 @@ impl Rig {
     pub fn exchange(&mut self, line: usize, text: &[u8], t_us: u64) -> Option<Reply> {
         self.advance(t_us);
         let now_us = self.now_us;
+        self.scene.heard(now_us);
         let spec = self.lines.get(line)?;
         let (name, baud) = (spec.name.clone(), spec.baud);
         self.faults.may_lose_port(&name, now_us);
@@ -132,10 +136,10 @@ impl Rig {
         let upset = self.faults.before_a_request(now_us);
         let module = &mut self.modules[place];
         if let Some(event) = upset {
-            happen(module, event, self.scene.as_mut(), now_us);
+            happen(module, event, &mut self.scene, now_us);
         }
         let silent = self.faults.silent(module.id(), now_us);
-        let heard = module.hear(text, self.scene.as_mut(), now_us);
+        let heard = module.hear(text, &mut self.scene, now_us);
         self.due_us[place] = module.next_us();
         let mut bytes = heard.filter(|_| !silent)?;
         let latency_us = module.next_latency_us();
@@ -171,6 +175,11 @@ impl Rig {
             .collect()
     }
 
+    /// Everything that the outputs do from now on.
+    pub fn journal(&mut self) -> Receiver<Entry> {
+        self.scene.listen()
+    }
+
     /// See [`Record::truth`].
     pub fn truth(&mut self) -> Vec<serde_json::Value> {
         self.scene.truth()
@@ -188,8 +197,13 @@ impl Rig {
             let due_us = due_us.max(self.now_us);
             self.now_us = due_us;
             self.scene.advance(due_us);
-            self.modules[place].run(self.scene.as_mut(), due_us);
-            self.due_us[place] = self.modules[place].next_us();
+            let module = &mut self.modules[place];
+            let was_tripped = module.plate().watchdog.tripped();
+            module.run(&mut self.scene, due_us);
+            if module.plate().watchdog.tripped() && !was_tripped {
+                self.scene.expired(module.id());
+            }
+            self.due_us[place] = module.next_us();
         }
     }
 
@@ -209,7 +223,7 @@ impl Rig {
             let target = |module: &Module| module.id() == timed.target;
             if let Some(place) = self.modules.iter().position(target) {
                 let module = &mut self.modules[place];
-                happen(module, timed.event, self.scene.as_mut(), self.now_us);
+                happen(module, timed.event, &mut self.scene, self.now_us);
                 self.due_us[place] = module.next_us();
             }
         }

@@ -98,7 +98,8 @@ pub fn faults(config_dir: &Path, world: Option<&Path>) -> Result<Vec<FaultInfo>,
     Ok(fault::list().into_iter().chain(of_the_world).collect())
 }
 
-fn split(text: &str) -> (&str, Option<&str>) {
+/// Name and value of `NAME[=VALUE]`.
+pub(crate) fn split(text: &str) -> (&str, Option<&str>) {
     match text.split_once('=') {
         Some((name, value)) => (name, Some(value)),
         None => (text, None),
@@ -215,6 +216,11 @@ impl SharedRig {
     /// EEPROM writes of each module so far.
     pub fn eeprom_writes_by_module(&self) -> Vec<(String, u64)> {
         self.rig().eeprom_writes_by_module()
+    }
+
+    /// Everything that the outputs do from now on.
+    pub fn journal(&self) -> std::sync::mpsc::Receiver<crate::journal::Entry> {
+        self.rig().journal()
     }
 
     /// Truth of every lot part that has entered the nest, in order.

@@ -1,9 +1,12 @@
 //! `relayrig sim`: only the simulated rig, on pseudo-terminals in real time.
 
-use anyhow::anyhow;
+use anyhow::Context;
 use rigsim::{Options, SharedRig, pty};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// The simulated rig.
 #[derive(Debug, clap::Args)]
@@ -11,7 +14,11 @@ use std::path::{Path, PathBuf};
   relayrig sim --link /tmp/rig
   relayrig run --lot A --recipe jzc-22f-012 --count 5 --line measure=/tmp/rig/measure --line motion=/tmp/rig/motion
   relayrig sim --bench modules.toml
-  relayrig sim --faults")]
+  relayrig sim --bench modules.toml --fault flip=0.05 --fault late=0.01/350
+  relayrig sim --fault port_lost=motion@20..23
+  relayrig sim --faults
+
+A fault is NAME[=VALUE[@FROM[..UNTIL]]]: from and until when, in seconds of rig time. Several combine.")]
 pub struct SimArgs {
     /// Draws rig and lot
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -25,7 +32,7 @@ pub struct SimArgs {
     /// Fault by name
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub fault: Vec<String>,
-    /// True values of every specimen go to this file at the end
+    /// True values of every specimen go to this file: as parts land, at the end of those still inside
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
     /// A symlink per line in this directory
@@ -34,6 +41,9 @@ pub struct SimArgs {
     /// No rig: the modules of this file on one pseudo-terminal
     #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "truth"])]
     pub bench: Option<PathBuf>,
+    /// Tells every change of a digital output and every expired host watchdog, one object per line
+    #[arg(long)]
+    pub journal: bool,
     /// Names of all faults with unit and default
     #[arg(long)]
     pub faults: bool,
@@ -44,7 +54,7 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
     if args.faults {
         for fault in rigsim::faults(config, args.world.as_deref())? {
             println!(
-                "{:<20} {:<12} default {:<8} {}",
+                "{:<14} {:<30} default {:<12} {}",
                 fault.name, fault.unit, fault.default, fault.what
             );
         }
@@ -72,32 +82,92 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
         .map(|(name, path)| (name, json!(path.to_string_lossy())))
         .collect();
     println!("{}", json!({ "lines": lines }));
-    wait()?;
+    if args.journal {
+        tell(rig.journal());
+    }
+    let mut truth = args.truth.as_deref().map(TruthFile::create).transpose()?;
+    wait(|| match &mut truth {
+        Some(file) => file.write_landed(&rig),
+        None => Ok(()),
+    })?;
     ptys.stop();
-    write_truth(&rig, args)
+    if let Some(file) = &mut truth {
+        file.write_rest(&rig)?;
+    }
+    Ok(0)
 }
 
-/// Until Ctrl-C or a termination signal.
-fn wait() -> anyhow::Result<()> {
+/// Prints what the outputs do, until the program ends.
+fn tell(journal: std::sync::mpsc::Receiver<rigsim::journal::Entry>) {
+    std::thread::spawn(move || {
+        let mut out = std::io::stdout();
+        for entry in journal {
+            // Nobody reads any more: nothing is lost.
+            if writeln!(out, "{}", json!(entry)).is_err() {
+                return;
+            }
+        }
+    });
+}
+
+/// Until Ctrl-C or a termination signal; `meanwhile` is called twice a second.
+fn wait(mut meanwhile: impl FnMut() -> anyhow::Result<()>) -> anyhow::Result<()> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()?;
     runtime.block_on(async {
         let mut terminate =
             tokio::signal::unix::signal(tokio::signal::unix::SignalKind::terminate())?;
-        tokio::select! {
-            interrupted = tokio::signal::ctrl_c() => interrupted?,
-            _ = terminate.recv() => {}
+        let mut beat = tokio::time::interval(Duration::from_millis(500));
+        loop {
+            tokio::select! {
+                interrupted = tokio::signal::ctrl_c() => return Ok(interrupted?),
+                _ = terminate.recv() => return Ok(()),
+                _ = beat.tick() => meanwhile()?,
+            }
         }
-        Ok(())
     })
 }
 
-fn write_truth(rig: &SharedRig, args: &SimArgs) -> anyhow::Result<i32> {
-    if let Some(path) = &args.truth {
-        let lines: String = rig.truth().iter().map(|part| format!("{part}\n")).collect();
-        std::fs::write(path, lines)
-            .map_err(|error| anyhow!("--truth {}: {error}", path.display()))?;
+/// The file of `--truth`: a row per part, in the order in which parts land, whole after each.
+struct TruthFile<'a> {
+    path: &'a Path,
+    file: std::fs::File,
+    /// Numbers of the parts that are written.
+    written: BTreeSet<u64>,
+}
+
+impl<'a> TruthFile<'a> {
+    fn create(path: &'a Path) -> anyhow::Result<Self> {
+        let file =
+            std::fs::File::create(path).with_context(|| format!("--truth {}", path.display()))?;
+        Ok(Self {
+            path,
+            file,
+            written: BTreeSet::new(),
+        })
     }
-    Ok(0)
+
+    fn write_landed(&mut self, rig: &SharedRig) -> anyhow::Result<()> {
+        self.write(rig, |part| !part["landed_in"].is_null())
+    }
+
+    fn write_rest(&mut self, rig: &SharedRig) -> anyhow::Result<()> {
+        self.write(rig, |_| true)
+    }
+
+    fn write(&mut self, rig: &SharedRig, wanted: impl Fn(&Value) -> bool) -> anyhow::Result<()> {
+        let mut rows = String::new();
+        for part in rig.truth().into_iter().filter(|part| wanted(part)) {
+            if part["seq"]
+                .as_u64()
+                .is_some_and(|seq| self.written.insert(seq))
+            {
+                rows.push_str(&format!("{part}\n"));
+            }
+        }
+        self.file
+            .write_all(rows.as_bytes())
+            .with_context(|| format!("--truth {}", self.path.display()))
+    }
 }

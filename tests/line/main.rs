@@ -4,8 +4,10 @@
 //!   which files stand where, and that the documents speak of things that exist.
 //! - [`commands`]: the built program given wrong files and simple orders.
 //! - `interruptions`: lots that are stopped or killed, and what is left of them.
+//! - `killed`: the controller killed over pseudo-terminals, and outputs safe in time.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
 //! - [`picture`]: the picture in README.md is that of `config/scene.toml`.
+//! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
 //! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
 
 #![allow(clippy::unwrap_used)]
@@ -13,10 +15,14 @@
 mod commands;
 #[cfg(all(feature = "sim", unix))]
 mod interruptions;
+#[cfg(all(feature = "sim", unix))]
+mod killed;
 mod layout;
 #[cfg(feature = "sim")]
 mod lots;
 mod picture;
 mod program;
+#[cfg(feature = "sim")]
+mod storm;
 #[cfg(feature = "sim")]
 mod troubles;

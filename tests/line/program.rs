@@ -66,8 +66,23 @@ impl Workshop {
             .unwrap()
     }
 
+    /// The same, ended by force after so many seconds.
+    #[cfg(all(feature = "sim", unix))]
+    pub fn start_for(&self, seconds: &str, line: &str) -> Child {
+        let mut command = Command::new("timeout");
+        command.args([seconds, env!("CARGO_BIN_EXE_relayrig")]);
+        self.worded(command, line)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    }
+
     fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_relayrig"));
+        self.worded(Command::new(env!("CARGO_BIN_EXE_relayrig")), line)
+    }
+
+    fn worded(&self, mut command: Command, line: &str) -> Command {
         command
             .args(["--log", "warn"])
             .args(line.split_whitespace())

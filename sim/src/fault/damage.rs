@@ -71,7 +71,7 @@ impl Family for Damage {
             "echo" => &mut self.echo,
             "garble" => &mut self.garble,
             _ => match asked.strikes()? {
-                Strikes::Chance(_) => &mut self.clash,
+                Strikes::Chance(..) => &mut self.clash,
                 Strikes::Target(module) => {
                     self.clashing.add(module, asked.window);
                     return Ok(());

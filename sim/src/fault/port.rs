@@ -24,9 +24,9 @@ const LIST: [Known; 3] = [
     },
     Known {
         name: "port_lost",
-        unit: "LINE[@s] or probability",
+        unit: "LINE[@s] or probability[/ms]",
         default: "measure@5",
-        what: "a port vanishes and is back after two seconds, or at ..s",
+        what: "a port vanishes and is back after two seconds, at ..s, or after so many ms",
     },
 ];
 
@@ -37,7 +37,8 @@ const AWAY_US: u64 = 2_000_000;
 pub(super) struct Port {
     dead: Targets,
     lost: Targets,
-    loss: Chances,
+    /// Time away and when it may happen.
+    losses: Vec<(u64, Chances)>,
 }
 
 impl Family for Port {
@@ -51,7 +52,11 @@ impl Family for Port {
             "line_cut" => self.dead.add(line, ended(asked.window)),
             "baud_mismatch" => self.dead.add(line, asked.window),
             _ => match asked.strikes()? {
-                Strikes::Chance(probability) => self.loss.add(probability, asked.window),
+                Strikes::Chance(probability, rest) => {
+                    let away_us = rest.map_or(Ok(AWAY_US), |ms| asked.ms(ms))?;
+                    self.losses
+                        .push((away_us, Chances::one(probability, asked.window)));
+                }
                 Strikes::Target(line) => self.lost.add(line, ended(asked.window)),
             },
         }
@@ -78,13 +83,15 @@ impl Port {
 
     /// May take the port away while a request is on the line.
     pub(super) fn may_lose(&mut self, line: &str, rng: &mut ChaCha8Rng, now_us: u64) {
-        if self.loss.strike(rng, now_us) {
-            let window = Window {
-                from_us: now_us,
-                until_us: Some(now_us + AWAY_US),
-            };
-            self.lost.forget_before(now_us);
-            self.lost.add(line.to_owned(), window);
+        for (away_us, chances) in &self.losses {
+            if chances.strike(rng, now_us) {
+                let window = Window {
+                    from_us: now_us,
+                    until_us: Some(now_us + away_us),
+                };
+                self.lost.forget_before(now_us);
+                self.lost.add(line.to_owned(), window);
+            }
         }
     }
 
@@ -128,8 +135,8 @@ mod tests {
         assert_eq!(faults.port_back_us("motion", 999_999), None);
         assert_eq!(faults.port_back_us("motion", 1_000_000), Some(1_500_000));
         assert_eq!(faults.port_back_us("motion", 1_500_000), None);
-        faults.add("port_lost", Some("1@7")).unwrap();
+        faults.add("port_lost", Some("1/20@7")).unwrap();
         faults.may_lose_port("measure", 7_000_000);
-        assert_eq!(faults.port_back_us("measure", 7_000_001), Some(9_000_000));
+        assert_eq!(faults.port_back_us("measure", 7_000_001), Some(7_020_000));
     }
 }

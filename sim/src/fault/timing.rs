@@ -44,9 +44,9 @@ impl Family for Timing {
             Some((probability, ms)) => (probability, asked.ms(ms)?),
             None => (asked.value, LATE_US),
         };
-        let mut chances = Chances::default();
-        chances.add(asked.probability_in(probability)?, asked.window);
-        self.late.push((late_us, chances));
+        let probability = asked.probability_in(probability)?;
+        self.late
+            .push((late_us, Chances::one(probability, asked.window)));
         Ok(())
     }
 

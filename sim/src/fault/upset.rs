@@ -73,7 +73,7 @@ impl Family for Upset {
             _ => (Event::Trip, &mut self.trip),
         };
         match asked.strikes()? {
-            Strikes::Chance(probability) => chances.add(probability, asked.window),
+            Strikes::Chance(..) => chances.add(asked.probability()?, asked.window),
             Strikes::Target(target) => self.timed.push(Timed {
                 at_us: asked.window.from_us,
                 target,

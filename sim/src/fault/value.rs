@@ -3,6 +3,7 @@
 //! | form | example | means |
 //! |---|---|---|
 //! | probability | `drop=0.01` | each time on its own |
+//! | probability/ms | `late=0.01/200` | each time on its own, so long |
 //! | ms | `delay=20` | milliseconds |
 //! | MODULE or LINE | `reset=board_do@5` | a table of `rig.toml`; on a bench `module[N]` from 0, and `bench` |
 //!
@@ -38,8 +39,9 @@ pub(super) struct Asked<'a> {
 }
 
 /// Whom a fault strikes: anybody now and then, or one by name.
-pub(super) enum Strikes {
-    Chance(f64),
+pub(super) enum Strikes<'a> {
+    /// A probability, and what stands behind `/`.
+    Chance(f64, Option<&'a str>),
     Target(String),
 }
 
@@ -91,9 +93,13 @@ impl<'a> Asked<'a> {
     }
 
     /// A number is a probability, everything else the name of a module or line.
-    pub(super) fn strikes(&self) -> Result<Strikes, SimError> {
-        if self.value.parse::<f64>().is_ok() {
-            Ok(Strikes::Chance(self.probability()?))
+    pub(super) fn strikes(&self) -> Result<Strikes<'a>, SimError> {
+        let (number, rest) = match self.value.split_once('/') {
+            Some((number, rest)) => (number, Some(rest)),
+            None => (self.value, None),
+        };
+        if number.parse::<f64>().is_ok() {
+            Ok(Strikes::Chance(self.probability_in(number)?, rest))
         } else {
             Ok(Strikes::Target(self.value.to_owned()))
         }
@@ -105,6 +111,10 @@ impl<'a> Asked<'a> {
 pub(super) struct Chances(Vec<(f64, Window)>);
 
 impl Chances {
+    pub(super) fn one(probability: f64, window: Window) -> Self {
+        Self(vec![(probability, window)])
+    }
+
     pub(super) fn add(&mut self, probability: f64, window: Window) {
         self.0.push((probability, window));
     }

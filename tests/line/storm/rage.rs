@@ -1,0 +1,382 @@
+//! A storm on one line: random transactions, every fault of the line now and then, and a judge who knows from the
+//! fingerprint of each value whose it is and when it was taken.
+//!
+//! The line task of the controller is driven through its public face over an in-process stream in virtual time. Judged:
+//!
+//! - a reading must come from the module and channel that were asked (else it is *foreign*), and have been taken
+//!   while the transaction ran (else *stale*; analog inputs: within the age of a free-running conversion);
+//! - an accepted write must have been carried out (else *hollow*);
+//! - a failure must name line, address and command (else *nameless*);
+//! - every request must be answered within [`PATIENCE`] of rig time (else it *hangs*).
+
+use relayrig::bus::{self, Answer, LineError, LineSettings, Pace, PortError, Ports, Request};
+use relayrig::dcon::{
+    Address, AnalogIn, AnalogOut, Channel, Command, Common, Counter, DataFormat, Digital,
+    InputForm, Level, OutputForm, OutputWord, Reply, ReplyError, TypeCode, UpTo, Value,
+};
+use rigsim::fingerprint::{self, FingerprintLine};
+use rigsim::wire::{self, Plug};
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+use tokio::io::DuplexStream;
+use tokio::sync::mpsc;
+
+/// Every fault of the line, each at 1 %: lost, late within and beyond the time-out, damaged, doubled, reset, unplugged.
+pub const EVERY_FAULT: [&str; 13] = [
+    "drop=0.01",
+    "deaf=0.01",
+    "truncate=0.01",
+    "late=0.01/20",
+    "late=0.01/200",
+    "flip=0.01",
+    "noise=0.01",
+    "echo=0.01",
+    "clash=0.01",
+    "garble=0.01",
+    "reset=0.01",
+    "watchdog_trip=0.01",
+    "port_lost=0.01/20",
+];
+
+/// Grace for late replies, ms: what a line waits in silence after a time-out. Replies that come later than time-out
+/// and grace cannot be told from the next one, whatever a host does. The two late faults together make 220 ms.
+const GRACE_MS: u64 = 200;
+
+/// Longest time until an answer, of rig time: two tries, each with time-out, noisy silence and a lost port. One
+/// microsecond of the rig is a millisecond of the runtime.
+const PATIENCE: Duration = Duration::from_millis(5_000_000);
+
+/// Age of a reading of a free-running converter, microseconds: eight windows of 1/60 s, three of 1/15 s, two steps.
+const CONVERSION_US: u64 = 250_000;
+
+/// Most examples that are kept of each kind of lie.
+const EXAMPLES: usize = 5;
+
+/// What a storm has shown.
+#[derive(Debug, Default)]
+pub struct Weather {
+    /// Requests answered.
+    pub transactions: u64,
+    /// Of them with a reply that was believed.
+    pub believed: u64,
+    /// Failures by kind.
+    pub failures: BTreeMap<&'static str, u64>,
+    /// Readings of another module or channel.
+    pub foreign: u64,
+    /// Readings taken before they were asked for.
+    pub stale: u64,
+    /// Writes accepted and not carried out.
+    pub hollow: u64,
+    /// Failures that do not name line, address and command.
+    pub nameless: u64,
+    /// Requests that were never answered.
+    pub hangs: u64,
+    /// Some of the lies, in words.
+    pub examples: Vec<String>,
+    /// Rig time, seconds.
+    pub rig_s: f64,
+    /// Wall time, seconds.
+    pub wall_s: f64,
+}
+
+impl Weather {
+    /// Nothing false was believed, nothing hung, nothing failed without a name.
+    pub fn is_honest(&self) -> bool {
+        self.foreign + self.stale + self.hollow + self.nameless + self.hangs == 0
+    }
+
+    fn lie(&mut self, kind: fn(&mut Self) -> &mut u64, what: &str, answer: &Answer) {
+        *kind(self) += 1;
+        if self.examples.len() < EXAMPLES {
+            self.examples.push(format!("{what}: {answer:?}"));
+        }
+    }
+}
+
+struct PlugPorts(Plug);
+
+impl Ports for PlugPorts {
+    type Port = DuplexStream;
+
+    async fn open(&mut self) -> Result<DuplexStream, PortError> {
+        self.0.open().ok_or(PortError::Gone)
+    }
+}
+
+/// Lets the storm rage over so many transactions.
+pub fn rage(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_time()
+        .start_paused(true)
+        .build()
+        .expect("a runtime");
+    runtime.block_on(storm(seed, transactions, faults))
+}
+
+async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
+    let line = FingerprintLine::build(seed, 115_200, faults).expect("known faults");
+    let pace = Pace::virtual_time();
+    let (_, plug) = wire::plugs(&line.rig).remove(0);
+    let (ask, asked) = mpsc::channel(1);
+    let (answer, mut answers) = mpsc::channel(1);
+    let mut settings = LineSettings::new(fingerprint::LINE, 115_200);
+    settings.late_reply_ms = GRACE_MS;
+    tokio::spawn(bus::run_reopening(
+        PlugPorts(plug),
+        settings,
+        pace,
+        asked,
+        answer,
+    ));
+    let mut host = Host {
+        random: seed,
+        written: 0,
+        next: None,
+    };
+    let began = Instant::now();
+    let mut weather = Weather::default();
+    for ticket in 0..transactions {
+        let command = host.command();
+        let request = Request {
+            ticket,
+            command,
+            tries: 2,
+        };
+        ask.send(request).await.expect("the line listens");
+        let Ok(answer) = tokio::time::timeout(PATIENCE, answers.recv()).await else {
+            weather.hangs += 1;
+            break;
+        };
+        let answer = answer.expect("the line answers");
+        host.heed(&answer);
+        judge(&answer, ticket, &line, &mut weather);
+    }
+    weather.rig_s = pace.now().0 as f64 / 1e6;
+    weather.wall_s = began.elapsed().as_secs_f64();
+    weather
+}
+
+/// Chooses what to ask.
+struct Host {
+    random: u64,
+    written: u16,
+    next: Option<Command>,
+}
+
+impl Host {
+    /// SplitMix64: a number from 0, below `most`.
+    fn below(&mut self, most: u8) -> u8 {
+        self.random = self.random.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (self.random ^ self.random >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((mixed >> 32) % u64::from(most)) as u8
+    }
+
+    fn command(&mut self) -> Command {
+        if let Some(next) = self.next.take() {
+            return next;
+        }
+        match self.below(20) {
+            0..=4 => self.analog(),
+            5 => AnalogIn::ReadAll(form(1)).to(Address(1 + self.below(2))),
+            6..=8 => {
+                let n = UpTo::new(self.below(2)).expect("0 or 1");
+                Counter::Read(n).to(Address(4 + self.below(2)))
+            }
+            9..=11 => Digital::ReadPort.to(Address(6 + self.below(4))),
+            12 => Digital::ReadAll.to(Address(6 + self.below(4))),
+            13..=15 => self.digital_write(),
+            16 | 17 => self.level_write(),
+            18 => AnalogOut::ReadLast {
+                channel: None,
+                form: OutputForm::Hex16,
+            }
+            .to(Address(0x0A + self.below(2))),
+            _ => match self.below(3) {
+                0 => Command::HostOk,
+                1 => Common::ReadResetStatus.to(Address(6 + self.below(4))),
+                _ => Common::ReadConfig.to(Address(1 + self.below(11))),
+            },
+        }
+    }
+
+    fn analog(&mut self) -> Command {
+        let address = 1 + self.below(3);
+        let channel = self.below(if address == 3 { 3 } else { 8 });
+        AnalogIn::ReadOne {
+            channel: Channel::new(channel).expect("a channel"),
+            form: form(address),
+        }
+        .to(Address(address))
+    }
+
+    /// A word that was never written before, with the mark of its module.
+    fn word(&mut self, address: u8) -> u16 {
+        self.written = self.written % 0xFFF + 1;
+        fingerprint::marked(address, self.written)
+    }
+
+    fn digital_write(&mut self) -> Command {
+        let address = 8 + self.below(2);
+        let word = self.word(address);
+        Digital::Write(OutputWord::sixteen(word)).to(Address(address))
+    }
+
+    fn level_write(&mut self) -> Command {
+        let address = 0x0A + self.below(2);
+        let word = self.word(address);
+        AnalogOut::Write {
+            channel: None,
+            level: Level::from_steps(OutputForm::Hex16, i32::from(word)).expect("16 bits"),
+        }
+        .to(Address(address))
+    }
+
+    /// A module that holds its outputs safe is told that the host is back.
+    fn heed(&mut self, answer: &Answer) {
+        if let (
+            Err(LineError::Reply {
+                reason: ReplyError::Ignored,
+                ..
+            }),
+            Some(address),
+        ) = (&answer.outcome, answer.command.address())
+        {
+            self.next = Some(Common::ClearWatchdogStatus.to(address));
+        }
+    }
+}
+
+fn form(address: u8) -> InputForm {
+    if address == 3 {
+        InputForm::three(DataFormat::Hex, TypeCode(0x20))
+    } else {
+        InputForm::eight(DataFormat::Hex, TypeCode(0x08))
+    }
+}
+
+fn judge(answer: &Answer, ticket: u64, line: &FingerprintLine, weather: &mut Weather) {
+    weather.transactions += 1;
+    assert_eq!(answer.ticket, ticket, "answers come in order");
+    match &answer.outcome {
+        Err(error) => {
+            *weather.failures.entry(kind(error)).or_default() += 1;
+            if !names_itself(error, &answer.command) {
+                weather.lie(|it| &mut it.nameless, "nameless", answer);
+            }
+        }
+        Ok(reply) => {
+            weather.believed += 1;
+            match found(answer, reply, line) {
+                Found::True => {}
+                Found::Foreign => weather.lie(|it| &mut it.foreign, "foreign", answer),
+                Found::Stale => weather.lie(|it| &mut it.stale, "stale", answer),
+                Found::Hollow => weather.lie(|it| &mut it.hollow, "hollow", answer),
+            }
+        }
+    }
+}
+
+fn kind(error: &LineError) -> &'static str {
+    match error {
+        LineError::TimeOut { .. } => "no whole reply in time",
+        LineError::Reply {
+            reason: ReplyError::Ignored,
+            ..
+        } => "ignored: watchdog tripped",
+        LineError::Reply {
+            reason: ReplyError::Refused,
+            ..
+        } => "refused",
+        LineError::Reply { .. } => "damaged reply",
+        LineError::Echo { .. } => "echo",
+        LineError::SecondReply { .. } => "more behind the reply",
+        LineError::NeverSilent { .. } => "line never silent",
+        LineError::PortLost { .. } => "port lost",
+        #[allow(unreachable_patterns, reason = "kinds may be added")]
+        _ => "other",
+    }
+}
+
+fn names_itself(error: &LineError, command: &Command) -> bool {
+    let text = error.to_string();
+    text.contains(fingerprint::LINE) && text.contains(&command.to_string())
+}
+
+enum Found {
+    True,
+    Foreign,
+    Stale,
+    Hollow,
+}
+
+fn found(answer: &Answer, reply: &Reply, line: &FingerprintLine) -> Found {
+    let Some(Address(address)) = answer.command.address() else {
+        return Found::True;
+    };
+    match (&answer.command, reply) {
+        (Command::AnalogIn(_, AnalogIn::ReadOne { channel, .. }), Reply::Reading(reading)) => {
+            analog(answer, address, channel.get(), reading.value)
+        }
+        (Command::AnalogIn(_, AnalogIn::ReadAll(_)), Reply::Readings(readings)) => readings
+            .iter()
+            .enumerate()
+            .map(|(channel, reading)| analog(answer, address, channel as u8, reading.value))
+            .find(|found| !matches!(found, Found::True))
+            .unwrap_or(Found::True),
+        (Command::Counter(_, Counter::Read(n)), Reply::Count(count)) => told(
+            fingerprint::origin_of_count(*count) == (address, n.get()),
+            Found::Foreign,
+        ),
+        (Command::Digital(..), Reply::Bits(bits)) if address <= 7 => {
+            word(answer, address, bits.word())
+        }
+        (Command::Digital(..), Reply::Bits(bits)) => carried(address, bits.word(), line),
+        (Command::Digital(_, Digital::Write(written)), Reply::Accepted) => {
+            told(line.output(address) == Some(written.bits()), Found::Hollow)
+        }
+        (Command::AnalogOut(_, AnalogOut::Write { level, .. }), Reply::Accepted) => told(
+            line.output(address).map(i32::from) == Some(level.steps()),
+            Found::Hollow,
+        ),
+        (Command::AnalogOut(..), Reply::Level(level)) => {
+            carried(address, level.steps() as u16, line)
+        }
+        (_, _) => Found::True,
+    }
+}
+
+fn told(is_true: bool, else_it_is: Found) -> Found {
+    if is_true { Found::True } else { else_it_is }
+}
+
+fn analog(answer: &Answer, address: u8, channel: u8, value: Value) -> Found {
+    let Value::Hex(code) = value else {
+        return Found::Foreign;
+    };
+    let code = code.cast_unsigned();
+    if fingerprint::origin_of_analog(code) != (address, channel) {
+        return Found::Foreign;
+    }
+    let taken = answer.answered_at.since(answer.asked_at).0;
+    let distance = fingerprint::distance_of_analog_us(code, answer.asked_at.0);
+    told(distance <= CONVERSION_US + taken, Found::Stale)
+}
+
+/// A word of inputs is taken when the request has arrived: after it was asked.
+fn word(answer: &Answer, address: u8, word: u16) -> Found {
+    if fingerprint::origin_of_word(word) != address {
+        return Found::Foreign;
+    }
+    let taken = answer.answered_at.since(answer.asked_at).0;
+    let age = fingerprint::age_of_word_us(word, answer.answered_at.0);
+    told(age <= taken + fingerprint::WORD_STEP_US, Found::Stale)
+}
+
+/// What is read back must be what the outputs carry.
+fn carried(address: u8, word: u16, line: &FingerprintLine) -> Found {
+    if fingerprint::origin_of_word(word) != address {
+        return Found::Foreign;
+    }
+    told(line.output(address) == Some(word), Found::Stale)
+}
