@@ -8,6 +8,7 @@
 //! step asked for. Nothing here knows what a relay is: that is the station's.
 
 mod commission;
+mod rota;
 mod traffic;
 
 pub use traffic::LineEnds;

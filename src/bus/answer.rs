@@ -75,6 +75,16 @@ pub enum LineError {
         /// What was asked.
         command: Command,
     },
+    /// A module that was given up may have said this; the one that was asked did not confirm it.
+    #[error(
+        "line {line}, {command}: not believed, a late reply of another question may be on the line"
+    )]
+    OutOfStep {
+        /// Name of the line.
+        line: String,
+        /// What was asked.
+        command: Command,
+    },
     /// Somebody talks without being asked, and does not stop. Nothing was sent.
     #[error("line {line}, {command}: not sent, the line does not fall silent")]
     NeverSilent {

@@ -2,7 +2,7 @@
 
 use super::trace::Direction;
 use super::{LineLog, Pace};
-use crate::dcon::FRAME_LIMIT;
+use crate::dcon::{Command, FRAME_LIMIT};
 use crate::units::{RigTime, Span};
 use std::future::poll_fn;
 use std::io;
@@ -67,6 +67,28 @@ impl Frame {
     }
 }
 
+/// What came of asking a module to name itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Named {
+    /// The module has answered, and nothing came behind.
+    pub(super) by_module: bool,
+    /// Something else was heard.
+    pub(super) strays: bool,
+    /// When the last character was heard; when it was asked, if none.
+    pub(super) last_heard: RigTime,
+}
+
+/// How waiting for silence ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quiet {
+    /// Nothing was heard for long enough.
+    Silent,
+    /// The module has said who it is; what came before is accounted for.
+    Named,
+    /// Somebody talks on.
+    Noisy,
+}
+
 /// A port with the clock and the log that go with it.
 pub(super) struct Exchange<'a, P> {
     pub(super) port: &'a mut P,
@@ -103,6 +125,60 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
             self.note(Direction::Heard, frame.bytes());
         }
         Ok(heard)
+    }
+
+    /// Sends `question`, whose reply names its module, and listens for that reply alone until `deadline`.
+    pub(super) async fn name(
+        &mut self,
+        question: &Command,
+        with_checksum: bool,
+        deadline: RigTime,
+    ) -> io::Result<Named> {
+        let mut request = Vec::with_capacity(8);
+        question.encode(with_checksum, &mut request);
+        let mut named = Named {
+            by_module: false,
+            strays: false,
+            last_heard: self.pace.now(),
+        };
+        let timer = self.pace.sleep(deadline);
+        tokio::pin!(timer);
+        if !self.write(&request, timer.as_mut()).await? {
+            return Ok(named);
+        }
+        let mut frame = Frame::new();
+        let mut piece = [0; 2 * FRAME_LIMIT];
+        while !named.by_module {
+            let count = tokio::select! {
+                biased;
+                count = self.port.read(&mut piece) => count?,
+                () = timer.as_mut() => break,
+            };
+            if count == 0 {
+                return Err(io::ErrorKind::UnexpectedEof.into());
+            }
+            named.last_heard = self.pace.now();
+            for byte in &piece[..count] {
+                named.strays |= named.by_module;
+                if frame.push(std::slice::from_ref(byte)).is_none() {
+                    continue;
+                }
+                named.by_module = names(question, with_checksum, &frame);
+                named.strays |= !named.by_module;
+                let direction = if named.by_module {
+                    Direction::Heard
+                } else {
+                    Direction::Stray
+                };
+                self.note(direction, frame.bytes());
+                frame.clear();
+            }
+        }
+        if !frame.bytes().is_empty() {
+            named.strays = true;
+            self.note(Direction::Stray, frame.bytes());
+        }
+        Ok(named)
     }
 
     /// Writes and listens to nobody.
@@ -154,24 +230,39 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         tokio::task::unconstrained(read).await
     }
 
-    /// Waits until nothing has been heard for `silence`; false when that has not come about before `limit`.
-    pub(super) async fn silence(&mut self, silence: Span, limit: RigTime) -> io::Result<bool> {
+    /// Waits until nothing has been heard for `silence` since `last_heard`, or the reply to `question` has come, until
+    /// `limit` at the latest.
+    pub(super) async fn silence(
+        &mut self,
+        silence: Span,
+        last_heard: RigTime,
+        limit: RigTime,
+        question: Option<(&Command, bool)>,
+    ) -> io::Result<Quiet> {
+        let mut frame = Frame::new();
         let mut piece = [0; 2 * FRAME_LIMIT];
-        let mut until = self.pace.now() + silence;
+        let mut until = last_heard + silence;
         while until <= limit {
-            tokio::select! {
+            let count = tokio::select! {
                 biased;
-                count = self.port.read(&mut piece) => match count? {
-                    0 => return Err(io::ErrorKind::UnexpectedEof.into()),
-                    count => {
-                        self.note(Direction::Stray, &piece[..count]);
-                        until = self.pace.now() + silence;
+                count = self.port.read(&mut piece) => count?,
+                () = self.pace.sleep(until) => return Ok(Quiet::Silent),
+            };
+            if count == 0 {
+                return Err(io::ErrorKind::UnexpectedEof.into());
+            }
+            self.note(Direction::Stray, &piece[..count]);
+            until = self.pace.now() + silence;
+            for byte in &piece[..count] {
+                if frame.push(std::slice::from_ref(byte)).is_some() {
+                    if question.is_some_and(|(ask, sum)| names(ask, sum, &frame)) {
+                        return Ok(Quiet::Named);
                     }
-                },
-                () = self.pace.sleep(until) => return Ok(true),
+                    frame.clear();
+                }
             }
         }
-        Ok(false)
+        Ok(Quiet::Noisy)
     }
 
     fn note(&self, direction: Direction, bytes: &[u8]) {
@@ -179,5 +270,13 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
             .records()
             .trace
             .add(self.pace.now(), direction, bytes);
+    }
+}
+
+/// Yes and no are both said by the module that was asked.
+fn names(question: &Command, with_checksum: bool, frame: &Frame) -> bool {
+    match question.decode(frame.bytes(), with_checksum) {
+        Ok(_) => true,
+        Err(reason) => reason.is_answer(),
     }
 }

@@ -110,6 +110,7 @@ impl Health {
                 LineError::Reply { .. }
                 | LineError::Echo { .. }
                 | LineError::SecondReply { .. }
+                | LineError::OutOfStep { .. }
                 | LineError::NeverSilent { .. },
             ) => module.other_errors += 1,
         }

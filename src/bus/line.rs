@@ -1,10 +1,11 @@
 //! The task of a line: requests in, answers out, one at a time and in order.
 
-use super::exchange::{Exchange, Frame, Heard};
+use super::exchange::{Exchange, Frame};
+use super::owing::Owing;
+use super::talk::{Talk, Times, Trouble};
 use super::{Answer, LineError, LineSettings, Pace, PortError, Request};
-use crate::dcon::{Command, Common, Reply, ReplyError};
+use crate::dcon::{Command, Common, Reply};
 use crate::units::{RigTime, Span};
-use std::io;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::mpsc;
 
@@ -55,6 +56,7 @@ pub async fn run_reopening<O: Ports>(
         request: Vec::with_capacity(24),
         frame: Frame::new(),
         silent: true,
+        owing: Owing::default(),
         reopen_at: RigTime(0),
         backoff,
         lost_because: PortError::Gone,
@@ -76,6 +78,7 @@ struct Line<O: Ports> {
     frame: Frame,
     /// False after trouble, until the line has been silent for long enough.
     silent: bool,
+    owing: Owing,
     reopen_at: RigTime,
     backoff: Span,
     lost_because: PortError,
@@ -86,23 +89,6 @@ struct Try {
     asked_at: RigTime,
     answered_at: RigTime,
     outcome: Result<Reply, LineError>,
-}
-
-/// What a try ran into; made into a [`LineError`] where line and command are known.
-enum Trouble {
-    Reply(ReplyError),
-    TimeOut,
-    Echo,
-    SecondReply,
-    NeverSilent,
-    Broken(io::ErrorKind),
-    NoPort,
-}
-
-impl From<io::Error> for Trouble {
-    fn from(error: io::Error) -> Self {
-        Self::Broken(error.kind())
-    }
 }
 
 impl<O: Ports> Line<O> {
@@ -139,76 +125,40 @@ impl<O: Ports> Line<O> {
     }
 
     async fn attempt(&mut self, command: &Command) -> Try {
-        let mut asked_at = self.pace.now();
-        let mut answered_at = None;
-        let result = self
-            .transact(command, &mut asked_at, &mut answered_at)
-            .await;
+        let mut times = Times {
+            asked_at: self.pace.now(),
+            answered_at: None,
+        };
+        let result = self.transact(command, &mut times).await;
         match result {
             Err(Trouble::Broken(kind)) => self.lost(PortError::Broken { kind }),
             Ok(_) => self.backoff = Span::ms(self.settings.reopen_first_ms),
             Err(_) => {}
         }
-        let answered_at = answered_at.unwrap_or_else(|| self.pace.now());
         Try {
-            asked_at,
-            answered_at,
+            asked_at: times.asked_at,
+            answered_at: times.answered_at.unwrap_or_else(|| self.pace.now()),
             outcome: result.map_err(|trouble| self.explain(*command, trouble)),
         }
     }
 
-    /// One transaction, with the rest or the silence that belongs to it.
-    async fn transact(
-        &mut self,
-        command: &Command,
-        asked_at: &mut RigTime,
-        answered_at: &mut Option<RigTime>,
-    ) -> Result<Reply, Trouble> {
+    async fn transact(&mut self, command: &Command, times: &mut Times) -> Result<Reply, Trouble> {
         self.reopened(command).await?;
-        let Self {
-            port: Some(port),
-            settings,
-            pace,
-            request,
-            frame,
-            silent,
-            ..
-        } = self
-        else {
+        let Some(port) = &mut self.port else {
             return Err(Trouble::NoPort);
         };
-        let mut exchange = Exchange {
-            port,
-            pace: *pace,
-            log: &settings.log,
+        let mut talk = Talk {
+            exchange: Exchange {
+                port,
+                pace: self.pace,
+                log: &self.settings.log,
+            },
+            settings: &self.settings,
+            owing: &mut self.owing,
+            silent: &mut self.silent,
         };
-        if !*silent {
-            let limit = pace.now() + settings.silence_limit(command);
-            *silent = exchange.silence(settings.silence(command), limit).await?;
-            return Err(Trouble::NeverSilent);
-        }
-        exchange.discard().await?;
-        *asked_at = pace.now();
-        if !command.answered() {
-            let over = *asked_at + settings.wire().time(request.len()) + settings.turnaround();
-            exchange.tell(request, over).await?;
-            pace.rest_until(over).await;
-            return Ok(Reply::Sent);
-        }
-        let deadline = *asked_at + settings.time_out_of(command, request.len());
-        let heard = exchange.ask(request, deadline, frame).await?;
-        *answered_at = Some(pace.now());
-        let mut result = judge(command, settings.checksum, request, frame, heard);
-        if result.is_ok() || matches!(&result, Err(Trouble::Reply(reason)) if reason.is_answer()) {
-            pace.rest_until(pace.now() + settings.turnaround()).await;
-            if exchange.discard().await? == 0 {
-                return result;
-            }
-            result = Err(Trouble::SecondReply);
-        }
-        let limit = pace.now() + settings.silence_limit(command);
-        *silent = exchange.silence(settings.silence(command), limit).await?;
-        result
+        talk.transact(command, &self.request, &mut self.frame, times)
+            .await
     }
 
     /// Makes sure of a port. Without one a request takes as long as with a silent module, so that nobody spins.
@@ -255,6 +205,7 @@ impl<O: Ports> Line<O> {
                 reason,
             },
             Trouble::Echo => LineError::Echo { line, command },
+            Trouble::OutOfStep => LineError::OutOfStep { line, command },
             Trouble::SecondReply => LineError::SecondReply { line, command },
             Trouble::NeverSilent => LineError::NeverSilent { line, command },
             Trouble::Broken(_) | Trouble::NoPort => LineError::PortLost {
@@ -284,27 +235,6 @@ impl<O: Ports> Line<O> {
     }
 }
 
-/// Whether what was heard is the reply to `command`.
-fn judge(
-    command: &Command,
-    checksum: bool,
-    request: &[u8],
-    frame: &Frame,
-    heard: Heard,
-) -> Result<Reply, Trouble> {
-    match heard {
-        Heard::Nothing => Err(Trouble::TimeOut),
-        Heard::TooLong => Err(Trouble::Reply(ReplyError::TooLong {
-            length: frame.bytes().len(),
-        })),
-        Heard::Whole | Heard::More if frame.bytes() == request => Err(Trouble::Echo),
-        Heard::More => Err(Trouble::SecondReply),
-        Heard::Whole => command
-            .decode(frame.bytes(), checksum)
-            .map_err(Trouble::Reply),
-    }
-}
-
 /// Only reads, and only when the line may do better next time.
 fn may_repeat(command: &Command, outcome: &Result<Reply, LineError>) -> bool {
     command.repeatable()
@@ -312,6 +242,7 @@ fn may_repeat(command: &Command, outcome: &Result<Reply, LineError>) -> bool {
             Ok(_) | Err(LineError::PortLost { .. }) => false,
             Err(LineError::Reply { reason, .. }) => !reason.is_answer(),
             Err(LineError::TimeOut { .. } | LineError::Echo { .. }) => true,
-            Err(LineError::SecondReply { .. } | LineError::NeverSilent { .. }) => true,
+            Err(LineError::SecondReply { .. } | LineError::OutOfStep { .. }) => true,
+            Err(LineError::NeverSilent { .. }) => true,
         }
 }

@@ -6,9 +6,10 @@
 //! 2. The request is written. The reply has wire(request) + wire(longest reply) + allowance to arrive whole.
 //! 3. The line rests for the turnaround (two characters). A byte in that time means that somebody else is
 //!    talking, and the reply is not believed.
-//! 4. After a time-out or any damage the line must have been silent for the longest reply time and the grace for
-//!    late replies before it is used again: `>` replies carry no address, so this is the only thing that keeps a
-//!    late answer from being taken for the next one.
+//! 4. After a time-out or any damage the module is asked to name itself: its `!AA` reply proves that nothing older is
+//!    on its way. If it does not, the line must fall silent for the longest reply time and the grace for late
+//!    replies, and for a second whatever could be the reply that is owed needs a confirmation (`owing.rs`): `>`
+//!    replies carry no address, and a late one must not be taken for the next.
 //! 5. Only commands that change nothing are repeated, and at most as often as the request allows.
 //!
 //! Troubles: a line that never falls silent answers [`LineError::NeverSilent`]; a lost port answers
@@ -22,9 +23,11 @@ mod exchange;
 mod health;
 mod line;
 mod log;
+mod owing;
 mod pace;
 mod port;
 mod settings;
+mod talk;
 mod trace;
 mod wire;
 

@@ -1,7 +1,8 @@
 //! What a line must be told, and how long it may take.
 
+use super::owing::question;
 use super::{LineLog, Wire};
-use crate::dcon::{Command, Common};
+use crate::dcon::{Address, Command, Common};
 use crate::units::Span;
 
 /// Settings of one line. Every time is a length, in the unit its name ends in.
@@ -78,10 +79,10 @@ impl LineSettings {
         self.longest_reply_time(command) + Span::ms(self.late_reply_ms)
     }
 
-    /// Longest wait for that silence, before the line is called noisy.
-    pub fn silence_limit(&self, command: &Command) -> Span {
-        let silence = self.silence(command);
-        silence + silence
+    /// How long a module is asked who it is, after trouble with `command`: once at least, and for as long as the
+    /// silence would last.
+    pub(super) fn step_limit(&self, command: &Command, address: Address) -> Span {
+        self.silence(command).max(self.time_out(&question(address)))
     }
 
     /// Time of the request on the wire.
@@ -107,15 +108,17 @@ impl LineSettings {
     }
 }
 
-/// The longest that one try of any of `commands` can hold the line: time-out, then a silence that is broken as
-/// often as it may be. A request that allows several tries may take as many times this. Zero for no commands.
+/// The longest that one try of any of `commands` can hold the line, given up or believed only after it was said
+/// twice: question, question again, then the way back into step and a silence that is broken once. A request that
+/// allows several tries may take as many times this. Zero for no commands.
 pub fn longest_transaction(settings: &LineSettings, commands: &[Command]) -> Span {
-    let longest = |command: &Command| {
-        if command.answered() {
-            settings.time_out(command) + settings.silence_limit(command)
-        } else {
-            settings.request_time(command) + settings.turnaround()
+    let longest = |command: &Command| match command.address() {
+        Some(address) => {
+            let asked = settings.time_out(command) + settings.turnaround();
+            let step = settings.step_limit(command, address) + settings.turnaround();
+            asked + asked + step + settings.silence(command)
         }
+        None => settings.request_time(command) + settings.turnaround(),
     };
     commands.iter().map(longest).max().unwrap_or_default()
 }

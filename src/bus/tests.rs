@@ -13,6 +13,7 @@ use tokio::sync::mpsc;
 
 mod ports;
 mod records;
+mod steps;
 
 /// One piece of what the modules say: microseconds after the request was heard, and the bytes.
 type Say = (u64, &'static [u8]);
@@ -43,19 +44,33 @@ fn in_virtual_time<F: Future>(test: F) -> F::Output {
         .block_on(test)
 }
 
-/// Answers the n-th request with the n-th entry of `script`, and says nothing afterwards.
+/// Answers the n-th request with the n-th entry of `script`, and says nothing afterwards. Asked who is there it says
+/// so once it has said everything else; that is neither scripted nor counted.
 async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) -> Vec<String> {
     let mut asked = Vec::new();
     let mut script = script.into_iter();
     while let Some(request) = next_request(&mut stream).await {
-        asked.push(request);
         let heard_at = pace.now();
+        if let Some(name) = named(&request) {
+            pace.sleep_until(heard_at + Span(2_000)).await;
+            let _ = stream.write_all(name.as_bytes()).await;
+            continue;
+        }
+        asked.push(request);
         for (after, bytes) in script.next().unwrap_or_default() {
             pace.sleep_until(heard_at + Span(after)).await;
             let _ = stream.write_all(bytes).await;
         }
     }
     asked
+}
+
+/// The configuration word of a module, if that is what was asked.
+fn named(request: &str) -> Option<String> {
+    let address = request.strip_prefix('$')?.get(..2)?;
+    let text = format!("!{address}400640");
+    let sum = crate::dcon::checksum(text.as_bytes());
+    (request.len() == 6 && request.as_bytes()[3] == b'2').then(|| format!("{text}{sum:02X}\r"))
 }
 
 async fn next_request(stream: &mut DuplexStream) -> Option<String> {
@@ -280,24 +295,16 @@ fn more_characters_than_a_frame_has_are_dropped() {
 #[test]
 fn a_line_that_never_falls_silent_is_not_talked_into() {
     let babble: Vec<Say> = (1..60).map(|turn| (turn * 5_000, b"U" as &[u8])).collect();
-    let (got, asked) = in_virtual_time(played(
-        settings(),
-        vec![babble, vec![(2_000, NINE)]],
-        &[(count(), 1); 10],
-    ));
+    let mut script = vec![babble];
+    script.extend(vec![vec![(2_000, NINE)]; 9]);
+    let (got, asked) = in_virtual_time(played(settings(), script, &[(count(), 1); 10]));
     let longest = longest_transaction(&settings(), &[count()]);
-    assert!(
-        got.iter()
-            .any(|answer| matches!(answer.outcome, Err(LineError::NeverSilent { .. })))
-    );
-    assert_eq!(
-        asked.len()
-            + got
-                .iter()
-                .filter(|a| matches!(a.outcome, Err(LineError::NeverSilent { .. })))
-                .count(),
-        10
-    );
+    let unasked = got
+        .iter()
+        .filter(|a| matches!(a.outcome, Err(LineError::NeverSilent { .. })))
+        .count();
+    // The first of the others may be asked twice: the babble could have been its reply.
+    assert!(unasked > 0 && asked.len() <= 10 - unasked + 1, "{asked:?}");
     for pair in got.windows(2) {
         assert!(
             pair[1].asked_at.since(pair[0].asked_at) <= longest,

@@ -275,7 +275,7 @@ fn a_plant_that_cannot_stop_in_time_is_refused() {
         "estop_reaction_ms = 250",
         "estop_reaction_ms = 100",
         "estop_reaction_ms",
-        "[safety].estop_reaction_ms: found 100, expected at least 159.1, the worst reaction on line motion",
+        "[safety].estop_reaction_ms: found 100, expected at least 225.1, the worst reaction on line motion",
     );
 }
 

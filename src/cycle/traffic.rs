@@ -1,8 +1,9 @@
 //! Who may use a line next: writes first, then the heartbeat, the measuring job, and the scan.
 //!
 //! Every line has one transaction under way at most. The module with the emergency-stop contact is
-//! every second transaction of its line's scan.
+//! every second transaction of its line's scan ([`super::rota`]).
 
+use super::rota::{Next, Rota};
 use crate::bus::{Answer, Request};
 use crate::dcon::{Address, Command, Common};
 use crate::rig::point::DigitalIn;
@@ -14,9 +15,6 @@ use std::future::poll_fn;
 use std::sync::Arc;
 use std::task::Poll;
 use tokio::sync::mpsc;
-
-/// One scan in so many asks a module whether it has restarted.
-const RESET_EVERY: usize = 32;
 
 fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
     wiring
@@ -65,11 +63,7 @@ struct Slot {
     waiting: Option<Answer>,
     queue: VecDeque<(Command, Purpose)>,
     heartbeat_due: RigTime,
-    scan: Vec<Command>,
-    /// Reset status of every module with outputs.
-    resets: Vec<Command>,
-    priority: Option<Command>,
-    scan_turn: usize,
+    rota: Rota,
     scan_due: RigTime,
 }
 
@@ -124,14 +118,15 @@ impl Traffic {
                     waiting: None,
                     queue: VecDeque::new(),
                     heartbeat_due: RigTime(0),
-                    scan: if is_board {
-                        Vec::new()
-                    } else {
-                        scan.into_iter().map(|m| wiring.poll(m)).collect()
-                    },
-                    resets: reset_questions(wiring, ends.line),
-                    priority: (ends.line == estop_line).then(|| wiring.poll(estop)),
-                    scan_turn: 0,
+                    rota: Rota::new(
+                        (ends.line == estop_line).then(|| wiring.poll(estop)),
+                        if is_board {
+                            Vec::new()
+                        } else {
+                            scan.into_iter().map(|m| wiring.poll(m)).collect()
+                        },
+                        reset_questions(wiring, ends.line),
+                    ),
                     scan_due: RigTime(0),
                     ends,
                 }
@@ -165,7 +160,7 @@ impl Traffic {
         self.slots
             .iter()
             .find(|slot| slot.ends.line == self.measuring)
-            .map_or_else(Vec::new, |slot| slot.resets.clone())
+            .map_or_else(Vec::new, |slot| slot.rota.resets.clone())
     }
 
     /// How often a command of this line is tried.
@@ -346,33 +341,14 @@ impl Traffic {
         if !self.scanning || slot.scan_due > now {
             return None;
         }
-        let turn = slot.scan_turn;
-        slot.scan_turn += 1;
-        if turn.is_multiple_of(2)
-            && let Some(command) = slot.priority
-        {
-            return Some((command, Purpose::Scan));
+        let beam = self.beam.filter(|_| slot.ends.line == self.beam_line);
+        match slot.rota.next(beam)? {
+            Next::Priority(command) => Some((command, Purpose::Scan)),
+            Next::Other(command) => {
+                slot.scan_due = now + self.scan_period;
+                Some((command, Purpose::Scan))
+            }
         }
-        if slot.ends.line == self.beam_line
-            && turn % 4 == 3
-            && let Some(beam) = self.beam
-        {
-            slot.scan_due = now + self.scan_period;
-            return Some((beam, Purpose::Scan));
-        }
-        if !slot.resets.is_empty() && turn % RESET_EVERY == RESET_EVERY - 1 {
-            slot.scan_due = now + self.scan_period;
-            return Some((
-                slot.resets[(turn / RESET_EVERY) % slot.resets.len()],
-                Purpose::Scan,
-            ));
-        }
-        let others = slot.scan.len();
-        if others == 0 {
-            return None;
-        }
-        slot.scan_due = now + self.scan_period;
-        Some((slot.scan[(turn / 2) % others], Purpose::Scan))
     }
 
     /// The next answer that has come in.

@@ -10,7 +10,7 @@
 //!
 //! | family | modules | file |
 //! |---|---|---|
-//! | [`Common`] | all | `common.rs` |
+//! | [`Common`] | all | `every_module.rs` |
 //! | [`AnalogIn`] | 7017, 7017F, 7017R, 7018, 7033 | `analog_in.rs` |
 //! | [`AnalogOut`] | 7021, 7021P, 7022, 7024 | `analog_out.rs` |
 //! | [`Digital`] | 7041, 7043, 7045, 7050, 7051, 7060, 7063, 7065, 7067 | `digital.rs` |
@@ -26,11 +26,11 @@ mod analog_out;
 mod bits;
 mod bounded;
 mod command;
-mod common;
 mod config;
 mod counter;
 mod digital;
 mod error;
+mod every_module;
 mod fields;
 mod frame;
 mod level;
@@ -49,11 +49,11 @@ pub use analog_out::AnalogOut;
 pub use bits::{Bits, OutputWord, Width};
 pub use bounded::{Address, Channel, UpTo};
 pub use command::{Command, Nature};
-pub use common::Common;
 pub use config::{BaudCode, Config, DataFormat, FormatByte, ModuleName, SlewCode};
 pub use counter::{AlarmKind, AlarmState, Counter, Edge, GateMode, InputMode};
 pub use digital::{Digital, GroupWrite, Stored};
 pub use error::ReplyError;
+pub use every_module::Common;
 pub use frame::{FRAME_LIMIT, checksum};
 pub use level::{Level, LevelError, OutputForm};
 pub use reading::{Reading, Readings, Value};

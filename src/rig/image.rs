@@ -245,6 +245,16 @@ impl Image {
         std::mem::take(&mut self.resets)
     }
 
+    /// State of an input that was just asked for: as [`Image::input`], no older than a transaction of its line may
+    /// take at worst.
+    pub fn answered_input(&self, point: DigitalIn, now: RigTime) -> Option<bool> {
+        let line = self
+            .wiring
+            .module(self.wiring.digital_in(point).module)
+            .line;
+        self.input(point, now, self.wiring.answer_max_age(line))
+    }
+
     /// A digital input, if it was asked for at most `max_age` ago.
     pub fn input(&self, point: DigitalIn, now: RigTime, max_age: Span) -> Option<bool> {
         let terminal = self.wiring.digital_in(point);

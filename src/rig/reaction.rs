@@ -3,9 +3,10 @@
 //! The module that carries the contact is asked in every second transaction of its line. The contact
 //! opens, at worst, just after it was asked. Then passes
 //!
-//! - one other transaction, the longest of that line, failing: request, time-out, and the wait for silence that
-//!   must follow, itself broken once by a late reply,
-//! - the poll that sees the contact open, answered at the last moment,
+//! - one other transaction, the longest of that line, failing: request, time-out, the question to the silent module
+//!   who is there, not answered either, and a wait for silence, broken once by a late reply,
+//! - the poll that sees the contact open, answered at the last moment, said again and confirmed by the name of its
+//!   module, each at the last moment: the late reply of the silent module could be taken for the contact's,
 //! - one write that makes outputs safe, answered at the last moment,
 //!
 //! and a rest of two characters after each. A late reply is taken to begin at most one allowance after the
@@ -44,8 +45,24 @@ impl Wiring {
     /// whatever befell the one transaction between.
     pub fn emergency_stop_max_age(&self) -> Span {
         let line = self.emergency_stop_line();
-        self.longest_failure(line)
-            + self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance())
+        self.longest_failure(line) + self.confirmed(line)
+    }
+
+    /// Age at which an input that was asked for by name no longer counts as the answer to that question: read and
+    /// confirmed at the last moment.
+    pub fn answer_max_age(&self, line: LineId) -> Span {
+        self.confirmed(line)
+    }
+
+    /// A read of a digital module, read again, and the name of its module, each at the last moment.
+    fn confirmed(&self, line: LineId) -> Span {
+        let read = self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance());
+        read + read + self.question(line)
+    }
+
+    /// The question to a module who is there; its reply is no longer than a count.
+    fn question(&self, line: LineId) -> Span {
+        self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance())
     }
 
     /// The longest that one failing transaction can hold a line.
@@ -64,7 +81,7 @@ impl Wiring {
             self.digital_allowance()
         };
         let silence = self.wire(line, longest) + allowance;
-        self.answered(line, longest, allowance) + silence + silence
+        self.answered(line, longest, allowance) + self.question(line) + silence
     }
 
     /// A transaction of this line that is answered at the last moment, with the rest after it.
@@ -118,19 +135,19 @@ mod tests {
 
     #[test]
     fn the_bound_is_failure_poll_and_write() {
-        // Frames of 13 + 12 + 2 characters with 30 ms, three times, and twice 12 characters with 30 ms;
-        // each wire time rounded up to the microsecond.
+        // Frames of 13 + 12 + 2 characters with 30 ms, six times (given up, who is there, poll, poll again, who is
+        // there, write), and 12 characters with 30 ms; each wire time rounded up to the microsecond.
         let bound = Wiring::resolve(&settings()).unwrap().longest_reaction();
-        assert_eq!(bound, Span(3 * (2_344 + 30_000) + 2 * (1_042 + 30_000)));
+        assert_eq!(bound, Span(6 * (2_344 + 30_000) + (1_042 + 30_000)));
     }
 
     #[test]
     fn a_slower_line_or_an_analog_module_beside_the_contact_lengthens_it() {
         let mut slow = settings();
         slow.line.get_mut("motion").unwrap().baud = 9600;
-        slow.safety.estop_reaction_ms = 300.0;
+        slow.safety.estop_reaction_ms = 400.0;
         let bound = Wiring::resolve(&slow).unwrap().longest_reaction();
-        assert_eq!(bound, Span(3 * (28_125 + 30_000) + 2 * (12_500 + 30_000)));
+        assert_eq!(bound, Span(6 * (28_125 + 30_000) + (12_500 + 30_000)));
         let mut shared = settings();
         let contact = shared.digital_in.get_mut("emergency_stop_ok").unwrap();
         (contact.module, contact.channel) = ("board_di".to_owned(), 11);

@@ -93,7 +93,7 @@ pub struct BoardInputs {
 impl BoardInputs {
     /// From the image, provided every bit was read at or after `since`.
     fn take(image: &Image, now: RigTime) -> Option<Self> {
-        let get = |point| image.input(point, now, Span::ms(50));
+        let get = |point| image.answered_input(point, now);
         Some(Self {
             kelvin: [
                 get(DigitalIn::KelvinCoilA)?,
@@ -304,7 +304,7 @@ impl Runner {
             Some(Act::Read(read)) => self.take(read, image, now)?,
             Some(Act::Until { point, within }) => {
                 let active = image
-                    .input(point, now, Span::ms(50))
+                    .answered_input(point, now)
                     .ok_or("a board input is stale")?;
                 if !active && self.since.since(self.began) < within {
                     return Ok(());

@@ -69,11 +69,12 @@ fn the_longest_transaction_is_that_of_the_slowest_command() {
     let settings = settings();
     let both = longest_transaction(&settings, &[count(), write(), Command::HostOk]);
     assert_eq!(both, longest_transaction(&settings, &[count()]));
-    // 7 + 12 characters and 30 ms, then twice 12 characters and 30 ms.
+    // 7 + 12 characters, 30 ms and a rest of two characters three times: asked, asked again, asked who is there; then
+    // 12 characters of silence and 30 ms.
     let wire = |characters| settings.wire().time(characters).0;
     assert_eq!(
         both.0,
-        wire(7) + wire(12) + 30_000 + 2 * (wire(12) + 30_000)
+        3 * (wire(7) + wire(12) + 30_000 + wire(2)) + wire(12) + 30_000
     );
     assert_eq!(longest_transaction(&settings, &[]), Span(0));
 }

@@ -9,8 +9,8 @@ use anyhow::{anyhow, bail};
 use std::path::Path;
 use tokio::sync::mpsc;
 
-/// How late a module may still answer after its time-out on a measuring line. Three tries with this grace
-/// take 0.65 s, so the host watchdogs of the line's other modules still hear their host in time.
+/// How long a silent module of a measuring line is asked who it is before the line goes on without it. Three tries
+/// with this grace take 0.65 s, so the host watchdogs of the line's other modules still hear their host in time.
 const LATE_REPLY_MS: u64 = 180;
 
 /// Open lines, ready for the cycle.
@@ -70,8 +70,7 @@ fn settings(plant: &Plant, line: LineId) -> LineSettings {
             .module(plant.wiring.emergency_stop_module())
             .line
     {
-        // A reply without address that comes late must not be taken for the next one. The line with the
-        // emergency stop keeps the shorter grace that its reaction bound is derived from.
+        // The line with the emergency stop keeps the shorter grace that its reaction bound is derived from.
         settings.late_reply_ms = LATE_REPLY_MS;
     }
     settings.log = LineLog::with_trace(4096);

@@ -186,9 +186,11 @@ fn until_gives_up_after_its_longest_wait_and_keeps_that_nothing_came() {
 #[test]
 fn until_takes_a_board_that_was_not_read_lately_for_trouble() {
     let shop = read_once();
-    let mut runner = Runner::new(until(Span::ms(60)), shop.now);
+    let mut runner = Runner::new(until(Span::ms(200)), shop.now);
     runner.step(shop.now, None, &shop.image);
-    let later = shop.now + Span::ms(51);
+    let board = shop.wiring.digital_in(DigitalIn::Latch).module;
+    let line = shop.wiring.module(board).line;
+    let later = shop.now + shop.wiring.answer_max_age(line) + Span(1);
     let answered = runner.step(later, Some(&done(later)), &shop.image);
     assert!(matches!(answered, Doing::Trouble(_)));
 }

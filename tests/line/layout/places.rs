@@ -38,9 +38,6 @@ const EMPTY_NAMES: &[&str] = &[
     "utils", "util", "common", "helpers", "helper", "manager", "misc", "types",
 ];
 
-/// Files that bear such a name today. The list may only become shorter.
-const STILL_SO_CALLED: &[&str] = &["src/dcon/common.rs"];
-
 #[test]
 fn the_top_level_holds_what_it_should_and_nothing_else() {
     let stray: Vec<String> = top_level()
@@ -108,22 +105,12 @@ fn a_file_is_named_after_what_is_in_it() {
             .path
             .split(['/', '.'])
             .find(|part| EMPTY_NAMES.contains(part));
-        let known = STILL_SO_CALLED.contains(&source.path.as_str());
-        if let Some(name) = empty.filter(|_| !known) {
+        if let Some(name) = empty {
             broken.push(format!(
                 "{}: `{name}` says nothing about what is inside",
                 source.path
             ));
         }
-    }
-    for path in STILL_SO_CALLED
-        .iter()
-        .filter(|path| !root().join(path).exists())
-    {
-        broken.push(format!(
-            "{path} is gone: strike it from the list in {}",
-            file!()
-        ));
     }
     assert_none(&broken);
 }

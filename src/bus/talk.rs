@@ -1,0 +1,215 @@
+//! One transaction on an open port, with the rest, the doubts or the way back into step that belong to it.
+
+use super::LineSettings;
+use super::exchange::{Exchange, Frame, Heard, Quiet};
+use super::owing::{Owing, question};
+use crate::dcon::{Address, Command, Reply, ReplyError};
+use crate::units::RigTime;
+use std::io;
+use tokio::io::{AsyncRead, AsyncWrite};
+
+/// What a try ran into; made into a [`super::LineError`] where line and command are known.
+pub(super) enum Trouble {
+    Reply(ReplyError),
+    TimeOut,
+    Echo,
+    SecondReply,
+    OutOfStep,
+    NeverSilent,
+    Broken(io::ErrorKind),
+    NoPort,
+}
+
+impl From<io::Error> for Trouble {
+    fn from(error: io::Error) -> Self {
+        Self::Broken(error.kind())
+    }
+}
+
+impl Trouble {
+    /// The module heard the question and declined.
+    fn is_answer(&self) -> bool {
+        matches!(self, Self::Reply(reason) if reason.is_answer())
+    }
+}
+
+/// When a try was asked and answered.
+#[derive(Default)]
+pub(super) struct Times {
+    pub(super) asked_at: RigTime,
+    pub(super) answered_at: Option<RigTime>,
+}
+
+/// A port and what is known of the line behind it.
+pub(super) struct Talk<'a, P> {
+    pub(super) exchange: Exchange<'a, P>,
+    pub(super) settings: &'a LineSettings,
+    pub(super) owing: &'a mut Owing,
+    /// False after trouble, until the line has been silent for long enough.
+    pub(super) silent: &'a mut bool,
+}
+
+impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
+    /// Asks `command`, already written out as `request`; what was heard is in `frame`.
+    pub(super) async fn transact(
+        &mut self,
+        command: &Command,
+        request: &[u8],
+        frame: &mut Frame,
+        times: &mut Times,
+    ) -> Result<Reply, Trouble> {
+        if !*self.silent {
+            let rest = self.settings.silence(command);
+            let now = self.now();
+            let quiet = self
+                .exchange
+                .silence(rest, now, now + rest + rest, None)
+                .await?;
+            *self.silent = quiet != Quiet::Noisy;
+            return Err(Trouble::NeverSilent);
+        }
+        self.exchange.discard().await?;
+        times.asked_at = self.now();
+        let Some(address) = command.address() else {
+            return self.tell(request).await;
+        };
+        let result = self.ask(command, request, frame, times).await;
+        let is_answer = result.as_ref().map_or_else(Trouble::is_answer, |_| true);
+        if let Err(Trouble::Broken(_)) = result {
+            return result;
+        }
+        if !is_answer {
+            self.find_step(command, address).await?;
+            return result;
+        }
+        if !self
+            .owing
+            .doubts(frame.bytes(), self.settings.checksum, self.now())
+        {
+            return result;
+        }
+        if self.confirmed(command, address, request, frame).await? {
+            return result;
+        }
+        Err(Trouble::OutOfStep)
+    }
+
+    fn now(&self) -> RigTime {
+        self.exchange.pace.now()
+    }
+
+    async fn tell(&mut self, request: &[u8]) -> Result<Reply, Trouble> {
+        let wire = self.settings.wire().time(request.len());
+        let over = self.now() + wire + self.settings.turnaround();
+        self.exchange.tell(request, over).await?;
+        self.exchange.pace.rest_until(over).await;
+        Ok(Reply::Sent)
+    }
+
+    /// Question and reply, and the rest in which nothing more may come.
+    async fn ask(
+        &mut self,
+        command: &Command,
+        request: &[u8],
+        frame: &mut Frame,
+        times: &mut Times,
+    ) -> Result<Reply, Trouble> {
+        let limit = self.settings.time_out_of(command, request.len());
+        let heard = self
+            .exchange
+            .ask(request, self.now() + limit, frame)
+            .await?;
+        times.answered_at = Some(self.now());
+        let result = judge(command, self.settings.checksum, request, frame, heard);
+        if self.rests().await? || result.as_ref().is_err_and(|trouble| !trouble.is_answer()) {
+            return result;
+        }
+        Err(Trouble::SecondReply)
+    }
+
+    /// Waits for the turnaround; false when somebody talked into it.
+    async fn rests(&mut self) -> io::Result<bool> {
+        let over = self.now() + self.settings.turnaround();
+        self.exchange.pace.rest_until(over).await;
+        Ok(self.exchange.discard().await? == 0)
+    }
+
+    /// The module says the same again and names itself, with nothing between.
+    async fn confirmed(
+        &mut self,
+        command: &Command,
+        address: Address,
+        request: &[u8],
+        first: &Frame,
+    ) -> Result<bool, Trouble> {
+        let mut same = false;
+        if command.repeatable() {
+            let mut second = Frame::new();
+            let again = self
+                .ask(command, request, &mut second, &mut Times::default())
+                .await;
+            if let Err(Trouble::Broken(kind)) = again {
+                return Err(Trouble::Broken(kind));
+            }
+            let is_answer = again.as_ref().map_or_else(Trouble::is_answer, |_| true);
+            same = is_answer && second.bytes() == first.bytes();
+        }
+        Ok(self.find_step(command, address).await? && same)
+    }
+
+    /// Asks the module who it is until it answers, for as long as a silence would have to last. True when it did, and
+    /// nothing else was heard.
+    async fn find_step(&mut self, command: &Command, address: Address) -> Result<bool, Trouble> {
+        let ask_name = question(address);
+        let mut last_heard = self.now();
+        let mut alone = true;
+        let limit = self.now() + self.settings.step_limit(command, address);
+        // The name is given in microseconds or not before its time-out, so the limit ends this.
+        while *command != ask_name && self.now() + self.settings.time_out(&ask_name) <= limit {
+            let deadline = self.now() + self.settings.time_out(&ask_name);
+            let checksum = self.settings.checksum;
+            let named = self.exchange.name(&ask_name, checksum, deadline).await?;
+            last_heard = named.last_heard;
+            alone &= !named.strays;
+            if named.by_module && self.rests().await? {
+                self.owing.paid(address);
+                return Ok(alone);
+            }
+        }
+        let rest = self.settings.silence(command);
+        let name = (&ask_name, self.settings.checksum);
+        let limit = self.now() + rest;
+        let quiet = self
+            .exchange
+            .silence(rest, last_heard, limit, Some(name))
+            .await?;
+        *self.silent = quiet != Quiet::Noisy;
+        if quiet == Quiet::Named && self.rests().await? {
+            self.owing.paid(address);
+        } else {
+            self.owing.owed(*command, self.now());
+        }
+        Ok(false)
+    }
+}
+
+/// Whether what was heard is the reply to `command`.
+fn judge(
+    command: &Command,
+    checksum: bool,
+    request: &[u8],
+    frame: &Frame,
+    heard: Heard,
+) -> Result<Reply, Trouble> {
+    match heard {
+        Heard::Nothing => Err(Trouble::TimeOut),
+        Heard::TooLong => Err(Trouble::Reply(ReplyError::TooLong {
+            length: frame.bytes().len(),
+        })),
+        Heard::Whole | Heard::More if frame.bytes() == request => Err(Trouble::Echo),
+        Heard::More => Err(Trouble::SecondReply),
+        Heard::Whole => command
+            .decode(frame.bytes(), checksum)
+            .map_err(Trouble::Reply),
+    }
+}
