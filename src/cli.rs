@@ -99,7 +99,7 @@ impl Cli {
             Command::Study(args) => study::run(&self.config, &args),
             Command::Config(args) => config::run(&self.config, &args),
             Command::Check(args) => check::run(args),
-            Command::History(args) => history::run(&self.db, args),
+            Command::History(args) => history::run(&self.config, &self.db, args),
             Command::User(args) => user::run(&self.db, args),
             Command::Quality(args) => history::run_quality(args),
         }

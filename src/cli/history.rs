@@ -4,6 +4,7 @@
 
 mod export;
 mod filter;
+mod generate;
 mod import;
 mod lots;
 mod output;
@@ -12,6 +13,7 @@ mod query;
 mod show;
 mod stats;
 
+pub use generate::{GenerateArgs, Generated, generate};
 pub use quality::{QualityArgs, run_quality};
 
 use crate::history::Archive;
@@ -62,19 +64,23 @@ enum Command {
         /// File to make; must not exist
         file: PathBuf,
     },
+    /// Fill the history with made-up parts, for trying queries and reports
+    #[command(after_help = "Example: relayrig --db big.db history generate --parts 1000000")]
+    Generate(generate::GenerateArgs),
     /// Check the file for damage
     #[command(after_help = "Example: relayrig history check")]
     Check,
 }
 
 /// Runs the command on the history file `db`; gives the exit status. An error is bad input: status 2.
-pub fn run(db: &Path, args: HistoryArgs) -> anyhow::Result<i32> {
-    unless_reader_left(dispatch(db, *args.command))
+pub fn run(config: &Path, db: &Path, args: HistoryArgs) -> anyhow::Result<i32> {
+    unless_reader_left(dispatch(config, db, *args.command))
 }
 
-fn dispatch(db: &Path, command: Command) -> anyhow::Result<i32> {
+fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<i32> {
     match command {
         Command::Import(args) => return import::run(db, &args),
+        Command::Generate(args) => return generate::run(config, db, &args),
         Command::Check => return check(db),
         Command::List(args) => lots::run(&Archive::open(db)?, &args)?,
         Command::Show(args) => show::run(&Archive::open(db)?, &args)?,

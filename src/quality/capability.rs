@@ -1,8 +1,16 @@
-//! Can the process keep the limits: Cp, Cpk, Ppk.
+//! Can the process keep the limits: Cp, Cpk, Pp, Ppk, each with its 95 % interval.
 //!
-//! Cp and Cpk use the short-term deviation, mean moving range / d2 with d2 = 1.128 for pairs; Ppk uses
-//! the deviation of all values. The interval of Cpk is Bissell's (1990):
-//! `cpk -+ z sqrt(1 / (9 n) + cpk^2 / (2 (n - 1)))`.
+//! - Cp and Cpk use the short-term deviation, mean moving range / d2 with d2 = 1.128 for pairs; Pp and
+//!   Ppk use the deviation of all values.
+//! - Cp and Pp: `c sqrt(chi2(0.025; n-1) / (n-1))` up to the same with 0.975, exact for normal values.
+//! - Cpk and Ppk: Bissell (1990), `c -+ z sqrt(1 / (9 n) + c^2 / (2 (n - 1)))`.
+//! - One limit gives Cpk and Ppk only: a width needs two.
+//! - Skewed values (contact resistance, bounce) lie by the three percentiles of ISO 22514-2 instead:
+//!   `(high - x50) / (x99.865 - x50)` and `(x50 - low) / (x50 - x0.135)`, see [`by_percentiles`].
+
+use super::ordered::Ordered;
+use serde::Serialize;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// d2 for moving ranges of two neighbours (ASTM manual of control charts, table of factors).
 pub const D2_PAIR: f64 = 1.128;
@@ -10,8 +18,14 @@ pub const D2_PAIR: f64 = 1.128;
 /// Quantile of the normal distribution for a two-sided 95 % interval.
 const Z_95: f64 = 1.959_963_984_540_054;
 
+/// Share of a normal distribution below three deviations under its mean.
+const TAIL: f64 = 0.001_349_898_031_630_095;
+
+/// Fewer values than this have no percentile at [`TAIL`] that is not extrapolated: 1 / 0.00135.
+const ENOUGH_FOR_TAILS: usize = 741;
+
 /// Limits, each of which may be missing.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Limits {
     /// Lower limit.
     pub low: Option<f64>,
@@ -19,17 +33,35 @@ pub struct Limits {
     pub high: Option<f64>,
 }
 
+/// Two-sided 95 % interval of an index.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Interval {
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// An index with its interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Index {
+    /// Estimate.
+    pub value: f64,
+    /// None below two values.
+    pub interval: Option<Interval>,
+}
+
 /// None where no limit, too few values or no spread leave nothing to say.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Capability {
-    /// Needs both limits.
-    pub cp: Option<f64>,
-    /// Towards the nearer limit.
-    pub cpk: Option<f64>,
-    /// Lower end of the two-sided 95 % interval of `cpk`.
-    pub cpk_low95: Option<f64>,
+    /// Short-term width; needs both limits.
+    pub cp: Option<Index>,
+    /// Short-term, towards the nearer limit.
+    pub cpk: Option<Index>,
+    /// Width from the deviation of all values; needs both limits.
+    pub pp: Option<Index>,
     /// As `cpk`, from the deviation of all values.
-    pub ppk: Option<f64>,
+    pub ppk: Option<Index>,
 }
 
 impl Capability {
@@ -41,14 +73,36 @@ impl Capability {
         within: Option<f64>,
         overall: Option<f64>,
     ) -> Self {
-        let cpk = nearer(limits, mean, within);
+        let wide = |sigma| {
+            let value = width(limits, sigma)?;
+            let interval = chi_square(value, n);
+            Some(Index { value, interval })
+        };
+        let near = |sigma| {
+            let value = nearer(limits, mean, sigma)?;
+            let interval = bissell(value, n);
+            Some(Index { value, interval })
+        };
         Self {
-            cp: width(limits, within),
-            cpk,
-            cpk_low95: cpk.and_then(|cpk| bissell_low(cpk, n)),
-            ppk: nearer(limits, mean, overall),
+            cp: wide(within),
+            cpk: near(within),
+            pp: wide(overall),
+            ppk: near(overall),
         }
     }
+}
+
+/// Index of values of any shape towards the nearer limit, from their own percentiles. None without a
+/// limit or below 741 values, where the outer percentiles would be extrapolated.
+pub fn by_percentiles(limits: Limits, values: &Ordered) -> Option<f64> {
+    if values.len() < ENOUGH_FOR_TAILS {
+        return None;
+    }
+    let [low, middle, high] = [TAIL, 0.5, 1.0 - TAIL].map(|p| values.quantile(p));
+    let (low, middle, high) = (low?, middle?, high?);
+    let above = limits.high.map(|limit| (limit - middle) / (high - middle));
+    let below = limits.low.map(|limit| (middle - limit) / (middle - low));
+    least(above, below).filter(|it| it.is_finite())
 }
 
 fn width(limits: Limits, sigma: Option<f64>) -> Option<f64> {
@@ -60,16 +114,33 @@ fn nearer(limits: Limits, mean: Option<f64>, sigma: Option<f64>) -> Option<f64> 
     let (mean, sigma) = (mean?, positive(sigma)?);
     let below = limits.low.map(|low| mean - low);
     let above = limits.high.map(|high| high - mean);
-    let room = match (below, above) {
-        (Some(below), Some(above)) => below.min(above),
-        (one, other) => one.or(other)?,
-    };
-    Some(room / (3.0 * sigma))
+    Some(least(below, above)? / (3.0 * sigma))
 }
 
-fn bissell_low(cpk: f64, n: u64) -> Option<f64> {
+fn least(one: Option<f64>, other: Option<f64>) -> Option<f64> {
+    match (one, other) {
+        (Some(one), Some(other)) => Some(one.min(other)),
+        (one, other) => one.or(other),
+    }
+}
+
+fn bissell(index: f64, n: u64) -> Option<Interval> {
     let n = n as f64;
-    (n >= 2.0).then(|| cpk - Z_95 * (1.0 / (9.0 * n) + cpk * cpk / (2.0 * (n - 1.0))).sqrt())
+    let half = Z_95 * (1.0 / (9.0 * n) + index * index / (2.0 * (n - 1.0))).sqrt();
+    (n >= 2.0).then_some(Interval {
+        low: index - half,
+        high: index + half,
+    })
+}
+
+fn chi_square(index: f64, n: u64) -> Option<Interval> {
+    let freedom = n.checked_sub(1).filter(|&it| it > 0)? as f64;
+    let chi = ChiSquared::new(freedom).ok()?;
+    let end = |p| index * (chi.inverse_cdf(p) / freedom).sqrt();
+    Some(Interval {
+        low: end(0.025),
+        high: end(0.975),
+    })
 }
 
 fn positive(sigma: Option<f64>) -> Option<f64> {
@@ -85,26 +156,40 @@ mod tests {
         Capability::of(Limits { low, high }, 50, Some(10.0), Some(1.0), Some(1.25))
     }
 
+    fn value(index: Option<Index>) -> Option<f64> {
+        index.map(|it| it.value)
+    }
+
     #[test]
     fn the_nearer_limit_decides() {
         let both = of(Some(4.0), Some(13.0));
-        assert_eq!(
-            (both.cp, both.cpk, both.ppk),
-            (Some(1.5), Some(1.0), Some(0.8))
-        );
+        let found = [both.cp, both.cpk, both.pp, both.ppk].map(value);
+        assert_eq!(found, [Some(1.5), Some(1.0), Some(1.2), Some(0.8)]);
     }
 
     #[test]
     fn one_limit_gives_cpk_but_no_cp() {
         let high = of(None, Some(13.0));
-        assert_eq!((high.cp, high.cpk), (None, Some(1.0)));
+        assert_eq!((high.cp, value(high.cpk)), (None, Some(1.0)));
+        let low = of(Some(4.0), None);
+        assert_eq!((low.pp, value(low.ppk)), (None, Some(1.6)));
         assert_eq!(of(None, None), Capability::default());
     }
 
     #[test]
-    fn bissells_lower_end_for_fifty_values_at_one() {
-        let expected = 1.0 - 1.959964 * (1.0_f64 / 450.0 + 1.0 / 98.0).sqrt();
-        assert!((of(None, Some(13.0)).cpk_low95.unwrap() - expected).abs() < 1e-6);
+    fn bissells_interval_for_fifty_values_at_one() {
+        let half = 1.959964 * (1.0_f64 / 450.0 + 1.0 / 98.0).sqrt();
+        let found = of(None, Some(13.0)).cpk.unwrap().interval.unwrap();
+        assert!((found.low - (1.0 - half)).abs() < 1e-6);
+        assert!((found.high - (1.0 + half)).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_interval_of_cp_has_the_quantiles_of_the_tables() {
+        // chi-square with 49 degrees of freedom: 31.5549 and 70.2224.
+        let found = of(Some(4.0), Some(13.0)).cp.unwrap().interval.unwrap();
+        assert!((found.low - 1.5 * (31.5549_f64 / 49.0).sqrt()).abs() < 1e-5);
+        assert!((found.high - 1.5 * (70.2224_f64 / 49.0).sqrt()).abs() < 1e-5);
     }
 
     #[test]
@@ -117,5 +202,22 @@ mod tests {
             Capability::of(limits, 9, Some(0.5), Some(0.0), None),
             Capability::default()
         );
+    }
+
+    #[test]
+    fn a_skewed_process_is_judged_by_its_own_percentiles() {
+        // Exponential by its inverse: percentiles are known exactly, ln 2 in the middle.
+        let n = 100_000;
+        let at = |k: u32| -(1.0 - (f64::from(k) + 0.5) / f64::from(n)).ln();
+        let values = Ordered::of(&(0..n).map(at).collect::<Vec<f64>>());
+        let limits = Limits {
+            low: None,
+            high: Some(10.0),
+        };
+        let tail = -TAIL.ln();
+        let expected = (10.0 - 2_f64.ln()) / (tail - 2_f64.ln());
+        assert!((by_percentiles(limits, &values).unwrap() - expected).abs() < 2e-3);
+        let few = Ordered::of(&[1.0; 740]);
+        assert_eq!(by_percentiles(limits, &few), None);
     }
 }

@@ -5,9 +5,10 @@
 //! with the rest when its F test gives p > 0.25. Negative components of variance count as zero. All
 //! results are standard deviations.
 
+use super::crossing;
 use super::squares::{Sizes, Squares};
-use super::{crossing, fisher};
 use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// Above this p the interaction is taken for chance (AIAG MSA, 4th edition, appendix on ANOVA).
 const POOL_ABOVE: f64 = 0.25;
@@ -31,7 +32,7 @@ pub struct Reading {
 /// Standard deviations of the sources of variation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct GaugeRr {
-    /// Always `anova`.
+    /// `anova`, or `average and range`.
     pub method: &'static str,
     /// Same part, same operator.
     pub repeatability: f64,
@@ -61,6 +62,18 @@ pub enum GaugeRrError {
         "found {parts} parts, {operators} operators, {trials} trials; expected 2 parts, 1 operator and 2 trials at least"
     )]
     TooSmall {
+        /// Parts found.
+        parts: usize,
+        /// Operators found.
+        operators: usize,
+        /// Trials found.
+        trials: usize,
+    },
+    /// Larger than the published factors of averages and ranges.
+    #[error(
+        "found {parts} parts, {operators} operators, {trials} trials; averages and ranges have factors for up to 10, 3 and 3 (anova has no such end)"
+    )]
+    NoFactors {
         /// Parts found.
         parts: usize,
         /// Operators found.
@@ -126,6 +139,7 @@ fn components(sizes: &Sizes, squares: &Squares) -> GaugeRr {
     let interaction = ((against.main - against.error) / trials).max(0.0);
     let part = above(squares.parts / (parts - 1.0), operators * trials);
     deviations(
+        "anova",
         [against.error, reproducibility, interaction, part],
         against.interaction_p,
     )
@@ -148,7 +162,7 @@ impl Against {
         let (main, error) = (squares.interaction / crossed, squares.repeats / repeats);
         let interaction_p = (crossed > 0.0).then(|| {
             let f = if main > 0.0 { main / error } else { 0.0 };
-            fisher::upper_tail(f, crossed, repeats)
+            upper_tail(f, crossed, repeats)
         });
         if interaction_p.is_some_and(|p| p <= POOL_ABOVE) {
             return Self {
@@ -166,8 +180,17 @@ impl Against {
     }
 }
 
+/// Probability that F with these degrees of freedom exceeds `f`; 0 when repeats do not differ at all.
+fn upper_tail(f: f64, above: f64, below: f64) -> f64 {
+    if f.is_infinite() {
+        return 0.0;
+    }
+    FisherSnedecor::new(above, below).map_or(1.0, |law| law.sf(f))
+}
+
 /// From variances.
-fn deviations(
+pub(super) fn deviations(
+    method: &'static str,
     [repeatability, reproducibility, interaction, part]: [f64; 4],
     interaction_p: Option<f64>,
 ) -> GaugeRr {
@@ -175,7 +198,7 @@ fn deviations(
     let total = (grr + part).sqrt();
     let (grr, part) = (grr.sqrt(), part.sqrt());
     GaugeRr {
-        method: "anova",
+        method,
         repeatability: repeatability.sqrt(),
         reproducibility: reproducibility.sqrt(),
         interaction: interaction.sqrt(),

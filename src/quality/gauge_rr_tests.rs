@@ -1,4 +1,5 @@
 #![allow(clippy::unwrap_used)]
+use super::super::average_range::average_and_range;
 use super::*;
 
 /// The worked example of AIAG's Measurement Systems Analysis: 3 appraisers, 3 trials, 10 parts.
@@ -92,6 +93,57 @@ fn aiags_worked_example_gives_its_published_components() {
     assert_eq!((it.interaction, it.ndc), (0.0, Some(4)));
     assert!((it.pct_grr.unwrap() - 27.86).abs() < 0.01);
     assert!((it.interaction_p.unwrap() - 0.974).abs() < 1e-3);
+}
+
+#[test]
+fn aiags_worked_example_gives_its_published_averages_and_ranges() {
+    let it = average_and_range(&study()).unwrap();
+    let found = [
+        it.repeatability,
+        it.reproducibility,
+        it.grr,
+        it.part,
+        it.total,
+    ];
+    let published = [0.20188, 0.22963, 0.30575, 1.10456, 1.14610];
+    for (found, published) in found.iter().zip(published) {
+        assert!((found - published).abs() < 2e-4, "{found} for {published}");
+    }
+    let percent = |sd: f64| 100.0 * sd / it.total;
+    assert!((percent(it.repeatability) - 17.62).abs() < 0.02);
+    assert!((percent(it.reproducibility) - 20.04).abs() < 0.02);
+    assert!((it.pct_grr.unwrap() - 26.68).abs() < 0.02);
+    assert!((percent(it.part) - 96.38).abs() < 0.02);
+    assert_eq!((it.interaction, it.ndc), (0.0, Some(5)));
+}
+
+#[test]
+fn averages_and_ranges_end_where_their_factors_end() {
+    let more: Vec<Reading> = study()
+        .into_iter()
+        .map(|it| Reading {
+            trial: format!("{} again", it.trial),
+            ..it
+        })
+        .chain(study())
+        .collect();
+    let refusal = average_and_range(&more).unwrap_err();
+    assert!(matches!(refusal, GaugeRrError::NoFactors { trials: 6, .. }));
+    assert!(anova(&more).is_ok());
+}
+
+#[test]
+fn five_percent_points_of_the_tables_come_back() {
+    for (f, above, below) in [
+        (161.448, 1.0, 1.0),
+        (4.9646, 1.0, 10.0),
+        (2.7109, 5.0, 20.0),
+        (1.7784, 18.0, 60.0),
+    ] {
+        let p = upper_tail(f, above, below);
+        assert!((p - 0.05).abs() < 2e-5, "F({above}, {below}) = {f}: {p}");
+    }
+    assert_eq!(upper_tail(f64::INFINITY, 18.0, 60.0), 0.0);
 }
 
 #[test]

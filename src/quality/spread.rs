@@ -99,15 +99,21 @@ impl Spread {
 
 /// Lag-1 autocorrelation in the given order; none below two values or when all are equal.
 pub fn lag1(values: &[f64]) -> Option<f64> {
-    let all = Spread::of(values);
+    lag1_about(&Spread::of(values), values)
+}
+
+/// The same, with the moments of the very values known already.
+pub fn lag1_about(all: &Spread, values: &[f64]) -> Option<f64> {
     let squares = all.squares.value();
-    let deviation = |it: f64| Double::new(it).minus(all.mean);
-    let products = values
-        .windows(2)
-        .fold(Double::default(), |sum, pair| match pair {
-            [a, b] => sum.plus(deviation(*a).times(deviation(*b))),
-            _ => sum,
-        });
+    let mut before: Option<Double> = None;
+    let mut products = Double::default();
+    for &value in values {
+        let deviation = Double::new(value).minus(all.mean);
+        if let Some(before) = before {
+            products = products.plus(before.times(deviation));
+        }
+        before = Some(deviation);
+    }
     (squares > 0.0)
         .then(|| products.value() / squares)
         .filter(|it| it.is_finite())
@@ -115,14 +121,10 @@ pub fn lag1(values: &[f64]) -> Option<f64> {
 
 /// Mean absolute difference of neighbours; none below two values.
 pub fn mean_moving_range(values: &[f64]) -> Option<f64> {
-    let ranges: Vec<f64> = values
-        .windows(2)
-        .filter_map(|pair| match pair {
-            [a, b] => Some((b - a).abs()),
-            _ => None,
-        })
-        .collect();
-    Spread::of(&ranges).mean()
+    let pairs = values.len().checked_sub(1).filter(|&it| it > 0)?;
+    let ranges = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let sum = ranges.fold(Double::default(), |sum, it| sum.plus(Double::new(it)));
+    finite(Some(sum.over(pairs as f64).value()))
 }
 
 /// Middle value, or the mean of the two middle ones.

@@ -51,6 +51,67 @@ fn numacc4_has_the_digits_that_f64_data_allow() {
     assert!(digits(lag1(&values).unwrap(), -0.999) > 8.0);
 }
 
+/// A data set of NIST's statistical reference data: values, certified mean, deviation, lag-1.
+fn certified(text: &str, n: usize, mean: f64, sd: f64, autocorrelation: f64) {
+    let values: Vec<f64> = text
+        .split_whitespace()
+        .map(|it| it.parse().unwrap())
+        .collect();
+    let spread = Spread::of(&values);
+    assert_eq!(values.len(), n);
+    assert!(digits(spread.mean().unwrap(), mean) > 14.5);
+    assert!(digits(spread.sd().unwrap(), sd) > 12.0);
+    assert!(digits(lag1(&values).unwrap(), autocorrelation) > 12.0);
+}
+
+#[test]
+fn lottery_has_the_certified_digits() {
+    let text = include_str!("nist/lottery.txt");
+    certified(
+        text,
+        218,
+        518.958715596330,
+        291.699727470969,
+        -0.120948622967393,
+    );
+}
+
+#[test]
+fn lew_has_the_certified_digits() {
+    let text = include_str!("nist/lew.txt");
+    certified(
+        text,
+        200,
+        -177.435000000000,
+        277.332168044316,
+        -0.307304800605679,
+    );
+}
+
+#[test]
+fn mavro_has_the_certified_digits() {
+    let text = include_str!("nist/mavro.txt");
+    certified(
+        text,
+        50,
+        2.00185600000000,
+        0.000429123454003053,
+        0.937989183438248,
+    );
+}
+
+#[test]
+fn michelso_has_the_certified_digits() {
+    let text = include_str!("nist/michelso.txt");
+    certified(
+        text,
+        100,
+        299.852400000000,
+        0.0790105478190518,
+        0.535199668621283,
+    );
+}
+
 #[test]
 fn shards_merge_to_the_figures_of_the_whole() {
     let values = numacc(10_000_000.2, 10_000_000.1, 10_000_000.3);

@@ -1,6 +1,6 @@
 //! The figures of one parameter, in the shape of `history stats --json`.
 
-use super::capability::{Capability, D2_PAIR, Limits};
+use super::capability::{Capability, D2_PAIR, Index, Limits};
 use super::spread::{self, Spread};
 use serde::Serialize;
 
@@ -38,6 +38,7 @@ impl Summary {
     pub fn of(param: &str, values: &[f64], limits: Limits) -> Self {
         let spread = Spread::of(values);
         let within = spread::mean_moving_range(values).map(|range| range / D2_PAIR);
+        let value = |index: Option<Index>| index.map(|it| it.value);
         let able = Capability::of(limits, spread.n(), spread.mean(), within, spread.sd());
         Self {
             param: param.to_owned(),
@@ -47,11 +48,11 @@ impl Summary {
             min: spread.min(),
             max: spread.max(),
             median: spread::median(values),
-            lag1: spread::lag1(values),
-            cp: able.cp,
-            cpk: able.cpk,
-            cpk_low95: able.cpk_low95,
-            ppk: able.ppk,
+            lag1: spread::lag1_about(&spread, values),
+            cp: value(able.cp),
+            cpk: value(able.cpk),
+            cpk_low95: able.cpk.and_then(|it| it.interval).map(|it| it.low),
+            ppk: value(able.ppk),
         }
     }
 }

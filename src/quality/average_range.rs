@@ -1,0 +1,72 @@
+//! Gauge repeatability and reproducibility by averages and ranges (AIAG MSA): what was done by hand
+//! before the analysis of variance, and is still asked for beside it.
+//!
+//! `EV = R K1`, `AV = sqrt((Xdiff K2)^2 - EV^2 / (parts trials))`, `PV = Rp K3`, with R the mean range of
+//! the trials, Xdiff the range of the operators' means, Rp the range of the parts' means; K = 1 / d2*.
+//! It knows no interaction: what comes from it is in the reproducibility.
+
+use super::crossing;
+use super::gauge_rr::{GaugeRr, GaugeRrError, Reading, deviations};
+
+/// K1 and K2 by the number of trials or operators, from 2 (AIAG MSA, 4th edition; Duncan's d2*).
+const K_OF_RANGE: [f64; 2] = [0.8862, 0.5908];
+const K_OF_OPERATORS: [f64; 2] = [0.7071, 0.5231];
+/// K3 by the number of parts, from 2.
+const K_OF_PARTS: [f64; 9] = [
+    0.7071, 0.5231, 0.4467, 0.4030, 0.3742, 0.3534, 0.3375, 0.3249, 0.3146,
+];
+
+/// Evaluates a complete crossed study of 2 or 3 trials, up to 3 operators, 2 to 10 parts.
+///
+/// # Errors
+/// As [`super::gauge_rr::anova`]; also a study larger than the published factors.
+pub fn average_and_range(readings: &[Reading]) -> Result<GaugeRr, GaugeRrError> {
+    let cells = crossing::cells(readings)?;
+    let (parts, operators) = (cells.len(), cells[0].len());
+    let trials = cells[0][0].len();
+    let factors = (
+        K_OF_RANGE.get(trials - 2),
+        operators
+            .checked_sub(2)
+            .map_or(Some(&0.0), |at| K_OF_OPERATORS.get(at)),
+        K_OF_PARTS.get(parts - 2),
+    );
+    let (Some(k1), Some(k2), Some(k3)) = factors else {
+        return Err(GaugeRrError::NoFactors {
+            parts,
+            operators,
+            trials,
+        });
+    };
+    let all = cells.iter().flatten();
+    let repeatability = k1 * mean(all.map(|cell| range(cell)));
+    let of_part = |row: &Vec<Vec<f64>>| mean(row.iter().map(|cell| mean(cell.iter().copied())));
+    let part = k3 * range(&cells.iter().map(of_part).collect::<Vec<f64>>());
+    let of_operator = |at: usize| {
+        mean(
+            cells
+                .iter()
+                .map(|row: &Vec<Vec<f64>>| mean(row[at].iter().copied())),
+        )
+    };
+    let apart = range(&(0..operators).map(of_operator).collect::<Vec<f64>>());
+    let own = repeatability * repeatability / (parts * trials) as f64;
+    let reproducibility = ((apart * k2).powi(2) - own).max(0.0);
+    let variances = [
+        repeatability * repeatability,
+        reproducibility,
+        0.0,
+        part * part,
+    ];
+    Ok(deviations("average and range", variances, None))
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, n) = values.fold((0.0, 0.0), |(sum, n), it| (sum + it, n + 1.0));
+    sum / n
+}
+
+fn range(values: &[f64]) -> f64 {
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    high - values.iter().copied().fold(f64::INFINITY, f64::min)
+}

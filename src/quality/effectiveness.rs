@@ -1,0 +1,92 @@
+//! Overall equipment effectiveness and where the rest of the time went.
+//!
+//! OEE = availability x performance x quality, each the share of the time before it:
+//!
+//! 1. planned: from the opening of a run to its end;
+//! 2. running: planned less the time that alarms stood;
+//! 3. net: what the tested parts would have taken at the ideal cycle;
+//! 4. valuable: what the good ones would have taken.
+//!
+//! So every second is either valuable or in exactly one of the three losses.
+
+use serde::Serialize;
+
+/// What was seen of a span of time.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Seen {
+    /// Time that was meant for production, s.
+    pub planned_s: f64,
+    /// Of it, the time the line stood with an alarm, s.
+    pub stopped_s: f64,
+    /// The shortest cycle the line can keep, s.
+    pub ideal_cycle_s: f64,
+    /// Parts tested.
+    pub parts: u64,
+    /// Parts that passed.
+    pub good: u64,
+}
+
+/// The three factors, their product, and the losses.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Effectiveness {
+    /// Running / planned.
+    pub availability: f64,
+    /// Net / running; above 1 when the ideal cycle was set too long.
+    pub performance: f64,
+    /// Valuable / net.
+    pub quality: f64,
+    /// Product of the three.
+    pub oee: f64,
+    /// Time lost to alarms, s.
+    pub stopped_s: f64,
+    /// Time lost to waiting and slow cycles, s.
+    pub slow_s: f64,
+    /// Time spent on parts that did not pass, s.
+    pub rejected_s: f64,
+}
+
+/// None when no time ran or no part was tested.
+pub fn effectiveness(seen: Seen) -> Option<Effectiveness> {
+    let running = seen.planned_s - seen.stopped_s;
+    let net = seen.ideal_cycle_s * seen.parts as f64;
+    let valuable = seen.ideal_cycle_s * seen.good as f64;
+    (running > 0.0 && net > 0.0).then(|| Effectiveness {
+        availability: running / seen.planned_s,
+        performance: net / running,
+        quality: valuable / net,
+        oee: valuable / seen.planned_s,
+        stopped_s: seen.stopped_s,
+        slow_s: running - net,
+        rejected_s: net - valuable,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn every_second_is_valuable_or_in_one_loss() {
+        let seen = Seen {
+            planned_s: 28_800.0,
+            stopped_s: 2_880.0,
+            ideal_cycle_s: 1.2,
+            parts: 18_000,
+            good: 17_100,
+        };
+        let it = effectiveness(seen).unwrap();
+        assert!((it.availability - 0.9).abs() < 1e-12);
+        assert!((it.performance - 21_600.0 / 25_920.0).abs() < 1e-12);
+        assert!((it.quality - 0.95).abs() < 1e-12);
+        assert!((it.oee - it.availability * it.performance * it.quality).abs() < 1e-12);
+        let valuable = 1.2 * 17_100.0;
+        let all = valuable + it.stopped_s + it.slow_s + it.rejected_s;
+        assert!((all - 28_800.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn nothing_tested_has_no_effectiveness() {
+        assert_eq!(effectiveness(Seen::default()), None);
+    }
+}

@@ -1,0 +1,116 @@
+//! Values in ascending order: exact quantiles and the histogram.
+//!
+//! Quantiles interpolate between neighbouring order statistics at `(n - 1) p` (type 7 of Hyndman and
+//! Fan, what spreadsheets call inclusive), so that 0, 1/2 and 1 are minimum, median and maximum.
+
+use serde::Serialize;
+
+/// Finite values, ascending. Values that are not finite are left out.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Ordered(Vec<f64>);
+
+/// Counts of values in classes of equal width.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Histogram {
+    /// Lower edge of the first class.
+    pub from: f64,
+    /// Width of every class: 1, 2 or 5 times a power of ten.
+    pub width: f64,
+    /// Values per class; a value on an edge belongs to the class above it.
+    pub counts: Vec<u64>,
+}
+
+impl Ordered {
+    /// Sorts a copy.
+    pub fn of(values: &[f64]) -> Self {
+        let mut values: Vec<f64> = values.iter().copied().filter(|it| it.is_finite()).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        Self(values)
+    }
+
+    /// How many values.
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The value that the share `p` lies below, 0 to 1; none without values or outside.
+    pub fn quantile(&self, p: f64) -> Option<f64> {
+        let last = self.0.len().checked_sub(1)?;
+        if !(0.0..=1.0).contains(&p) {
+            return None;
+        }
+        let place = p * last as f64;
+        let below = place.floor();
+        let low = *self.0.get(below as usize)?;
+        let high = *self.0.get((below as usize + 1).min(last))?;
+        Some(low + (place - below) * (high - low))
+    }
+
+    /// About `classes` classes over all values, edges on round numbers; none without spread.
+    pub fn histogram(&self, classes: usize) -> Option<Histogram> {
+        let (&low, &high) = (self.0.first()?, self.0.last()?);
+        let width = round_step((high - low) / classes.max(1) as f64)?;
+        let from = (low / width).floor() * width;
+        let last = ((high - from) / width).floor() as usize;
+        let mut counts = vec![0; last + 1];
+        for value in &self.0 {
+            let class = ((value - from) / width).floor().max(0.0) as usize;
+            counts[class.min(last)] += 1;
+        }
+        Some(Histogram {
+            from,
+            width,
+            counts,
+        })
+    }
+}
+
+/// The least of 1, 2, 5 times a power of ten that is at least `step`; none for a step of nothing.
+pub fn round_step(step: f64) -> Option<f64> {
+    if !(step.is_finite() && step > 0.0) {
+        return None;
+    }
+    let power = 10_f64.powf(step.log10().floor());
+    let round = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|it| it * power)
+        .find(|it| *it >= step * (1.0 - 1e-12));
+    Some(round.unwrap_or(10.0 * power))
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn quantiles_lie_between_order_statistics() {
+        let it = Ordered::of(&[40.0, 10.0, 30.0, 20.0]);
+        let found = [0.0, 0.25, 0.5, 1.0].map(|p| it.quantile(p).unwrap());
+        assert_eq!(found, [10.0, 17.5, 25.0, 40.0]);
+        assert_eq!(
+            (it.quantile(1.1), Ordered::of(&[]).quantile(0.5)),
+            (None, None)
+        );
+    }
+
+    #[test]
+    fn a_histogram_counts_every_value_once_in_round_classes() {
+        let values: Vec<f64> = (0..100).map(|n| 7.0 + f64::from(n) / 100.0).collect();
+        let it = Ordered::of(&values).histogram(10).unwrap();
+        assert_eq!((it.from, it.width, it.counts.len()), (7.0, 0.1, 10));
+        assert_eq!(it.counts.iter().sum::<u64>(), 100);
+        assert_eq!(Ordered::of(&[1.0, 1.0]).histogram(10), None);
+    }
+
+    #[test]
+    fn a_value_that_is_not_a_number_is_left_out() {
+        assert_eq!(Ordered::of(&[f64::NAN, 2.0]).len(), 1);
+        assert!(Ordered::of(&[]).is_empty());
+    }
+}

@@ -1,0 +1,184 @@
+//! Rules of runs: when points of a control chart are no longer chance.
+//!
+//! | rule | Nelson | Western Electric |
+//! |---|---|---|
+//! | 1: beyond three deviations | yes | yes |
+//! | 2: on one side of the centre in a row | 9 | 8 |
+//! | 3: rising or falling in a row | 6 | |
+//! | 4: up and down in turn | 14 | |
+//! | 5: two of three beyond two deviations, one side | yes | yes |
+//! | 6: four of five beyond one deviation, one side | yes | yes |
+//! | 7: all within one deviation | 15 | |
+//! | 8: none within one deviation, both sides | 8 | |
+//!
+//! A rule speaks at the point that completes its pattern, and is told there once.
+
+use super::chart::Point;
+use serde::Serialize;
+
+/// Which set of rules.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rules {
+    /// L. S. Nelson, Journal of Quality Technology 16 (1984).
+    Nelson,
+    /// Western Electric, Statistical Quality Control Handbook (1956).
+    WesternElectric,
+}
+
+/// A rule that speaks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Signal {
+    /// Which point completes the pattern, from 0.
+    pub at: usize,
+    /// Number of the rule, 1 to 8.
+    pub rule: u8,
+}
+
+/// Everything that the set objects to, in order of points. `sigma` is one deviation of a point.
+pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Signal> {
+    // In deviations from the centre; without spread every other point is infinitely far.
+    let z: Vec<f64> = points
+        .iter()
+        .map(|it| {
+            if *it == centre {
+                0.0
+            } else {
+                (it - centre) / sigma
+            }
+        })
+        .collect();
+    let mut found = Vec::new();
+    for at in 0..z.len() {
+        let speaking = speaking(&z[..=at], rules);
+        found.extend(speaking.into_iter().map(|rule| Signal { at, rule }));
+    }
+    found
+}
+
+/// Points outside their own limits: rule 1 where limits differ from point to point.
+pub fn outside(points: &[Point]) -> Vec<Signal> {
+    let beyond = |it: &Point| it.value > it.high || it.value < it.low;
+    let places = points.iter().enumerate().filter(|(_, it)| beyond(it));
+    places.map(|(at, _)| Signal { at, rule: 1 }).collect()
+}
+
+/// Rules whose pattern the last point completes.
+fn speaking(z: &[f64], rules: Rules) -> Vec<u8> {
+    let side = match rules {
+        Rules::Nelson => 9,
+        Rules::WesternElectric => 8,
+    };
+    let both = [
+        (1, last(z, 1, |it| it[0].abs() > 3.0)),
+        (2, run(z, side, |it| one_side(it, it.len(), 0.0))),
+        (5, last(z, 3, |it| ending(it, 2, 2.0))),
+        (6, last(z, 5, |it| ending(it, 4, 1.0))),
+    ];
+    let only_nelson = [
+        (3, run(z, 6, |it| steps(it, |a, b| a * b > 0.0))),
+        (4, run(z, 14, |it| steps(it, |a, b| a * b < 0.0))),
+        (7, run(z, 15, |it| it.iter().all(|z| z.abs() < 1.0))),
+        (
+            8,
+            run(z, 8, |it| {
+                it.iter().all(|z| z.abs() > 1.0) && !one_side(it, 8, 0.0)
+            }),
+        ),
+    ];
+    let nelson = only_nelson.into_iter().filter(|_| rules == Rules::Nelson);
+    let mut numbers: Vec<u8> = both
+        .into_iter()
+        .chain(nelson)
+        .filter_map(|(rule, speaks)| speaks.then_some(rule))
+        .collect();
+    numbers.sort_unstable();
+    numbers
+}
+
+/// Whether the last `n` points have the pattern.
+fn last(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
+    z.len() >= n && pattern(&z[z.len() - n..])
+}
+
+/// As [`last`], but told once when the pattern goes on for longer than `n`.
+fn run(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
+    last(z, n, &pattern) && !last(&z[..z.len() - 1], n, &pattern)
+}
+
+/// At least `n` points beyond `far` on one side.
+fn one_side(z: &[f64], n: usize, far: f64) -> bool {
+    let above = z.iter().filter(|&&it| it > far).count();
+    let below = z.iter().filter(|&&it| it < -far).count();
+    above >= n || below >= n
+}
+
+/// The last point is one of at least `n` beyond `far` on its side.
+fn ending(z: &[f64], n: usize, far: f64) -> bool {
+    let Some(&end) = z.last() else { return false };
+    let with_it = z.iter().filter(|&&it| it * end > 0.0 && it.abs() > far);
+    end.abs() > far && with_it.count() >= n
+}
+
+/// Every two steps in a row relate as asked.
+fn steps(z: &[f64], relate: impl Fn(f64, f64) -> bool) -> bool {
+    z.windows(3).all(|it| relate(it[1] - it[0], it[2] - it[1]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rules that speak, with their points, about 0 with a deviation of 1.
+    fn told(points: &[f64], rules: Rules) -> Vec<(usize, u8)> {
+        let found = signals(points, 0.0, 1.0, rules);
+        found.into_iter().map(|it| (it.at, it.rule)).collect()
+    }
+
+    #[test]
+    fn every_rule_speaks_at_the_point_that_completes_its_pattern_and_not_before() {
+        let weave = |n: usize, high: f64| -> Vec<f64> {
+            (0..n)
+                .map(|it| if it % 2 == 0 { high } else { -high })
+                .collect()
+        };
+        let flat: Vec<f64> = [
+            0.1, 0.2, -0.3, -0.1, 0.2, 0.4, -0.1, -0.3, 0.2, 0.3, -0.2, -0.4, 0.1, 0.3, -0.2,
+        ]
+        .to_vec();
+        let cases: [(u8, Vec<f64>); 8] = [
+            (1, vec![0.5, 3.01]),
+            (2, vec![0.5, 0.4, 0.6, 0.3, 0.5, 0.4, 0.4, 0.6, 0.5]),
+            (3, vec![-0.9, -0.4, -0.1, 0.2, 0.6, 0.9]),
+            (4, weave(14, 0.5)),
+            (5, vec![2.1, 0.0, 2.2]),
+            (6, vec![1.1, 1.2, -0.1, 1.1, 1.3]),
+            (7, flat),
+            (8, vec![1.1, -1.2, -1.4, 1.2, 1.3, -1.1, -1.5, 1.2]),
+        ];
+        for (rule, points) in cases {
+            let before = told(&points[..points.len() - 1], Rules::Nelson);
+            assert!(before.is_empty(), "rule {rule} before its end: {before:?}");
+            assert_eq!(told(&points, Rules::Nelson), [(points.len() - 1, rule)]);
+        }
+    }
+
+    #[test]
+    fn western_electric_is_content_with_eight_on_one_side_and_looks_at_no_trend() {
+        let side = [0.5, 0.4, 0.6, 0.3, 0.5, 0.4, 0.4, 0.6, 0.5];
+        assert_eq!(told(&side, Rules::WesternElectric), [(7, 2)]);
+        let trend = [-0.9, -0.4, -0.1, 0.2, 0.6, 0.9];
+        assert_eq!(told(&trend, Rules::WesternElectric), []);
+    }
+
+    #[test]
+    fn a_pattern_that_goes_on_is_told_once() {
+        let long: Vec<f64> = (0..30).map(|n| 0.4 + f64::from(n % 2) * 0.1).collect();
+        let sides = told(&long, Rules::WesternElectric);
+        assert_eq!(sides, [(7, 2)]);
+    }
+
+    #[test]
+    fn points_without_spread_say_nothing() {
+        assert_eq!(signals(&[5.0; 14], 5.0, 0.0, Rules::Nelson), []);
+    }
+}
