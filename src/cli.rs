@@ -1,5 +1,6 @@
 //! The commands, one file each. The only place that names the simulator.
 
+pub mod card;
 pub mod check;
 pub mod config;
 #[cfg(feature = "sim")]
@@ -82,6 +83,8 @@ pub enum Command {
     History(history::HistoryArgs),
     /// People who may log in at the screen
     User(user::UserArgs),
+    /// The operation process card of a recipe
+    Card(card::CardArgs),
     /// Gauge repeatability and reproducibility
     Quality(history::QualityArgs),
 }
@@ -101,6 +104,7 @@ impl Cli {
             Command::Check(args) => check::run(args),
             Command::History(args) => history::run(&self.config, &self.db, args),
             Command::User(args) => user::run(&self.db, args),
+            Command::Card(args) => card::run(&self.config, &args),
             Command::Quality(args) => history::run_quality(args),
         }
     }

@@ -12,6 +12,7 @@
 //! - [`station`]: the sequence: feed, clamp, test, sort; parts and trouble.
 //! - [`cycle`]: one turn of the rig, top to bottom.
 //! - [`history`]: SQLite; [`quality`]: statistics that stay right.
+//! - [`report`]: print, spreadsheet, process card, charts.
 //! - [`view`]: what a screen may know; [`hmi`]: the page, its events and orders.
 //! - [`config`]: files to settings, with the line of every mistake.
 //! - [`cli`]: one file per command; the only place that names the simulator.
@@ -27,6 +28,7 @@ pub mod history;
 pub mod hmi;
 pub mod lpm;
 pub mod quality;
+pub mod report;
 pub mod rig;
 pub mod station;
 pub mod units;

@@ -14,11 +14,11 @@ pub enum Args {
         after_help = "Examples:\n  relayrig config check\n  relayrig --config plant2 config check"
     )]
     Check,
-    /// Print the JSON schema of a file: rig, golden or recipe
+    /// Print the JSON schema of a file: rig, golden, recipe or card
     #[command(after_help = "Example:\n  relayrig config schema recipe > recipe.schema.json")]
     Schema {
         /// Which file
-        #[arg(value_parser = ["rig", "golden", "recipe"])]
+        #[arg(value_parser = ["rig", "golden", "recipe", "card"])]
         name: String,
     },
 }
@@ -123,8 +123,11 @@ fn schema_text(name: &str) -> anyhow::Result<String> {
     let (title, keys) = match name {
         "rig" => ("rig.toml", keys::rig::FILE),
         "golden" => ("golden.toml", keys::golden::FILE),
+        "card" => ("card.toml", keys::card::FILE),
         "recipe" => ("recipes/NAME.toml", keys::recipe::FILE),
-        other => anyhow::bail!("config schema: found \"{other}\", expected rig, golden or recipe"),
+        other => {
+            anyhow::bail!("config schema: found \"{other}\", expected rig, golden, recipe or card")
+        }
     };
     let text = serde_json::to_string_pretty(&schema(title, keys)).context("writing the schema")?;
     Ok(text + "\n")
@@ -157,7 +160,7 @@ mod tests {
         let message = schema_text("sim").unwrap_err().to_string();
         assert_eq!(
             message,
-            "config schema: found \"sim\", expected rig, golden or recipe"
+            "config schema: found \"sim\", expected rig, golden, recipe or card"
         );
     }
 }

@@ -8,9 +8,12 @@ mod generate;
 mod import;
 mod lots;
 mod output;
+pub(in crate::cli) mod paper;
 mod quality;
 mod query;
+mod report;
 mod show;
+mod spc;
 mod stats;
 
 pub use generate::{GenerateArgs, Generated, generate};
@@ -50,8 +53,24 @@ enum Command {
         after_help = "Example: relayrig history stats --param operate_voltage_v --lot A --json"
     )]
     Stats(stats::StatsArgs),
-    /// Parts as CSV for spreadsheets (UTF-8 with byte order mark)
-    #[command(after_help = "Example: relayrig history export --lot A lot-a.csv")]
+    /// Control charts of a parameter, or of the share of every bin
+    #[command(
+        after_help = "Examples:\n  relayrig history spc --param operate_voltage_v --lot A\n  \
+        relayrig history spc --param operate_voltage_v --subgroup 5 --page --out wall.html"
+    )]
+    Spc(spc::SpcArgs),
+    /// Paper: report of a lot, certificate of a part, list of alarms
+    #[command(
+        after_help = "Examples:\n  relayrig history report --lot A --out lot-a.html\n  \
+        relayrig history report --lot A --part 17 --lang en --out part.html\n  \
+        relayrig history report --alarms --out alarms.html"
+    )]
+    Report(report::ReportArgs),
+    /// Parts as CSV (UTF-8 with byte order mark) or as a spreadsheet with charts
+    #[command(
+        after_help = "Examples:\n  relayrig history export --lot A lot-a.csv\n  \
+        relayrig history export --lot A lot-a.xlsx"
+    )]
     Export(export::ExportArgs),
     /// CSV of an older system: a header of parameter keys, optionally time, verdict, serial, bin
     #[command(
@@ -86,6 +105,8 @@ fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<i32> {
         Command::Show(args) => show::run(&Archive::open(db)?, &args)?,
         Command::Query(args) => query::run(&Archive::open(db)?, &args)?,
         Command::Stats(args) => stats::run(&Archive::open(db)?, &args)?,
+        Command::Spc(args) => spc::run(&Archive::open(db)?, &args)?,
+        Command::Report(args) => report::run(&Archive::open(db)?, &args)?,
         Command::Export(args) => export::run(&Archive::open(db)?, &args)?,
         Command::Backup { file } => {
             let bytes = Archive::open(db)?.backup(&file)?;

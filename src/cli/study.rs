@@ -22,6 +22,7 @@ mod error;
 mod exception;
 mod figure;
 mod fleet;
+mod history;
 mod lot;
 mod output;
 mod pace;
@@ -53,6 +54,8 @@ pub enum Study {
     Coverage,
     /// Rig time of a test and of a cycle, and where it goes
     Cycle,
+    /// Speed of the history on a made-up file
+    History,
     /// Parts per second of wall time, and whether the same seed gives the same bytes
     Pace,
     /// Good parts rejected, defects by bin, over many lots
@@ -66,6 +69,7 @@ impl Study {
             Self::Accuracy => (10, 500),
             Self::Coverage => (40, 25),
             Self::Cycle => (1, 100),
+            Self::History => (1, 1_000_000),
             Self::Pace => (3, 300),
             Self::Sorting => (100, 110),
         }
@@ -76,6 +80,7 @@ impl Study {
             Self::Accuracy => "accuracy",
             Self::Coverage => "coverage",
             Self::Cycle => "cycle",
+            Self::History => "history",
             Self::Pace => "pace",
             Self::Sorting => "sorting",
         }
@@ -86,6 +91,7 @@ impl Study {
             Self::Accuracy => accuracy::study(order),
             Self::Coverage => coverage::study(order),
             Self::Cycle => cycle::study(order),
+            Self::History => history::study(order),
             Self::Pace => pace::study(order),
             Self::Sorting => sorting::study(order),
         }

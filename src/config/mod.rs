@@ -5,6 +5,7 @@
 //! | `rig.toml` | lines, modules, points, mechanism, references | [`Wiring`], the settings of `gauge` |
 //! | `scene.toml` | the bodies around the nest | `GuardSettings` |
 //! | `golden.toml` (named in `rig.toml`) | certified relays | `GoldenSet` |
+//! | `card.toml` | what the process card says of the plant | `CardSettings` |
 //! | `recipes/NAME.toml` | one kind of part | `Recipe` |
 //!
 //! Three steps, each with its own kind of message, all of one form
@@ -13,6 +14,7 @@
 //! used once, low not above high), which the module that owns the settings decides.
 //! `sim.toml` describes the simulated world and is no business of the controller.
 
+mod card;
 pub mod check;
 pub mod error;
 pub mod form;
@@ -28,6 +30,7 @@ pub mod tree;
 #[cfg(test)]
 mod tests;
 
+pub use card::load_card;
 pub use error::ConfigError;
 pub use plant::Plant;
 pub use recipes::{load_recipe, recipe_names};

@@ -72,6 +72,7 @@ mod tests {
             ("rig", keys::rig::FILE),
             ("golden", keys::golden::FILE),
             ("recipe", keys::recipe::FILE),
+            ("card", keys::card::FILE),
         ] {
             let rows = rows(keys);
             assert!(

@@ -56,6 +56,28 @@ impl Archive {
         }
     }
 
+    /// How many parts the filter leaves.
+    pub fn how_many(&self, filter: &Filter) -> Result<u64> {
+        let select = filter.count();
+        self.connection
+            .prepare(&select.sql)
+            .and_then(|mut it| it.query_row(params_from_iter(&select.values), |row| row.get(0)))
+            .map(i64::unsigned_abs)
+            .doing("counting parts")
+    }
+
+    /// Seconds between successive parts that the filter leaves, in no order.
+    pub fn cycles(&self, filter: &Filter) -> Result<Vec<f64>> {
+        let select = filter.cycles();
+        self.connection
+            .prepare(&select.sql)
+            .and_then(|mut it| {
+                it.query_map(params_from_iter(&select.values), |row| row.get(0))?
+                    .collect()
+            })
+            .doing("reading cycle times")
+    }
+
     /// One part of each run that has it, latest run last, with all attempts and raw replies.
     pub fn show(&self, lot: &str, seq: u64, kind: &str) -> Result<Vec<Part>> {
         let filter = Filter {

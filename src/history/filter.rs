@@ -115,6 +115,59 @@ impl Filter {
         select
     }
 
+    /// Alarms, with name of lot and number of run.
+    pub(super) fn alarms(&self) -> Select {
+        let mut select = Select::default();
+        select.sql.push_str(
+            "SELECT lot.name, run.number, alarm.code, alarm.line, alarm.text, alarm.raised_at_us, \
+             alarm.cleared_at_us FROM alarm LEFT JOIN run ON run.id = alarm.run_id \
+             LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
+        );
+        self.run_conditions(&mut select, "alarm");
+        if let Some(since) = self.since {
+            select.add(" AND alarm.raised_at_us >= ?", since.0);
+        }
+        if let Some(until) = self.until {
+            select.add(" AND alarm.raised_at_us < ?", until.0);
+        }
+        select
+    }
+
+    /// How many parts there are.
+    pub(super) fn count(&self) -> Select {
+        let parts = self.parts();
+        Select {
+            sql: format!("SELECT count(*) FROM ({})", parts.sql),
+            values: parts.values,
+        }
+    }
+
+    /// Rig time between parts, where it is known.
+    pub(super) fn cycles(&self) -> Select {
+        let mut select = Select {
+            sql: "SELECT part.cycle_s FROM part WHERE part.cycle_s IS NOT NULL".to_owned(),
+            values: Vec::new(),
+        };
+        self.run_conditions(&mut select, "part");
+        self.part_conditions(&mut select, false);
+        select
+    }
+
+    /// How many production parts passed, and how many of them without a second attempt at anything.
+    pub(super) fn passed(&self) -> Select {
+        let sql = "SELECT count(*), ifnull(sum(NOT EXISTS (SELECT 1 FROM measurement AS m \
+                   WHERE m.part_id = part.id AND m.attempt > 1)), 0) \
+                   FROM part WHERE part.verdict = 'pass'"
+            .to_owned();
+        let mut select = Select {
+            sql,
+            values: Vec::new(),
+        };
+        self.run_conditions(&mut select, "part");
+        self.part_conditions(&mut select, false);
+        select
+    }
+
     fn values(&self, param: &str, columns: &str, joined: bool) -> Select {
         let join = if joined {
             " CROSS JOIN part ON part.id = m.part_id"

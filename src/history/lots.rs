@@ -52,6 +52,15 @@ pub struct Yield {
     pub unjudged: u64,
 }
 
+/// Parts that passed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct Passed {
+    /// After all attempts.
+    pub finally: u64,
+    /// Without a second attempt at any measurement.
+    pub at_first: u64,
+}
+
 impl Yield {
     /// Good parts in percent of those with a verdict; none without any.
     pub fn percent(&self) -> Option<f64> {
@@ -95,6 +104,22 @@ impl Archive {
                 Ok(counts)
             })
             .doing("counting verdicts")
+    }
+
+    /// Parts that the filter leaves which passed, and those of them that passed at the first attempt.
+    pub fn passed(&self, filter: &Filter) -> Result<Passed> {
+        let select = filter.passed();
+        self.connection
+            .prepare(&select.sql)
+            .and_then(|mut it| {
+                it.query_row(params_from_iter(&select.values), |row| {
+                    Ok(Passed {
+                        finally: row.get::<_, i64>(0)?.unsigned_abs(),
+                        at_first: row.get::<_, i64>(1)?.unsigned_abs(),
+                    })
+                })
+            })
+            .doing("counting parts that passed")
     }
 
     fn summaries(&self, filter: &Filter) -> rusqlite::Result<Vec<LotSummary>> {

@@ -12,6 +12,7 @@
 //!
 //! Not here: deciding anything (gauge, station), statistics (quality), a clock.
 
+mod alarms;
 mod archive;
 mod backup;
 pub mod csv;
@@ -29,11 +30,12 @@ mod store;
 mod values;
 mod views;
 
+pub use alarms::Alarm;
 pub use archive::Archive;
 pub use error::{HistoryError, Result};
 pub use filter::Filter;
 pub use import::{ImportError, ImportRow, parse_import};
-pub use lots::{LotSummary, Yield};
+pub use lots::{LotSummary, Passed, Yield};
 pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA};
 pub use part::{Measurement, Part, Sample};

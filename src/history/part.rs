@@ -87,3 +87,31 @@ pub struct Sample {
     /// When the reply was complete.
     pub at: Moment,
 }
+
+#[cfg(test)]
+impl Part {
+    /// A part of run 1 with nothing measured.
+    pub(crate) fn of_paper(lot: &str, seq: u64, verdict: &str) -> Self {
+        Self {
+            tag: "part",
+            lot: lot.to_owned(),
+            run: 1,
+            kind: "lot".to_owned(),
+            seq,
+            recipe: "jzc-22f-012".to_owned(),
+            serial: None,
+            verdict: verdict.to_owned(),
+            bin: Some(verdict.to_owned()),
+            landed_bin: None,
+            landed_at: None,
+            reasons: Vec::new(),
+            time: Moment(1_000_000),
+            test_s: None,
+            cycle_s: None,
+            values: serde_json::Map::new(),
+            uncertainty: serde_json::Map::new(),
+            measurements: Vec::new(),
+            row: 0,
+        }
+    }
+}

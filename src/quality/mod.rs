@@ -6,6 +6,7 @@
 //! - [`chart`]: control charts; [`rules`]: when their points are no longer chance.
 //! - [`effectiveness`]: how much of the time made good parts, and where the rest went.
 //! - [`summary`]: moments and capability of one parameter, as `history stats` shows them.
+//! - [`tally`]: moments and histogram of values that come one at a time.
 //! - [`gauge_rr`], [`average_range`]: how much of what is seen comes from the gauge, not from the parts.
 
 pub mod average_range;
@@ -20,6 +21,7 @@ pub mod rules;
 pub mod spread;
 mod squares;
 pub mod summary;
+pub mod tally;
 
 pub use capability::{Capability, Limits};
 pub use gauge_rr::{GaugeRr, GaugeRrError, Reading};

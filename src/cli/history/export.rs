@@ -1,14 +1,24 @@
-//! `history export`: CSV that spreadsheets open right, Chinese included.
+//! `history export`: CSV that spreadsheets open right, Chinese included, or a spreadsheet with charts.
 
 use super::filter::{PartArgs, RangeArgs, known_parameter};
-use super::output::Output;
+use super::generate::bar;
+use super::paper::{Tongue, sink};
 use super::query;
-use crate::history::{Archive, csv::BYTE_ORDER_MARK};
+use crate::history::{Archive, Filter, csv::BYTE_ORDER_MARK};
+use crate::report::sheet::Sheet;
 use anyhow::Context;
-use clap::Args;
-use std::fs::File;
+use clap::{Args, ValueEnum};
+use jiff::tz::TimeZone;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// Comma-separated values
+    Csv,
+    /// Spreadsheet with a summary and native charts
+    Xlsx,
+}
 
 #[derive(Debug, Args)]
 pub(super) struct ExportArgs {
@@ -16,9 +26,15 @@ pub(super) struct ExportArgs {
     parts: PartArgs,
     #[command(flatten)]
     range: RangeArgs,
-    /// File to write; - is stdout
+    /// File to write; - is stdout (CSV only). A name that ends in .xlsx gives a spreadsheet
     #[arg(default_value = "-")]
     file: PathBuf,
+    /// Form of the file; when absent, from the end of its name
+    #[arg(long, value_enum)]
+    format: Option<Kind>,
+    /// Language of the spreadsheet's summary
+    #[arg(long, value_enum, default_value = "zh")]
+    lang: Tongue,
 }
 
 pub(super) fn run(archive: &Archive, args: &ExportArgs) -> anyhow::Result<()> {
@@ -27,13 +43,44 @@ pub(super) fn run(archive: &Archive, args: &ExportArgs) -> anyhow::Result<()> {
     if let Some(param) = &filter.param {
         known_parameter(&parameters, param)?;
     }
-    let name = args.file.display();
-    let mut out = if args.file.as_os_str() == "-" {
-        Output::stdout()
-    } else {
-        Output::to(File::create(&args.file).with_context(|| format!("making {name}"))?)
-    };
-    out.write_all(BYTE_ORDER_MARK.as_bytes())?;
-    query::write_csv(archive, &filter, &parameters, &mut out)?;
-    out.flush().with_context(|| format!("writing {name}"))
+    let named_so = args
+        .file
+        .extension()
+        .is_some_and(|it| it.eq_ignore_ascii_case("xlsx"));
+    let by_name = if named_so { Kind::Xlsx } else { Kind::Csv };
+    match args.format.unwrap_or(by_name) {
+        Kind::Csv => {
+            let mut out = sink(&args.file)?;
+            out.write_all(BYTE_ORDER_MARK.as_bytes())?;
+            query::write_csv(archive, &filter, &parameters, &mut out)?;
+            let name = args.file.display();
+            out.flush().with_context(|| format!("writing {name}"))
+        }
+        Kind::Xlsx => spreadsheet(archive, &filter, &parameters, args),
+    }
+}
+
+fn spreadsheet(
+    archive: &Archive,
+    filter: &Filter,
+    parameters: &[String],
+    args: &ExportArgs,
+) -> anyhow::Result<()> {
+    let file: &Path = &args.file;
+    anyhow::ensure!(
+        file.as_os_str() != "-",
+        "a spreadsheet needs a file, found -"
+    );
+    let name = file.display();
+    let mut sheet = Sheet::new(args.lang.language(), TimeZone::system(), parameters)?;
+    let bar = bar(archive.how_many(filter)?);
+    archive.each(filter, |part| {
+        bar.inc(1);
+        sheet.part(&part)
+    })??;
+    bar.finish_and_clear();
+    let mut workbook = sheet.finish()?;
+    workbook
+        .save(file)
+        .with_context(|| format!("writing {name}"))
 }

@@ -1,6 +1,7 @@
 //! The filter as command line options.
 
-use crate::history::{Filter, Moment};
+use crate::history::{Filter, LimitsSeen, Moment};
+use crate::quality::Limits;
 use clap::Args;
 
 /// Which runs.
@@ -99,6 +100,14 @@ impl PartArgs {
             max: range.max,
             ..self.filter()
         })
+    }
+}
+
+/// The limits that all runs agree on; none when they differ, for then a capability means nothing.
+pub(super) fn limits_seen(seen: LimitsSeen) -> Limits {
+    match seen {
+        LimitsSeen::Same { low, high } => Limits { low, high },
+        LimitsSeen::None | LimitsSeen::Differ => Limits::default(),
     }
 }
 

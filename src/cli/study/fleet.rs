@@ -134,10 +134,10 @@ impl Order {
 }
 
 /// A temporary directory, gone with its owner.
-struct Folder(PathBuf);
+pub(super) struct Folder(pub(super) PathBuf);
 
 impl Folder {
-    fn new() -> anyhow::Result<Self> {
+    pub(super) fn new() -> anyhow::Result<Self> {
         let base = std::env::temp_dir();
         for attempt in 0..1000 {
             let path = base.join(format!("relayrig-study-{}-{attempt}", std::process::id()));

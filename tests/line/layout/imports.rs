@@ -35,7 +35,8 @@ const TABLE: &[(&str, &[&str])] = &[
     (
         "config",
         &[
-            "units", "dcon", "bus", "lpm", "guard", "rig", "gauge", "station", "history", "quality",
+            "units", "dcon", "bus", "lpm", "guard", "rig", "gauge", "station", "history",
+            "quality", "report",
         ],
     ),
     ("cycle", BELOW_CLI),

@@ -1,0 +1,31 @@
+//! `card`: the operation process card of a recipe.
+
+use super::history::paper::PaperArgs;
+use crate::config::{load_card, load_recipe};
+use crate::report::card::card;
+use clap::Args;
+use std::path::Path;
+
+/// Arguments of `card`.
+#[derive(Debug, Args)]
+#[command(after_help = "Example: relayrig card --recipe jzc-22f-012 --out card.html")]
+pub struct CardArgs {
+    /// Recipe in config/recipes
+    #[arg(long, value_name = "NAME")]
+    recipe: String,
+    #[command(flatten)]
+    paper: PaperArgs,
+}
+
+/// Runs the command; the result is the exit status.
+///
+/// # Errors
+/// Bad configuration, or a file that cannot be written.
+pub fn run(config: &Path, args: &CardArgs) -> anyhow::Result<i32> {
+    let recipe = load_recipe(config, &args.recipe)?;
+    let plant = load_card(config)?;
+    let paper = args.paper.paper();
+    args.paper
+        .write(&card(paper.language, &recipe, &plant, &paper.made))?;
+    Ok(super::DONE)
+}

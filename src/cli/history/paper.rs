@@ -1,0 +1,70 @@
+//! Options of everything that is printed: language, file.
+
+use super::output::Output;
+use crate::report::{Language, Paper};
+use anyhow::Context;
+use clap::{Args, ValueEnum};
+use jiff::{Timestamp, tz::TimeZone};
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(in crate::cli) enum Tongue {
+    /// English
+    En,
+    /// Simplified Chinese
+    Zh,
+}
+
+/// Where the page goes, and in which language.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct PaperArgs {
+    /// Language of the page
+    #[arg(long, value_enum, default_value = "zh")]
+    lang: Tongue,
+    /// HTML file to write, for A4 (print it from a browser); - is stdout
+    #[arg(long, default_value = "-")]
+    out: PathBuf,
+}
+
+impl Tongue {
+    pub fn language(self) -> Language {
+        match self {
+            Self::En => Language::En,
+            Self::Zh => Language::Zh,
+        }
+    }
+}
+
+impl PaperArgs {
+    /// Zone of this computer, and a foot with time and version.
+    pub fn paper(&self) -> Paper {
+        let zone = TimeZone::system();
+        let now = Timestamp::now().to_zoned(zone.clone());
+        let program = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));
+        let made = format!("{} · {program}", now.strftime("%Y-%m-%d %H:%M %:z"));
+        Paper {
+            language: self.lang.language(),
+            zone,
+            made,
+        }
+    }
+
+    pub fn write(&self, page: &str) -> anyhow::Result<()> {
+        let mut out = sink(&self.out)?;
+        out.write_all(page.as_bytes())?;
+        let name = self.out.display();
+        out.flush().with_context(|| format!("writing {name}"))
+    }
+}
+
+/// The file, or stdout for `-`.
+pub(super) fn sink(file: &Path) -> anyhow::Result<Output> {
+    if file.as_os_str() == "-" {
+        return Ok(Output::stdout());
+    }
+    let name = file.display();
+    let made = File::create(file).with_context(|| format!("making {name}"))?;
+    Ok(Output::to(made))
+}

@@ -1,0 +1,110 @@
+//! Moments and a histogram of values that come one at a time, in memory that does not grow.
+//!
+//! Values are gathered in shards of [`SHARD`], whose moments are merged without loss. The first shard
+//! fixes the classes: about twelve over its range, and as many again beyond each end; what lies still
+//! further out is counted in the outermost classes.
+
+use super::ordered::{Histogram, Ordered};
+use super::spread::Spread;
+
+/// Values between two merges.
+const SHARD: usize = 1_000;
+/// Classes over the range of the first shard.
+const CLASSES: usize = 12;
+
+/// What is known of the values so far.
+#[derive(Debug, Clone, Default)]
+pub struct Tally {
+    merged: Spread,
+    shard: Vec<f64>,
+    classes: Option<Histogram>,
+}
+
+impl Tally {
+    /// Takes a value; one that is not finite is left out.
+    pub fn add(&mut self, value: f64) {
+        if !value.is_finite() {
+            return;
+        }
+        self.shard.push(value);
+        if self.shard.len() == SHARD {
+            self.merge();
+        }
+    }
+
+    /// Moments and histogram of all values; no histogram without spread.
+    pub fn finish(mut self) -> (Spread, Option<Histogram>) {
+        self.merge();
+        (self.merged, self.classes.map(trimmed))
+    }
+
+    fn merge(&mut self) {
+        self.merged = self.merged.merged(Spread::of(&self.shard));
+        if self.classes.is_none() {
+            self.classes = Ordered::of(&self.shard).histogram(CLASSES).map(wider);
+        }
+        if let Some(classes) = &mut self.classes {
+            let last = classes.counts.len() - 1;
+            for value in &self.shard {
+                let class = ((value - classes.from) / classes.width).floor().max(0.0);
+                classes.counts[(class as usize).min(last)] += 1;
+            }
+        }
+        self.shard.clear();
+    }
+}
+
+/// The same classes without their counts, and twelve more at each end.
+fn wider(it: Histogram) -> Histogram {
+    Histogram {
+        from: it.from - CLASSES as f64 * it.width,
+        width: it.width,
+        counts: vec![0; it.counts.len() + 2 * CLASSES],
+    }
+}
+
+/// Without the empty classes at the ends.
+fn trimmed(it: Histogram) -> Histogram {
+    let first = it.counts.iter().position(|&n| n > 0).unwrap_or(0);
+    let end = it
+        .counts
+        .iter()
+        .rposition(|&n| n > 0)
+        .map_or(0, |at| at + 1);
+    Histogram {
+        from: it.from + first as f64 * it.width,
+        width: it.width,
+        counts: it.counts[first..end].to_vec(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_tally_has_the_moments_of_the_whole_and_counts_every_value() {
+        let values: Vec<f64> = (0..5_500)
+            .map(|n| 7.0 + f64::from(n % 997) / 1000.0)
+            .collect();
+        let mut tally = Tally::default();
+        values.iter().for_each(|it| tally.add(*it));
+        tally.add(f64::NAN);
+        tally.add(1e6);
+        let (spread, histogram) = tally.finish();
+        let whole = Spread::of(&[values, vec![1e6]].concat());
+        assert_eq!((spread.n(), spread.max()), (5_501, Some(1e6)));
+        assert!((spread.sd().unwrap() / whole.sd().unwrap() - 1.0).abs() < 1e-14);
+        let histogram = histogram.unwrap();
+        assert_eq!(histogram.counts.iter().sum::<u64>(), 5_501);
+        assert_eq!((histogram.from, histogram.width), (7.0, 0.1));
+    }
+
+    #[test]
+    fn equal_values_have_no_histogram() {
+        let mut tally = Tally::default();
+        (0..10).for_each(|_| tally.add(3.0));
+        assert_eq!(tally.finish().1, None);
+    }
+}

@@ -1,0 +1,42 @@
+//! The list of alarms.
+
+use super::Paper;
+use super::page::{Format, head, page};
+use super::words::span;
+use crate::history::Alarm;
+use maud::{Markup, html};
+
+/// A page of alarms; `about` says of what.
+pub fn list(paper: &Paper, about: &str, alarms: &[Alarm]) -> String {
+    let language = paper.language;
+    let title = language.of("Alarm list", "报警清单");
+    let body = html! { (head(title, about)) (table(paper, alarms)) };
+    page(language, Format::Portrait, title, &paper.made, &body)
+}
+
+pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
+    let language = paper.language;
+    let of = |en, zh| language.of(en, zh);
+    html! {
+        @if alarms.is_empty() {
+            p { (of("None.", "无。")) }
+        } @else {
+            table {
+                thead { tr {
+                    th { (of("Raised", "发生时间")) } th.n { (of("Stood", "持续")) }
+                    th { (of("Lot", "批次")) } th { (of("Code", "代码")) } th { (of("Message", "内容")) }
+                } }
+                tbody { @for it in alarms { tr {
+                    td { (paper.time(it.raised)) }
+                    td.n { @match it.cleared {
+                        Some(at) => { (span((at.0 - it.raised.0) as f64 / 1e6)) }
+                        None => { (of("to the end", "至结束")) }
+                    } }
+                    td.text { (it.lot.as_deref().unwrap_or("–")) @if let Some(run) = it.run { " / " (run) } }
+                    td { (it.code) }
+                    td.text { (it.text) @if let Some(line) = &it.line { " (" (line) ")" } }
+                } } }
+            }
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! The sheet of paper: A4, one style for all pages, head, foot, sign-off.
+
+use super::words::Language;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+/// How the sheet lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    /// Upright.
+    Portrait,
+    /// Lengthwise.
+    Landscape,
+}
+
+const STYLE: &str = include_str!("page.css");
+
+/// A complete file. `made` stands at its foot: when and by which program.
+pub(super) fn page(
+    language: Language,
+    format: Format,
+    title: &str,
+    made: &str,
+    body: &Markup,
+) -> String {
+    let size = match format {
+        Format::Portrait => "@page { size: A4 portrait; }",
+        Format::Landscape => "@page { size: A4 landscape; }",
+    };
+    let class = match format {
+        Format::Portrait => "portrait",
+        Format::Landscape => "landscape",
+    };
+    let whole = html! {
+        (DOCTYPE)
+        html lang=(language.tag()) {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) (PreEscaped(size)) }
+            }
+            body class=(class) {
+                main { (body) }
+                footer { (made) }
+            }
+        }
+    };
+    whole.into_string()
+}
+
+/// Title with what it is about under it.
+pub(super) fn head(title: &str, about: &str) -> Markup {
+    html! {
+        header {
+            h1 { (title) }
+            p.about { (about) }
+        }
+    }
+}
+
+/// Names and their texts in two columns of pairs.
+pub(super) fn facts(pairs: &[(&str, String)]) -> Markup {
+    html! {
+        dl.facts {
+            @for (name, text) in pairs {
+                div { dt { (name) } dd { (text) } }
+            }
+        }
+    }
+}
+
+/// Boxes for names and dates.
+pub(super) fn sign_off(language: Language) -> Markup {
+    let roles = [
+        language.of("Tested by", "检验"),
+        language.of("Checked by", "审核"),
+        language.of("Approved by", "批准"),
+    ];
+    html! {
+        table.sign {
+            tr { @for role in roles { th { (role) } td {} } }
+            tr { @for _ in roles { th { (language.of("Date", "日期")) } td {} } }
+        }
+    }
+}

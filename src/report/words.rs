@@ -1,0 +1,127 @@
+//! The words of the pages in both languages, in one place.
+
+use crate::gauge::Parameter;
+
+/// Language of a page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Language {
+    /// English.
+    En,
+    /// Simplified Chinese.
+    Zh,
+}
+
+impl Language {
+    /// The word of this language.
+    pub fn of<'a>(self, en: &'a str, zh: &'a str) -> &'a str {
+        match self {
+            Self::En => en,
+            Self::Zh => zh,
+        }
+    }
+
+    /// Tag for the `lang` of a page.
+    pub fn tag(self) -> &'static str {
+        match self {
+            Self::En => "en",
+            Self::Zh => "zh-CN",
+        }
+    }
+
+    /// Name of a parameter with its unit; the key itself for one that only a recipe knows.
+    pub fn parameter(self, key: &str) -> String {
+        let Some(parameter) = Parameter::from_name(key) else {
+            return key.to_owned();
+        };
+        let (en, zh) = match parameter {
+            Parameter::CoilResistance => ("Coil resistance", "线圈电阻"),
+            Parameter::OperateVoltage => ("Operate voltage", "动作电压"),
+            Parameter::ReleaseVoltage => ("Release voltage", "释放电压"),
+            Parameter::OperateTime => ("Operate time", "动作时间"),
+            Parameter::ReleaseTime => ("Release time", "释放时间"),
+            Parameter::OperateBounce => ("Operate bounce", "动作回跳"),
+            Parameter::ReleaseBounce => ("Release bounce", "释放回跳"),
+            Parameter::ContactResistanceNo => ("Contact resistance NO", "常开触点电阻"),
+            Parameter::ContactResistanceNc => ("Contact resistance NC", "常闭触点电阻"),
+        };
+        format!("{} / {}", self.of(en, zh), unit(parameter))
+    }
+
+    /// Name of a verdict.
+    pub fn verdict(self, verdict: &str) -> &str {
+        match verdict {
+            "pass" => self.of("pass", "合格"),
+            "fail" => self.of("fail", "不合格"),
+            "void" => self.of("not judged", "未判定"),
+            "unjudged" => self.of("imported without verdict", "导入未判定"),
+            other => other,
+        }
+    }
+
+    /// Name of a bin.
+    pub fn bin(self, bin: &str) -> &str {
+        match bin {
+            "pass" => self.of("pass", "合格"),
+            "coil" => self.of("coil", "线圈"),
+            "voltage" => self.of("voltage", "电压"),
+            "time" => self.of("time", "时间"),
+            "contact" => self.of("contact", "触点"),
+            "retest" => self.of("retest", "复测"),
+            other => other,
+        }
+    }
+
+    /// What no test of this rig covers; stands on every page that says a part is good.
+    pub fn not_tested(self) -> &'static str {
+        match self {
+            Self::En => {
+                "Not tested: insulation resistance, dielectric strength, electrical and mechanical endurance."
+            }
+            Self::Zh => "未测项目：绝缘电阻、介质耐压、电气寿命与机械寿命。",
+        }
+    }
+}
+
+/// As printed: with the sign for ohm.
+fn unit(parameter: Parameter) -> &'static str {
+    match parameter.unit() {
+        "ohm" => "Ω",
+        "mOhm" => "mΩ",
+        unit => unit,
+    }
+}
+
+/// Five significant digits without trailing zeros; a dash for nothing.
+pub(super) fn figure(value: Option<f64>) -> String {
+    let Some(value) = value.filter(|it| it.is_finite()) else {
+        return "–".to_owned();
+    };
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let before = value.abs().log10().floor();
+    if !(-4.0..7.0).contains(&before) {
+        return format!("{value:.3e}");
+    }
+    let decimals = (4.0 - before).max(0.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// A share as percent with two decimals; a dash for nothing.
+pub(super) fn percent(part: u64, of: u64) -> String {
+    if of == 0 {
+        return "–".to_owned();
+    }
+    format!("{:.2} %", 100.0 * part as f64 / of as f64)
+}
+
+/// Seconds as hours, minutes and seconds.
+pub(super) fn span(seconds: f64) -> String {
+    let whole = seconds.round().max(0.0) as u64;
+    format!("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
+}
