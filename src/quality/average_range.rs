@@ -7,13 +7,22 @@
 
 use super::crossing;
 use super::gauge_rr::{GaugeRr, GaugeRrError, Reading, deviations};
+use std::f64::consts::FRAC_1_SQRT_2;
 
-/// K1 and K2 by the number of trials or operators, from 2 (AIAG MSA, 4th edition; Duncan's d2*).
+/// K1 and K2 by the number of trials or operators, from 2 (AIAG MSA, 4th edition; Duncan's d2*); for two it is the root of 1/2.
 const K_OF_RANGE: [f64; 2] = [0.8862, 0.5908];
-const K_OF_OPERATORS: [f64; 2] = [0.7071, 0.5231];
+const K_OF_OPERATORS: [f64; 2] = [FRAC_1_SQRT_2, 0.5231];
 /// K3 by the number of parts, from 2.
 const K_OF_PARTS: [f64; 9] = [
-    0.7071, 0.5231, 0.4467, 0.4030, 0.3742, 0.3534, 0.3375, 0.3249, 0.3146,
+    FRAC_1_SQRT_2,
+    0.5231,
+    0.4467,
+    0.4030,
+    0.3742,
+    0.3534,
+    0.3375,
+    0.3249,
+    0.3146,
 ];
 
 /// Evaluates a complete crossed study of 2 or 3 trials, up to 3 operators, 2 to 10 parts.

@@ -37,7 +37,7 @@ pub fn spc(paper: &Paper, about: &str, charts: &[Named<'_>], shown: usize) -> St
 }
 
 /// Name of a chart.
-fn kind<'a>(language: Language, kind: &'a str) -> &'a str {
+fn kind(language: Language, kind: &str) -> &str {
     match kind {
         "individuals" => language.of("individuals", "单值图 (I)"),
         "moving range" => language.of("moving range", "移动极差图 (MR)"),
