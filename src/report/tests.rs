@@ -4,7 +4,6 @@
 use super::card::{CardSettings, Quota, STEPS, card};
 use super::certificate::certificate;
 use super::lot::{LotReport, ParameterValues};
-use super::sheet::Sheet;
 use super::spc::{Named, spc};
 use super::*;
 use crate::config::load_recipe;
@@ -12,8 +11,6 @@ use crate::history::{Alarm, LotSummary, Measurement, Part, Passed, Yield};
 use crate::quality::Limits;
 use crate::quality::chart::individuals;
 use crate::quality::rules::Rules;
-use calamine::{Data, Reader, Xlsx};
-use std::io::Cursor;
 use std::path::Path;
 
 const LANGUAGES: [Language; 2] = [Language::En, Language::Zh];
@@ -212,32 +209,4 @@ fn a_control_chart_draws_the_last_points_and_numbers_what_stands_out() {
     let svg = super::charts::control(&chart, 10, &[]);
     assert_eq!(svg.matches("<circle").count(), 10);
     assert!(svg.contains("r=\"3.6\"") && svg.contains(">1</text>"));
-}
-
-#[test]
-fn a_spreadsheet_reads_back_as_it_was_written_with_its_charts_and_no_formula() {
-    let keys = ["operate_voltage_v".to_owned()];
-    let mut sheet = Sheet::new(Language::En, TimeZone::UTC, &keys).unwrap();
-    for _ in 0..3 {
-        sheet.part(&part("pass")).unwrap();
-    }
-    let mut other = part("fail");
-    other.values.insert("operate_voltage_v".into(), 9.5.into());
-    sheet.part(&other).unwrap();
-    let bytes = sheet.finish().unwrap().save_to_buffer().unwrap();
-    let chart = b"xl/charts/chart2.xml";
-    assert!(bytes.windows(chart.len()).any(|it| it == chart));
-    let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).unwrap();
-    assert_eq!(book.sheet_names(), ["Summary", "Parts"]);
-    let parts = book.worksheet_range("Parts").unwrap();
-    assert_eq!(parts.height(), 5);
-    assert_eq!(parts[(1, 1)], Data::String(EVIL.into()));
-    assert_eq!(parts[(1, 6)], Data::String("=1+1".into()));
-    assert_eq!(parts[(1, 12)], Data::Float(7.704_22));
-    assert!(book.worksheet_formula("Parts").unwrap().is_empty());
-    let summary = book.worksheet_range("Summary").unwrap();
-    assert_eq!(
-        (&summary[(1, 1)], &summary[(1, 5)]),
-        (&Data::Float(4.0), &Data::Float(9.5))
-    );
 }
