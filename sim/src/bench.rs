@@ -27,6 +27,8 @@ struct BenchFile {
     baud: u32,
     #[serde(default = "default_latency")]
     latency_ms: f64,
+    #[serde(default)]
+    latency_sd_ms: f64,
     module: Vec<BenchModule>,
 }
 
@@ -130,7 +132,10 @@ impl BenchFile {
             signals
                 .inputs
                 .insert(spec.id.clone(), setting::numbers(&spec, "inputs")?);
-            let habit = Habit::exact(self.latency_ms * 1e3);
+            let habit = Habit {
+                latency_sd_us: self.latency_sd_ms * 1e3,
+                ..Habit::exact(self.latency_ms * 1e3)
+            };
             let rng = habit::stream(0, &spec.id);
             modules.push(Module::new(&spec, commissioning, habit, rng)?);
         }

@@ -3,6 +3,7 @@
 mod facts {
     mod conformance;
     mod converter;
+    mod fuzz;
     mod line;
     mod rig;
     mod terminal;

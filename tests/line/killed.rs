@@ -10,7 +10,7 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStdout, Command};
 
 /// The simulated rig on pseudo-terminals, telling what its outputs do; killed at the end.
-struct Rig {
+pub struct Rig {
     process: Child,
     told: BufReader<ChildStdout>,
 }
@@ -26,9 +26,13 @@ impl Drop for Rig {
 }
 
 impl Rig {
-    fn start(workshop: &Workshop) -> Self {
+    /// Links its ports in the folder `ports`; `faults` are further words of the command.
+    pub fn start(workshop: &Workshop, faults: &str) -> Self {
         // A rig that tells nothing any more would keep the test waiting for ever.
-        let mut process = workshop.start_for("120", "sim --seed 1 --link ports --journal");
+        let mut process = workshop.start_for(
+            "120",
+            &format!("sim --seed 1 --link ports --journal {faults}"),
+        );
         let told = BufReader::new(process.stdout.take().unwrap());
         let mut rig = Self { process, told };
         let lines = rig.next();
@@ -76,7 +80,7 @@ fn a_controller_that_is_killed_leaves_every_output_safe_within_the_watchdog_time
     let limit_us = table["bus"]["host_watchdog_ms"].as_integer().unwrap() * 1_000;
     assert!(safe.len() >= 4, "{safe:?}");
 
-    let mut rig = Rig::start(&workshop);
+    let mut rig = Rig::start(&workshop, "");
     let mut controller = workshop.start(
         "run --lot A --recipe jzc-22f-012 --line measure=ports/measure --line motion=ports/motion",
     );

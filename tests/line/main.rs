@@ -8,6 +8,7 @@
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
 //! - [`picture`]: the picture in README.md is that of `config/scene.toml`.
 //! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
+//! - `unplugged`: a port that vanishes over pseudo-terminals.
 //! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
 
 #![allow(clippy::unwrap_used)]
@@ -26,3 +27,5 @@ mod program;
 mod storm;
 #[cfg(feature = "sim")]
 mod troubles;
+#[cfg(all(feature = "sim", unix))]
+mod unplugged;

@@ -6,6 +6,7 @@
 //! | `#AAN` | `>` and one field; `?AA` when there is no channel N |
 //! | `$AAA` | `>` and 4 hexadecimal digits per channel, whatever the format |
 //! | `$AA5VV`, `$AA6` | enable mask, written to the EEPROM; read back |
+//! | `$AA3` | `>` and the temperature of the cold junction (7018), which is that of a room |
 //!
 //! A reading is the last finished conversion of its channel (see [`super::converter`]), with this
 //! module's gain, offset and noise, quantised to 16 bit, 12 bit in fast mode, 24 bit for RTD.
@@ -30,6 +31,9 @@ const FAST: u8 = 0x20;
 /// Bit of FF for the mains filter.
 const MAINS_50_HZ: u8 = 0x80;
 
+/// Temperature of the cold junction, degrees Celsius.
+const COLD_JUNCTION_C: f64 = 25.0;
+
 /// Conversions a second of the RTD module, all channels together.
 const RTD_PER_S: f64 = 15.0;
 
@@ -44,21 +48,25 @@ struct AnalogIn {
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    Voltage { may_be_fast: bool },
+    Voltage {
+        may_be_fast: bool,
+    },
+    /// 7018: thermocouples too, never fast.
+    Thermocouple,
     Rtd,
 }
 
 impl Kind {
     fn channels(self) -> u8 {
         match self {
-            Self::Voltage { .. } => 8,
+            Self::Voltage { .. } | Self::Thermocouple => 8,
             Self::Rtd => 3,
         }
     }
 
     fn range(self, type_code: u8) -> Option<Range> {
         match self {
-            Self::Voltage { .. } => range::voltage_range(type_code),
+            Self::Voltage { .. } | Self::Thermocouple => range::voltage_range(type_code),
             Self::Rtd => range::rtd_range(type_code),
         }
     }
@@ -67,7 +75,7 @@ impl Kind {
         match self {
             Self::Rtd => 24,
             Self::Voltage { .. } if format & FAST != 0 => 12,
-            Self::Voltage { .. } => 16,
+            Self::Voltage { .. } | Self::Thermocouple => 16,
         }
     }
 }
@@ -82,7 +90,7 @@ pub(super) fn build(
 ) -> Result<Built, SimError> {
     let (kind, default_type) = match model {
         "7033" => (Kind::Rtd, 0x20),
-        "7018" | "7018P" | "7018R" => (Kind::Voltage { may_be_fast: false }, 0x05),
+        "7018" | "7018P" | "7018R" => (Kind::Thermocouple, 0x05),
         "7017" => (Kind::Voltage { may_be_fast: false }, 0x08),
         _ => (Kind::Voltage { may_be_fast: true }, 0x08),
     };
@@ -136,7 +144,7 @@ fn pace(kind: Kind, habit: &Habit, format: u8) -> f64 {
     match kind {
         Kind::Rtd => RTD_PER_S,
         Kind::Voltage { .. } if format & FAST != 0 => habit.fast_per_s,
-        Kind::Voltage { .. } => habit.normal_per_s,
+        Kind::Voltage { .. } | Kind::Thermocouple => habit.normal_per_s,
     }
 }
 
@@ -157,7 +165,7 @@ impl AnalogIn {
     fn open_input(&self) -> f64 {
         match self.kind {
             Kind::Rtd => f64::INFINITY,
-            Kind::Voltage { .. } => 0.0,
+            Kind::Voltage { .. } | Kind::Thermocouple => 0.0,
         }
     }
 
@@ -239,6 +247,9 @@ impl Family for AnalogIn {
             (b'#', []) => self.fields(plate, format),
             (b'#', [digit]) => self.one_field(plate, *digit, format),
             (b'$', b"A") => self.fields(plate, Format::Hex),
+            (b'$', b"3") if self.kind == Kind::Thermocouple => {
+                Answer::Reply(format!(">{COLD_JUNCTION_C:+07.1}"))
+            }
             (b'$', b"6") => dcon::done_hex(plate.address, u64::from(self.converter.mask()), 2),
             (b'$', [b'5', high, low]) => match dcon::hex_byte(&[*high, *low]) {
                 Some(mask) => self.enable(plate, mask, at),

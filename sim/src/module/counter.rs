@@ -7,9 +7,9 @@
 //! hertz with the step of the gate time: 10 Hz (0.1 s) or 1 Hz (1.0 s, FF bit 2).
 //!
 //! `#AAN` with a bad channel is not answered. Settings that outlive the power are EEPROM writes.
-//! Alarm and LED commands keep their values; alarms themselves are not simulated beyond owning the
-//! outputs while they are enabled.
+//! Alarms: [`super::alarm`]; they are looked at whenever a request comes. LED commands keep their values.
 
+use super::alarm::{Alarm, Told};
 use super::plate::{Commissioning, Plate};
 use super::pulse::{Channel, channels};
 use super::{Built, Family, Terminals, setting};
@@ -30,9 +30,7 @@ struct Counter {
     /// Thresholds of the TTL inputs in tenths of a volt, high and low.
     threshold: [u32; 2],
     outputs: u8,
-    alarm_enabled: bool,
-    /// Alarm limits of `@AAPA` and `@AASA`.
-    limits: [u32; 2],
+    alarm: Alarm,
     led: u8,
     has_led: bool,
 }
@@ -68,8 +66,7 @@ pub(super) fn build(
         filter_us: pair("filter_us", [2, 2])?,
         threshold: pair("threshold", [24, 8])?,
         outputs: small("outputs", 0)? & 0b11,
-        alarm_enabled: false,
-        limits: [u32::MAX; 2],
+        alarm: Alarm::new(model == "7080D"),
         led: small("led", 0)?,
         has_led: model == "7080D",
     };
@@ -241,8 +238,9 @@ impl Counter {
                 dcon::done(plate.address)
             }
             b"DI" => {
-                let alarm = u64::from(self.alarm_enabled);
-                dcon::done_hex(plate.address, alarm << 16 | u64::from(self.outputs) << 8, 5)
+                let outputs = u64::from(self.carried(at));
+                let state = u64::from(self.alarm.state());
+                dcon::done_hex(plate.address, state << 16 | outputs << 8, 5)
             }
             [b'D', b'O', b'0', data @ b'0'..=b'3'] => self.write(plate, data - b'0'),
             _ => self.alarm_command(plate, body),
@@ -253,7 +251,7 @@ impl Counter {
         if plate.watchdog.tripped() {
             return dcon::ignored();
         }
-        if self.alarm_enabled {
+        if self.alarm.owns_outputs() {
             return dcon::refused(plate.address);
         }
         self.outputs = outputs;
@@ -261,24 +259,23 @@ impl Counter {
     }
 
     fn alarm_command(&mut self, plate: &mut Plate, body: &[u8]) -> Answer {
-        match body {
-            [b'E', b'A', b'0' | b'1' | b'N' | b'T' | b'L' | b'M'] => self.alarm_enabled = true,
-            b"DA" | [b'D', b'A', _] => self.alarm_enabled = false,
-            b"CA" => return dcon::done(plate.address),
-            b"RP" | b"RA" => {
-                let limit = self.limits[usize::from(body == b"RA")];
-                return dcon::done_hex(plate.address, u64::from(limit), 8);
+        match self.alarm.command(body) {
+            Told::Stored => {
+                plate.eeprom_writes += 1;
+                dcon::done(plate.address)
             }
-            [which @ (b'P' | b'S'), b'A', digits @ ..] if digits.len() == 8 => {
-                match dcon::hex(digits) {
-                    Some(limit) => self.limits[usize::from(*which == b'S')] = limit,
-                    None => return Answer::Unknown,
-                }
-            }
-            _ => return Answer::Unknown,
+            Told::Done => dcon::done(plate.address),
+            Told::Limit(limit) => dcon::done_hex(plate.address, u64::from(limit), 8),
+            Told::Refused => dcon::refused(plate.address),
+            Told::Unknown => Answer::Unknown,
         }
-        plate.eeprom_writes += 1;
-        dcon::done(plate.address)
+    }
+
+    /// What the outputs carry: what the host wrote, or what the alarms say.
+    fn carried(&mut self, at: &mut Terminals<'_>) -> u8 {
+        let hz = self.look(at);
+        let values = [0, 1].map(|n| self.channels[n].value(hz[n]));
+        self.alarm.outputs(self.outputs, values)
     }
 }
 
@@ -293,6 +290,8 @@ impl Family for Counter {
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
+        // A latched alarm notices what happened before this request.
+        self.carried(at);
         match (request.lead, request.body) {
             (b'#', [n @ (b'0' | b'1')]) => self.reading(plate, usize::from(n - b'0'), at),
             (
@@ -317,7 +316,8 @@ impl Family for Counter {
             (b'$', [b'9', data @ ..]) if self.has_led && data.len() == 5 => {
                 dcon::done(plate.address)
             }
-            (b'~', [b'A', b'0' | b'1']) => {
+            (b'~', [b'A', mode @ (b'0' | b'1')]) => {
+                self.alarm.set_mode(*mode == b'1');
                 plate.eeprom_writes += 1;
                 dcon::done(plate.address)
             }

@@ -11,6 +11,7 @@
 //! | [`digital`] | 7041 7042 7043 7044 7045 7050 7051 7052 7053 7060 7063 7065 7066 7067 |
 //! | [`counter`] | 7080 7080B 7080D |
 
+mod alarm;
 pub mod analog_in;
 pub mod analog_out;
 pub mod converter;

@@ -9,7 +9,9 @@
 //! | `$AAI` | `!AA0` when INIT* is grounded, else `!AA1` |
 //! | `%AANNTTCCFF` | `!NN`; baud and checksum bit need INIT* and take effect at the next power-on |
 //! | `~AA0`..`~AA3` | host watchdog |
-//! | `~AARD` | response delay, newer modules only |
+//! | `~AARD`, `~AARDVV` | response delay, newer modules only |
+//! | `~AATnn`, `~AAI` | soft INIT, newer modules: `~AAI` opens a window of nn seconds for `%` to change the line |
+//! | `$AAP` | `!AA0`: DCON, newer modules |
 //!
 //! With INIT* grounded at power-on a module answers at address 00 (and at its own) without checksum;
 //! its replies carry the stored address.
@@ -59,6 +61,9 @@ pub struct Plate {
     firmware: String,
     newer: bool,
     response_delay_ms: u8,
+    /// Length of the window of soft INIT, 0 to 60 s; 0 at power-on.
+    soft_init_s: u8,
+    soft_init_until_us: u64,
     init_grounded: bool,
     checksum_running: bool,
     reset_unread: bool,
@@ -85,6 +90,8 @@ impl Plate {
             firmware: setting::text(spec, "firmware")?.unwrap_or("A2.0").into(),
             newer: spec.model.starts_with("M-") || spec.settings.contains_key("response_delay_ms"),
             response_delay_ms: setting::number(spec, "response_delay_ms")?.unwrap_or(0.0) as u8,
+            soft_init_s: 0,
+            soft_init_until_us: 0,
             init_grounded: setting::flag(spec, "init")?.unwrap_or(false),
             checksum_running: checksum,
             reset_unread: !setting::flag(spec, "reset_seen")?.unwrap_or(false),
@@ -109,6 +116,8 @@ impl Plate {
     /// The module restarted: `$AA5` shows it, and what needed a power cycle now counts.
     pub fn power_cycled(&mut self) {
         self.reset_unread = true;
+        self.soft_init_s = 0;
+        self.soft_init_until_us = 0;
         self.checksum_running = self.format & CHECKSUM != 0;
     }
 
@@ -135,7 +144,20 @@ impl Plate {
             (b'$', b"F") => dcon::done_with(address, &self.firmware),
             (b'$', b"M") => dcon::done_with(address, &self.name),
             (b'$', b"I") => dcon::done_hex(address, u64::from(!self.init_grounded), 1),
-            (b'%', body) => self.configure(body, fits),
+            (b'$', b"P") if self.newer => dcon::done_hex(address, 0, 1),
+            (b'%', body) => self.configure(body, now_us, fits),
+            (b'~', [b'T', high, low]) if self.newer => match dcon::hex_byte(&[*high, *low]) {
+                Some(seconds @ 0..=60) => {
+                    self.soft_init_s = seconds;
+                    dcon::done(address)
+                }
+                Some(_) => dcon::refused(address),
+                None => Answer::Unknown,
+            },
+            (b'~', b"I") if self.newer => {
+                self.soft_init_until_us = now_us + u64::from(self.soft_init_s) * 1_000_000;
+                dcon::done(address)
+            }
             (b'~', [b'O', name @ ..]) => self.rename(name),
             (b'~', [b'R', b'D', delay @ ..]) if self.newer => self.response_delay(delay),
             (b'~', body) => self.host_watchdog(body, now_us),
@@ -147,14 +169,15 @@ impl Plate {
         u64::from(self.type_code) << 16 | u64::from(self.baud_code) << 8 | u64::from(self.format)
     }
 
-    fn configure(&mut self, body: &[u8], fits: impl Fn(u8, u8) -> bool) -> Answer {
+    fn configure(&mut self, body: &[u8], now_us: u64, fits: impl Fn(u8, u8) -> bool) -> Answer {
         let (Some(word), 8) = (dcon::hex(body), body.len()) else {
             return Answer::Unknown;
         };
         let [address, type_code, baud_code, format] = word.to_be_bytes();
         let line_changes = baud_code != self.baud_code || (format ^ self.format) & CHECKSUM != 0;
         let known_baud = (0x03..=0x0A).contains(&baud_code);
-        if (line_changes && !self.init_grounded) || !known_baud || !fits(type_code, format) {
+        let may_change_line = self.init_grounded || now_us < self.soft_init_until_us;
+        if (line_changes && !may_change_line) || !known_baud || !fits(type_code, format) {
             return dcon::refused(self.address);
         }
         self.eeprom_writes += 1;

@@ -84,27 +84,3 @@ fn with_checksum_a_flipped_bit_or_a_missing_end_is_met_with_silence() {
         }
     }
 }
-
-#[test]
-fn no_bytes_make_a_module_fall_over() {
-    let file = "[[module]]\naddress = 1\nmodel = \"I-7080\"\n[[module]]\naddress = 2\nmodel = \
-                \"I-7024\"\n[[module]]\naddress = 3\nmodel = \"I-7060\"\n[[module]]\naddress = 4\n\
-                model = \"I-7017F\"\n[[module]]\naddress = 5\nmodel = \"I-7022\"";
-    let mut rig = bench::build_text(file).expect("a bench");
-    let alphabet = b"#$%@~0123456789ABCDEFGHILMNOPRST+-.* ";
-    let mut state = 1u64;
-    for _ in 0..100_000 {
-        let mut next = |most: usize| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 33) as usize % most
-        };
-        let length = next(14);
-        let mut text = vec![b"#$%@~"[next(5)], b'0', b"12345"[next(5)]];
-        text.extend((0..length).map(|_| alphabet[next(alphabet.len())]));
-        if let Some(reply) = rig.exchange(0, &text, 0) {
-            assert_eq!(reply.bytes.last(), Some(&b'\r'));
-        }
-    }
-}

@@ -64,3 +64,25 @@ async fn a_partial_request_is_forgotten_after_silence() {
     port.write_all(b"@02\r").await.expect("a stream");
     assert_eq!(reply(&mut port).await, b">000F\r");
 }
+
+#[tokio::test(start_paused = true)]
+async fn a_lost_port_ends_the_stream_and_is_there_again_when_it_is_back() {
+    let file = std::env::temp_dir().join(format!("rigsim-plug-{}.toml", std::process::id()));
+    std::fs::write(&file, BENCH).expect("a file");
+    let faults = ["port_lost=bench@1..3".to_owned()];
+    let rig = rigsim::build_bench(&file, &faults).expect("a bench");
+    std::fs::remove_file(&file).expect("the file");
+    let (_, plug) = wire::plugs(&rig).remove(0);
+    let mut port = plug.open().expect("a stream");
+    port.write_all(b"#010\r").await.expect("a stream");
+    assert_eq!(reply(&mut port).await, b">+01.000\r");
+    assert!(plug.open().is_none(), "one stream at a time");
+    let begin = Instant::now();
+    assert_eq!(reply(&mut port).await, b"", "the stream ends");
+    assert!(plug.open().is_none());
+    // To three seconds of the rig, one microsecond of which is a millisecond here.
+    tokio::time::sleep_until(begin + Duration::from_secs(3_100)).await;
+    let mut port = plug.open().expect("a stream again");
+    port.write_all(b"@02\r").await.expect("a stream");
+    assert_eq!(reply(&mut port).await, b">000F\r");
+}

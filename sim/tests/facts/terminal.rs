@@ -52,3 +52,35 @@ fn links_point_at_the_ports_and_go_with_them() {
     assert!(!dir.join("bench").is_symlink());
     std::fs::remove_dir(&dir).expect("an empty folder");
 }
+
+#[test]
+fn a_lost_port_is_an_end_for_its_client_and_comes_back_under_its_link() {
+    let dir = std::env::temp_dir().join(format!("rigsim-lost-{}", std::process::id()));
+    std::fs::create_dir_all(&dir).expect("a folder");
+    let file = dir.join("bench.toml");
+    std::fs::write(&file, "[[module]]\naddress = 1\nmodel = \"I-7017\"").expect("a file");
+    let rig = rigsim::build_bench(&file, &["port_lost=1/100@0..0.5".to_owned()]).expect("a bench");
+    let ptys = pty::serve(&rig).expect("a pseudo-terminal");
+    ptys.link(&dir).expect("a link");
+    let link = dir.join("bench");
+    let mut port = client(&link);
+    // The request costs the port: an error or an end, never a wait for ever.
+    port.write_all(b"$01M\r").expect("a port");
+    let mut bytes = [0u8; 16];
+    assert!(matches!(port.read(&mut bytes), Ok(0) | Err(_)));
+    drop(port);
+    // The rig brings it back by itself; until then the link is not there, or still at its end.
+    let back = std::iter::repeat_with(|| {
+        let mut options = OpenOptions::new();
+        let port = options.read(true).write(true).open(&link);
+        port.ok().and_then(|mut port| {
+            port.write_all(b"$01M\r").ok()?;
+            let mut byte = [0u8; 1];
+            port.read_exact(&mut byte).ok()?;
+            Some(byte[0])
+        })
+    });
+    assert_eq!(back.flatten().next(), Some(b'!'));
+    ptys.stop();
+    std::fs::remove_dir_all(&dir).expect("the folder");
+}

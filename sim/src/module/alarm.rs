@@ -1,0 +1,191 @@
+//! Alarms of the counter module, which own its two outputs while they are on.
+//!
+//! | request | mode 0: a limit per counter | mode 1: two limits on counter 0 |
+//! |---|---|---|
+//! | `~AAAS` | S = 0 | S = 1 (as the 7080D comes) |
+//! | `@AAPA(8 hex)`, `@AARP` | limit of counter 0 | high limit, output 0 |
+//! | `@AASA(8 hex)`, `@AARA` | limit of counter 1 | high-high limit, output 1 |
+//! | `@AAEAN`, `@AADAN` | alarm of counter N on, off | refused |
+//! | `@AAEAM`, `@AAEAL`, `@AADA` | refused | momentary, latched, off |
+//! | `@AACA` | refused | ends a latched alarm until its limit is reached anew |
+//!
+//! An output of an alarm is on while its counter stands at its limit or above; a latched one stays on.
+
+/// Which counters alarm, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Mode {
+    PerCounter { on: [bool; 2] },
+    TwoLimits(Kind),
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Off,
+    Momentary,
+    Latched,
+}
+
+/// What a command about alarms did.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Told {
+    /// Changed a setting that outlives the power.
+    Stored,
+    /// Changed a state.
+    Done,
+    /// A limit, as read.
+    Limit(u32),
+    /// Belongs to the other mode.
+    Refused,
+    /// Is none.
+    Unknown,
+}
+
+/// Mode, limits, and what is latched.
+#[derive(Debug, Clone)]
+pub(super) struct Alarm {
+    mode: Mode,
+    limits: [u32; 2],
+    latched: u8,
+}
+
+impl Alarm {
+    /// Off, in the mode in which the model comes.
+    pub(super) fn new(two_limits: bool) -> Self {
+        let mode = if two_limits {
+            Mode::TwoLimits(Kind::Off)
+        } else {
+            Mode::PerCounter { on: [false; 2] }
+        };
+        Self {
+            mode,
+            limits: [u32::MAX; 2],
+            latched: 0,
+        }
+    }
+
+    /// First digit of `@AADI`: 0 off, 1 on (momentary), 2 latched.
+    pub(super) fn state(&self) -> u8 {
+        match self.mode {
+            Mode::PerCounter { on } => u8::from(on != [false; 2]),
+            Mode::TwoLimits(Kind::Off) => 0,
+            Mode::TwoLimits(Kind::Momentary) => 1,
+            Mode::TwoLimits(Kind::Latched) => 2,
+        }
+    }
+
+    /// The host may not write the outputs.
+    pub(super) fn owns_outputs(&self) -> bool {
+        self.state() != 0
+    }
+
+    /// The outputs, given what the host wrote and where the counters stand.
+    pub(super) fn outputs(&mut self, host: u8, values: [u64; 2]) -> u8 {
+        let reached = |value: u64, limit: usize| value >= u64::from(self.limits[limit]);
+        match self.mode {
+            Mode::PerCounter { on } => (0..2).fold(0, |outputs, n| {
+                let host = host & 1 << n;
+                let own = u8::from(reached(values[n], n)) << n;
+                outputs | if on[n] { own } else { host }
+            }),
+            Mode::TwoLimits(Kind::Off) => host,
+            Mode::TwoLimits(kind) => {
+                let now = u8::from(reached(values[0], 0)) | u8::from(reached(values[0], 1)) << 1;
+                self.latched = if kind == Kind::Latched {
+                    self.latched | now
+                } else {
+                    now
+                };
+                self.latched
+            }
+        }
+    }
+
+    /// `~AAAS`: another mode, everything off.
+    pub(super) fn set_mode(&mut self, two_limits: bool) {
+        let limits = self.limits;
+        *self = Self {
+            limits,
+            ..Self::new(two_limits)
+        };
+    }
+
+    /// The body of a request that begins with `@`.
+    pub(super) fn command(&mut self, body: &[u8]) -> Told {
+        match (body, &mut self.mode) {
+            ([b'E', b'A', n @ (b'0' | b'1')], Mode::PerCounter { on }) => {
+                on[usize::from(n - b'0')] = true;
+                Told::Stored
+            }
+            ([b'D', b'A', n @ (b'0' | b'1')], Mode::PerCounter { on }) => {
+                on[usize::from(n - b'0')] = false;
+                Told::Stored
+            }
+            (b"EAM", Mode::TwoLimits(kind)) => turn(kind, Kind::Momentary),
+            (b"EAL", Mode::TwoLimits(kind)) => turn(kind, Kind::Latched),
+            (b"DA", Mode::TwoLimits(kind)) => turn(kind, Kind::Off),
+            (b"CA", Mode::TwoLimits(_)) => {
+                self.latched = 0;
+                Told::Done
+            }
+            ([b'E' | b'D', b'A', b'0' | b'1'] | b"EAM" | b"EAL" | b"DA" | b"CA", _) => {
+                Told::Refused
+            }
+            (b"RP", _) => Told::Limit(self.limits[0]),
+            (b"RA", _) => Told::Limit(self.limits[1]),
+            ([b'P', b'A', digits @ ..], _) => self.limit(0, digits),
+            ([b'S', b'A', digits @ ..], _) => self.limit(1, digits),
+            (_, _) => Told::Unknown,
+        }
+    }
+
+    fn limit(&mut self, n: usize, digits: &[u8]) -> Told {
+        match crate::dcon::hex(digits) {
+            Some(limit) if digits.len() == 8 => {
+                self.limits[n] = limit;
+                Told::Stored
+            }
+            _ => Told::Unknown,
+        }
+    }
+}
+
+fn turn(kind: &mut Kind, to: Kind) -> Told {
+    *kind = to;
+    Told::Stored
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_limit_per_counter_leaves_the_other_output_to_the_host() {
+        let mut alarm = Alarm::new(false);
+        assert_eq!(alarm.command(b"PA00000064"), Told::Stored);
+        assert_eq!(alarm.outputs(0b11, [500, 500]), 0b11);
+        assert_eq!(alarm.command(b"EA0"), Told::Stored);
+        assert_eq!(alarm.outputs(0b10, [99, 500]), 0b10);
+        assert_eq!(alarm.outputs(0b10, [100, 500]), 0b11);
+        assert_eq!(alarm.command(b"EAL"), Told::Refused);
+    }
+
+    #[test]
+    fn a_latched_alarm_stays_until_it_is_cleared_and_a_momentary_one_does_not() {
+        let mut alarm = Alarm::new(true);
+        for command in [&b"PA00000064"[..], b"SA000000C8", b"EAL"] {
+            assert_eq!(alarm.command(command), Told::Stored);
+        }
+        assert_eq!(alarm.outputs(0, [150, 0]), 0b01);
+        assert_eq!(alarm.outputs(0, [200, 0]), 0b11);
+        assert_eq!(alarm.outputs(0, [0, 0]), 0b11);
+        assert_eq!(alarm.command(b"CA"), Told::Done);
+        assert_eq!(alarm.outputs(0, [0, 0]), 0);
+        assert_eq!(alarm.command(b"EAM"), Told::Stored);
+        assert_eq!(
+            (alarm.outputs(0, [150, 0]), alarm.outputs(0, [0, 0])),
+            (1, 0)
+        );
+        assert_eq!(alarm.command(b"RA"), Told::Limit(200));
+        assert_eq!(alarm.command(b"EA0"), Told::Refused);
+    }
+}
