@@ -4,7 +4,8 @@
 //! earlier happens in order of time: conversions, steps of ramps, expiries of watchdogs, timed
 //! faults. At equal times modules come in the order of the configuration. The world is advanced to
 //! each of these instants. Rig time never runs backwards: a request that comes in with an earlier
-//! time than something already done is taken as coming now.
+//! time than something already done is taken as coming now. A module is one processor: its replies keep their
+//! order, and one that comes late holds up the next. While it is held up it keeps one request and misses the rest.
 
 use std::sync::mpsc::Receiver;
 
@@ -46,6 +47,8 @@ pub struct Rig {
     modules: Vec<Module>,
     /// Next event of each module.
     due_us: Vec<u64>,
+    /// From when to when each module is at a reply that holds it up: it serves one request after the other.
+    serving_us: Vec<(u64, u64)>,
     lines: Vec<LineSpec>,
     faults: Faults,
     now_us: u64,
@@ -61,6 +64,7 @@ impl Rig {
     ) -> Self {
         let mut rig = Self {
             due_us: vec![u64::MAX; modules.len()],
+            serving_us: vec![(0, 0); modules.len()],
             scene: Watched::new(scene),
             modules,
             lines,
@@ -113,12 +117,14 @@ impl Rig {
         }
         let address = dcon::addressee(text)?;
         let mut reply: Option<(u64, Vec<u8>)> = None;
+        let mut last = None;
         for place in 0..self.modules.len() {
             let module = &self.modules[place];
             if module.line() != name || !module.hears(address) {
                 continue;
             }
             let answer = self.answer(place, text);
+            last = Some(place);
             reply = match (reply, answer) {
                 (Some(first), Some(second)) => Some(together(first, second, baud)),
                 (first, second) => first.or(second),
@@ -127,12 +133,21 @@ impl Rig {
         let (latency_us, bytes) = reply?;
         let (extra_us, bytes) = self.faults.strike(text, bytes, now_us)?;
         let at_us = now_us + latency_us + extra_us + wire_us(bytes.len(), baud);
+        if let Some(place) = last
+            && (extra_us > 0 || self.serving_us[place].0 > now_us)
+        {
+            self.serving_us[place].1 = at_us;
+        }
         Some(Reply { at_us, bytes })
     }
 
     /// What one module sends, and after how many microseconds.
     fn answer(&mut self, place: usize, text: &[u8]) -> Option<(u64, Vec<u8>)> {
         let now_us = self.now_us;
+        let (begun_us, free_us) = self.serving_us[place];
+        if now_us < begun_us {
+            return None;
+        }
         let upset = self.faults.before_a_request(now_us);
         let module = &mut self.modules[place];
         if let Some(event) = upset {
@@ -142,7 +157,9 @@ impl Rig {
         let heard = module.hear(text, &mut self.scene, now_us);
         self.due_us[place] = module.next_us();
         let mut bytes = heard.filter(|_| !silent)?;
-        let latency_us = module.next_latency_us();
+        let begin_us = now_us.max(free_us);
+        self.serving_us[place].0 = begin_us;
+        let latency_us = begin_us - now_us + module.next_latency_us();
         self.faults.clash(module.id(), &mut bytes, now_us);
         Some((latency_us, bytes))
     }

@@ -72,36 +72,44 @@ fn number(value: &toml::Value) -> f64 {
     }
 }
 
-#[test]
-fn a_controller_that_is_killed_leaves_every_output_safe_within_the_watchdog_time() {
-    let workshop = Workshop::new("killed-in-real-time");
-    let safe = watched(&workshop);
-    let table: toml::Table = workshop.read("config/rig.toml").parse().unwrap();
-    let limit_us = table["bus"]["host_watchdog_ms"].as_integer().unwrap() * 1_000;
-    assert!(safe.len() >= 4, "{safe:?}");
+/// Starts of a lot: on a machine that is busy with other things a watchdog may expire before the controller is killed,
+/// which proves nothing.
+const TRIES: usize = 20;
 
-    let mut rig = Rig::start(&workshop, "");
+/// A lot is started, and its controller killed while the coil is driven and after the mechanism was; none when a
+/// watchdog has expired before.
+fn killed_in_the_middle(workshop: &Workshop) -> Option<Rig> {
+    let mut rig = Rig::start(workshop, "");
     let mut controller = workshop.start(
         "run --lot A --recipe jzc-22f-012 --line measure=ports/measure --line motion=ports/motion",
     );
     let moving = |told: &Value, module: &str| {
         told["type"] == "output" && told["module"] == module && told["bits"].as_u64() > Some(0)
     };
-    // The coil is driven and the mechanism was: the middle of a part.
     let mut mechanism = false;
-    loop {
+    let alive = loop {
         let told = rig.next();
-        assert_ne!(
-            told["type"], "expired",
-            "before the controller was killed: {told}"
-        );
         mechanism |= moving(&told, "mech_do_a") || moving(&told, "mech_do_b");
-        if mechanism && moving(&told, "board_do") {
-            break;
+        if told["type"] == "expired" || mechanism && moving(&told, "board_do") {
+            break told["type"] != "expired";
         }
-    }
+    };
     controller.kill().unwrap();
     controller.wait().unwrap();
+    alive.then_some(rig)
+}
+
+#[test]
+fn a_controller_that_is_killed_leaves_every_output_safe_within_the_watchdog_time() {
+    let workshop = Workshop::new("killed-in-real-time");
+    let safe = watched(&workshop);
+    assert!(safe.len() >= 4, "{safe:?}");
+
+    let table: toml::Table = workshop.read("config/rig.toml").parse().unwrap();
+    let limit_us = table["bus"]["host_watchdog_ms"].as_integer().unwrap() * 1_000;
+    let mut rig = (0..TRIES)
+        .find_map(|_| killed_in_the_middle(&workshop))
+        .expect("a machine with a second to spare");
 
     let mut left = safe.clone();
     let mut after_us = 0;

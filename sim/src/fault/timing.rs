@@ -17,7 +17,7 @@ const LIST: [Known; 2] = [
         name: "late",
         unit: "probability[/ms]",
         default: "0.01/200",
-        what: "a reply comes so late that nobody waits for it any more",
+        what: "a reply comes so late that nobody waits for it any more; the module is held up as long",
     },
 ];
 

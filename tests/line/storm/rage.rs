@@ -293,8 +293,7 @@ fn kind(error: &LineError) -> &'static str {
         LineError::SecondReply { .. } => "more behind the reply",
         LineError::NeverSilent { .. } => "line never silent",
         LineError::PortLost { .. } => "port lost",
-        #[allow(unreachable_patterns, reason = "kinds may be added")]
-        _ => "other",
+        LineError::OutOfStep { .. } => "reply of unknown origin",
     }
 }
 
