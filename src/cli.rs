@@ -1,5 +1,6 @@
 //! The commands, one file each. The only place that names the simulator.
 
+pub mod bus;
 pub mod card;
 pub mod check;
 pub mod config;
@@ -77,6 +78,8 @@ pub enum Command {
     /// Check the configuration, or print the schema of a file
     #[command(subcommand)]
     Config(config::Args),
+    /// Find modules, send one command, watch a line
+    Bus(bus::BusArgs),
     /// Collision answers for a scene, no rig
     Check(check::CheckArgs),
     /// Lots, parts, filters, statistics
@@ -101,6 +104,7 @@ impl Cli {
             #[cfg(feature = "sim")]
             Command::Study(args) => study::run(&self.config, &args),
             Command::Config(args) => config::run(&self.config, &args),
+            Command::Bus(args) => bus::run(&args),
             Command::Check(args) => check::run(args),
             Command::History(args) => history::run(&self.config, &self.db, args),
             Command::User(args) => user::run(&self.db, args),

@@ -34,6 +34,8 @@ pub struct View {
     pub last: Option<LastPart>,
     /// Alarms, first-out first.
     pub alarms: Vec<AlarmLine>,
+    /// How the lines and their modules are doing, since the start.
+    pub lines: Vec<LineView>,
 }
 
 /// The part judged last.
@@ -62,4 +64,38 @@ pub struct AlarmLine {
     pub text_en: String,
     /// Chinese text.
     pub text_zh: String,
+}
+
+/// A line of modules.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct LineView {
+    /// As wired.
+    pub name: String,
+    /// Transactions that found no port.
+    pub ports_lost: u64,
+    /// In order of addresses.
+    pub modules: Vec<ModuleView>,
+}
+
+/// How a module is doing: counts since the start.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct ModuleView {
+    /// Two hexadecimal digits, as on the module.
+    pub address: String,
+    /// Tries, repeats included.
+    pub transactions: u64,
+    /// Latency without wire time that half of the replies keep, right within 19 %.
+    pub p50_ms: Option<f64>,
+    /// The same for 99 of a hundred.
+    pub p99_ms: Option<f64>,
+    /// Tries without a whole reply in time.
+    pub time_outs: u64,
+    /// Replies whose characters did not add up.
+    pub checksum_errors: u64,
+    /// Replies that were wrong in another way.
+    pub other_errors: u64,
+    /// Answers that said no.
+    pub refusals: u64,
+    /// Reset status found set.
+    pub resets: u64,
 }

@@ -16,7 +16,7 @@
 //! [`LineError::PortLost`] at the pace of a silent module, and is reopened with back-off.
 //!
 //! `pace.rs` is the only place that knows how rig time maps to the timers; `wire.rs` how long characters take;
-//! `trace.rs` keeps the last bytes; `health.rs` counts.
+//! `trace.rs` keeps the last bytes, `recorded.rs` writes them down; `health.rs` counts.
 
 mod answer;
 mod exchange;
@@ -26,6 +26,8 @@ mod log;
 mod owing;
 mod pace;
 mod port;
+mod raw;
+mod recorded;
 mod settings;
 mod talk;
 mod trace;
@@ -40,6 +42,8 @@ pub use line::{Ports, run, run_reopening};
 pub use log::LineLog;
 pub use pace::Pace;
 pub use port::{PortError, SerialPorts, open_serial};
+pub use raw::{RawReply, send_raw};
+pub use recorded::{Recorded, RecordedError, arrow, escaped};
 pub use settings::{LineSettings, longest_transaction};
 pub use trace::{Direction, Entry, Trace};
 pub use wire::Wire;

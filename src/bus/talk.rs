@@ -82,9 +82,10 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             self.find_step(command, address).await?;
             return result;
         }
-        if !self
-            .owing
-            .doubts(frame.bytes(), self.settings.checksum, self.now())
+        if *command == question(address)
+            || !self
+                .owing
+                .doubts(frame.bytes(), self.settings.checksum, self.now())
         {
             return result;
         }
@@ -186,7 +187,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
         *self.silent = quiet != Quiet::Noisy;
         if quiet == Quiet::Named && self.rests().await? {
             self.owing.paid(address);
-        } else {
+        } else if *command != ask_name {
             self.owing.owed(*command, self.now());
         }
         Ok(false)

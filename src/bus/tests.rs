@@ -13,6 +13,7 @@ use tokio::sync::mpsc;
 
 mod ports;
 mod records;
+mod replay;
 mod steps;
 
 /// One piece of what the modules say: microseconds after the request was heard, and the bytes.

@@ -27,6 +27,18 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// None when there are more bytes than a frame has.
+    pub fn new(at: RigTime, direction: Direction, bytes: &[u8]) -> Option<Self> {
+        let mut entry = Self {
+            at,
+            direction,
+            bytes: [0; FRAME_LIMIT],
+            length: bytes.len() as u8,
+        };
+        entry.bytes.get_mut(..bytes.len())?.copy_from_slice(bytes);
+        Some(entry)
+    }
+
     /// The bytes, CR included.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[..usize::from(self.length)]
@@ -65,17 +77,10 @@ impl Trace {
     pub(super) fn add(&mut self, at: RigTime, direction: Direction, bytes: &[u8]) {
         for piece in bytes.chunks(FRAME_LIMIT) {
             self.stamp(direction, piece);
-            let mut entry = Entry {
-                at,
-                direction,
-                bytes: [0; FRAME_LIMIT],
-                length: piece.len() as u8,
-            };
-            entry.bytes[..piece.len()].copy_from_slice(piece);
             if self.ring.len() >= self.capacity {
                 self.ring.pop_front();
             }
-            self.ring.push_back(entry);
+            self.ring.extend(Entry::new(at, direction, piece));
         }
     }
 

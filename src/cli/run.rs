@@ -5,6 +5,7 @@ mod lines;
 mod recorder;
 mod rows;
 mod table;
+mod traces;
 
 use crate::bus::Pace;
 use crate::config::{Plant, load_recipe};
@@ -18,6 +19,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use tokio::sync::{mpsc, watch};
+use traces::Traces;
 
 /// How rig time passes on the simulated rig.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -156,7 +158,9 @@ async fn run_lot(
         args,
         epoch_us,
     };
-    let (mut recorder, calibration) = Recorder::open(db, &setup, controls, rig.eeprom_count())?;
+    let traces = Traces::new(db, &plant, &lines.logs);
+    let (mut recorder, calibration) =
+        Recorder::open(db, &setup, controls, rig.eeprom_count(), traces)?;
     let (events, received) = mpsc::unbounded_channel::<Event>();
     let recorded = Arc::new(AtomicU64::new(0));
     let history_lost = Arc::new(AtomicBool::new(false));

@@ -4,9 +4,10 @@ use super::command::Nature::{self, Read, Store};
 use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, DataFormat, TypeCode};
+use std::fmt;
 
 /// How a module prints its readings: needed to read them, and verified once against its configuration word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub struct InputForm {
     channels: u8,
     /// The notation, from the configuration word.
@@ -50,6 +51,12 @@ impl InputForm {
     /// Number of inputs, 1 to 8.
     pub const fn channels(self) -> u8 {
         self.channels
+    }
+}
+
+impl fmt::Debug for InputForm {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} {:?}", self.channels, self.format)
     }
 }
 

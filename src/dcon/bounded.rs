@@ -13,7 +13,7 @@ impl fmt::Display for Address {
 }
 
 /// A number from 0 to `MAX`, both included; larger ones cannot be made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct UpTo<const MAX: u8>(u8);
 
 impl<const MAX: u8> UpTo<MAX> {
@@ -29,6 +29,12 @@ impl<const MAX: u8> UpTo<MAX> {
     /// The number itself.
     pub const fn get(self) -> u8 {
         self.0
+    }
+}
+
+impl<const MAX: u8> fmt::Debug for UpTo<MAX> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
     }
 }
 

@@ -138,6 +138,13 @@ impl Level {
         };
     }
 
+    /// A level as it is written in a request; none unless the whole of `text` is one.
+    pub(super) fn read(form: OutputForm, text: &[u8]) -> Option<Self> {
+        let mut fields = Fields::new(text);
+        let level = Self::decode(form, &mut fields).ok()?;
+        fields.end().ok().map(|()| level)
+    }
+
     pub(super) fn decode(form: OutputForm, fields: &mut Fields<'_>) -> Result<Self, ReplyError> {
         let at = fields.at();
         let steps = match form {

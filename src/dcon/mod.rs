@@ -39,6 +39,7 @@ mod reply;
 mod request;
 mod shape;
 mod type_code;
+mod understand;
 mod words;
 
 #[cfg(test)]
@@ -59,3 +60,4 @@ pub use level::{Level, LevelError, OutputForm};
 pub use reading::{Reading, Readings, Value};
 pub use reply::{Reply, Text};
 pub use type_code::{FullScale, TypeCode, Unit};
+pub use understand::{Family, factory, readings, understand};

@@ -9,6 +9,7 @@ use rows::table;
 mod module_rows;
 mod rows;
 mod values;
+mod vectors;
 
 const A1: Address = Address(1);
 const VOLTS: InputForm = InputForm::eight(DataFormat::Engineering, TypeCode(0x08));

@@ -4,7 +4,7 @@
 //! left out; zero would be a statement.
 
 use super::router::Desk;
-use crate::view::View;
+use crate::view::{ModuleView, View};
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
@@ -98,7 +98,77 @@ fn text(view: &View, alive: bool, screens: usize) -> String {
         "code",
         &alarms(view),
     );
+    bus(&mut out, view);
     out.0
+}
+
+/// How the modules are doing, one row for each.
+fn bus(out: &mut Figures, view: &View) {
+    /// Name, help, and the figure; none is left out.
+    type Figure = (&'static str, &'static str, fn(&ModuleView) -> Option<f64>);
+    const FIGURES: [Figure; 8] = [
+        ("transactions", "Tries, repeats included.", |it| {
+            Some(it.transactions as f64)
+        }),
+        (
+            "latency_p50_ms",
+            "Median latency, wire time left out.",
+            |it| it.p50_ms,
+        ),
+        ("latency_p99_ms", "Latency that 99 of 100 keep.", |it| {
+            it.p99_ms
+        }),
+        ("time_outs", "Tries without a whole reply in time.", |it| {
+            Some(it.time_outs as f64)
+        }),
+        ("checksum_errors", "Replies that did not add up.", |it| {
+            Some(it.checksum_errors as f64)
+        }),
+        ("other_errors", "Replies wrong in another way.", |it| {
+            Some(it.other_errors as f64)
+        }),
+        ("refusals", "Answers that said no.", |it| {
+            Some(it.refusals as f64)
+        }),
+        ("resets", "Restarts that were noticed.", |it| {
+            Some(it.resets as f64)
+        }),
+    ];
+    let modules = || {
+        let lines = view.lines.iter();
+        lines.flat_map(|line| line.modules.iter().map(move |module| (line, module)))
+    };
+    for (name, help, figure) in FIGURES {
+        let rows: Vec<([Label<'_>; 2], f64)> = modules()
+            .filter_map(|(line, module)| {
+                let labels = [("line", line.name.as_str()), ("address", &*module.address)];
+                Some((labels, figure(module)?))
+            })
+            .collect();
+        if !rows.is_empty() {
+            let rows: Vec<(&[Label<'_>], f64)> = rows
+                .iter()
+                .map(|(labels, value)| (&labels[..], *value))
+                .collect();
+            out.named(&format!("relayrig_module_{name}"), help, &rows);
+        }
+    }
+    let lost: Vec<_> = view
+        .lines
+        .iter()
+        .map(|line| ([("line", line.name.as_str())], line.ports_lost))
+        .collect();
+    if !lost.is_empty() {
+        let rows: Vec<(&[Label<'_>], u64)> = lost
+            .iter()
+            .map(|(labels, value)| (&labels[..], *value))
+            .collect();
+        out.named(
+            "relayrig_line_ports_lost",
+            "Transactions that found no port.",
+            &rows,
+        );
+    }
 }
 
 fn alarms(view: &View) -> BTreeMap<String, u64> {

@@ -2,6 +2,7 @@
 //!
 //! - [`layout`]: what the source tree must look like: who imports whom, what a pure module may not name,
 //!   which files stand where, and that the documents speak of things that exist.
+//! - `bus`: the tools of a line against modules on a bench, and the traces of alarms.
 //! - [`commands`]: the built program given wrong files and simple orders.
 //! - `interruptions`: lots that are stopped or killed, and what is left of them.
 //! - `killed`: the controller killed over pseudo-terminals, and outputs safe in time.
@@ -13,6 +14,8 @@
 
 #![allow(clippy::unwrap_used)]
 
+#[cfg(all(feature = "sim", unix))]
+mod bus;
 mod commands;
 #[cfg(all(feature = "sim", unix))]
 mod interruptions;

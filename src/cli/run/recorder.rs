@@ -5,6 +5,7 @@
 //! one short task per transaction.
 
 use super::table::Table;
+use super::traces::Traces;
 use super::{Controls, RunArgs, rows};
 use crate::bus::LineLog;
 use crate::config::Plant;
@@ -83,6 +84,7 @@ pub struct Recorder<'a> {
     table: Table,
     bar: ProgressBar,
     eeprom: EepromCount,
+    traces: Traces,
     eeprom_at_start: Option<u64>,
     writing: Duration,
 }
@@ -97,6 +99,7 @@ impl<'a> Recorder<'a> {
         setup: &'a Setup<'a>,
         controls: &'a Controls,
         eeprom: EepromCount,
+        traces: Traces,
     ) -> anyhow::Result<(Self, Option<Calibration>)> {
         let identity = Identity {
             program: "relayrig".into(),
@@ -137,6 +140,7 @@ impl<'a> Recorder<'a> {
             table: Table::default(),
             bar: bar(setup.args.count),
             eeprom,
+            traces,
             eeprom_at_start: None,
             writing: Duration::ZERO,
         };
@@ -195,7 +199,13 @@ impl<'a> Recorder<'a> {
                 self.counts.alarms += 1;
                 self.bar
                     .suspend(|| tracing::error!(code = alarm.code, "{}", alarm.text_en));
+                for path in self.traces.dump(self.wall_us(at)) {
+                    self.bar
+                        .suspend(|| tracing::error!("last traffic: {}", path.display()));
+                }
+                let lines = self.traces.health();
                 self.controls.view.send_modify(|view| {
+                    view.lines = lines;
                     view.alarms.push(AlarmLine {
                         code: alarm.code.clone(),
                         text_en: alarm.text_en.clone(),
@@ -267,7 +277,9 @@ impl<'a> Recorder<'a> {
         };
         let json = rows::json(self.setup, judged, None, "");
         let numbers = |key: &str| serde_json::from_value(json[key].clone()).unwrap_or_default();
+        let lines = self.traces.health();
         self.controls.view.send_modify(|view| {
+            view.lines = lines;
             view.judged = parts;
             view.verdicts = text(&self.counts.verdicts);
             view.bins = text(&self.counts.bins);

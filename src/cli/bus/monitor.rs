@@ -1,0 +1,180 @@
+//! `relayrig bus monitor`: what passes on a line, from a port that is only listened to, or from the trace of an alarm.
+
+use super::PortArgs;
+use crate::bus::{Direction, Entry, Pace, Recorded, arrow, escaped, open_serial};
+use crate::dcon;
+use anyhow::{Context, bail};
+use std::io::Write;
+use std::path::PathBuf;
+use tokio::io::AsyncReadExt;
+
+/// Watch a line.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  relayrig bus monitor --port /dev/ttyUSB0 --baud 115200 --checksum
+  relayrig bus monitor --trace relayrig.alarm-1-motion.trace
+  relayrig bus monitor --trace relayrig.alarm-1-motion.trace --level bytes
+
+On a port both directions are heard as one: a frame with # $ % @ ~ counts as a question, one with ! > ? as the reply to
+the question before it. Nothing is ever sent. Ctrl-C ends it.")]
+pub struct MonitorArgs {
+    /// Serial port to listen to
+    #[arg(long, value_name = "PATH", required_unless_present = "trace")]
+    port: Option<PathBuf>,
+    /// Trace that an alarm has left, - for stdin
+    #[arg(long, value_name = "FILE", conflicts_with = "port")]
+    trace: Option<PathBuf>,
+    /// Bits per second of the port
+    #[arg(long, default_value_t = 115_200, value_parser = super::scan::baud)]
+    baud: u32,
+    /// Frames on the port carry checksums
+    #[arg(long)]
+    checksum: bool,
+    /// How much is said
+    #[arg(long, value_enum, default_value = "meaning")]
+    level: Level,
+    /// Ends after so many seconds
+    #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..=86_400))]
+    seconds: Option<u64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Level {
+    /// Every piece in hexadecimal
+    Bytes,
+    /// Frames as text
+    Frames,
+    /// Frames, and what question and reply mean together
+    Meaning,
+}
+
+pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<i32> {
+    if let Some(path) = &args.trace {
+        let text = if path.as_os_str() == "-" {
+            std::io::read_to_string(std::io::stdin()).context("reading stdin")?
+        } else {
+            std::fs::read_to_string(path).with_context(|| format!("--trace {}", path.display()))?
+        };
+        let recorded =
+            Recorded::parse(&text).with_context(|| format!("--trace {}", path.display()))?;
+        let mut teller = Teller::new(args.level, recorded.checksum);
+        for entry in &recorded.entries {
+            print(&teller.tell(entry))?;
+        }
+        return Ok(super::super::DONE);
+    }
+    let Some(path) = &args.port else {
+        bail!("--port or --trace is needed");
+    };
+    listen(args, &PortArgs { port: path.clone() }).await
+}
+
+/// Until Ctrl-C, or the time is up.
+async fn listen(args: &MonitorArgs, port: &PortArgs) -> anyhow::Result<i32> {
+    let path = port.port.to_string_lossy();
+    let mut stream = open_serial(&path, args.baud).with_context(|| format!("--port {path}"))?;
+    let pace = Pace::real();
+    let mut teller = Teller::new(args.level, args.checksum);
+    let seconds = std::time::Duration::from_secs(args.seconds.unwrap_or(u64::MAX / 4));
+    let end = tokio::time::sleep(seconds.min(std::time::Duration::from_secs(1 << 30)));
+    tokio::pin!(end);
+    let mut frame: Vec<u8> = Vec::new();
+    let mut piece = [0; 256];
+    loop {
+        let count = tokio::select! {
+            count = stream.read(&mut piece) => count.with_context(|| format!("--port {path}"))?,
+            _ = tokio::signal::ctrl_c() => return Ok(super::super::DONE),
+            () = &mut end => return Ok(super::super::DONE),
+        };
+        if count == 0 {
+            bail!("--port {path}: the port went away");
+        }
+        let now = pace.now();
+        for byte in &piece[..count] {
+            frame.push(*byte);
+            if *byte == b'\r' || frame.len() == dcon::FRAME_LIMIT {
+                if let Some(entry) = Entry::new(now, direction(&frame), &frame) {
+                    print(&teller.tell(&entry))?;
+                }
+                frame.clear();
+            }
+        }
+    }
+}
+
+fn direction(frame: &[u8]) -> Direction {
+    match frame.first() {
+        Some(b'#' | b'$' | b'%' | b'@' | b'~') => Direction::Sent,
+        Some(b'!' | b'>' | b'?') => Direction::Heard,
+        Some(_) | None => Direction::Stray,
+    }
+}
+
+fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .context("writing to stdout")
+}
+
+/// Puts entries into words; remembers the last question.
+struct Teller {
+    level: Level,
+    checksum: bool,
+    asked: Vec<u8>,
+}
+
+impl Teller {
+    fn new(level: Level, checksum: bool) -> Self {
+        Self {
+            level,
+            checksum,
+            asked: Vec::new(),
+        }
+    }
+
+    /// One line, with its end.
+    fn tell(&mut self, entry: &Entry) -> String {
+        let seconds = entry.at.0 as f64 / 1e6;
+        let said = match self.level {
+            Level::Bytes => entry
+                .bytes()
+                .iter()
+                .map(|byte| format!("{byte:02X} "))
+                .collect(),
+            Level::Frames => escaped(entry.bytes()),
+            Level::Meaning => format!("{:<24} {}", escaped(entry.bytes()), self.meaning(entry)),
+        };
+        format!(
+            "{seconds:>14.6} {} {}\n",
+            arrow(entry.direction),
+            said.trim_end()
+        )
+    }
+
+    fn meaning(&mut self, entry: &Entry) -> String {
+        match entry.direction {
+            Direction::Sent => {
+                self.asked = entry.bytes().to_vec();
+                String::new()
+            }
+            Direction::Stray => "not asked for, thrown away".to_owned(),
+            Direction::Heard => {
+                let mut words: Vec<String> =
+                    dcon::understand(&self.asked, entry.bytes(), self.checksum)
+                        .into_iter()
+                        .map(|(command, reply)| match reply {
+                            Ok(reply) => format!("{command} = {reply}"),
+                            Err(reason) => format!("{command}: {reason}"),
+                        })
+                        .collect();
+                words.dedup();
+                match words.len() {
+                    0 => "no known command".to_owned(),
+                    1..=3 => words.join(" | "),
+                    more => format!("{} | and {} other readings", words[0], more - 1),
+                }
+            }
+        }
+    }
+}

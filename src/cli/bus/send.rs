@@ -1,0 +1,115 @@
+//! `relayrig bus send`: one command as typed, and what the reply means.
+
+use super::PortArgs;
+use crate::bus::{Pace, escaped, send_raw};
+use crate::dcon::{self, Family};
+use anyhow::bail;
+use serde_json::json;
+
+/// One command.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  relayrig bus send --port /dev/ttyUSB0 --baud 9600 '$01M'
+  relayrig bus send --port /dev/ttyUSB0 --checksum '#01' --model 7017F
+
+Exit status: 0 a reply that can be read, 1 refused, silent or garbled, 2 bad input. Factory calibration and trim are
+never sent.")]
+pub struct SendArgs {
+    #[command(flatten)]
+    port: PortArgs,
+    /// Bits per second
+    #[arg(long, default_value_t = 115_200, value_parser = super::scan::baud)]
+    baud: u32,
+    /// The line has checksums: add one, and check the reply's
+    #[arg(long)]
+    checksum: bool,
+    /// Model of the module, where the same reply could mean several things
+    #[arg(long, value_name = "NAME")]
+    model: Option<String>,
+    /// One JSON object
+    #[arg(long)]
+    json: bool,
+    /// The command, without checksum
+    command: String,
+}
+
+/// Exit status: the answer is no.
+const NO: i32 = 1;
+
+pub(super) async fn run(args: &SendArgs) -> anyhow::Result<i32> {
+    let family = family(args.model.as_deref())?;
+    let text = checked(&args.command)?;
+    let mut request = text.to_vec();
+    if args.checksum {
+        request.extend(format!("{:02X}", dcon::checksum(text)).bytes());
+    }
+    request.push(b'\r');
+    let mut port = args.port.open(args.baud)?;
+    let settings = args.port.settings(args.baud, args.checksum);
+    let reply = send_raw(&mut port, &settings, Pace::real(), &request).await?;
+    let mut meanings = dcon::understand(&request, &reply.bytes, args.checksum);
+    meanings.retain(|(command, _)| family.is_none_or(|family| family.knows(command)));
+    let broadcast = text.ends_with(b"**");
+    let good = !reply.more && meanings.iter().any(|(_, reply)| reply.is_ok());
+    let mut words: Vec<String> = meanings
+        .iter()
+        .map(|(command, reply)| match reply {
+            Ok(reply) => format!("{command}: {reply}"),
+            Err(reason) => format!("{command}: {reason}"),
+        })
+        .collect();
+    words.dedup();
+    let taken_ms = reply.taken.as_seconds() * 1e3;
+    if args.json {
+        let object = json!({
+            "request": escaped(&request), "reply": escaped(&reply.bytes), "more": reply.more,
+            "taken_ms": taken_ms, "meanings": words,
+        });
+        println!("{object}");
+    } else {
+        println!("> {}", escaped(&request));
+        match (reply.bytes.is_empty(), broadcast) {
+            (true, true) => println!("  sent to all; nobody answers"),
+            (true, false) => println!("  no reply within {taken_ms:.1} ms"),
+            (false, _) => println!("< {}   {taken_ms:.1} ms", escaped(&reply.bytes)),
+        }
+        if reply.more {
+            println!("  more characters behind the reply");
+        }
+        if !reply.bytes.is_empty() && words.is_empty() {
+            println!("  not a command of the modules known here");
+        }
+        for word in words.iter().filter(|_| !reply.bytes.is_empty()) {
+            println!("  {word}");
+        }
+    }
+    Ok(if good || broadcast {
+        super::super::DONE
+    } else {
+        NO
+    })
+}
+
+/// A command that can be a request of the protocol and is none that spoils a module.
+fn checked(command: &str) -> anyhow::Result<&[u8]> {
+    let text = command.as_bytes();
+    let plain = text.iter().all(|byte| (0x20..0x7F).contains(byte));
+    let lead = text.first().is_some_and(|lead| b"#$%@~".contains(lead));
+    if !plain || !lead || text.len() > 24 {
+        bail!("COMMAND: found \"{command}\", expected # $ % @ or ~ and at most 24 characters");
+    }
+    if let Some(what) = dcon::factory(text) {
+        bail!("COMMAND: \"{command}\" is {what}: only the factory may do that, it is never sent");
+    }
+    Ok(text)
+}
+
+fn family(model: Option<&str>) -> anyhow::Result<Option<Family>> {
+    let Some(model) = model else {
+        return Ok(None);
+    };
+    match Family::of_name(model) {
+        Some(family) => Ok(Some(family)),
+        None => bail!("--model: found \"{model}\", expected a module of the 7000 series, as 7017F"),
+    }
+}

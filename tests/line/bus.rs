@@ -1,0 +1,123 @@
+//! `relayrig bus` against modules on a bench, and the trace that an alarm leaves.
+
+use crate::program::Workshop;
+use serde_json::Value;
+use std::io::{BufRead, BufReader};
+use std::process::Child;
+
+const BENCH: &str = r#"
+baud = 115200
+latency_ms = 2.0
+[[module]]
+address = 1
+model = "I-7017"
+checksum = true
+format = "engineering"
+range = "08"
+inputs = [5.0, 4.0, 3.0, 2.0, 1.0, 0.0, -1.0, -2.0]
+[[module]]
+address = 18
+model = "I-7043"
+checksum = true
+"#;
+
+/// Modules on a pseudo-terminal, until dropped.
+struct Bench {
+    shop: Workshop,
+    sim: Child,
+    port: String,
+}
+
+impl Bench {
+    fn new(name: &str) -> Self {
+        let shop = Workshop::new(name);
+        std::fs::write(shop.folder.join("bench.toml"), BENCH).unwrap();
+        let mut sim = shop.start("sim --bench bench.toml");
+        let mut first = String::new();
+        BufReader::new(sim.stdout.take().unwrap())
+            .read_line(&mut first)
+            .unwrap();
+        let lines: Value = serde_json::from_str(&first).unwrap();
+        let port = lines["lines"]["bench"].as_str().unwrap().to_owned();
+        Self { shop, sim, port }
+    }
+
+    fn bus(&self, what: &str) -> (i32, String, String) {
+        let (verb, rest) = what.split_once(' ').unwrap_or((what, ""));
+        let said = self
+            .shop
+            .run(&format!("bus {verb} --port {} {rest}", self.port));
+        (said.status, said.stdout, said.stderr)
+    }
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        let _ = self.sim.kill();
+        let _ = self.sim.wait();
+    }
+}
+
+#[test]
+fn scan_finds_every_module_with_its_name_and_configuration_and_nobody_else() {
+    let bench = Bench::new("bus_scan");
+    let (status, out, _) = bench.bus("scan --baud 115200 --addresses 00-13 --checksum on --json");
+    let found: Vec<Value> = out
+        .lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    assert_eq!((status, found.len()), (0, 2), "{out}");
+    assert_eq!(
+        (&found[0]["address"], &found[0]["type"]),
+        (&"01".into(), &"08".into())
+    );
+    assert_eq!(found[1]["address"], "12");
+    assert!(found[1]["name"].as_str().unwrap().contains("7043"), "{out}");
+    assert!(found[0]["p99_ms"].as_f64().unwrap() >= 1.0, "{out}");
+    let (status, out, _) = bench.bus("scan --baud 115200 --addresses 20-22 --checksum on --json");
+    assert_eq!((status, &*out), (1, ""));
+}
+
+#[test]
+fn send_puts_a_reply_into_words_and_never_sends_what_only_the_factory_may() {
+    let bench = Bench::new("bus_send");
+    let (status, out, _) = bench.bus("send --checksum #010 --model 7017");
+    assert!(status == 0 && out.contains("ReadOne"), "{out}");
+    assert!(
+        out.contains("> #010B4\\r") && out.contains("< >+0"),
+        "{out}"
+    );
+    let (status, out, _) = bench.bus("send --checksum @12BEEF");
+    assert!(status == 0 && out.contains("accepted"), "{out}");
+    let (status, out, _) = bench.bus("send --checksum $552");
+    assert!(status == 1 && out.contains("no reply"), "{out}");
+    for factory in ["$010", "~01E1"] {
+        let (status, _, err) = bench.bus(&format!("send --checksum {factory}"));
+        assert!(status == 2 && err.contains("factory"), "{err}");
+    }
+    let (status, _, err) = bench.bus("send --baud 12345 $012");
+    assert!(status == 2 && err.contains("12345"), "{err}");
+}
+
+#[test]
+fn an_alarm_leaves_a_trace_that_monitor_reads_and_names_it_in_the_log() {
+    let shop = Workshop::new("bus_trace");
+    let said = shop
+        .run("run --sim --lot T --recipe jzc-22f-012 --count 2 --fault silence=board_di@0 --json");
+    assert_eq!(said.status, 3, "{}", said.stderr);
+    let log = said.stderr.split_whitespace();
+    let named: Vec<&str> = log.filter(|word| word.ends_with(".trace")).collect();
+    assert_eq!(named.len(), 2, "{}", said.stderr);
+    for path in named {
+        let bytes = shop.run(&format!("bus monitor --trace {path} --level bytes"));
+        let meaning = shop.run(&format!("bus monitor --trace {path}"));
+        assert_eq!((bytes.status, meaning.status), (0, 0), "{}", meaning.stderr);
+        assert!(
+            bytes.stdout.contains(" > ") && bytes.stdout.contains(" 0D"),
+            "{path}"
+        );
+        assert!(meaning.stdout.contains("ReadConfig"), "{}", meaning.stdout);
+    }
+    let missing = shop.run("bus monitor --trace nothing.trace");
+    assert!(missing.status == 2 && missing.stderr.contains("nothing.trace"));
+}
