@@ -3,7 +3,7 @@
 //! **Question.** A [`Motion`] (one actuator, or several on one valve) in a [`Situation`]: what is
 //! known of every actuator, where parts are, how big they are. **Answer.** [`Cleared`], which only
 //! this module can make and which the drive asks for, or a [`Refusal`] with both bodies, the
-//! distance, the place, the last clear position and what would help.
+//! distance, the place, the last clear pose to stop at or to come back to, and what would help.
 //!
 //! **Bodies.** Fixed elements, tooling that rides on actuators (sort z rides on the axis, the
 //! gripper on sort z) and the part, pins included, in each of its places; all from `scene.toml`.
@@ -33,6 +33,7 @@
 mod actuator;
 mod advice;
 mod axes;
+mod back_track;
 mod bodies;
 mod build;
 mod carried;
@@ -122,14 +123,20 @@ impl Guard {
         match judge::judge(&self.scene, &mut self.space, motion, situation)? {
             None => Ok(()),
             Some(finding) => {
-                let would_help =
-                    advice::advice(&self.scene, &mut self.space, situation, motion, &finding);
-                Err(self.refusal(&finding, would_help))
+                let (scene, space) = (&self.scene, &mut self.space);
+                let last_clear_mm = back_track::last_clear_mm(scene, space, situation, &finding);
+                let would_help = advice::advice(scene, space, situation, motion, &finding);
+                Err(self.refusal(&finding, last_clear_mm, would_help))
             }
         }
     }
 
-    fn refusal(&self, finding: &Finding, would_help: String) -> Refusal {
+    fn refusal(
+        &self,
+        finding: &Finding,
+        last_clear_mm: Option<f64>,
+        would_help: String,
+    ) -> Refusal {
         let blocker = finding
             .blocker
             .map_or("(undecidable)", |number| self.scene.id(number));
@@ -141,7 +148,7 @@ impl Guard {
             margin_mm: finding.margin_mm,
             at_fraction: finding.at_fraction,
             at: finding.at,
-            last_clear_mm: finding.last_clear_mm,
+            last_clear_mm,
             would_help,
         }))
     }

@@ -42,8 +42,10 @@ pub struct Blocked {
     pub at_fraction: f64,
     /// Where, mm.
     pub at: [f64; 3],
-    /// Furthest position of this stroke that is still clear, mm: back-tracking may go to here.
-    /// `None` when the start itself is not clear or not known.
+    /// The last clear pose, mm: the guard clears this stroke up to here and no further than a
+    /// hundredth of a millimetre more. The offer of back-tracking: an actuator that can stop on its
+    /// way may go here, one that was stopped beyond may come back to here. `None` when the start is not
+    /// clear or not known.
     pub last_clear_mm: Option<f64>,
     /// What would make the motion possible: "raise sort z".
     pub would_help: String,
@@ -81,19 +83,25 @@ impl fmt::Display for Blocked {
         let [x, y, z] = self.at;
         write!(
             f,
-            "{} to {:.1} mm refused: {} would {} {} at x {x:.1}, y {y:.1}, z {z:.1} mm, {:.0} % of the way; {}",
+            "{} to {:.1} mm refused: {} would {} {} at x {x:.1}, y {y:.1}, z {z:.1} mm, {:.0} % of the way; {}{}",
             words(self.stroke.actuator.name()),
             self.stroke.to_mm,
             words(&self.mover),
             self.nearness(),
             words(&self.blocker),
             100.0 * self.at_fraction,
+            self.offer(),
             self.would_help,
         )
     }
 }
 
 impl Blocked {
+    fn offer(&self) -> String {
+        self.last_clear_mm
+            .map_or_else(String::new, |mm| format!("clear up to {mm:.2} mm; "))
+    }
+
     fn nearness(&self) -> String {
         if self.distance_mm > 0.0 {
             return format!(

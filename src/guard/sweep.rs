@@ -34,7 +34,9 @@ pub(super) struct Finding {
     pub margin_mm: f64,
     pub at_fraction: f64,
     pub at: [f64; 3],
-    pub last_clear_mm: Option<f64>,
+    /// Where the stroke was swept from and where the margin is reached, mm; `None` when the start is
+    /// unknown or within the margin.
+    pub clear_way_mm: Option<(f64, f64)>,
 }
 
 /// A body on its way.
@@ -266,6 +268,6 @@ fn finding(
         margin_mm: hit.margin_mm,
         at_fraction,
         at: hit.contact.at,
-        last_clear_mm: (at_fraction > 0.0).then_some(reached),
+        clear_way_mm: (at_fraction > 0.0).then_some((way.0, reached)),
     }
 }

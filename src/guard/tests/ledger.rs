@@ -35,8 +35,53 @@ fn back_tracking_goes_to_a_pose_that_is_clear() {
     let mm = blocked(Motion::to(Actuator::Pusher, 60.0), &raised)
         .last_clear_mm
         .unwrap();
-    passes(Motion::to(Actuator::Pusher, mm - 1e-6), &raised);
-    blocked(Motion::to(Actuator::Pusher, mm + 1e-3), &raised);
+    passes(Motion::to(Actuator::Pusher, mm), &raised);
+    blocked(Motion::to(Actuator::Pusher, mm + 0.011), &raised);
+}
+
+#[test]
+fn whatever_a_refusal_offers_the_guard_clears() {
+    let (mut offers, mut silent) = (0, 0);
+    let mut guard = guard();
+    for other in Actuator::ALL {
+        let (low, high) = guard.stroke_mm(other);
+        for position in [at(high), moving(low, high)] {
+            let situation = rest()
+                .with(other, position)
+                .parts(|p| (p.pocket, p.nest) = (true, other == Actuator::Gripper));
+            for actuator in Actuator::ALL.into_iter().filter(|it| *it != other) {
+                let (_, end) = guard.stroke_mm(actuator);
+                let Err(Refusal::Blocked(no)) = guard.clear(&Motion::to(actuator, end), &situation)
+                else {
+                    continue;
+                };
+                let Some(mm) = no.last_clear_mm else {
+                    silent += 1;
+                    continue;
+                };
+                offers += 1;
+                assert!(mm > 0.0 && mm < end, "{no}");
+                let offered = Motion::to(no.stroke.actuator, mm);
+                guard.clear(&offered, &situation).unwrap();
+                assert!(
+                    no.to_string()
+                        .contains(&format!("clear up to {mm:.2} mm; ")),
+                    "{no}"
+                );
+            }
+        }
+    }
+    assert!(offers >= 8, "{offers} offers, {silent} without");
+}
+
+#[test]
+fn nothing_is_offered_from_a_start_that_is_not_clear_or_not_known() {
+    let unknown = rest()
+        .with(Actuator::Pusher, at(60.0))
+        .with(Actuator::SortZ, moving(0.0, 40.0));
+    let no = blocked(Motion::to(Actuator::SortZ, 40.0), &unknown);
+    assert_eq!(no.last_clear_mm, None);
+    assert!(!no.to_string().contains("clear up to"), "{no}");
 }
 
 #[test]

@@ -298,6 +298,6 @@ fn a_refusal_reads_like_a_sentence() {
     assert_eq!(
         no.to_string(),
         "sort z to 40.0 mm refused: finger rear would run into pusher head at x -20.0, y 0.0, z 14.0 mm, \
-         86 % of the way; would help: retract the pusher"
+         86 % of the way; clear up to 34.49 mm; would help: retract the pusher"
     );
 }
