@@ -9,13 +9,16 @@
 //!   beyond a limit all the same is rejected with reason: it counts as neither good nor defective in the
 //!   figures about bins, and stands in a row of its own.
 //! - A figure that could not be had (nothing measured, nothing reported) has missed its bar.
-//! - Rig time and wall time are never mixed: wall time appears in `pace` only.
+//! - Rig time and wall time are never mixed: wall time appears in `pace` and `collision` only.
+//!
+//! `collision` runs no lot and needs no rig: it sets ways to check a move against the exact truth.
 //!
 //! Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input or a lot that did not start.
 
 mod accuracy;
 mod bins;
 mod chart;
+mod collision;
 mod coverage;
 mod cycle;
 mod error;
@@ -26,6 +29,7 @@ mod history;
 mod lot;
 mod output;
 mod pace;
+mod scatter;
 mod sorting;
 #[cfg(test)]
 mod tests;
@@ -50,6 +54,8 @@ const BAR_MISSED: i32 = 1;
 pub enum Study {
     /// Error of every parameter against the truth, and where parts went
     Accuracy,
+    /// Ways to check a move: time against error and wrong verdicts
+    Collision,
     /// How often the stated uncertainty covers the truth
     Coverage,
     /// Rig time of a test and of a cycle, and where it goes
@@ -63,21 +69,23 @@ pub enum Study {
 }
 
 impl Study {
-    /// Lots and parts of a lot when nothing else is asked for.
-    const fn usual(self) -> (u64, u64) {
+    /// Lots and parts of a lot when nothing else is asked for; none where no lot is run.
+    const fn usual(self) -> Option<(u64, u64)> {
         match self {
-            Self::Accuracy => (10, 500),
-            Self::Coverage => (40, 25),
-            Self::Cycle => (1, 100),
-            Self::History => (1, 1_000_000),
-            Self::Pace => (3, 300),
-            Self::Sorting => (100, 110),
+            Self::Accuracy => Some((10, 500)),
+            Self::Collision => None,
+            Self::Coverage => Some((40, 25)),
+            Self::Cycle => Some((1, 100)),
+            Self::History => Some((1, 1_000_000)),
+            Self::Pace => Some((3, 300)),
+            Self::Sorting => Some((100, 110)),
         }
     }
 
     fn name(self) -> &'static str {
         match self {
             Self::Accuracy => "accuracy",
+            Self::Collision => "collision",
             Self::Coverage => "coverage",
             Self::Cycle => "cycle",
             Self::History => "history",
@@ -89,6 +97,7 @@ impl Study {
     fn report(self, order: &Order) -> anyhow::Result<Report> {
         match self {
             Self::Accuracy => accuracy::study(order),
+            Self::Collision => bail!("study collision runs no lot"),
             Self::Coverage => coverage::study(order),
             Self::Cycle => cycle::study(order),
             Self::History => history::study(order),
@@ -105,6 +114,7 @@ impl Study {
   relayrig study accuracy
   relayrig study coverage --json
   relayrig study cycle --out figures
+  relayrig study collision --out figures
   relayrig study accuracy --seeds 2 --parts 50 --recipe jzc-22f-009
 
 Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input.")]
@@ -141,13 +151,16 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         print(&listed(args.json))?;
         return Ok(ALL_MET);
     };
+    if study == Study::Collision {
+        return collisions(args);
+    }
     if !cfg!(feature = "sim") {
         bail!("study: this is a plant build without the simulated rig");
     }
     if let Some(folder) = &args.out {
-        std::fs::create_dir_all(folder).with_context(|| format!("--out {}", folder.display()))?;
+        made(folder)?;
     }
-    let (lots, parts) = study.usual();
+    let (lots, parts) = study.usual().unwrap_or((1, 1));
     let order = Order {
         program: std::env::current_exe().context("finding this program")?,
         config: config.to_owned(),
@@ -158,12 +171,28 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         parts: args.parts.unwrap_or(parts),
     };
     let report = study.report(&order)?;
+    published(&report, args)
+}
+
+fn collisions(args: &StudyArgs) -> anyhow::Result<i32> {
+    if args.seeds.is_some() || args.parts.is_some() || args.world.is_some() {
+        bail!("study collision: --seeds, --parts and --world belong to studies that run lots");
+    }
+    let (report, plot) = collision::study()?;
     if let Some(folder) = &args.out {
-        written(&folder.join(format!("{}.csv", report.study)), &report.csv())?;
-        written(
-            &folder.join(format!("{}.svg", report.study)),
-            &report.chart.svg(),
-        )?;
+        made(folder)?;
+        written(&folder.join("collision-speed.svg"), &plot.svg())?;
+    }
+    published(&report, args)
+}
+
+/// Writes the files that were asked for, prints, and turns the bars into the exit status.
+fn published(report: &Report, args: &StudyArgs) -> anyhow::Result<i32> {
+    if let Some(folder) = &args.out {
+        made(folder)?;
+        let file = |ending: &str| folder.join(format!("{}.{ending}", report.study));
+        written(&file("csv"), &report.csv())?;
+        written(&file("svg"), &report.chart.svg())?;
     }
     print(&if args.json {
         report.json()
@@ -175,6 +204,10 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
     } else {
         BAR_MISSED
     })
+}
+
+fn made(folder: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder).with_context(|| format!("--out {}", folder.display()))
 }
 
 /// What the recipe admits; a limit that it does not set is infinite.
@@ -193,16 +226,20 @@ fn admitted(config: &Path, recipe: &str) -> anyhow::Result<lot::Admitted> {
 
 fn listed(as_json: bool) -> String {
     let one = |study: &Study| {
-        let (lots, parts) = study.usual();
+        let usual = study.usual();
         let about = study
             .to_possible_value()
             .and_then(|value| value.get_help().map(ToString::to_string))
             .unwrap_or_default();
         if as_json {
+            let (lots, parts) = usual.unzip();
             let it = json!({"study": study.name(), "about": about, "lots": lots, "parts": parts});
             format!("{it}\n")
         } else {
-            format!("{:<10} {about} ({lots} x {parts} parts)\n", study.name())
+            let size = usual.map_or_else(String::new, |(lots, parts)| {
+                format!(" ({lots} x {parts} parts)")
+            });
+            format!("{:<10} {about}{size}\n", study.name())
         }
     };
     Study::value_variants().iter().map(one).collect()

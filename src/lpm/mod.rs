@@ -47,7 +47,6 @@
 
 mod answer;
 mod distance;
-#[cfg(any(test, feature = "study"))]
 pub mod exact;
 mod model;
 mod mover;

@@ -1,0 +1,114 @@
+//! A small world gone through completely: every block with whole corners from 0 to 3 in each axis,
+//! moved past every other one by every whole move of -3 to 3: 16,003,008 moves, each held against the
+//! exact truth in verdict and time.
+
+use crate::lpm::exact::{Body, first_contact};
+use crate::lpm::{Answer, Model, Move, Mover, Pose};
+
+/// Earlier than the truth by more than this fraction of the move counts as wrong; later always does.
+const EARLY: f64 = 1e-9;
+
+/// How the small world was judged.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Judged {
+    /// Moves.
+    pub moves: u64,
+    /// Contacts called clear.
+    pub missed: u64,
+    /// Clear moves called contacts.
+    pub false_blocks: u64,
+    /// Contacts later than the truth, or earlier by more than 1e-9 of the move.
+    pub wrong_times: u64,
+}
+
+impl Judged {
+    fn and(self, other: Judged) -> Judged {
+        Judged {
+            moves: self.moves + other.moves,
+            missed: self.missed + other.missed,
+            false_blocks: self.false_blocks + other.false_blocks,
+            wrong_times: self.wrong_times + other.wrong_times,
+        }
+    }
+}
+
+/// Goes through the world with corners 0 to `most`, on all cores.
+pub fn judged(most: i64) -> Judged {
+    let blocks = every_block(most);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let share = blocks.len().div_ceil(cores).max(1);
+    std::thread::scope(|scope| {
+        let started: Vec<_> = blocks
+            .chunks(share)
+            .map(|some| {
+                scope.spawn(|| {
+                    some.iter()
+                        .map(|it| against(it, &blocks, most))
+                        .fold(Judged::default(), Judged::and)
+                })
+            })
+            .collect();
+        let ended = started.into_iter().filter_map(|it| it.join().ok());
+        ended.fold(Judged::default(), Judged::and)
+    })
+}
+
+/// Centres and half extents doubled, so that they are whole.
+fn every_block(most: i64) -> Vec<Body> {
+    let spans = || {
+        (0..most).flat_map(move |low| (low + 1..=most).map(move |high| [low + high, high - low]))
+    };
+    let mut blocks = Vec::new();
+    for x in spans() {
+        for y in spans() {
+            blocks.extend(spans().map(|z| Body::block([x[0], y[0], z[0]], [x[1], y[1], z[1]])));
+        }
+    }
+    blocks
+}
+
+fn against(element: &Body, movers: &[Body], most: i64) -> Judged {
+    let mut model = Model::new();
+    let mut counted = Judged::default();
+    if model
+        .insert(
+            "element",
+            &element.shape(0.5),
+            &Pose::at(element.pose(0.5).position),
+        )
+        .is_err()
+    {
+        return counted;
+    }
+    let steps = || (-most..=most).map(|it| 2 * it);
+    for mover in movers {
+        let Ok(body) = Mover::new(&mover.shape(0.5)) else {
+            continue;
+        };
+        let runs = steps().flat_map(|x| steps().flat_map(move |y| steps().map(move |z| [x, y, z])));
+        for run in runs {
+            let order = Move {
+                from: mover.pose(0.5),
+                to: mover.moved(run).pose(0.5),
+                margin_mm: 0.0,
+                ignore: &[],
+            };
+            let found = match model.first_contact(&body, &order) {
+                Answer::Clear => None,
+                Answer::Blocked(contact) => Some(contact.t_stop),
+            };
+            counted = counted.and(compared(first_contact(element, mover, run), found));
+        }
+    }
+    counted
+}
+
+fn compared(truth: Option<f64>, found: Option<f64>) -> Judged {
+    let wrong_time = |(truth, found): (f64, f64)| found > truth || truth - found > EARLY;
+    Judged {
+        moves: 1,
+        missed: u64::from(truth.is_some() && found.is_none()),
+        false_blocks: u64::from(truth.is_none() && found.is_some()),
+        wrong_times: u64::from(truth.zip(found).is_some_and(wrong_time)),
+    }
+}

@@ -1,0 +1,325 @@
+//! The scene and the moves of the study, in whole units, so that the truth about them is exact.
+//!
+//! A plate with stacks of one to five bodies at a pitch of 60 mm, heights in steps of 5 mm: of twenty
+//! bodies eight are cylinders, one a turned block, two sheets of 0.1 to 0.5 mm, one a wire of 0.5 to 2 mm, the
+//! others upright blocks. The mover is a gripper: two fingers, a palm, a round spindle, and a probe
+//! needle of half a millimetre that reaches beyond the fingers. Moves: jogs of 5 mm, descents, 300 mm beside each other, ways across the
+//! whole plate, and passes that graze one body by 0 to 1 mm. Everything follows from one seed.
+
+use crate::lpm::exact::{Body, Form, UPRIGHT, first_contact};
+use crate::lpm::{Move, Pose, Shape};
+
+/// Millimetres of a unit: a power of two, so that every number is exact in `f32` and `f64`.
+pub const UNIT_MM: f64 = 1.0 / 1024.0;
+/// Units of a millimetre.
+const MM: i64 = 1024;
+/// Elements of the scene.
+const ELEMENTS: usize = 1_000;
+/// Distance between neighbouring stacks.
+const PITCH: i64 = 60 * MM;
+/// Quaternions of the turned blocks: 37, 53, 67 and 90 degrees less a little, exact in fractions.
+const TURNS: [[i64; 4]; 4] = [[3, 0, 0, 1], [2, 0, 0, 1], [3, 0, 0, 2], [5, 0, 0, 4]];
+
+/// Kinds of moves, in the order of the report.
+pub const KINDS: [&str; 5] = ["jog", "descend", "local", "traverse", "graze"];
+
+/// A move and the truth about it.
+#[derive(Debug, Clone)]
+pub struct Way {
+    /// One of [`KINDS`].
+    pub kind: usize,
+    /// Where the mover stands, units.
+    pub from: [i64; 3],
+    /// How far it goes, units.
+    pub run: [i64; 3],
+    /// Exact first contact as a fraction of the move.
+    pub truth: Option<f64>,
+    /// A contact that a mover thinner by one unit has too.
+    pub deep: bool,
+    /// Elements whose box the swept box of a part of the mover meets.
+    pub near: usize,
+}
+
+impl Way {
+    /// Length, mm.
+    pub fn length_mm(&self) -> f64 {
+        self.run
+            .iter()
+            .map(|it| (*it as f64).powi(2))
+            .sum::<f64>()
+            .sqrt()
+            * UNIT_MM
+    }
+
+    /// As the core is asked.
+    pub fn order(&self) -> Move<'static> {
+        let mm = |place: [i64; 3]| Pose::at(place.map(|it| it as f64 * UNIT_MM));
+        Move {
+            from: mm(self.from),
+            to: mm([0, 1, 2].map(|axis| self.from[axis] + self.run[axis])),
+            margin_mm: 0.0,
+            ignore: &[],
+        }
+    }
+}
+
+/// The scene, the mover and its moves.
+#[derive(Debug, Clone)]
+pub struct World {
+    /// Standing bodies.
+    pub elements: Vec<Body>,
+    /// Parts of the mover around its origin, the tip between the fingers.
+    pub parts: Vec<Body>,
+    /// Moves of every kind.
+    pub ways: Vec<Way>,
+}
+
+impl World {
+    /// Draws everything; `each` moves of every kind.
+    pub fn drawn(seed: u64, each: usize) -> World {
+        let mut dice = Dice(seed);
+        let (elements, edge, top) = stacks(&mut dice);
+        let parts = gripper();
+        let mut world = World {
+            elements,
+            parts,
+            ways: Vec::new(),
+        };
+        for kind in 0..KINDS.len() {
+            for _ in 0..each {
+                let (from, run) = world.drawn_way(&mut dice, kind, edge, top);
+                let way = world.judged(kind, from, run);
+                world.ways.push(way);
+            }
+        }
+        world
+    }
+
+    fn drawn_way(&self, dice: &mut Dice, kind: usize, edge: i64, top: i64) -> ([i64; 3], [i64; 3]) {
+        let mut place = |low: i64, high: i64| {
+            [
+                dice.within(0, edge),
+                dice.within(0, edge),
+                dice.within(low, high),
+            ]
+        };
+        match KINDS[kind] {
+            "jog" => {
+                let (from, to) = (place(15 * MM, top / 2), place(-MM, MM));
+                (from, [to[0] % (3 * MM), to[1] % (3 * MM), to[2]])
+            }
+            "descend" => {
+                let from = place(top, top + 60 * MM);
+                let goal = dice.within(10 * MM, top / 2);
+                (from, [0, 0, goal - from[2]])
+            }
+            "local" => {
+                let from = place(top / 2, top);
+                let (x, y) = dice.direction();
+                (from, [300 * x * MM / 13, 300 * y * MM / 13, 0])
+            }
+            "traverse" => {
+                let (from, to) = (place(7 * top / 10, top), place(7 * top / 10, top));
+                (
+                    [0, from[1], from[2]],
+                    [edge, to[1] - from[1], to[2] - from[2]],
+                )
+            }
+            _ => self.grazing(dice),
+        }
+    }
+
+    /// Past one element on a tangent, with a gap or an overlap of up to a millimetre.
+    fn grazing(&self, dice: &mut Dice) -> ([i64; 3], [i64; 3]) {
+        let element = &self.elements[dice.within(0, self.elements.len() as i64 - 1) as usize];
+        let part = &self.parts[dice.within(0, self.parts.len() as i64 - 1) as usize];
+        let deltas = [0, 1, 4, 16, 64, 256, MM];
+        let delta =
+            deltas[dice.within(0, 6) as usize] * if dice.within(0, 1) == 0 { 1 } else { -1 };
+        let (a, b) = (reach(element), reach(part));
+        let (across, along) = if dice.within(0, 1) == 0 {
+            (0, 1)
+        } else {
+            (1, 0)
+        };
+        let mut from = [0, 1, 2].map(|axis| element.centre[axis] - part.centre[axis]);
+        from[across] += a[across] + b[across] + delta;
+        from[along] -= 25 * MM;
+        // High enough to pass over what stands lower.
+        from[2] += a[2] + b[2] - 2 * MM;
+        let mut run = [0; 3];
+        run[along] = 50 * MM;
+        (from, run)
+    }
+
+    fn judged(&self, kind: usize, from: [i64; 3], run: [i64; 3]) -> Way {
+        let (mut truth, mut deep, mut near): (Option<f64>, bool, usize) = (None, false, 0);
+        for element in &self.elements {
+            let placed = self.parts.iter().map(|part| part.moved(from));
+            let close: Vec<Body> = placed
+                .filter(|part| boxes_meet(element, part, run))
+                .collect();
+            near += usize::from(!close.is_empty());
+            for part in &close {
+                let t = first_contact(element, part, run);
+                truth = [truth, t].into_iter().flatten().min_by(f64::total_cmp);
+                deep |= t.is_some() && first_contact(element, &thinner(part), run).is_some();
+            }
+        }
+        Way {
+            kind,
+            from,
+            run,
+            truth,
+            deep,
+            near,
+        }
+    }
+}
+
+/// Less by one unit in radius or half extents.
+fn thinner(body: &Body) -> Body {
+    let form = match body.form {
+        Form::Block { half, rotation } => Form::Block {
+            half: half.map(|it| it - 1),
+            rotation,
+        },
+        Form::Cylinder { radius, half } => Form::Cylinder {
+            radius: radius - 1,
+            half: half - 1,
+        },
+        Form::Triangle(_) => body.form,
+    };
+    Body { form, ..*body }
+}
+
+/// The body with a box around every cylinder: what the extrusion of boxes takes for the shape.
+pub fn boxed(body: &Body) -> Body {
+    let form = match body.form {
+        Form::Cylinder { radius, half } => Form::Block {
+            half: [radius, radius, half],
+            rotation: UPRIGHT,
+        },
+        Form::Block { .. } | Form::Triangle(_) => body.form,
+    };
+    Body { form, ..*body }
+}
+
+/// The parts as one body of the core.
+pub fn compound(parts: &[Body]) -> Shape {
+    let placed = |part: &Body| (part.pose(UNIT_MM), part.shape(UNIT_MM));
+    Shape::Compound(parts.iter().map(placed).collect())
+}
+
+/// Half extents of an upright box around the body, rounded outward.
+pub fn reach(body: &Body) -> [i64; 3] {
+    match body.form {
+        Form::Block { half, rotation } if rotation == UPRIGHT => half,
+        Form::Block {
+            half: [x, y, z], ..
+        } => [x + y, x + y, z],
+        Form::Cylinder { radius, half } => [radius, radius, half],
+        Form::Triangle(corners) => {
+            [0, 1, 2].map(|axis| corners.iter().map(|it| it[axis].abs()).max().unwrap_or(0))
+        }
+    }
+}
+
+/// Whether the boxes of both meet during the run.
+fn boxes_meet(element: &Body, part: &Body, run: [i64; 3]) -> bool {
+    let upright = |body: &Body| Body::block(body.centre, reach(body));
+    first_contact_of_boxes(&upright(element), &upright(part), run)
+}
+
+fn first_contact_of_boxes(element: &Body, part: &Body, run: [i64; 3]) -> bool {
+    // A quick no before the slabs: most of the scene is far away.
+    let far = (0..3).any(|axis| {
+        let apart = part.centre[axis] - element.centre[axis];
+        let sum = reach(element)[axis] + reach(part)[axis];
+        apart + run[axis].min(0) > sum || apart + run[axis].max(0) < -sum
+    });
+    !far && first_contact(element, part, run).is_some()
+}
+
+/// Elements, length of an edge of the plate, height of the highest stack.
+fn stacks(dice: &mut Dice) -> (Vec<Body>, i64, i64) {
+    let side = ((ELEMENTS as f64 / 3.0).sqrt().ceil()) as i64;
+    let mut elements = vec![Body::block(
+        [side * PITCH / 2, side * PITCH / 2, -5 * MM],
+        [side * PITCH / 2, side * PITCH / 2, 5 * MM],
+    )];
+    let mut top = 0;
+    for stack in 0.. {
+        let (x, y) = (stack % side, stack / side);
+        let mut bottom = 0;
+        for _ in 0..dice.within(1, 5) {
+            if elements.len() == ELEMENTS {
+                return (elements, side * PITCH, top);
+            }
+            let height = 5 * MM * dice.within(4, 12);
+            let jitter = |dice: &mut Dice| dice.within(-4 * MM, 4 * MM);
+            let centre = [
+                x * PITCH + PITCH / 2 + jitter(dice),
+                y * PITCH + PITCH / 2 + jitter(dice),
+                bottom + height / 2,
+            ];
+            elements.push(standing(dice, centre, height / 2));
+            bottom += height;
+            top = top.max(bottom);
+        }
+    }
+    (elements, side * PITCH, top)
+}
+
+fn standing(dice: &mut Dice, centre: [i64; 3], half_height: i64) -> Body {
+    let mut width = || dice.within(6 * MM, 20 * MM);
+    let (x, y) = (width(), width());
+    match dice.within(0, 19) {
+        0..8 => Body::cylinder(centre, x, half_height),
+        8 => Body {
+            centre,
+            form: Form::Block {
+                half: [x, y, half_height],
+                rotation: TURNS[dice.within(0, 3) as usize],
+            },
+        },
+        9 => Body::block(centre, [dice.within(MM / 20, MM / 4), y, half_height]),
+        10 => Body::block(centre, [x, dice.within(MM / 20, MM / 4), half_height]),
+        11 => Body::cylinder(centre, dice.within(MM / 4, MM), half_height),
+        _ => Body::block(centre, [x, y, half_height]),
+    }
+}
+
+/// Fingers, palm, spindle, needle.
+fn gripper() -> Vec<Body> {
+    vec![
+        Body::block([-14 * MM, 0, 15 * MM], [3 * MM, 6 * MM, 15 * MM]),
+        Body::block([14 * MM, 0, 15 * MM], [3 * MM, 6 * MM, 15 * MM]),
+        Body::block([0, 0, 36 * MM], [20 * MM, 10 * MM, 6 * MM]),
+        Body::cylinder([0, 0, 82 * MM], 9 * MM, 40 * MM),
+        Body::cylinder([0, 0, 10 * MM], MM / 4, 20 * MM),
+    ]
+}
+
+/// A small generator (splitmix64), so that the study is the same on every machine.
+struct Dice(u64);
+
+impl Dice {
+    /// A whole number, both ends included.
+    fn within(&mut self, low: i64, high: i64) -> i64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        low + ((z ^ (z >> 31)) % (high - low + 1) as u64) as i64
+    }
+
+    /// A direction whose length is 13 exactly.
+    fn direction(&mut self) -> (i64, i64) {
+        let (x, y) = [(13, 0), (0, 13), (5, 12), (12, 5)][self.within(0, 3) as usize];
+        let signs = self.within(0, 3);
+        (
+            if signs & 1 == 0 { x } else { -x },
+            if signs & 2 == 0 { y } else { -y },
+        )
+    }
+}
