@@ -4,10 +4,14 @@ use super::*;
 
 mod built_pairs;
 mod hard_cases;
+mod mesh_files;
 mod meshes_and_turns;
+mod metamorphic;
 mod properties;
+mod published;
 mod small_world;
 mod truth;
+mod turns;
 
 fn block(x: f64, y: f64, z: f64) -> Shape {
     Shape::Block { half: [x, y, z] }

@@ -16,6 +16,7 @@
 
 #[cfg(all(feature = "sim", unix))]
 mod bus;
+mod check;
 mod commands;
 #[cfg(all(feature = "sim", unix))]
 mod interruptions;

@@ -127,3 +127,43 @@ fn a_plot_of_speed_and_error_marks_who_was_wrong_and_keeps_zero_on_the_bottom_li
     assert!(svg.contains("cy=\"432.0\""), "{svg}");
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
 }
+
+/// Single pairs on a coarse grid, where touching is common, asked of the peer and of the truth.
+#[cfg(feature = "study")]
+#[test]
+fn every_disagreement_with_the_peer_is_decided_by_the_exact_truth_for_us() {
+    let mut disagreements = 0;
+    for code in 0..1_200_i64 {
+        let digit = |place: u32, base: i64| code * 7_919 / 13_i64.pow(place) % base;
+        let size = [1 + digit(0, 3), 1 + digit(1, 4), 1 + digit(2, 3)].map(|it| it * MM);
+        let element = match code % 2 {
+            0 => Body::block([0; 3], [2 * MM, 3 * MM, MM]),
+            _ => Body::cylinder([0; 3], 3 * MM, 2 * MM),
+        };
+        let mover = match code % 3 {
+            0 => Body::block([0; 3], size),
+            _ => Body::cylinder([0; 3], size[0], size[2]),
+        };
+        let from = [digit(1, 13) - 6, digit(0, 13) - 6, digit(2, 9) - 4].map(|it| it * MM);
+        let run = [digit(2, 25) - 12, digit(1, 25) - 12, digit(0, 5) - 2].map(|it| it * MM);
+        let asked = way(from, run);
+        let truth = first_contact(&element, &mover.moved(from), run);
+        let ours = swept(&[element], &[mover]).unwrap()(&asked);
+        assert_eq!(
+            ours.is_some(),
+            truth.is_some(),
+            "{element:?} {mover:?} {asked:?}"
+        );
+        let peer = peer::double::Peer::new(&[element], &[mover]).first_contact(&asked);
+        disagreements += usize::from(peer.is_some() != ours.is_some());
+        if let (Some(peer), Some(ours)) = (peer, ours) {
+            let apart_mm = (peer - ours).abs() * asked.length_mm();
+            assert!(
+                apart_mm < 0.01,
+                "{apart_mm} mm: {element:?} {mover:?} {asked:?}"
+            );
+        }
+    }
+    // Both answers were held against the truth: where they differ, the peer is wrong.
+    assert!(disagreements < 60, "{disagreements} of 1,200");
+}
