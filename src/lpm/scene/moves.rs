@@ -61,7 +61,7 @@ fn order(line: &Field, scene: &Scene) -> Result<MoveOrder, SceneError> {
     let mover = known(
         &table.required("mover", "the id of a mover")?,
         &scene.movers,
-        "mover",
+        "a mover",
     )?;
     let from = body::pose(&table.required("from", "a pose {position, rotation}")?)?;
     let to = body::pose(&table.required("to", "a pose {position, rotation}")?)?;
@@ -85,7 +85,7 @@ fn ignored(table: &Table, scene: &Scene) -> Result<Vec<usize>, SceneError> {
     };
     list.list()?
         .iter()
-        .map(|id| known(id, &scene.elements, "element"))
+        .map(|id| known(id, &scene.elements, "an element"))
         .collect()
 }
 
@@ -117,7 +117,7 @@ fn known(field: &Field, bodies: &[Named], what: &str) -> Result<usize, SceneErro
             refuse(
                 field.path.clone(),
                 node.to_string(),
-                format!("the id of a {what} of the scene ({}{more})", ids.join(", ")),
+                format!("the id of {what} of the scene ({}{more})", ids.join(", ")),
             )
         }
     }
