@@ -9,29 +9,51 @@
 //! top follows its elements, cut into layers `{h1, h2, V, B}`; elements are put in and taken out one
 //! by one; the broad phase asks for layer, silhouette and oriented box in this order and stops at the
 //! first no. Layout of `V`, choice of layers and everything behind the broad phase are ours.
-//! `space` is the broad phase.
+//! `space` is the broad phase: `layers` holds Omega and `{h1, h2}`, `grid` `V`, `silhouettes` `B`.
 //!
 //! # Beyond it: continuous and exact
-//! The paper checks poses, this module checks ways. Along a straight move the distance of two
-//! convex pieces is convex, so first contact and least distance follow from a few separating
-//! planes, for the true shapes (cylinders stay round, in any orientation): `straight`. Turning
-//! moves advance conservatively with a second-order bound: `turning`.
+//! The paper checks poses, this module checks ways. Upright blocks and cylinders on a straight way
+//! meet in closed form: `prism`. Along a straight move the distance of any two convex pieces is
+//! convex, so first contact and least distance follow from a few separating planes, for the true
+//! shapes (cylinders stay round, in any orientation): `straight`. Turning moves advance
+//! conservatively with a second-order bound: `turning`.
+//! The gate asks for no distance (`contact`), a clearance for no more than the nearest (`nearest`).
 //!
 //! # Never a false clear
 //! Bodies are closed sets: touching is contact. *Blocked* means that the distance comes within the
 //! margin, or that this could not be excluded. The proof of *clear*:
-//! 1. A pair of convex pieces is cleared for a stretch of the way only by an evaluated plane. Its
-//!    separation is computed in f64 from the support functions of both pieces, and a forward error
+//! 1. A pair of upright pieces on a straight way is cleared when a line misses a figure that was
+//!    grown by twice the rounding of the arithmetic (`prism`, where the argument stands).
+//! 2. Any other pair of convex pieces is cleared for a stretch of the way only by an evaluated plane.
+//!    Its separation is computed in f64 from the support functions of both pieces, and a forward error
 //!    bound is subtracted (`piece::NOISE` times the sum of all magnitudes that entered). How the
 //!    plane was found does not matter.
-//! 2. Along a translation the separation by a fixed plane is linear, along a turn it is bounded
+//! 3. Along a translation the separation by a fixed plane is linear, along a turn it is bounded
 //!    from below by `turning`; a stretch ends where the bound reaches the margin, and stretches
 //!    follow each other without a hole.
-//! 3. A pair that the broad phase drops has boxes, rounded outward by the same bound, that never
-//!    overlap during the way.
-//! 4. A body inside a closed mesh is found by `solid`, where doubt means inside.
-//! 5. NaN compares false: every comparison is written so that false means blocked. Iteration limits,
+//! 4. A pair that the broad phase drops has boxes, rounded outward by the same bound and then to
+//!    single precision, that never overlap during the way. All that the broad phase computes along
+//!    the way carries `space::sweep::SLACK_MM`, and steps of height are monotone.
+//! 5. A body inside a closed mesh is found by `solid`, where doubt means inside.
+//! 6. NaN compares false: every comparison is written so that false means blocked. Iteration limits,
 //!    invalid moves and bodies are blocked ([`ElementKey::UNDECIDABLE`]).
+//!
+//! # Why f64 with bounds
+//! Whole micrometres would make every comparison exact and block up to 2 um too much; 1e-6 mm is what
+//! may be blocked. Expansion arithmetic would decide within rounding, where the answer is blocked
+//! anyway. So numbers stay f64 as they came and every proof pays for its own rounding.
+//!
+//! # Tolerances
+//! | name | value | for |
+//! |---|---|---|
+//! | `piece::NOISE` | 96 roundings, relative | everything between the numbers of a scene and a plane or a figure |
+//! | `prism::ROUNDING` | 32 roundings, relative | closed forms, between two places and a fraction of the way |
+//! | `distance::RESOLUTION_MM` | 1e-9 mm | where a search for a plane stops |
+//! | `space::sweep::SLACK_MM` | 1e-6 mm | places along the way in the broad phase; costs candidates, no answers |
+//! | `silhouettes::ULP` | 1.2e-7, relative | rounding outward to f32, likewise |
+//! | `passage::BEFORE_CONTACT_MM` | 1e-6 mm | where the normal of a contact is taken; no verdict depends on it |
+//! | `turning::band_mm` | 1e-7 to 5e-4 mm | how near to the margin a turning move counts as contact |
+//! | `turning::LEAST_RESOLUTION_MM` | 2e-4 mm | least distance of turning moves |
 //!
 //! # What a false blocked costs
 //! Straight: meant to stay within 1e-6 mm of the margin for coordinates up to 1e6 mm. This rests on
@@ -46,13 +68,20 @@
 )]
 
 mod answer;
+mod contact;
 mod distance;
 pub mod exact;
 mod model;
 mod mover;
+mod name;
+mod nearest;
+mod parts;
+mod passage;
 mod path;
 mod piece;
 mod pose;
+mod prism;
+mod question;
 pub mod scene;
 mod shape;
 mod solid;

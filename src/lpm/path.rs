@@ -2,8 +2,8 @@
 
 use super::piece::{NOISE, Piece};
 use super::pose::{Frame, Pose, Turn};
-use super::space::SweptBox;
-use super::vector::{Vec3, along, is_finite, length, reach, sub};
+use super::space::Sweep;
+use super::vector::{Vec3, along, is_finite, reach, sub};
 
 /// A move between two checked poses; `t` runs from 0 to 1.
 #[derive(Debug, Clone, Copy)]
@@ -53,19 +53,17 @@ impl Path {
         reach(self.from) + reach(self.displacement)
     }
 
-    /// The box of a piece at the start, rounded outward and widened by `margin`, and how it moves.
-    ///
-    /// Of a turning piece: the box of the ball it stays in, whatever the turn.
-    pub(crate) fn swept(&self, local: &Piece, at_start: &Piece, margin: f64) -> SweptBox {
-        let (mut low, mut high) = at_start.bounds();
-        if self.turn.is_some() {
-            let ball = (length(local.centre) + local.radius()) * (1.0 + 8.0 * f64::EPSILON);
-            let round = ball + NOISE * at_start.span;
-            low = self.from.map(|member| member - round);
-            high = self.from.map(|member| member + round);
-        }
+    /// Orientation of the mover at the start.
+    #[inline]
+    pub(crate) fn start(&self) -> &Frame {
+        &self.start
+    }
+
+    /// How a box that stands there at the start is moved, widened by `margin` and the rounding of the way, mm.
+    #[inline]
+    pub(crate) fn sweep(&self, (low, high): (Vec3, Vec3), margin: f64) -> Sweep {
         let wider = margin * (1.0 + 2.0 * f64::EPSILON) + NOISE * self.span();
-        SweptBox {
+        Sweep {
             low: low.map(|member| member - wider),
             high: high.map(|member| member + wider),
             displacement: self.displacement,

@@ -5,6 +5,7 @@
 //! reaches along a direction, and a point where it does.
 
 use super::pose::{Frame, Pose};
+use super::prism::Prism;
 use super::shape::Shape;
 use super::vector::{Vec3, add, along, cross, dot, length, negate, reach, scale, sub};
 
@@ -47,11 +48,9 @@ pub(crate) struct Piece {
 
 impl Piece {
     fn new(centre: Vec3, frame: Frame, form: Form, span: f64) -> Piece {
-        let vertical = frame.z[0] == 0.0 && frame.z[1] == 0.0 && frame.z[2].abs() == 1.0;
-        let level = frame.x[2] == 0.0 && frame.y[2] == 0.0;
         let upright = match form {
-            Form::Block(_) => vertical && level,
-            Form::Cylinder { .. } => vertical,
+            Form::Block(_) => frame.is_upright(),
+            Form::Cylinder { .. } => frame.is_vertical(),
             Form::Triangle(_) => false,
         };
         Piece {
@@ -69,18 +68,20 @@ impl Piece {
             Form::Block(_) | Form::Cylinder { .. } => self.form,
             Form::Triangle(corners) => Form::Triangle(corners.map(|corner| frame.apply(corner))),
         };
+        let (centre, span) = self.place(frame, position);
+        Piece::new(centre, frame.then(&self.frame), form, span)
+    }
+
+    /// Centre and span of the piece carried along by its parent frame.
+    #[inline]
+    pub(crate) fn place(&self, frame: &Frame, position: Vec3) -> (Vec3, f64) {
         let turned = frame.apply(self.centre);
         let rounded = if is_exact_sum(turned, position) {
             0.0
         } else {
             reach(position)
         };
-        Piece::new(
-            add(turned, position),
-            frame.then(&self.frame),
-            form,
-            self.span + rounded,
-        )
+        (add(turned, position), self.span + rounded)
     }
 
     /// How far the piece reaches along `n` from its centre: the support function.
@@ -143,6 +144,9 @@ impl Piece {
 
     /// Bounding box `(low, high)` at its place, rounded outward by the noise of the piece.
     pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
+        if self.upright {
+            return Prism::of(self).bounds();
+        }
         let noise = NOISE * (self.span + reach(self.centre));
         let mut low = self.centre;
         let mut high = self.centre;
@@ -165,18 +169,23 @@ fn is_exact_sum(a: Vec3, b: Vec3) -> bool {
     })
 }
 
-/// All pieces of a checked shape in its own frame.
+/// All pieces of a checked shape, in its own frame.
 pub(crate) fn pieces_of(shape: &Shape) -> Vec<Piece> {
     let mut pieces = Vec::new();
-    collect(shape, &Frame::IDENTITY, [0.0; 3], 0.0, &mut pieces);
+    each_piece(shape, |piece| pieces.push(piece));
     pieces
 }
 
+/// Shows all pieces of a checked shape, in its own frame.
+pub(crate) fn each_piece(shape: &Shape, mut show: impl FnMut(Piece)) {
+    descend(shape, &Frame::IDENTITY, [0.0; 3], 0.0, &mut show);
+}
+
 /// `span` is what the parents' positions add to the scale of rounding.
-fn collect(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, into: &mut Vec<Piece>) {
+fn descend(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, show: &mut impl FnMut(Piece)) {
     match shape {
         Shape::Block { half } => {
-            into.push(Piece::new(
+            show(Piece::new(
                 centre,
                 *frame,
                 Form::Block(*half),
@@ -188,7 +197,7 @@ fn collect(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, into: &mut Vec
                 radius: *radius,
                 half: height / 2.0,
             };
-            into.push(Piece::new(
+            show(Piece::new(
                 centre,
                 *frame,
                 form,
@@ -199,13 +208,13 @@ fn collect(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, into: &mut Vec
             for (Pose { position, rotation }, part) in parts {
                 let place = add(frame.apply(*position), centre);
                 let turned = frame.then(&Frame::of(*rotation));
-                collect(part, &turned, place, span + reach(*position), into);
+                descend(part, &turned, place, span + reach(*position), show);
             }
         }
         Shape::Mesh(mesh) => {
             for triangle in &mesh.triangles {
                 let corners = triangle.map(|vertex| mesh.vertices[vertex]);
-                into.push(triangle_piece(corners, frame, centre, span));
+                show(triangle_piece(corners, frame, centre, span));
             }
         }
     }

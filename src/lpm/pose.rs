@@ -62,6 +62,9 @@ impl Frame {
     /// `[0.7071067811865476, 0, 0, 0.7071067811865475]` must not tilt or stretch a block.
     pub(crate) fn of(rotation: [f64; 4]) -> Frame {
         let [w, x, y, z] = rotation;
+        if x == 0.0 && y == 0.0 && z == 0.0 {
+            return Frame::IDENTITY;
+        }
         let twice = 2.0 / (w * w + x * x + y * y + z * z);
         let (xx, yy, zz) = (x * x * twice, y * y * twice, z * z * twice);
         let (xy, xz, yz) = (x * y * twice, x * z * twice, y * z * twice);
@@ -73,6 +76,25 @@ impl Frame {
         }
     }
 
+    /// Whether z stays z (or turns upside down), exactly.
+    #[inline]
+    pub(crate) fn is_vertical(&self) -> bool {
+        self.z[0] == 0.0 && self.z[1] == 0.0 && self.z[2].abs() == 1.0
+    }
+
+    /// Whether only a turn about z is left, exactly: upright bodies stay upright.
+    #[inline]
+    pub(crate) fn is_upright(&self) -> bool {
+        self.is_vertical() && self.x[2] == 0.0 && self.y[2] == 0.0
+    }
+
+    /// Whether nothing is turned. (Of frames made by [`Frame::of`], only the identity has this x and z.)
+    #[inline]
+    pub(crate) fn is_identity(&self) -> bool {
+        self.x == Frame::IDENTITY.x && self.z == Frame::IDENTITY.z
+    }
+
+    #[inline]
     pub(crate) fn apply(&self, v: Vec3) -> Vec3 {
         add(
             add(scale(self.x, v[0]), scale(self.y, v[1])),

@@ -119,11 +119,23 @@ pub(crate) struct Interior {
 }
 
 impl Interior {
-    /// Of a checked shape, in its own frame.
-    pub(crate) fn of(shape: &Shape) -> Interior {
+    /// Of a checked shape, in its own frame. `None` without a mesh: then the centres of the pieces
+    /// are witnesses enough ([`Interior::around`]).
+    pub(crate) fn of(shape: &Shape) -> Option<Interior> {
+        if !has_mesh(shape) {
+            return None;
+        }
         let mut interior = Interior::default();
         interior.collect(shape, &Frame::IDENTITY, [0.0; 3]);
-        interior
+        Some(interior)
+    }
+
+    /// Of a body without a mesh, by the centres of its pieces.
+    pub(crate) fn around(witnesses: Vec<Vec3>) -> Interior {
+        Interior {
+            solids: Vec::new(),
+            witnesses,
+        }
     }
 
     pub(crate) fn placed(&self, frame: &Frame, position: Vec3) -> Interior {
@@ -178,6 +190,14 @@ impl Interior {
                 }
             }
         }
+    }
+}
+
+fn has_mesh(shape: &Shape) -> bool {
+    match shape {
+        Shape::Block { .. } | Shape::Cylinder { .. } => false,
+        Shape::Compound(parts) => parts.iter().any(|(_, part)| has_mesh(part)),
+        Shape::Mesh(_) => true,
     }
 }
 

@@ -56,16 +56,17 @@ impl Slope {
 }
 
 /// First `t` up to `until` where the distance is within `margin` (mm); `None` is proof that there
-/// is none. Whatever cannot be decided is a hit.
+/// is none. Whatever cannot be decided is a hit. Before `start` there is none, as the caller has proven.
 pub(crate) fn first_within(
     element: &Piece,
     mover: &Piece,
     displacement: Vec3,
     margin: f64,
+    start: f64,
     until: f64,
 ) -> Option<Hit> {
     let slope = Slope::of(displacement);
-    let mut t = 0.0;
+    let mut t = start;
     let mut hint = None;
     for _ in 0..MOST_TANGENTS {
         let gap = gap(element, mover, scale(displacement, t), hint);

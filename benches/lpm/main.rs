@@ -1,0 +1,265 @@
+//! Speed of the collision core against its peers, in one run: `cargo bench --bench lpm`.
+//!
+//! Printed are nanoseconds and ratios (how many times the peer needs) of mean and 99th percentile,
+//! warm and cold, and how many answers differ. `-- --quick` stops at 1,000 elements.
+
+mod peer;
+mod timing;
+mod world;
+
+use std::cell::RefCell;
+
+use relayrig::lpm::{Answer, Model, Move, Mover, Shape};
+use timing::{Spread, clock_ns, cold, rounds, warm};
+use world::{KINDS, World, gripper, moves, world};
+
+/// Numbers of elements.
+const SIZES: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
+/// Queries of each kind.
+const QUERIES: usize = 2_000;
+/// Queries of each kind with cold caches.
+const COLD_QUERIES: usize = 300;
+/// Range of the clearance question, mm: that of `check`.
+const RANGE_MM: f64 = 25.0;
+
+fn main() {
+    let clock = clock_ns();
+    println!(
+        "one query alone, best of several passes, ns; cost of the clock taken off: {clock} ns"
+    );
+    let quick = std::env::args().any(|argument| argument == "--quick");
+    for size in SIZES.into_iter().filter(|size| !quick || *size <= 1_000) {
+        let world = world(size);
+        println!(
+            "\n## n = {size}: plate of {:.2} m, highest top {:.0} mm",
+            world.edge_mm / 1e3,
+            world.top_mm
+        );
+        Bench::new(&world, clock).report(&world);
+    }
+}
+
+struct Bench {
+    clock: f64,
+    model: Model,
+    mover: Mover,
+    double: peer::double::Peer,
+    single: peer::single::Peer,
+}
+
+fn built(world: &World) -> Model {
+    let mut model = Model::new();
+    for (shape, pose) in &world.elements {
+        model
+            .insert("element", shape, pose)
+            .expect("a body of the scene");
+    }
+    model
+}
+
+fn stop(model: &Model, mover: &Mover, way: &Move) -> Option<f64> {
+    match model.first_contact(mover, way) {
+        Answer::Clear => None,
+        Answer::Blocked(contact) => Some(contact.t_stop),
+    }
+}
+
+impl Bench {
+    fn new(world: &World, clock: f64) -> Bench {
+        let parts = gripper();
+        let whole = Shape::Compound(
+            parts
+                .iter()
+                .map(|(shape, pose)| (*pose, shape.clone()))
+                .collect(),
+        );
+        Bench {
+            clock,
+            model: built(world),
+            mover: Mover::new(&whole).expect("the gripper"),
+            double: peer::double::Peer::new(&world.elements, &parts),
+            single: peer::single::Peer::new(&world.elements, &parts),
+        }
+    }
+
+    fn report(&self, world: &World) {
+        self.edits(world);
+        println!(
+            "\n{:<10} {:>5} {:<14} {:>22}   {:>19} {:>19} {:>19}",
+            "warm",
+            "hits",
+            "question",
+            "median/mean/p99",
+            "f64 one call",
+            "f64 over pairs",
+            "f32 best"
+        );
+        println!(
+            "{:<10} {:>5} {:<14} {:>22}   {:>19} {:>19} {:>19}",
+            "", "", "", "ours, ns", "x mean, x p99", "x mean, x p99", "x mean, x p99"
+        );
+        for kind in KINDS {
+            self.kind(kind, &moves(world, kind, QUERIES));
+        }
+        println!(
+            "\n{:<10} {:>5} {:<14} {:>22}   {:>19} {:>19}",
+            "cold", "", "question", "ours, ns", "f64 one call", "f64 over pairs"
+        );
+        for kind in KINDS {
+            self.cold_kind(kind, &moves(world, kind, COLD_QUERIES));
+        }
+        for kind in KINDS {
+            self.differences(kind, &moves(world, kind, QUERIES));
+        }
+    }
+
+    fn kind(&self, kind: &str, ways: &[Move]) {
+        let Bench {
+            clock,
+            model,
+            mover,
+            double,
+            single,
+        } = self;
+        let hits = ways
+            .iter()
+            .filter(|way| model.any_hit(mover, way).is_some())
+            .count();
+        let share = format!("{:.0}%", 100.0 * hits as f64 / ways.len() as f64);
+        let one = warm(ways, *clock, |way| double.compound(way));
+        let single_one = warm(ways, *clock, |way| single.compound(way));
+        let any = warm(ways, *clock, |way| model.any_hit(mover, way));
+        let pairs = warm(ways, *clock, |way| double.pairs_any(way));
+        let single_any = warm(ways, *clock, |way| single.pairs_any(way));
+        row(
+            kind,
+            &share,
+            "any hit",
+            &any,
+            &[one, pairs, best(single_one, single_any)],
+        );
+        let first = warm(ways, *clock, |way| stop(model, mover, way));
+        let pairs = warm(ways, *clock, |way| double.pairs_first(way));
+        let single_first = warm(ways, *clock, |way| single.pairs_first(way));
+        row(
+            kind,
+            &share,
+            "first contact",
+            &first,
+            &[one, pairs, best(single_one, single_first)],
+        );
+        let least = warm(ways, *clock, |way| model.clearance(mover, way, RANGE_MM));
+        row(kind, &share, "clearance", &least, &[]);
+    }
+
+    fn cold_kind(&self, kind: &str, ways: &[Move]) {
+        let Bench {
+            clock,
+            model,
+            mover,
+            double,
+            ..
+        } = self;
+        let one = cold(ways, *clock, |way| double.compound(way));
+        let any = cold(ways, *clock, |way| model.any_hit(mover, way));
+        let pairs = cold(ways, *clock, |way| double.pairs_any(way));
+        row(kind, "", "any hit", &any, &[one, pairs]);
+        let first = cold(ways, *clock, |way| stop(model, mover, way));
+        let pairs = cold(ways, *clock, |way| double.pairs_first(way));
+        row(kind, "", "first contact", &first, &[one, pairs]);
+    }
+
+    fn edits(&self, world: &World) {
+        let count = world.elements.len();
+        let times = if count > 5_000 { 9 } else { 201 };
+        let ours = rounds(times, || (), |()| built(world));
+        let rebuild = self.double.building(&world.elements, times);
+        let single = self.single.building(&world.elements, times);
+        row(
+            "build",
+            "",
+            "whole model",
+            &ours,
+            &[rebuild, rebuild, single],
+        );
+        let picked: Vec<usize> = (0..QUERIES)
+            .map(|index| 1 + index * 7919 % (count - 1))
+            .collect();
+        let model = RefCell::new(self.model.clone());
+        let ours = warm(&picked, self.clock, |index| {
+            let (shape, pose) = &world.elements[*index];
+            let mut model = model.borrow_mut();
+            let key = model.insert("element", shape, pose);
+            model.remove(key.expect("a body of the scene"))
+        });
+        let double = self.double.editing(&picked, self.clock);
+        let single = self.single.editing(&picked, self.clock);
+        row(
+            "edit",
+            "",
+            "insert, remove",
+            &ours,
+            &[rebuild, double, single],
+        );
+        println!(
+            "(edit: against a rebuild of the compound, and against insert and remove of a leaf of the raw tree)"
+        );
+        let bytes = self.model.heap_bytes() as f64 / count as f64;
+        println!("memory: {bytes:.0} bytes per element");
+    }
+
+    /// Verdicts that differ from the peer's, and the largest differences of the time of contact.
+    fn differences(&self, kind: &str, ways: &[Move]) {
+        let (mut verdicts, mut later, mut earlier) = (Vec::new(), 0.0_f64, 0.0_f64);
+        for (index, way) in ways.iter().enumerate() {
+            let length = distance(way.from.position, way.to.position);
+            match (
+                stop(&self.model, &self.mover, way),
+                self.double.pairs_first(way),
+            ) {
+                (Some(ours), Some(theirs)) => {
+                    later = later.max((ours - theirs) * length);
+                    earlier = earlier.max((theirs - ours) * length);
+                }
+                (None, None) => {}
+                (ours, theirs) => verdicts.push((index, ours, theirs)),
+            }
+        }
+        println!(
+            "answers of {kind}: {} verdicts of {} differ from parry f64; contacts at most {later:.1e} mm later, {earlier:.1e} mm earlier",
+            verdicts.len(),
+            ways.len()
+        );
+        for (index, ours, theirs) in verdicts {
+            let least = self
+                .model
+                .clearance(&self.mover, &ways[index], RANGE_MM)
+                .map(|least| least.distance_mm);
+            println!(
+                "  #{index}: ours {ours:?} with least distance {least:?} mm, theirs {theirs:?}"
+            );
+        }
+    }
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b) * (a - b))
+        .sum::<f64>()
+        .sqrt()
+}
+
+fn best(a: Spread, b: Spread) -> Spread {
+    if a.mean < b.mean { a } else { b }
+}
+
+fn row(kind: &str, share: &str, question: &str, ours: &Spread, peers: &[Spread]) {
+    let times = format!("{:.0}/{:.0}/{:.0}", ours.median, ours.mean, ours.p99);
+    print!("{kind:<10} {share:>5} {question:<14} {times:>22}  ");
+    for peer in peers {
+        let ratio = format!("{:.1}, {:.1}", peer.mean / ours.mean, peer.p99 / ours.p99);
+        print!(" {ratio:>19}");
+    }
+    println!();
+}
