@@ -100,8 +100,9 @@ impl Search<'_> {
         let passage = self.passage;
         let margin = passage.way.margin_mm;
         let sweep = group.sweep(passage.path, margin);
-        let mut parts = Parts::UNPLACED;
+        let mut parts = None;
         passage.model.space.walk(&sweep, |bundle, lanes| {
+            let parts = parts.get_or_insert(Parts::UNPLACED);
             let parts = parts.placed(passage, group, margin, self.until());
             self.bundle(bundle, lanes, parts);
             self.until()

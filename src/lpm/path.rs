@@ -62,7 +62,8 @@ impl Path {
     /// How a box that stands there at the start is moved, widened by `margin` and the rounding of the way, mm.
     #[inline]
     pub(crate) fn sweep(&self, (low, high): (Vec3, Vec3), margin: f64) -> Sweep {
-        let wider = margin * (1.0 + 2.0 * f64::EPSILON) + NOISE * self.span();
+        // A margin may be larger than any coordinate: then its own rounding counts.
+        let wider = margin * (1.0 + 1e-12) + NOISE * self.span();
         Sweep {
             low: low.map(|member| member - wider),
             high: high.map(|member| member + wider),

@@ -75,7 +75,11 @@ impl Piece {
     /// Centre and span of the piece carried along by its parent frame.
     #[inline]
     pub(crate) fn place(&self, frame: &Frame, position: Vec3) -> (Vec3, f64) {
-        let turned = frame.apply(self.centre);
+        let turned = if frame.is_identity() {
+            self.centre
+        } else {
+            frame.apply(self.centre)
+        };
         let rounded = if is_exact_sum(turned, position) {
             0.0
         } else {

@@ -23,7 +23,7 @@ const STEPS_BELOW: f32 = 8.0;
 /// The layer of a bottom, and the step of any height. Monotone, which is all that safety needs.
 fn step(height_mm: f32) -> usize {
     // A cast from float to integer saturates, NaN is 0.
-    ((height_mm / STEP_MM).floor() + STEPS_BELOW).clamp(0.0, (LAYERS - 1) as f32) as usize
+    (height_mm / STEP_MM + STEPS_BELOW).clamp(0.0, (LAYERS - 1) as f32) as usize
 }
 
 /// All layers, and Omega.

@@ -23,6 +23,9 @@ use super::vector::Vec3;
 use grid::{Area, Cell, Grid, PITCH_MM, cell_of};
 use layers::Layers;
 
+/// Ways shorter than this, mm, along the axis of the bands are not followed band by band.
+const SLOWEST_MM: f64 = 1e-9;
+
 /// Everything that stands, by its silhouettes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Space {
@@ -127,10 +130,9 @@ impl<V: FnMut(&Bundle, u32) -> f64> Walk<'_, V> {
     fn along<const AXIS: usize>(&mut self, sweep: &Sweep, area: &Area) {
         let across = 1 - AXIS;
         let bands = area.high[AXIS] - area.low[AXIS];
-        let (still, forward) = (
-            sweep.displacement[AXIS] == 0.0,
-            sweep.displacement[AXIS] > 0.0,
-        );
+        let rate = sweep.displacement[AXIS];
+        let (still, forward) = (rate.abs() < SLOWEST_MM, rate > 0.0);
+        let pace = 1.0 / rate;
         for step in 0..=bands {
             let band = if forward {
                 area.low[AXIS] + step
@@ -141,7 +143,7 @@ impl<V: FnMut(&Bundle, u32) -> f64> Walk<'_, V> {
                 (0.0, 1.0)
             } else {
                 let edge = f64::from(band) * PITCH_MM;
-                sweep.during(AXIS, edge, edge + PITCH_MM)
+                sweep.during_by(AXIS, pace, edge, edge + PITCH_MM)
             };
             if first > self.until {
                 return;

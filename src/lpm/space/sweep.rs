@@ -37,12 +37,17 @@ impl Sweep {
     /// Part of the move during which `axis` overlaps `low..high`; only for an axis that moves.
     #[inline]
     pub(crate) fn during(&self, axis: usize, low: f64, high: f64) -> (f64, f64) {
-        let rate = self.displacement[axis];
+        self.during_by(axis, 1.0 / self.displacement[axis], low, high)
+    }
+
+    /// The same with the reciprocal of the displacement on `axis`.
+    #[inline]
+    pub(crate) fn during_by(&self, axis: usize, pace: f64, low: f64, high: f64) -> (f64, f64) {
         let (behind, ahead) = (
             low - self.high[axis] - SLACK_MM,
             high - self.low[axis] + SLACK_MM,
         );
-        let (one, two) = (behind / rate, ahead / rate);
+        let (one, two) = (behind * pace, ahead * pace);
         (one.min(two), one.max(two))
     }
 
@@ -59,7 +64,7 @@ impl Sweep {
 
     /// Not before this fraction of the way does the box meet `cover`.
     pub(crate) fn first_over(&self, cover: &Cover) -> f64 {
-        let moving = (0..3).filter(|axis| self.displacement[*axis] != 0.0);
+        let moving = (0..3).filter(|axis| self.displacement[*axis].abs() > 1e-9);
         moving.fold(0.0, |first, axis| {
             let (low, high) = (f64::from(cover.low[axis]), f64::from(cover.high[axis]));
             self.during(axis, low, high).0.max(first)
