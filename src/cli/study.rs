@@ -33,6 +33,8 @@ mod scatter;
 mod sorting;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "sim")]
+mod transient;
 
 use crate::config::load_recipe;
 use crate::gauge::Parameter;
@@ -66,6 +68,8 @@ pub enum Study {
     Pace,
     /// Good parts rejected, defects by bin, over many lots
     Sorting,
+    /// The relay model of the simulated rig over the cases of a file
+    Transient,
 }
 
 impl Study {
@@ -79,6 +83,7 @@ impl Study {
             Self::History => Some((1, 1_000_000)),
             Self::Pace => Some((3, 300)),
             Self::Sorting => Some((100, 110)),
+            Self::Transient => None,
         }
     }
 
@@ -91,6 +96,7 @@ impl Study {
             Self::History => "history",
             Self::Pace => "pace",
             Self::Sorting => "sorting",
+            Self::Transient => "transient",
         }
     }
 
@@ -103,6 +109,7 @@ impl Study {
             Self::History => history::study(order),
             Self::Pace => pace::study(order),
             Self::Sorting => sorting::study(order),
+            Self::Transient => bail!("study transient runs no lot"),
         }
     }
 }
@@ -116,6 +123,7 @@ impl Study {
   relayrig study cycle --out figures
   relayrig study collision --out figures
   relayrig study accuracy --seeds 2 --parts 50 --recipe jzc-22f-009
+  relayrig study transient --cases tests/data/transients.json --rtol 1e-10 --json
 
 Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input.")]
 pub struct StudyArgs {
@@ -140,6 +148,12 @@ pub struct StudyArgs {
     /// World of the simulated rig instead of config/sim.toml
     #[arg(long, value_name = "FILE")]
     pub world: Option<PathBuf>,
+    /// Cases of `transient`, `-` for standard input
+    #[arg(long, value_name = "FILE")]
+    pub cases: Option<PathBuf>,
+    /// Tolerance of a step of `transient`, 1e-14 to 1e-2 [default: 1e-8]
+    #[arg(long, value_name = "X", value_parser = tolerance)]
+    pub rtol: Option<f64>,
 }
 
 /// Runs the command; the result is the exit status.
@@ -156,6 +170,11 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
     }
     if !cfg!(feature = "sim") {
         bail!("study: this is a plant build without the simulated rig");
+    }
+    match (study == Study::Transient, &args.cases, args.rtol) {
+        (true, _, _) => return transients(args),
+        (false, None, None) => {}
+        (false, _, _) => bail!("--cases and --rtol belong to `study transient`"),
     }
     if let Some(folder) = &args.out {
         made(folder)?;
@@ -208,6 +227,29 @@ fn published(report: &Report, args: &StudyArgs) -> anyhow::Result<i32> {
 
 fn made(folder: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(folder).with_context(|| format!("--out {}", folder.display()))
+}
+
+#[cfg(feature = "sim")]
+fn transients(args: &StudyArgs) -> anyhow::Result<i32> {
+    let Some(cases) = &args.cases else {
+        bail!("study transient: --cases is missing, expected a file of cases or `-`");
+    };
+    let rtol = args.rtol.unwrap_or(transient::USUAL_RTOL);
+    print(&transient::study(cases, rtol, args.json)?)?;
+    Ok(ALL_MET)
+}
+
+#[cfg(not(feature = "sim"))]
+fn transients(_: &StudyArgs) -> anyhow::Result<i32> {
+    bail!("study: this is a plant build without the simulated rig");
+}
+
+/// `--rtol`: what the method and the arithmetic can keep.
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (1e-14..=1e-2).contains(&value) => Ok(value),
+        Ok(_) | Err(_) => Err("expected a number from 1e-14 to 1e-2".to_owned()),
+    }
 }
 
 /// What the recipe admits; a limit that it does not set is infinite.

@@ -8,6 +8,7 @@
 //! and scatter from operation to operation.
 
 mod armature;
+pub mod lumped;
 
 use std::collections::VecDeque;
 

@@ -1,0 +1,116 @@
+//! The relay as five states: flux, armature and the leaf that carries the moving contact.
+//!
+//! ```text
+//! lambda  flux linkage, V s: unlike the current it does not jump at switch-off
+//! x v     armature, 0 at the backstop, X at the seat
+//! y w     moving contact, 0 at NC, G at NO; a leaf spring couples it to the armature
+//!
+//! Rel    = Rr + Rc0 / (1 - |phi| / phis) + g / (mu0 A + Pf g)     phi = lambda / N, g = X - x
+//! lambda'= (u - R i_s) / (1 + R k_ec / N^2)                       i_s = lambda Rel / N^2
+//! off    : the same with -Vc for u while current flows, then eddy currents alone: -i_s N^2 / k_ec
+//! m_a v' = phi^2 mu0 A / 2 (mu0 A + Pf g)^2 - F_r0 - k_r x - c_a v - leaf + backstop - seat
+//! m_c w' = leaf + NC - NO                                          leaf = k_l (x + d0 - y) + c_l (v - w)
+//! ```
+//!
+//! In reading order: [`parameters`], [`stop`] (a contact that yields), [`modes`] (what is engaged),
+//! [`coil`] (what drives), [`model`] (the equations), [`statics`] (where it stands still),
+//! [`dop853`] (one step), [`solver`] (from event to event), [`outcome`] (what it showed).
+//!
+//! Left out: remanence, distributed eddy currents, higher modes of the leaf, arc, gravity.
+
+pub mod coil;
+pub mod dop853;
+pub mod model;
+pub mod modes;
+pub mod outcome;
+pub mod parameters;
+pub mod solver;
+pub mod statics;
+pub mod stop;
+#[cfg(test)]
+mod tests;
+
+pub use coil::{Drive, Waveform};
+pub use model::Model;
+pub use modes::{Kind, Modes};
+pub use outcome::Outcome;
+pub use parameters::Parameters;
+pub use solver::{Event, SolveError, Solver};
+
+/// The five states, in the order of the constants below; SI units.
+pub type State = [f64; 5];
+/// Flux linkage.
+pub const LAMBDA: usize = 0;
+/// Travel of the armature.
+pub const X: usize = 1;
+/// Its speed.
+pub const V: usize = 2;
+/// Travel of the moving contact.
+pub const Y: usize = 3;
+/// Its speed.
+pub const W: usize = 4;
+
+/// A transient: its events and what they cost.
+#[derive(Debug, Clone)]
+pub struct Transient {
+    /// Changes of the modes, in order.
+    pub events: Vec<Event>,
+    /// State at the end.
+    pub state: State,
+    /// Evaluations of the equations.
+    pub evaluations: u64,
+    /// Steps, rejected ones included.
+    pub steps: u64,
+}
+
+/// What drives the coil over a whole transient.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Excitation {
+    /// A source.
+    Source(Waveform),
+    /// Switched off into a clamp of so many volts.
+    Clamp(f64),
+}
+
+impl Excitation {
+    fn piece(&self, t_s: f64) -> (Drive, f64) {
+        match self {
+            Self::Source(waveform) => waveform.piece(t_s),
+            Self::Clamp(volts) => (Drive::Clamp { volts: *volts }, f64::INFINITY),
+        }
+    }
+}
+
+impl Model {
+    /// Integrates from `start` at 0 to `end_s`; `relative` is the tolerance of a step.
+    ///
+    /// # Errors
+    /// The state runs away, or the work has no end.
+    pub fn transient(
+        &self,
+        start: State,
+        excitation: &Excitation,
+        end_s: f64,
+        relative: f64,
+    ) -> Result<Transient, SolveError> {
+        let (mut drive, mut ends) = excitation.piece(0.0);
+        let mut solver = Solver::new(self, &drive, 0.0, start, relative);
+        let mut events = Vec::new();
+        loop {
+            while let Some(event) = solver.advance(self, &drive, ends.min(end_s))? {
+                events.push(event);
+            }
+            if ends >= end_s {
+                break;
+            }
+            (drive, ends) = excitation.piece(ends);
+            solver.drive_changed(self, &drive);
+        }
+        Ok(Transient {
+            events,
+            state: solver.state,
+            evaluations: solver.evaluations,
+            steps: solver.steps,
+        })
+    }
+}

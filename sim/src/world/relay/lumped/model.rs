@@ -1,0 +1,175 @@
+//! The equations of motion, with everything that does not change worked out beforehand.
+
+use super::coil::Drive;
+use super::modes::{Kind, Modes, Places};
+use super::parameters::Parameters;
+use super::stop::Stop;
+use super::{LAMBDA, State, X};
+
+/// A relay ready to be integrated.
+#[derive(Debug, Clone)]
+pub struct Model {
+    pub(super) p: Parameters,
+    pub(super) mu_a: f64,
+    pub(super) ohm: f64,
+    per_turns: f64,
+    per_turns2: f64,
+    eddy: f64,
+    per_phis: f64,
+    per_mass: [f64; 2],
+    /// Where its stops stand.
+    pub places: Places,
+    pub(super) stop: Stop,
+    pub(super) contact: Stop,
+}
+
+impl Model {
+    /// From its parameters.
+    pub fn new(p: &Parameters) -> Self {
+        let ohm = p.coil_ohm();
+        let per_turns2 = 1.0 / (p.N * p.N);
+        Self {
+            p: *p,
+            mu_a: p.mu0 * p.A,
+            ohm,
+            per_turns: 1.0 / p.N,
+            per_turns2,
+            per_phis: 1.0 / p.phis,
+            per_mass: [1.0 / p.m_a, 1.0 / p.m_c],
+            eddy: 1.0 / (1.0 + ohm * p.k_ec * per_turns2),
+            places: Places { seat: p.X, no: p.G },
+            stop: Stop {
+                k: p.k_s,
+                chi: p.chi_s,
+            },
+            contact: Stop {
+                k: p.k_c,
+                chi: p.chi_c,
+            },
+        }
+    }
+
+    /// The parameters it was made from.
+    pub fn parameters(&self) -> &Parameters {
+        &self.p
+    }
+
+    /// Coil resistance at the temperature of the copper, ohm.
+    pub fn ohm(&self) -> f64 {
+        self.ohm
+    }
+
+    /// Permeance of the gap in units of pole area: `mu0 A + Pf g`.
+    #[inline]
+    pub(super) fn spread(&self, gap: f64) -> f64 {
+        self.mu_a + self.p.Pf * gap
+    }
+
+    /// Reluctance at a flux and a gap, 1/H. Not a number at and beyond saturation.
+    #[inline]
+    pub(super) fn reluctance(&self, phi: f64, gap: f64) -> f64 {
+        let rest = 1.0 - phi.abs() / self.p.phis;
+        if rest <= 0.0 {
+            return f64::NAN;
+        }
+        self.p.Rr + self.p.Rc0 / rest + gap / self.spread(gap)
+    }
+
+    /// Pull on the armature, N.
+    #[inline]
+    pub(super) fn pull(&self, phi: f64, gap: f64) -> f64 {
+        let spread = self.spread(gap);
+        0.5 * phi * phi * self.mu_a / (spread * spread)
+    }
+
+    /// Ampere turns that the flux needs, per turn squared: the current if nothing changed, A.
+    #[inline]
+    fn still_current(&self, s: &State) -> f64 {
+        s[LAMBDA] * self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]) * self.per_turns2
+    }
+
+    /// Rate of the flux linkage, V.
+    #[inline]
+    fn flux_rate(&self, t_s: f64, current: f64, modes: Modes, drive: &Drive) -> f64 {
+        match *drive {
+            Drive::Source {
+                volts,
+                slope,
+                since_s,
+            } => (volts + slope * (t_s - since_s) - self.ohm * current) * self.eddy,
+            Drive::Clamp { volts } => match modes.is(Kind::CoilBlocked) {
+                true => self.blocked_rate(current),
+                false => (-volts - self.ohm * current) * self.eddy,
+            },
+        }
+    }
+
+    /// Rate of the flux linkage when eddy currents alone carry it.
+    #[inline]
+    fn blocked_rate(&self, current: f64) -> f64 {
+        -current * self.p.N * self.p.N / self.p.k_ec
+    }
+
+    /// Coil current, A.
+    pub fn current(&self, t_s: f64, s: &State, modes: Modes, drive: &Drive) -> f64 {
+        let still = self.still_current(s);
+        let rate = self.flux_rate(t_s, still, modes, drive);
+        still + self.p.k_ec * self.per_turns2 * rate
+    }
+
+    /// Rates of the five states.
+    #[inline]
+    pub fn rates(&self, t_s: f64, s: &State, modes: Modes, drive: &Drive) -> State {
+        let p = &self.p;
+        let [lambda, x, v, y, w] = *s;
+        let (phi, gap) = (lambda * self.per_turns, p.X - x);
+        let rest = 1.0 - phi.abs() * self.per_phis;
+        let per_spread = 1.0 / self.spread(gap);
+        let reluctance = match rest > 0.0 {
+            true => (p.Rr + gap * per_spread) + p.Rc0 / rest,
+            false => f64::NAN,
+        };
+        let leaf = p.k_l * (x + p.d0 - y) + p.c_l * (v - w);
+        let mut load = p.F_r0 + p.k_r * x + p.c_a * v + leaf;
+        let mut tip = leaf;
+        if modes.is(Kind::Backstop) {
+            load -= self.stop.push(-x, -v);
+        }
+        if modes.is(Kind::Seat) {
+            load += self.stop.push(x - p.X, v);
+        }
+        if modes.is(Kind::Nc) {
+            tip += self.contact.push(-y, -w);
+        }
+        if modes.is(Kind::No) {
+            tip -= self.contact.push(y - p.G, w);
+        }
+        let across = phi * per_spread;
+        let armature = 0.5 * self.mu_a * across * across - load;
+        let flux = self.flux_rate(t_s, lambda * self.per_turns2 * reluctance, modes, drive);
+        let [per_armature, per_tip] = self.per_mass;
+        [flux, v, armature * per_armature, w, tip * per_tip]
+    }
+
+    /// The gap function of a kind: above zero asks for its flag.
+    #[inline]
+    pub fn gap(&self, kind: Kind, s: &State, drive: &Drive) -> f64 {
+        match (kind, drive) {
+            (Kind::CoilBlocked, Drive::Source { .. }) => -1.0,
+            (Kind::CoilBlocked, Drive::Clamp { volts }) => {
+                let current = self.still_current(s);
+                self.blocked_rate(current) - (-volts - self.ohm * current) * self.eddy
+            }
+            _ => self.places.overlap(kind, s),
+        }
+    }
+
+    /// The flags that a state asks for.
+    pub fn modes(&self, s: &State, drive: &Drive) -> Modes {
+        let mut modes = Modes::default();
+        for kind in Kind::TOUCHING.into_iter().chain([Kind::CoilBlocked]) {
+            modes.put(kind, self.gap(kind, s, drive) > 0.0);
+        }
+        modes
+    }
+}

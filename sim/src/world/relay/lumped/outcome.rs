@@ -1,0 +1,75 @@
+//! What a transient shows: the figures that are read off its events.
+
+use super::modes::Kind;
+use super::solver::Event;
+use super::{V, W};
+
+/// Figures of one transient, seconds and metres per second; `None` where it did not happen.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Outcome {
+    /// First opening of NC.
+    pub nc_first_open: Option<f64>,
+    /// First closing of NC.
+    pub nc_first_make: Option<f64>,
+    /// First closing of NO.
+    pub no_first_make: Option<f64>,
+    /// First opening of NO.
+    pub no_first_open: Option<f64>,
+    /// First arrival at the seat.
+    pub seat_first: Option<f64>,
+    /// Last change of NO.
+    pub no_last_change: Option<f64>,
+    /// Last change of NC.
+    pub nc_last_change: Option<f64>,
+    /// Closings of NO.
+    pub no_makes: u32,
+    /// Closings of NC.
+    pub nc_makes: u32,
+    /// The coil current is first cut off by the clamp.
+    pub coil_blocked_first: Option<f64>,
+    /// Speed of the contact at the first closing of NO.
+    pub no_first_make_speed: Option<f64>,
+    /// Speed of the armature at the first arrival at the seat.
+    pub seat_first_speed: Option<f64>,
+}
+
+impl Outcome {
+    /// Reads a list of events.
+    pub fn of(events: &[Event]) -> Self {
+        let of = |kind: Kind| events.iter().filter(move |e| e.kind == kind);
+        let first = |kind: Kind, on: bool| of(kind).find(|e| e.on == on);
+        let at = |event: Option<&Event>| event.map(|e| e.t_s);
+        let makes = |kind: Kind| of(kind).filter(|e| e.on).count() as u32;
+        Self {
+            nc_first_open: at(first(Kind::Nc, false)),
+            nc_first_make: at(first(Kind::Nc, true)),
+            no_first_make: at(first(Kind::No, true)),
+            no_first_open: at(first(Kind::No, false)),
+            seat_first: at(first(Kind::Seat, true)),
+            no_last_change: at(of(Kind::No).next_back()),
+            nc_last_change: at(of(Kind::Nc).next_back()),
+            no_makes: makes(Kind::No),
+            nc_makes: makes(Kind::Nc),
+            coil_blocked_first: at(first(Kind::CoilBlocked, true)),
+            no_first_make_speed: first(Kind::No, true).map(|e| e.state[W]),
+            seat_first_speed: first(Kind::Seat, true).map(|e| e.state[V]),
+        }
+    }
+
+    /// Time that a contact is open between its first closing and its last change, s.
+    pub fn open_s(events: &[Event], contact: Kind) -> f64 {
+        let mut own = events
+            .iter()
+            .filter(|e| e.kind == contact)
+            .skip_while(|e| !e.on);
+        let (mut total, mut since) = (0.0, None);
+        for event in own.by_ref() {
+            match (event.on, since.take()) {
+                (true, Some(from)) => total += event.t_s - from,
+                (false, _) => since = Some(event.t_s),
+                (true, None) => {}
+            }
+        }
+        total
+    }
+}

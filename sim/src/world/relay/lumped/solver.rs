@@ -1,0 +1,283 @@
+//! From event to event: steps with error control, cut exactly where a mode changes.
+//!
+//! - The flags stand still within a step. After it, every gap function is compared with its flag.
+//! - A change is located by taking the step again with a trial length (Illinois secant), so the
+//!   instant has the full order of the method; of several changes the earliest counts.
+//! - Two changes inside one step leave no trace in the signs. The overlap of a stop and its rate at
+//!   both ends give a cubic; where its turning point comes near the touch, the step ends there.
+//! - After a change the next step is short.
+
+use super::State;
+use super::coil::Drive;
+use super::dop853::{EVALUATIONS, Tolerance, Tried, step};
+use super::model::Model;
+use super::modes::{Kind, Modes};
+
+/// A mode has changed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// Instant, s.
+    pub t_s: f64,
+    /// Which.
+    pub kind: Kind,
+    /// Engaged from now on.
+    pub on: bool,
+    /// The state at that instant.
+    pub state: State,
+}
+
+/// The integration cannot go on.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// No step is short enough.
+    #[error("at {t_s} s no step is short enough: the state runs away")]
+    Runaway {
+        /// Where, s.
+        t_s: f64,
+    },
+    /// More work than any relay needs.
+    #[error("at {t_s} s the limit of {evaluations} evaluations is reached")]
+    Endless {
+        /// Where, s.
+        t_s: f64,
+        /// So many were made.
+        evaluations: u64,
+    },
+}
+
+/// First step, and the longest after an event, s: the contacts swing once in 50 us and longer.
+const SHORT_S: f64 = 1e-6;
+/// Longest step, s: no drive is still for the flux for longer than a few time constants.
+const LONG_S: f64 = 2e-3;
+/// Below this no step makes sense, s: rounding of the instant itself.
+const NOTHING_S: f64 = 1e-17;
+/// A turning point this near to the start of a step has been looked at, s.
+const NEAR_S: f64 = 1e-9;
+/// Give up after so many evaluations: a second of chatter.
+const ENDLESS: u64 = 400_000_000;
+
+/// A relay on its way.
+#[derive(Debug, Clone)]
+pub struct Solver {
+    /// Now, s.
+    pub t_s: f64,
+    /// State now.
+    pub state: State,
+    /// Flags now.
+    pub modes: Modes,
+    /// Evaluations of the equations so far.
+    pub evaluations: u64,
+    /// Steps so far.
+    pub steps: u64,
+    tolerance: Tolerance,
+    h: f64,
+}
+
+impl Solver {
+    /// Starts in a state; `relative` is the error that a step may make, as a share of the state.
+    pub fn new(model: &Model, drive: &Drive, t_s: f64, state: State, relative: f64) -> Self {
+        Self {
+            t_s,
+            state,
+            modes: model.modes(&state, drive),
+            evaluations: 0,
+            steps: 0,
+            tolerance: Tolerance { relative },
+            h: SHORT_S,
+        }
+    }
+
+    /// Another drive from now on: the clamp's flag is read anew, the next step is short.
+    pub fn drive_changed(&mut self, model: &Model, drive: &Drive) {
+        let blocked = model.gap(Kind::CoilBlocked, &self.state, drive) > 0.0;
+        self.modes.put(Kind::CoilBlocked, blocked);
+        self.h = self.h.min(10.0 * SHORT_S);
+    }
+
+    /// Goes on to `until_s`, or to the first event before it.
+    ///
+    /// # Errors
+    /// The state runs away, or the work has no end.
+    pub fn advance(
+        &mut self,
+        model: &Model,
+        drive: &Drive,
+        until_s: f64,
+    ) -> Result<Option<Event>, SolveError> {
+        let mut slope = self.rates(model, drive);
+        while self.t_s < until_s {
+            let whole = until_s - self.t_s;
+            let h = self.h.min(LONG_S).min(whole);
+            let tried = self.attempt(model, drive, &slope, h);
+            self.control(tried.error, h)?;
+            if tried.error.is_nan() || tried.error > 1.0 {
+                continue;
+            }
+            let (h, state) = self.past_a_graze(model, drive, &slope, h, tried.state);
+            if let Some((h, state, kind)) = self.first_change(model, drive, &slope, h, state) {
+                return Ok(Some(self.change(h, state, kind)));
+            }
+            self.t_s = if h == whole { until_s } else { self.t_s + h };
+            self.state = state;
+            slope = self.rates(model, drive);
+        }
+        Ok(None)
+    }
+
+    fn rates(&mut self, model: &Model, drive: &Drive) -> State {
+        self.evaluations += 1;
+        model.rates(self.t_s, &self.state, self.modes, drive)
+    }
+
+    #[inline]
+    fn attempt(&mut self, model: &Model, drive: &Drive, slope: &State, h: f64) -> Tried {
+        self.evaluations += EVALUATIONS;
+        let modes = self.modes;
+        let f = |t: f64, s: &State| model.rates(t, s, modes, drive);
+        step(f, [self.t_s, h], &self.state, slope, &self.tolerance)
+    }
+
+    /// Length of the next step from the error of this one.
+    fn control(&mut self, error: f64, h: f64) -> Result<(), SolveError> {
+        self.steps += 1;
+        let factor = match error.is_nan() {
+            true => 0.1,
+            false => (0.9 * error.max(1e-10).powf(-0.125)).clamp(0.33, 6.0),
+        };
+        let cut = h < self.h && error <= 1.0;
+        self.h = if cut {
+            self.h.max(h * factor)
+        } else {
+            h * factor
+        };
+        if self.h < NOTHING_S || self.t_s + self.h == self.t_s {
+            return Err(SolveError::Runaway { t_s: self.t_s });
+        }
+        if self.evaluations > ENDLESS {
+            return Err(SolveError::Endless {
+                t_s: self.t_s,
+                evaluations: self.evaluations,
+            });
+        }
+        Ok(())
+    }
+
+    fn change(&mut self, h: f64, state: State, kind: Kind) -> Event {
+        let on = !self.modes.is(kind);
+        self.t_s += h;
+        self.state = state;
+        self.modes.put(kind, on);
+        self.h = self.h.min(SHORT_S);
+        Event {
+            t_s: self.t_s,
+            kind,
+            on,
+            state,
+        }
+    }
+
+    /// Ends the step at the turning point of an overlap that comes near a touch inside it.
+    fn past_a_graze(
+        &mut self,
+        model: &Model,
+        drive: &Drive,
+        slope: &State,
+        h: f64,
+        state: State,
+    ) -> (f64, State) {
+        let mut best = (h, state);
+        for kind in Kind::TOUCHING {
+            let side = if self.modes.is(kind) { 1.0 } else { -1.0 };
+            let of = |s: &State| {
+                (
+                    side * model.places.overlap(kind, s),
+                    side * model.places.rate(kind, s),
+                )
+            };
+            let ((from, falls), (to, rises)) = (of(&self.state), of(&state));
+            if falls >= 0.0 || rises <= 0.0 || to < 0.0 {
+                continue;
+            }
+            let (share, low) = turning_point([from, falls * h], [to, rises * h]);
+            let at = share * h;
+            if low < 0.05 * from.min(to) && at < best.0 && at > NEAR_S {
+                best = (at, self.attempt(model, drive, slope, at).state);
+            }
+        }
+        best
+    }
+
+    /// The earliest change of a flag within a step, with the state there.
+    fn first_change(
+        &mut self,
+        model: &Model,
+        drive: &Drive,
+        slope: &State,
+        h: f64,
+        state: State,
+    ) -> Option<(f64, State, Kind)> {
+        let mut first = None;
+        let (mut h, mut state) = (h, state);
+        for kind in Kind::TOUCHING.into_iter().chain([Kind::CoilBlocked]) {
+            if (model.gap(kind, &state, drive) > 0.0) != self.modes.is(kind) {
+                (h, state) = self.locate(model, drive, slope, kind, h, state);
+                first = Some((h, state, kind));
+            }
+        }
+        first
+    }
+
+    /// Length of the step at whose end the gap of a kind vanishes; it has changed sign at `h`.
+    fn locate(
+        &mut self,
+        model: &Model,
+        drive: &Drive,
+        slope: &State,
+        kind: Kind,
+        h: f64,
+        state: State,
+    ) -> (f64, State) {
+        let side = if self.modes.is(kind) { 1.0 } else { -1.0 };
+        let gap = |s: &State| side * model.gap(kind, s, drive);
+        let (mut lo, mut low) = (0.0, gap(&self.state).max(0.0));
+        let (mut hi, mut high) = (h, gap(&state));
+        let (mut best, mut moved) = ((h, state), h);
+        let mut inside = None;
+        while high < 0.0 && hi - lo > exact(self.t_s) && moved > exact(self.t_s) {
+            let secant = hi - high * (hi - lo) / (high - low);
+            let at = if secant > lo && secant < hi {
+                secant
+            } else {
+                0.5 * (lo + hi)
+            };
+            let there = self.attempt(model, drive, slope, at).state;
+            let value = gap(&there);
+            moved = (at - best.0).abs();
+            best = (at, there);
+            if value > 0.0 {
+                (lo, low) = (at, value);
+                high *= if inside == Some(true) { 0.5 } else { 1.0 };
+            } else {
+                (hi, high) = (at, value);
+                low *= if inside == Some(false) { 0.5 } else { 1.0 };
+            }
+            inside = Some(value > 0.0);
+        }
+        best
+    }
+}
+
+/// How exactly an instant can and need be known, s.
+fn exact(t_s: f64) -> f64 {
+    1e-15 + 4.0 * f64::EPSILON * t_s
+}
+
+/// Where the cubic through value and slope at 0 and 1 is least, and how much it is there; the
+/// slope is below zero at 0 and above zero at 1.
+fn turning_point([from, falls]: [f64; 2], [to, rises]: [f64; 2]) -> (f64, f64) {
+    let c2 = 3.0 * (to - from) - 2.0 * falls - rises;
+    let c3 = 2.0 * (from - to) + falls + rises;
+    let root = (c2 * c2 - 3.0 * c3 * falls).max(0.0).sqrt();
+    let at = (-falls / (c2 + root)).clamp(0.0, 1.0);
+    (at, from + at * (falls + at * (c2 + at * c3)))
+}

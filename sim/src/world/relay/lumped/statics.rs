@@ -1,0 +1,253 @@
+//! Where the relay stands still, and the voltages at which it stops doing so.
+//!
+//! The voltage that balances the load at a travel `x` is `V = (R / N) phi Rel(phi, g)` with
+//! `phi = sqrt(2 F / mu A) D(g)`. A slowly moved voltage carries the armature along until `V` turns:
+//! a fold. Pickup folds where the NC contact lets go, release where the seat lets go. Both folds lie
+//! within 1e-9 m of the kink of the load, so each is found as the root of `d ln V` along the overlap
+//! of the contact (or seat) that lets go, where it is well conditioned.
+
+use super::model::Model;
+use super::{State, X, Y};
+
+/// A point of the quasi-static balance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Balance {
+    /// Voltage at the temperature of the copper.
+    pub volts: f64,
+    /// Current, A.
+    pub amperes: f64,
+    /// Travel of the armature, m.
+    pub x: f64,
+    /// Pull of the magnet, N.
+    pub newtons: f64,
+}
+
+/// Travel and load along a branch of the balance, with their rates along the branch.
+struct Load {
+    x: f64,
+    x_rate: f64,
+    newtons: f64,
+    newtons_rate: f64,
+}
+
+impl Model {
+    /// Balance at a travel and load.
+    fn balance(&self, x: f64, newtons: f64) -> Balance {
+        let gap = self.p.X - x;
+        let phi = self.flux_of(newtons, gap);
+        let amperes = phi * self.reluctance(phi, gap) / self.p.N;
+        Balance {
+            volts: amperes * self.ohm,
+            amperes,
+            x,
+            newtons,
+        }
+    }
+
+    fn flux_of(&self, newtons: f64, gap: f64) -> f64 {
+        (2.0 * newtons.max(0.0) / self.mu_a).sqrt() * self.spread(gap)
+    }
+
+    /// Rate of `ln V` along a branch.
+    fn steepness(&self, load: &Load) -> f64 {
+        let gap = self.p.X - load.x;
+        let phi = self.flux_of(load.newtons, gap);
+        let spread = self.spread(gap);
+        let phi_rate = 0.5 * load.newtons_rate / load.newtons - self.p.Pf * load.x_rate / spread;
+        let rest = 1.0 - phi / self.p.phis;
+        let saturating = self.p.Rc0 / self.p.phis / (rest * rest) * phi * phi_rate;
+        let opening = -self.mu_a / (spread * spread) * load.x_rate;
+        phi_rate + (saturating + opening) / self.reluctance(phi, gap)
+    }
+
+    /// Spring and leaf at a travel, the leaf pressing on NC with so much overlap.
+    fn load_on_nc(&self, depth: f64) -> Load {
+        let p = &self.p;
+        let force = p.k_c * depth.powf(1.5);
+        let stiffness = self.contact.stiffness(depth);
+        let x = -p.d0 - depth - force / p.k_l;
+        let x_rate = -1.0 - stiffness / p.k_l;
+        Load {
+            x,
+            x_rate,
+            newtons: p.F_r0 + p.k_r * x - force,
+            newtons_rate: p.k_r * x_rate - stiffness,
+        }
+    }
+
+    /// Spring, leaf on NO and seat, the armature `depth` into the seat.
+    fn load_on_seat(&self, depth: f64) -> Load {
+        let p = &self.p;
+        let x = p.X + depth;
+        let (force, leaf_rate) = self.leaf_on_no(x);
+        Load {
+            x,
+            x_rate: 1.0,
+            newtons: p.F_r0 + p.k_r * x + force + p.k_s * depth.powf(1.5),
+            newtons_rate: p.k_r + leaf_rate + self.stop.stiffness(depth),
+        }
+    }
+
+    /// Force of the leaf on NO at a travel, and its rate with the travel.
+    fn leaf_on_no(&self, x: f64) -> (f64, f64) {
+        let p = &self.p;
+        let depth = self.leaf_overlap(x + p.d0 - p.G);
+        let stiffness = self.contact.stiffness(depth);
+        let rate = if depth > 0.0 {
+            p.k_l * stiffness / (p.k_l + stiffness)
+        } else {
+            0.0
+        };
+        (p.k_c * depth.powf(1.5), rate)
+    }
+
+    /// Overlap at a contact when the leaf is bent so far beyond the touch: `k_c d^1.5 + k_l d = k_l bent`.
+    fn leaf_overlap(&self, bent: f64) -> f64 {
+        let p = &self.p;
+        if bent <= 0.0 {
+            return 0.0;
+        }
+        let mut depth = self.contact.depth(p.k_l * bent).min(bent);
+        for _ in 0..60 {
+            let excess = p.k_c * depth * depth.sqrt() + p.k_l * (depth - bent);
+            let next = depth - excess / (self.contact.stiffness(depth) + p.k_l);
+            let done = (next - depth).abs() <= 1e-16 * depth;
+            depth = next.max(0.0);
+            if done {
+                break;
+            }
+        }
+        depth
+    }
+
+    /// Quasi-static pickup: the first fold met from rest.
+    pub fn pickup(&self) -> Balance {
+        let deepest = self.leaf_overlap(-self.p.d0);
+        let depth = root(deepest, |depth| self.steepness(&self.load_on_nc(depth)));
+        let load = self.load_on_nc(depth);
+        self.balance(load.x, load.newtons)
+    }
+
+    /// Pickup with rigid contacts, where the fold is a corner.
+    pub fn pickup_rigid(&self) -> Balance {
+        let x = (-self.p.d0).max(0.0);
+        self.balance(x, self.p.F_r0 + self.p.k_r * x)
+    }
+
+    /// Quasi-static release: the fold at which the seat lets go. Where the load gives way faster than
+    /// the magnet, the armature follows the voltage for a while and the fold lies before the seat;
+    /// then the greatest travel at which the balance turns counts.
+    pub fn release(&self) -> Balance {
+        let deepest = self.stop.depth(1e3);
+        let depth = root(deepest, |depth| -self.steepness(&self.load_on_seat(depth)));
+        let load = self.load_on_seat(depth);
+        self.balance(load.x, load.newtons)
+    }
+
+    /// Release with rigid contacts and a rigid seat.
+    pub fn release_rigid(&self) -> Balance {
+        let p = &self.p;
+        let force = (p.k_l * (p.X + p.d0 - p.G)).max(0.0);
+        self.balance(p.X, p.F_r0 + p.k_r * p.X + force)
+    }
+
+    /// Highest voltage of the balance beyond the first fold, contacts rigid in their place: above
+    /// [`Self::pickup`] the armature hangs there on its way.
+    pub fn second_hump(&self) -> Balance {
+        let p = &self.p;
+        let touch = p.G - p.d0;
+        let at = |x: f64| self.balance(x, p.F_r0 + p.k_r * x + self.leaf_on_no(x).0);
+        let (mut low, mut high) = (touch.min(p.X), p.X);
+        for _ in 0..200 {
+            let (a, b) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
+            if at(a).volts < at(b).volts {
+                low = a;
+            } else {
+                high = b;
+            }
+        }
+        at(0.5 * (low + high))
+    }
+
+    /// Flux linkage per ampere for small currents with the armature open, or seated, H.
+    pub fn inductance(&self, seated: bool) -> f64 {
+        let gap = if seated { 0.0 } else { self.p.X };
+        self.p.N * self.p.N / self.reluctance(0.0, gap)
+    }
+
+    /// Flux that a current keeps up at a gap, Wb: `phi Rel(phi, g) = N i` in closed form.
+    fn flux_at(&self, amperes: f64, gap: f64) -> f64 {
+        let turns = self.p.N * amperes.abs();
+        let linear = self.p.Rr + gap / self.spread(gap);
+        let a = linear / self.p.phis;
+        let b = linear + self.p.Rc0 + turns / self.p.phis;
+        let phi = 2.0 * turns / (b + (b * b - 4.0 * a * turns).max(0.0).sqrt());
+        phi.copysign(amperes)
+    }
+
+    /// At rest on the backstop with so many volts at the coil, which must be below pickup.
+    pub fn at_rest(&self, volts: f64) -> State {
+        self.settled(volts, 0.0)
+    }
+
+    /// Seated with so many volts at the coil, which must hold it.
+    pub fn sealed(&self, volts: f64) -> State {
+        self.settled(volts, self.p.X)
+    }
+
+    /// Pressed on one of the stops: travel, leaf and flux settle in turn.
+    fn settled(&self, volts: f64, from: f64) -> State {
+        let mut s = [0.0, from, 0.0, 0.0, 0.0];
+        for _ in 0..200 {
+            let before = s;
+            s[0] = self.p.N * self.flux_at(volts / self.ohm, self.p.X - s[X]);
+            self.pressed(&mut s);
+            if s == before {
+                break;
+            }
+        }
+        s
+    }
+
+    /// Sets travel and leaf of an armature that lies on a stop under the flux of the state.
+    pub fn pressed(&self, s: &mut State) {
+        let p = &self.p;
+        let seated = s[X] > 0.5 * p.X;
+        for _ in 0..20 {
+            let before = s[X];
+            let bent = s[X] + p.d0;
+            s[Y] = match bent {
+                on_nc if on_nc < 0.0 => -self.leaf_overlap(-on_nc),
+                on_no if on_no > p.G => p.G + self.leaf_overlap(on_no - p.G),
+                free => free,
+            };
+            let leaf = p.k_l * (s[X] + p.d0 - s[Y]);
+            let push = self.pull(s[0] / p.N, p.X - s[X]) - p.F_r0 - p.k_r * s[X] - leaf;
+            s[X] = match seated {
+                true => p.X + self.stop.depth(push),
+                false => -self.stop.depth(-push),
+            };
+            if s[X] == before {
+                break;
+            }
+        }
+    }
+}
+
+/// Root of a function that is above zero at 0 and falls, between 0 and `high`, by the logarithm; 0 if
+/// it is never above zero.
+fn root(high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (high * 1e-18, high);
+    if f(low) <= 0.0 {
+        return 0.0;
+    }
+    while high / low > 1.0 + 1e-9 {
+        let middle = (low * high).sqrt();
+        if f(middle) > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    low
+}

@@ -1,0 +1,130 @@
+//! `relayrig study transient`: the relay model of the simulated rig over cases from a file.
+//!
+//! Every case is read and integrated before the first answer is printed. Wall time is the median of
+//! a few integrations of the same case in this process; everything else is the same on any machine.
+//!
+//! Exit status: 0 all cases integrated, 2 bad input or a case whose state runs away.
+
+mod cases;
+mod field;
+#[cfg(test)]
+mod tests;
+
+use crate::quality::spread::median;
+use anyhow::Context;
+use cases::Case;
+use rigsim::world::relay::lumped::{Model, Outcome, Transient};
+use serde_json::{Map, Value, json};
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Instant;
+
+/// Share of the state that a step may get wrong when nothing else is asked for: 1e-10 s on first
+/// events, 1e-8 s on last bounces.
+pub const USUAL_RTOL: f64 = 1e-8;
+/// Integrations of a case for its wall time.
+const REPEATS: usize = 5;
+
+/// An integrated case.
+struct Answer {
+    name: String,
+    transient: Transient,
+    wall_us: f64,
+}
+
+/// Integrates the cases of a file (`-` for standard input); the text to print.
+///
+/// # Errors
+/// The file cannot be read or a field of it is wrong; a case cannot be integrated.
+pub fn study(file: &Path, rtol: f64, as_json: bool) -> anyhow::Result<String> {
+    let text = match file == Path::new("-") {
+        true => std::io::read_to_string(std::io::stdin()).context("reading standard input")?,
+        false => {
+            std::fs::read_to_string(file).with_context(|| format!("reading {}", file.display()))?
+        }
+    };
+    let cases = cases::read(&text).with_context(|| file.display().to_string())?;
+    let answers: Vec<Answer> = cases
+        .iter()
+        .map(|case| integrate(case, rtol).with_context(|| format!("case `{}`", case.name)))
+        .collect::<anyhow::Result<_>>()?;
+    Ok(match as_json {
+        true => answers
+            .iter()
+            .map(|answer| format!("{}\n", answer.json()))
+            .collect(),
+        false => answers.iter().map(Answer::text).collect(),
+    })
+}
+
+fn integrate(case: &Case, rtol: f64) -> anyhow::Result<Answer> {
+    let model = Model::new(&case.parameters);
+    let once = || {
+        let begun = Instant::now();
+        let transient = model.transient(case.start, &case.excitation, case.end_s, rtol);
+        transient.map(|it| (it, begun.elapsed().as_secs_f64() * 1e6))
+    };
+    let (transient, first_us) = once()?;
+    let mut walls = vec![first_us];
+    for _ in 1..REPEATS {
+        walls.push(once()?.1);
+    }
+    Ok(Answer {
+        name: case.name.clone(),
+        transient,
+        wall_us: median(&walls).unwrap_or(first_us),
+    })
+}
+
+impl Answer {
+    fn json(&self) -> Value {
+        let events: Vec<Value> = self
+            .transient
+            .events
+            .iter()
+            .map(|event| json!([event.t_s, event.kind.name(), u8::from(event.on)]))
+            .collect();
+        json!({
+            "name": self.name, "results": results(&Outcome::of(&self.transient.events)), "events": events,
+            "rhs_evals": self.transient.evaluations, "wall_us": self.wall_us,
+        })
+    }
+
+    fn text(&self) -> String {
+        let transient = &self.transient;
+        let mut text = format!(
+            "{}: {} events, {} evaluations, {:.0} us\n",
+            self.name,
+            transient.events.len(),
+            transient.evaluations,
+            self.wall_us
+        );
+        for (key, value) in results(&Outcome::of(&transient.events)) {
+            if !value.is_null() {
+                let _ = writeln!(text, "  {key:<24} {value}");
+            }
+        }
+        text
+    }
+}
+
+/// The figures under the keys of the cases file; null where it did not happen.
+fn results(outcome: &Outcome) -> Map<String, Value> {
+    let rows = [
+        ("NC_first_open", json!(outcome.nc_first_open)),
+        ("NC_first_make", json!(outcome.nc_first_make)),
+        ("NO_first_make", json!(outcome.no_first_make)),
+        ("NO_first_open", json!(outcome.no_first_open)),
+        ("seat_first", json!(outcome.seat_first)),
+        ("NO_last_change", json!(outcome.no_last_change)),
+        ("NC_last_change", json!(outcome.nc_last_change)),
+        ("NO_makes", json!(outcome.no_makes)),
+        ("NC_makes", json!(outcome.nc_makes)),
+        ("coil_current_first_zero", json!(outcome.coil_blocked_first)),
+        ("NO_first_make_speed", json!(outcome.no_first_make_speed)),
+        ("seat_first_speed", json!(outcome.seat_first_speed)),
+    ];
+    rows.into_iter()
+        .map(|(key, value)| (key.to_owned(), value))
+        .collect()
+}

@@ -1,0 +1,166 @@
+//! The cases file: parameters of a relay, and what is done to it.
+//!
+//! ```text
+//! parameters         SI units; a name left out is that of the default relay; T in Celsius
+//! mu0                optional
+//! cases[].name
+//!        .changed    parameters of this case that differ
+//!        .s0         [flux linkage, x, v, y, w] at 0
+//!        .initial    without s0: "rest", or "sealed12" for a relay that holds with 12 V
+//!        .waveform   [[s, V], ...], linear between, held after; two points at one instant are a step
+//!        .freewheel_clamp_V   not null: switched off at 0 into this clamp, the waveform does not count
+//!        .t_end      s
+//! ```
+//!
+//! What such a file also carries as an answer (`results`, `events`, `probe` ...) is not read.
+
+use super::field::Field;
+use anyhow::{Context, bail};
+use rigsim::world::relay::lumped::{Excitation, LAMBDA, Model, Parameters, State, Waveform};
+use serde_json::Value;
+
+/// One transient to integrate.
+#[derive(Debug)]
+pub struct Case {
+    /// Its name.
+    pub name: String,
+    /// The relay.
+    pub parameters: Parameters,
+    /// State at 0.
+    pub start: State,
+    /// What stands at the coil.
+    pub excitation: Excitation,
+    /// End, s.
+    pub end_s: f64,
+}
+
+/// All that a case may hold; the second half are answers.
+const KEYS: &[&str] = &[
+    "name",
+    "changed",
+    "initial",
+    "s0",
+    "waveform",
+    "freewheel_clamp_V",
+    "t_end",
+    "note",
+    "results",
+    "events",
+    "n_events",
+    "probe",
+    "agree_s",
+    "nfev",
+];
+
+/// Reads every case.
+///
+/// # Errors
+/// No JSON, or a field that is missing, unknown or outside its range; the message names it.
+pub fn read(text: &str) -> anyhow::Result<Vec<Case>> {
+    let file: Value = serde_json::from_str(text).context("expected JSON")?;
+    let root = Field::root(&file);
+    let mut parameters = Parameters::default();
+    if let Some(mu0) = root.member("mu0")? {
+        parameters.mu0 = mu0.number()?;
+    }
+    if let Some(all) = root.member("parameters")? {
+        put(&mut parameters, &all)?;
+    }
+    let cases = root
+        .must("cases", "a list of cases")?
+        .list("a list of cases")?;
+    if cases.is_empty() {
+        bail!("cases: found none, expected at least one");
+    }
+    cases
+        .iter()
+        .map(|case| read_case(case, parameters))
+        .collect()
+}
+
+fn read_case(case: &Field, mut parameters: Parameters) -> anyhow::Result<Case> {
+    case.members(KEYS)?;
+    if let Some(changed) = case.member("changed")? {
+        put(&mut parameters, &changed)?;
+    }
+    let end = case.must("t_end", "seconds")?;
+    let end_s = end.number()?;
+    if end_s <= 0.0 || end_s > 100.0 {
+        return Err(end.wrong("seconds above 0, at most 100"));
+    }
+    Ok(Case {
+        name: case.must("name", "a text")?.text()?.to_owned(),
+        start: start(case, &parameters)?,
+        excitation: excitation(case)?,
+        parameters,
+        end_s,
+    })
+}
+
+fn put(parameters: &mut Parameters, all: &Field) -> anyhow::Result<()> {
+    let fields = all.members(Parameters::NAMES)?;
+    for (name, field) in &fields {
+        parameters.set(name, field.number()?);
+    }
+    let Some((name, expected)) = parameters.fault() else {
+        return positive_ohm(parameters, all);
+    };
+    let own = fields.iter().find(|(known, _)| *known == name);
+    Err(own.map_or(all, |(_, field)| field).wrong(expected))
+}
+
+fn positive_ohm(parameters: &Parameters, all: &Field) -> anyhow::Result<()> {
+    let ohm = parameters.coil_ohm();
+    if ohm <= 0.0 {
+        let expected = format!("R23, alpha23 and T that give a resistance above 0, not {ohm} ohm");
+        return Err(all.wrong(&expected));
+    }
+    Ok(())
+}
+
+fn start(case: &Field, parameters: &Parameters) -> anyhow::Result<State> {
+    if let Some(s0) = case.member("s0")? {
+        let state: State = s0.numbers("five numbers: flux linkage, x, v, y, w")?;
+        if (state[LAMBDA] / parameters.N).abs() >= parameters.phis {
+            return Err(s0.wrong("a flux linkage below saturation, N phis"));
+        }
+        return Ok(state);
+    }
+    let initial = case.must("initial", "`rest` or `sealed12`, or a state in s0")?;
+    let model = Model::new(parameters);
+    match initial.text()? {
+        "rest" => Ok(model.at_rest(0.0)),
+        text => {
+            let volts = text
+                .strip_prefix("sealed")
+                .and_then(|v| v.parse::<f64>().ok());
+            match volts.filter(|v| v.is_finite() && *v > model.release().volts) {
+                Some(volts) => Ok(model.sealed(volts)),
+                None => Err(initial
+                    .wrong("`rest`, or `sealed` with volts above release such as `sealed12`")),
+            }
+        }
+    }
+}
+
+fn excitation(case: &Field) -> anyhow::Result<Excitation> {
+    if let Some(clamp) = case.member("freewheel_clamp_V")? {
+        let volts = clamp.number()?;
+        if volts < 0.0 {
+            return Err(clamp.wrong("volts, 0 or more, or null"));
+        }
+        return Ok(Excitation::Clamp(volts));
+    }
+    let field = case.must("waveform", "a list of [s, V]")?;
+    let list = field.list("a list of [s, V]")?;
+    let points: Vec<[f64; 2]> = list
+        .iter()
+        .map(|point| point.numbers("[s, V]"))
+        .collect::<anyhow::Result<_>>()?;
+    let waveform = Waveform::new(points).map_err(|at| {
+        list.get(at)
+            .unwrap_or(&field)
+            .wrong("[s, V] not before the point ahead of it, at least one")
+    })?;
+    Ok(Excitation::Source(waveform))
+}
