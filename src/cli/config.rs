@@ -102,6 +102,7 @@ fn describe_line(wiring: &Wiring, index: usize) -> String {
 
 fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<String> {
     let recipe = load_recipe(dir, name)?;
+    plant.admit(&recipe)?;
     let file = dir.join("recipes").join(format!("{name}.toml"));
     let golden = match plant.golden.of_nominal(recipe.part.nominal_v).count() {
         0 => "NO GOLDEN PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),

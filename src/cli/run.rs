@@ -123,6 +123,7 @@ pub fn run_with(
     }
     let plant = Plant::load(config)?;
     let recipe = Arc::new(load_recipe(config, &args.recipe)?);
+    plant.admit(&recipe)?;
     let is_virtual = args.sim && args.pace == PaceArg::Virtual;
     let mut builder = tokio::runtime::Builder::new_current_thread();
     builder.enable_all();

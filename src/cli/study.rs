@@ -21,6 +21,7 @@ mod chart;
 mod collision;
 mod coverage;
 mod cycle;
+mod decision;
 mod error;
 mod exception;
 mod figure;
@@ -33,8 +34,10 @@ mod scatter;
 mod sorting;
 #[cfg(test)]
 mod tests;
+mod threshold;
 #[cfg(feature = "sim")]
 mod transient;
+mod variant;
 
 use crate::config::load_recipe;
 use crate::gauge::Parameter;
@@ -64,6 +67,10 @@ pub enum Study {
     Cycle,
     /// Speed of the history on a made-up file
     History,
+    /// False accepts and rejects, counted and as the decision rule predicts them
+    Decision,
+    /// Seconds against error of every strategy for the thresholds
+    Threshold,
     /// Parts per second of wall time, and whether the same seed gives the same bytes
     Pace,
     /// Good parts rejected, defects by bin, over many lots
@@ -78,11 +85,13 @@ impl Study {
         match self {
             Self::Accuracy => Some((10, 500)),
             Self::Collision => None,
-            Self::Coverage => Some((40, 25)),
+            Self::Coverage => Some((100, 10)),
             Self::Cycle => Some((1, 100)),
+            Self::Decision => Some((20, 500)),
             Self::History => Some((1, 1_000_000)),
             Self::Pace => Some((3, 300)),
             Self::Sorting => Some((100, 110)),
+            Self::Threshold => Some((2, 40)),
             Self::Transient => None,
         }
     }
@@ -94,6 +103,8 @@ impl Study {
             Self::Coverage => "coverage",
             Self::Cycle => "cycle",
             Self::History => "history",
+            Self::Decision => "decision",
+            Self::Threshold => "threshold",
             Self::Pace => "pace",
             Self::Sorting => "sorting",
             Self::Transient => "transient",
@@ -107,6 +118,8 @@ impl Study {
             Self::Coverage => coverage::study(order),
             Self::Cycle => cycle::study(order),
             Self::History => history::study(order),
+            Self::Decision => decision::study(order),
+            Self::Threshold => threshold::study(order),
             Self::Pace => pace::study(order),
             Self::Sorting => sorting::study(order),
             Self::Transient => bail!("study transient runs no lot"),

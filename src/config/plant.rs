@@ -6,6 +6,7 @@ use super::form::Key;
 use super::keys;
 use super::tree::{Node, NotToml, not_toml};
 use crate::gauge::settings::{AccuracySettings, CalibrationSettings, GoldenSet, ReferenceSettings};
+use crate::gauge::{Recipe, feasible};
 use crate::guard::{Actuator, Guard, GuardSettings};
 use crate::rig::fault::Fault;
 use crate::rig::settings::RigSettings;
@@ -66,6 +67,22 @@ impl Plant {
             calibration: gauge.calibration,
             golden,
             rig_text: rig.text,
+        })
+    }
+}
+
+impl Plant {
+    /// Refuses a recipe that the modules of this plant cannot measure.
+    ///
+    /// # Errors
+    /// The first fault, with file, line, key and the module that stands against it.
+    pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
+        feasible::check(recipe, &self.wiring, &self.accuracy).or_else(|fault| {
+            let path = self
+                .dir
+                .join("recipes")
+                .join(format!("{}.toml", recipe.name));
+            Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
         })
     }
 }

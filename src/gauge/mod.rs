@@ -8,6 +8,7 @@
 //! |---|---|
 //! | what is measured, in which unit | [`parameter`] |
 //! | what the part must do | [`recipe`] |
+//! | how a threshold is found, and whether modules and uncertainty allow it | [`strategy`], [`feasible`] |
 //! | what the instruments are known to do | [`calibration`], [`settings`] |
 //! | coil resistance | [`coil`] |
 //! | operate and release voltage | [`threshold`] |
@@ -20,9 +21,11 @@ pub mod budget;
 pub mod calibration;
 pub mod coil;
 pub mod contact;
+pub mod feasible;
 pub mod parameter;
 pub mod recipe;
 pub mod settings;
+pub mod strategy;
 pub mod threshold;
 pub mod timing;
 pub mod verdict;
@@ -31,4 +34,5 @@ pub use budget::{Budget, Reading};
 pub use calibration::Calibration;
 pub use parameter::Parameter;
 pub use recipe::Recipe;
+pub use strategy::Strategy;
 pub use verdict::{Bin, Judgement, Verdict};

@@ -4,6 +4,7 @@
 //! a lot can store the very recipe it was judged by.
 
 use super::parameter::Parameter;
+use super::strategy::Strategy;
 use crate::rig::fault::Fault;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -119,6 +120,29 @@ pub struct TestPlan {
     pub expected_release_sd_v: f64,
     /// Coil suppression during the timed release.
     pub clamp: Clamp,
+    /// How the thresholds are found.
+    #[serde(default)]
+    pub strategy: Strategies,
+}
+
+/// A strategy per threshold; one that is not named is `coarse_fine`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Strategies {
+    /// Of the operate threshold.
+    pub operate_voltage_v: Strategy,
+    /// Of the release threshold.
+    pub release_voltage_v: Strategy,
+}
+
+impl Strategies {
+    /// Each with its key.
+    pub fn each(&self) -> [(Parameter, Strategy); 2] {
+        [
+            (Parameter::OperateVoltage, self.operate_voltage_v),
+            (Parameter::ReleaseVoltage, self.release_voltage_v),
+        ]
+    }
 }
 
 /// A checked recipe with the text it came from.

@@ -42,6 +42,7 @@ pub struct AccuracySettings {
     /// Slope of analog outputs, %.
     pub ao_slope_pct: f64,
     /// Time between two steps of an analog output while it ramps, ms.
+    #[serde(default = "AccuracySettings::usual_refresh_ms")]
     pub ao_refresh_ms: f64,
     /// Delay of the counter gates, us.
     pub gate_delay_us: f64,
@@ -53,6 +54,13 @@ pub struct AccuracySettings {
     pub operation_scatter_mv: f64,
     /// Conversions of an I-7017F in fast mode, all enabled channels together, per second.
     pub conversions_per_s: f64,
+}
+
+impl AccuracySettings {
+    /// Of an I-7021P that nobody has looked at.
+    fn usual_refresh_ms() -> f64 {
+        1.0
+    }
 }
 
 /// How long a calibration holds.

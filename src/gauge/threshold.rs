@@ -44,6 +44,8 @@ pub fn indicated(start: Volt, slope_v_per_s: f64, gate: Second, direction: Direc
 pub struct RampDoubt {
     /// Slope of the fine ramp, volts per second.
     pub slope: Factor,
+    /// The error of the slope is in the taught lag already.
+    pub slope_known: bool,
     /// Scatter of the part's own threshold from operation to operation, volts.
     pub operation_v: f64,
     /// Time between two steps of the output while it ramps.
@@ -72,7 +74,14 @@ pub fn quasi_static(
             value * doubt.temperature_k * relative_per_kelvin(part),
         )
         .with_random("repeatability", doubt.operation_v)
-        .with("slope", doubt.slope.u * gate.0)
+        .with(
+            "slope",
+            if doubt.slope_known {
+                0.0
+            } else {
+                doubt.slope.u * gate.0
+            },
+        )
         .with_random(
             "resolution",
             resolution(doubt.slope.value * doubt.refresh.0),
@@ -103,6 +112,7 @@ mod tests {
         };
         let doubt = RampDoubt {
             slope: Factor::new(1.5, 0.0),
+            slope_known: false,
             operation_v: 0.0,
             refresh: Second(0.0),
             level: 0.0,

@@ -33,8 +33,6 @@ const SLOPE_MARGIN_V: f64 = 0.3;
 const DROPS: usize = 8;
 /// Gate pulses: their fractions of a count add up, so one count of error is spread over all.
 const PULSES: u32 = 25;
-/// Nominal slopes of slew codes B and 5 behind the amplifier of 1.5, volts per second.
-const COARSE_V_PER_S: f64 = 96.0;
 
 /// The acts, in the order [`conclude`] expects.
 pub fn acts(bench: &Bench) -> Vec<Act> {
@@ -268,10 +266,15 @@ pub fn conclude(
         coarse: output(gain(&coarse)),
         fine: output(gain(&fine)),
         coarse_v_per_s: Factor::new(
-            COARSE_V_PER_S,
-            COARSE_V_PER_S * rectangular(bench.accuracy.ao_slope_pct / 100.0),
+            bench.nominal_v_per_s[0],
+            bench.nominal_v_per_s[0] * rectangular(bench.accuracy.ao_slope_pct / 100.0),
         ),
-        fine_v_per_s: slope(part(4 * SCANS, RAMP_SCANS), &coil_input, voltage_gain)?,
+        fine_v_per_s: slope(
+            bench,
+            part(4 * SCANS, RAMP_SCANS),
+            &coil_input,
+            voltage_gain,
+        )?,
         ohm_fine: ohm(|level| level.fine),
         ohm_wide: ohm(|level| level.wide),
         contact_mohm_per_v: contact_factor(bench, &readings.drops)?,
@@ -300,7 +303,12 @@ fn check_gain(bench: &Bench, line: &InputLine) -> Result<(), String> {
 
 /// Slope of the fine ramp by least squares against the arrival of the replies. Conversions lag the
 /// replies by a constant on average, which does not tilt the line.
-fn slope(scans: &[CoilScan], line: &InputLine, voltage_gain: f64) -> Result<Factor, String> {
+fn slope(
+    bench: &Bench,
+    scans: &[CoilScan],
+    line: &InputLine,
+    voltage_gain: f64,
+) -> Result<Factor, String> {
     let points: Vec<(f64, f64)> = scans
         .iter()
         .filter_map(|scan| scan.voltage_fine.as_ref())
@@ -330,9 +338,10 @@ fn slope(scans: &[CoilScan], line: &InputLine, voltage_gain: f64) -> Result<Fact
         .sum::<f64>()
         / (n - 2.0);
     let u = (rest / stt).sqrt().hypot(value * line.gain.u);
-    if !value.is_finite() || (value / 1.5 - 1.0).abs() > 0.02 {
+    let nominal = bench.nominal_v_per_s[1];
+    if !value.is_finite() || (value / nominal - 1.0).abs() > 0.02 {
         return Err(format!(
-            "slope of the fine ramp is {value:.4} V/s where 1.5 V/s was expected"
+            "slope of the fine ramp is {value:.4} V/s where {nominal} V/s was expected"
         ));
     }
     Ok(Factor::new(value, u))

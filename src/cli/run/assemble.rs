@@ -5,9 +5,10 @@ use crate::bus::Pace;
 use crate::cycle::{Cycle, LineEnds, Outside};
 use crate::gauge::Calibration;
 use crate::gauge::calibration::{Factor, InputLine, OutputLine};
+use crate::gauge::feasible::nominal_v_per_s;
 use crate::guard::{Actuator, Guard, PartSize};
 use crate::rig::axis::AxisStation;
-use crate::rig::point::AnalogIn;
+use crate::rig::point::{AnalogIn, AnalogOut};
 use crate::rig::wiring::StrokeLimits;
 use crate::station::mechanism::Mechanism;
 use crate::station::moves::Strokes;
@@ -59,6 +60,8 @@ pub fn cycle(
         recipe,
         reference: plant.reference,
         accuracy: plant.accuracy,
+        nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
+            .map(|output| nominal_v_per_s(&wiring, output)),
     };
     let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), part);
     let station = Station::new(plan, bench, wiring.axis.clone(), mechanism);

@@ -139,6 +139,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
         "uncertainty": uncertainty,
         "test_s": judged.part.test.map(|test| rounded(test.0)),
         "cycle_s": cycle_s.map(rounded),
+        "stages": judged.findings.stages.iter().map(|(what, time)| ((*what).to_string(), json!(time.as_seconds()))).collect::<Map<String, Value>>(),
         "spent": {
             "bus_s": spent.bus.as_seconds(),
             "settling_s": spent.settling.as_seconds(),

@@ -16,12 +16,12 @@ use crate::gauge::Parameter;
 /// Greatest rms error that is good enough, in the unit of [`unit`].
 pub const fn allowed(parameter: Parameter) -> f64 {
     match parameter {
-        Parameter::CoilResistance => 0.3,
-        Parameter::OperateVoltage => 15.0,
-        Parameter::ReleaseVoltage => 20.0,
-        Parameter::OperateTime | Parameter::ReleaseTime => 0.05,
-        Parameter::OperateBounce | Parameter::ReleaseBounce => 0.1,
-        Parameter::ContactResistanceNo | Parameter::ContactResistanceNc => 1.0,
+        Parameter::CoilResistance => 0.12,
+        Parameter::OperateVoltage => 9.0,
+        Parameter::ReleaseVoltage => 4.0,
+        Parameter::OperateTime | Parameter::ReleaseTime => 0.02,
+        Parameter::OperateBounce | Parameter::ReleaseBounce => 0.05,
+        Parameter::ContactResistanceNo | Parameter::ContactResistanceNc => 0.3,
     }
 }
 

@@ -34,6 +34,9 @@ pub struct Part {
     /// Where the test time went: what to seconds.
     #[serde(default)]
     pub spent: BTreeMap<String, f64>,
+    /// Rig time by what it was spent on measuring: name of the stage to seconds.
+    #[serde(default)]
+    pub stages: BTreeMap<String, f64>,
     /// True when a true value lies beyond a limit of the recipe, defect or not.
     #[serde(skip)]
     pub is_beyond: bool,

@@ -1,6 +1,7 @@
 //! Keys of `recipes/NAME.toml`.
 
 use crate::config::form::{Form, Key, Range, above_zero, from_to, key, optional, whole};
+use crate::gauge::Strategy;
 
 const LENGTH: Range = Range {
     unit: "mm",
@@ -122,6 +123,21 @@ const DECISION: &[Key] = &[
     ),
 ];
 
+const STRATEGY: &[Key] = &[
+    optional(
+        "operate_voltage_v",
+        Form::Choice(&Strategy::NAMES),
+        "station",
+        "how the operate threshold is found",
+    ),
+    optional(
+        "release_voltage_v",
+        Form::Choice(&Strategy::NAMES),
+        "station",
+        "how the release threshold is found",
+    ),
+];
+
 const TEST: &[Key] = &[
     key(
         "conditioning_operations",
@@ -176,6 +192,12 @@ const TEST: &[Key] = &[
         Form::Choice(&["zener", "diode"]),
         "station",
         "coil suppression during the timed release",
+    ),
+    optional(
+        "strategy",
+        Form::Table(STRATEGY),
+        "station",
+        "per threshold; coarse_fine where none is named",
     ),
 ];
 

@@ -5,6 +5,7 @@ use crate::gauge::coil::ScanDoubt;
 use crate::gauge::recipe::{CoilChannels, Recipe};
 use crate::gauge::settings::{AccuracySettings, ReferenceSettings};
 use crate::gauge::timing::Clock;
+use crate::gauge::{Parameter, Strategy};
 use crate::units::{Celsius, Span};
 use std::sync::Arc;
 
@@ -28,6 +29,8 @@ pub struct Bench {
     pub reference: ReferenceSettings,
     /// Promises of the makers.
     pub accuracy: AccuracySettings,
+    /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
+    pub nominal_v_per_s: [f64; 2],
 }
 
 impl Bench {
@@ -75,6 +78,24 @@ impl Bench {
     /// Reference temperature of the recipe.
     pub fn reference_temperature(&self) -> Celsius {
         Celsius(self.recipe.part.reference_temperature_c)
+    }
+
+    /// How a threshold is found. Golden parts, and parts before them, always get both ramps: they teach the lags.
+    pub fn strategy(&self, parameter: Parameter) -> Strategy {
+        let taught = self
+            .calibration
+            .lags
+            .is_some_and(|lags| lags.operate.fine_v.u.is_finite());
+        let chosen = self
+            .recipe
+            .test
+            .strategy
+            .each()
+            .into_iter()
+            .find(|(known, _)| *known == parameter);
+        chosen
+            .filter(|_| taught)
+            .map_or(Strategy::CoarseFine, |(_, strategy)| strategy)
     }
 
     /// Lag of the operate ramps; before golden parts were run, a guess with a wide scatter.

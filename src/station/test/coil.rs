@@ -43,7 +43,7 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
     let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
     let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
     let repeated = findings.attempts(Parameter::CoilResistance) > 0;
-    (findings.operated, findings.released) = (false, false);
+    (findings.operated, findings.released, findings.armed) = (false, false, true);
     let mut acts = Vec::new();
     if repeated {
         let down = OFF.max(coarse_takes).max(fine_takes);

@@ -1,13 +1,15 @@
 //! What the stages of a test have found: results, the bytes they came from, and why it ended early.
 
 use super::ramp::Expected;
+use super::search::Search;
 use crate::gauge::Parameter;
 use crate::gauge::budget::{self, Reading};
 use crate::gauge::threshold::Direction;
-use crate::gauge::verdict::{Bin, Reason};
+use crate::gauge::verdict::{Bin, Judgement, Reason};
 use crate::rig::sample::{CountSample, Origin, Sample};
 use crate::station::act::Spent;
 use crate::units::{Celsius, Span, Volt};
+use std::collections::BTreeMap;
 
 /// What a result was made from: line, module, channel and raw text lead back to the bytes.
 pub trait Evidence {
@@ -45,6 +47,16 @@ pub struct Ramp {
     pub fine: Option<Volt>,
 }
 
+impl Ramp {
+    /// A fine ramp that no coarse one has placed.
+    pub fn fine_only(seen: Volt) -> Self {
+        Self {
+            coarse: Volt(f64::NAN),
+            fine: Some(seen),
+        }
+    }
+}
+
 /// Results so far.
 #[derive(Debug, Clone, Default)]
 pub struct Findings {
@@ -71,6 +83,14 @@ pub struct Findings {
     pub rested: bool,
     /// How long after that mark a ramp goes on that nobody waits for.
     pub still_ramping: Span,
+    /// Ramp mode and ARM are set, and nothing has moved since.
+    pub armed: bool,
+    /// The search by levels under way.
+    pub search: Option<Search>,
+    /// Limits that were proven without a value.
+    pub proven: Vec<(Parameter, Judgement)>,
+    /// Rig time by what it was spent on.
+    pub stages: BTreeMap<&'static str, Span>,
     /// Longest time of the ramp under way.
     pub ramp_takes: Span,
     /// Where the next fine operate ramp looks for its event.
@@ -90,6 +110,11 @@ impl Findings {
             Direction::Rising => &mut self.expected_operate,
             Direction::Falling => &mut self.expected_release,
         }
+    }
+
+    /// Books the time of a stage.
+    pub fn took(&mut self, what: &'static str, time: Span) {
+        *self.stages.entry(what).or_default() += time;
     }
 
     /// Adds one result of a stage with the replies it was made from.

@@ -10,6 +10,9 @@
 //! The board takes the source off by itself, 2 ms ahead of a change of drive, selection or direction;
 //! whoever makes such a change allows for it ([`INTERLOCK`]).
 //!
+//! How a threshold is found is the recipe's ([`crate::gauge::strategy`]): the line above is that of
+//! `coarse_fine`, a [`search`] takes the place of the ramps.
+//!
 //! A stage that finds the part unfit for the rest (open coil, contact that does not move) says why
 //! and the test goes straight to `off`. Results inside the guard band are measured again by the slow
 //! strategy: the same stage `slow_repeats` times, averaged. What is then still conditional fails.
@@ -22,11 +25,13 @@ mod kelvin;
 mod operate;
 pub mod ramp;
 mod release;
+pub mod search;
 mod timing;
 
 use super::act::{Act, Doing, JobDone, Runner};
 use super::supply::Supply;
 use crate::gauge::Parameter;
+use crate::gauge::threshold::Direction;
 use crate::gauge::verdict::{Judgement, Verdict, failed_with, judge, of_part};
 use crate::rig::image::Image;
 use crate::rig::point::DigitalOut;
@@ -50,6 +55,8 @@ pub enum Stage {
     NcContact,
     /// Coil resistance at the pre-bias.
     Coil,
+    /// One trial of a search by levels, towards operate or release.
+    Search(Direction),
     /// Coarse ramp from the pre-bias.
     OperateCoarse,
     /// Nominal voltage, when the coarse ramp saw no make.
@@ -68,18 +75,47 @@ pub enum Stage {
     Off,
 }
 
-const ORDER: [Stage; 10] = [
-    Stage::Kelvin,
-    Stage::NcContact,
-    Stage::Coil,
-    Stage::OperateCoarse,
-    Stage::ReleaseCoarse,
-    Stage::OperateFine(0),
-    Stage::ReleaseFine(0),
-    Stage::TimedOperate,
-    Stage::TimedRelease,
-    Stage::Off,
-];
+/// Stages of a good part: what comes before the strategies, what they ask for, what comes after.
+fn order(bench: &Bench) -> VecDeque<Stage> {
+    let (operate, release) = (
+        bench.strategy(Parameter::OperateVoltage),
+        bench.strategy(Parameter::ReleaseVoltage),
+    );
+    let mut stages = VecDeque::from([Stage::NcContact, Stage::Coil]);
+    stages.push_back(match operate.ramps() {
+        true => Stage::OperateCoarse,
+        false => Stage::Search(Direction::Rising),
+    });
+    stages.push_back(match release.ramps() {
+        true => Stage::ReleaseCoarse,
+        false => Stage::Search(Direction::Falling),
+    });
+    stages.extend(operate.always_fine().then_some(Stage::OperateFine(0)));
+    stages.extend(release.always_fine().then_some(Stage::ReleaseFine(0)));
+    stages.extend([Stage::TimedOperate, Stage::TimedRelease, Stage::Off]);
+    stages
+}
+
+impl Stage {
+    /// What its time is booked on.
+    pub fn measures(self) -> &'static str {
+        match self {
+            Self::Kelvin => "kelvin",
+            Self::NcContact => "nc_contact",
+            Self::Coil => "coil",
+            Self::OperateCoarse
+            | Self::PullIn
+            | Self::OperateFine(_)
+            | Self::Search(Direction::Rising) => "operate",
+            Self::ReleaseCoarse | Self::ReleaseFine(_) | Self::Search(Direction::Falling) => {
+                "release"
+            }
+            Self::TimedOperate => "timed_operate",
+            Self::TimedRelease => "timed_release",
+            Self::Off => "off",
+        }
+    }
+}
 
 /// What the test wants from its surroundings.
 #[derive(Debug)]
@@ -100,6 +136,7 @@ pub struct Test {
     runner: Runner,
     slow_done: bool,
     gates: Option<[CountSample; 2]>,
+    began: RigTime,
     /// What has been found so far.
     pub findings: Findings,
 }
@@ -111,9 +148,10 @@ impl Test {
         let mut findings = Findings::default();
         let runner = Runner::new(acts(Stage::Kelvin, &bench, &mut supply, &mut findings), now);
         Self {
+            stages: order(&bench),
             bench,
             supply,
-            stages: ORDER[1..].iter().copied().collect(),
+            began: now,
             stage: Stage::Kelvin,
             runner,
             slow_done: false,
@@ -146,7 +184,7 @@ impl Test {
                     return Progress::Doing(other);
                 }
             }
-            self.conclude();
+            self.conclude(now);
             if self.stages.front() == Some(&Stage::Off) {
                 self.add_slow_repeats();
             }
@@ -165,8 +203,11 @@ impl Test {
     }
 
     /// Draws the conclusions of the stage that has just ended.
-    fn conclude(&mut self) {
+    fn conclude(&mut self, now: RigTime) {
         self.findings.spent.add(self.runner.spent());
+        self.findings
+            .took(self.stage.measures(), now.since(self.began));
+        self.began = now;
         let readings = std::mem::take(&mut self.runner.readings);
         self.gates = readings.gates.last().cloned().or(self.gates.take());
         let (bench, findings) = (&self.bench, &mut self.findings);
@@ -174,6 +215,7 @@ impl Test {
             Stage::Kelvin => kelvin::conclude(bench, &readings, findings),
             Stage::NcContact => contact::conclude_nc(bench, &readings, findings),
             Stage::Coil => coil::conclude(bench, &readings, findings),
+            Stage::Search(direction) => search::conclude(bench, &readings, findings, direction),
             Stage::OperateCoarse => operate::conclude_coarse(bench, &readings, findings),
             Stage::PullIn => operate::conclude_pull_in(&readings, findings),
             Stage::OperateFine(attempt) => {
@@ -231,7 +273,11 @@ impl Test {
                 ),
             ))
         };
-        Parameter::ALL.iter().filter_map(one).collect()
+        let proven = self.findings.proven.iter().copied();
+        let measured = Parameter::ALL.iter().filter_map(one);
+        let unmeasured =
+            |(parameter, _): &(Parameter, Judgement)| self.findings.attempts(*parameter) == 0;
+        measured.chain(proven.filter(unmeasured)).collect()
     }
 
     /// Verdict of the part. A proven failure outweighs whatever ended the test early.
@@ -275,6 +321,7 @@ fn acts(stage: Stage, bench: &Bench, supply: &mut Supply, findings: &mut Finding
         Stage::Kelvin => kelvin::acts(),
         Stage::NcContact => contact::acts_nc(bench),
         Stage::Coil => coil::acts(bench, supply, findings),
+        Stage::Search(direction) => search::acts(bench, supply, findings, direction),
         Stage::OperateCoarse => operate::acts_coarse(bench, supply, findings),
         Stage::PullIn => operate::acts_pull_in(bench, supply),
         Stage::OperateFine(_) => operate::acts_fine(bench, supply, findings),

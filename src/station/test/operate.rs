@@ -6,24 +6,28 @@
 
 use super::ramp::{self, Expected, Met, stopped_at};
 use super::{Bench, Findings, INTERLOCK, OFF, Ramp, Stage, board};
-use crate::gauge::Parameter;
+use crate::gauge::budget::Reading;
+use crate::gauge::calibration::Lag;
+use crate::gauge::coil::to_reference;
+use crate::gauge::strategy::{from_two_rates, growth_s};
 use crate::gauge::threshold::{Direction, RampDoubt, indicated, quasi_static};
 use crate::gauge::timing::counts;
 use crate::gauge::verdict::Bin;
+use crate::gauge::{Parameter, Strategy};
 use crate::rig::point::DigitalIn;
 use crate::rig::point::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
 use crate::station::act::{Act, Read, Readings};
 use crate::station::supply::{RAMP_MARGIN, Supply};
-use crate::units::{Second, Span, Volt};
+use crate::units::{Celsius, Second, Span, Volt};
 
 /// The coarse release ramp begins so far above the highest threshold of the lot, volts.
 const RELEASE_HEADROOM_V: f64 = 0.8;
 /// First step of the approach, as a fraction of the start of the fine ramp.
-const APPROACH: f64 = 0.93;
+pub(super) const APPROACH: f64 = 0.93;
 /// Time at the first step.
-const APPROACH_TIME: Span = Span::ms(12);
+pub(super) const APPROACH_TIME: Span = Span::ms(12);
 /// Flux and armature are in equilibrium with the start level after this time.
 pub(super) const SETTLES: Span = Span::ms(25);
 /// Scatter of a repeated fine ramp around the first, volts.
@@ -43,11 +47,16 @@ pub(super) fn release_start(bench: &Bench) -> Volt {
 /// The board was armed while the coil was converted. Once the contact has made, the ramp turns round to
 /// where the release begins; the armature stays.
 pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+    let mut acts = if std::mem::take(&mut findings.armed) {
+        Vec::new()
+    } else {
+        prepared(bench, supply, findings)
+    };
     findings.ramp_start = Some(supply.total());
     findings.ramp_span = Some(Volt(bench.recipe.test.coarse_span_v) - supply.coarse());
     let (ramp, takes) = supply.ramp_coarse(Volt(bench.recipe.test.coarse_span_v));
     let (turn, _) = supply.ramp_coarse(release_start(bench));
-    vec![
+    acts.extend([
         ramp,
         Act::Until {
             point: DigitalIn::Latch,
@@ -56,7 +65,25 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
         Act::Mark,
         turn,
         Act::Read(Read::Gates),
-    ]
+    ]);
+    acts
+}
+
+/// From rest at the pre-bias, armed: what the coil stage leaves behind, when another stage came between.
+fn prepared(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+    let mut acts = dropped(findings);
+    let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
+    acts.extend([
+        coarse,
+        supply.step_to(Volt(bench.recipe.test.prebias_v)),
+        board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
+        Act::WaitSinceMark(OFF.max(takes)),
+        board(&[(CoilDrive, true)]),
+        board(&[(Arm, true)]),
+        Act::Read(Read::Gates),
+        Act::Wait(SETTLES),
+    ]);
+    acts
 }
 
 /// Length of gate 0 between the last two readings.
@@ -104,7 +131,49 @@ pub(super) fn conclude_coarse(
     findings.operated = true;
     findings.still_ramping = turning(bench, coarse - start);
     findings.expected_operate = Some(Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v));
-    None
+    let strategy = bench.strategy(Parameter::OperateVoltage);
+    if strategy.trusts_coarse()
+        && let Some(part) = findings.track
+    {
+        let fast = FastRamp {
+            seen: coarse,
+            gate,
+            lag,
+        };
+        let reading = fast.reading(bench, part);
+        findings.found(
+            Parameter::OperateVoltage,
+            reading,
+            readings.gates.iter().flatten(),
+        );
+    }
+    (!strategy.ramps()).then_some(Stage::OperateFine(0))
+}
+
+/// A coarse ramp whose lag golden parts and lot have taught.
+pub(super) struct FastRamp {
+    /// Indicated voltage.
+    pub seen: Volt,
+    /// Length of the gate.
+    pub gate: Second,
+    /// Lag of this direction.
+    pub lag: Lag,
+}
+
+impl FastRamp {
+    /// The threshold, with the scatter of the lag in its budget.
+    pub(super) fn reading(&self, bench: &Bench, part: Celsius) -> Reading {
+        let as_fine = self.seen - Volt(self.lag.coarse_v);
+        let doubt = RampDoubt {
+            slope: bench.calibration.coarse_v_per_s,
+            slope_known: true,
+            ..doubt(bench)
+        };
+        let reference = bench.reference_temperature();
+        let mut reading = quasi_static(as_fine, self.gate, self.lag, part, reference, doubt);
+        reading.budget = reading.budget.with_random("strategy", self.lag.coarse_sd_v);
+        reading
+    }
 }
 
 /// How long the coarse ramp needs from its event back down to [`release_start`]: it has gone on while the
@@ -244,27 +313,57 @@ pub(super) fn conclude_fine(
             .saturating_sub(Span::seconds(gate.0).0),
     );
     let part = findings.track?;
-    if let Some(ramp) = &mut findings.operate {
-        ramp.fine = Some(seen);
+    if findings.operate.is_none_or(|ramp| ramp.fine.is_none()) {
+        findings.forget(Parameter::OperateVoltage);
     }
-    let reference = bench.reference_temperature();
-    let reading = quasi_static(
-        seen,
-        gate,
-        bench.operate_lag(),
-        part,
-        reference,
-        doubt(bench),
-    );
+    match &mut findings.operate {
+        Some(ramp) => ramp.fine = Some(seen),
+        None => findings.operate = Some(Ramp::fine_only(seen)),
+    }
+    let ramps = findings.operate?;
+    let reading = fine_reading(bench, (ramps, gate), part, Direction::Rising);
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
     findings.found(Parameter::OperateVoltage, reading, samples);
     None
+}
+
+/// Threshold from a fine ramp: less the lag of golden parts, or, by two rates, from both ramps.
+pub(super) fn fine_reading(
+    bench: &Bench,
+    (ramps, gate): (Ramp, Second),
+    part: Celsius,
+    direction: Direction,
+) -> Reading {
+    let (lag, parameter) = match direction {
+        Direction::Rising => (bench.operate_lag(), Parameter::OperateVoltage),
+        Direction::Falling => (bench.release_lag(), Parameter::ReleaseVoltage),
+    };
+    let seen = ramps.fine.unwrap_or(Volt(f64::NAN));
+    let reference = bench.reference_temperature();
+    let mut reading = quasi_static(seen, gate, lag, part, reference, doubt(bench));
+    if bench.strategy(parameter) == Strategy::TwoRates && ramps.coarse.0.is_finite() {
+        let rates = [
+            bench.calibration.coarse_v_per_s.value,
+            bench.calibration.fine_v_per_s.value,
+        ];
+        let sign = direction.sign();
+        // The growth time from the lags of both rates on golden parts; their common offset stays out of it.
+        let lags = [lag.coarse_v + lag.fine_v.value, lag.fine_v.value];
+        let growth = growth_s(lags.map(|it| it * sign), rates);
+        let seen = [ramps.coarse.0, seen.0].map(|volts| volts * sign);
+        let found = sign * from_two_rates(seen, rates, growth);
+        let scatter = rates[1] / (rates[0] - rates[1]) * lag.coarse_sd_v;
+        reading.value = found * to_reference(part, reference);
+        reading.budget = reading.budget.with_random("strategy", scatter);
+    }
+    reading
 }
 
 /// Doubts of a fine ramp beyond the golden parts' shift.
 pub(super) fn doubt(bench: &Bench) -> RampDoubt {
     RampDoubt {
         slope: bench.calibration.fine_v_per_s,
+        slope_known: false,
         operation_v: bench.accuracy.operation_scatter_mv / 1e3,
         refresh: Second(bench.accuracy.ao_refresh_ms * 1e-3),
         level: bench.calibration.level.gain.u,

@@ -3,11 +3,11 @@
 //! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
 //! voltage, so the timed one stays the last of those.
 
-use super::operate::{REPEAT_SD_V, SETTLES, doubt, gate0, release_start};
+use super::operate::{FastRamp, REPEAT_SD_V, SETTLES, fine_reading, gate0, release_start};
 use super::ramp::{self, Expected, Met};
 use super::{Bench, Findings, INTERLOCK, Ramp, Stage, board};
 use crate::gauge::Parameter;
-use crate::gauge::threshold::{Direction, indicated, quasi_static};
+use crate::gauge::threshold::{Direction, indicated};
 use crate::rig::point::DigitalIn;
 use crate::rig::point::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
@@ -99,6 +99,7 @@ pub(super) fn conclude_coarse(
     findings: &mut Findings,
 ) -> Option<Stage> {
     let (start, test) = (findings.ramp_start?, &bench.recipe.test);
+    let strategy = bench.strategy(Parameter::ReleaseVoltage);
     let coarse_v_per_s = bench.calibration.coarse_v_per_s.value;
     let seen = readings.seen.first() == Some(&true);
     let gate =
@@ -109,11 +110,28 @@ pub(super) fn conclude_coarse(
             let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
             let lag = bench.release_lag();
             findings.release = Some(Ramp { coarse, fine: None });
+            if strategy.trusts_coarse()
+                && let Some(part) = findings.track
+            {
+                let reading = FastRamp {
+                    seen: coarse,
+                    gate,
+                    lag,
+                }
+                .reading(bench, part);
+                findings.found(
+                    Parameter::ReleaseVoltage,
+                    reading,
+                    readings.gates.iter().flatten(),
+                );
+            }
             Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v)
         }
         None => Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v),
     });
-    None
+    // A coarse ramp that saw nothing leaves it to the fine one, whatever the strategy.
+    let fine = !strategy.ramps() || strategy.trusts_coarse() && gate.is_none();
+    fine.then_some(Stage::ReleaseFine(0))
 }
 
 pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
@@ -156,24 +174,15 @@ pub(super) fn conclude_fine(
         Met::Again => return Some(Stage::ReleaseFine(attempt + 1)),
     };
     let part = findings.track?;
+    if findings.release.is_none_or(|ramp| ramp.fine.is_none()) {
+        findings.forget(Parameter::ReleaseVoltage);
+    }
     match &mut findings.release {
         Some(ramp) => ramp.fine = Some(seen),
-        None => {
-            findings.release = Some(Ramp {
-                coarse: Volt(f64::NAN),
-                fine: Some(seen),
-            })
-        }
+        None => findings.release = Some(Ramp::fine_only(seen)),
     }
-    let reference = bench.reference_temperature();
-    let reading = quasi_static(
-        seen,
-        gate,
-        bench.release_lag(),
-        part,
-        reference,
-        doubt(bench),
-    );
+    let ramps = findings.release?;
+    let reading = fine_reading(bench, (ramps, gate), part, Direction::Falling);
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
     findings.found(Parameter::ReleaseVoltage, reading, samples);
     None

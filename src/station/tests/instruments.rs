@@ -25,6 +25,7 @@ pub fn bench() -> Bench {
         calibration: Arc::new(calibration()),
         reference: instruments.reference,
         accuracy: instruments.accuracy,
+        nominal_v_per_s: [96.0, 1.5],
     }
 }
 

@@ -1,6 +1,6 @@
 //! References, promised accuracies, calibration.
 
-use crate::config::form::{Form, Key, above_zero, from_to, key};
+use crate::config::form::{Form, Key, above_zero, from_to, key, optional};
 
 pub(super) const REFERENCE: &[Key] = &[
     key(
@@ -96,7 +96,7 @@ pub(super) const ACCURACY: &[Key] = &[
         "gauge",
         "slope of ramps",
     ),
-    key(
+    optional(
         "ao_refresh_ms",
         from_to(0.0, 100.0, "ms"),
         "gauge",

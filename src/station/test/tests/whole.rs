@@ -1,6 +1,6 @@
 //! The acts of all stages against the rules of the interface board, and how a test ends early.
 
-use super::super::{ORDER, Progress, Stage, Test, acts};
+use super::super::{Progress, Stage, Test, acts, order};
 use super::{at_23_c, bench};
 use crate::gauge::budget::{Budget, Reading};
 use crate::gauge::verdict::{Bin, Reason, Verdict};
@@ -18,7 +18,8 @@ fn all_acts() -> Vec<(Stage, Vec<Act>)> {
     let bench = bench();
     let mut supply = Supply::new(&bench.calibration);
     let mut findings = at_23_c();
-    ORDER
+    std::iter::once(Stage::Kelvin)
+        .chain(order(&bench))
         .map(|stage| {
             findings.expected_operate = Some(Expected::new(Volt(7.88), 0.01));
             findings.expected_release = Some(Expected::new(Volt(2.35), 0.01));
@@ -29,7 +30,7 @@ fn all_acts() -> Vec<(Stage, Vec<Act>)> {
             findings.released = matches!(stage, Stage::OperateFine(_) | Stage::TimedOperate);
             (stage, acts(stage, &bench, &mut supply, &mut findings))
         })
-        .to_vec()
+        .collect()
 }
 
 #[test]
