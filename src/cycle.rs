@@ -368,6 +368,7 @@ impl Cycle {
                 wiring.read_counter(Counter::Gate0),
                 wiring.read_counter(Counter::Gate1),
             ],
+            Read::Gate => vec![wiring.read_counter(Counter::Gate0)],
             Read::Resets => self.traffic.measuring_resets(),
             Read::Track => vec![wiring.read_temperature(Temperature::Track)],
         }

@@ -78,8 +78,21 @@ pub struct Lag {
     pub at_v: f64,
     /// Coarse minus fine indication, volts: places the fine ramp.
     pub coarse_v: f64,
-    /// Scatter of [`Lag::coarse_v`] from part to part, volts (1 sd).
+    /// Scatter of [`Lag::coarse_v`] from part to part, volts (1 sd), never believed to be small.
     pub coarse_sd_v: f64,
+    /// Standard uncertainty of a threshold from the coarse ramp alone, for the parts seen so far, volts.
+    #[serde(default = "Lag::unknown")]
+    pub coarse_u_v: f64,
+    /// Parts that have taught the coarse lag.
+    #[serde(default)]
+    pub coarse_n: u32,
+}
+
+impl Lag {
+    /// Of a calibration that was stored before the coarse ramp gave results.
+    fn unknown() -> f64 {
+        f64::INFINITY
+    }
 }
 
 /// Lag of both directions.

@@ -109,6 +109,8 @@ mod tests {
             at_v: 7.88,
             coarse_v: 0.0,
             coarse_sd_v: 0.0,
+            coarse_u_v: 0.01,
+            coarse_n: 5,
         };
         let doubt = RampDoubt {
             slope: Factor::new(1.5, 0.0),

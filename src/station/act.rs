@@ -19,6 +19,8 @@ pub enum Read {
     Drop,
     /// Both gate counters.
     Gates,
+    /// Gate counter 0 alone: all that a ramp needs. Kept beside what counter 1 last was.
+    Gate,
     /// Temperature of the magazine track, which the part has.
     Track,
     /// Whether a module with outputs has restarted since it was asked last; one that has is an alarm.
@@ -166,6 +168,8 @@ pub struct Spent {
     pub conversion: Span,
     /// Waiting for contact events, on ramps and timed operations.
     pub ramp: Span,
+    /// The same acts on a bus that takes no time: settling, conversions and events alone.
+    pub bound: Span,
 }
 
 impl Spent {
@@ -175,6 +179,7 @@ impl Spent {
         self.settling += other.settling;
         self.conversion += other.conversion;
         self.ramp += other.ramp;
+        self.bound += other.bound;
     }
 }
 
@@ -187,6 +192,8 @@ pub struct Runner {
     began: RigTime,
     since: RigTime,
     mark: RigTime,
+    /// How long ago the mark would be on a bus that takes no time.
+    since_mark: Span,
     spent: Spent,
     /// What was read so far.
     pub readings: Readings,
@@ -204,6 +211,7 @@ impl Runner {
             began: now,
             since: now,
             mark: now,
+            since_mark: Span(0),
             spent: Spent::default(),
             readings: Readings::default(),
         }
@@ -224,6 +232,7 @@ impl Runner {
     ) -> Self {
         let mut runner = Self::new(acts, now);
         runner.mark = before.mark;
+        runner.since_mark = before.since_mark;
         runner.readings.gates.extend(gates);
         runner
     }
@@ -285,6 +294,20 @@ impl Runner {
 
     fn next(&mut self) {
         let took = self.since.since(self.began);
+        let least = match &self.current {
+            Some(Act::Wait(span)) => *span,
+            Some(Act::WaitSinceMark(span) | Act::ConvertSinceMark(span)) => {
+                Span(span.0.saturating_sub(self.since_mark.0))
+            }
+            Some(Act::Until { .. }) => took,
+            Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_) | Act::Mark)
+            | None => Span(0),
+        };
+        self.spent.bound += least;
+        self.since_mark = match &self.current {
+            Some(Act::Mark) => Span(0),
+            Some(_) | None => self.since_mark + least,
+        };
         match &self.current {
             Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_)) => {
                 self.spent.bus += took
@@ -349,7 +372,7 @@ impl Runner {
                         .ok_or_else(missing)?,
                 );
             }
-            Read::Gates => {
+            Read::Gates | Read::Gate => {
                 let gate = |counter| image.counter(counter).cloned().ok_or_else(missing);
                 self.readings
                     .gates

@@ -44,13 +44,29 @@ impl CoarseLag {
         if self.n < 1.0 {
             return (guess, FIRST_SCATTER_V);
         }
+        (self.mean, self.uncertainty_v().max(LEAST_SCATTER_V))
+    }
+
+    /// Scatter, widened as few parts know it only badly.
+    fn uncertainty_v(&self) -> f64 {
         let few = 1.0 + 2.0 / self.n;
-        let sd = if self.n < 2.0 {
-            FIRST_SCATTER_V
-        } else {
-            (self.squares / (self.n - 1.0)).sqrt()
-        };
-        (self.mean, (sd * few).max(LEAST_SCATTER_V))
+        if self.n < 2.0 {
+            return FIRST_SCATTER_V * few;
+        }
+        (self.squares / (self.n - 1.0)).sqrt() * few
+    }
+
+    /// Lag with the coarse part as learned so far.
+    fn lag(self, fine_v: Factor, at_v: f64, guess: f64) -> Lag {
+        let (coarse_v, coarse_sd_v) = self.place(guess);
+        Lag {
+            fine_v,
+            at_v,
+            coarse_v,
+            coarse_sd_v,
+            coarse_u_v: self.uncertainty_v(),
+            coarse_n: self.n as u32,
+        }
     }
 }
 
@@ -176,22 +192,10 @@ fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
 
 /// Lag with the coarse part as learned so far.
 pub fn place(fine: Factor, at_v: f64, coarse: CoarseLag) -> Lag {
-    let (coarse_v, coarse_sd_v) = coarse.place(0.0);
-    Lag {
-        fine_v: fine,
-        at_v,
-        coarse_v,
-        coarse_sd_v,
-    }
+    coarse.lag(fine, at_v, 0.0)
 }
 
 /// Lag while golden parts are being run: no fine correction yet, the coarse one as far as learned.
 pub fn interim(guess: Lag, coarse: CoarseLag) -> Lag {
-    let (coarse_v, coarse_sd_v) = coarse.place(guess.coarse_v);
-    Lag {
-        fine_v: Factor::new(0.0, f64::INFINITY),
-        at_v: 0.0,
-        coarse_v,
-        coarse_sd_v,
-    }
+    coarse.lag(Factor::new(0.0, f64::INFINITY), 0.0, guess.coarse_v)
 }

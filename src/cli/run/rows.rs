@@ -145,6 +145,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
             "settling_s": spent.settling.as_seconds(),
             "conversion_s": spent.conversion.as_seconds(),
             "ramp_s": spent.ramp.as_seconds(),
+            "bound_s": spent.bound.as_seconds(),
         },
     })
 }

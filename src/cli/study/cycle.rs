@@ -15,8 +15,14 @@ use super::output::Report;
 use crate::quality::Spread;
 use crate::quality::spread::median;
 
-/// Longest test, seconds of rig time.
-const TEST_S: f64 = 1.0;
+/// Longest test of a good part, seconds of rig time.
+const TEST_S: f64 = 0.85;
+/// Longest test of any part: a defect may ask for another ramp.
+const ANY_TEST_S: f64 = 1.0;
+/// Mean test of a recipe that measures adaptively.
+const ADAPTIVE_MEAN_S: f64 = 0.60;
+/// Mean test against the bound of [`bound`].
+const RATIO: f64 = 1.15;
 /// Longest cycle with overlap, seconds of rig time.
 const CYCLE_S: f64 = 2.5;
 /// Pieces of a test as the rows name them, and as a person reads them.
@@ -33,6 +39,8 @@ const PIECES: [(&str, &str); 4] = [
 /// A lot that could not be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
     let lots = order.run_all()?;
+    let adaptive = order.recipe.ends_with("-adaptive");
+    let mean_bar = if adaptive { ADAPTIVE_MEAN_S } else { TEST_S };
     let pieces = pieces(&lots);
     let chart = Chart {
         title: format!("where a cycle goes, mean per part: {}", order.about()),
@@ -44,7 +52,12 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
             .map(|figure| (figure.name.clone(), figure.value))
             .collect(),
     };
-    let groups = vec![times(&lots), pieces, bins::machine(&lots)];
+    let groups = vec![
+        times(&lots),
+        bound(&lots, mean_bar),
+        pieces,
+        bins::machine(&lots),
+    ];
     Ok(Report {
         study: "cycle",
         about: order.about(),
@@ -65,10 +78,10 @@ pub fn times(lots: &[Lot]) -> Vec<Figure> {
                 spread.n(),
             )
         };
-        let bar = if name.starts_with("test") {
-            TEST_S
-        } else {
-            CYCLE_S
+        let bar = match name {
+            "test, longest of good parts" => TEST_S,
+            "test, longest of all parts" => ANY_TEST_S,
+            _ => CYCLE_S,
         };
         Figure::new(name, spread.n(), spread.max(), "s")
             .with("mean", spread.mean())
@@ -99,6 +112,27 @@ pub fn times(lots: &[Lot]) -> Vec<Figure> {
             "cycle, longest of all parts",
             all().filter_map(|it| it.cycle_s).collect(),
         ),
+    ]
+}
+
+/// Mean test of good parts against the same acts on a bus that takes no time: what conversion rate, settling
+/// and the contact events themselves leave.
+pub fn bound(lots: &[Lot], mean_bar: f64) -> Vec<Figure> {
+    let tests: Vec<(f64, f64)> = lots
+        .iter()
+        .flat_map(Lot::good)
+        .filter_map(|part| Some((part.test_s?, *part.spent.get("bound_s")?)))
+        .collect();
+    let mean = |what: fn(&(f64, f64)) -> f64| {
+        Spread::of(&tests.iter().map(what).collect::<Vec<f64>>()).mean()
+    };
+    let (test, bound) = (mean(|it| it.0), mean(|it| it.1));
+    let n = tests.len() as u64;
+    let ratio = test.zip(bound).map(|(test, bound)| test / bound);
+    vec![
+        Figure::new("test, mean of good parts", n, test, "s").bar(Bar::AtMost(mean_bar)),
+        Figure::new("bound: settling, conversion, events", n, bound, "s"),
+        Figure::new("test against bound", n, ratio, "").bar(Bar::AtMost(RATIO)),
     ]
 }
 

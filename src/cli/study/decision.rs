@@ -18,7 +18,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use std::ops::RangeInclusive;
 
 /// Steps of the integral over +-8 standard deviations of the process.
-const STEPS: u32 = 4000;
+const STEPS: u32 = 40_000;
 /// Parts per million.
 const PPM: f64 = 1e6;
 

@@ -7,6 +7,7 @@
 use super::fleet::{Folder, Order};
 use crate::gauge::Strategy;
 use anyhow::{Context, anyhow};
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 /// A world without errors of the rig, of temperature and of the part from operation to operation: what is left
@@ -40,7 +41,7 @@ rate_pct = 0.0
 pub struct Variant {
     /// Of both thresholds.
     pub strategy: Strategy,
-    /// Of both lines, bits per second.
+    /// Of the measuring line, bits per second.
     pub baud: u32,
     /// Instruments that err by nothing.
     pub exact: bool,
@@ -72,9 +73,19 @@ impl Variant {
                 chosen.then(|| format!("{key} = \"{strategy}\""))
             },
         )?;
+        let measuring = Cell::new(false);
         edit(&to.join("rig.toml"), |line| {
-            line.starts_with("baud")
-                .then(|| format!("baud = {}", self.baud))
+            if line.starts_with('[') {
+                measuring.set(line.starts_with("[line.measure]"));
+            }
+            let baud = measuring.get() && line.starts_with("baud");
+            // Asking every module at the start takes a slow line longer than the usual watchdog waits.
+            let watchdog = line.starts_with("host_watchdog_ms") && self.baud < 19_200;
+            match (baud, watchdog) {
+                (true, _) => Some(format!("baud = {}", self.baud)),
+                (false, true) => Some("host_watchdog_ms = 5000".to_owned()),
+                (false, false) => None,
+            }
         })?;
         let world = if self.exact {
             let path = folder.0.join("exact.toml");

@@ -18,6 +18,9 @@ const UNTAUGHT_RELEASE_V: f64 = -1.05;
 /// How far that may be off (1 sd), volts.
 const UNTAUGHT_SD_V: f64 = 0.05;
 
+/// Golden parts and first parts of a lot that teach the coarse lag before it gives results.
+const FIRST_PARTS: u32 = 15;
+
 /// Recipe, calibration and instrument data of a test.
 #[derive(Debug, Clone)]
 pub struct Bench {
@@ -80,22 +83,26 @@ impl Bench {
         Celsius(self.recipe.part.reference_temperature_c)
     }
 
-    /// How a threshold is found. Golden parts, and parts before them, always get both ramps: they teach the lags.
+    /// How a threshold is found. Golden parts always get both ramps: they teach the lags; and so do the first
+    /// parts of a lot before `adaptive` trusts its coarse ramp.
     pub fn strategy(&self, parameter: Parameter) -> Strategy {
-        let taught = self
-            .calibration
-            .lags
-            .is_some_and(|lags| lags.operate.fine_v.u.is_finite());
-        let chosen = self
-            .recipe
-            .test
-            .strategy
-            .each()
-            .into_iter()
-            .find(|(known, _)| *known == parameter);
-        chosen
-            .filter(|_| taught)
-            .map_or(Strategy::CoarseFine, |(_, strategy)| strategy)
+        let lag = match parameter {
+            Parameter::ReleaseVoltage => self.release_lag(),
+            Parameter::CoilResistance
+            | Parameter::OperateVoltage
+            | Parameter::OperateTime
+            | Parameter::ReleaseTime
+            | Parameter::OperateBounce
+            | Parameter::ReleaseBounce
+            | Parameter::ContactResistanceNo
+            | Parameter::ContactResistanceNc => self.operate_lag(),
+        };
+        let mut each = self.recipe.test.strategy.each().into_iter();
+        match each.find(|(known, _)| *known == parameter) {
+            Some((_, Strategy::Adaptive)) if lag.coarse_n < FIRST_PARTS => Strategy::CoarseFine,
+            Some((_, strategy)) if lag.fine_v.u.is_finite() => strategy,
+            Some(_) | None => Strategy::CoarseFine,
+        }
     }
 
     /// Lag of the operate ramps; before golden parts were run, a guess with a wide scatter.
@@ -120,5 +127,7 @@ fn untaught(coarse_v: f64) -> Lag {
         at_v: 0.0,
         coarse_v,
         coarse_sd_v: UNTAUGHT_SD_V,
+        coarse_u_v: f64::INFINITY,
+        coarse_n: 0,
     }
 }

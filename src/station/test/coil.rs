@@ -24,7 +24,7 @@ const LEAST_PREBIAS: f64 = 0.5;
 const NO_CURRENT: Volt = Volt(0.15);
 /// Below this coil current the clamp may be switched and the probes may leave, ampere.
 const OFF_CURRENT_A: f64 = 0.001;
-/// Nothing driven, nothing selected.
+/// Nothing driven, nothing selected; the pins of the next part will be looked at first.
 const IDLE: [(DigitalOut, bool); 8] = [
     (SourceOn, false),
     (SourceReverse, false),
@@ -33,7 +33,7 @@ const IDLE: [(DigitalOut, bool); 8] = [
     (RampMode, false),
     (SelectNo, false),
     (EventNoBreak, false),
-    (KelvinTest, false),
+    (KelvinTest, true),
 ];
 
 /// The board is prepared for the operate ramp while the coil is converted: nothing moves the supply

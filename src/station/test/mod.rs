@@ -97,6 +97,24 @@ fn order(bench: &Bench) -> VecDeque<Stage> {
 }
 
 impl Stage {
+    /// The direction of a fine ramp.
+    fn is_fine(self) -> Option<Direction> {
+        match self {
+            Self::OperateFine(_) => Some(Direction::Rising),
+            Self::ReleaseFine(_) => Some(Direction::Falling),
+            Self::Kelvin
+            | Self::NcContact
+            | Self::Coil
+            | Self::Search(_)
+            | Self::OperateCoarse
+            | Self::PullIn
+            | Self::TimedOperate
+            | Self::TimedRelease
+            | Self::ReleaseCoarse
+            | Self::Off => None,
+        }
+    }
+
     /// What its time is booked on.
     pub fn measures(self) -> &'static str {
         match self {
@@ -232,6 +250,12 @@ impl Test {
         if findings.stopped() && self.stage != Stage::Off {
             self.stages = VecDeque::from([Stage::Off]);
         } else if let Some(stage) = again {
+            if matches!(self.stage, Stage::Search(_)) {
+                // The ramp that the search has placed is the one that was to come anyway.
+                self.stages.retain(|waiting| {
+                    stage.is_fine().is_none() || waiting.is_fine() != stage.is_fine()
+                });
+            }
             self.stages.push_front(stage);
         }
     }

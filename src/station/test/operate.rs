@@ -5,6 +5,7 @@
 //! a step from zero picks up some 30 mV below the quasi-static threshold: the armature swings over.
 
 use super::ramp::{self, Expected, Met, stopped_at};
+use super::search::{AFTER_SEARCH, Search};
 use super::{Bench, Findings, INTERLOCK, OFF, Ramp, Stage, board};
 use crate::gauge::budget::Reading;
 use crate::gauge::calibration::Lag;
@@ -30,6 +31,8 @@ pub(super) const APPROACH: f64 = 0.93;
 pub(super) const APPROACH_TIME: Span = Span::ms(12);
 /// Flux and armature are in equilibrium with the start level after this time.
 pub(super) const SETTLES: Span = Span::ms(25);
+/// The same from 0.93 of it: a smaller step, and what is left of it golden parts show as well.
+const FINE_SETTLES: Span = Span::ms(20);
 /// Scatter of a repeated fine ramp around the first, volts.
 pub(super) const REPEAT_SD_V: f64 = 0.008;
 /// Poll of the latch and write of the turn, at the longest.
@@ -64,7 +67,7 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
         },
         Act::Mark,
         turn,
-        Act::Read(Read::Gates),
+        Act::Read(Read::Gate),
     ]);
     acts
 }
@@ -171,7 +174,7 @@ impl FastRamp {
         };
         let reference = bench.reference_temperature();
         let mut reading = quasi_static(as_fine, self.gate, self.lag, part, reference, doubt);
-        reading.budget = reading.budget.with_random("strategy", self.lag.coarse_sd_v);
+        reading.budget = reading.budget.with_random("strategy", self.lag.coarse_u_v);
         reading
     }
 }
@@ -241,7 +244,7 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
         Act::Mark,
         board(&[(Arm, true)]),
         Act::Read(Read::Gates),
-        Act::WaitSinceMark(SETTLES),
+        Act::WaitSinceMark(FINE_SETTLES),
     ]);
     findings.ramp_start = Some(supply.total());
     findings.ramp_span = Some(placed.span);
@@ -254,7 +257,7 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
             within: takes + LATE,
         },
         Act::Mark,
-        Act::Read(Read::Gates),
+        Act::Read(Read::Gate),
     ]);
     acts
 }
@@ -303,7 +306,7 @@ pub(super) fn conclude_fine(
 ) -> Option<Stage> {
     let (seen, gate) = match ramp::meet(bench, readings, findings, Direction::Rising, attempt)? {
         Met::At(seen, gate) => (seen, gate),
-        Met::Again => return Some(Stage::OperateFine(attempt + 1)),
+        Met::Again => return Some(again(bench, findings, Direction::Rising, attempt)),
     };
     findings.operated = true;
     findings.still_ramping = Span(
@@ -325,6 +328,23 @@ pub(super) fn conclude_fine(
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
     findings.found(Parameter::OperateVoltage, reading, samples);
     None
+}
+
+/// After a first miss the neighbour is tried, after a second the threshold is searched by halves.
+pub(super) fn again(
+    bench: &Bench,
+    findings: &mut Findings,
+    direction: Direction,
+    attempt: u8,
+) -> Stage {
+    if attempt + 1 == AFTER_SEARCH {
+        findings.search = Some(Search::placing(bench, direction));
+        return Stage::Search(direction);
+    }
+    match direction {
+        Direction::Rising => Stage::OperateFine(attempt + 1),
+        Direction::Falling => Stage::ReleaseFine(attempt + 1),
+    }
 }
 
 /// Threshold from a fine ramp: less the lag of golden parts, or, by two rates, from both ramps.
@@ -352,7 +372,7 @@ pub(super) fn fine_reading(
         let growth = growth_s(lags.map(|it| it * sign), rates);
         let seen = [ramps.coarse.0, seen.0].map(|volts| volts * sign);
         let found = sign * from_two_rates(seen, rates, growth);
-        let scatter = rates[1] / (rates[0] - rates[1]) * lag.coarse_sd_v;
+        let scatter = rates[1] / (rates[0] - rates[1]) * lag.coarse_u_v;
         reading.value = found * to_reference(part, reference);
         reading.budget = reading.budget.with_random("strategy", scatter);
     }

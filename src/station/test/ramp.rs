@@ -12,8 +12,10 @@ use crate::units::{Second, Volt};
 /// ramp alone that would take 33 ms. What is left keeps the comparator's tolerance out of the way.
 pub(super) const JUMP: Volt = Volt(0.045);
 /// The quasi-static threshold lies so far before the event of a fine ramp (its lag is some 27 mV at
-/// 1.5 V/s, 35 mV at 2 V/s): the ramp must have begun before that, or it is a step.
-const RUN_UP: Volt = Volt(0.035);
+/// 1.5 V/s): the ramp must have begun before that, or it is a step.
+const RUN_UP: Volt = Volt(0.030);
+/// The same for a sealed armature, whose flux follows the jump at 6 to 9 ms instead of 1.5.
+const RUN_DOWN: Volt = Volt(0.045);
 /// Beyond the far end of the estimate, for the lag's own scatter.
 const FAR_MARGIN: Volt = Volt(0.015);
 /// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
@@ -51,7 +53,11 @@ impl Expected {
 
     /// The ramp that searches this interval.
     pub fn placed(&self, direction: Direction) -> Placed {
-        let lead = JUMP + RUN_UP;
+        let run = match direction {
+            Direction::Rising => RUN_UP,
+            Direction::Falling => RUN_DOWN,
+        };
+        let lead = JUMP + run;
         Placed {
             start: self.centre - (self.half_width + lead) * direction.sign(),
             span: lead + self.half_width * 2.0 + FAR_MARGIN,

@@ -3,8 +3,9 @@
 //! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
 //! voltage, so the timed one stays the last of those.
 
-use super::operate::{FastRamp, REPEAT_SD_V, SETTLES, fine_reading, gate0, release_start};
+use super::operate::{FastRamp, REPEAT_SD_V, SETTLES, again, fine_reading, gate0, release_start};
 use super::ramp::{self, Expected, Met};
+use super::search::Search;
 use super::{Bench, Findings, INTERLOCK, Ramp, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::threshold::{Direction, indicated};
@@ -129,9 +130,12 @@ pub(super) fn conclude_coarse(
         }
         None => Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v),
     });
-    // A coarse ramp that saw nothing leaves it to the fine one, whatever the strategy.
-    let fine = !strategy.ramps() || strategy.trusts_coarse() && gate.is_none();
-    fine.then_some(Stage::ReleaseFine(0))
+    if gate.is_none() {
+        // Below its floor the coarse ramp tells nothing: the threshold is far from the lot's.
+        findings.search = Some(Search::placing(bench, Direction::Falling));
+        return Some(Stage::Search(Direction::Falling));
+    }
+    (!strategy.ramps()).then_some(Stage::ReleaseFine(0))
 }
 
 pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
@@ -171,7 +175,7 @@ pub(super) fn conclude_fine(
     findings.released = true;
     let (seen, gate) = match ramp::meet(bench, readings, findings, Direction::Falling, attempt)? {
         Met::At(seen, gate) => (seen, gate),
-        Met::Again => return Some(Stage::ReleaseFine(attempt + 1)),
+        Met::Again => return Some(again(bench, findings, Direction::Falling, attempt)),
     };
     let part = findings.track?;
     if findings.release.is_none_or(|ramp| ramp.fine.is_none()) {

@@ -38,9 +38,13 @@ pub(super) fn acts_operate(
     let mut acts = dropped(findings);
     let off = OFF.max(std::mem::take(&mut findings.still_ramping));
     acts.extend([
-        board(&[(RampMode, false), (SelectNo, true), (EventNoBreak, false)]),
+        board(&[
+            (RampMode, false),
+            (SelectNo, true),
+            (EventNoBreak, false),
+            (Arm, true),
+        ]),
         supply.step_to(Volt(bench.recipe.part.nominal_v)),
-        board(&[(Arm, true)]),
     ]);
     acts.extend((!counted).then_some(Act::Read(Read::Gates)));
     acts.extend([
@@ -64,20 +68,17 @@ pub(super) fn acts_release(
         acts.extend([
             board(&[(RampMode, false), (EventNoBreak, false)]),
             supply.step_to(Volt(bench.recipe.part.nominal_v)),
-            board(&[(CoilDrive, true)]),
+            board(&[(CoilDrive, true), (SelectNo, true)]),
             Act::Wait(Span::ms(40)),
         ]);
     }
     let counted = std::mem::take(&mut findings.operated);
-    acts.extend([
-        board(&[
-            (SourceOn, false),
-            (SourceReverse, false),
-            (SelectNo, false),
-            (Arm, false),
-        ]),
-        board(&[(Arm, true)]),
-    ]);
+    acts.extend([board(&[
+        (SourceOn, false),
+        (SourceReverse, false),
+        (SelectNo, false),
+        (Arm, true),
+    ])]);
     acts.extend((!counted).then_some(Act::Read(Read::Gates)));
     acts.push(board(&[(CoilDrive, false), (SourceOn, true)]));
     acts.extend(until_made());
@@ -86,6 +87,8 @@ pub(super) fn acts_release(
     acts.extend(drop_of_closure(bench));
     acts
 }
+
+// ARM rises in the same word as a selection: it clears window and latch, and no selection starts them.
 
 /// The contact event; from its mark the bounce, the window and the source take their time.
 fn until_made() -> [Act; 2] {
@@ -101,11 +104,12 @@ fn until_made() -> [Act; 2] {
 /// Gates once the window has closed, then the forward drop. The source has been asked for before the
 /// contact made: the board lets it flow once the contact has been closed for 5 ms. It drives the same way
 /// as the contact monitor, so that gate 1 does not take it for an open contact.
-fn drop_of_closure(bench: &Bench) -> [Act; 5] {
+fn drop_of_closure(bench: &Bench) -> [Act; 6] {
     [
         Act::WaitSinceMark(WINDOW_AFTER_LATCH),
         Act::Read(Read::Gates),
         Act::Read(Read::Board),
+        board(&[(Arm, false)]),
         Act::ConvertSinceMark(SOURCE_FLOWS + SOURCE_SETTLES + bench.fresh(1)),
         Act::Read(Read::Drop),
     ]

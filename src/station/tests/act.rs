@@ -247,7 +247,10 @@ fn the_four_shares_of_the_time_add_up_to_the_time_that_passed() {
         settling,
         conversion,
         ramp,
+        bound,
     } = runner.spent();
+    // 20 ms after the first mark, 28 ms after the second, and the event itself.
+    assert_eq!(bound, Span::ms(64));
     assert_eq!(
         bus.0 + settling.0 + conversion.0 + ramp.0,
         shop.now.since(start).0

@@ -43,6 +43,8 @@ fn calibration() -> Calibration {
         at_v: 0.0,
         coarse_v,
         coarse_sd_v: 0.01,
+        coarse_u_v: 0.01,
+        coarse_n: 5,
     };
     Calibration {
         simulated: true,

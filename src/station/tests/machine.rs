@@ -247,7 +247,7 @@ impl Machine {
                 let volts = if self.reversed { -1.1 } else { 1.1 };
                 self.shop.volts(AnalogIn::ContactDrop, volts);
             }
-            Job::Read(Read::Gates) => {
+            Job::Read(Read::Gates | Read::Gate) => {
                 self.shop.gate(Counter::Gate0, 0);
                 self.shop.gate(Counter::Gate1, 0);
             }

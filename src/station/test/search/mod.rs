@@ -28,10 +28,17 @@ use crate::units::{Celsius, Span, Volt};
 
 /// The interval that is searched, in standard deviations of the lot.
 const REACH: f64 = 4.5;
+/// The interval of a search that only places a ramp, in standard deviations of the lot.
+const WIDE: f64 = 6.0;
+/// No release threshold is looked for below this fraction of nominal.
+const LOWEST: f64 = 0.02;
 /// Flux and armature from one level to the next while the armature is sealed.
 const SEALS: Span = Span::ms(25);
 /// Fraction of nominal at which the armature is sealed.
 const SEAL: f64 = 0.95;
+
+/// Number of the attempt of a fine ramp that a search has placed.
+pub(super) const AFTER_SEARCH: u8 = 2;
 
 /// A search under way.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -96,6 +103,31 @@ impl Search {
         search
     }
 
+    /// A wide one by halves, to place a fine ramp where the coarse one has told nothing, or something wrong.
+    pub fn placing(bench: &Bench, direction: Direction) -> Self {
+        let test = &bench.recipe.test;
+        let far = |centre: f64, sd: f64| Volt(centre + WIDE * sd);
+        let (near, end) = match direction {
+            Direction::Rising => (
+                far(test.expected_operate_v, -test.expected_operate_sd_v),
+                far(test.expected_operate_v, test.expected_operate_sd_v),
+            ),
+            Direction::Falling => (
+                far(test.expected_release_v, test.expected_release_sd_v),
+                Volt(LOWEST * bench.recipe.part.nominal_v),
+            ),
+        };
+        Self {
+            strategy: Strategy::Bisection,
+            direction,
+            untouched: near,
+            changed: end,
+            at: (near + end) / 2.0,
+            trials: 0,
+            seen: [false; 2],
+        }
+    }
+
     /// After a trial at [`Search::at`].
     fn after(&mut self, changed: bool) -> Next {
         self.trials += 1;
@@ -147,11 +179,13 @@ pub(super) fn acts(
         Search::new(bench, bench.strategy(parameter(direction)), direction, part)
     });
     findings.search = Some(search);
+    let test = &bench.recipe.test;
+    let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);
     let mut acts = Vec::new();
     if search.begins_anew() {
         acts.extend(match direction {
             Direction::Rising => from_rest(supply, findings, search.at),
-            Direction::Falling => from_sealed(bench, supply, findings),
+            Direction::Falling => from_sealed(bench, supply, findings, near),
         });
     }
     acts.extend([
@@ -186,7 +220,12 @@ fn from_rest(supply: &mut Supply, findings: &mut Findings, at: Volt) -> Vec<Act>
 }
 
 /// Operated and sealed at 0.95 of nominal.
-fn from_sealed(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+fn from_sealed(
+    bench: &Bench,
+    supply: &mut Supply,
+    findings: &mut Findings,
+    near: Volt,
+) -> Vec<Act> {
     (findings.operated, findings.released) = (false, false);
     let mut acts = Vec::new();
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
@@ -204,7 +243,9 @@ fn from_sealed(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> V
             (CoilDrive, true),
         ]),
         Act::Wait(INTERLOCK + SEALS),
-        Act::Mark,
+        // The flux of a sealed armature falls slowly: from the near end of the interval, not from above.
+        supply.step_to(near),
+        Act::Wait(SEALS),
     ]);
     acts
 }
@@ -229,6 +270,9 @@ pub(super) fn conclude(
         return Some(Stage::Search(direction));
     }
     findings.search = None;
+    if bench.strategy(parameter(direction)).ramps() {
+        return placed(bench, findings, direction, next);
+    }
     match next {
         Next::Found(volts, step) => found(bench, findings, direction, volts, step, &readings.gates),
         Next::Proven => {
@@ -242,6 +286,36 @@ pub(super) fn conclude(
     None
 }
 
+/// The fine ramp goes where a search in its service has found the threshold.
+fn placed(
+    bench: &Bench,
+    findings: &mut Findings,
+    direction: Direction,
+    next: Next,
+) -> Option<Stage> {
+    let Next::Found(volts, step) = next else {
+        findings.void(format!(
+            "{}: no threshold between the ends of the search",
+            parameter(direction)
+        ));
+        return None;
+    };
+    *findings.expected(direction) = Some(near(bench, direction, volts, step));
+    Some(match direction {
+        Direction::Rising => Stage::OperateFine(AFTER_SEARCH),
+        Direction::Falling => Stage::ReleaseFine(AFTER_SEARCH),
+    })
+}
+
+/// Where a fine ramp will show a threshold that levels have found.
+fn near(bench: &Bench, direction: Direction, volts: Volt, step: Volt) -> Expected {
+    let lag = match direction {
+        Direction::Rising => bench.operate_lag(),
+        Direction::Falling => bench.release_lag(),
+    };
+    Expected::new(volts + Volt(lag.fine_v.value), step.0.abs().max(0.010))
+}
+
 fn found(
     bench: &Bench,
     findings: &mut Findings,
@@ -251,12 +325,7 @@ fn found(
     samples: &[[CountSample; 2]],
 ) {
     let Some(part) = findings.track else { return };
-    let lag = match direction {
-        Direction::Rising => bench.operate_lag(),
-        Direction::Falling => bench.release_lag(),
-    };
-    let near = Expected::new(volts + Volt(lag.fine_v.value), step.0.abs().max(0.010));
-    *findings.expected(direction) = Some(near);
+    *findings.expected(direction) = Some(near(bench, direction, volts, step));
     let value = volts.0 * to_reference(part, bench.reference_temperature());
     let (level, kelvin) = (bench.calibration.level, bench.accuracy.part_minus_track_k);
     let budget = Budget::default()
@@ -343,6 +412,9 @@ mod tests {
             run(Strategy::Pulse, Direction::Falling, 2.3).1,
             Next::Proven
         );
-        assert_eq!(run(Strategy::Pulse, Direction::Falling, 1.21).1, Next::Ramp);
+        assert_eq!(
+            run(Strategy::Pulse, Direction::Falling, 1.205).1,
+            Next::Ramp
+        );
     }
 }

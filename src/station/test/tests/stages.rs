@@ -102,7 +102,9 @@ fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
         let mut findings = ramp_from(7.8, 0.2);
         for attempt in 0..4 {
             let next = operate::conclude_fine(&bench(), readings, &mut findings, attempt);
-            assert_eq!(next, Some(Stage::OperateFine(attempt + 1)));
+            let searched = Some(Stage::Search(Direction::Rising));
+            let again = Some(Stage::OperateFine(attempt + 1));
+            assert_eq!(next, if attempt == 1 { searched } else { again });
             assert_eq!(ended(&findings), None);
         }
         let centre = findings.expected_operate.unwrap().centre;
@@ -139,20 +141,16 @@ fn an_event_after_the_ramp_has_stopped_is_looked_for_around_its_end() {
 }
 
 #[test]
-fn a_coarse_release_without_a_break_falls_back_on_the_lot() {
-    let test = bench().recipe.test.clone();
+fn a_coarse_release_without_a_break_is_searched_by_halves() {
     for readings in [
         watched(false, PULLED, 0.0),
         // The ramp has ended long before: the time is no voltage.
         watched(true, RESTING, 60.0),
     ] {
         let mut findings = ramp_from(4.0, 4.0);
-        release::conclude_coarse(&bench(), &readings, &mut findings);
-        let lot = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
-        assert_eq!(
-            (findings.expected_release, findings.release),
-            (Some(lot), None)
-        );
+        let next = release::conclude_coarse(&bench(), &readings, &mut findings);
+        assert_eq!(next, Some(Stage::Search(Direction::Falling)));
+        assert_eq!(findings.release, None);
     }
     let mut findings = ramp_from(4.0, 4.0);
     let readings = watched(true, RESTING, 25.0);

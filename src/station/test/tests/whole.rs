@@ -34,14 +34,13 @@ fn all_acts() -> Vec<(Stage, Vec<Act>)> {
 }
 
 #[test]
-fn a_test_leaves_source_arm_drive_and_kelvin_test_off() {
+fn a_test_leaves_source_arm_and_drive_off() {
     let all: Vec<Act> = all_acts().into_iter().flat_map(|(_, acts)| acts).collect();
     for point in [
         DigitalOut::SourceOn,
         DigitalOut::SourceReverse,
         DigitalOut::CoilDrive,
         DigitalOut::Arm,
-        DigitalOut::KelvinTest,
     ] {
         let mut writes = all.iter().filter_map(|act| match act {
             Act::Board(outputs) => outputs.iter().find(|(known, _)| *known == point),
@@ -93,8 +92,8 @@ fn whoever_switches_under_a_live_source_waits_for_the_board_to_take_it_off_first
 
 #[test]
 fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
-    // Between taking the source off and the timed edge stands the write that arms: the source is off, the
-    // board has changed the selection, and only then the drive goes.
+    // Between the word that takes the source off and the one that drops the drive lies at least one
+    // transaction, 3 ms at the highest baud rate: the source is off and the selection has changed by then.
     let (_, acts) = all_acts()
         .into_iter()
         .find(|(stage, _)| *stage == Stage::TimedRelease)
@@ -107,8 +106,13 @@ fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
         })
         .collect();
     assert!(boards[0].contains(&(DigitalOut::SourceOn, false)));
-    assert_eq!(boards[1], &vec![(DigitalOut::Arm, true)]);
-    assert!(boards[2].contains(&(DigitalOut::CoilDrive, false)));
+    assert!(boards[0].contains(&(DigitalOut::Arm, true)));
+    assert!(boards[1].contains(&(DigitalOut::CoilDrive, false)));
+    assert!(
+        !boards[0]
+            .iter()
+            .any(|(point, _)| *point == DigitalOut::CoilDrive)
+    );
 }
 
 #[test]
