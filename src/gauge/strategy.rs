@@ -142,7 +142,7 @@ mod tests {
     fn every_strategy_has_a_name_of_its_own() {
         for (strategy, name) in Strategy::ALL.iter().zip(Strategy::NAMES) {
             assert_eq!(strategy.name(), name);
-            let json = serde_json::to_string(strategy).unwrap();
+            let json = serde_json::to_string(strategy).expect("a name");
             assert_eq!(json, format!("\"{name}\""));
         }
     }

@@ -158,7 +158,9 @@ mod tests {
     use super::*;
 
     fn ppm(chance: Chance, limit: f64, guard: f64) -> (f64, f64) {
-        let (accept, reject) = chance.of(&(f64::NEG_INFINITY..=limit), guard).unwrap();
+        let (accept, reject) = chance
+            .of(&(f64::NEG_INFINITY..=limit), guard)
+            .expect("a process with a spread");
         (accept * PPM, reject * PPM)
     }
 

@@ -153,7 +153,7 @@ pub struct Lot {
 #[derive(Deserialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 enum Line {
-    Part(Part),
+    Part(Box<Part>),
     Summary(Summary),
 }
 
@@ -175,7 +175,7 @@ impl Lot {
             match serde_json::from_str(line)
                 .with_context(|| format!("rows, line {}", number + 1))?
             {
-                Line::Part(part) => parts.push(part),
+                Line::Part(part) => parts.push(*part),
                 Line::Summary(it) => summary = Some(it),
             }
         }
