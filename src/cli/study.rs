@@ -27,6 +27,7 @@ mod exception;
 mod figure;
 mod fleet;
 mod history;
+mod kill;
 mod lot;
 mod output;
 mod pace;
@@ -71,6 +72,8 @@ pub enum Study {
     Decision,
     /// Seconds against error of every strategy for the thresholds
     Threshold,
+    /// Lots killed at random instants: rows lost, rows twice, damage
+    Kill,
     /// Parts per second of wall time, and whether the same seed gives the same bytes
     Pace,
     /// Good parts rejected, defects by bin, over many lots
@@ -89,6 +92,7 @@ impl Study {
             Self::Cycle => Some((1, 100)),
             Self::Decision => Some((20, 500)),
             Self::History => Some((1, 1_000_000)),
+            Self::Kill => Some((300, 1)),
             Self::Pace => Some((3, 300)),
             Self::Sorting => Some((100, 110)),
             Self::Threshold => Some((2, 40)),
@@ -105,6 +109,7 @@ impl Study {
             Self::History => "history",
             Self::Decision => "decision",
             Self::Threshold => "threshold",
+            Self::Kill => "kill",
             Self::Pace => "pace",
             Self::Sorting => "sorting",
             Self::Transient => "transient",
@@ -120,6 +125,7 @@ impl Study {
             Self::History => history::study(order),
             Self::Decision => decision::study(order),
             Self::Threshold => threshold::study(order),
+            Self::Kill => kill::study(order),
             Self::Pace => pace::study(order),
             Self::Sorting => sorting::study(order),
             Self::Transient => bail!("study transient runs no lot"),
