@@ -4,6 +4,7 @@
 //!   which files stand where, and that the documents speak of things that exist.
 //! - `bus`: the tools of a line against modules on a bench, and the traces of alarms.
 //! - [`commands`]: the built program given wrong files and simple orders.
+//! - `full_disk`: a history that may not grow any more while a lot runs.
 //! - `interruptions`: lots that are stopped or killed, and what is left of them.
 //! - `killed`: the controller killed over pseudo-terminals, and outputs safe in time.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
@@ -19,6 +20,8 @@
 mod bus;
 mod check;
 mod commands;
+#[cfg(all(feature = "sim", unix))]
+mod full_disk;
 #[cfg(all(feature = "sim", unix))]
 mod interruptions;
 #[cfg(all(feature = "sim", unix))]
