@@ -8,6 +8,7 @@
 //! step asked for. Nothing here knows what a relay is: that is the station's.
 
 mod commission;
+mod publish;
 mod rota;
 mod traffic;
 
@@ -16,17 +17,22 @@ pub use traffic::LineEnds;
 use crate::bus::{Answer, LineError, Pace};
 use crate::dcon::{self, Command};
 use crate::guard::Guard;
+use crate::hmi::Asked;
 use crate::rig::drive::Outputs;
 use crate::rig::image::Image;
 use crate::rig::level::Correction;
 use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
 use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
+use crate::station::moves::Move;
 use crate::station::act::{Job, JobDone, Read};
+use crate::station::annunciator::Standing;
+use crate::station::orders::{Order, Refused};
+use crate::station::packml;
 use crate::station::trouble::Alarm;
-use crate::station::wants::{Ending, Inputs, Wants};
+use crate::station::wants::{Ending, Inputs, Interrupted, Wants};
 use crate::units::{RigTime, Span};
-use crate::view::View;
+use crate::view::{NotTaken, View};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
@@ -47,8 +53,12 @@ pub enum Event {
     Landed(crate::station::wants::Landed),
     /// It left the nest.
     Left(crate::station::wants::Left),
+    /// A judged part goes to retest all the same.
+    Interrupted(Interrupted),
     /// An alarm was raised.
     Alarm(Alarm, RigTime),
+    /// The list of alarms that stand has changed.
+    Standing(Vec<Standing>),
     /// Calibration and golden parts are complete.
     Calibrated(Box<crate::gauge::Calibration>),
     /// The lot itself began.
@@ -56,7 +66,7 @@ pub enum Event {
 }
 
 /// What the cycle shares with the outside.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Outside {
     /// Where events go; bounded by the parts inside the machine.
     pub events: mpsc::UnboundedSender<Event>,
@@ -64,6 +74,12 @@ pub struct Outside {
     pub recorded: Arc<AtomicU64>,
     /// Set by the operator's stop.
     pub stop: Arc<AtomicBool>,
+    /// Set when the operator does not want to wait for the parts inside.
+    pub abort: Arc<AtomicBool>,
+    /// Orders of screens, each with the way back for its answer.
+    pub orders: mpsc::Receiver<Asked>,
+    /// Wall clock at rig time zero, microseconds since 1970 UTC.
+    pub epoch_us: i64,
     /// Set when the history can no longer be written: the rig must not go on.
     pub history_lost: Arc<AtomicBool>,
     /// What screens see.
@@ -83,8 +99,16 @@ pub struct Cycle {
     job_done: Option<JobDone>,
     bus_alarm: Option<Alarm>,
     profile: Profile,
-    /// The run is over; only safe values are written.
+    /// Only safe values are written.
     making_safe: bool,
+    /// Orders of this turn, waiting for their answers.
+    asked: Vec<Asked>,
+    /// Nobody can send orders any more.
+    orders_closed: bool,
+    verified: bool,
+    publish_at: RigTime,
+    /// Longest time that the emergency-stop input was not known anew.
+    worst_age: Span,
 }
 
 /// Wall time of the phases of all turns, seconds; what is left of a run is bus, history and, where there
@@ -110,6 +134,13 @@ fn lap(total: &mut f64, from: &mut Instant) {
     *from = now;
 }
 
+fn not_taken(why: Refused) -> NotTaken {
+    NotTaken {
+        en: why.en,
+        zh: why.zh,
+    }
+}
+
 impl Cycle {
     /// Takes over the lines. Nothing is written before [`Cycle::run`].
     pub fn new(
@@ -133,15 +164,22 @@ impl Cycle {
             bus_alarm: None,
             profile: Profile::default(),
             making_safe: false,
+            asked: Vec::new(),
+            orders_closed: false,
+            verified: false,
+            publish_at: RigTime(0),
+            worst_age: Span(0),
         }
     }
 
     /// Verifies the modules, then turns until the station has ended and the outputs are safe.
     pub async fn run(mut self) -> (Ending, Profile) {
-        if let Err(alarm) = commission::verify(&self.wiring, &self.pace, &mut self.traffic).await {
+        self.verify().await;
+        if let Some(alarm) = self.bus_alarm.take_if(|_| !self.verified && !self.station.stays()) {
             self.tell(Event::Alarm(alarm, self.pace.now()));
             return (Ending::Alarm, self.profile);
         }
+        self.verified = false;
         loop {
             let now = self.pace.now();
             let mut clock = Instant::now();
@@ -154,8 +192,12 @@ impl Cycle {
             lap(&mut self.profile.clear_s, &mut clock);
             self.apply(now, &mut wants);
             lap(&mut self.profile.apply_s, &mut clock);
+            self.answer(&mut wants);
             self.record(now, &mut wants);
-            self.publish();
+            self.publish(now, wants.ending.is_some());
+            if wants.verify {
+                self.verify().await;
+            }
             if let Some(ending) = wants.ending.take() {
                 self.make_safe().await;
                 return (ending, self.profile);
@@ -163,6 +205,37 @@ impl Cycle {
             if self.job_done.is_none() && wants.wake_at.is_none_or(|at| at > now) {
                 self.wait(now, wants.wake_at).await;
             }
+        }
+    }
+
+    /// Asks every module whether it is as wired; what has tripped while its host was silent is made ready.
+    async fn verify(&mut self) {
+        self.quiet().await;
+        match commission::verify(&self.wiring, &self.pace, &mut self.traffic).await {
+            Ok(tripped) => {
+                self.verified = true;
+                for alarm in tripped {
+                    self.bus_alarm.get_or_insert(alarm);
+                }
+            }
+            Err(alarm) => {
+                self.bus_alarm.get_or_insert(alarm);
+                self.traffic.start_scan();
+            }
+        }
+        self.image.take_resets();
+        self.outputs.everything_safe();
+    }
+
+    /// No transaction is under way any more, and none of a scan begins.
+    async fn quiet(&mut self) {
+        self.traffic.only_writes();
+        while !self.traffic.is_quiet() {
+            let now = self.pace.now();
+            self.traffic.forgive();
+            self.scan(now);
+            self.traffic.dispatch(now);
+            self.wait(now, Some(now + IDLE)).await;
         }
     }
 
@@ -255,7 +328,19 @@ impl Cycle {
         if self.outside.history_lost.load(Ordering::Acquire) {
             self.bus_alarm.get_or_insert(Alarm::history());
         }
+        if let Some(asked_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
+            self.worst_age = self.worst_age.max(now.since(asked_at));
+        }
+        let orders = self.orders();
+        self.making_safe = packml::is_aborted(self.station.outer());
+        if self.making_safe {
+            self.traffic.forgive();
+        }
         let inputs = Inputs {
+            abort: self.outside.abort.load(Ordering::Acquire),
+            orders,
+            settled: self.outputs.all_settled(),
+            verified: std::mem::take(&mut self.verified),
             image: &self.image,
             job: self.job_done.take(),
             recorded: self.outside.recorded.load(Ordering::Acquire),
@@ -263,6 +348,30 @@ impl Cycle {
             stop: self.outside.stop.load(Ordering::Acquire),
         };
         self.station.step(now, inputs)
+    }
+
+    /// Orders that have come in; one that is no order is answered at once.
+    fn orders(&mut self) -> Vec<Order> {
+        while let Ok(asked) = self.outside.orders.try_recv() {
+            self.asked.push(asked);
+        }
+        let mut orders = Vec::new();
+        for asked in std::mem::take(&mut self.asked) {
+            match publish::read(&asked.order) {
+                Ok(order) => {
+                    orders.push(order);
+                    self.asked.push(asked);
+                }
+                Err(why) => asked.say(Err(not_taken(why))),
+            }
+        }
+        orders
+    }
+
+    fn answer(&mut self, wants: &mut Wants) {
+        for (asked, answer) in self.asked.drain(..).zip(wants.answers.drain(..)) {
+            asked.say(answer.map_err(not_taken));
+        }
     }
 
     /// Each wanted motion passes the guard, one after the other, and is driven or refused.
@@ -285,6 +394,25 @@ impl Cycle {
                 }
             }
         }
+        if let Some(jog) = wants.jog.take() {
+            wants.answers[jog.answer] = self.jog(jog.movement, now);
+        }
+    }
+
+    /// A motion by hand: refused is an answer to who asked, not an alarm.
+    fn jog(&mut self, movement: Move, now: RigTime) -> Result<(), Refused> {
+        let situation = self.station.situation(now, &self.image);
+        let refused = |why: String| Refused::new(why.clone(), format!("防碰撞检查拒绝：{why}"));
+        let cleared = self
+            .guard
+            .clear(&self.station.motion(movement), &situation)
+            .map_err(|refusal| refused(refusal.to_string()))?;
+        self.outputs
+            .apply(cleared)
+            .map_err(|cannot| refused(cannot.to_string()))?;
+        self.station.driven(movement, now, &self.image);
+        self.station.jogged();
+        Ok(())
     }
 
     /// Outputs become commands; the measuring line gets its job.
@@ -390,27 +518,21 @@ impl Cycle {
         if wants.lot_began {
             self.tell(Event::LotBegan(now));
         }
+        for interrupted in wants.interrupted.drain(..) {
+            self.tell(Event::Interrupted(interrupted));
+        }
         for alarm in wants.alarms.drain(..) {
             self.tell(Event::Alarm(alarm, now));
+        }
+        if wants.alarms_changed {
+            let standing = self.station.annunciator().standing().to_vec();
+            self.tell(Event::Standing(standing));
         }
     }
 
     fn tell(&self, event: Event) {
         // The receiver ends only with the program; then nobody is left to tell.
         let _ = self.outside.events.send(event);
-    }
-
-    /// Screens see a turn only when one is looking.
-    fn publish(&mut self) {
-        if self.outside.view.receiver_count() > 0 {
-            let station = &self.station;
-            self.outside.view.send_modify(|view| {
-                view.state = station.state();
-                view.inside = station.ledger().inside();
-                view.came_in = station.ledger().came_in;
-                view.went_out = station.ledger().went_out;
-            });
-        }
     }
 
     /// Until an answer, the station's own deadline, or the next scan.
@@ -421,6 +543,10 @@ impl Cycle {
         tokio::select! {
             biased;
             () = self.traffic.answer() => {}
+            asked = self.outside.orders.recv(), if !self.orders_closed => {
+                self.orders_closed = asked.is_none();
+                self.asked.extend(asked);
+            }
             () = self.pace.sleep_until(until) => {}
         }
     }

@@ -1,5 +1,11 @@
 //! What a screen may know: plain serialisable types, filled by the cycle and the recorder.
 
+mod machine;
+mod order;
+
+pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
+pub use order::{NotTaken, ORDERS, Order};
+
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -32,10 +38,12 @@ pub struct View {
     pub parts_per_hour: Option<f64>,
     /// The last verdict, kept until the next.
     pub last: Option<LastPart>,
-    /// Alarms, first-out first.
+    /// Alarms that stand, first-out first, then in order of coming.
     pub alarms: Vec<AlarmLine>,
     /// How the lines and their modules are doing, since the start.
     pub lines: Vec<LineView>,
+    /// Outer machine, buttons, mechanism, signals.
+    pub machine: Machine,
 }
 
 /// The part judged last.
@@ -56,7 +64,7 @@ pub struct LastPart {
 }
 
 /// An alarm on a screen.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct AlarmLine {
     /// Short name.
     pub code: String,
@@ -64,6 +72,22 @@ pub struct AlarmLine {
     pub text_en: String,
     /// Chinese text.
     pub text_zh: String,
+    /// `unacknowledged`, `acknowledged`, `returned`.
+    pub state: String,
+    /// It began the trouble.
+    pub first_out: bool,
+    /// How often it came since it was last normal.
+    pub count: u32,
+    /// When it came first, microseconds since 1970 UTC; null when a run before left it.
+    pub raised_at_us: Option<i64>,
+    /// Not shown now.
+    pub shelved: bool,
+    /// What it stops: `abort`, `hold`, `suspend`, `nothing`.
+    pub stops: String,
+    /// Why, what follows, what to do, English.
+    pub help_en: [String; 3],
+    /// The same, Chinese.
+    pub help_zh: [String; 3],
 }
 
 /// A line of modules.

@@ -4,9 +4,8 @@ use super::run::{self, Controls, PaceArg, RunArgs};
 use crate::hmi::{self, access};
 use anyhow::Context;
 use std::path::Path;
-use std::sync::Arc;
 use std::thread::JoinHandle;
-use tokio::sync::watch;
+use tokio::sync::{mpsc, watch};
 
 /// The main job with nothing to prepare.
 #[derive(Debug, clap::Args)]
@@ -32,7 +31,11 @@ pub struct DemoArgs {
 pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
     let listener = std::net::TcpListener::bind(args.listen)
         .with_context(|| format!("--listen {}: the page cannot listen there", args.listen))?;
-    let controls = Controls::new(false);
+    let controls = Controls {
+        stays: true,
+        ..Controls::new(false)
+    };
+    let (orders, asked) = mpsc::channel(hmi::WAITING);
     let lot = format!("demo {}", jiff::Zoned::now().strftime("%Y-%m-%d %H:%M:%S"));
     let order = RunArgs {
         sim: true,
@@ -48,13 +51,13 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
         json: false,
         study: None,
     };
-    let page = Page::start(listener, &controls, db)?;
+    let page = Page::start(listener, &controls, orders, db)?;
     eprintln!(
         "relayrig: simulated rig running, page at http://{}/, history in {}, Ctrl-C stops",
         args.listen,
         db.display()
     );
-    let status = run::run_with(config, db, &order, &controls);
+    let status = run::run_with(config, db, &order, &controls, asked);
     page.end();
     status
 }
@@ -69,6 +72,7 @@ impl Page {
     fn start(
         listener: std::net::TcpListener,
         controls: &Controls,
+        orders: mpsc::Sender<hmi::Asked>,
         db: &Path,
     ) -> anyhow::Result<Self> {
         listener
@@ -86,7 +90,7 @@ impl Page {
             gate,
             view: controls.view.subscribe(),
             db: db.to_path_buf(),
-            stop: Arc::clone(&controls.stop),
+            orders,
         };
         let (ended, seen) = watch::channel(false);
         let runtime = tokio::runtime::Builder::new_current_thread()

@@ -12,6 +12,7 @@ use crate::bus::Pace;
 use crate::config::{Plant, load_recipe};
 use crate::cycle::{Event, Outside};
 use crate::gauge::Recipe;
+use crate::hmi::Asked;
 use crate::station::wants::Ending;
 use crate::view::View;
 use anyhow::{Context, bail};
@@ -89,6 +90,10 @@ pub enum StudyArg {
 pub struct Controls {
     /// Ends the lot after the parts inside.
     pub stop: Arc<AtomicBool>,
+    /// Ends it at once.
+    pub abort: Arc<AtomicBool>,
+    /// A person is at a screen: alarms and stops do not end the run.
+    pub stays: bool,
     /// What screens see.
     pub view: watch::Sender<View>,
     /// Rows to stdout.
@@ -100,6 +105,8 @@ impl Controls {
     pub fn new(quiet: bool) -> Self {
         Self {
             stop: Arc::new(AtomicBool::new(false)),
+            abort: Arc::new(AtomicBool::new(false)),
+            stays: false,
             view: watch::channel(View::default()).0,
             quiet,
         }
@@ -108,10 +115,11 @@ impl Controls {
 
 /// Runs the command; the result is the exit status.
 pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
-    match args.study {
-        Some(StudyArg::Grr) => grr::run(config, db, args),
-        None => run_with(config, db, args, &Controls::new(false)),
+    if let Some(StudyArg::Grr) = args.study {
+        return grr::run(config, db, args);
     }
+    let (_nobody, orders) = mpsc::channel(1);
+    run_with(config, db, args, &Controls::new(false), orders)
 }
 
 /// As [`run`], with controls that somebody else holds too.
@@ -120,6 +128,7 @@ pub fn run_with(
     db: &Path,
     args: &RunArgs,
     controls: &Controls,
+    orders: mpsc::Receiver<Asked>,
 ) -> anyhow::Result<i32> {
     if args.lot.is_empty() || args.lot.len() > 200 {
         bail!(
@@ -146,7 +155,7 @@ pub fn run_with(
     builder.start_paused(is_virtual);
     let runtime = builder.build().context("starting the runtime")?;
     let status = runtime.block_on(run_lot(
-        plant, recipe, config, db, args, controls, is_virtual,
+        plant, recipe, config, db, args, controls, orders, is_virtual,
     ));
     runtime.shutdown_timeout(std::time::Duration::from_secs(1));
     status
@@ -159,6 +168,7 @@ async fn run_lot(
     db: &Path,
     args: &RunArgs,
     controls: &Controls,
+    orders: mpsc::Receiver<Asked>,
     is_virtual: bool,
 ) -> anyhow::Result<i32> {
     let pace = if is_virtual {
@@ -184,6 +194,9 @@ async fn run_lot(
         events,
         recorded: Arc::clone(&recorded),
         stop: Arc::clone(&controls.stop),
+        abort: Arc::clone(&controls.abort),
+        orders,
+        epoch_us,
         history_lost: Arc::clone(&history_lost),
         view: controls.view.clone(),
     };
@@ -193,11 +206,15 @@ async fn run_lot(
         pace,
         std::mem::take(&mut lines.ends),
         outside,
+        controls.stays,
     )?;
-    let stop = Arc::clone(&controls.stop);
+    let (stop, abort) = (Arc::clone(&controls.stop), Arc::clone(&controls.abort));
     let interrupt = tokio::spawn(async move {
-        if interrupted().await.is_ok() {
-            stop.store(true, Ordering::Release);
+        // The first one finishes the parts inside, the second does not wait for them.
+        for flag in [stop, abort] {
+            if interrupted().await.is_ok() {
+                flag.store(true, Ordering::Release);
+            }
         }
     });
     let running = tokio::spawn(cycle.run());

@@ -4,12 +4,74 @@ use super::traffic::{Purpose, Traffic};
 use crate::bus::Pace;
 use crate::dcon::{Command, Common};
 use crate::rig::commission::{judge, verification};
-use crate::rig::wiring::Wiring;
+use crate::rig::wiring::{ModuleId, Wiring};
 use crate::station::trouble::Alarm;
 use std::collections::BTreeMap;
 
-/// Asks everything, line by line in parallel; the first disagreement or silent module is the alarm.
-pub async fn verify(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<(), Alarm> {
+/// Asks everything, line by line in parallel; the first disagreement or silent module is the alarm. A module
+/// whose host watchdog has tripped stands at its safe outputs and has switched its watchdog off: it is made ready
+/// again, which writes to its EEPROM, and told.
+pub async fn verify(
+    wiring: &Wiring,
+    pace: &Pace,
+    traffic: &mut Traffic,
+) -> Result<Vec<Alarm>, Alarm> {
+    let tripped = ask(wiring, pace, traffic).await?;
+    if tripped.is_empty() {
+        traffic.start_scan();
+        return Ok(Vec::new());
+    }
+    for module in &tripped {
+        make_ready(wiring, pace, traffic, *module).await?;
+    }
+    let still = ask(wiring, pace, traffic).await?;
+    traffic.start_scan();
+    let named = |module: &ModuleId| wiring.module(*module).name.clone();
+    match still.first() {
+        Some(module) => Err(Alarm::bus(&format!("{} stays tripped", named(module)))),
+        None => {
+            let names: Vec<String> = tripped.iter().map(named).collect();
+            Ok(vec![Alarm::watchdog_tripped(&names.join(", "))])
+        }
+    }
+}
+
+/// Clears the trip of one module and switches its watchdog on again.
+async fn make_ready(
+    wiring: &Wiring,
+    pace: &Pace,
+    traffic: &mut Traffic,
+    module: ModuleId,
+) -> Result<(), Alarm> {
+    let wired = wiring.module(module);
+    let enable = Common::WriteWatchdog {
+        enabled: wired.watchdog,
+        timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
+    };
+    for command in [Common::ClearWatchdogStatus, enable] {
+        traffic.queue(wired.line, command.to(wired.address), Purpose::Check);
+        loop {
+            traffic.dispatch(pace.now());
+            traffic.answer().await;
+            let answer = traffic.next_answer();
+            if let Some((_, Purpose::Check, answer)) = answer {
+                answer
+                    .outcome
+                    .map_err(|error| Alarm::bus(&error.to_string()))?;
+                break;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Every question once; the modules whose host watchdog has tripped.
+async fn ask(
+    wiring: &Wiring,
+    pace: &Pace,
+    traffic: &mut Traffic,
+) -> Result<Vec<ModuleId>, Alarm> {
+    let mut tripped = Vec::new();
     let checks = verification(wiring);
     let mut pending = BTreeMap::new();
     for (index, check) in checks.iter().enumerate() {
@@ -41,11 +103,17 @@ pub async fn verify(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Resu
                     .map_or_else(String::new, |cause| format!(": {cause}"));
                 Alarm::bus(&format!("{error}{cause} ({} tries)", answer.tries_used))
             })?;
-            if let Some(mismatch) = judge(wiring, &checks[index], &reply) {
+            let check = &checks[index];
+            if let Some(mismatch) = judge(wiring, check, &reply) {
+                if mismatch.what == "host watchdog" {
+                    if !tripped.contains(&check.module) {
+                        tripped.push(check.module);
+                    }
+                    continue;
+                }
                 return Err(Alarm::bus(&mismatch.to_string()));
             }
         }
     }
-    traffic.start_scan();
-    Ok(())
+    Ok(tripped)
 }

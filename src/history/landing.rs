@@ -4,7 +4,7 @@
 use super::error::{Doing, HistoryError, Result};
 use super::insert::signed;
 use super::store::Known;
-use super::{AlarmRecord, LandingRecord};
+use super::{AlarmRecord, InterruptedRecord, LandingRecord};
 use rusqlite::{OptionalExtension, Transaction, params};
 
 /// Fills in where and when a part landed, once.
@@ -33,6 +33,34 @@ pub(super) fn landing(tx: &Transaction<'_>, known: &Known, it: &LandingRecord) -
         .optional()
         .doing(DOING)?;
     landed_before(it, first)
+}
+
+/// A judged part becomes void and belongs into retest, once and only before it has landed.
+pub(super) fn interrupted(
+    tx: &Transaction<'_>,
+    known: &Known,
+    it: &InterruptedRecord,
+) -> Result<()> {
+    const DOING: &str = "recording an interruption";
+    let run = known.run(&it.lot)?;
+    let seq = signed("part", it.seq)?;
+    tx.execute(
+        "UPDATE part SET verdict = 'void', bin = 'retest',
+           reasons = json_insert(reasons, '$[#]', ?4)
+         WHERE run_id = ?1 AND kind = ?2 AND seq = ?3 AND landed_bin IS NULL
+           AND NOT EXISTS (SELECT 1 FROM json_each(reasons) WHERE value = ?4)",
+        params![run, it.kind, seq, it.reason],
+    )
+    .and_then(|_| {
+        tx.execute(
+            "UPDATE measurement SET part_verdict = 'void' WHERE part_id =
+               (SELECT id FROM part WHERE run_id = ?1 AND kind = ?2 AND seq = ?3
+                  AND verdict = 'void')",
+            params![run, it.kind, seq],
+        )
+    })
+    .doing(DOING)?;
+    Ok(())
 }
 
 fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {

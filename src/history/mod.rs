@@ -44,7 +44,7 @@ pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA};
 pub use part::{Measurement, Part, Sample};
 pub use record::{
-    AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, MeasurementRecord, PartRecord, Row,
+    AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord, PartRecord, Row,
     SampleRecord, snapshot_hash,
 };
 pub use rejudge::rejudged;

@@ -115,6 +115,19 @@ pub struct LandingRecord {
     pub cycle_s: Option<f64>,
 }
 
+/// A part that was judged and then interrupted on its way: void, to retest; its values stay.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct InterruptedRecord {
+    /// The open lot it belongs to.
+    pub lot: String,
+    /// `lot` or `golden`.
+    pub kind: String,
+    /// The part.
+    pub seq: u64,
+    /// Added to its reasons.
+    pub reason: String,
+}
+
 /// One occurrence of an alarm; recorded again with `cleared_at_us` when it goes.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct AlarmRecord {
@@ -154,6 +167,8 @@ pub enum Row {
     Part(PartRecord),
     /// A part that reached a bin.
     Landed(LandingRecord),
+    /// A judged part that goes to retest all the same.
+    Interrupted(InterruptedRecord),
     /// An alarm that came, or went.
     Alarm(AlarmRecord),
 }

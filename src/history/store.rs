@@ -204,6 +204,7 @@ impl Store {
 fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Result<()> {
     rows.iter().try_for_each(|row| match row {
         Row::Part(part) => insert::part(transaction, known, part),
+        Row::Interrupted(it) => landing::interrupted(transaction, known, it),
         Row::Landed(landed) => landing::landing(transaction, known, landed),
         Row::Alarm(alarm) => landing::alarm(transaction, known, alarm),
     })

@@ -79,7 +79,9 @@ pub(super) enum HmiError {
         /// The order.
         order: &'static str,
         /// Why not.
-        reason: &'static str,
+        reason: String,
+        /// The same in Chinese.
+        reason_zh: String,
     },
     /// 400: a filter that cannot be meant.
     #[error("{field}: {reason}")]
@@ -135,10 +137,13 @@ impl IntoResponse for HmiError {
     fn into_response(self) -> Response {
         let status = self.status();
         let word = status.canonical_reason().unwrap_or("refused");
-        let body = serde_json::json!({
+        let mut body = serde_json::json!({
             "error": word.to_ascii_lowercase(),
             "reason": self.to_string(),
         });
+        if let Self::NotNow { reason_zh, .. } = &self {
+            body["reason_zh"] = reason_zh.as_str().into();
+        }
         let mut response = (status, Json(body)).into_response();
         if let Self::TooManyTries { wait } = self {
             let seconds = HeaderValue::from(wait.as_secs() + 1);

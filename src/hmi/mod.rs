@@ -1,8 +1,7 @@
 //! The screen: one status page, the view as JSON and as events, the history, figures for Prometheus.
 //!
-//! - A screen looks; it never writes to the rig. What it wants done it sends as an *order*, and the
-//!   only order that this page takes is `stop`: the line ends the part it has and makes its outputs
-//!   safe. Every other known order is refused with the reason.
+//! - A screen looks; it never writes to the rig. What it wants done it sends as an *order*, which the
+//!   station takes or refuses with the reason in its next turn.
 //! - The view comes through a watch channel, so that the cycle never waits for a screen: a slow one
 //!   skips to the latest view, and nobody's lateness is stored.
 //! - An answer in the range 4xx or 5xx is always JSON: `{"error": "<word>", "reason": "<sentence>"}`.
@@ -17,7 +16,7 @@
 //! | `GET /api/view` | the view |
 //! | `GET /api/events` | the view as server-sent events: at once, then on change; a beat each second |
 //! | `POST /api/login\|logout`, `GET /api/me` | who is asking |
-//! | `POST /api/orders` | `{"order":"stop"}` |
+//! | `POST /api/orders` | `{"order":"stop"}` and the others of [`crate::view::ORDERS`] |
 //! | `GET /api/history/query\|list\|show\|stats` | JSON as the command `history` gives it |
 //! | `GET /metrics` | Prometheus text |
 //!
@@ -37,12 +36,12 @@ mod page;
 mod router;
 
 pub use gate::Gate;
+pub use orders::{Asked, WAITING};
+
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use tokio::net::TcpListener;
-use tokio::sync::watch;
+use tokio::sync::{mpsc, watch};
 
 /// How long connections may take to finish after the end was announced.
 pub const GRACE: Duration = Duration::from_secs(1);
@@ -56,8 +55,8 @@ pub struct Shared {
     pub db: PathBuf,
     /// Who may order what.
     pub gate: Gate,
-    /// Set by the order `stop`, never cleared here.
-    pub stop: Arc<AtomicBool>,
+    /// To the cycle, which answers each order in its next turn.
+    pub orders: mpsc::Sender<Asked>,
 }
 
 /// Answers on `listener` until `ended` turns true or its sender is gone, then at most [`GRACE`] longer.

@@ -1,45 +1,44 @@
 //! Orders: what a screen wants done.
 //!
-//! `stop` sets the flag that the cycle reads in its next turn; saying it twice does no harm. The other
-//! orders of the state model (ISA-TR88.00.02) are known by name and refused with the reason, so that
-//! a client can tell "not here" from "no such thing".
+//! An order goes to the cycle, which answers it in its next turn: taken, or not now and why, in English and
+//! Chinese. A client can tell "not now" (409) from "no such thing" (400). Nothing is stored here: an order
+//! that the controller does not take at once is refused, never kept for later.
 
 use super::access::Role;
 use super::error::HmiError;
 use super::origin;
 use super::router::Desk;
+use crate::view::{NotTaken, ORDERS, Order};
 use axum::Json;
 use axum::extract::State;
 use axum::extract::rejection::JsonRejection;
 use axum::http::HeaderMap;
-use serde::{Deserialize, Serialize};
-use std::sync::atomic::Ordering;
+use serde::Serialize;
+use tokio::sync::oneshot;
 
-/// Known, but not taken by this page.
-const ELSEWHERE: [&str; 9] = [
-    "start",
-    "hold",
-    "unhold",
-    "suspend",
-    "unsuspend",
-    "abort",
-    "clear",
-    "reset",
-    "complete",
-];
+/// Orders that wait for the next turn; more at once than fingers on a panel.
+pub const WAITING: usize = 16;
 
-/// Body of the request. Members that an order does not need are let pass.
-#[derive(Debug, Deserialize)]
-pub(super) struct Order {
-    order: String,
+/// An order on its way to the cycle.
+#[derive(Debug)]
+pub struct Asked {
+    /// What is wanted.
+    pub order: Order,
+    /// The way back.
+    pub answer: oneshot::Sender<Result<(), NotTaken>>,
+}
+
+impl Asked {
+    /// Answers; a screen that has gone away misses nothing that it could use.
+    pub fn say(self, answer: Result<(), NotTaken>) {
+        let _ = self.answer.send(answer);
+    }
 }
 
 /// Body of the answer.
 #[derive(Debug, Serialize)]
 pub(super) struct Taken {
     order: &'static str,
-    /// It had been given before.
-    already: bool,
 }
 
 /// `POST /api/orders`.
@@ -51,28 +50,29 @@ pub(super) async fn order(
     origin::ours(&headers)?;
     desk.shared.gate.at_least(Role::Operator, &headers).await?;
     let Json(order) = body?;
-    if order.order == "stop" {
-        return stop(&desk).map(Json);
-    }
-    match ELSEWHERE.into_iter().find(|known| *known == order.order) {
-        Some(order) => Err(HmiError::NotNow {
-            order,
-            reason: "this page takes `stop` only; a lot is started from the command line",
-        }),
-        None => Err(HmiError::UnknownOrder {
+    let Some(word) = ORDERS.into_iter().find(|known| *known == order.order) else {
+        return Err(HmiError::UnknownOrder {
             found: order.order.chars().take(40).collect(),
-            known: format!("stop, {}", ELSEWHERE.join(", ")),
+            known: ORDERS.join(", "),
+        });
+    };
+    match give(&desk, order).await {
+        None => Err(HmiError::NotNow {
+            order: word,
+            reason: "the controller has ended or does not answer; nothing was done".into(),
+            reason_zh: "控制器已结束或无应答；未执行任何操作".into(),
         }),
+        Some(Err(why)) => Err(HmiError::NotNow {
+            order: word,
+            reason: why.en,
+            reason_zh: why.zh,
+        }),
+        Some(Ok(())) => Ok(Json(Taken { order: word })),
     }
 }
 
-fn stop(desk: &Desk) -> Result<Taken, HmiError> {
-    let order = "stop";
-    // Set in any case: a stop is never lost by being early or late.
-    let already = desk.shared.stop.swap(true, Ordering::SeqCst);
-    if desk.shared.view.has_changed().is_err() {
-        let reason = "the controller has ended; nothing is running";
-        return Err(HmiError::NotNow { order, reason });
-    }
-    Ok(Taken { order, already })
+async fn give(desk: &Desk, order: Order) -> Option<Result<(), NotTaken>> {
+    let (answer, answered) = oneshot::channel();
+    desk.shared.orders.try_send(Asked { order, answer }).ok()?;
+    answered.await.ok()
 }

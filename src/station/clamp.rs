@@ -62,14 +62,13 @@ impl Clamp {
             Clamp::Clamping
                 if turn.arrived(Move::ClampClose) && turn.arrived(Move::PusherRetract) =>
             {
-                turn.drive(Move::ProbesUp);
-                Clamp::Probing
+                clamped(turn, beside)
             }
             Clamp::Clamping => Clamp::Clamping,
             Clamp::Probing if turn.arrived(Move::ProbesUp) => begin(turn, beside),
             Clamp::Probing => Clamp::Probing,
             Clamp::Testing(test) => testing(turn, beside, test),
-            Clamp::Judged if beside.sort.is_at_part(turn) => {
+            Clamp::Judged if beside.sort.is_at_part(turn) && !turn.resting => {
                 turn.drive(Move::ProbesDown);
                 turn.drive(Move::GripperClose);
                 Clamp::Gripping
@@ -109,6 +108,25 @@ impl Clamp {
             | Clamp::Lifting => None,
         }
     }
+}
+
+/// A part that was interrupted is not tested; it goes on to retest, with a row when it has none yet.
+fn clamped(turn: &mut Turn, beside: Beside) -> Clamp {
+    let interrupted = turn
+        .ledger
+        .nest
+        .as_ref()
+        .and_then(|part| part.interrupted.clone());
+    let Some(why) = interrupted else {
+        turn.drive(Move::ProbesUp);
+        return Clamp::Probing;
+    };
+    if let Some(part) = turn.ledger.nest.as_mut().filter(|part| part.bin.is_none()) {
+        part.bin = Some(Bin::Retest);
+        let judged = Judged::interrupted(part.clone(), &why, beside.bench, turn.now);
+        turn.wants.judged.push(judged);
+    }
+    Clamp::Judged
 }
 
 fn begin(turn: &mut Turn, beside: Beside) -> Clamp {

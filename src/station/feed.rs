@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! empty -> releasing -> holding -> ready -> pushing -> retracting -> empty
+//!              \-> closing -> empty (nothing came: tried again, then the line waits for parts)
 //! ```
 //! The pocket fills while the part before is tested. The pusher starts only when the nest is empty, the
 //! jaws are open, the probes down and the gripper up; the guard checks the same in millimetres.
@@ -14,6 +15,8 @@ use crate::units::{RigTime, Span};
 
 /// A part needs at most this long from the escapement to the pocket sensor.
 const ARRIVES: Span = Span::ms(1500);
+/// The escapement is worked so often before the magazine counts as empty.
+pub const TRIES: u8 = 3;
 
 /// Where the feed stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,6 +27,13 @@ pub enum Feed {
     Releasing {
         /// When it was opened.
         since: RigTime,
+        /// 1 for the first time.
+        attempt: u8,
+    },
+    /// Nothing came; the escapement closes before it opens again.
+    Closing {
+        /// Times it was opened for nothing.
+        attempts: u8,
     },
     /// The part is in the pocket, the escapement closes.
     Holding,
@@ -36,23 +46,31 @@ pub enum Feed {
 }
 
 impl Feed {
-    /// One turn. `wanted`: a further part may enter the pocket.
-    pub fn step(self, turn: &mut Turn, wanted: bool) -> Feed {
+    /// One turn. `wanted`: a further part may enter the pocket; `push`: the one that waits there may
+    /// go to the nest.
+    pub fn step(self, turn: &mut Turn, wanted: bool, push: bool) -> Feed {
         match self {
             Feed::Empty if wanted && turn.seen(DigitalIn::PocketPresent, true) => {
                 // Left there by the run before: it is fed like any other.
                 turn.ledger.enter_pocket();
                 Feed::Ready
             }
-            Feed::Empty if wanted && turn.arrived(Move::PusherRetract) => {
-                turn.drive(Move::EscapementRelease);
-                Feed::Releasing { since: turn.now }
-            }
+            Feed::Empty if wanted && turn.arrived(Move::PusherRetract) => release(turn, 1),
             Feed::Empty => Feed::Empty,
-            Feed::Releasing { since } => releasing(turn, since),
+            Feed::Releasing { since, attempt } => releasing(turn, since, attempt),
+            Feed::Closing { attempts } if turn.arrived(Move::EscapementHold) => {
+                if attempts < TRIES && wanted && !turn.seen(DigitalIn::PocketPresent, true) {
+                    release(turn, attempts + 1)
+                } else {
+                    Feed::Empty
+                }
+            }
+            Feed::Closing { attempts } => Feed::Closing { attempts },
             Feed::Holding if turn.arrived(Move::EscapementHold) => Feed::Ready,
             Feed::Holding => Feed::Holding,
-            Feed::Ready if turn.nest_is_free() => {
+            Feed::Ready
+                if turn.nest_is_free() && (push || turn.ledger.pocket_found) =>
+            {
                 turn.drive(Move::PusherExtend);
                 Feed::Pushing
             }
@@ -65,7 +83,15 @@ impl Feed {
     }
 }
 
-fn releasing(turn: &mut Turn, since: RigTime) -> Feed {
+fn release(turn: &mut Turn, attempt: u8) -> Feed {
+    turn.drive(Move::EscapementRelease);
+    Feed::Releasing {
+        since: turn.now,
+        attempt,
+    }
+}
+
+fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
     if turn.seen(DigitalIn::PocketPresent, true)
         && turn.image.input_at(DigitalIn::PocketPresent) > Some(since)
     {
@@ -73,16 +99,25 @@ fn releasing(turn: &mut Turn, since: RigTime) -> Feed {
         turn.drive(Move::EscapementHold);
         return Feed::Holding;
     }
-    if turn.now.since(since) > ARRIVES {
-        turn.alarm(Alarm::no_part());
+    if turn.now.since(since) <= ARRIVES {
+        return Feed::Releasing { since, attempt };
     }
-    Feed::Releasing { since }
+    turn.drive(Move::EscapementHold);
+    if attempt == TRIES {
+        let track = turn.seen(DigitalIn::TrackLevel, true);
+        turn.alarm(if track { Alarm::no_part() } else { Alarm::magazine_empty() });
+    }
+    Feed::Closing { attempts: attempt }
 }
 
 fn pushed(turn: &mut Turn) -> Feed {
     match turn.input(DigitalIn::NestPresent) {
         Some(true) => {
-            let golden = turn.next_golden();
+            let golden = if turn.ledger.pocket_found {
+                None
+            } else {
+                turn.next_golden()
+            };
             turn.ledger.enter_nest(golden);
             turn.drive(Move::PusherRetract);
             Feed::Retracting

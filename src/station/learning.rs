@@ -1,12 +1,11 @@
 //! What the station learns before and during a lot: factors from the references, lags from golden parts,
 //! and from every good part where the next fine ramp goes.
 
-use super::act::{Doing, Runner};
+use super::act::Runner;
 use super::ledger::Kind;
-use super::moves::Move;
 use super::trouble::Alarm;
-use super::wants::{Inputs, Wants};
-use super::{Phase, Station, golden, reference};
+use super::wants::Wants;
+use super::{Station, golden, reference};
 use crate::gauge::Calibration;
 use crate::gauge::calibration::Lags;
 use crate::gauge::verdict::Verdict;
@@ -14,46 +13,22 @@ use crate::units::RigTime;
 use std::sync::Arc;
 
 impl Station {
-    pub(super) fn measure_references(
-        &mut self,
-        now: RigTime,
-        inputs: &Inputs,
-        mut runner: Box<Runner>,
-        wants: &mut Wants,
-    ) -> Phase {
-        match runner.step(now, inputs.job.as_ref(), inputs.image) {
-            Doing::Job(job) => wants.job = Some(job),
-            Doing::Wait(until) => wants.wake_at = Some(until),
-            Doing::Busy => {}
-            Doing::Trouble(why) => wants.alarms.push(Alarm::calibration(&why)),
-            Doing::Done => return self.conclude_references(now, &runner, wants),
-        }
-        Phase::Reference(runner)
-    }
-
-    fn conclude_references(&mut self, now: RigTime, runner: &Runner, wants: &mut Wants) -> Phase {
+    /// Factors from the references.
+    pub(super) fn conclude_references(&mut self, now: RigTime, runner: &Runner) -> Result<(), String> {
         let made_at = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
         let (valid, gain) = (self.plan.valid_us, self.plan.voltage_gain);
-        match reference::conclude(&self.bench, &runner.readings, made_at, valid, gain) {
-            Ok(calibration) => {
-                let calibration = Calibration {
-                    simulated: self.plan.simulated,
-                    ..calibration
-                };
-                self.bench.calibration = Arc::new(calibration);
-                wants.motions.push(Move::ProbesDown);
-                Phase::ReferenceDown
-            }
-            Err(why) => {
-                wants.alarms.push(Alarm::calibration(&why));
-                Phase::Ended
-            }
-        }
+        let calibration =
+            reference::conclude(&self.bench, &runner.readings, made_at, valid, gain)?;
+        self.bench.calibration = Arc::new(Calibration {
+            simulated: self.plan.simulated,
+            ..calibration
+        });
+        Ok(())
     }
 
     /// Golden parts teach the lags, every part the place of the fine ramp.
     pub(super) fn learn(&mut self, wants: &mut Wants) {
-        for judged in &wants.judged {
+        for judged in wants.judged.iter().filter(|one| one.part.interrupted.is_none()) {
             let findings = &judged.findings;
             // A slow or sticking part would spoil the place of the ramp for all that follow.
             if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
@@ -74,7 +49,7 @@ impl Station {
                     None => Err(format!("golden part {serial} has no certificate")),
                 };
                 if let Err(why) = learned {
-                    wants.alarms.push(Alarm::calibration(&why));
+                    wants.trouble.push(Alarm::calibration(&why));
                     return;
                 }
             }
@@ -90,7 +65,7 @@ impl Station {
                     }
                     self.bench.calibration = Arc::new(calibration);
                 }
-                Err(why) => wants.alarms.push(Alarm::calibration(&why)),
+                Err(why) => wants.trouble.push(Alarm::calibration(&why)),
             }
         }
     }

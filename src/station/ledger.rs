@@ -5,6 +5,9 @@
 use crate::gauge::verdict::Bin;
 use crate::units::{RigTime, Second};
 
+/// Why a part that nobody knows is not tested.
+const FOUND: &str = "found inside at the reset";
+
 /// What a part is to the lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Kind {
@@ -27,6 +30,8 @@ pub struct Part {
     pub test: Option<Second>,
     /// When its probes arrived.
     pub probed_at: Option<RigTime>,
+    /// Why it is not tested (any more) but discharged to retest.
+    pub interrupted: Option<String>,
 }
 
 /// A part on its way down a chute.
@@ -61,6 +66,10 @@ pub struct Ledger {
     pub went_out: u64,
     /// Parts that are declared lost by an alarm.
     pub lost: u64,
+    /// Parts that belong to no run; they are part of `came_in`.
+    pub found: u64,
+    /// The part in the pocket is one of them.
+    pub pocket_found: bool,
     numbered: u64,
     lot_numbered: u64,
 }
@@ -93,6 +102,11 @@ impl Ledger {
             "pocket to nest without a part or a place"
         );
         self.pocket = false;
+        let interrupted = std::mem::take(&mut self.pocket_found).then(|| FOUND.to_owned());
+        self.nest = Some(self.numbered(golden, interrupted));
+    }
+
+    fn numbered(&mut self, golden: Option<String>, interrupted: Option<String>) -> Part {
         self.numbered += 1;
         let kind = match golden {
             Some(serial) => Kind::Golden(serial),
@@ -101,13 +115,68 @@ impl Ledger {
                 Kind::Lot(self.lot_numbered)
             }
         };
-        self.nest = Some(Part {
+        Part {
             kind,
             ordinal: self.numbered,
             bin: None,
             test: None,
             probed_at: None,
-        });
+            interrupted,
+        }
+    }
+
+    /// A part that nobody knows is in the pocket.
+    pub fn find_in_pocket(&mut self) {
+        self.enter_pocket();
+        self.pocket_found = true;
+        self.found += 1;
+    }
+
+    /// A part that nobody knows is in the empty nest.
+    pub fn find_in_nest(&mut self) {
+        assert!(self.nest.is_none(), "found a second part in the nest");
+        self.nest = Some(self.find());
+    }
+
+    /// A part that nobody knows is in the gripper.
+    pub fn find_in_gripper(&mut self) {
+        assert!(self.gripper.is_none(), "found a second part in the gripper");
+        self.gripper = Some(self.find());
+    }
+
+    fn find(&mut self) -> Part {
+        self.came_in += 1;
+        self.found += 1;
+        self.numbered(None, Some(FOUND.to_owned()))
+    }
+
+    /// The part of the gripper lies in the nest again.
+    pub fn set_down(&mut self) {
+        assert!(self.nest.is_none(), "set down on another part");
+        self.nest = self.gripper.take();
+    }
+
+    /// The part of the pocket is nowhere.
+    pub fn lose_pocket(&mut self) {
+        self.lost += u64::from(std::mem::take(&mut self.pocket));
+        self.pocket_found = false;
+    }
+
+    /// The part of the nest is nowhere.
+    pub fn lose_nest(&mut self) -> Option<Part> {
+        self.lost += u64::from(self.nest.is_some());
+        self.nest.take()
+    }
+
+    /// The part of the gripper is nowhere.
+    pub fn lose_gripper(&mut self) -> Option<Part> {
+        self.lost += u64::from(self.gripper.is_some());
+        self.gripper.take()
+    }
+
+    /// Parts of the run's own that came into the pocket.
+    pub fn own(&self) -> u64 {
+        self.came_in - self.found
     }
 
     /// The part of the nest is now in the gripper.

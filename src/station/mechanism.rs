@@ -2,9 +2,14 @@
 //!
 //! An actuator is at an end only while its sensors say so and no motion of it is under way; otherwise
 //! it may be anywhere on the way, or on its whole stroke. Sensors older than [`SENSOR_AGE`] say nothing.
+//!
+//! Trouble seen here: a stroke that does not arrive in time (a work stroke is tried once more, back and forth
+//! again), an actuator that leaves the end where it stood, both end sensors on at once, the drive's alarm. A
+//! sensor that flickers for less than [`DEBOUNCE`] is believed to bounce and counted.
 
 use super::moves::{Move, Strokes};
 use super::trouble::Alarm;
+use super::watch::Watch;
 use crate::guard::{Actuator, PartPlaces, PartSize, Position, Situation};
 use crate::rig::axis::AxisStation;
 use crate::rig::image::Image;
@@ -15,6 +20,10 @@ use crate::units::{RigTime, Span};
 pub const SENSOR_AGE: Span = Span::ms(400);
 /// After the start edge the drive needs this long to take "in position" away.
 const AXIS_REACTS: Span = Span::ms(15);
+/// A sensor must show trouble for so long: longer than two scans and the bounce of a reed contact.
+pub const DEBOUNCE: Span = Span::ms(60);
+/// A work stroke is tried again so often for one part.
+const RETRIES: u8 = 1;
 
 /// A motion that was driven and has not arrived.
 #[derive(Debug, Clone, Copy)]
@@ -24,12 +33,35 @@ struct Underway {
     from: [Position; 8],
 }
 
+/// A work stroke that failed and is being tried again: back to rest, then forth.
+#[derive(Debug, Clone, Copy)]
+struct Again {
+    movement: Move,
+    back: Move,
+}
+
+/// What an update has found.
+#[derive(Debug, Default)]
+pub struct Found {
+    /// Trouble.
+    pub alarms: Vec<Alarm>,
+    /// Motions of a second try.
+    pub motions: Vec<Move>,
+}
+
 /// Sensors and motions.
 #[derive(Debug)]
 pub struct Mechanism {
     strokes: Strokes,
     timeout: Vec<(&'static str, Span)>,
     underway: Vec<Underway>,
+    /// Asked for in single step and not released yet.
+    waiting: Vec<Move>,
+    again: Vec<Again>,
+    /// Work strokes tried again for the part now in hand.
+    tried: Vec<Move>,
+    watch: Watch,
+    strokes_made: Vec<(&'static str, u64)>,
     axis_at: Option<AxisStation>,
     part_size: PartSize,
 }
@@ -41,6 +73,11 @@ impl Mechanism {
             strokes,
             timeout,
             underway: Vec::new(),
+            waiting: Vec::new(),
+            again: Vec::new(),
+            tried: Vec::new(),
+            watch: Watch::default(),
+            strokes_made: Vec::new(),
             axis_at: None,
             part_size,
         }
@@ -73,9 +110,42 @@ impl Mechanism {
     /// True from the moment a motion of the same actuator was driven until it arrives.
     pub fn is_moving(&self, movement: Move) -> bool {
         let key = movement.actuator_key();
-        self.underway
-            .iter()
-            .any(|underway| underway.movement.actuator_key() == key)
+        let same = |other: &Move| other.actuator_key() == key;
+        self.underway.iter().any(|underway| same(&underway.movement))
+            || self.waiting.iter().any(same)
+            || self.again.iter().any(|again| same(&again.movement))
+    }
+
+    /// The motion under way on an actuator.
+    pub fn moving(&self) -> impl Iterator<Item = Move> + '_ {
+        self.underway.iter().map(|underway| underway.movement)
+    }
+
+    /// Motions that wait for a step; none of their actuators counts as arrived.
+    pub fn keep_waiting(&mut self, movements: &[Move]) {
+        self.waiting.clear();
+        self.waiting.extend_from_slice(movements);
+    }
+
+    /// Every output has gone safe: nothing that was under way or stood counts any more.
+    pub fn forget(&mut self) {
+        self.underway.clear();
+        self.waiting.clear();
+        self.again.clear();
+        self.tried.clear();
+        self.watch.forget();
+        self.axis_at = None;
+    }
+
+    /// A new part: its strokes may be tried again.
+    pub fn new_part(&mut self) {
+        self.tried.clear();
+    }
+
+    /// Strokes by actuator and flickers of end sensors since the start.
+    pub fn wear(&self) -> Vec<(&'static str, u64)> {
+        let strokes = self.strokes_made.iter().copied();
+        strokes.chain([("sensor_bounces", self.watch.bounces())]).collect()
     }
 
     /// A motion was driven.
@@ -84,6 +154,11 @@ impl Mechanism {
         let key = movement.actuator_key();
         self.underway
             .retain(|underway| underway.movement.actuator_key() != key);
+        self.watch.left(key);
+        match self.strokes_made.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, strokes)) => *strokes += 1,
+            None => self.strokes_made.push((key, 1)),
+        }
         self.underway.push(Underway {
             movement,
             since: now,
@@ -94,29 +169,57 @@ impl Mechanism {
         }
     }
 
-    /// Takes note of arrivals; an actuator that takes too long is an alarm.
-    pub fn update(&mut self, now: RigTime, image: &Image) -> Option<Alarm> {
-        let mut late = None;
-        let mut kept = Vec::with_capacity(self.underway.len());
+    /// Takes note of arrivals; an actuator that takes too long is tried again or an alarm.
+    pub fn update(&mut self, now: RigTime, image: &Image) -> Found {
+        let mut found = Found::default();
         for underway in std::mem::take(&mut self.underway) {
-            let elapsed = now.since(underway.since);
-            let is_axis = matches!(underway.movement, Move::AxisTo(_));
-            let believed = !is_axis || elapsed >= AXIS_REACTS;
-            let fresh = underway.movement.arrival().iter().all(|(point, _)| {
-                image
-                    .input_at(*point)
-                    .is_some_and(|at| at >= underway.since)
-            });
-            if believed && fresh && self.sensed(underway.movement, now, image) {
-                continue;
+            if self.is_there(&underway, now, image) {
+                self.arrived(underway.movement, &mut found);
+            } else if now.since(underway.since) > self.timeout_of(underway.movement) {
+                self.late(underway, now, &mut found);
+            } else {
+                self.underway.push(underway);
             }
-            if elapsed > self.timeout_of(underway.movement) {
-                late = Some(Alarm::not_reached(underway.movement, elapsed));
-            }
-            kept.push(underway);
         }
-        self.underway = kept;
-        late
+        found.alarms.extend(self.watch.look(now, image));
+        found
+    }
+
+    fn is_there(&self, underway: &Underway, now: RigTime, image: &Image) -> bool {
+        let is_axis = matches!(underway.movement, Move::AxisTo(_));
+        let believed = !is_axis || now.since(underway.since) >= AXIS_REACTS;
+        let fresh = underway.movement.arrival().iter().all(|(point, _)| {
+            image
+                .input_at(*point)
+                .is_some_and(|at| at >= underway.since)
+        });
+        believed && fresh && self.sensed(underway.movement, now, image)
+    }
+
+    /// Back at rest for a second try: forth again. Anything else stands now and is watched.
+    fn arrived(&mut self, movement: Move, found: &mut Found) {
+        match self.again.iter().find(|again| again.back == movement) {
+            Some(again) => found.motions.push(again.movement),
+            None => {
+                self.again.retain(|again| again.movement != movement);
+                self.watch.stands(movement);
+            }
+        }
+    }
+
+    fn late(&mut self, underway: Underway, now: RigTime, found: &mut Found) {
+        let (movement, elapsed) = (underway.movement, now.since(underway.since));
+        let tried = self.tried.iter().filter(|one| **one == movement).count();
+        match movement.way_back() {
+            Some(back) if tried < usize::from(RETRIES) => {
+                self.tried.push(movement);
+                self.again.push(Again { movement, back });
+                found.alarms.push(Alarm::retried(movement, elapsed));
+                found.motions.push(back);
+            }
+            Some(_) | None => found.alarms.push(Alarm::not_reached(movement, elapsed)),
+        }
+        self.underway.push(underway);
     }
 
     fn timeout_of(&self, movement: Move) -> Span {

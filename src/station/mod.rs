@@ -3,59 +3,70 @@
 //! `Station::step(now, inputs) -> Wants` is a function of its state and arguments: no clock, no I/O, no
 //! `async`. It may be called at any time and as often as one likes; deadlines are kept in the states.
 //!
-//! Normal sequence of a run:
-//! 1. wait until every safety and end sensor was read once;
-//! 2. [`homing`]: every actuator to its rest end;
-//! 3. without a valid calibration: probes up in the empty nest, [`reference`] measurements, probes down,
-//!    then the golden parts, which are fed, tested and sorted like any other and end in `retest`;
-//! 4. the lot: [`feed`], [`clamp`] (with the [`test`]), [`sort`] overlap; parts are handed over in the
-//!    [`ledger`];
-//! 5. when the count is reached or a stop was ordered, the parts inside are finished; outputs go safe.
+//! The outer machine is [`packml`]; what a state does is in `states`, who may ask for what in `asked`.
+//! 1. `Resetting`: [`recovery`] brings every actuator to its rest end and discharges what is found inside;
+//! 2. `Starting`: without a valid calibration probes up in the empty nest, [`reference`] measurements;
+//! 3. `Execute`: golden parts when there is no calibration, then the lot. [`feed`], [`clamp`] (with the
+//!    [`test`]) and [`sort`] overlap; parts are handed over in the [`ledger`];
+//! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go as far as they can rest.
 //!
-//! Trouble: an [`trouble::Alarm`] makes all outputs safe and ends the run; a part inside is void,
-//! "interrupted". A stale sensor is trouble, never a guess. Reset and recovery are a new start.
+//! Trouble: an [`trouble::Alarm`] stops what the [`catalogue`] says and stands in the [`annunciator`] until its
+//! cause is gone and somebody has seen it. After `clear` and `reset` the station goes on from where it is. A
+//! part inside is void, "interrupted". A stale sensor is trouble, never a guess.
+//!
+//! Without a person at a screen ([`Plan::stays`] is false) the station resets and starts by itself, and an alarm
+//! that would need a person ends the run.
 
 pub mod act;
+pub mod annunciator;
+mod asked;
+pub mod catalogue;
 pub mod clamp;
 pub mod feed;
 pub mod golden;
-pub mod homing;
+mod lamps;
 mod learning;
 pub mod ledger;
 pub mod mechanism;
 pub mod moves;
+pub mod orders;
+pub mod packml;
+mod patience;
+mod produce;
+pub mod recovery;
 pub mod reference;
+mod safety;
 pub mod sort;
+mod states;
 pub mod supply;
 pub mod test;
 pub mod trouble;
 pub mod turn;
 pub mod wants;
+mod watch;
 
 use crate::gauge::settings::GoldenPart;
-use crate::gauge::verdict::{Bin, Verdict};
 use crate::guard::{PartPlaces, Situation};
 use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
-use crate::rig::point::{DigitalIn, DigitalOut};
-use crate::units::{RigTime, Span};
-use act::{JobDone, Runner};
-use clamp::{Beside, Clamp};
+use crate::units::RigTime;
+use act::Runner;
+use annunciator::Annunciator;
+use clamp::Clamp;
 use feed::Feed;
 use golden::{CoarseLag, GoldenRun};
-use homing::Homing;
+use lamps::Lamps;
 use ledger::Ledger;
 use mechanism::Mechanism;
 use moves::Move;
+use packml::{Mode, State};
+use patience::Patience;
+use recovery::Recovery;
 use sort::Sort;
 use std::collections::VecDeque;
 use test::Bench;
-use trouble::Alarm;
 use turn::Turn;
-use wants::{Ending, Inputs, Judged, Wants};
-
-/// Sensors must be there so long after the start at the latest.
-const FIRST_SCAN: Span = Span::ms(3000);
+use wants::{Inputs, Wants};
 
 /// What a run is to do.
 #[derive(Debug, Clone)]
@@ -74,21 +85,20 @@ pub struct Plan {
     pub simulated: bool,
     /// Volts at the terminal per volt of the coil, fine channel.
     pub voltage_gain: f64,
+    /// A person is at a screen: alarms, stops and the end of the lot do not end the run.
+    pub stays: bool,
 }
 
-/// Where the run stands.
+/// What `Starting` is doing.
 #[derive(Debug)]
-enum Phase {
-    /// Until every sensor was read once.
-    Waiting,
-    Homing(Homing),
+enum Start {
+    /// Nothing asked for yet.
+    Begin,
     /// Probes rise in the empty nest.
-    ReferenceUp,
-    Reference(Box<Runner>),
+    Up,
+    References(Box<Runner>),
     /// Probes go down again.
-    ReferenceDown,
-    Running,
-    Ended,
+    Down,
 }
 
 /// State of the whole station.
@@ -97,19 +107,45 @@ pub struct Station {
     plan: Plan,
     bench: Bench,
     table: AxisTable,
-    phase: Phase,
+    state: State,
+    entered: RigTime,
+    mode: Mode,
+    recovery: Recovery,
+    /// Every actuator was brought home and nothing was moved by hand or made safe since.
+    homed: bool,
+    start: Start,
+    /// References were measured in this run.
+    referenced: bool,
     began: Option<RigTime>,
+    /// Safety inputs were read since the start or since the modules were verified.
+    sensed: bool,
     feed: Feed,
+    /// The escapement may have let a part through when the sequence was cut off.
+    releasing: bool,
     clamp: Clamp,
     sort: Sort,
     ledger: Ledger,
     mechanism: Mechanism,
+    annunciator: Annunciator,
+    patience: Patience,
+    lamps: Lamps,
+    dark: Vec<(crate::rig::point::DigitalIn, RigTime)>,
+    /// Motions that wait for a step in maintenance.
+    stepwise: VecDeque<Move>,
+    /// A person asked for the suspension; it does not end by itself.
+    suspended_by_order: bool,
+    asked_verify: bool,
     golden_left: VecDeque<GoldenPart>,
     golden_run: GoldenRun,
     coarse: (CoarseLag, CoarseLag),
     last_left: Option<RigTime>,
     lot_began: bool,
+    /// Nobody has started anything yet: the first start is the program's own.
+    fresh: bool,
+    /// Parts of one start.
+    plan_count: u64,
     stopping: bool,
+    ended: bool,
 }
 
 impl Station {
@@ -121,22 +157,40 @@ impl Station {
             plan.golden.iter().cloned().collect()
         };
         Self {
+            fresh: true,
+            plan_count: plan.count.unwrap_or(0),
             plan,
             bench,
             table,
-            phase: Phase::Waiting,
+            state: State::Stopped,
+            entered: RigTime(0),
+            mode: Mode::Production,
+            recovery: Recovery::default(),
+            homed: false,
+            start: Start::Begin,
+            referenced: false,
             began: None,
+            sensed: false,
             feed: Feed::Empty,
+            releasing: false,
             clamp: Clamp::Empty,
             sort: Sort::Returning,
             ledger: Ledger::default(),
             mechanism,
+            annunciator: Annunciator::default(),
+            patience: Patience::default(),
+            lamps: Lamps::default(),
+            dark: Vec::new(),
+            stepwise: VecDeque::new(),
+            suspended_by_order: false,
+            asked_verify: false,
             golden_left,
             golden_run: GoldenRun::default(),
             coarse: (CoarseLag::default(), CoarseLag::default()),
             last_left: None,
             lot_began: false,
             stopping: false,
+            ended: false,
         }
     }
 
@@ -145,48 +199,97 @@ impl Station {
         &self.ledger
     }
 
+    /// Sensors and motions.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// Alarms that stand.
+    pub fn annunciator(&self) -> &Annunciator {
+        &self.annunciator
+    }
+
+    /// The same, to put in what a run before left unseen.
+    pub fn annunciator_mut(&mut self) -> &mut Annunciator {
+        &mut self.annunciator
+    }
+
+    /// A person is at a screen.
+    pub fn stays(&self) -> bool {
+        self.plan.stays
+    }
+
+    /// Strokes, touches and bounces since the start, by name.
+    pub fn wear(&self) -> Vec<(&'static str, u64)> {
+        self.mechanism.wear()
+    }
+
+    /// State of the outer machine.
+    pub fn outer(&self) -> State {
+        self.state
+    }
+
+    /// What the machine is used for.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
     /// What the station is doing, in words for a screen.
     pub fn state(&self) -> String {
-        match &self.phase {
-            Phase::Waiting => "waiting for sensors".into(),
-            Phase::Homing(_) => "homing".into(),
-            Phase::ReferenceUp | Phase::Reference(_) | Phase::ReferenceDown => "calibrating".into(),
-            Phase::Running if self.stopping => "stopping".into(),
-            Phase::Running => match self.clamp.test() {
+        match self.state {
+            _ if self.ended => "ended".into(),
+            State::Resetting if !self.sensed => "waiting for sensors".into(),
+            State::Resetting if !self.homed => "homing".into(),
+            State::Resetting => "discharging".into(),
+            State::Starting => "calibrating".into(),
+            State::Execute => match self.clamp.test() {
                 Some(test) => format!("testing: {:?}", test.stage()),
                 None if self.lot_began => "running".into(),
                 None => "golden parts".into(),
             },
-            Phase::Ended => "ended".into(),
+            State::Stopped
+            | State::Idle
+            | State::Completing
+            | State::Complete
+            | State::Holding
+            | State::Held
+            | State::Unholding
+            | State::Suspending
+            | State::Suspended
+            | State::Unsuspending
+            | State::Stopping
+            | State::Aborting
+            | State::Aborted
+            | State::Clearing => self.state.name().to_lowercase(),
         }
     }
 
     /// One turn.
-    pub fn step(&mut self, now: RigTime, inputs: Inputs) -> Wants {
+    pub fn step(&mut self, now: RigTime, mut inputs: Inputs) -> Wants {
         let mut wants = Wants::default();
-        let began = *self.began.get_or_insert(now);
-        self.stopping |= inputs.stop;
-        if matches!(self.phase, Phase::Ended) {
+        if self.ended {
             return wants;
         }
-        if self.stopping && !matches!(self.phase, Phase::Running) {
-            wants.safe = true;
-            wants.ending = Some(Ending::Stopped);
-            self.phase = Phase::Ended;
+        self.began.get_or_insert(now);
+        for order in std::mem::take(&mut inputs.orders) {
+            let answer = self.order(order, now, &mut wants);
+            wants.answers.push(answer);
+        }
+        self.by_itself(now, &inputs, &mut wants);
+        if self.ended {
             return wants;
         }
-        wants
-            .alarms
-            .extend(self.mechanism.update(now, inputs.image));
-        wants.alarms.extend(inputs.bus.clone());
-        wants.alarms.extend(self.safety(now, began, inputs.image));
-        if wants.alarms.is_empty() {
-            self.advance(now, inputs, &mut wants);
+        self.look(now, &inputs, &mut wants);
+        self.raise_all(now, &mut wants);
+        if !wants.safe && !self.ended {
+            self.act(now, inputs, &mut wants);
+            self.raise_all(now, &mut wants);
         }
         debug_assert!(self.ledger.balances(), "a part is in two places or in none");
-        if !wants.alarms.is_empty() {
-            self.abort(now, &mut wants);
-        }
+        self.annunciator.unshelve(now);
+        wants.alarms_changed = self.annunciator.take_changed();
+        let stack = self.lamps.show(now, self.state, self.annunciator.standing(), wants.safe);
+        wants.outputs.extend(stack);
         wants
     }
 
@@ -212,111 +315,6 @@ impl Station {
         self.mechanism.situation(parts, now, image)
     }
 
-    /// A refused motion ends the run like any alarm.
-    pub fn refused(&mut self, movement: Move, refusal: &str, now: RigTime, wants: &mut Wants) {
-        wants.alarms.push(Alarm::refused(movement, refusal));
-        self.abort(now, wants);
-    }
-
-    /// Safety inputs: open is an alarm, unknown is one after the first scan.
-    fn safety(&self, now: RigTime, began: RigTime, image: &Image) -> Option<Alarm> {
-        let inputs = [
-            (
-                DigitalIn::EmergencyStopOk,
-                "emergency_stop",
-                "Emergency stop pressed. Release it and start again.",
-                "急停按下。请复位急停后重新启动。",
-            ),
-            (
-                DigitalIn::DoorClosed,
-                "door_open",
-                "The door is open. Close it and start again.",
-                "安全门打开。请关门后重新启动。",
-            ),
-            (
-                DigitalIn::AirOk,
-                "air_lost",
-                "Air pressure is missing. Check the supply.",
-                "气压不足。请检查气源。",
-            ),
-        ];
-        for (point, code, en, zh) in inputs {
-            match image.input(point, now, mechanism::SENSOR_AGE) {
-                Some(true) => {}
-                Some(false) => return Some(Alarm::safety(code, en, zh)),
-                None if now.since(began) > FIRST_SCAN || !matches!(self.phase, Phase::Waiting) => {
-                    return Some(Alarm::bus(&format!("{point} was not read for too long")));
-                }
-                None => return None,
-            }
-        }
-        None
-    }
-
-    fn advance(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
-        match std::mem::replace(&mut self.phase, Phase::Ended) {
-            Phase::Waiting => self.phase = self.first_scan(now, inputs.image),
-            Phase::Homing(mut homing) => {
-                let mut turn = self.turn(now, &inputs, wants);
-                let home = homing.step(&mut turn);
-                self.phase = match (home, self.plan.calibrated) {
-                    (false, _) => Phase::Homing(homing),
-                    (true, true) => Phase::Running,
-                    (true, false) => {
-                        wants.motions.push(Move::ProbesUp);
-                        Phase::ReferenceUp
-                    }
-                };
-            }
-            Phase::ReferenceUp => {
-                let up = self
-                    .mechanism
-                    .has_arrived(Move::ProbesUp, now, inputs.image);
-                self.phase = if up {
-                    Phase::Reference(Box::new(Runner::new(reference::acts(&self.bench), now)))
-                } else {
-                    Phase::ReferenceUp
-                };
-                wants.wake_at = up.then_some(now);
-            }
-            Phase::Reference(runner) => {
-                self.phase = self.measure_references(now, &inputs, runner, wants)
-            }
-            Phase::ReferenceDown => {
-                let down = self
-                    .mechanism
-                    .has_arrived(Move::ProbesDown, now, inputs.image);
-                self.phase = if down {
-                    Phase::Running
-                } else {
-                    Phase::ReferenceDown
-                };
-            }
-            Phase::Running => {
-                self.phase = Phase::Running;
-                self.produce(now, inputs, wants);
-            }
-            Phase::Ended => {}
-        }
-    }
-
-    fn first_scan(&self, now: RigTime, image: &Image) -> Phase {
-        let seen = [
-            DigitalIn::EmergencyStopOk,
-            DigitalIn::SortZUp,
-            DigitalIn::NestPresent,
-            DigitalIn::GripperPart,
-        ];
-        if seen
-            .iter()
-            .all(|point| image.input(*point, now, mechanism::SENSOR_AGE).is_some())
-        {
-            Phase::Homing(Homing::default())
-        } else {
-            Phase::Waiting
-        }
-    }
-
     fn turn<'a>(&'a mut self, now: RigTime, inputs: &'a Inputs, wants: &'a mut Wants) -> Turn<'a> {
         Turn {
             now,
@@ -326,120 +324,8 @@ impl Station {
             wants,
             golden: &mut self.golden_left,
             recorded: inputs.recorded,
+            resting: matches!(self.state, State::Holding | State::Suspending),
         }
-    }
-
-    /// Feed, nest and sorter, once each.
-    fn produce(&mut self, now: RigTime, mut inputs: Inputs, wants: &mut Wants) {
-        let job: Option<JobDone> = inputs.job.take();
-        if !self.lot_began
-            && self.golden_left.is_empty()
-            && self
-                .bench
-                .calibration
-                .lags
-                .is_some_and(|lags| lags.operate.fine_v.u.is_finite())
-        {
-            self.lot_began = true;
-            wants.lot_began = true;
-        }
-        let wanted = !self.stopping && self.wants_more();
-        let test_running = matches!(self.clamp, Clamp::Testing(_) | Clamp::Judged);
-        let (feed, clamp) = (self.feed, std::mem::replace(&mut self.clamp, Clamp::Empty));
-        let (mut sort, mut last_left, bench) = (self.sort, self.last_left, self.bench.clone());
-        let table = self.table.clone();
-        let mut turn = self.turn(now, &inputs, wants);
-        sort = sort.step(&mut turn, &table, test_running);
-        let beside = Beside {
-            job,
-            bench: &bench,
-            sort: &mut sort,
-            last_left: &mut last_left,
-        };
-        let clamp = clamp.step(&mut turn, beside);
-        let feed = feed.step(&mut turn, wanted);
-        (self.feed, self.clamp, self.sort, self.last_left) = (feed, clamp, sort, last_left);
-        self.learn(wants);
-        self.maybe_end(inputs.recorded, wants);
-    }
-
-    fn wants_more(&self) -> bool {
-        let golden = if self.plan.calibrated {
-            0
-        } else {
-            self.plan.golden.len() as u64
-        };
-        self.plan
-            .count
-            .is_none_or(|count| self.ledger.came_in < golden + count)
-    }
-
-    fn maybe_end(&mut self, recorded: u64, wants: &mut Wants) {
-        let ledger = &self.ledger;
-        let empty = ledger.nest.is_none() && ledger.gripper.is_none() && ledger.falling.is_none();
-        let feeding = matches!(
-            self.feed,
-            Feed::Releasing { .. } | Feed::Holding | Feed::Pushing | Feed::Retracting
-        );
-        let at_rest = matches!(self.sort, Sort::Returning | Sort::OverNest | Sort::Opening);
-        let waiting_part = ledger.pocket && !self.stopping;
-        if !empty
-            || feeding
-            || !at_rest
-            || waiting_part
-            || wants.judged.iter().any(|j| j.part.ordinal > recorded)
-        {
-            return;
-        }
-        if self.stopping || !self.wants_more() {
-            wants.ending = Some(if self.wants_more() {
-                Ending::Stopped
-            } else {
-                Ending::Complete
-            });
-            wants.safe = true;
-            self.phase = Phase::Ended;
-        }
-    }
-
-    /// Safe outputs, the part under test void, the run over.
-    fn abort(&mut self, now: RigTime, wants: &mut Wants) {
-        wants.motions.clear();
-        wants.job = None;
-        wants.safe = true;
-        wants.outputs.push((DigitalOut::LampRed, true));
-        wants.ending = Some(Ending::Alarm);
-        self.phase = Phase::Ended;
-        let why = wants
-            .alarms
-            .first()
-            .map_or("alarm", |alarm| alarm.code.as_str())
-            .to_string();
-        let Some(part) = &mut self.ledger.nest else {
-            return;
-        };
-        if part.bin.is_some() {
-            return;
-        }
-        part.bin = Some(Bin::Retest);
-        let (findings, judgements) = match std::mem::replace(&mut self.clamp, Clamp::Empty) {
-            Clamp::Testing(test) => (test.findings.clone(), test.judgements()),
-            Clamp::Empty
-            | Clamp::Clamping
-            | Clamp::Probing
-            | Clamp::Judged
-            | Clamp::Gripping
-            | Clamp::Unclamping
-            | Clamp::Lifting => Default::default(),
-        };
-        wants.judged.push(Judged {
-            part: part.clone(),
-            verdict: Verdict::Void(vec![format!("interrupted: {why}")]),
-            judgements,
-            findings,
-            bench: self.bench.clone(),
-            at: now,
-        });
     }
 }
 

@@ -138,6 +138,45 @@ impl Move {
         }
     }
 
+    /// The rest stroke that frees the actuator for a second try. None where going back would let a part go
+    /// in the wrong place, and for strokes that go to rest themselves.
+    pub fn way_back(self) -> Option<Move> {
+        match self {
+            Move::EscapementRelease => Some(Move::EscapementHold),
+            Move::PusherExtend => Some(Move::PusherRetract),
+            Move::ClampClose => Some(Move::ClampOpen),
+            Move::ProbesUp => Some(Move::ProbesDown),
+            Move::SortDown => Some(Move::SortUp),
+            Move::GripperClose => Some(Move::GripperOpen),
+            Move::EscapementHold
+            | Move::PusherRetract
+            | Move::ClampOpen
+            | Move::ProbesDown
+            | Move::AxisTo(_)
+            | Move::SortUp
+            | Move::GripperOpen => None,
+        }
+    }
+
+    /// Sensors of the other end; both ends on at once is a broken sensor.
+    pub fn other_end(self) -> &'static [DigitalIn] {
+        match self {
+            Move::PusherExtend => &[DigitalIn::PusherRetracted],
+            Move::PusherRetract => &[DigitalIn::PusherExtended],
+            Move::ClampClose => &[DigitalIn::JawLeftOpen, DigitalIn::JawRightOpen],
+            Move::ClampOpen => &[DigitalIn::JawLeftClosed, DigitalIn::JawRightClosed],
+            Move::ProbesUp => &[DigitalIn::ProbeDown],
+            Move::ProbesDown => &[DigitalIn::ProbeUp],
+            Move::SortDown => &[DigitalIn::SortZUp],
+            Move::SortUp => &[DigitalIn::SortZDown],
+            Move::GripperClose => &[DigitalIn::GripperOpen],
+            Move::EscapementRelease
+            | Move::EscapementHold
+            | Move::AxisTo(_)
+            | Move::GripperOpen => &[],
+        }
+    }
+
     /// Key of the actuator's time-out in `config/rig.toml`.
     pub fn actuator_key(self) -> &'static str {
         match self {

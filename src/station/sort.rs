@@ -45,12 +45,12 @@ pub enum Sort {
 impl Sort {
     /// One turn. `test_running`: the nest holds a clamped part, so z may come down.
     pub fn step(self, turn: &mut Turn, table: &AxisTable, test_running: bool) -> Sort {
-        confirm(turn, table);
         match self {
             Sort::Returning if turn.arrived(Move::AxisTo(AxisStation::Nest)) => Sort::OverNest,
             Sort::Returning => Sort::Returning,
             Sort::OverNest
                 if test_running
+                    && !turn.resting
                     && turn.arrived(Move::PusherRetract)
                     && turn.arrived(Move::GripperOpen) =>
             {
@@ -98,10 +98,11 @@ impl Sort {
 /// Lets the part go once its rows are durable and the beam's count before is known.
 fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sort {
     let stay = Sort::OverBin(bin, since);
-    if turn.ledger.falling.is_some() {
+    let beam = table.beam(bin);
+    // A beam that stays dark is a full chute.
+    if turn.ledger.falling.is_some() || turn.seen(beam, true) {
         return stay;
     }
-    let beam = table.beam(bin);
     turn.wants.beam = Some(beam);
     let durable = turn
         .ledger
@@ -120,8 +121,8 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
     Sort::Opening
 }
 
-/// Watches the beam of the part that is falling.
-fn confirm(turn: &mut Turn, table: &AxisTable) {
+/// Watches the beam of the part that is falling; goes on whatever else has stopped.
+pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     let now = turn.now;
     let Some(falling) = &mut turn.ledger.falling else {
         return;
@@ -136,20 +137,27 @@ fn confirm(turn: &mut Turn, table: &AxisTable) {
         .map(|count| count.count);
     match count.map(|count| count.wrapping_sub(before) & 0xFFFF) {
         Some(1) if now.since(*falling.seen.get_or_insert(now)) >= SECOND_BODY => {
-            if let Some(landed) = turn.ledger.land() {
-                turn.wants.landed.push(Landed {
-                    part: landed.part,
-                    bin,
-                    at: now,
-                });
-            }
+            landed(turn, bin);
         }
         Some(1) => {}
-        Some(several) if several > 1 => turn.alarm(Alarm::beam(bin.name(), several)),
+        Some(several) if several > 1 => {
+            turn.alarm(Alarm::beam(bin.name(), several));
+            landed(turn, bin);
+        }
         Some(_) | None if now.since(since) > FALL => {
             turn.ledger.lose_falling();
             turn.alarm(Alarm::beam(bin.name(), 0));
         }
         Some(_) | None => {}
+    }
+}
+
+fn landed(turn: &mut Turn, bin: Bin) {
+    if let Some(landed) = turn.ledger.land() {
+        turn.wants.landed.push(Landed {
+            part: landed.part,
+            bin,
+            at: turn.now,
+        });
     }
 }

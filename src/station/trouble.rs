@@ -1,6 +1,7 @@
 //! Alarms: trouble of the rig, each with what happened and what to do, in English and Chinese.
 
 use super::moves::Move;
+use crate::rig::point::DigitalIn;
 use crate::units::Span;
 use serde::Serialize;
 
@@ -91,8 +92,26 @@ impl Alarm {
     pub fn no_part() -> Self {
         Self::new(
             "part_not_arrived",
-            "No part came from the magazine into the pocket. Fill the magazine or free the track.",
-            "料道没有工件进入料窝。请加料或疏通料道。",
+            "No part came from the magazine into the pocket although parts wait in the track. Free the track.",
+            "料道有工件但未进入料窝。请疏通料道。",
+        )
+    }
+
+    /// The track is empty.
+    pub fn magazine_empty() -> Self {
+        Self::new(
+            "magazine_empty",
+            "The magazine is empty. Fill it; the line goes on by itself.",
+            "料道已空。请加料；生产线自动继续。",
+        )
+    }
+
+    /// A safety input is not read any more.
+    pub fn stale(point: DigitalIn) -> Self {
+        Self::new(
+            "sensor_stale",
+            format!("{point} was not read for too long. Check cable, power and address of its module."),
+            format!("{point} 长时间未读到。请检查电缆、电源和模块地址。"),
         )
     }
 
@@ -121,12 +140,107 @@ impl Alarm {
         Self::new(code, text_en, text_zh)
     }
 
-    /// Parts were found where none may be at the start.
-    pub fn not_empty(place: &str) -> Self {
+    /// A part that nobody knows lies where the machine looks for one.
+    pub fn part_found(place: &str) -> Self {
         Self::new(
-            "part_found_at_start",
-            format!("A part lies in the {place} at the start. Take it out and start again."),
-            format!("启动时 {place} 内有工件。请取出后重新启动。"),
+            "part_found",
+            format!("A part lies in the {place} that does not belong to this run. It goes to retest."),
+            format!("{place} 内有不属于本次运行的工件，将送入复测箱。"),
+        )
+    }
+
+    /// A part that was inside is nowhere.
+    pub fn part_lost(place: &str) -> Self {
+        Self::new(
+            "part_lost",
+            format!("The part of the {place} is not there any more. Find it and scrap it."),
+            format!("{place} 的工件已不在原位。请找到并报废。"),
+        )
+    }
+
+    /// The fingers hold nothing any more.
+    pub fn part_dropped() -> Self {
+        Self::new(
+            "part_dropped",
+            "The gripper lost its part on the way. Find the part and scrap it.",
+            "夹爪在途中掉落工件。请找到该工件并报废。",
+        )
+    }
+
+    /// The nest still shows a part after the gripper went up.
+    pub fn part_stuck() -> Self {
+        Self::new(
+            "part_stuck",
+            "The gripper is up but a part is still in the nest. Free the part.",
+            "夹爪已上升但测试位仍有工件。请取下工件。",
+        )
+    }
+
+    /// The beam of a bin stays dark.
+    pub fn bin_full(bin: &str) -> Self {
+        Self::new(
+            "bin_full",
+            format!("The beam of bin {bin} stays dark. Empty the bin; the line goes on by itself."),
+            format!("料箱 {bin} 的光电长时间被遮挡。请清空料箱；生产线自动继续。"),
+        )
+    }
+
+    /// A stroke did not arrive and is tried once more.
+    pub fn retried(movement: Move, after: Span) -> Self {
+        let key = movement.actuator_key();
+        let ms = after.0 / 1000;
+        Self::new(
+            format!("{key}_retried"),
+            format!("{movement:?} not finished after {ms} ms; it goes back and tries once more."),
+            format!("{key} 动作 {movement:?} 在 {ms} 毫秒内未到位；退回后重试一次。"),
+        )
+    }
+
+    /// An actuator left its end by itself.
+    pub fn left_end(movement: Move) -> Self {
+        let key = movement.actuator_key();
+        Self::new(
+            format!("{key}_left_end"),
+            format!("The {key} left the end of {movement:?} although nothing moves it. Check air, hoses and sensor."),
+            format!("{key} 在未动作时离开 {movement:?} 的端位。请检查气源、气管和传感器。"),
+        )
+    }
+
+    /// Both ends of an actuator are seen at once.
+    pub fn both_ends(movement: Move) -> Self {
+        let key = movement.actuator_key();
+        Self::new(
+            format!("{key}_both_ends"),
+            format!("The {key} shows both ends at once (after {movement:?}). One sensor is stuck."),
+            format!("{key} 两端传感器同时有信号（动作 {movement:?} 之后）。其中一个传感器卡住。"),
+        )
+    }
+
+    /// The drive of the sort axis has tripped.
+    pub fn axis_drive() -> Self {
+        Self::new(
+            "axis_drive",
+            "The drive of the sort axis reports an alarm. Look for an obstacle; clear and reset switch it on again.",
+            "分拣轴驱动器报警。请检查障碍物；清除并复位后重新使能。",
+        )
+    }
+
+    /// A step waits for longer than it can need.
+    pub fn step_too_long(what: &str, after: Span) -> Self {
+        let s = after.as_seconds();
+        Self::new(
+            "step_too_long",
+            format!("{what} has been waiting for {s:.0} s. Look at sensors and parts there."),
+            format!("步骤 {what} 已等待 {s:.0} 秒。请检查该处的传感器和工件。"),
+        )
+    }
+
+    /// Modules had made themselves safe because their host was silent.
+    pub fn watchdog_tripped(module: &str) -> Self {
+        Self::new(
+            "watchdog_tripped",
+            format!("{module} had made its outputs safe because the controller was silent. It is ready again."),
+            format!("{module} 曾因控制器无应答而转入安全输出，现已恢复。"),
         )
     }
 

@@ -27,6 +27,8 @@ pub struct Turn<'a> {
     pub golden: &'a mut VecDeque<GoldenPart>,
     /// Ordinal up to which parts are durably recorded.
     pub recorded: u64,
+    /// The sequence goes to rest: nothing new begins.
+    pub resting: bool,
 }
 
 impl Turn<'_> {
@@ -37,7 +39,7 @@ impl Turn<'_> {
 
     /// Raises an alarm.
     pub fn alarm(&mut self, alarm: Alarm) {
-        self.wants.alarms.push(alarm);
+        self.wants.trouble.push(alarm);
     }
 
     /// True when the sensors show the end of the motion, nothing of it is under way or asked for.

@@ -3,6 +3,7 @@
 use super::act::{Job, JobDone};
 use super::ledger::Part;
 use super::moves::Move;
+use super::orders::{Order, Refused};
 use super::test::{Bench, Findings};
 use super::trouble::Alarm;
 use crate::gauge::verdict::{Bin, Judgement, Verdict};
@@ -22,8 +23,16 @@ pub struct Inputs<'a> {
     pub recorded: u64,
     /// Trouble of a line or module, once.
     pub bus: Option<Alarm>,
-    /// The operator wants the lot to end after the parts inside.
+    /// The operator wants the lot to end after the parts inside (Ctrl-C, once).
     pub stop: bool,
+    /// The operator wants it to end at once (Ctrl-C, twice).
+    pub abort: bool,
+    /// Orders of screens, in the order in which they came; each is answered in [`Wants::answers`].
+    pub orders: Vec<Order>,
+    /// Every output has confirmed what was asked of it.
+    pub settled: bool,
+    /// The modules were verified after [`Wants::verify`].
+    pub verified: bool,
 }
 
 /// A judged part on its way to the history.
@@ -41,6 +50,38 @@ pub struct Judged {
     pub bench: Bench,
     /// When it was judged.
     pub at: RigTime,
+}
+
+impl Judged {
+    /// A part that was not tested to the end.
+    pub fn interrupted(part: Part, why: &str, bench: &Bench, at: RigTime) -> Self {
+        Self {
+            part,
+            verdict: Verdict::Void(vec![format!("interrupted: {why}")]),
+            judgements: Vec::new(),
+            findings: Findings::default(),
+            bench: bench.clone(),
+            at,
+        }
+    }
+}
+
+/// A motion by hand, which the guard may refuse: then that is the answer to the order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Jog {
+    /// What to move.
+    pub movement: Move,
+    /// Place of its order in [`Wants::answers`].
+    pub answer: usize,
+}
+
+/// A judged part that goes to retest all the same.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Interrupted {
+    /// Ordinal of the part.
+    pub ordinal: u64,
+    /// Why.
+    pub why: String,
 }
 
 /// A part whose beam has confirmed it.
@@ -85,8 +126,12 @@ pub struct Wants {
     pub job: Option<Job>,
     /// Beam whose event counter is to be read with every scan.
     pub beam: Option<DigitalIn>,
-    /// Alarms raised in this turn.
+    /// Trouble seen in this turn, before it was compared with what stands.
+    pub trouble: Vec<Alarm>,
+    /// Alarms that came anew in this turn.
     pub alarms: Vec<Alarm>,
+    /// A motion by hand.
+    pub jog: Option<Jog>,
     /// Parts judged in this turn.
     pub judged: Vec<Judged>,
     /// Parts confirmed in this turn.
@@ -99,6 +144,14 @@ pub struct Wants {
     pub safe: bool,
     /// The lot itself has begun (after calibration and golden parts).
     pub lot_began: bool,
+    /// Judged parts that were interrupted on their way to the bin.
+    pub interrupted: Vec<Interrupted>,
+    /// Answers to the orders of this turn, one each.
+    pub answers: Vec<Result<(), Refused>>,
+    /// Alarms that stand have changed.
+    pub alarms_changed: bool,
+    /// Forget failed writes and verify every module again.
+    pub verify: bool,
     /// The run is over.
     pub ending: Option<Ending>,
     /// Next turn not later than this.

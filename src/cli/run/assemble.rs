@@ -25,6 +25,7 @@ pub fn cycle(
     pace: Pace,
     lines: Vec<LineEnds>,
     outside: Outside,
+    stays: bool,
 ) -> anyhow::Result<Cycle> {
     let plant = setup.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
@@ -43,6 +44,7 @@ pub fn cycle(
         pin_length_mm: recipe.part.pin_length_mm,
     };
     let plan = Plan {
+        stays,
         count: setup.args.count,
         golden: plant
             .golden

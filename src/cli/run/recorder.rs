@@ -12,12 +12,13 @@ use crate::config::Plant;
 use crate::cycle::{Event, Profile};
 use crate::gauge::{Calibration, Recipe};
 use crate::history::{
-    AlarmRecord, CalibrationRecord, Identity, LandingRecord, LotRecord, Row, Store, snapshot_hash,
+    AlarmRecord, CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store, snapshot_hash,
 };
 use crate::station::ledger::Kind;
-use crate::station::wants::{Ending, Judged, Landed};
+use crate::gauge::verdict::{Bin, Verdict};
+use crate::station::wants::{Ending, Interrupted, Judged, Landed};
 use crate::units::RigTime;
-use crate::view::{AlarmLine, LastPart};
+use crate::view::LastPart;
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
@@ -204,14 +205,7 @@ impl<'a> Recorder<'a> {
                         .suspend(|| tracing::error!("last traffic: {}", path.display()));
                 }
                 let lines = self.traces.health();
-                self.controls.view.send_modify(|view| {
-                    view.lines = lines;
-                    view.alarms.push(AlarmLine {
-                        code: alarm.code.clone(),
-                        text_en: alarm.text_en.clone(),
-                        text_zh: alarm.text_zh.clone(),
-                    });
-                });
+                self.controls.view.send_modify(|view| view.lines = lines);
                 rows.push(Row::Alarm(AlarmRecord {
                     lot: Some(self.setup.args.lot.clone()),
                     code: alarm.code,
@@ -221,6 +215,8 @@ impl<'a> Recorder<'a> {
                     cleared_at_us: None,
                 }));
             }
+            Event::Interrupted(interrupted) => self.interrupted(&interrupted, rows),
+            Event::Standing(_) => {}
             Event::Calibrated(calibration) => self.calibrated(&calibration)?,
             Event::LotBegan(at) => {
                 self.lot_began = Some(at);
@@ -228,6 +224,31 @@ impl<'a> Recorder<'a> {
             }
         }
         Ok(None)
+    }
+
+    /// A judged part that goes to retest: counts and row follow.
+    fn interrupted(&mut self, interrupted: &Interrupted, rows: &mut Vec<Row>) {
+        let Some(part) = self.underway.get_mut(&interrupted.ordinal) else {
+            return;
+        };
+        let (seq, kind) = rows::number(&part.judged.part.kind, part.golden);
+        let reason = format!("interrupted: {}", interrupted.why);
+        let mut reasons = part.judged.verdict.reasons();
+        reasons.push(reason.clone());
+        let before = std::mem::replace(&mut part.judged.verdict, Verdict::Void(reasons));
+        part.judged.part.bin = Some(Bin::Retest);
+        if kind == "lot" {
+            if let Some(count) = self.counts.verdicts.get_mut(before.name()) {
+                *count -= 1;
+            }
+            *self.counts.verdicts.entry("void").or_insert(0) += 1;
+        }
+        rows.push(Row::Interrupted(InterruptedRecord {
+            lot: self.setup.args.lot.clone(),
+            kind: kind.into(),
+            seq,
+            reason,
+        }));
     }
 
     fn wall_us(&self, at: RigTime) -> i64 {

@@ -1,0 +1,195 @@
+//! Orders answered: what may be done now, and why not.
+
+use super::annunciator::Standing;
+use super::orders::{Order, Refused};
+use super::packml::{self, Command, Mode, On, State};
+use super::wants::{Jog, Wants};
+use super::Station;
+use crate::units::{RigTime, Span};
+
+/// Longest time on the shelf.
+const SHELF_MINUTES: u32 = 480;
+
+impl Station {
+    /// Takes an order or says why not.
+    pub(super) fn order(
+        &mut self,
+        order: Order,
+        now: RigTime,
+        wants: &mut Wants,
+    ) -> Result<(), Refused> {
+        match order {
+            Order::Command(command) => {
+                self.may(command)?;
+                self.command(command, now, wants);
+            }
+            Order::Mode(mode) => {
+                self.may_change_mode()?;
+                self.mode = mode;
+            }
+            Order::Jog(movement) => {
+                self.may_jog()?;
+                let answer = wants.answers.len();
+                wants.jog = Some(Jog { movement, answer });
+            }
+            Order::Step => {
+                self.may_step()?;
+                wants.motions.extend(self.stepwise.pop_front());
+            }
+            Order::LampTest => self.lamps.test(now),
+            Order::Acknowledge(code) => {
+                if !self.annunciator.acknowledge(code.as_deref()) && code.is_some() {
+                    return Err(no_alarm());
+                }
+            }
+            Order::Shelve(code, minutes) => {
+                let minutes = minutes.clamp(1, SHELF_MINUTES);
+                let until = now + Span::ms(u64::from(minutes) * 60_000);
+                if !self.annunciator.shelve(&code, until) {
+                    return Err(no_alarm());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a command would be taken now; the reason stands beside its button.
+    ///
+    /// # Errors
+    /// The reason why not.
+    pub fn may(&self, command: Command) -> Result<(), Refused> {
+        if packml::next(self.state, On::Command(command)).is_none() {
+            return Err(Refused::wrong_state(command, self.state));
+        }
+        match command {
+            Command::Reset | Command::Clear => match self.cause() {
+                Some(cause) => Err(still_there(cause)),
+                None => Ok(()),
+            },
+            Command::Start => self.may_start(),
+            Command::Unsuspend => match self
+                .annunciator
+                .stopping(super::catalogue::Stops::Suspend)
+            {
+                Some(cause) => Err(still_there(cause)),
+                None => Ok(()),
+            },
+            Command::Stop
+            | Command::Hold
+            | Command::Unhold
+            | Command::Suspend
+            | Command::Abort
+            | Command::Complete => Ok(()),
+        }
+    }
+
+    fn may_start(&self) -> Result<(), Refused> {
+        if self.mode == Mode::Manual {
+            return Err(Refused::wrong_mode("start", self.mode, Mode::Production));
+        }
+        if !self.homed {
+            return Err(Refused::new(
+                "actuators were moved by hand since the reset; stop and reset first",
+                "复位后执行机构被手动移动过；请先停止并复位",
+            ));
+        }
+        if !self.wants_more() && !self.plan.stays {
+            return Err(Refused::new(
+                "every part of the lot has been made",
+                "本批次已全部完成",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Whether the mode may be changed now.
+    ///
+    /// # Errors
+    /// The reason why not.
+    pub fn may_change_mode(&self) -> Result<(), Refused> {
+        if packml::may_change_mode(self.state) {
+            return Ok(());
+        }
+        let state = self.state.name();
+        Err(Refused::new(
+            format!("the mode can be changed in Stopped, Idle, Complete and Aborted; the machine is in {state}"),
+            format!("只能在 Stopped、Idle、Complete、Aborted 状态切换模式；当前状态为 {state}"),
+        ))
+    }
+
+    /// Whether an actuator may be moved by hand now; what it would touch is the guard's to say.
+    ///
+    /// # Errors
+    /// The reason why not.
+    pub fn may_jog(&self) -> Result<(), Refused> {
+        if self.mode == Mode::Production {
+            return Err(Refused::wrong_mode("jog", self.mode, Mode::Manual));
+        }
+        if self.state != State::Idle {
+            let state = self.state.name();
+            return Err(Refused::new(
+                format!("unhomed: jogging needs Idle after a reset; the machine is in {state}"),
+                format!("未回原点：点动需要复位后处于 Idle 状态；当前状态为 {state}"),
+            ));
+        }
+        if self.mechanism.moving().next().is_some() {
+            return Err(Refused::new(
+                "the motion before has not arrived",
+                "上一个动作尚未到位",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Whether there is a motion to be released by hand.
+    ///
+    /// # Errors
+    /// The reason why not.
+    pub fn may_step(&self) -> Result<(), Refused> {
+        if self.mode != Mode::Maintenance {
+            return Err(Refused::wrong_mode("step", self.mode, Mode::Maintenance));
+        }
+        if self.stepwise.is_empty() {
+            return Err(Refused::new(
+                "no motion waits for a step",
+                "没有等待单步的动作",
+            ));
+        }
+        Ok(())
+    }
+
+    /// An actuator was moved by hand: home is not home any more.
+    pub fn jogged(&mut self) {
+        self.homed = false;
+    }
+
+    fn command(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+        match command {
+            Command::Abort => return self.abort("abort ordered", now, wants),
+            Command::Clear | Command::Unhold | Command::Reset => self.annunciator.cleared(),
+            Command::Suspend => self.suspended_by_order = true,
+            Command::Start
+            | Command::Stop
+            | Command::Hold
+            | Command::Unsuspend
+            | Command::Complete => {}
+        }
+        if command == Command::Start && !self.wants_more() {
+            // A person who starts a complete lot wants as many parts again.
+            self.plan.count = self.plan.count.map(|count| count + self.plan_count);
+        }
+        self.enter(command, now, wants);
+    }
+}
+
+fn still_there(cause: &Standing) -> Refused {
+    let alarm = &cause.alarm;
+    Refused::new(
+        format!("the cause is still there: {}", alarm.text_en),
+        format!("原因仍然存在：{}", alarm.text_zh),
+    )
+}
+
+fn no_alarm() -> Refused {
+    Refused::new("no such alarm stands", "没有该报警")
+}

@@ -1,0 +1,207 @@
+//! Homing and recovery from any position: after power-up, a crash, a jam, an emergency stop.
+//!
+//! 1. The drive of the axis is reset and its servo switched on; nothing has moved yet.
+//! 2. z up, before anything else moves near the nest.
+//! 3. The ledger is compared with what the sensors show: parts are where they are seen. A part that the
+//!    ledger does not know is *found*, one that nobody sees is *lost*; both are told.
+//! 4. Every other actuator goes to its rest end, one at a time. A motion that the guard refuses waits
+//!    until the others are home; when all that are left are refused, that is an alarm. Fingers that hold
+//!    a part stay closed.
+//! 5. What was inside is discharged to retest by the ordinary sequence (feed, clamp without a test, sort).
+//!
+//! Never a move from an assumed position: safe outputs made the station forget where the axis stood, and
+//! an actuator without an end sensor on occupies its whole stroke for the guard.
+
+use super::ledger::Ledger;
+use super::moves::Move;
+use super::trouble::Alarm;
+use super::turn::Turn;
+use crate::rig::axis::AxisStation;
+use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::units::{RigTime, Span};
+use std::collections::VecDeque;
+
+/// After z.
+const ORDER: [Move; 6] = [
+    Move::ProbesDown,
+    Move::PusherRetract,
+    Move::EscapementHold,
+    Move::ClampOpen,
+    Move::GripperOpen,
+    Move::AxisTo(AxisStation::Nest),
+];
+
+/// The drive takes its reset within this time.
+const DRIVE_RESET: Span = Span::ms(50);
+
+/// How far it has come.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Stage {
+    /// Sensors of the parts are not all read yet.
+    Looking,
+    /// Reset of the drive since then.
+    Drive(RigTime),
+    Up,
+    Home,
+}
+
+/// Homing under way.
+#[derive(Debug, Clone)]
+pub struct Recovery {
+    stage: Stage,
+    left: VecDeque<Move>,
+    asked: Option<Move>,
+    refused: usize,
+}
+
+impl Default for Recovery {
+    fn default() -> Self {
+        Self {
+            stage: Stage::Looking,
+            left: ORDER.into(),
+            asked: None,
+            refused: 0,
+        }
+    }
+}
+
+impl Recovery {
+    /// One turn; true when everything is home. `releasing`: the escapement may have let a part through.
+    pub fn step(&mut self, turn: &mut Turn, releasing: bool) -> bool {
+        match self.stage {
+            Stage::Looking => {
+                if Seen::of(turn).is_some() {
+                    turn.wants.outputs.push((DigitalOut::AxisReset, true));
+                    self.stage = Stage::Drive(turn.now);
+                }
+            }
+            Stage::Drive(since) => {
+                turn.wants.wake_at = Some(since + DRIVE_RESET);
+                if turn.now.since(since) >= DRIVE_RESET {
+                    turn.wants.outputs.push((DigitalOut::AxisReset, false));
+                    turn.wants.outputs.push((DigitalOut::AxisServoOn, true));
+                    self.stage = Stage::Up;
+                }
+            }
+            Stage::Up if !turn.arrived(Move::SortUp) => self.ask(turn, Move::SortUp),
+            Stage::Up => {
+                if let Some(seen) = Seen::of(turn) {
+                    reconcile(turn.ledger, &seen, releasing, &mut turn.wants.trouble);
+                    self.leave_gripped(turn.ledger);
+                    (self.stage, self.asked) = (Stage::Home, None);
+                }
+            }
+            Stage::Home => return self.home(turn),
+        }
+        false
+    }
+
+    /// The guard refused what was asked for; false when there is nothing else to try first.
+    pub fn refused(&mut self, movement: Move) -> bool {
+        if self.asked != Some(movement) || self.stage != Stage::Home {
+            return false;
+        }
+        self.asked = None;
+        self.refused += 1;
+        self.left.rotate_left(1);
+        self.refused < self.left.len()
+    }
+
+    fn ask(&mut self, turn: &mut Turn, movement: Move) {
+        if self.asked != Some(movement) {
+            turn.drive(movement);
+            self.asked = Some(movement);
+        }
+    }
+
+    /// Fingers that hold a part stay closed, and the axis takes it to its bin from where it stands.
+    fn leave_gripped(&mut self, ledger: &Ledger) {
+        if ledger.gripper.is_some() {
+            self.left
+                .retain(|one| !matches!(one, Move::GripperOpen | Move::AxisTo(_)));
+        }
+    }
+
+    fn home(&mut self, turn: &mut Turn) -> bool {
+        let Some(movement) = self.left.front().copied() else {
+            return true;
+        };
+        if turn.arrived(movement) {
+            self.left.pop_front();
+            (self.asked, self.refused) = (None, 0);
+        } else {
+            self.ask(turn, movement);
+        }
+        self.left.is_empty()
+    }
+}
+
+/// Where parts are seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Seen {
+    /// In the pocket.
+    pub pocket: bool,
+    /// In the nest.
+    pub nest: bool,
+    /// Between the fingers.
+    pub gripper: bool,
+}
+
+impl Seen {
+    fn of(turn: &Turn) -> Option<Self> {
+        Some(Self {
+            pocket: turn.input(DigitalIn::PocketPresent)?,
+            nest: turn.input(DigitalIn::NestPresent)?,
+            gripper: turn.input(DigitalIn::GripperPart)?,
+        })
+    }
+}
+
+/// Brings the ledger to what is seen, z being up. Parts in nest and gripper are interrupted by this.
+pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, alarms: &mut Vec<Alarm>) {
+    hand_over(ledger, seen);
+    match (ledger.gripper.is_some(), seen.gripper) {
+        (true, false) => {
+            ledger.lose_gripper();
+            alarms.push(Alarm::part_lost("gripper"));
+        }
+        (false, true) => {
+            ledger.find_in_gripper();
+            alarms.push(Alarm::part_found("gripper"));
+        }
+        (true, true) | (false, false) => {}
+    }
+    match (ledger.nest.is_some(), seen.nest) {
+        (true, false) => {
+            ledger.lose_nest();
+            alarms.push(Alarm::part_lost("nest"));
+        }
+        (false, true) => {
+            ledger.find_in_nest();
+            alarms.push(Alarm::part_found("nest"));
+        }
+        (true, true) | (false, false) => {}
+    }
+    match (ledger.pocket, seen.pocket) {
+        (true, false) => {
+            ledger.lose_pocket();
+            alarms.push(Alarm::part_lost("pocket"));
+        }
+        (false, true) if releasing => ledger.enter_pocket(),
+        (false, true) => {
+            ledger.find_in_pocket();
+            alarms.push(Alarm::part_found("pocket"));
+        }
+        (true, true) | (false, false) => {}
+    }
+}
+
+/// Parts that had moved on when the sequence was cut off, or were set down again.
+fn hand_over(ledger: &mut Ledger, seen: &Seen) {
+    let (nest, gripper) = (ledger.nest.is_some(), ledger.gripper.is_some());
+    if nest && !gripper && !seen.nest && seen.gripper {
+        ledger.lift();
+    } else if gripper && !nest && !seen.gripper && seen.nest {
+        ledger.set_down();
+    }
+}

@@ -1,0 +1,232 @@
+//! What a turn looks at whatever the state, and what alarms do.
+
+use super::annunciator::Standing;
+use super::catalogue::{self, Goes, Stops};
+use super::clamp::Clamp;
+use super::feed::Feed;
+use super::mechanism::SENSOR_AGE;
+use super::moves::Move;
+use super::packml::{self, Command, On, State};
+use super::sort::{self, Sort};
+use super::trouble::Alarm;
+use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
+use super::Station;
+use crate::gauge::verdict::{Bin, Verdict};
+use crate::rig::image::Image;
+use crate::rig::point::DigitalIn;
+use crate::units::{RigTime, Span};
+
+/// Sensors must be there so long after the start at the latest.
+const FIRST_SCAN: Span = Span::ms(3000);
+/// A beam that is dark for so long has a part standing in it; a falling one darkens it for 11 ms.
+const FULL: Span = Span::ms(500);
+
+impl Station {
+    /// Sensors, motions, lines, and the part that is falling.
+    pub(super) fn look(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        let found = self.mechanism.update(now, inputs.image);
+        wants.motions.extend(found.motions);
+        let mut there = self.safety(now, inputs.image);
+        there.extend(self.full_bins(now, inputs.image));
+        there.extend(self.still_starved(now, inputs.image));
+        self.annunciator.sensed(&there);
+        if !packml::is_aborted(self.state) {
+            wants.trouble.extend(found.alarms);
+        }
+        wants.trouble.extend(inputs.bus.clone());
+        wants.trouble.extend(there);
+        let table = self.table.clone();
+        sort::confirm(&mut self.turn(now, inputs, wants), &table);
+        if !self.dark.is_empty() {
+            self.patience.wait_for_bin();
+        }
+        let patience = self.patience.look(now, self.state, self.mode, &self.feed, &self.clamp, self.sort);
+        wants.trouble.extend(patience);
+    }
+
+    /// Safety inputs: open is an alarm, unknown is one after the first scan.
+    fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
+        let inputs = [
+            (
+                DigitalIn::EmergencyStopOk,
+                "emergency_stop",
+                "Emergency stop pressed. Release it, then clear and reset.",
+                "急停按下。请复位急停，然后清除并复位。",
+            ),
+            (
+                DigitalIn::DoorClosed,
+                "door_open",
+                "The door is open. Close it, then clear and reset.",
+                "安全门打开。请关门，然后清除并复位。",
+            ),
+            (
+                DigitalIn::AirOk,
+                "air_lost",
+                "Air pressure is missing. Check the supply.",
+                "气压不足。请检查气源。",
+            ),
+        ];
+        let late = now.since(self.began.unwrap_or(now)) > FIRST_SCAN;
+        let (mut alarms, mut unread) = (Vec::new(), Vec::new());
+        for (point, code, en, zh) in inputs {
+            match image.input(point, now, SENSOR_AGE) {
+                Some(true) => {}
+                Some(false) => alarms.push(Alarm::safety(code, en, zh)),
+                None => unread.push(point),
+            }
+        }
+        let others = [
+            DigitalIn::SortZUp,
+            DigitalIn::NestPresent,
+            DigitalIn::GripperPart,
+        ];
+        let all = unread.is_empty()
+            && others
+                .iter()
+                .all(|point| image.input(*point, now, SENSOR_AGE).is_some());
+        if let Some(point) = unread.first()
+            && (late || self.sensed)
+        {
+            alarms.push(Alarm::stale(*point));
+        }
+        self.sensed |= all;
+        alarms
+    }
+
+    fn full_bins(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
+        let mut alarms = Vec::new();
+        for bin in Bin::ALL {
+            let beam = self.table.beam(*bin);
+            let dark = image.input(beam, now, SENSOR_AGE) == Some(true);
+            let since = self.dark.iter().find(|(known, _)| *known == beam);
+            match (dark, since.map(|(_, since)| *since)) {
+                (true, None) => self.dark.push((beam, now)),
+                (true, Some(since)) if now.since(since) >= FULL => {
+                    alarms.push(Alarm::bin_full(bin.name()));
+                }
+                (true, Some(_)) | (false, None) => {}
+                (false, Some(_)) => self.dark.retain(|(known, _)| *known != beam),
+            }
+        }
+        alarms
+    }
+
+    fn still_starved(&self, now: RigTime, image: &Image) -> Option<Alarm> {
+        let standing = self.annunciator.standing().iter();
+        let starved = standing
+            .filter(|one| one.is_active())
+            .any(|one| one.alarm.code == "magazine_empty");
+        let parts = [DigitalIn::TrackLevel, DigitalIn::PocketPresent]
+            .iter()
+            .any(|point| image.input(*point, now, SENSOR_AGE) == Some(true));
+        (starved && !parts).then(Alarm::magazine_empty)
+    }
+
+    /// A motion that the guard refused: in homing another one goes first, else it is an alarm.
+    pub fn refused(&mut self, movement: Move, refusal: &str, now: RigTime, wants: &mut Wants) {
+        if self.state == State::Resetting && self.recovery.refused(movement) {
+            return;
+        }
+        wants.trouble.push(Alarm::refused(movement, refusal));
+        self.raise_all(now, wants);
+    }
+
+    /// Alarms of this turn into the list; what is left in the wants is what came anew.
+    pub(super) fn raise_all(&mut self, now: RigTime, wants: &mut Wants) {
+        for alarm in std::mem::take(&mut wants.trouble) {
+            if self.annunciator.raise(&alarm, now) {
+                wants.alarms.push(alarm.clone());
+            }
+            self.react(&alarm, now, wants);
+        }
+    }
+
+    fn react(&mut self, alarm: &Alarm, now: RigTime, wants: &mut Wants) {
+        let Some(entry) = catalogue::entry(&alarm.code) else {
+            return self.abort(&alarm.code, now, wants);
+        };
+        match entry.stops {
+            Stops::Abort => {
+                let parked = matches!(self.state, State::Stopped | State::Complete);
+                if !(parked && entry.goes == Goes::BySensor) {
+                    self.abort(&alarm.code, now, wants);
+                }
+            }
+            Stops::Hold if !self.plan.stays => self.abort(&alarm.code, now, wants),
+            Stops::Hold => self.rest(Command::Hold, now, wants),
+            Stops::Suspend => {
+                if self.state == State::Execute {
+                    self.suspended_by_order = false;
+                }
+                self.rest(Command::Suspend, now, wants);
+            }
+            Stops::Nothing => {}
+        }
+    }
+
+    fn rest(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+        if packml::next(self.state, On::Command(command)).is_some() {
+            self.enter(command, now, wants);
+        }
+    }
+
+    /// Outputs safe at once, parts inside interrupted. Without a person there the run is over.
+    pub(super) fn abort(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
+        if packml::is_aborted(self.state) || self.ended {
+            return;
+        }
+        self.make_safe(why, now, wants);
+        self.enter(Command::Abort, now, wants);
+        if !self.plan.stays {
+            self.end(Ending::Alarm, wants);
+        }
+    }
+
+    /// Nothing is known of any position from here on.
+    pub(super) fn make_safe(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
+        wants.motions.clear();
+        wants.jog = None;
+        wants.job = None;
+        wants.safe = true;
+        self.interrupt(why, now, wants);
+        self.releasing |= matches!(self.feed, Feed::Releasing { .. } | Feed::Closing { .. });
+        self.feed = self.feed_at_rest();
+        self.clamp = Clamp::Empty;
+        self.sort = Sort::Returning;
+        self.stepwise.clear();
+        self.mechanism.forget();
+        self.homed = false;
+    }
+
+    pub(super) fn feed_at_rest(&self) -> Feed {
+        if self.ledger.pocket { Feed::Ready } else { Feed::Empty }
+    }
+
+    /// Parts in nest and gripper go to retest; one that was judged gets that into its row.
+    fn interrupt(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
+        let ledger = &mut self.ledger;
+        for part in ledger.nest.iter_mut().chain(&mut ledger.gripper) {
+            if part.interrupted.is_some() && part.bin.is_some() {
+                continue;
+            }
+            let why = part.interrupted.get_or_insert_with(|| why.to_owned()).clone();
+            let ordinal = part.ordinal;
+            if part.bin.replace(Bin::Retest).is_some() {
+                wants.interrupted.push(Interrupted { ordinal, why });
+                continue;
+            }
+            let mut judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
+            if let Clamp::Testing(test) = &self.clamp {
+                judged.findings = test.findings.clone();
+                judged.judgements = test.judgements();
+            }
+            debug_assert!(matches!(judged.verdict, Verdict::Void(_)));
+            wants.judged.push(judged);
+        }
+    }
+
+    /// The alarm whose sensor still shows its cause, for a clear or reset that comes too early.
+    pub(super) fn cause(&self) -> Option<&Standing> {
+        self.annunciator.still_sensed()
+    }
+}

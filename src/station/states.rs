@@ -1,0 +1,255 @@
+//! What each state of the outer machine does in a turn, and how it is left.
+
+use super::act::{Doing, Runner};
+use super::catalogue::Stops;
+use super::moves::Move;
+use super::packml::{self, Command, On, State};
+use super::recovery::Recovery;
+use super::sort::Sort;
+use super::trouble::Alarm;
+use super::wants::{Ending, Inputs, Judged, Wants};
+use super::{Start, Station, reference};
+use crate::gauge::verdict::Bin;
+use crate::units::{RigTime, Span};
+
+/// Outputs that did not confirm their safe value in this time are told, and the abort goes on without.
+const SAFE_WITHIN: Span = Span::ms(2000);
+/// Nobody is there to fill a magazine or empty a bin: after so long the run ends.
+const ALONE: Span = Span::ms(60_000);
+
+impl Station {
+    /// Orders that nobody has to give when nobody is there, and the end of the program.
+    pub(super) fn by_itself(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        if inputs.stop && !self.stopping {
+            self.stopping = true;
+            if packml::next(self.state, On::Command(Command::Stop)).is_some() {
+                self.enter(Command::Stop, now, wants);
+            }
+        }
+        if inputs.abort && !packml::is_aborted(self.state) {
+            self.make_safe("stopped by the operator", now, wants);
+            self.end(Ending::Stopped, wants);
+        }
+        let rests = matches!(self.state, State::Stopped | State::Complete | State::Aborted);
+        match (self.stopping, self.plan.stays, self.state) {
+            (true, ..) if rests => {
+                self.make_safe("stopped", now, wants);
+                let aborted = packml::is_aborted(self.state);
+                self.end(if aborted { Ending::Alarm } else { Ending::Stopped }, wants);
+            }
+            (false, _, State::Stopped) if self.entered == RigTime(0) => self.enter(Command::Reset, now, wants),
+            (false, _, State::Idle) if self.fresh => self.enter(Command::Start, now, wants),
+            (false, false, State::Suspended) if now.since(self.entered) > ALONE => {
+                self.make_safe("suspended for too long", now, wants);
+                self.end(Ending::Alarm, wants);
+            }
+            (..) => {}
+        }
+    }
+
+    pub(super) fn end(&mut self, ending: Ending, wants: &mut Wants) {
+        wants.safe = true;
+        wants.ending = Some(ending);
+        self.ended = true;
+    }
+
+    /// Enters the state that a command leads to; the caller has looked whether it may.
+    pub(super) fn enter(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+        if let Some(to) = packml::next(self.state, On::Command(command)) {
+            self.go(to, now, wants);
+        }
+    }
+
+    /// The state has done what it is for.
+    fn done(&mut self, now: RigTime, wants: &mut Wants) {
+        if let Some(to) = packml::next(self.state, On::Done) {
+            self.go(to, now, wants);
+        }
+    }
+
+    fn go(&mut self, to: State, now: RigTime, wants: &mut Wants) {
+        self.state = to;
+        self.entered = RigTime(now.0.max(1));
+        self.patience.forget();
+        wants.wake_at = Some(now);
+        match to {
+            State::Resetting => {
+                self.recovery = Recovery::default();
+                self.homed = false;
+            }
+            State::Starting => {
+                self.fresh = false;
+                self.start = Start::Begin;
+            }
+            State::Clearing => self.asked_verify = false,
+            State::Stopped | State::Complete => self.make_safe("stopped", now, wants),
+            State::Idle
+            | State::Execute
+            | State::Completing
+            | State::Holding
+            | State::Held
+            | State::Unholding
+            | State::Suspending
+            | State::Suspended
+            | State::Unsuspending
+            | State::Stopping
+            | State::Aborting
+            | State::Aborted => {}
+        }
+        if to == State::Complete && !self.plan.stays {
+            let ending = if self.stopping { Ending::Stopped } else { Ending::Complete };
+            self.end(ending, wants);
+        }
+    }
+
+    /// The outer machine's turn.
+    pub(super) fn act(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
+        match self.state {
+            State::Resetting => self.reset(now, inputs, wants),
+            State::Starting => self.begin(now, &inputs, wants),
+            State::Execute => {
+                self.produce(now, inputs, wants, self.wants_more(), true);
+                if self.state == State::Execute && !self.wants_more() {
+                    self.done(now, wants);
+                }
+            }
+            State::Completing => self.finish(now, inputs, wants, true),
+            State::Stopping if self.homed => self.finish(now, inputs, wants, false),
+            State::Holding | State::Suspending => {
+                self.produce(now, inputs, wants, false, false);
+                let resting = matches!(self.state, State::Holding | State::Suspending);
+                if resting && self.is_at_rest() {
+                    self.done(now, wants);
+                }
+            }
+            State::Aborting => self.wait_for_safe(now, &inputs, wants),
+            State::Clearing => self.clear(now, &inputs, wants),
+            State::Suspended => {
+                let cause = self.annunciator.stopping(Stops::Suspend).is_some();
+                if !cause && !self.suspended_by_order {
+                    self.enter(Command::Unsuspend, now, wants);
+                }
+            }
+            State::Stopping | State::Unholding | State::Unsuspending => self.done(now, wants),
+            State::Stopped | State::Idle | State::Complete | State::Held | State::Aborted => {}
+        }
+    }
+
+    fn reset(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
+        if !self.sensed {
+            return;
+        }
+        if self.homed {
+            return self.finish(now, inputs, wants, false);
+        }
+        let (mut recovery, releasing) = (self.recovery.clone(), self.releasing);
+        let home = recovery.step(&mut self.turn(now, &inputs, wants), releasing);
+        self.recovery = recovery;
+        if home {
+            self.homed = true;
+            self.releasing = false;
+            self.take_up(now, wants);
+        }
+    }
+
+    /// The sequence goes on from the parts that are inside.
+    fn take_up(&mut self, now: RigTime, wants: &mut Wants) {
+        self.feed = self.feed_at_rest();
+        self.clamp = super::Clamp::Empty;
+        self.sort = Sort::Returning;
+        self.last_left = None;
+        let ledger = &mut self.ledger;
+        for part in ledger.nest.iter_mut().chain(&mut ledger.gripper) {
+            part.interrupted.get_or_insert_with(|| "by a reset".into());
+        }
+        if let Some(part) = &mut ledger.gripper {
+            self.sort = Sort::Loaded;
+            let why = part.interrupted.clone().unwrap_or_default();
+            if part.bin.replace(Bin::Retest).is_none() {
+                let judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
+                wants.judged.push(judged);
+            }
+        }
+        wants.wake_at = Some(now);
+    }
+
+    fn begin(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        if self.plan.calibrated || self.referenced {
+            return self.done(now, wants);
+        }
+        match std::mem::replace(&mut self.start, Start::Begin) {
+            Start::Begin => {
+                wants.motions.push(Move::ProbesUp);
+                self.start = Start::Up;
+            }
+            Start::Up => {
+                let up = self.mechanism.has_arrived(Move::ProbesUp, now, inputs.image);
+                self.start = if up {
+                    let acts = reference::acts(&self.bench);
+                    Start::References(Box::new(Runner::new(acts, now)))
+                } else {
+                    Start::Up
+                };
+                wants.wake_at = up.then_some(now);
+            }
+            Start::References(runner) => self.measure(now, inputs, runner, wants),
+            Start::Down => {
+                if self.mechanism.has_arrived(Move::ProbesDown, now, inputs.image) {
+                    self.referenced = true;
+                    self.done(now, wants);
+                } else {
+                    self.start = Start::Down;
+                }
+            }
+        }
+    }
+
+    fn measure(&mut self, now: RigTime, inputs: &Inputs, mut runner: Box<Runner>, wants: &mut Wants) {
+        match runner.step(now, inputs.job.as_ref(), inputs.image) {
+            Doing::Job(job) => wants.job = Some(job),
+            Doing::Wait(until) => wants.wake_at = Some(until),
+            Doing::Busy => {}
+            Doing::Trouble(why) => wants.trouble.push(Alarm::calibration(&why)),
+            Doing::Done => {
+                if let Err(why) = self.conclude_references(now, &runner) {
+                    wants.trouble.push(Alarm::calibration(&why));
+                    return;
+                }
+                wants.motions.push(Move::ProbesDown);
+                self.start = Start::Down;
+                return;
+            }
+        }
+        self.start = Start::References(runner);
+    }
+
+    /// The parts inside to the end; `push`: the one in the pocket too.
+    fn finish(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants, push: bool) {
+        let (state, recorded) = (self.state, inputs.recorded);
+        self.produce(now, inputs, wants, false, push);
+        if self.state == state && self.is_finished(push, recorded, wants) {
+            self.done(now, wants);
+        }
+    }
+
+    fn wait_for_safe(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        if inputs.settled {
+            self.done(now, wants);
+        } else if now.since(self.entered) > SAFE_WITHIN {
+            wants.trouble.push(Alarm::not_safe());
+            self.done(now, wants);
+        }
+    }
+
+    fn clear(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        if inputs.verified {
+            // What was read before the modules were asked is stale by now, and no trouble.
+            self.sensed = false;
+            self.began = Some(now);
+            self.done(now, wants);
+        } else if !self.asked_verify {
+            self.asked_verify = true;
+            wants.verify = true;
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Actuators that stand: each must go on showing the end where it stopped, and never both ends at once.
+//!
+//! A look that differs for less than [`DEBOUNCE`] is a bounce: counted, not believed. A sensor that was
+//! not read says nothing here; that is trouble of its line.
+
+use super::mechanism::{DEBOUNCE, SENSOR_AGE};
+use super::moves::Move;
+use super::trouble::Alarm;
+use crate::rig::image::Image;
+use crate::rig::point::DigitalIn;
+use crate::units::RigTime;
+
+/// Where an actuator stopped.
+#[derive(Debug, Clone, Copy)]
+struct Stand {
+    movement: Move,
+    left_since: Option<RigTime>,
+    both_since: Option<RigTime>,
+}
+
+/// All that stand.
+#[derive(Debug, Default)]
+pub struct Watch {
+    stands: Vec<Stand>,
+    bounces: u64,
+    drive_told: bool,
+}
+
+impl Watch {
+    /// The end of a motion was seen.
+    pub fn stands(&mut self, movement: Move) {
+        self.left(movement.actuator_key());
+        self.stands.push(Stand {
+            movement,
+            left_since: None,
+            both_since: None,
+        });
+    }
+
+    /// An actuator is sent somewhere else.
+    pub fn left(&mut self, key: &str) {
+        self.stands.retain(|stand| stand.movement.actuator_key() != key);
+    }
+
+    /// Nothing stands.
+    pub fn forget(&mut self) {
+        self.stands.clear();
+        self.drive_told = false;
+    }
+
+    /// Flickers seen.
+    pub fn bounces(&self) -> u64 {
+        self.bounces
+    }
+
+    /// One look; what has been wrong for long enough is an alarm, and no longer watched.
+    pub fn look(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
+        let seen = |point: DigitalIn| image.input(point, now, SENSOR_AGE);
+        let mut alarms = Vec::new();
+        if seen(DigitalIn::AxisAlarm) == Some(true) && !self.drive_told {
+            self.drive_told = true;
+            alarms.push(Alarm::axis_drive());
+        }
+        let bounces = &mut self.bounces;
+        self.stands.retain_mut(|stand| {
+            let movement = stand.movement;
+            let left = movement
+                .arrival()
+                .iter()
+                .any(|(point, state)| seen(*point) == Some(!*state));
+            let both = movement
+                .other_end()
+                .iter()
+                .any(|point| seen(*point) == Some(true));
+            let (left, both) = (
+                lasts(&mut stand.left_since, left, now, bounces),
+                lasts(&mut stand.both_since, both, now, bounces),
+            );
+            match (both, left) {
+                (true, _) => alarms.push(Alarm::both_ends(movement)),
+                (false, true) => alarms.push(gone(movement)),
+                (false, false) => return true,
+            }
+            false
+        });
+        alarms
+    }
+}
+
+fn gone(movement: Move) -> Alarm {
+    match movement {
+        Move::GripperClose => Alarm::part_dropped(),
+        Move::EscapementRelease
+        | Move::EscapementHold
+        | Move::PusherExtend
+        | Move::PusherRetract
+        | Move::ClampClose
+        | Move::ClampOpen
+        | Move::ProbesUp
+        | Move::ProbesDown
+        | Move::AxisTo(_)
+        | Move::SortDown
+        | Move::SortUp
+        | Move::GripperOpen => Alarm::left_end(movement),
+    }
+}
+
+/// True once something has been so for the whole debounce time.
+fn lasts(since: &mut Option<RigTime>, is_so: bool, now: RigTime, bounces: &mut u64) -> bool {
+    match (is_so, *since) {
+        (true, Some(from)) => now.since(from) >= DEBOUNCE,
+        (true, None) => {
+            *since = Some(now);
+            false
+        }
+        (false, Some(_)) => {
+            *bounces += 1;
+            *since = None;
+            false
+        }
+        (false, None) => false,
+    }
+}
