@@ -24,9 +24,9 @@ use crate::rig::level::Correction;
 use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
 use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
-use crate::station::moves::Move;
 use crate::station::act::{Job, JobDone, Read};
 use crate::station::annunciator::Standing;
+use crate::station::moves::Move;
 use crate::station::orders::{Order, Refused};
 use crate::station::packml;
 use crate::station::trouble::Alarm;
@@ -175,7 +175,10 @@ impl Cycle {
     /// Verifies the modules, then turns until the station has ended and the outputs are safe.
     pub async fn run(mut self) -> (Ending, Profile) {
         self.verify().await;
-        if let Some(alarm) = self.bus_alarm.take_if(|_| !self.verified && !self.station.stays()) {
+        if let Some(alarm) = self
+            .bus_alarm
+            .take_if(|_| !self.verified && !self.station.stays())
+        {
             self.tell(Event::Alarm(alarm, self.pace.now()));
             return (Ending::Alarm, self.profile);
         }

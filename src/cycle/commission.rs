@@ -66,11 +66,7 @@ async fn make_ready(
 }
 
 /// Every question once; the modules whose host watchdog has tripped.
-async fn ask(
-    wiring: &Wiring,
-    pace: &Pace,
-    traffic: &mut Traffic,
-) -> Result<Vec<ModuleId>, Alarm> {
+async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<ModuleId>, Alarm> {
     let mut tripped = Vec::new();
     let checks = verification(wiring);
     let mut pending = BTreeMap::new();

@@ -4,13 +4,13 @@ use super::Cycle;
 use crate::gauge::verdict::Bin;
 use crate::guard::{Actuator, Position};
 use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::station::Station;
 use crate::station::annunciator::Standing;
 use crate::station::catalogue::{self, Stops};
 use crate::station::ledger::{Kind, Part};
 use crate::station::mechanism::SENSOR_AGE;
 use crate::station::orders::{self, Order, Refused};
 use crate::station::packml::{Command, Mode};
-use crate::station::Station;
 use crate::units::{RigTime, Span};
 use crate::view::{self, ActuatorView, AlarmLine, Button, Machine, Reaction, Token};
 use std::collections::BTreeMap;
@@ -168,7 +168,13 @@ fn places(station: &Station) -> BTreeMap<String, Token> {
     let mut places = BTreeMap::new();
     if ledger.pocket {
         let kind = "unnumbered".into();
-        places.insert("pocket".into(), Token { kind, ..Token::default() });
+        places.insert(
+            "pocket".into(),
+            Token {
+                kind,
+                ..Token::default()
+            },
+        );
     }
     let falling = ledger.falling.as_ref().map(|falling| &falling.part);
     let parts = [

@@ -44,8 +44,8 @@ pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA};
 pub use part::{Measurement, Part, Sample};
 pub use record::{
-    AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord, PartRecord, Row,
-    SampleRecord, snapshot_hash,
+    AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord,
+    PartRecord, Row, SampleRecord, snapshot_hash,
 };
 pub use rejudge::rejudged;
 pub use retention::Pruned;

@@ -50,6 +50,7 @@ pub(super) async fn order(
     origin::ours(&headers)?;
     desk.shared.gate.at_least(Role::Operator, &headers).await?;
     let Json(order) = body?;
+    desk.shared.gate.at_least(needs(&order), &headers).await?;
     let Some(word) = ORDERS.into_iter().find(|known| *known == order.order) else {
         return Err(HmiError::UnknownOrder {
             found: order.order.chars().take(40).collect(),
@@ -68,6 +69,14 @@ pub(super) async fn order(
             reason_zh: why.zh,
         }),
         Some(Ok(())) => Ok(Json(Taken { order: word })),
+    }
+}
+
+/// Whoever moves single actuators or hides alarms must know the machine.
+fn needs(order: &Order) -> Role {
+    match order.order.as_str() {
+        "mode" | "jog" | "step" | "shelve" => Role::Maintainer,
+        _other => Role::Operator,
     }
 }
 

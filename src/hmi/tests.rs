@@ -10,15 +10,16 @@ mod routes;
 mod shutdown;
 
 use super::access::{Register, Role};
-use super::{Gate, Shared, router};
-use crate::view::{LastPart, View};
+use super::{Asked, Gate, Shared, WAITING, router};
+use crate::view::{LastPart, NotTaken, View};
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use tokio::sync::watch;
+use tokio::sync::{mpsc, watch};
+use tokio::task::JoinHandle;
 use tower::ServiceExt;
 
 /// Of everybody at the bench.
@@ -29,6 +30,8 @@ struct Bench {
     view: watch::Sender<View>,
     ended: watch::Sender<bool>,
     stop: Arc<AtomicBool>,
+    controller: JoinHandle<()>,
+    orders: mpsc::Sender<Asked>,
     router: Router,
     db: PathBuf,
     gate: Gate,
@@ -50,6 +53,8 @@ impl Bench {
         let (view, looking) = watch::channel(some_view());
         let (ended, over) = watch::channel(false);
         let stop = Arc::new(AtomicBool::new(false));
+        let (orders, asked) = mpsc::channel(WAITING);
+        let controller = tokio::spawn(controller(asked, Arc::clone(&stop)));
         let people = db.with_file_name("people.db");
         let mut register = Register::open(&people).unwrap();
         for (name, role) in [("li", Role::Operator), ("wang", Role::Maintainer)] {
@@ -62,13 +67,15 @@ impl Bench {
             gate: gate.clone(),
             view: looking,
             db: db.clone(),
-            stop: Arc::clone(&stop),
+            orders: orders.clone(),
         };
         let router = router::router(shared, over);
         Self {
             view,
             ended,
             stop,
+            controller,
+            orders,
             router,
             db,
             gate,
@@ -103,12 +110,32 @@ impl Bench {
     }
 
     /// Nobody makes views any more.
-    fn end_of_the_controller(&mut self) {
+    async fn end_of_the_controller(&mut self) {
         self.view = watch::channel(View::default()).0;
+        self.controller.abort();
+        let _ = (&mut self.controller).await;
     }
 
     fn stopped(&self) -> bool {
         self.stop.load(Ordering::SeqCst)
+    }
+}
+
+/// Takes `stop` and the orders of maintenance, and nothing else.
+async fn controller(mut asked: mpsc::Receiver<Asked>, stop: Arc<AtomicBool>) {
+    while let Some(asked) = asked.recv().await {
+        let answer = match asked.order.order.as_str() {
+            "stop" => {
+                stop.store(true, Ordering::SeqCst);
+                Ok(())
+            }
+            "jog" | "mode" | "step" | "shelve" => Ok(()),
+            _other => Err(NotTaken {
+                en: "not in this state".into(),
+                zh: "当前状态不允许".into(),
+            }),
+        };
+        asked.say(answer);
     }
 }
 

@@ -132,7 +132,11 @@ impl Annunciator {
             return true;
         };
         let again = !known.is_active();
-        if again || known.entry().is_some_and(|entry| entry.goes == Goes::ByClear) {
+        if again
+            || known
+                .entry()
+                .is_some_and(|entry| entry.goes == Goes::ByClear)
+        {
             self.changed = true;
             known.count += 1;
             known.alarm = alarm.clone();
@@ -148,16 +152,16 @@ impl Annunciator {
     /// Alarms that go by their sensor and whose cause is not among `there` any more have gone.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
-            let by_sensor = one.entry().is_some_and(|entry| entry.goes == Goes::BySensor);
+            let by_sensor = one
+                .entry()
+                .is_some_and(|entry| entry.goes == Goes::BySensor);
             by_sensor && !there.iter().any(|alarm| alarm.code == one.alarm.code)
         });
     }
 
     /// A person says that the causes are gone.
     pub fn cleared(&mut self) {
-        self.gone(|one| {
-            one.entry().is_none_or(|entry| entry.goes == Goes::ByClear)
-        });
+        self.gone(|one| one.entry().is_none_or(|entry| entry.goes == Goes::ByClear));
     }
 
     fn gone(&mut self, is_gone: impl Fn(&Standing) -> bool) {
@@ -222,7 +226,10 @@ impl Annunciator {
     /// The first active alarm whose sensor still shows the cause.
     pub fn still_sensed(&self) -> Option<&Standing> {
         self.standing.iter().find(|one| {
-            one.is_active() && one.entry().is_some_and(|entry| entry.goes == Goes::BySensor && entry.stops == Stops::Abort)
+            one.is_active()
+                && one.entry().is_some_and(|entry| {
+                    entry.goes == Goes::BySensor && entry.stops == Stops::Abort
+                })
         })
     }
 }

@@ -1,10 +1,10 @@
 //! Orders answered: what may be done now, and why not.
 
+use super::Station;
 use super::annunciator::Standing;
 use super::orders::{Order, Refused};
 use super::packml::{self, Command, Mode, On, State};
 use super::wants::{Jog, Wants};
-use super::Station;
 use crate::units::{RigTime, Span};
 
 /// Longest time on the shelf.
@@ -67,9 +67,7 @@ impl Station {
                 None => Ok(()),
             },
             Command::Start => self.may_start(),
-            Command::Unsuspend => match self
-                .annunciator
-                .stopping(super::catalogue::Stops::Suspend)
+            Command::Unsuspend => match self.annunciator.stopping(super::catalogue::Stops::Suspend)
             {
                 Some(cause) => Err(still_there(cause)),
                 None => Ok(()),
@@ -112,7 +110,9 @@ impl Station {
         }
         let state = self.state.name();
         Err(Refused::new(
-            format!("the mode can be changed in Stopped, Idle, Complete and Aborted; the machine is in {state}"),
+            format!(
+                "the mode can be changed in Stopped, Idle, Complete and Aborted; the machine is in {state}"
+            ),
             format!("只能在 Stopped、Idle、Complete、Aborted 状态切换模式；当前状态为 {state}"),
         ))
     }
@@ -164,6 +164,7 @@ impl Station {
     }
 
     fn command(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+        self.fresh = false;
         match command {
             Command::Abort => return self.abort("abort ordered", now, wants),
             Command::Clear | Command::Unhold | Command::Reset => self.annunciator.cleared(),

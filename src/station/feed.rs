@@ -68,9 +68,7 @@ impl Feed {
             Feed::Closing { attempts } => Feed::Closing { attempts },
             Feed::Holding if turn.arrived(Move::EscapementHold) => Feed::Ready,
             Feed::Holding => Feed::Holding,
-            Feed::Ready
-                if turn.nest_is_free() && (push || turn.ledger.pocket_found) =>
-            {
+            Feed::Ready if turn.nest_is_free() && (push || turn.ledger.pocket_found) => {
                 turn.drive(Move::PusherExtend);
                 Feed::Pushing
             }
@@ -105,7 +103,11 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
     turn.drive(Move::EscapementHold);
     if attempt == TRIES {
         let track = turn.seen(DigitalIn::TrackLevel, true);
-        turn.alarm(if track { Alarm::no_part() } else { Alarm::magazine_empty() });
+        turn.alarm(if track {
+            Alarm::no_part()
+        } else {
+            Alarm::magazine_empty()
+        });
     }
     Feed::Closing { attempts: attempt }
 }

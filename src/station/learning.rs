@@ -14,11 +14,14 @@ use std::sync::Arc;
 
 impl Station {
     /// Factors from the references.
-    pub(super) fn conclude_references(&mut self, now: RigTime, runner: &Runner) -> Result<(), String> {
+    pub(super) fn conclude_references(
+        &mut self,
+        now: RigTime,
+        runner: &Runner,
+    ) -> Result<(), String> {
         let made_at = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
         let (valid, gain) = (self.plan.valid_us, self.plan.voltage_gain);
-        let calibration =
-            reference::conclude(&self.bench, &runner.readings, made_at, valid, gain)?;
+        let calibration = reference::conclude(&self.bench, &runner.readings, made_at, valid, gain)?;
         self.bench.calibration = Arc::new(Calibration {
             simulated: self.plan.simulated,
             ..calibration
@@ -28,7 +31,11 @@ impl Station {
 
     /// Golden parts teach the lags, every part the place of the fine ramp.
     pub(super) fn learn(&mut self, wants: &mut Wants) {
-        for judged in wants.judged.iter().filter(|one| one.part.interrupted.is_none()) {
+        for judged in wants
+            .judged
+            .iter()
+            .filter(|one| one.part.interrupted.is_none())
+        {
             let findings = &judged.findings;
             // A slow or sticking part would spoil the place of the ramp for all that follow.
             if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {

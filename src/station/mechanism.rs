@@ -111,7 +111,9 @@ impl Mechanism {
     pub fn is_moving(&self, movement: Move) -> bool {
         let key = movement.actuator_key();
         let same = |other: &Move| other.actuator_key() == key;
-        self.underway.iter().any(|underway| same(&underway.movement))
+        self.underway
+            .iter()
+            .any(|underway| same(&underway.movement))
             || self.waiting.iter().any(same)
             || self.again.iter().any(|again| same(&again.movement))
     }
@@ -145,7 +147,9 @@ impl Mechanism {
     /// Strokes by actuator and flickers of end sensors since the start.
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
         let strokes = self.strokes_made.iter().copied();
-        strokes.chain([("sensor_bounces", self.watch.bounces())]).collect()
+        strokes
+            .chain([("sensor_bounces", self.watch.bounces())])
+            .collect()
     }
 
     /// A motion was driven.
@@ -155,7 +159,11 @@ impl Mechanism {
         self.underway
             .retain(|underway| underway.movement.actuator_key() != key);
         self.watch.left(key);
-        match self.strokes_made.iter_mut().find(|(known, _)| *known == key) {
+        match self
+            .strokes_made
+            .iter_mut()
+            .find(|(known, _)| *known == key)
+        {
             Some((_, strokes)) => *strokes += 1,
             None => self.strokes_made.push((key, 1)),
         }

@@ -242,14 +242,14 @@ impl Station {
             State::Resetting if !self.homed => "homing".into(),
             State::Resetting => "discharging".into(),
             State::Starting => "calibrating".into(),
-            State::Execute => match self.clamp.test() {
+            State::Execute | State::Completing => match self.clamp.test() {
                 Some(test) => format!("testing: {:?}", test.stage()),
                 None if self.lot_began => "running".into(),
+                None if self.golden_left.is_empty() => "running".into(),
                 None => "golden parts".into(),
             },
             State::Stopped
             | State::Idle
-            | State::Completing
             | State::Complete
             | State::Holding
             | State::Held
@@ -288,7 +288,9 @@ impl Station {
         debug_assert!(self.ledger.balances(), "a part is in two places or in none");
         self.annunciator.unshelve(now);
         wants.alarms_changed = self.annunciator.take_changed();
-        let stack = self.lamps.show(now, self.state, self.annunciator.standing(), wants.safe);
+        let stack = self
+            .lamps
+            .show(now, self.state, self.annunciator.standing(), wants.safe);
         wants.outputs.extend(stack);
         wants
     }

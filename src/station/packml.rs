@@ -176,7 +176,9 @@ pub const TRANSITIONS: &[Transition] = &[
 
 /// The state that follows, or none when the state does not know the cause.
 pub fn next(from: State, on: On) -> Option<State> {
-    let row = TRANSITIONS.iter().find(|row| row.from == from && row.on == on);
+    let row = TRANSITIONS
+        .iter()
+        .find(|row| row.from == from && row.on == on);
     match on {
         On::Command(Command::Abort) if !is_aborted(from) => Some(State::Aborting),
         On::Command(Command::Stop) if may_stop(from) => Some(State::Stopping),

@@ -47,7 +47,11 @@ impl Patience {
             return None;
         }
         let mut late = None;
-        for (since, (name, limit)) in self.since.iter_mut().zip([of_feed(*feed), of_clamp(clamp), of_sort(sort)]) {
+        for (since, (name, limit)) in
+            self.since
+                .iter_mut()
+                .zip([of_feed(*feed), of_clamp(clamp), of_sort(sort)])
+        {
             let began = match *since {
                 Some((known, began)) if known == name => began,
                 Some(_) | None => now,

@@ -1,12 +1,12 @@
 //! Feed, nest and sorter, once each per turn, and when they are through.
 
+use super::Station;
 use super::act::JobDone;
 use super::clamp::{Beside, Clamp};
 use super::feed::Feed;
 use super::packml::Mode;
 use super::sort::Sort;
 use super::wants::{Inputs, Wants};
-use super::Station;
 use crate::units::RigTime;
 
 impl Station {
@@ -24,10 +24,7 @@ impl Station {
         self.note_begin(wants);
         let test_running = matches!(self.clamp, Clamp::Testing(_) | Clamp::Judged);
         let was_empty = matches!(self.clamp, Clamp::Empty);
-        let (feed, clamp) = (
-            self.feed,
-            std::mem::replace(&mut self.clamp, Clamp::Empty),
-        );
+        let (feed, clamp) = (self.feed, std::mem::replace(&mut self.clamp, Clamp::Empty));
         let (mut sort, mut last_left, bench) = (self.sort, self.last_left, self.bench.clone());
         let table = self.table.clone();
         let before = wants.motions.len();
@@ -92,7 +89,9 @@ impl Station {
         let nest = matches!(self.clamp, Clamp::Empty | Clamp::Judged);
         let full = matches!(self.sort, Sort::OverBin(..)) && !self.dark.is_empty();
         let sort = matches!(self.sort, Sort::OverNest | Sort::AtPart) || full;
-        nest && sort && self.feed_rests() && self.ledger.falling.is_none()
+        nest && sort
+            && self.feed_rests()
+            && self.ledger.falling.is_none()
             && self.mechanism.moving().next().is_none()
     }
 

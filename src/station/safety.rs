@@ -1,5 +1,6 @@
 //! What a turn looks at whatever the state, and what alarms do.
 
+use super::Station;
 use super::annunciator::Standing;
 use super::catalogue::{self, Goes, Stops};
 use super::clamp::Clamp;
@@ -10,7 +11,6 @@ use super::packml::{self, Command, On, State};
 use super::sort::{self, Sort};
 use super::trouble::Alarm;
 use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
-use super::Station;
 use crate::gauge::verdict::{Bin, Verdict};
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
@@ -40,7 +40,14 @@ impl Station {
         if !self.dark.is_empty() {
             self.patience.wait_for_bin();
         }
-        let patience = self.patience.look(now, self.state, self.mode, &self.feed, &self.clamp, self.sort);
+        let patience = self.patience.look(
+            now,
+            self.state,
+            self.mode,
+            &self.feed,
+            &self.clamp,
+            self.sort,
+        );
         wants.trouble.extend(patience);
     }
 
@@ -129,6 +136,10 @@ impl Station {
         }
         wants.trouble.push(Alarm::refused(movement, refusal));
         self.raise_all(now, wants);
+        let standing = self.annunciator.standing();
+        let stack = self.lamps.show(now, self.state, standing, wants.safe);
+        wants.outputs.extend(stack);
+        wants.alarms_changed |= self.annunciator.take_changed();
     }
 
     /// Alarms of this turn into the list; what is left in the wants is what came anew.
@@ -199,7 +210,11 @@ impl Station {
     }
 
     pub(super) fn feed_at_rest(&self) -> Feed {
-        if self.ledger.pocket { Feed::Ready } else { Feed::Empty }
+        if self.ledger.pocket {
+            Feed::Ready
+        } else {
+            Feed::Empty
+        }
     }
 
     /// Parts in nest and gripper go to retest; one that was judged gets that into its row.
@@ -209,7 +224,10 @@ impl Station {
             if part.interrupted.is_some() && part.bin.is_some() {
                 continue;
             }
-            let why = part.interrupted.get_or_insert_with(|| why.to_owned()).clone();
+            let why = part
+                .interrupted
+                .get_or_insert_with(|| why.to_owned())
+                .clone();
             let ordinal = part.ordinal;
             if part.bin.replace(Bin::Retest).is_some() {
                 wants.interrupted.push(Interrupted { ordinal, why });

@@ -30,14 +30,26 @@ impl Station {
             self.make_safe("stopped by the operator", now, wants);
             self.end(Ending::Stopped, wants);
         }
-        let rests = matches!(self.state, State::Stopped | State::Complete | State::Aborted);
+        let rests = matches!(
+            self.state,
+            State::Stopped | State::Complete | State::Aborted
+        );
         match (self.stopping, self.plan.stays, self.state) {
             (true, ..) if rests => {
                 self.make_safe("stopped", now, wants);
                 let aborted = packml::is_aborted(self.state);
-                self.end(if aborted { Ending::Alarm } else { Ending::Stopped }, wants);
+                self.end(
+                    if aborted {
+                        Ending::Alarm
+                    } else {
+                        Ending::Stopped
+                    },
+                    wants,
+                );
             }
-            (false, _, State::Stopped) if self.entered == RigTime(0) => self.enter(Command::Reset, now, wants),
+            (false, _, State::Stopped) if self.entered == RigTime(0) => {
+                self.enter(Command::Reset, now, wants)
+            }
             (false, _, State::Idle) if self.fresh => self.enter(Command::Start, now, wants),
             (false, false, State::Suspended) if now.since(self.entered) > ALONE => {
                 self.make_safe("suspended for too long", now, wants);
@@ -97,7 +109,11 @@ impl Station {
             | State::Aborted => {}
         }
         if to == State::Complete && !self.plan.stays {
-            let ending = if self.stopping { Ending::Stopped } else { Ending::Complete };
+            let ending = if self.stopping {
+                Ending::Stopped
+            } else {
+                Ending::Complete
+            };
             self.end(ending, wants);
         }
     }
@@ -183,7 +199,9 @@ impl Station {
                 self.start = Start::Up;
             }
             Start::Up => {
-                let up = self.mechanism.has_arrived(Move::ProbesUp, now, inputs.image);
+                let up = self
+                    .mechanism
+                    .has_arrived(Move::ProbesUp, now, inputs.image);
                 self.start = if up {
                     let acts = reference::acts(&self.bench);
                     Start::References(Box::new(Runner::new(acts, now)))
@@ -194,7 +212,10 @@ impl Station {
             }
             Start::References(runner) => self.measure(now, inputs, runner, wants),
             Start::Down => {
-                if self.mechanism.has_arrived(Move::ProbesDown, now, inputs.image) {
+                if self
+                    .mechanism
+                    .has_arrived(Move::ProbesDown, now, inputs.image)
+                {
                     self.referenced = true;
                     self.done(now, wants);
                 } else {
@@ -204,7 +225,13 @@ impl Station {
         }
     }
 
-    fn measure(&mut self, now: RigTime, inputs: &Inputs, mut runner: Box<Runner>, wants: &mut Wants) {
+    fn measure(
+        &mut self,
+        now: RigTime,
+        inputs: &Inputs,
+        mut runner: Box<Runner>,
+        wants: &mut Wants,
+    ) {
         match runner.step(now, inputs.job.as_ref(), inputs.image) {
             Doing::Job(job) => wants.job = Some(job),
             Doing::Wait(until) => wants.wake_at = Some(until),

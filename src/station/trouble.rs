@@ -110,7 +110,9 @@ impl Alarm {
     pub fn stale(point: DigitalIn) -> Self {
         Self::new(
             "sensor_stale",
-            format!("{point} was not read for too long. Check cable, power and address of its module."),
+            format!(
+                "{point} was not read for too long. Check cable, power and address of its module."
+            ),
             format!("{point} 长时间未读到。请检查电缆、电源和模块地址。"),
         )
     }
@@ -144,7 +146,9 @@ impl Alarm {
     pub fn part_found(place: &str) -> Self {
         Self::new(
             "part_found",
-            format!("A part lies in the {place} that does not belong to this run. It goes to retest."),
+            format!(
+                "A part lies in the {place} that does not belong to this run. It goes to retest."
+            ),
             format!("{place} 内有不属于本次运行的工件，将送入复测箱。"),
         )
     }
@@ -201,7 +205,9 @@ impl Alarm {
         let key = movement.actuator_key();
         Self::new(
             format!("{key}_left_end"),
-            format!("The {key} left the end of {movement:?} although nothing moves it. Check air, hoses and sensor."),
+            format!(
+                "The {key} left the end of {movement:?} although nothing moves it. Check air, hoses and sensor."
+            ),
             format!("{key} 在未动作时离开 {movement:?} 的端位。请检查气源、气管和传感器。"),
         )
     }
@@ -239,7 +245,9 @@ impl Alarm {
     pub fn watchdog_tripped(module: &str) -> Self {
         Self::new(
             "watchdog_tripped",
-            format!("{module} had made its outputs safe because the controller was silent. It is ready again."),
+            format!(
+                "{module} had made its outputs safe because the controller was silent. It is ready again."
+            ),
             format!("{module} 曾因控制器无应答而转入安全输出，现已恢复。"),
         )
     }

@@ -39,7 +39,8 @@ impl Watch {
 
     /// An actuator is sent somewhere else.
     pub fn left(&mut self, key: &str) {
-        self.stands.retain(|stand| stand.movement.actuator_key() != key);
+        self.stands
+            .retain(|stand| stand.movement.actuator_key() != key);
     }
 
     /// Nothing stands.

@@ -10,12 +10,13 @@ use super::{Controls, RunArgs, rows};
 use crate::bus::LineLog;
 use crate::config::Plant;
 use crate::cycle::{Event, Profile};
+use crate::gauge::verdict::{Bin, Verdict};
 use crate::gauge::{Calibration, Recipe};
 use crate::history::{
-    AlarmRecord, CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store, snapshot_hash,
+    AlarmRecord, CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row,
+    Store, snapshot_hash,
 };
 use crate::station::ledger::Kind;
-use crate::gauge::verdict::{Bin, Verdict};
 use crate::station::wants::{Ending, Interrupted, Judged, Landed};
 use crate::units::RigTime;
 use crate::view::LastPart;

@@ -75,7 +75,7 @@ async fn a_controller_that_is_gone_is_not_called_alive() {
     let mut bench = Bench::new();
     let mut stream = stream(&bench).await;
     next(&mut stream).await.unwrap();
-    bench.end_of_the_controller();
+    bench.end_of_the_controller().await;
     for _ in 0..3 {
         assert!(next(&mut stream).await.unwrap().contains("\"alive\":false"));
     }

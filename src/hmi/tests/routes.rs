@@ -40,7 +40,7 @@ async fn the_figures_follow_the_view_and_say_when_the_controller_is_gone() {
             .contains("relayrig_lot_verdicts{verdict=\"pass\"} 2\n")
     );
     assert!(answer.text().contains("relayrig_up 1\n"));
-    bench.end_of_the_controller();
+    bench.end_of_the_controller().await;
     assert!(
         bench
             .get("/metrics")

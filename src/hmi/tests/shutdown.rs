@@ -14,7 +14,7 @@ async fn neither_an_open_stream_nor_half_a_request_holds_up_the_end() {
         gate: bench.gate.clone(),
         view: bench.view.subscribe(),
         db: bench.db.clone(),
-        stop: Arc::clone(&bench.stop),
+        orders: bench.orders.clone(),
     };
     let served = tokio::spawn(serve(listener, shared, bench.ended.subscribe()));
 

@@ -6,9 +6,10 @@ use crate::rig::point::DigitalIn;
 use crate::station::feed::Feed;
 use crate::station::ledger::Kind;
 use crate::station::moves::Move;
+use crate::units::Span;
 
 fn step(feed: Feed, shop: &mut Shop, wanted: bool) -> Feed {
-    feed.step(&mut shop.turn(), wanted)
+    feed.step(&mut shop.turn(), wanted, true)
 }
 
 /// A part waits in the pocket, escapement closed.
@@ -70,16 +71,30 @@ fn no_part_is_released_when_none_is_wanted_or_the_pusher_is_not_back() {
 }
 
 #[test]
-fn an_empty_magazine_is_an_alarm_after_a_second_and_a_half() {
-    let mut shop = Shop::at_rest();
-    let feed = step(Feed::Empty, &mut shop, true);
-    shop.after(1500);
-    step(feed, &mut shop, true);
-    assert!(shop.alarms().is_empty());
-    shop.after(1);
-    step(feed, &mut shop, true);
-    assert_eq!(shop.alarms(), ["part_not_arrived"]);
-    assert_eq!(shop.ledger.came_in, 0);
+fn a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm() {
+    for (track, code) in [(true, "part_not_arrived"), (false, "magazine_empty")] {
+        let mut shop = Shop::at_rest();
+        shop.set(DigitalIn::TrackLevel, track);
+        shop.scan();
+        let mut feed = step(Feed::Empty, &mut shop, true);
+        for attempt in 1..=3 {
+            assert_eq!(shop.wants.motions, [Move::EscapementRelease]);
+            let since = shop.now;
+            shop.carried_out(Move::EscapementRelease);
+            shop.now = since + Span::ms(1500);
+            shop.scan();
+            feed = step(feed, &mut shop, true);
+            assert!(shop.wants.motions.is_empty() && shop.alarms().is_empty());
+            shop.after(1);
+            feed = step(feed, &mut shop, true);
+            assert_eq!(shop.wants.motions, [Move::EscapementHold]);
+            let told = shop.alarms();
+            assert_eq!(told.first().copied(), (attempt == 3).then_some(code));
+            shop.carried_out(Move::EscapementHold);
+            feed = step(feed, &mut shop, true);
+        }
+        assert_eq!((feed, shop.ledger.came_in), (Feed::Empty, 0));
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@ use crate::rig::image::Image;
 use crate::rig::point::{AnalogIn, Counter, DigitalIn, DigitalOut};
 use crate::station::act::{Job, JobDone, Read};
 use crate::station::moves::Move;
+use crate::station::orders::{Order, Refused};
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Inputs, Wants};
 use crate::station::{Plan, Station};
@@ -64,6 +65,11 @@ pub struct Machine {
     beams: BTreeMap<DigitalIn, u16>,
     beam: Option<DigitalIn>,
     recorded: u64,
+    orders: Vec<Order>,
+    answers: Vec<Result<(), Refused>>,
+    verify: bool,
+    /// Outputs of the last turn.
+    pub last_outputs: Vec<(DigitalOut, bool)>,
     /// Every turn.
     pub told: Vec<Told>,
     /// Ordinals and bins in the order of landing.
@@ -72,9 +78,29 @@ pub struct Machine {
     pub left: usize,
 }
 
+/// Nothing ordered, nothing to answer, every output confirmed.
+pub fn quiet(image: &Image) -> Inputs<'_> {
+    Inputs {
+        image,
+        job: None,
+        recorded: 0,
+        bus: None,
+        stop: false,
+        abort: false,
+        orders: Vec::new(),
+        settled: true,
+        verified: false,
+    }
+}
+
 /// A calibrated station that knows nothing yet.
 pub fn station(count: Option<u64>, shop: &Shop) -> Station {
-    let plan = Plan {
+    of_plan(plan(count), shop)
+}
+
+fn plan(count: Option<u64>) -> Plan {
+    Plan {
+        stays: false,
         simulated: true,
         count,
         golden: Vec::new(),
@@ -82,7 +108,10 @@ pub fn station(count: Option<u64>, shop: &Shop) -> Station {
         valid_us: 0,
         epoch_us: 0,
         voltage_gain: 1.6,
-    };
+    }
+}
+
+fn of_plan(plan: Plan, shop: &Shop) -> Station {
     let mechanism = mechanism(&shop.wiring);
     Station::new(plan, bench(), shop.wiring.axis.clone(), mechanism)
 }
@@ -105,10 +134,42 @@ impl Machine {
             beams: BTreeMap::new(),
             beam: None,
             recorded: 0,
+            orders: Vec::new(),
+            answers: Vec::new(),
+            verify: false,
+            last_outputs: Vec::new(),
             told: Vec::new(),
             landed: Vec::new(),
             left: 0,
         }
+    }
+
+    /// The same with a person at a screen.
+    pub fn attended(count: Option<u64>, magazine: Vec<Specimen>) -> Self {
+        let mut machine = Self::new(count, magazine);
+        let plan = Plan {
+            stays: true,
+            ..plan(count)
+        };
+        machine.station = of_plan(plan, &machine.shop);
+        machine
+    }
+
+    /// Gives an order and has it answered in the next turn.
+    pub fn order(&mut self, order: Order) -> Result<(), Refused> {
+        self.orders.push(order);
+        self.turn();
+        self.answers.pop().unwrap()
+    }
+
+    /// One more part into the magazine.
+    pub fn fill(&mut self, specimen: Specimen) {
+        self.magazine.push_back(specimen);
+    }
+
+    /// Motions driven so far.
+    pub fn driven(&self) -> usize {
+        self.told.iter().map(|told| told.driven.len()).sum()
     }
 
     /// 4 ms pass, everything is read, the station has its turn and gets what it asks for.
@@ -133,14 +194,25 @@ impl Machine {
         let image = self.shop.image.clone();
         let (now, recorded, stop) = (self.shop.now, self.recorded, self.stop);
         let bus = self.bus.take();
+        let level = !self.magazine.is_empty();
+        self.shop.set(DigitalIn::TrackLevel, level);
         let inputs = Inputs {
+            orders: std::mem::take(&mut self.orders),
+            verified: std::mem::take(&mut self.verify),
             image: &image,
             job: job.clone(),
             recorded,
             bus: bus.clone(),
             stop,
+            ..quiet(&image)
         };
-        let wants = self.station.step(now, inputs);
+        let mut wants = self.station.step(now, inputs);
+        self.answers.append(&mut wants.answers);
+        self.verify = wants.verify;
+        self.last_outputs.clone_from(&wants.outputs);
+        if wants.safe {
+            self.make_safe();
+        }
         for movement in &wants.motions {
             self.drive(*movement);
         }
@@ -156,6 +228,21 @@ impl Machine {
             wants: format!("{wants:?}"),
         });
         wants
+    }
+
+    /// Springs and brakes: bistable cylinders stay, the others go to rest.
+    fn make_safe(&mut self) {
+        self.under_way.clear();
+        self.job = None;
+        for movement in [
+            Move::SortUp,
+            Move::ProbesDown,
+            Move::PusherRetract,
+            Move::EscapementHold,
+        ] {
+            self.shop.stands(movement);
+        }
+        self.shop.set(DigitalIn::AxisInPosition, false);
     }
 
     fn obey(&mut self, wants: &Wants) {
@@ -197,7 +284,9 @@ impl Machine {
                 self.shop.set(DigitalIn::NestPresent, true);
                 self.insert();
             }
-            Move::SortUp => self.shop.set(DigitalIn::NestPresent, false),
+            Move::SortUp if self.shop.is_on(DigitalIn::GripperPart) => {
+                self.shop.set(DigitalIn::NestPresent, false);
+            }
             Move::AxisTo(station) => self.axis = station,
             Move::GripperOpen if held => {
                 let AxisStation::Bin(bin) = self.axis else {

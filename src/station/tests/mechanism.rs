@@ -7,6 +7,7 @@ use crate::rig::axis::{AxisStation, Bin};
 use crate::rig::point::DigitalIn;
 use crate::station::mechanism::SENSOR_AGE;
 use crate::station::moves::Move;
+use crate::station::trouble::Alarm;
 use crate::units::Span;
 
 const TO_PASS: Move = Move::AxisTo(AxisStation::Bin(Bin::Pass));
@@ -115,11 +116,36 @@ fn a_reading_from_before_the_motion_does_not_show_its_end() {
     shop.mechanism
         .driven(Move::PusherRetract, shop.now, &shop.image);
     shop.now = shop.now + Span::ms(5);
-    assert_eq!(shop.mechanism.update(shop.now, &shop.image), None);
+    assert!(seen(&mut shop).is_empty());
     assert!(!arrived(&shop, Move::PusherRetract));
     shop.after(5);
     shop.mechanism.update(shop.now, &shop.image);
     assert!(arrived(&shop, Move::PusherRetract));
+}
+
+/// Trouble that an update finds.
+fn seen(shop: &mut Shop) -> Vec<Alarm> {
+    shop.mechanism.update(shop.now, &shop.image).alarms
+}
+
+/// The stroke goes back and forth once more, and fails again.
+fn second_try(shop: &mut Shop, movement: Move, back: Move, first: &[Alarm]) -> Vec<Alarm> {
+    assert_eq!(
+        first[0].code,
+        format!("{}_retried", movement.actuator_key())
+    );
+    shop.mechanism.driven(back, shop.now, &shop.image);
+    shop.stands(back);
+    shop.after(50);
+    let found = shop.mechanism.update(shop.now, &shop.image);
+    assert_eq!(found.motions, [movement], "forth again");
+    assert!(found.alarms.is_empty() && shop.mechanism.is_moving(movement));
+    for (point, state) in movement.arrival() {
+        shop.set(*point, !state);
+    }
+    shop.mechanism.driven(movement, shop.now, &shop.image);
+    shop.after(TIMEOUT.0 / 1000 + 1);
+    seen(shop)
 }
 
 #[test]
@@ -133,9 +159,14 @@ fn an_actuator_that_takes_too_long_is_an_alarm_with_its_name() {
         let limit = shop.now + TIMEOUT;
         shop.now = limit;
         shop.scan();
-        assert_eq!(shop.mechanism.update(shop.now, &shop.image), None);
+        assert!(seen(&mut shop).is_empty());
         shop.now = limit + Span(1);
-        let alarm = shop.mechanism.update(shop.now, &shop.image).unwrap();
+        let first = seen(&mut shop);
+        let alarm = match movement.way_back() {
+            Some(back) => second_try(&mut shop, movement, back, &first),
+            None => first,
+        };
+        let alarm = &alarm[0];
         let code = format!("{}_not_reached", movement.actuator_key());
         assert_eq!(alarm.code, code);
         for (point, _) in movement.arrival() {

@@ -2,19 +2,23 @@
 #![allow(clippy::unwrap_used)]
 
 mod act;
+mod annunciator;
 mod clamp;
 mod feed;
 mod golden;
-mod homing;
 mod instruments;
 mod ledger;
 mod machine;
 mod mechanism;
+mod orders;
+mod packml;
+mod recovery;
 mod run;
 mod safety;
 mod shop;
 mod sort;
 mod supply;
+mod trouble;
 
 pub(in crate::station) use instruments::bench;
 pub(in crate::station) use shop::Shop;

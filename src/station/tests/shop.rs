@@ -81,6 +81,11 @@ impl Shop {
         }
     }
 
+    /// State of a sensor, read or not.
+    pub fn is_on(&self, point: DigitalIn) -> bool {
+        self.on.contains(&point)
+    }
+
     /// Every digital module is read now.
     pub fn scan(&mut self) {
         let modules: BTreeSet<ModuleId> = DigitalIn::ALL
@@ -168,7 +173,8 @@ impl Shop {
         self.mechanism.driven(movement, self.now, &self.image);
         self.stands(movement);
         self.after(100);
-        assert_eq!(self.mechanism.update(self.now, &self.image), None);
+        let found = self.mechanism.update(self.now, &self.image);
+        assert!(found.alarms.is_empty(), "{found:?}");
     }
 
     /// A turn that begins with empty wants.
@@ -182,13 +188,14 @@ impl Shop {
             wants: &mut self.wants,
             golden: &mut self.golden,
             recorded: self.recorded,
+            resting: false,
         }
     }
 
     /// Codes of the alarms of the last turn.
     pub fn alarms(&self) -> Vec<&str> {
         self.wants
-            .alarms
+            .trouble
             .iter()
             .map(|alarm| alarm.code.as_str())
             .collect()

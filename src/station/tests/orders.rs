@@ -1,0 +1,210 @@
+//! Orders at a screen: what is taken, what is refused and why, and what a person can bring about.
+
+use super::machine::{Machine, Specimen};
+use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::station::orders::Order;
+use crate::station::packml::{Command, Mode, State};
+use crate::station::trouble::Alarm;
+
+fn attended(parts: usize) -> Machine {
+    Machine::attended(Some(parts as u64), vec![Specimen::MissingPin; parts])
+}
+
+fn until(machine: &mut Machine, state: State) {
+    for _ in 0..6000 {
+        if machine.station.outer() == state {
+            return;
+        }
+        machine.turn();
+    }
+    let found = machine.station.outer();
+    let list: Vec<_> = machine
+        .station
+        .annunciator()
+        .standing()
+        .iter()
+        .map(|one| &one.alarm.text_en)
+        .collect();
+    panic!("{found:?} instead of {state:?}: {list:?}");
+}
+
+fn testing(machine: &mut Machine) {
+    for _ in 0..6000 {
+        if machine.station.state().starts_with("testing") {
+            return;
+        }
+        machine.turn();
+    }
+    panic!("no test began");
+}
+
+fn give(machine: &mut Machine, command: Command) {
+    let answer = machine.order(Order::Command(command));
+    assert_eq!(answer, Ok(()), "{command:?}");
+}
+
+#[test]
+fn a_lot_goes_from_reset_to_complete() {
+    let mut machine = attended(2);
+    for state in [
+        State::Resetting,
+        State::Idle,
+        State::Execute,
+        State::Completing,
+        State::Complete,
+    ] {
+        until(&mut machine, state);
+    }
+    assert_eq!(machine.landed.len(), 2);
+}
+
+#[test]
+fn a_held_line_keeps_its_parts_and_goes_on() {
+    let mut machine = attended(3);
+    testing(&mut machine);
+    give(&mut machine, Command::Hold);
+    until(&mut machine, State::Held);
+    let inside = machine.station.ledger().inside();
+    assert!(inside > 0);
+    for _ in 0..300 {
+        assert!(machine.turn().motions.is_empty(), "a held line moves");
+    }
+    give(&mut machine, Command::Unhold);
+    until(&mut machine, State::Complete);
+    assert_eq!(machine.landed.len(), 3);
+}
+
+#[test]
+fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() {
+    let mut machine = attended(3);
+    testing(&mut machine);
+    machine.shop.set(DigitalIn::EmergencyStopOk, false);
+    let wants = machine.turn();
+    assert!(wants.safe && wants.motions.is_empty());
+    until(&mut machine, State::Aborted);
+    let early = machine.order(Order::Command(Command::Clear)).unwrap_err();
+    assert!(early.en.contains("still there"), "{}", early.en);
+    machine.shop.set(DigitalIn::EmergencyStopOk, true);
+    machine.turn();
+    give(&mut machine, Command::Clear);
+    until(&mut machine, State::Stopped);
+    for _ in 0..50 {
+        assert!(machine.turn().motions.is_empty(), "clear moves nothing");
+    }
+    give(&mut machine, Command::Reset);
+    until(&mut machine, State::Idle);
+    assert_eq!(machine.landed.len(), 1, "the part inside was discharged");
+    give(&mut machine, Command::Start);
+    until(&mut machine, State::Complete);
+    assert_eq!(machine.landed.len(), 3);
+}
+
+#[test]
+fn every_command_is_taken_or_refused_with_a_reason_in_both_languages() {
+    let mut machine = attended(4);
+    testing(&mut machine);
+    for command in Command::ALL {
+        match machine.station.may(*command) {
+            Ok(()) => {}
+            Err(why) => {
+                assert!(why.en.contains("Execute"), "{}", why.en);
+                assert!(why.zh.contains("状态"), "{}", why.zh);
+            }
+        }
+    }
+}
+
+#[test]
+fn jogging_needs_the_mode_and_a_homed_machine() {
+    let mut machine = attended(1);
+    machine.turn();
+    let jog = || Order::Jog(crate::station::moves::Move::PusherExtend);
+    let why = machine.order(jog()).unwrap_err();
+    assert!(why.en.contains("manual"), "{}", why.en);
+    give(&mut machine, Command::Stop);
+    until(&mut machine, State::Stopped);
+    assert_eq!(machine.order(Order::Mode(Mode::Manual)), Ok(()));
+    let why = machine.order(jog()).unwrap_err();
+    assert!(why.en.contains("unhomed"), "{}", why.en);
+    give(&mut machine, Command::Reset);
+    until(&mut machine, State::Idle);
+    let why = machine.order(Order::Command(Command::Start)).unwrap_err();
+    assert!(why.en.contains("production"), "{}", why.en);
+    assert_eq!(machine.order(jog()), Ok(()));
+}
+
+#[test]
+fn in_maintenance_every_motion_waits_for_a_step() {
+    let mut machine = attended(1);
+    until(&mut machine, State::Idle);
+    give(&mut machine, Command::Stop);
+    until(&mut machine, State::Stopped);
+    assert_eq!(machine.order(Order::Mode(Mode::Maintenance)), Ok(()));
+    give(&mut machine, Command::Reset);
+    for _ in 0..6000 {
+        if machine.station.outer() == State::Idle {
+            break;
+        }
+        machine.turn();
+        if machine.station.may_step().is_ok() {
+            assert_eq!(machine.order(Order::Step), Ok(()));
+        }
+    }
+    give(&mut machine, Command::Start);
+    let mut steps = 0;
+    for _ in 0..6000 {
+        let before = machine.driven();
+        machine.turn();
+        assert_eq!(machine.driven(), before, "a motion without a step");
+        if machine.station.may_step().is_ok() {
+            assert_eq!(machine.order(Order::Step), Ok(()));
+            assert_eq!(machine.driven(), before + 1);
+            steps += 1;
+        }
+        if machine.station.outer() == State::Complete {
+            break;
+        }
+    }
+    assert_eq!(machine.landed.len(), 1);
+    assert!(steps >= 13, "{steps}");
+}
+
+#[test]
+fn a_lamp_test_lights_everything_and_ends() {
+    let mut machine = attended(1);
+    until(&mut machine, State::Complete);
+    let answer = machine.order(Order::LampTest);
+    assert_eq!(answer, Ok(()));
+    let lit: Vec<_> = machine.last_outputs.iter().filter(|(_, on)| *on).collect();
+    assert!(lit.iter().any(|(point, _)| *point == DigitalOut::LampRed));
+    let mut dark = false;
+    for _ in 0..800 {
+        let wants = machine.turn();
+        dark |= wants.outputs.contains(&(DigitalOut::LampRed, false));
+    }
+    assert!(dark);
+}
+
+#[test]
+fn a_beam_that_counts_wrong_holds_the_line_until_a_person_says_go_on() {
+    let mut machine = attended(4);
+    testing(&mut machine);
+    machine.bus = Some(Alarm::beam("pass", 0));
+    machine.turn();
+    until(&mut machine, State::Held);
+    give(&mut machine, Command::Unhold);
+    until(&mut machine, State::Complete);
+}
+
+#[test]
+fn an_empty_magazine_suspends_the_line_until_there_are_parts_again() {
+    let mut machine = Machine::attended(Some(2), vec![Specimen::MissingPin]);
+    until(&mut machine, State::Suspended);
+    for _ in 0..500 {
+        machine.turn();
+    }
+    assert_eq!(machine.station.outer(), State::Suspended);
+    machine.fill(Specimen::OpenCoil);
+    until(&mut machine, State::Complete);
+    assert_eq!(machine.landed.len(), 2);
+}

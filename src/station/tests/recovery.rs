@@ -1,0 +1,192 @@
+//! Homing in an order that can be proved clear; parts are where they are seen.
+
+use super::Shop;
+use crate::rig::axis::AxisStation;
+use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::station::ledger::Ledger;
+use crate::station::moves::Move;
+use crate::station::recovery::Recovery;
+
+const ORDER: [Move; 7] = [
+    Move::SortUp,
+    Move::ProbesDown,
+    Move::PusherRetract,
+    Move::EscapementHold,
+    Move::ClampOpen,
+    Move::GripperOpen,
+    Move::AxisTo(AxisStation::Nest),
+];
+
+/// Everything stands at its far end.
+fn nothing_home() -> Shop {
+    let mut shop = Shop::at_rest();
+    for movement in [
+        Move::SortDown,
+        Move::ProbesUp,
+        Move::PusherExtend,
+        Move::EscapementRelease,
+        Move::ClampClose,
+    ] {
+        shop.stands(movement);
+    }
+    shop.set(DigitalIn::GripperOpen, false);
+    shop.scan();
+    shop
+}
+
+/// Carries everything out that homing asks for; what was driven, in order.
+fn carried_out(shop: &mut Shop) -> Vec<Move> {
+    let mut recovery = Recovery::default();
+    let mut driven = Vec::new();
+    for _ in 0..40 {
+        if recovery.step(&mut shop.turn(), false) {
+            break;
+        }
+        let motions = shop.wants.motions.clone();
+        assert!(motions.len() < 2, "one at a time");
+        if motions.is_empty() {
+            shop.after(20);
+        }
+        for movement in motions {
+            driven.push(movement);
+            shop.carried_out(movement);
+        }
+    }
+    assert!(recovery.step(&mut shop.turn(), false), "home stays home");
+    driven
+}
+
+#[test]
+fn actuators_go_home_one_after_the_other_with_z_first() {
+    assert_eq!(carried_out(&mut nothing_home()), ORDER);
+}
+
+#[test]
+fn what_is_at_home_already_is_not_moved_but_the_axis_is() {
+    let driven = carried_out(&mut Shop::at_rest());
+    assert_eq!(driven, [Move::AxisTo(AxisStation::Nest)]);
+}
+
+#[test]
+fn the_drive_is_reset_and_its_servo_on_before_anything_moves() {
+    let mut shop = nothing_home();
+    let mut recovery = Recovery::default();
+    let mut outputs = Vec::new();
+    for _ in 0..4 {
+        recovery.step(&mut shop.turn(), false);
+        assert!(shop.wants.motions.is_empty());
+        outputs.append(&mut shop.wants.outputs);
+        shop.after(20);
+    }
+    let expected = [
+        (DigitalOut::AxisReset, true),
+        (DigitalOut::AxisReset, false),
+        (DigitalOut::AxisServoOn, true),
+    ];
+    assert_eq!(outputs, expected);
+}
+
+#[test]
+fn nothing_moves_before_the_places_of_parts_were_looked_at() {
+    let mut shop = Shop::unread();
+    let mut recovery = Recovery::default();
+    for _ in 0..3 {
+        assert!(!recovery.step(&mut shop.turn(), false));
+        assert!(shop.wants.motions.is_empty() && shop.wants.outputs.is_empty());
+    }
+}
+
+#[test]
+fn a_motion_that_the_guard_refuses_waits_until_the_others_are_home() {
+    let mut shop = nothing_home();
+    shop.stands(Move::SortUp);
+    shop.scan();
+    let mut recovery = Recovery::default();
+    while shop.wants.motions.is_empty() {
+        recovery.step(&mut shop.turn(), false);
+        shop.after(20);
+    }
+    assert_eq!(shop.wants.motions, [Move::ProbesDown]);
+    assert!(recovery.refused(Move::ProbesDown), "another one goes first");
+    recovery.step(&mut shop.turn(), false);
+    assert_eq!(shop.wants.motions, [Move::PusherRetract]);
+    let mut again = true;
+    for _ in 0..6 {
+        let asked = shop.wants.motions.clone();
+        again = asked.iter().all(|movement| recovery.refused(*movement));
+        recovery.step(&mut shop.turn(), false);
+    }
+    assert!(
+        !again,
+        "when all that are left are refused, that is trouble"
+    );
+}
+
+#[test]
+fn a_part_that_nobody_knows_is_found_and_fingers_that_hold_one_stay_closed() {
+    for (point, place) in [
+        (DigitalIn::PocketPresent, "pocket"),
+        (DigitalIn::NestPresent, "nest"),
+        (DigitalIn::GripperPart, "gripper"),
+    ] {
+        let mut shop = nothing_home();
+        shop.set(point, true);
+        shop.scan();
+        let driven = carried_out(&mut shop);
+        let opened = driven.contains(&Move::GripperOpen);
+        assert_eq!(opened, place != "gripper", "{place}");
+        let ledger = &shop.ledger;
+        assert!(ledger.balances() && ledger.found == 1 && ledger.inside() == 1);
+        let why = |part: &Option<crate::station::ledger::Part>| {
+            part.as_ref().and_then(|part| part.interrupted.clone())
+        };
+        let told = why(&ledger.nest).or(why(&ledger.gripper));
+        assert!(told.is_some() || ledger.pocket_found, "{place}");
+    }
+}
+
+/// Every combination of what the ledger says and what is seen.
+#[test]
+fn after_homing_the_ledger_says_what_the_sensors_say_whatever_it_said_before() {
+    for before in 0..8_u8 {
+        for seen in 0..8_u8 {
+            let mut shop = Shop::at_rest();
+            shop.ledger = ledger(before);
+            let came_in = shop.ledger.came_in;
+            for (bit, point) in [
+                (1, DigitalIn::PocketPresent),
+                (2, DigitalIn::NestPresent),
+                (4, DigitalIn::GripperPart),
+            ] {
+                shop.set(point, seen & bit != 0);
+            }
+            shop.set(DigitalIn::GripperOpen, seen & 4 == 0);
+            shop.scan();
+            carried_out(&mut shop);
+            let after = &shop.ledger;
+            let places = [after.pocket, after.nest.is_some(), after.gripper.is_some()];
+            let wanted = [1, 2, 4].map(|bit| seen & bit != 0);
+            assert_eq!(places, wanted, "{before:03b} {seen:03b}");
+            assert!(after.balances(), "{before:03b} {seen:03b}");
+            let known = after.came_in - after.found;
+            assert_eq!(known, came_in, "a part was counted twice");
+        }
+    }
+}
+
+fn ledger(places: u8) -> Ledger {
+    let mut ledger = Ledger::default();
+    if places & 4 != 0 {
+        ledger.enter_pocket();
+        ledger.enter_nest(None);
+        ledger.lift();
+    }
+    if places & 2 != 0 {
+        ledger.enter_pocket();
+        ledger.enter_nest(None);
+    }
+    if places & 1 != 0 {
+        ledger.enter_pocket();
+    }
+    ledger
+}

@@ -1,0 +1,89 @@
+//! The catalogue knows every alarm, in both languages, once.
+
+use crate::rig::axis::AxisStation;
+use crate::rig::point::DigitalIn;
+use crate::station::catalogue::{CATALOGUE, entry};
+use crate::station::moves::Move;
+use crate::station::trouble::Alarm;
+use crate::units::Span;
+
+const MOVES: [Move; 13] = [
+    Move::EscapementRelease,
+    Move::EscapementHold,
+    Move::PusherExtend,
+    Move::PusherRetract,
+    Move::ClampClose,
+    Move::ClampOpen,
+    Move::ProbesUp,
+    Move::ProbesDown,
+    Move::AxisTo(AxisStation::Nest),
+    Move::SortDown,
+    Move::SortUp,
+    Move::GripperClose,
+    Move::GripperOpen,
+];
+
+fn every_alarm() -> Vec<Alarm> {
+    let after = Span::ms(900);
+    let of_a_move = |movement: Move| {
+        [
+            Alarm::not_reached(movement, after),
+            Alarm::left_end(movement),
+            Alarm::both_ends(movement),
+            Alarm::retried(movement, after),
+            Alarm::refused(movement, "jaw_left"),
+        ]
+    };
+    let others = [
+        Alarm::bus("silent"),
+        Alarm::history(),
+        Alarm::not_safe(),
+        Alarm::no_part(),
+        Alarm::magazine_empty(),
+        Alarm::stale(DigitalIn::AirOk),
+        Alarm::nest_empty(),
+        Alarm::beam("pass", 0),
+        Alarm::bin_full("pass"),
+        Alarm::part_found("nest"),
+        Alarm::part_lost("nest"),
+        Alarm::part_dropped(),
+        Alarm::part_stuck(),
+        Alarm::axis_drive(),
+        Alarm::step_too_long("probing", after),
+        Alarm::watchdog_tripped("mech_do_a"),
+        Alarm::calibration("odd"),
+        Alarm::safety("emergency_stop", "", ""),
+        Alarm::safety("door_open", "", ""),
+        Alarm::safety("air_lost", "", ""),
+    ];
+    MOVES
+        .into_iter()
+        .flat_map(of_a_move)
+        .chain(others)
+        .collect()
+}
+
+#[test]
+fn every_alarm_that_the_station_can_raise_is_in_the_catalogue() {
+    for alarm in every_alarm() {
+        assert!(entry(&alarm.code).is_some(), "{}", alarm.code);
+    }
+    for entry in CATALOGUE {
+        let raised = every_alarm();
+        let used = raised.iter().any(|alarm| {
+            crate::station::catalogue::entry(&alarm.code).map(|one| one.code) == Some(entry.code)
+        });
+        assert!(used, "nothing raises {}", entry.code);
+    }
+}
+
+#[test]
+fn cause_consequence_and_action_are_told_in_both_languages() {
+    let chinese = |text: &str| text.chars().any(|c| ('\u{4e00}'..='\u{9fff}').contains(&c));
+    for entry in CATALOGUE {
+        for (en, zh) in [entry.cause, entry.consequence, entry.action] {
+            assert!(en.ends_with('.') && en.is_ascii(), "{}: {en}", entry.code);
+            assert!(zh.ends_with('。') && chinese(zh), "{}: {zh}", entry.code);
+        }
+    }
+}
