@@ -8,8 +8,10 @@
 //! step asked for. Nothing here knows what a relay is: that is the station's.
 
 mod commission;
+mod desk;
 mod publish;
 mod rota;
+mod still;
 mod traffic;
 
 pub use traffic::LineEnds;
@@ -26,13 +28,11 @@ use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
 use crate::station::act::{Job, JobDone, Read};
 use crate::station::annunciator::Standing;
-use crate::station::moves::Move;
-use crate::station::orders::{Order, Refused};
 use crate::station::packml;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Inputs, Interrupted, Wants};
 use crate::units::{RigTime, Span};
-use crate::view::{NotTaken, View};
+use crate::view::View;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
@@ -41,8 +41,6 @@ use traffic::{Purpose, Traffic};
 
 /// With nothing to wait for, a turn begins after this long all the same.
 const IDLE: Span = Span::ms(50);
-/// Safe outputs must be written within this time at the end of a run.
-const SAFE_WITHIN: Span = Span::ms(2000);
 
 /// What a run leaves for the history, in the order it happened.
 #[derive(Debug)]
@@ -134,13 +132,6 @@ fn lap(total: &mut f64, from: &mut Instant) {
     *from = now;
 }
 
-fn not_taken(why: Refused) -> NotTaken {
-    NotTaken {
-        en: why.en,
-        zh: why.zh,
-    }
-}
-
 impl Cycle {
     /// Takes over the lines. Nothing is written before [`Cycle::run`].
     pub fn new(
@@ -208,37 +199,6 @@ impl Cycle {
             if self.job_done.is_none() && wants.wake_at.is_none_or(|at| at > now) {
                 self.wait(now, wants.wake_at).await;
             }
-        }
-    }
-
-    /// Asks every module whether it is as wired; what has tripped while its host was silent is made ready.
-    async fn verify(&mut self) {
-        self.quiet().await;
-        match commission::verify(&self.wiring, &self.pace, &mut self.traffic).await {
-            Ok(tripped) => {
-                self.verified = true;
-                for alarm in tripped {
-                    self.bus_alarm.get_or_insert(alarm);
-                }
-            }
-            Err(alarm) => {
-                self.bus_alarm.get_or_insert(alarm);
-                self.traffic.start_scan();
-            }
-        }
-        self.image.take_resets();
-        self.outputs.everything_safe();
-    }
-
-    /// No transaction is under way any more, and none of a scan begins.
-    async fn quiet(&mut self) {
-        self.traffic.only_writes();
-        while !self.traffic.is_quiet() {
-            let now = self.pace.now();
-            self.traffic.forgive();
-            self.scan(now);
-            self.traffic.dispatch(now);
-            self.wait(now, Some(now + IDLE)).await;
         }
     }
 
@@ -353,30 +313,6 @@ impl Cycle {
         self.station.step(now, inputs)
     }
 
-    /// Orders that have come in; one that is no order is answered at once.
-    fn orders(&mut self) -> Vec<Order> {
-        while let Ok(asked) = self.outside.orders.try_recv() {
-            self.asked.push(asked);
-        }
-        let mut orders = Vec::new();
-        for asked in std::mem::take(&mut self.asked) {
-            match publish::read(&asked.order) {
-                Ok(order) => {
-                    orders.push(order);
-                    self.asked.push(asked);
-                }
-                Err(why) => asked.say(Err(not_taken(why))),
-            }
-        }
-        orders
-    }
-
-    fn answer(&mut self, wants: &mut Wants) {
-        for (asked, answer) in self.asked.drain(..).zip(wants.answers.drain(..)) {
-            asked.say(answer.map_err(not_taken));
-        }
-    }
-
     /// Each wanted motion passes the guard, one after the other, and is driven or refused.
     fn clear(&mut self, now: RigTime, wants: &mut Wants) {
         for movement in std::mem::take(&mut wants.motions) {
@@ -400,22 +336,6 @@ impl Cycle {
         if let Some(jog) = wants.jog.take() {
             wants.answers[jog.answer] = self.jog(jog.movement, now);
         }
-    }
-
-    /// A motion by hand: refused is an answer to who asked, not an alarm.
-    fn jog(&mut self, movement: Move, now: RigTime) -> Result<(), Refused> {
-        let situation = self.station.situation(now, &self.image);
-        let refused = |why: String| Refused::new(why.clone(), format!("防碰撞检查拒绝：{why}"));
-        let cleared = self
-            .guard
-            .clear(&self.station.motion(movement), &situation)
-            .map_err(|refusal| refused(refusal.to_string()))?;
-        self.outputs
-            .apply(cleared)
-            .map_err(|cannot| refused(cannot.to_string()))?;
-        self.station.driven(movement, now, &self.image);
-        self.station.jogged();
-        Ok(())
     }
 
     /// Outputs become commands; the measuring line gets its job.
@@ -552,30 +472,5 @@ impl Cycle {
             }
             () = self.pace.sleep_until(until) => {}
         }
-    }
-
-    /// Writes the safe outputs and waits until every module has confirmed, or the time is up.
-    async fn make_safe(&mut self) {
-        let end = self.pace.now() + SAFE_WITHIN;
-        self.traffic.only_writes();
-        self.making_safe = true;
-        while self.pace.now() < end {
-            let now = self.pace.now();
-            self.traffic.forgive();
-            self.scan(now);
-            for write in self.outputs.writes() {
-                let purpose = Purpose::Write {
-                    module: write.module,
-                    job: false,
-                };
-                self.traffic.queue(write.line, write.command, purpose);
-            }
-            self.traffic.dispatch(now);
-            if self.traffic.is_quiet() {
-                return;
-            }
-            self.wait(now, Some(end)).await;
-        }
-        self.tell(Event::Alarm(Alarm::not_safe(), self.pace.now()));
     }
 }

@@ -148,17 +148,18 @@ pub fn run_with(
     let plant = Plant::load(config)?;
     let recipe = Arc::new(load_recipe(config, &args.recipe)?);
     plant.admit(&recipe)?;
-    let is_virtual = args.sim && args.pace == PaceArg::Virtual;
     let mut builder = tokio::runtime::Builder::new_current_thread();
     builder.enable_all();
     #[cfg(feature = "sim")]
-    builder.start_paused(is_virtual);
+    builder.start_paused(is_virtual(args));
     let runtime = builder.build().context("starting the runtime")?;
-    let status = runtime.block_on(run_lot(
-        plant, recipe, config, db, args, controls, orders, is_virtual,
-    ));
+    let status = runtime.block_on(run_lot(plant, recipe, config, db, args, controls, orders));
     runtime.shutdown_timeout(std::time::Duration::from_secs(1));
     status
+}
+
+fn is_virtual(args: &RunArgs) -> bool {
+    args.sim && args.pace == PaceArg::Virtual
 }
 
 async fn run_lot(
@@ -169,9 +170,8 @@ async fn run_lot(
     args: &RunArgs,
     controls: &Controls,
     orders: mpsc::Receiver<Asked>,
-    is_virtual: bool,
 ) -> anyhow::Result<i32> {
-    let pace = if is_virtual {
+    let pace = if is_virtual(args) {
         Pace::virtual_time()
     } else {
         Pace::real()

@@ -101,14 +101,13 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
         return Feed::Releasing { since, attempt };
     }
     turn.drive(Move::EscapementHold);
-    if attempt == TRIES {
-        let track = turn.seen(DigitalIn::TrackLevel, true);
-        turn.alarm(if track {
-            Alarm::no_part()
-        } else {
-            Alarm::magazine_empty()
-        });
-    }
+    turn.alarm(
+        match (attempt < TRIES, turn.seen(DigitalIn::TrackLevel, true)) {
+            (true, _) => Alarm::retried(Move::EscapementRelease, ARRIVES),
+            (false, true) => Alarm::no_part(),
+            (false, false) => Alarm::magazine_empty(),
+        },
+    );
     Feed::Closing { attempts: attempt }
 }
 

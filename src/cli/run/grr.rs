@@ -6,6 +6,7 @@
 //! time, as real ones do. Each rig's readings stay in the history as a lot of its own.
 
 use super::{Controls, RunArgs, run_with};
+use tokio::sync::mpsc;
 use crate::gauge::Parameter;
 use crate::history::{Archive, Filter};
 use crate::quality::average_range::average_and_range;
@@ -46,7 +47,8 @@ pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
             json: false,
             ..args.clone()
         };
-        let status = run_with(config, db, &lot, &Controls::new(true))?;
+        let (_nobody, orders) = mpsc::channel(1);
+        let status = run_with(config, db, &lot, &Controls::new(true), orders)?;
         if status != crate::cli::DONE {
             return Ok(status);
         }

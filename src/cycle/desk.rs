@@ -1,0 +1,57 @@
+//! Orders of screens: taken in, handed to the station, answered; and motions by hand.
+
+use super::{Cycle, publish};
+use crate::station::moves::Move;
+use crate::station::orders::{Order, Refused};
+use crate::station::wants::Wants;
+use crate::units::RigTime;
+use crate::view::NotTaken;
+
+fn not_taken(why: Refused) -> NotTaken {
+    NotTaken {
+        en: why.en,
+        zh: why.zh,
+    }
+}
+
+impl Cycle {
+    /// Orders that have come in; one that is no order is answered at once.
+    pub(super) fn orders(&mut self) -> Vec<Order> {
+        while let Ok(asked) = self.outside.orders.try_recv() {
+            self.asked.push(asked);
+        }
+        let mut orders = Vec::new();
+        for asked in std::mem::take(&mut self.asked) {
+            match publish::read(&asked.order) {
+                Ok(order) => {
+                    orders.push(order);
+                    self.asked.push(asked);
+                }
+                Err(why) => asked.say(Err(not_taken(why))),
+            }
+        }
+        orders
+    }
+
+    pub(super) fn answer(&mut self, wants: &mut Wants) {
+        for (asked, answer) in self.asked.drain(..).zip(wants.answers.drain(..)) {
+            asked.say(answer.map_err(not_taken));
+        }
+    }
+
+    /// A motion by hand: refused is an answer to who asked, not an alarm.
+    pub(super) fn jog(&mut self, movement: Move, now: RigTime) -> Result<(), Refused> {
+        let situation = self.station.situation(now, &self.image);
+        let refused = |why: String| Refused::new(why.clone(), format!("防碰撞检查拒绝：{why}"));
+        let cleared = self
+            .guard
+            .clear(&self.station.motion(movement), &situation)
+            .map_err(|refusal| refused(refusal.to_string()))?;
+        self.outputs
+            .apply(cleared)
+            .map_err(|cannot| refused(cannot.to_string()))?;
+        self.station.driven(movement, now, &self.image);
+        self.station.jogged();
+        Ok(())
+    }
+}
