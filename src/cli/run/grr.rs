@@ -6,7 +6,6 @@
 //! time, as real ones do. Each rig's readings stay in the history as a lot of its own.
 
 use super::{Controls, RunArgs, run_with};
-use tokio::sync::mpsc;
 use crate::gauge::Parameter;
 use crate::history::{Archive, Filter};
 use crate::quality::average_range::average_and_range;
@@ -14,6 +13,7 @@ use crate::quality::gauge_rr::{GaugeRr, Reading, anova};
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
+use tokio::sync::mpsc;
 
 /// Rigs that take the place of operators; AIAG's customary number, as the two below.
 const OPERATORS: u64 = 3;
