@@ -10,7 +10,9 @@ mod lots;
 mod output;
 pub(in crate::cli) mod paper;
 mod quality;
+mod prune;
 mod query;
+mod rejudge;
 mod report;
 mod show;
 mod spc;
@@ -19,7 +21,7 @@ mod stats;
 pub use generate::{GenerateArgs, Generated, generate};
 pub use quality::{QualityArgs, run_quality};
 
-use crate::history::Archive;
+use crate::history::{Archive, Filter, Identity, Store};
 use clap::{Args, Subcommand};
 use output::Output;
 use std::io;
@@ -77,6 +79,12 @@ enum Command {
         after_help = "Example: relayrig history import old.csv --lot 2019-07 --map Uop=operate_voltage_v"
     )]
     Import(import::ImportArgs),
+    /// What another recipe would have said of a lot; nothing is written
+    #[command(after_help = "Example: relayrig history rejudge --lot A --recipe jzc-22f-012")]
+    Rejudge(rejudge::RejudgeArgs),
+    /// Delete the parts of old runs that a backup or an export holds whole
+    #[command(after_help = "Example: relayrig history prune --older-than-days 365 --yes")]
+    Prune(prune::PruneArgs),
     /// Copy the history while it is in use
     #[command(after_help = "Example: relayrig history backup /mnt/backup/relayrig-2026-03.db")]
     Backup {
@@ -101,19 +109,35 @@ fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<i32> {
         Command::Import(args) => return import::run(db, &args),
         Command::Generate(args) => return generate::run(config, db, &args),
         Command::Check => return check(db),
+        Command::Prune(args) => return prune::run(db, &args),
         Command::List(args) => lots::run(&Archive::open(db)?, &args)?,
         Command::Show(args) => show::run(&Archive::open(db)?, &args)?,
         Command::Query(args) => query::run(&Archive::open(db)?, &args)?,
         Command::Stats(args) => stats::run(&Archive::open(db)?, &args)?,
         Command::Spc(args) => spc::run(&Archive::open(db)?, &args)?,
         Command::Report(args) => report::run(&Archive::open(db)?, &args)?,
-        Command::Export(args) => export::run(&Archive::open(db)?, &args)?,
+        Command::Rejudge(args) => rejudge::run(config, &Archive::open(db)?, &args)?,
+        Command::Export(args) => export::run(db, &args)?,
         Command::Backup { file } => {
             let bytes = Archive::open(db)?.backup(&file)?;
             eprintln!("{}: {bytes} bytes, checked", file.display());
+            copied(db, &Filter::default(), &file)?;
         }
     }
     Ok(0)
+}
+
+/// Notes for the retention that `file` holds these runs whole.
+fn copied(db: &Path, filter: &Filter, file: &Path) -> anyhow::Result<()> {
+    let (program, version) = (
+        env!("CARGO_PKG_NAME").into(),
+        env!("CARGO_PKG_VERSION").into(),
+    );
+    let mut store = Store::open(db, &Identity { program, version })?;
+    let file = std::path::absolute(file)?;
+    let now_us = jiff::Timestamp::now().as_microsecond();
+    store.copied(filter, &file.to_string_lossy(), now_us)?;
+    Ok(())
 }
 
 /// Damage is an answer (status 1), not bad input.

@@ -7,6 +7,8 @@
 //! - What a number was made of travels with it: attempt, limits, uncertainty and its budget, and the
 //!   raw replies with line, module and channel. The recipe and the calibration in force are found
 //!   from the run by their hashes.
+//! - What another recipe would say is told and not written ([`rejudged`]); what was copied whole may be
+//!   pruned ([`Store::prune`]), nothing else is ever deleted.
 //! - The file may be opened by hand: the tables carry a remark per column, and the views `lots`,
 //!   `parts`, `measurements`, `samples` and `alarms` show local time and names instead of numbers.
 //!
@@ -26,6 +28,8 @@ mod moment;
 mod open;
 mod part;
 mod record;
+mod rejudge;
+mod retention;
 mod store;
 mod values;
 mod views;
@@ -43,6 +47,8 @@ pub use record::{
     AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, MeasurementRecord, PartRecord, Row,
     SampleRecord, snapshot_hash,
 };
+pub use rejudge::rejudged;
+pub use retention::Pruned;
 pub use store::{Identity, Store};
 pub use values::{LimitsSeen, Values};
 

@@ -190,7 +190,11 @@ impl Store {
         latest_calibration(&self.connection).doing("reading the latest calibration")
     }
 
-    fn transaction(&mut self, doing: &'static str) -> Result<Transaction<'_>> {
+    pub(super) fn connection(&self) -> &Connection {
+        &self.connection
+    }
+
+    pub(super) fn transaction(&mut self, doing: &'static str) -> Result<Transaction<'_>> {
         self.connection
             .transaction_with_behavior(TransactionBehavior::Immediate)
             .doing(doing)

@@ -37,7 +37,8 @@ pub(super) struct ExportArgs {
     lang: Tongue,
 }
 
-pub(super) fn run(archive: &Archive, args: &ExportArgs) -> anyhow::Result<()> {
+pub(super) fn run(db: &Path, args: &ExportArgs) -> anyhow::Result<()> {
+    let archive = &Archive::open(db)?;
     let filter = args.parts.within(&args.range)?;
     let parameters = archive.parameters()?;
     if let Some(param) = &filter.param {
@@ -48,7 +49,7 @@ pub(super) fn run(archive: &Archive, args: &ExportArgs) -> anyhow::Result<()> {
         .extension()
         .is_some_and(|it| it.eq_ignore_ascii_case("xlsx"));
     let by_name = if named_so { Kind::Xlsx } else { Kind::Csv };
-    match args.format.unwrap_or(by_name) {
+    let written = match args.format.unwrap_or(by_name) {
         Kind::Csv => {
             let mut out = sink(&args.file)?;
             out.write_all(BYTE_ORDER_MARK.as_bytes())?;
@@ -57,7 +58,25 @@ pub(super) fn run(archive: &Archive, args: &ExportArgs) -> anyhow::Result<()> {
             out.flush().with_context(|| format!("writing {name}"))
         }
         Kind::Xlsx => spreadsheet(archive, &filter, &parameters, args),
+    };
+    written?;
+    if args.file.as_os_str() != "-" && whole_runs(&filter) {
+        std::fs::File::open(&args.file)?.sync_all()?;
+        super::copied(db, &filter, &args.file)?;
     }
+    Ok(())
+}
+
+/// Whether the filter takes every part of the runs that it takes, golden ones included.
+fn whole_runs(filter: &Filter) -> bool {
+    let runs = Filter {
+        lot: filter.lot.clone(),
+        run: filter.run,
+        recipe: filter.recipe.clone(),
+        kind: Some("all".to_owned()),
+        ..Filter::default()
+    };
+    *filter == runs
 }
 
 fn spreadsheet(

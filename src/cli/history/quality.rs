@@ -2,6 +2,7 @@
 
 use super::output::{Output, Table, figure};
 use crate::history::csv;
+use crate::quality::average_range::average_and_range;
 use crate::quality::gauge_rr::{GaugeRr, Reading, anova};
 use anyhow::Context;
 use clap::{Args, Subcommand};
@@ -44,6 +45,11 @@ fn dispatch(command: &Command) -> anyhow::Result<i32> {
         out.json(&result)?;
     } else {
         table(&result, &mut out)?;
+        // Beyond its published factors there is no second opinion.
+        if let Ok(by_ranges) = average_and_range(&readings) {
+            writeln!(out)?;
+            table(&by_ranges, &mut out)?;
+        }
     }
     out.flush()?;
     Ok(0)
@@ -98,7 +104,7 @@ fn readings(text: &str) -> anyhow::Result<Vec<Reading>> {
 }
 
 fn table(it: &GaugeRr, out: &mut Output) -> anyhow::Result<()> {
-    let mut table = Table::new(&["source", "sd", "percent of total"]);
+    let mut table = Table::new(&[it.method, "sd", "percent of total"]);
     let sources = [
         ("repeatability", it.repeatability),
         ("reproducibility", it.reproducibility),

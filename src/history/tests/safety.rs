@@ -118,7 +118,7 @@ fn every_table_is_strict_and_every_column_has_its_remark() {
     names.sort_unstable();
     assert_eq!(
         names.join(" "),
-        "alarm calibration lot measurement parameter part recipe run sample"
+        "alarm calibration export lot measurement parameter part recipe run sample"
     );
     for (table, sql) in &tables {
         assert!(sql.contains(") STRICT"), "{table}");

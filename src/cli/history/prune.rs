@@ -1,0 +1,46 @@
+//! `history prune`: old runs that were copied whole lose their parts here; without `--yes` it only says which.
+
+use super::output::{Output, Table};
+use crate::history::{Identity, Pruned, Store};
+use clap::Args;
+use std::io::Write;
+use std::path::Path;
+
+#[derive(Debug, Args)]
+pub(super) struct PruneArgs {
+    /// Runs that ended at least so many days ago
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=36_500))]
+    older_than_days: u32,
+    /// Delete them; without it they are only listed
+    #[arg(long)]
+    yes: bool,
+}
+
+const DAY_US: i64 = 86_400_000_000;
+
+pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<i32> {
+    anyhow::ensure!(db.exists(), "no history at {}", db.display());
+    let (program, version) = (
+        env!("CARGO_PKG_NAME").into(),
+        env!("CARGO_PKG_VERSION").into(),
+    );
+    let mut store = Store::open(db, &Identity { program, version })?;
+    let now_us = jiff::Timestamp::now().as_microsecond();
+    let before = now_us - DAY_US * i64::from(args.older_than_days);
+    let runs = store.prunable(before)?;
+    let mut out = Output::stdout();
+    let mut table = Table::new(&["lot", "run", "parts", "copy"]);
+    for Pruned { lot, run, parts, file } in &runs {
+        table.row(&mut out, vec![lot.clone(), run.to_string(), parts.to_string(), file.clone()])?;
+    }
+    table.finish(&mut out)?;
+    out.flush()?;
+    if !args.yes {
+        eprintln!("{} runs could go; nothing was deleted (say --yes)", runs.len());
+        return Ok(0);
+    }
+    let bar = super::generate::bar(runs.len() as u64);
+    store.prune(before, now_us, |_| bar.inc(1))?;
+    bar.finish_and_clear();
+    Ok(0)
+}

@@ -1,0 +1,108 @@
+//! Retention: what was copied whole may be deleted here after a while, and nothing else.
+//!
+//! - A run counts as copied when a backup holds it or an export wrote all of it; both tell
+//!   [`Store::copied`] after their file is on the disk. Only closed runs count: an open one still grows.
+//! - [`Store::prune`] deletes parts, measurements, raw replies and alarms of copied runs that ended before
+//!   an instant, one transaction a run. Lot, run, recipe and the note of the copy stay, so that numbers
+//!   of runs go on and anyone can see where the parts went.
+
+use super::{Filter, Store};
+use super::error::{Doing, Result};
+use rusqlite::{Transaction, params, params_from_iter};
+use serde::Serialize;
+
+
+/// A run whose parts were deleted.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Pruned {
+    /// Name of the lot.
+    pub lot: String,
+    /// Number of the run within its lot.
+    pub run: u32,
+    /// Parts deleted, golden ones included.
+    pub parts: u64,
+    /// Where they are.
+    pub file: String,
+}
+
+impl Store {
+    /// Notes that the closed runs which `filter` leaves (lot, run, recipe) are whole in `file`. Gives how many.
+    pub fn copied(&mut self, filter: &Filter, file: &str, at_us: i64) -> Result<u64> {
+        const DOING: &str = "noting a copy";
+        let runs = filter.runs();
+        let sql = format!(
+            "INSERT INTO export (run_id, at_us, file, parts)
+             SELECT run.id, ?, ?, (SELECT count(*) FROM part WHERE part.run_id = run.id)
+             FROM run WHERE run.closed_at_us IS NOT NULL AND run.id IN ({})
+             ON CONFLICT (run_id) DO UPDATE SET at_us = excluded.at_us, file = excluded.file
+             WHERE pruned_at_us IS NULL",
+            runs.sql
+        );
+        let mut values = vec![at_us.into(), file.to_owned().into()];
+        values.extend(runs.values);
+        let transaction = self.transaction(DOING)?;
+        let noted = transaction
+            .execute(&sql, params_from_iter(&values))
+            .doing(DOING)?;
+        transaction.commit().doing(DOING)?;
+        Ok(noted as u64)
+    }
+
+    /// Runs that [`Store::prune`] would empty, the oldest first.
+    pub fn prunable(&self, closed_before_us: i64) -> Result<Vec<Pruned>> {
+        let found = self.prunable_rows(closed_before_us).doing("looking for old runs")?;
+        Ok(found.into_iter().map(|(_, run)| run).collect())
+    }
+
+    /// Deletes the parts of copied runs that ended before the instant; `each` hears of every run that is done.
+    pub fn prune(
+        &mut self,
+        closed_before_us: i64,
+        now_us: i64,
+        mut each: impl FnMut(&Pruned),
+    ) -> Result<()> {
+        const DOING: &str = "pruning a run";
+        for (id, run) in self.prunable_rows(closed_before_us).doing(DOING)? {
+            let transaction = self.transaction(DOING)?;
+            emptied(&transaction, id, now_us).doing(DOING)?;
+            transaction.commit().doing(DOING)?;
+            each(&run);
+        }
+        Ok(())
+    }
+
+    fn prunable_rows(&self, closed_before_us: i64) -> rusqlite::Result<Vec<(i64, Pruned)>> {
+        let mut statement = self.connection().prepare(
+            "SELECT run.id, lot.name, run.number, export.parts, export.file
+             FROM export JOIN run ON run.id = export.run_id JOIN lot ON lot.id = run.lot_id
+             WHERE export.pruned_at_us IS NULL AND run.closed_at_us < ?1
+             ORDER BY run.closed_at_us, run.id",
+        )?;
+        let rows = statement.query_map([closed_before_us], |row| {
+            let run = Pruned {
+                lot: row.get(1)?,
+                run: row.get(2)?,
+                parts: row.get::<_, i64>(3)?.unsigned_abs(),
+                file: row.get(4)?,
+            };
+            Ok((row.get(0)?, run))
+        })?;
+        rows.collect()
+    }
+}
+
+fn emptied(transaction: &Transaction<'_>, run: i64, now_us: i64) -> rusqlite::Result<()> {
+    for sql in [
+        "DELETE FROM sample WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
+        "DELETE FROM measurement WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
+        "DELETE FROM part WHERE run_id = ?1",
+        "DELETE FROM alarm WHERE run_id = ?1",
+    ] {
+        transaction.execute(sql, [run])?;
+    }
+    transaction.execute(
+        "UPDATE export SET pruned_at_us = ?2 WHERE run_id = ?1",
+        params![run, now_us],
+    )?;
+    Ok(())
+}
