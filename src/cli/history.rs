@@ -18,7 +18,7 @@ mod show;
 mod spc;
 mod stats;
 
-pub use generate::{GenerateArgs, Generated, generate};
+pub use generate::{GenerateArgs, Generated, generate, progress};
 pub use quality::{QualityArgs, run_quality};
 
 use crate::history::{Archive, Filter, Identity, Store};
@@ -74,7 +74,7 @@ enum Command {
         relayrig history export --lot A lot-a.xlsx"
     )]
     Export(export::ExportArgs),
-    /// CSV of an older system: a header of parameter keys, optionally time, verdict, serial, bin
+    /// CSV or spreadsheet of an older system: a header of parameter keys, optionally time, verdict, serial, bin
     #[command(
         after_help = "Example: relayrig history import old.csv --lot 2019-07 --map Uop=operate_voltage_v"
     )]

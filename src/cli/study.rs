@@ -23,6 +23,7 @@ mod exception;
 mod figure;
 mod fleet;
 mod history;
+mod kill;
 mod lot;
 mod output;
 mod pace;
@@ -56,6 +57,8 @@ pub enum Study {
     Cycle,
     /// Speed of the history on a made-up file
     History,
+    /// Lots killed at random instants: rows lost, rows twice, damage
+    Kill,
     /// Parts per second of wall time, and whether the same seed gives the same bytes
     Pace,
     /// Good parts rejected, defects by bin, over many lots
@@ -70,6 +73,7 @@ impl Study {
             Self::Coverage => (40, 25),
             Self::Cycle => (1, 100),
             Self::History => (1, 1_000_000),
+            Self::Kill => (300, 1),
             Self::Pace => (3, 300),
             Self::Sorting => (100, 110),
         }
@@ -81,6 +85,7 @@ impl Study {
             Self::Coverage => "coverage",
             Self::Cycle => "cycle",
             Self::History => "history",
+            Self::Kill => "kill",
             Self::Pace => "pace",
             Self::Sorting => "sorting",
         }
@@ -92,6 +97,7 @@ impl Study {
             Self::Coverage => coverage::study(order),
             Self::Cycle => cycle::study(order),
             Self::History => history::study(order),
+            Self::Kill => kill::study(order),
             Self::Pace => pace::study(order),
             Self::Sorting => sorting::study(order),
         }

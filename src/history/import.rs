@@ -95,7 +95,15 @@ pub fn parse_import(
     maps: &[(String, String)],
     parameters: &[String],
 ) -> Result<Vec<ImportRow>, ImportError> {
-    let records = csv::read(text)?;
+    parse_records(&csv::read(text)?, maps, parameters)
+}
+
+/// The same, for a table that was read already: header first.
+pub fn parse_records(
+    records: &[Record],
+    maps: &[(String, String)],
+    parameters: &[String],
+) -> Result<Vec<ImportRow>, ImportError> {
     let (header, records) = records.split_first().ok_or(CsvError::Empty)?;
     let names: Vec<String> = header
         .fields

@@ -38,7 +38,7 @@ pub use alarms::Alarm;
 pub use archive::Archive;
 pub use error::{HistoryError, Result};
 pub use filter::Filter;
-pub use import::{ImportError, ImportRow, parse_import};
+pub use import::{ImportError, ImportRow, parse_import, parse_records};
 pub use lots::{LotSummary, Passed, Yield};
 pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA};

@@ -159,8 +159,8 @@ pub enum Row {
 }
 
 /// SHA-256 of a snapshot's text, hexadecimal: the name under which it is stored once.
-pub fn snapshot_hash(text: &str) -> String {
-    Sha256::digest(text.as_bytes())
+pub fn snapshot_hash(text: impl AsRef<[u8]>) -> String {
+    Sha256::digest(text.as_ref())
         .iter()
         .map(|byte| format!("{byte:02x}"))
         .collect()

@@ -1,7 +1,7 @@
 //! `history export`: CSV that spreadsheets open right, Chinese included, or a spreadsheet with charts.
 
 use super::filter::{PartArgs, RangeArgs, known_parameter};
-use super::generate::bar;
+use super::generate::progress;
 use super::paper::{Tongue, sink};
 use super::query;
 use crate::history::{Archive, Filter, csv::BYTE_ORDER_MARK};
@@ -92,7 +92,7 @@ fn spreadsheet(
     );
     let name = file.display();
     let mut sheet = Sheet::new(args.lang.language(), TimeZone::system(), parameters)?;
-    let bar = bar(archive.how_many(filter)?);
+    let bar = progress(archive.how_many(filter)?);
     archive.each(filter, |part| {
         bar.inc(1);
         sheet.part(&part)

@@ -66,7 +66,7 @@ pub fn generate(config: &Path, db: &Path, args: &GenerateArgs) -> anyhow::Result
         .map_or_else(|| jiff::Timestamp::now().as_microsecond(), |until| until.0);
     let begin = until - CYCLE_US * i64::try_from(args.parts)?;
     let mut line = Line::new(&recipe, args.seed);
-    let bar = bar(args.parts);
+    let bar = progress(args.parts);
     let mut done = Generated {
         parts: 0,
         measurements: 0,
@@ -119,7 +119,7 @@ pub(super) fn run(config: &Path, db: &Path, args: &GenerateArgs) -> anyhow::Resu
 }
 
 /// On stderr, and only where somebody looks.
-pub(super) fn bar(length: u64) -> ProgressBar {
+pub fn progress(length: u64) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(
         Some(length),
         if std::io::stderr().is_terminal() {

@@ -1,7 +1,11 @@
-//! `history import`: all of a file or nothing, and the same file into the same lot only once.
+//! `history import`: all of a file or nothing, and the same file into the same lot only once. CSV, or a
+//! spreadsheet by the end of its name.
+
+mod sheet;
 
 use crate::history::{
-    Archive, Filter, Identity, ImportRow, LotRecord, PartRecord, Store, parse_import, snapshot_hash,
+    Archive, Filter, Identity, ImportRow, LotRecord, PartRecord, Store, csv, parse_records,
+    snapshot_hash,
 };
 use anyhow::Context;
 use clap::Args;
@@ -10,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArgs {
-    /// CSV file, UTF-8 with or without byte order mark; - is stdin
+    /// CSV file (UTF-8 with or without byte order mark; - is stdin) or spreadsheet (xlsx, xls, ods)
     file: PathBuf,
     /// Lot to put the parts into
     #[arg(long)]
@@ -18,6 +22,9 @@ pub(super) struct ImportArgs {
     /// A column of the file and the key it stands for; may be given several times
     #[arg(long = "map", value_name = "COLUMN=KEY", value_parser = pair)]
     maps: Vec<(String, String)>,
+    /// Sheet of the spreadsheet; the first when absent
+    #[arg(long, value_name = "NAME")]
+    sheet: Option<String>,
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {
@@ -27,7 +34,14 @@ fn pair(text: &str) -> Result<(String, String), String> {
 
 pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<i32> {
     let name = args.file.display();
-    let text = read(&args.file).with_context(|| format!("reading {name}"))?;
+    let bytes = read(&args.file).with_context(|| format!("reading {name}"))?;
+    let records = if sheet::is_named_so(&args.file) {
+        let zone = jiff::tz::TimeZone::system();
+        sheet::records(&args.file, args.sheet.as_deref(), &zone)
+    } else {
+        text(&bytes).and_then(|text| Ok(csv::read(text)?))
+    };
+    let records = records.with_context(|| name.to_string())?;
     let (program, version) = (
         env!("CARGO_PKG_NAME").into(),
         env!("CARGO_PKG_VERSION").into(),
@@ -36,12 +50,12 @@ pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<i32> {
     let archive = Archive::open(db)?;
     let snapshot = format!(
         "# imported from a file with SHA-256 {}\n",
-        snapshot_hash(&text)
+        snapshot_hash(&bytes)
     );
     let now_us = jiff::Timestamp::now().as_microsecond();
     let lot = lot_record(&args.lot, snapshot, now_us);
     only_once(&archive, &lot).with_context(|| name.to_string())?;
-    let rows = parse_import(&text, &args.maps, &archive.parameters()?)
+    let rows = parse_records(&records, &args.maps, &archive.parameters()?)
         .with_context(|| name.to_string())?;
     let parts = numbered(rows, &args.lot, now_us);
     let count = parts.len();
@@ -68,19 +82,19 @@ fn numbered(rows: Vec<ImportRow>, lot: &str, now_us: i64) -> Vec<PartRecord> {
     (1..).zip(rows).map(part).collect()
 }
 
-fn read(file: &Path) -> anyhow::Result<String> {
-    let mut bytes = Vec::new();
-    if file.as_os_str() == "-" {
-        io::stdin().read_to_end(&mut bytes)?;
-    } else {
-        bytes = std::fs::read(file)?;
+fn read(file: &Path) -> io::Result<Vec<u8>> {
+    if file.as_os_str() != "-" {
+        return std::fs::read(file);
     }
-    String::from_utf8(bytes).map_err(|cause| {
-        let good = cause.utf8_error().valid_up_to();
-        let line = 1 + cause.as_bytes()[..good]
-            .iter()
-            .filter(|&&it| it == b'\n')
-            .count();
+    let mut bytes = Vec::new();
+    io::stdin().read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn text(bytes: &[u8]) -> anyhow::Result<&str> {
+    std::str::from_utf8(bytes).map_err(|cause| {
+        let good = &bytes[..cause.valid_up_to()];
+        let line = 1 + good.iter().filter(|&&it| it == b'\n').count();
         anyhow::anyhow!("line {line}: expected UTF-8 (save the file as \"CSV UTF-8\")")
     })
 }

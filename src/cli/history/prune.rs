@@ -39,7 +39,7 @@ pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<i32> {
         eprintln!("{} runs could go; nothing was deleted (say --yes)", runs.len());
         return Ok(0);
     }
-    let bar = super::generate::bar(runs.len() as u64);
+    let bar = super::generate::progress(runs.len() as u64);
     store.prune(before, now_us, |_| bar.inc(1))?;
     bar.finish_and_clear();
     Ok(0)
