@@ -35,7 +35,9 @@ pub fn rejudged(part: &Part, recipe: &Recipe) -> Verdict {
         }
         ("void", [_, ..]) => match by_values {
             Verdict::Fail(reasons) => Verdict::Fail(reasons),
-            Verdict::Pass | Verdict::Void(_) => Verdict::Void(others.into_iter().cloned().collect()),
+            Verdict::Pass | Verdict::Void(_) => {
+                Verdict::Void(others.into_iter().cloned().collect())
+            }
         },
         _ => by_values,
     }
@@ -44,7 +46,9 @@ pub fn rejudged(part: &Part, recipe: &Recipe) -> Verdict {
 /// Value and uncertainty as they were stored; without either it is no number.
 fn stored(part: &Part, parameter: Parameter) -> Reading {
     let number = |map: &serde_json::Map<String, serde_json::Value>| {
-        let number = map.get(parameter.name()).and_then(serde_json::Value::as_f64);
+        let number = map
+            .get(parameter.name())
+            .and_then(serde_json::Value::as_f64);
         number.unwrap_or(f64::NAN)
     };
     let expanded = number(&part.uncertainty);
@@ -59,7 +63,13 @@ fn of_a_limit(reason: &str) -> bool {
     let Some((key, rest)) = reason.split_once(' ') else {
         return false;
     };
-    let said = ["low", "high", "low not proven", "high not proven", "not measured"];
+    let said = [
+        "low",
+        "high",
+        "low not proven",
+        "high not proven",
+        "not measured",
+    ];
     Parameter::from_name(key).is_some() && said.contains(&rest)
 }
 
@@ -99,9 +109,15 @@ mod tests {
     #[test]
     fn the_limits_of_the_other_recipe_decide_with_the_stored_uncertainty() {
         let recipe = recipe();
-        assert_eq!(rejudged(&part(8.9, "fail", &["operate_voltage_v high"]), &recipe), Verdict::Pass);
+        assert_eq!(
+            rejudged(&part(8.9, "fail", &["operate_voltage_v high"]), &recipe),
+            Verdict::Pass
+        );
         let bad = rejudged(&part(9.1, "pass", &[]), &recipe);
-        assert_eq!((bad.bin(), bad.reasons()), (Bin::Voltage, vec!["operate_voltage_v high".to_owned()]));
+        assert_eq!(
+            (bad.bin(), bad.reasons()),
+            (Bin::Voltage, vec!["operate_voltage_v high".to_owned()])
+        );
         let doubtful = rejudged(&part(8.99, "pass", &[]), &recipe);
         assert_eq!(doubtful.reasons(), ["operate_voltage_v high not proven"]);
     }
@@ -112,7 +128,10 @@ mod tests {
         let mut open = part(8.0, "fail", &["coil open"]);
         open.bin = Some("coil".into());
         let again = rejudged(&open, &recipe);
-        assert_eq!((again.bin(), again.reasons()), (Bin::Coil, vec!["coil open".to_owned()]));
+        assert_eq!(
+            (again.bin(), again.reasons()),
+            (Bin::Coil, vec!["coil open".to_owned()])
+        );
         let void = rejudged(&part(8.0, "void", &["reply refused"]), &recipe);
         assert_eq!(void, Verdict::Void(vec!["reply refused".into()]));
     }
@@ -122,6 +141,9 @@ mod tests {
         let mut part = part(8.0, "pass", &[]);
         part.values.remove("operate_time_ms");
         let again = rejudged(&part, &recipe());
-        assert_eq!(again, Verdict::Void(vec!["operate_time_ms not measured".into()]));
+        assert_eq!(
+            again,
+            Verdict::Void(vec!["operate_time_ms not measured".into()])
+        );
     }
 }

@@ -6,11 +6,10 @@
 //!   an instant, one transaction a run. Lot, run, recipe and the note of the copy stay, so that numbers
 //!   of runs go on and anyone can see where the parts went.
 
-use super::{Filter, Store};
 use super::error::{Doing, Result};
+use super::{Filter, Store};
 use rusqlite::{Transaction, params, params_from_iter};
 use serde::Serialize;
-
 
 /// A run whose parts were deleted.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -50,7 +49,9 @@ impl Store {
 
     /// Runs that [`Store::prune`] would empty, the oldest first.
     pub fn prunable(&self, closed_before_us: i64) -> Result<Vec<Pruned>> {
-        let found = self.prunable_rows(closed_before_us).doing("looking for old runs")?;
+        let found = self
+            .prunable_rows(closed_before_us)
+            .doing("looking for old runs")?;
         Ok(found.into_iter().map(|(_, run)| run).collect())
     }
 

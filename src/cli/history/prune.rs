@@ -30,13 +30,30 @@ pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<i32> {
     let runs = store.prunable(before)?;
     let mut out = Output::stdout();
     let mut table = Table::new(&["lot", "run", "parts", "copy"]);
-    for Pruned { lot, run, parts, file } in &runs {
-        table.row(&mut out, vec![lot.clone(), run.to_string(), parts.to_string(), file.clone()])?;
+    for Pruned {
+        lot,
+        run,
+        parts,
+        file,
+    } in &runs
+    {
+        table.row(
+            &mut out,
+            vec![
+                lot.clone(),
+                run.to_string(),
+                parts.to_string(),
+                file.clone(),
+            ],
+        )?;
     }
     table.finish(&mut out)?;
     out.flush()?;
     if !args.yes {
-        eprintln!("{} runs could go; nothing was deleted (say --yes)", runs.len());
+        eprintln!(
+            "{} runs could go; nothing was deleted (say --yes)",
+            runs.len()
+        );
         return Ok(0);
     }
     let bar = super::generate::progress(runs.len() as u64);

@@ -54,13 +54,21 @@ pub(super) fn run(config: &Path, archive: &Archive, args: &RejudgeArgs) -> anyho
         }
         if part.verdict != now {
             let (run, seq) = (part.run.to_string(), part.seq.to_string());
-            let row = vec![run, seq, part.verdict, now.into(), bin.into(), reasons.join("; ")];
+            let row = vec![
+                run,
+                seq,
+                part.verdict,
+                now.into(),
+                bin.into(),
+                reasons.join("; "),
+            ];
             table.row(&mut out, row)?;
         }
         Ok(())
     })??;
     if args.json {
-        let change = |((was, now), n): (&(String, &str), &u64)| json!({"was": was, "now": now, "parts": n});
+        let change =
+            |((was, now), n): (&(String, &str), &u64)| json!({"was": was, "now": now, "parts": n});
         let changes: Vec<_> = counts.iter().map(change).collect();
         out.json(&json!({"type": "summary", "recipe": recipe.name, "recipe_hash": recipe.hash, "changes": changes}))?;
         return Ok(out.flush()?);

@@ -73,9 +73,17 @@ fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
     let bars = vec![
         none("told parts without their row", it.told, it.lost),
         none("told parts with another verdict or bin", it.told, it.other),
-        none("lots whose numbers have a gap or a double", order.lots, it.gaps),
+        none(
+            "lots whose numbers have a gap or a double",
+            order.lots,
+            it.gaps,
+        ),
         none("kills that damaged the file", order.lots, it.damaged),
-        none("lots that could not run afterwards", it.restarts, it.refused),
+        none(
+            "lots that could not run afterwards",
+            it.restarts,
+            it.refused,
+        ),
     ];
     let about = vec![
         Figure::count("kills before a part was told", order.lots, Some(it.early)),
@@ -93,7 +101,10 @@ fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
     };
     Report {
         study: "kill",
-        about: format!("{} lots of {} killed at random instants", order.lots, order.recipe),
+        about: format!(
+            "{} lots of {} killed at random instants",
+            order.lots, order.recipe
+        ),
         groups: vec![bars, about],
         notes: Vec::new(),
         chart,
@@ -122,8 +133,13 @@ fn killed(
     // The last line may be cut off.
     let whole = text.rsplit_once('\n').map_or("", |(whole, _)| whole);
     let parts = whole.lines().map(serde_json::from_str::<Value>);
-    let parts: Vec<Value> = parts.collect::<Result<_, _>>().context("what the lot told")?;
-    Ok(parts.into_iter().filter(|it| it["type"] == "part").collect())
+    let parts: Vec<Value> = parts
+        .collect::<Result<_, _>>()
+        .context("what the lot told")?;
+    Ok(parts
+        .into_iter()
+        .filter(|it| it["type"] == "part")
+        .collect())
 }
 
 fn started(
@@ -183,7 +199,10 @@ fn held(db: &Path, lot: &str, told: &[Value], counts: &mut Counts) -> anyhow::Re
 fn same(row: &Part, told: &Value) -> bool {
     told["verdict"] == row.verdict.as_str()
         && told["bin"] == row.bin.as_deref().unwrap_or_default()
-        && row.landed_bin.as_ref().is_none_or(|bin| told["bin"] == bin.as_str())
+        && row
+            .landed_bin
+            .as_ref()
+            .is_none_or(|bin| told["bin"] == bin.as_str())
 }
 
 /// A number that looks random, the same for the same round (SplitMix64's last steps).

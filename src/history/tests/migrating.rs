@@ -32,11 +32,16 @@ fn a_file_of_every_earlier_schema_keeps_its_rows_and_can_be_written_on() {
         let archive = file.archive();
         let parts = archive.query(&Filter::default()).unwrap();
         assert_eq!(parts.len(), 1, "schema {schema}");
-        assert_eq!((parts[0].lot.as_str(), &parts[0].values["operate_voltage_v"]), ("批次", &7.5.into()));
+        assert_eq!(
+            (parts[0].lot.as_str(), &parts[0].values["operate_voltage_v"]),
+            ("批次", &7.5.into())
+        );
         archive.check().unwrap();
         let mut store = file.store();
         assert_eq!(store.begin_lot(&lot("批次")).unwrap(), 2);
-        store.record(&[Row::Part(part("批次", 1, "pass", 7.6))]).unwrap();
+        store
+            .record(&[Row::Part(part("批次", 1, "pass", 7.6))])
+            .unwrap();
         assert_eq!(store.pragma("user_version"), SCHEMA.to_string());
         assert_eq!(file.archive().how_many(&Filter::default()).unwrap(), 2);
     }
@@ -46,10 +51,16 @@ fn a_file_of_every_earlier_schema_keeps_its_rows_and_can_be_written_on() {
 fn what_was_not_copied_whole_is_never_pruned() {
     let file = File::new();
     let mut store = filled(&file, 3);
-    assert_eq!(store.copied(&Filter::default(), "copy.db", 10).unwrap(), 0, "it is open");
+    assert_eq!(
+        store.copied(&Filter::default(), "copy.db", 10).unwrap(),
+        0,
+        "it is open"
+    );
     store.close_lot("A", 20).unwrap();
     store.begin_lot(&lot("B")).unwrap();
-    store.record(&[Row::Part(part("B", 1, "pass", 7.0))]).unwrap();
+    store
+        .record(&[Row::Part(part("B", 1, "pass", 7.0))])
+        .unwrap();
     store.close_lot("B", 30).unwrap();
     assert!(store.prunable(i64::MAX).unwrap().is_empty());
     let only_a = Filter {
@@ -59,12 +70,21 @@ fn what_was_not_copied_whole_is_never_pruned() {
     assert_eq!(store.copied(&only_a, "copy.db", 40).unwrap(), 1);
     assert!(store.prunable(20).unwrap().is_empty(), "it ended later");
     let mut done = Vec::new();
-    store.prune(i64::MAX, 50, |run| done.push(run.clone())).unwrap();
+    store
+        .prune(i64::MAX, 50, |run| done.push(run.clone()))
+        .unwrap();
     assert_eq!(done.len(), 1);
-    assert_eq!((done[0].lot.as_str(), done[0].parts, done[0].file.as_str()), ("A", 3, "copy.db"));
+    assert_eq!(
+        (done[0].lot.as_str(), done[0].parts, done[0].file.as_str()),
+        ("A", 3, "copy.db")
+    );
     let archive = file.archive();
     assert_eq!(archive.how_many(&Filter::default()).unwrap(), 1);
-    assert_eq!(archive.lots(&Filter::default()).unwrap().len(), 2, "the runs stay");
+    assert_eq!(
+        archive.lots(&Filter::default()).unwrap().len(),
+        2,
+        "the runs stay"
+    );
     archive.check().unwrap();
     assert!(store.prunable(i64::MAX).unwrap().is_empty());
     assert_eq!(store.begin_lot(&lot("A")).unwrap(), 2, "numbers go on");

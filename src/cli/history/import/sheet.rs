@@ -32,12 +32,16 @@ pub(super) fn records(
     let names = book.sheet_names();
     let name = match sheet {
         None => names.first().context("the spreadsheet has no sheet")?,
-        Some(asked) => names
-            .iter()
-            .find(|name| *name == asked)
-            .with_context(|| format!("--sheet: found {asked:?}, expected one of {}", names.join(", ")))?,
+        Some(asked) => names.iter().find(|name| *name == asked).with_context(|| {
+            format!(
+                "--sheet: found {asked:?}, expected one of {}",
+                names.join(", ")
+            )
+        })?,
     };
-    let cells = book.worksheet_range(name).with_context(|| format!("sheet {name}"))?;
+    let cells = book
+        .worksheet_range(name)
+        .with_context(|| format!("sheet {name}"))?;
     let first = cells.start().map_or(0, |(row, _)| row as usize) + 1;
     let records = cells.rows().enumerate().map(|(at, row)| Record {
         line: first + at,
@@ -61,7 +65,10 @@ fn text(cell: &Data, zone: &TimeZone) -> String {
 /// Days of a spreadsheet as RFC 3339; none beyond the calendar.
 fn instant(days: f64, zone: &TimeZone) -> Option<String> {
     let microseconds = ((days - EPOCH_DAYS) * 86_400e6).round() as i64;
-    let civil = Timestamp::from_microsecond(microseconds).ok()?.to_zoned(TimeZone::UTC).datetime();
+    let civil = Timestamp::from_microsecond(microseconds)
+        .ok()?
+        .to_zoned(TimeZone::UTC)
+        .datetime();
     let zoned = civil.to_zoned(zone.clone()).ok()?;
     Some(zoned.timestamp().to_string())
 }
