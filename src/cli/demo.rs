@@ -46,6 +46,7 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
         truth: None,
         line: Vec::new(),
         json: false,
+        study: None,
     };
     let page = Page::start(listener, &controls, db)?;
     eprintln!(

@@ -1,6 +1,7 @@
 //! `relayrig run`: a lot on a rig, or on the simulated rig in real or virtual time.
 
 mod assemble;
+mod grr;
 mod lines;
 mod recorder;
 mod rows;
@@ -33,6 +34,7 @@ pub enum PaceArg {
 #[command(after_help = "Examples:
   relayrig run --sim --lot A --recipe jzc-22f-012 --count 20
   relayrig run --sim --pace real --lot A --recipe jzc-22f-012 --count 5 --json
+  relayrig run --sim --study grr --lot G --recipe jzc-22f-012
   relayrig run --lot A --recipe jzc-22f-012 --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1")]
 pub struct RunArgs {
     /// On the simulated rig
@@ -68,6 +70,16 @@ pub struct RunArgs {
     /// One JSON object per part, then a summary
     #[arg(long)]
     pub json: bool,
+    /// Instead of one lot: ten parts (or --count) three times over three rigs, and what the gauge adds
+    #[arg(long, value_enum, value_name = "NAME", requires = "sim")]
+    pub study: Option<StudyArg>,
+}
+
+/// A study that feeds parts again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum StudyArg {
+    /// Gauge repeatability and reproducibility
+    Grr,
 }
 
 /// What outlives a run and is shared with a page.
@@ -94,7 +106,10 @@ impl Controls {
 
 /// Runs the command; the result is the exit status.
 pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
-    run_with(config, db, args, &Controls::new(false))
+    match args.study {
+        Some(StudyArg::Grr) => grr::run(config, db, args),
+        None => run_with(config, db, args, &Controls::new(false)),
+    }
 }
 
 /// As [`run`], with controls that somebody else holds too.

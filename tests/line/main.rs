@@ -6,6 +6,7 @@
 //! - `interruptions`: lots that are stopped or killed, and what is left of them.
 //! - `killed`: the controller killed over pseudo-terminals, and outputs safe in time.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
+//! - `paper`: pages, sheets, another recipe, retention, parts fed again.
 //! - [`picture`]: the picture in README.md is that of `config/scene.toml`.
 //! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
 //! - `unplugged`: a port that vanishes over pseudo-terminals.
@@ -21,6 +22,8 @@ mod killed;
 mod layout;
 #[cfg(feature = "sim")]
 mod lots;
+#[cfg(feature = "sim")]
+mod paper;
 mod picture;
 mod program;
 #[cfg(feature = "sim")]

@@ -27,7 +27,8 @@ faults! {
     DoublePart = "double_part", Fall = "fall", ProbeDirty = "probe_dirty",
     BeamBlind = "beam_blind", AxisAlarm = "axis_alarm", StuckLift = "stuck_lift",
     StuckGripper = "stuck_gripper", Door = "door", Estop = "estop", Air = "air",
-    StopButton = "stop_button", Drift = "drift",
+    StopButton = "stop_button", Drift = "drift", Refeed = "refeed",
+    PartsSeed = "parts_seed",
 }
 
 /// The faults asked for, with their values.

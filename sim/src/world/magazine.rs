@@ -115,7 +115,7 @@ impl Magazine {
         }
         let number = self.next_number();
         let (mut specimen, draw) = match number {
-            Some(n) => self.lot_part(n - 1),
+            Some(n) => self.lot_part(n - 1, faults),
             None => self.golden_part(self.out),
         };
         self.out += 1;
@@ -135,8 +135,12 @@ impl Magazine {
         })
     }
 
-    fn lot_part(&self, index: u64) -> (Specimen, Draw) {
-        let specimen = Specimen::of_lot(&self.world, self.scale, self.seed, index);
+    /// A part that is fed again is the same body, and operates anew.
+    fn lot_part(&self, index: u64, faults: &Faults) -> (Specimen, Draw) {
+        let asked = |fault| faults.values(fault).next().map(|it| it as u64);
+        let seed = asked(Fault::PartsSeed).unwrap_or(self.seed);
+        let body = asked(Fault::Refeed).map_or(index, |parts| index % parts.max(1));
+        let specimen = Specimen::of_lot(&self.world, self.scale, seed, body);
         (
             specimen,
             Draw::new(self.seed, Subject::LotOperations, index),

@@ -1,0 +1,116 @@
+//! What is printed, exported, judged again and pruned, from one lot of the simulated rig.
+
+use crate::program::Workshop;
+
+const LOT: &str = "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 6 --seed 1 --json";
+
+#[test]
+fn every_page_of_a_lot_is_written_in_both_languages() {
+    let workshop = Workshop::new("paper");
+    workshop.run(LOT).with_status(0);
+    for (language, not_tested) in [("zh", "绝缘电阻"), ("en", "insulation")] {
+        for page in [
+            "history report --lot A",
+            "history report --lot A --part 2",
+            "card --recipe jzc-22f-012",
+        ] {
+            let said = workshop
+                .run(&format!("{page} --lang {language}"))
+                .with_status(0);
+            assert!(said.stdout.starts_with("<!DOCTYPE html>"), "{page}");
+            assert!(said.stdout.contains(not_tested), "{page} {language}");
+        }
+        let charts =
+            format!("history spc --param operate_voltage_v --page --lang {language} --out c.html");
+        workshop.run(&charts).with_status(0);
+        assert!(workshop.read("c.html").contains("<svg"));
+    }
+    let said = workshop.run("history report --lot B").with_status(2);
+    assert!(said.stderr.contains("history list"), "{}", said.stderr);
+}
+
+#[test]
+fn another_recipe_is_asked_without_touching_the_old_verdicts() {
+    let workshop = Workshop::new("rejudge");
+    workshop.run(LOT).with_status(0);
+    let before = workshop.texts("SELECT verdict || bin || reasons FROM part ORDER BY id");
+    let same = workshop
+        .run("history rejudge --lot A --recipe jzc-22f-012 --json")
+        .with_status(0);
+    for part in same.objects().iter().filter(|it| it["type"] == "part") {
+        assert_eq!(part["verdict"], part["verdict_was"], "{part}");
+    }
+    workshop.change(
+        "config/recipes/jzc-22f-012.toml",
+        "operate_voltage_v = { high = 9.0 }",
+        "operate_voltage_v = { high = 1.0 }",
+    );
+    let strict = workshop
+        .run("history rejudge --lot A --recipe jzc-22f-012 --json")
+        .with_status(0);
+    let failed = strict
+        .objects()
+        .iter()
+        .filter(|it| it["verdict"] == "fail")
+        .count();
+    assert_eq!(failed, 6, "{}", strict.stdout);
+    assert_eq!(
+        workshop.texts("SELECT verdict || bin || reasons FROM part ORDER BY id"),
+        before
+    );
+}
+
+#[test]
+fn only_what_a_backup_holds_is_pruned() {
+    let workshop = Workshop::new("prune");
+    workshop.run(LOT).with_status(0);
+    let parts = "SELECT count(*) FROM part";
+    let all = workshop.count(parts);
+    workshop.run("history export --lot A a.xlsx").with_status(0);
+    workshop
+        .run("history prune --older-than-days 0 --yes")
+        .with_status(0);
+    assert_eq!(
+        workshop.count(parts),
+        all,
+        "golden parts were not in the sheet"
+    );
+    workshop.run("history backup copy.db").with_status(0);
+    workshop
+        .run("history prune --older-than-days 0")
+        .with_status(0);
+    assert_eq!(workshop.count(parts), all, "nobody said --yes");
+    workshop
+        .run("history prune --older-than-days 0 --yes")
+        .with_status(0);
+    assert_eq!(workshop.count(parts), 0);
+    let kept = workshop
+        .run("--db copy.db history list --json")
+        .with_status(0);
+    assert_eq!(kept.objects()[0]["parts"], 6);
+}
+
+#[test]
+fn a_gauge_study_feeds_the_same_parts_again() {
+    let workshop = Workshop::new("grr");
+    let study = "run --sim --study grr --lot G --recipe jzc-22f-012 --count 3 --json";
+    let said = workshop.run(study).with_status(0);
+    let operate = said
+        .objects()
+        .into_iter()
+        .find(|it| it["param"] == "operate_voltage_v")
+        .unwrap();
+    let sd = |source: &str| operate["anova"][source].as_f64().unwrap();
+    assert!(
+        sd("repeatability") < 0.05 && sd("repeatability") > 0.0,
+        "{operate}"
+    );
+    assert!(
+        sd("part") > 2.0 * sd("grr"),
+        "parts of a lot differ more than the gauge errs: {operate}"
+    );
+    assert_eq!(
+        workshop.count("SELECT count(*) FROM part WHERE kind = 'lot'"),
+        27
+    );
+}
