@@ -3,6 +3,7 @@
 //! - [`layout`]: what the source tree must look like: who imports whom, what a pure module may not name,
 //!   which files stand where, and that the documents speak of things that exist.
 //! - [`commands`]: the built program given wrong files and simple orders.
+//! - `full_disk`: a history that may not grow any more while a lot runs.
 //! - `interruptions`: lots that are stopped or killed, and what is left of them.
 //! - `killed`: the controller killed over pseudo-terminals, and outputs safe in time.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
@@ -15,6 +16,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod commands;
+#[cfg(all(feature = "sim", unix))]
+mod full_disk;
 #[cfg(all(feature = "sim", unix))]
 mod interruptions;
 #[cfg(all(feature = "sim", unix))]

@@ -47,12 +47,18 @@ impl Workshop {
 
     /// Runs `relayrig` with the words of `line`, which are separated by blanks.
     pub fn run(&self, line: &str) -> Said {
-        let output = self.command(line).output().unwrap();
-        Said {
-            status: output.status.code().unwrap_or(-1),
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
-        }
+        said(&self.command(line).output().unwrap())
+    }
+
+    /// As [`Self::run`], but no file may become larger than so many blocks of the shell.
+    #[cfg(all(feature = "sim", unix))]
+    pub fn run_with_little_room(&self, blocks: u32, line: &str) -> Said {
+        // Without the trap the system would kill the program instead of refusing the write.
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "trap '' XFSZ; ulimit -f \"$0\"; exec \"$@\""]);
+        shell.arg(blocks.to_string());
+        shell.arg(env!("CARGO_BIN_EXE_relayrig"));
+        said(&self.worded(shell, line).output().unwrap())
     }
 
     /// Starts `relayrig` and lets it run; what it logs is thrown away.
@@ -126,6 +132,14 @@ impl Workshop {
         let mut rows = history.prepare(query).unwrap();
         let texts = rows.query_map([], |row| row.get(0)).unwrap();
         texts.collect::<Result<_, _>>().unwrap()
+    }
+}
+
+fn said(output: &std::process::Output) -> Said {
+    Said {
+        status: output.status.code().unwrap_or(-1),
+        stdout: String::from_utf8(output.stdout.clone()).unwrap(),
+        stderr: String::from_utf8_lossy(&output.stderr).into_owned(),
     }
 }
 
