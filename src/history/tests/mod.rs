@@ -3,6 +3,7 @@
 
 mod migrating;
 mod reading;
+mod rejudging;
 mod safety;
 mod writing;
 
