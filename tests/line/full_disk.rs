@@ -2,9 +2,9 @@
 
 use crate::program::Workshop;
 
-/// Largest file that the program may write, in blocks of the shell (512 or 1024 bytes): room for some
-/// dozens of parts.
-const BLOCKS: u32 = 600;
+/// Largest file that the program may write, in blocks of the shell (512 or 1024 bytes): room for the
+/// golden parts and some dozens more.
+const BLOCKS: u32 = 2400;
 
 #[test]
 fn a_history_that_may_not_grow_stops_feeding_and_loses_no_part_that_fell() {
