@@ -9,6 +9,7 @@
 
 mod commission;
 mod desk;
+pub mod mimic;
 mod publish;
 mod rota;
 mod still;

@@ -1,9 +1,11 @@
 //! What a screen may know: plain serialisable types, filled by the cycle and the recorder.
 
 mod machine;
+mod mimic;
 mod order;
 
 pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
+pub use mimic::{Mimic, MimicBody};
 pub use order::{NotTaken, ORDERS, Order};
 
 use serde::Serialize;

@@ -1,9 +1,12 @@
 //! `relayrig demo`: the main job with nothing to prepare.
 
-use super::run::{self, Controls, PaceArg, RunArgs};
+use super::run::{self, Controls, PaceArg, RunArgs, assemble};
+use crate::config::{Plant, load_recipe};
 use crate::hmi::{self, access};
+use crate::view::Mimic;
 use anyhow::Context;
 use std::path::Path;
+use std::sync::Arc;
 use std::thread::JoinHandle;
 use tokio::sync::{mpsc, watch};
 
@@ -51,7 +54,10 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
         json: false,
         study: None,
     };
-    let page = Page::start(listener, &controls, orders, db)?;
+    let plant = Plant::load(config)?;
+    let recipe = load_recipe(config, &order.recipe)?;
+    let mimic = assemble::mimic(&plant, &recipe)?;
+    let page = Page::start(listener, &controls, orders, db, mimic)?;
     eprintln!(
         "relayrig: simulated rig running, page at http://{}/, history in {}, Ctrl-C stops",
         args.listen,
@@ -74,6 +80,7 @@ impl Page {
         controls: &Controls,
         orders: mpsc::Sender<hmi::Asked>,
         db: &Path,
+        mimic: Mimic,
     ) -> anyhow::Result<Self> {
         listener
             .set_nonblocking(true)
@@ -88,6 +95,7 @@ impl Page {
         }
         let shared = hmi::Shared {
             gate,
+            mimic: Arc::new(mimic),
             view: controls.view.subscribe(),
             db: db.to_path_buf(),
             orders,

@@ -1,6 +1,6 @@
 //! `relayrig run`: a lot on a rig, or on the simulated rig in real or virtual time.
 
-mod assemble;
+pub(super) mod assemble;
 mod grr;
 mod lines;
 mod recorder;

@@ -37,6 +37,7 @@ mod back_track;
 mod bodies;
 mod build;
 mod carried;
+mod drawing;
 mod error;
 mod judge;
 mod memory;
@@ -54,6 +55,7 @@ mod sweep;
 mod tests;
 
 pub use actuator::{Actuator, Position};
+pub use drawing::Drawn;
 pub use error::GuardError;
 pub use motion::{Cleared, Motion, Stroke};
 pub use refusal::{Blocked, Refusal};

@@ -18,6 +18,7 @@
 //! | `POST /api/login\|logout`, `GET /api/me` | who is asking |
 //! | `POST /api/orders` | `{"order":"stop"}` and the others of [`crate::view::ORDERS`] |
 //! | `GET /api/history/query\|list\|show\|stats` | JSON as the command `history` gives it |
+//! | `GET /mimic.svg` | the machine to scale, from above and from the front |
 //! | `GET /metrics` | Prometheus text |
 //!
 //! Whoever reaches the address may look; who wants something done logs in (`gate.rs`).
@@ -30,15 +31,18 @@ mod history;
 mod history_feed;
 mod login;
 mod metrics;
+mod mimic;
 mod orders;
 mod origin;
 mod page;
 mod router;
 
+use crate::view::Mimic;
 pub use gate::Gate;
 pub use orders::{Asked, WAITING};
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::TcpListener;
 use tokio::sync::{mpsc, watch};
@@ -53,6 +57,8 @@ pub struct Shared {
     pub view: watch::Receiver<crate::view::View>,
     /// The history file; it need not exist yet.
     pub db: PathBuf,
+    /// The machine to scale.
+    pub mimic: Arc<Mimic>,
     /// Who may order what.
     pub gate: Gate,
     /// To the cycle, which answers each order in its next turn.

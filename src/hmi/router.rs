@@ -2,7 +2,7 @@
 
 use super::error::HmiError;
 use super::history::Readers;
-use super::{Shared, events, history, login, metrics, orders, page};
+use super::{Shared, events, history, login, metrics, mimic, orders, page};
 use axum::Json;
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, Request, State};
@@ -48,6 +48,7 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
         .route("/api/history/list", get(history::list))
         .route("/api/history/show", get(history::show))
         .route("/api/history/stats", get(history::stats))
+        .route("/mimic.svg", get(mimic::picture))
         .route("/metrics", get(metrics::metrics))
         .fallback(nothing_there)
         .method_not_allowed_fallback(wrong_method)

@@ -5,13 +5,14 @@
 mod events;
 mod history;
 mod login;
+mod mimic;
 mod orders;
 mod routes;
 mod shutdown;
 
 use super::access::{Register, Role};
 use super::{Asked, Gate, Shared, WAITING, router};
-use crate::view::{LastPart, NotTaken, View};
+use crate::view::{LastPart, Mimic, MimicBody, NotTaken, View};
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
@@ -65,6 +66,7 @@ impl Bench {
         let (gate, _) = Gate::open(&people).unwrap();
         let shared = Shared {
             gate: gate.clone(),
+            mimic: Arc::new(some_mimic()),
             view: looking,
             db: db.clone(),
             orders: orders.clone(),
@@ -168,6 +170,27 @@ impl Answer {
         let json = self.json();
         assert!(json["error"].is_string());
         json["reason"].as_str().unwrap().to_owned()
+    }
+}
+
+fn some_mimic() -> Mimic {
+    let square = vec![vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]];
+    let body = |id: &str, rides: &[(&str, [f64; 3])]| MimicBody {
+        id: id.to_owned(),
+        rides: rides
+            .iter()
+            .map(|(it, way)| ((*it).to_owned(), *way))
+            .collect(),
+        above: square.clone(),
+        front: square.clone(),
+    };
+    let lift = [("sort_z", [0.0, 0.0, -1.0]), ("sort_axis", [1.0, 0.0, 0.0])];
+    Mimic {
+        bodies: vec![
+            body("base<plate>", &[]),
+            body("finger", &lift),
+            body("part_nest", &[]),
+        ],
     }
 }
 

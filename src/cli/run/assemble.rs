@@ -2,10 +2,11 @@
 
 use super::recorder::Setup;
 use crate::bus::Pace;
-use crate::cycle::{Cycle, LineEnds, Outside};
-use crate::gauge::Calibration;
+use crate::config::Plant;
+use crate::cycle::{Cycle, LineEnds, Outside, mimic};
 use crate::gauge::calibration::{Factor, InputLine, OutputLine};
 use crate::gauge::feasible::nominal_v_per_s;
+use crate::gauge::{Calibration, Recipe};
 use crate::guard::{Actuator, Guard, PartSize};
 use crate::rig::axis::AxisStation;
 use crate::rig::point::{AnalogIn, AnalogOut};
@@ -15,6 +16,7 @@ use crate::station::moves::Strokes;
 use crate::station::test::Bench;
 use crate::station::{Plan, Station};
 use crate::units::Span;
+use crate::view::Mimic;
 use anyhow::Context;
 use std::sync::Arc;
 
@@ -39,10 +41,6 @@ pub fn cycle(
             .map(|at| (at, wiring.axis.point(at).x_mm))
             .collect::<Vec<(AxisStation, f64)>>(),
     };
-    let part = PartSize {
-        body_mm: recipe.part.body_mm,
-        pin_length_mm: recipe.part.pin_length_mm,
-    };
     let plan = Plan {
         stays,
         count: setup.args.count,
@@ -65,9 +63,22 @@ pub fn cycle(
         nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
             .map(|output| nominal_v_per_s(&wiring, output)),
     };
-    let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), part);
+    let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), size_of(setup.recipe));
     let station = Station::new(plan, bench, wiring.axis.clone(), mechanism);
     Ok(Cycle::new(wiring, pace, station, guard, lines, outside))
+}
+
+/// The machine as a screen draws it, with parts of the size that `recipe` gives.
+pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
+    let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
+    Ok(mimic::mimic(guard.drawing(&size_of(recipe))))
+}
+
+fn size_of(recipe: &Recipe) -> PartSize {
+    PartSize {
+        body_mm: recipe.part.body_mm,
+        pin_length_mm: recipe.part.pin_length_mm,
+    }
 }
 
 fn timeouts(limits: &StrokeLimits) -> Vec<(&'static str, Span)> {

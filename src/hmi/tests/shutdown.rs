@@ -11,6 +11,7 @@ async fn neither_an_open_stream_nor_half_a_request_holds_up_the_end() {
     let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
     let address = listener.local_addr().unwrap();
     let shared = Shared {
+        mimic: Arc::new(Mimic::default()),
         gate: bench.gate.clone(),
         view: bench.view.subscribe(),
         db: bench.db.clone(),
