@@ -119,7 +119,7 @@ fn drawn(body: &MimicBody, side: Side) -> Markup {
     html! {
         g class=(class) data-body=(body.id) data-rides=(rides(body, side)) {
             title { (body.id) }
-            @for polygon in side.polygons(body) { polygon points=(points(polygon)); }
+            @for polygon in side.polygons(body) { polygon points=(points(polygon)) {} }
         }
     }
 }
