@@ -40,12 +40,27 @@ pub struct View {
     pub parts_per_hour: Option<f64>,
     /// The last verdict, kept until the next.
     pub last: Option<LastPart>,
+    /// The last twenty parts judged, oldest first.
+    pub recent: Vec<RecentPart>,
+    /// Limits of the recipe by parameter, low and high; null where there is none.
+    pub limits: BTreeMap<String, [Option<f64>; 2]>,
     /// Alarms that stand, first-out first, then in order of coming.
     pub alarms: Vec<AlarmLine>,
     /// How the lines and their modules are doing, since the start.
     pub lines: Vec<LineView>,
     /// Outer machine, buttons, mechanism, signals.
     pub machine: Machine,
+}
+
+/// A part in the strip of the last ones.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct RecentPart {
+    /// Number in the lot.
+    pub seq: u64,
+    /// `pass`, `fail`, `void`.
+    pub verdict: String,
+    /// Bin it goes to.
+    pub bin: String,
 }
 
 /// The part judged last.

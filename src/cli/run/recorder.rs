@@ -19,7 +19,7 @@ use crate::history::{
 use crate::station::ledger::Kind;
 use crate::station::wants::{Ending, Interrupted, Judged, Landed};
 use crate::units::RigTime;
-use crate::view::LastPart;
+use crate::view::{LastPart, RecentPart};
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
@@ -94,6 +94,16 @@ pub struct Recorder<'a> {
 /// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
+/// Parts in the strip of the last ones: two rows of ten.
+const RECENT: usize = 20;
+
+fn limits_of(recipe: &Recipe) -> BTreeMap<String, [Option<f64>; 2]> {
+    let limits = recipe.limits.iter();
+    limits
+        .map(|(parameter, limit)| (parameter.name().to_owned(), [limit.low, limit.high]))
+        .collect()
+}
+
 impl<'a> Recorder<'a> {
     /// Opens the history and the lot's run; on a rig, a calibration that is still valid comes back.
     pub fn open(
@@ -128,6 +138,7 @@ impl<'a> Recorder<'a> {
             view.lot.clone_from(&setup.args.lot);
             view.recipe.clone_from(&setup.recipe.name);
             view.count = setup.args.count;
+            view.limits = limits_of(setup.recipe);
         });
         let recorder = Self {
             setup,
@@ -306,13 +317,18 @@ impl<'a> Recorder<'a> {
             view.verdicts = text(&self.counts.verdicts);
             view.bins = text(&self.counts.bins);
             view.parts_per_hour = rate;
+            let bin = judged.part.bin.map_or("", |bin| bin.name());
+            view.recent.push(RecentPart {
+                seq: rows::number(&judged.part.kind, 0).0,
+                verdict: judged.verdict.name().into(),
+                bin: bin.into(),
+            });
+            let older = view.recent.len().saturating_sub(RECENT);
+            view.recent.drain(..older);
             view.last = Some(LastPart {
                 seq: rows::number(&judged.part.kind, 0).0,
                 verdict: judged.verdict.name().into(),
-                bin: judged
-                    .part
-                    .bin
-                    .map_or_else(String::new, |bin| bin.name().into()),
+                bin: bin.into(),
                 reasons: judged.verdict.reasons(),
                 values: numbers("values"),
                 uncertainty: numbers("uncertainty"),

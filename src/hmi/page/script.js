@@ -8,6 +8,8 @@ const KEYS = ["coil_resistance_ohm", "operate_voltage_v", "release_voltage_v", "
 const UNITS = {ohm: "Ω", v: "V", ms: "ms", mohm: "mΩ"};
 const BINS = ["pass", "coil", "contact", "voltage", "time", "retest"];
 const VERDICTS = ["pass", "fail", "void"];
+// Stop comes last, where no other button is hit by mistake.
+const ORDERS = ["reset", "start", "hold", "unhold", "abort", "clear", "stop"];
 const STALE_MS = 2500;
 const AGAIN_MS = 1000;
 const NONE = "–";
@@ -22,8 +24,9 @@ let theme = asked.get("theme") || kept.get("theme") ||
   (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 if (language !== "zh") language = "en";
 let view = null;
-let stop = null;
 let me = null;
+// Where each actuator stood last, mm.
+const was = {};
 let heard = -Infinity;
 let alive = true;
 let source = null;
@@ -102,6 +105,7 @@ function showLast(last) {
   at("verdict").className = last ? last.verdict : "";
   verdict.textContent = last ? known("verdict." + last.verdict, last.verdict) : NONE;
   bin.textContent = last ? word("to_bin") + " " + known("bin." + last.bin, last.bin) : word("no_part");
+  showRecent(view.recent);
   const reasons = last ? last.reasons : [];
   at("reasons").replaceChildren(...reasons.slice(0, 3).map((reason) => make("li", reasonText(reason))));
   at("values").replaceChildren(...KEYS.map((key) => valueRow(key, last)));
@@ -113,8 +117,80 @@ function valueRow(key, last) {
   const blamed = last && last.verdict === "fail" && last.reasons.some((it) => it.startsWith(key + " "));
   if (blamed) row.className = "bad";
   const unit = UNITS[key.slice(key.lastIndexOf("_") + 1)];
-  row.append(make("td", word("key." + key)), make("td", value), make("td", uncertainty), make("td", unit));
+  row.append(make("td", word("key." + key)), make("td", value), make("td", uncertainty), make("td", unit), bandCell(key, last));
   return row;
+}
+
+// Where a value lies between its limits; one without a limit on that side ends where the band does.
+function bandCell(key, last) {
+  const cell = make("td"), limits = view.limits[key], value = last ? last.values[key] : undefined;
+  if (!limits || !Number.isFinite(value)) return cell;
+  const [low, high] = limits, all = [low, high, value].filter(Number.isFinite);
+  const from = low ?? Math.min(0, value), to = high ?? Math.max(value, ...all) * 1.5;
+  const place = (it) => 12 + 60 * Math.min(1.2, Math.max(-.2, (it - from) / (to - from || 1)));
+  const svg = drawn("svg", {class: "band", viewBox: "0 0 84 16", role: "img"});
+  const title = drawn("title", {});
+  title.textContent = (low ?? "–") + " … " + (high ?? "–");
+  svg.append(title, drawn("rect", {x: 12, y: 4, width: 60, height: 8}),
+    drawn("path", {d: "M" + place(value) + " 0V16"}));
+  cell.append(svg);
+  return cell;
+}
+
+function drawn(tag, attributes) {
+  const element = document.createElementNS(at("mimic").firstElementChild.namespaceURI, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  return element;
+}
+
+const SHORT = {pass: "✓", fail: "✗", void: "?"};
+
+function showRecent(recent) {
+  at("recent").replaceChildren(...recent.map((part) => {
+    const item = make("li", SHORT[part.verdict], part.verdict);
+    item.title = part.seq + " · " + known("verdict." + part.verdict, part.verdict) + " · " + known("bin." + part.bin, part.bin);
+    return item;
+  }));
+}
+
+// --- the machine to scale ---
+
+const PLACES = {pocket: "part_pusher", nest: "part_nest", gripper: "part_gripper"};
+
+async function fetchMimic() {
+  try {
+    const text = await (await fetch("/mimic.svg")).text();
+    const svg = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+    at("mimic").replaceChildren(document.importNode(svg, true));
+    showMimic();
+  } catch { /* the page works without its picture */ }
+}
+
+// A moving actuator is drawn on its way to the end that it left the other one for.
+function showMimic() {
+  if (!view || !view.machine) return;
+  const stands = {};
+  for (const it of view.machine.actuators) {
+    const from = was[it.name] ?? it.from_mm;
+    if (it.from_mm === it.to_mm) was[it.name] = it.from_mm;
+    const far = Math.abs(it.from_mm - from) > Math.abs(it.to_mm - from) ? it.from_mm : it.to_mm;
+    stands[it.name] = it.from_mm === it.to_mm ? it.from_mm : it.moving ? far : (it.from_mm + it.to_mm) / 2;
+  }
+  const held = {};
+  for (const [place, token] of Object.entries(view.machine.places)) held[PLACES[place]] = token;
+  for (const body of at("mimic").querySelectorAll("[data-rides]")) {
+    let right = 0, down = 0;
+    for (const [name, x, y] of JSON.parse(body.dataset.rides)) {
+      right += x * (stands[name] || 0);
+      down += y * (stands[name] || 0);
+    }
+    body.style.transform = "translate(" + right + "px," + down + "px)";
+    if (!body.classList.contains("part")) continue;
+    const token = held[body.dataset.body];
+    body.classList.toggle("held", token !== undefined);
+    body.classList.toggle("pass", token !== undefined && token.bin === "pass");
+    body.classList.toggle("fail", token !== undefined && token.bin !== "" && token.bin !== "pass");
+  }
 }
 
 // The usual names first, then whatever else there is.
@@ -152,30 +228,50 @@ function showView() {
   const judged = Object.values(view.verdicts).reduce((sum, it) => sum + it, 0);
   at("yield").textContent = share(view.verdicts.pass || 0, judged);
   showAlarms(view.alarms);
+  showMimic();
+  showOrders(linkNow());
   showProgress();
   showLast(view.last);
   showBins(view.bins);
   showVerdicts(view.verdicts);
 }
 
+const linkNow = () => (performance.now() - heard > STALE_MS ? "lost" : alive ? "live" : "ended");
+
 // Live, lost or ended; a page that is not live says so and is grey.
 function showLink() {
-  const lost = performance.now() - heard > STALE_MS;
-  const link = lost ? "lost" : alive ? "live" : "ended";
+  const link = linkNow();
   document.body.classList.toggle("stale", link !== "live");
   at("link").className = link === "live" ? "" : "bad";
   at("link").lastElementChild.textContent = word("link." + link);
   document.title = (view && view.simulated ? word("simulation") + " · " : "") + "relayrig";
-  showStop(link);
 }
 
-function showStop(link) {
-  const ended = link === "ended" || (view !== null && view.state === "ended");
-  // Without a connection the order is still worth trying: it says itself whether it arrived.
-  at("stop").disabled = (ended && link !== "lost") || me === null;
-  const answer = stop === null ? "" : word(stop.word) + " " + stop.more;
-  at("stop_answer").textContent = ended && link !== "lost" ? word("stop.ended")
-    : me === null ? word("stop.login") : answer;
+// Every order has its place; one that would not be taken says why when it is pressed.
+function showOrders(link) {
+  const buttons = view && view.machine ? view.machine.buttons : [];
+  const shown = ORDERS.map((order) => buttons.find((it) => it.order === order && it.with === "")).filter(Boolean);
+  at("orders").replaceChildren(...shown.map((button) => {
+    const element = make("button", word("order." + button.order), button.order === "stop" ? "stop" : "");
+    const why = whyNot(button, link);
+    element.type = "button";
+    element.dataset.order = button.order;
+    element.setAttribute("aria-disabled", why !== "");
+    element.title = why;
+    element.addEventListener("click", () => (why ? answer(why) : give(button.order)));
+    return element;
+  }));
+}
+
+function whyNot(button, link) {
+  if (link === "ended") return word("stop.ended");
+  if (me === null) return word("stop.login");
+  if (button.enabled) return "";
+  return language === "zh" ? button.why_zh : button.why_en;
+}
+
+function answer(text) {
+  at("order_answer").textContent = text;
 }
 
 function showAll() {
@@ -192,9 +288,7 @@ function connect() {
   if (source) source.close();
   source = new EventSource("/api/events");
   source.addEventListener("view", (event) => {
-    const before = view;
     view = JSON.parse(event.data);
-    if (before && before.lot !== view.lot) stop = null;
     heard = performance.now();
     showView();
     showLink();
@@ -219,15 +313,15 @@ setInterval(() => {
 
 // --- to the rig ---
 
-async function orderStop() {
+async function give(order) {
   try {
-    const answer = await post("/api/orders", {order: "stop"});
-    stop = answer.ok ? {word: "stop.sent", more: ""}
-      : {word: "stop.refused", more: (await answer.json()).reason};
+    const reply = await post("/api/orders", {order});
+    const body = await reply.json();
+    if (reply.ok) answer(word("order." + order) + ": " + word("order.taken"));
+    else answer((language === "zh" && body.reason_zh) || body.reason);
   } catch {
-    stop = {word: "stop.lost", more: ""};
+    answer(word("stop.lost"));
   }
-  showLink();
 }
 
 // --- who is here ---
@@ -246,6 +340,7 @@ async function askWho() {
 function showWho() {
   at("who").textContent = me ? me.name + " · " + word("logout") : word("login");
   showLink();
+  showOrders(linkNow());
 }
 
 at("who").addEventListener("click", async () => {
@@ -277,7 +372,6 @@ at("login").addEventListener("submit", async (event) => {
   showWho();
 });
 
-at("stop").addEventListener("click", orderStop);
 at("language").addEventListener("click", () => {
   language = language === "zh" ? "en" : "zh";
   kept.set("lang", language);
@@ -291,4 +385,5 @@ at("theme").addEventListener("click", () => {
 
 showAll();
 askWho();
+fetchMimic();
 connect();

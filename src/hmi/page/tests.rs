@@ -52,7 +52,7 @@ fn every_word_that_the_page_uses_is_in_the_table() {
 #[test]
 fn every_word_in_the_table_is_used() {
     let families = [
-        "link", "state", "stage", "verdict", "bin", "key", "login", "reason", "text",
+        "link", "order", "state", "stage", "verdict", "bin", "key", "login", "reason", "text",
     ];
     for key in table().keys() {
         let family = key.split('.').next().unwrap();
