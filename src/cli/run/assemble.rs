@@ -2,8 +2,11 @@
 
 use super::recorder::Setup;
 use crate::bus::Pace;
+#[cfg(feature = "sim")]
 use crate::config::Plant;
-use crate::cycle::{Cycle, LineEnds, Outside, mimic};
+#[cfg(feature = "sim")]
+use crate::cycle::mimic;
+use crate::cycle::{Cycle, LineEnds, Outside};
 use crate::gauge::calibration::{Factor, InputLine, OutputLine};
 use crate::gauge::feasible::nominal_v_per_s;
 use crate::gauge::{Calibration, Recipe};
@@ -16,6 +19,7 @@ use crate::station::moves::Strokes;
 use crate::station::test::Bench;
 use crate::station::{Plan, Station};
 use crate::units::Span;
+#[cfg(feature = "sim")]
 use crate::view::Mimic;
 use anyhow::Context;
 use std::sync::Arc;
@@ -69,6 +73,7 @@ pub fn cycle(
 }
 
 /// The machine as a screen draws it, with parts of the size that `recipe` gives.
+#[cfg(feature = "sim")]
 pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     Ok(mimic::mimic(guard.drawing(&size_of(recipe))))
