@@ -1,6 +1,7 @@
 //! The commands, one file each. The only place that names the simulator.
 
 pub mod bus;
+pub mod calibrate;
 pub mod card;
 pub mod check;
 pub mod config;
@@ -69,6 +70,8 @@ pub enum Command {
     Demo(demo::DemoArgs),
     /// Run a lot, on a rig or on the simulated one
     Run(Box<run::RunArgs>),
+    /// Factors of the rig from its references and golden parts, or their verification
+    Calibrate(calibrate::CalibrateArgs),
     /// Only the simulated rig, on pseudo-terminals in real time
     #[cfg(feature = "sim")]
     Sim(sim::SimArgs),
@@ -99,6 +102,7 @@ impl Cli {
             #[cfg(feature = "sim")]
             Command::Demo(args) => demo::run(&self.config, &self.db, &args),
             Command::Run(args) => run::run(&self.config, &self.db, &args),
+            Command::Calibrate(args) => calibrate::run(&self.config, &self.db, &args),
             #[cfg(feature = "sim")]
             Command::Sim(args) => sim::run(&self.config, &args),
             #[cfg(feature = "sim")]

@@ -8,18 +8,19 @@ mod rows;
 mod table;
 mod traces;
 
+use super::calibrate;
 use crate::bus::Pace;
 use crate::config::{Plant, load_recipe};
 use crate::cycle::{Event, Outside};
-use crate::gauge::Recipe;
+use crate::gauge::{Calibration, Recipe};
 use crate::hmi::Asked;
 use crate::station::wants::Ending;
 use crate::view::View;
 use anyhow::{Context, bail};
 use recorder::{Recorder, Setup};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 use tokio::sync::{mpsc, watch};
 use traces::Traces;
 
@@ -96,8 +97,10 @@ pub struct Controls {
     pub stays: bool,
     /// What screens see.
     pub view: watch::Sender<View>,
-    /// Rows to stdout.
+    /// No rows to stdout.
     pub quiet: bool,
+    /// The run only calibrates, whatever is stored, and leaves what it found here instead of in the history.
+    pub calibrates: Option<Arc<OnceLock<Calibration>>>,
 }
 
 impl Controls {
@@ -109,6 +112,7 @@ impl Controls {
             stays: false,
             view: watch::channel(View::default()).0,
             quiet,
+            calibrates: None,
         }
     }
 }
@@ -136,7 +140,7 @@ pub fn run_with(
             args.lot.len()
         );
     }
-    if args.count == Some(0) {
+    if args.count == Some(0) && controls.calibrates.is_none() {
         bail!("--count: found 0, expected at least 1");
     }
     if args.sim && !cfg!(feature = "sim") {
@@ -148,6 +152,13 @@ pub fn run_with(
     let plant = Plant::load(config)?;
     let recipe = Arc::new(load_recipe(config, &args.recipe)?);
     plant.admit(&recipe)?;
+    if !args.sim
+        && controls.calibrates.is_none()
+        && let Some(why) = calibrate::why_not(db, recipe.part.nominal_v)?
+    {
+        tracing::error!(code = "calibration_invalid", "{why}");
+        return Ok(super::RIG_TROUBLE);
+    }
     let mut builder = tokio::runtime::Builder::new_current_thread();
     builder.enable_all();
     #[cfg(feature = "sim")]

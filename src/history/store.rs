@@ -190,6 +190,24 @@ impl Store {
         latest_calibration(&self.connection).doing("reading the latest calibration")
     }
 
+    /// The same among those of the simulated rig, or of the rig, for one coil voltage.
+    pub fn latest_calibration_of(
+        &self,
+        simulated: bool,
+        nominal_v: f64,
+    ) -> Result<Option<CalibrationRecord>> {
+        self.connection
+            .query_row(
+                "SELECT made_at_us, due_at_us, hash, body, verified FROM calibration
+                 WHERE body ->> 'simulated' = ?1 AND body ->> 'nominal_v' = ?2
+                 ORDER BY made_at_us DESC, id DESC LIMIT 1",
+                params![simulated, nominal_v],
+                calibration,
+            )
+            .optional()
+            .doing("reading the latest calibration of a kind")
+    }
+
     pub(super) fn connection(&self) -> &Connection {
         &self.connection
     }
@@ -219,17 +237,19 @@ pub(super) fn latest_calibration(
             "SELECT made_at_us, due_at_us, hash, body, verified FROM calibration
              ORDER BY made_at_us DESC, id DESC LIMIT 1",
             [],
-            |row| {
-                Ok(CalibrationRecord {
-                    made_at_us: row.get(0)?,
-                    due_at_us: row.get(1)?,
-                    hash: row.get(2)?,
-                    body: row.get(3)?,
-                    verified: row.get(4)?,
-                })
-            },
+            calibration,
         )
         .optional()
+}
+
+fn calibration(row: &rusqlite::Row<'_>) -> rusqlite::Result<CalibrationRecord> {
+    Ok(CalibrationRecord {
+        made_at_us: row.get(0)?,
+        due_at_us: row.get(1)?,
+        hash: row.get(2)?,
+        body: row.get(3)?,
+        verified: row.get(4)?,
+    })
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! - [`layout`]: what the source tree must look like: who imports whom, what a pure module may not name,
 //!   which files stand where, and that the documents speak of things that exist.
 //! - `bus`: the tools of a line against modules on a bench, and the traces of alarms.
+//! - `calibrate`: factors stored, verified, and a rig that takes no lot without them.
 //! - [`commands`]: the built program given wrong files and simple orders.
 //! - `full_disk`: a history that may not grow any more while a lot runs.
 //! - `interruptions`: lots that are stopped or killed, and what is left of them.
@@ -18,6 +19,8 @@
 
 #[cfg(all(feature = "sim", unix))]
 mod bus;
+#[cfg(feature = "sim")]
+mod calibrate;
 mod check;
 mod commands;
 #[cfg(all(feature = "sim", unix))]

@@ -1,0 +1,79 @@
+//! `relayrig calibrate`: factors are stored, verified, and a rig takes no lot on factors that do not hold.
+
+use crate::program::Workshop;
+
+/// What the calibration in the history of `workshop` would be, had a rig made it.
+fn as_if_of_a_rig(workshop: &Workshop, change: &str) {
+    let history = rusqlite::Connection::open(workshop.folder.join("relayrig.db")).unwrap();
+    let query = format!(
+        "UPDATE calibration SET body = json_set(body, '$.simulated', json('false')){change}"
+    );
+    assert_eq!(history.execute(&query, []).unwrap(), 1);
+}
+
+const RUN_ON_A_RIG: &str = "run --lot A --recipe jzc-22f-012 --count 1";
+
+#[test]
+fn a_rig_that_has_not_changed_is_verified() {
+    let workshop = Workshop::new("calibrate_verified");
+    let made = workshop.run("calibrate --sim --json").with_status(0);
+    let factors = made.objects();
+    assert_eq!(factors.len(), 15, "{made}");
+    assert!(
+        factors[..14]
+            .iter()
+            .all(|it| it["expanded_u"].as_f64().unwrap() > 0.0)
+    );
+    assert_eq!(workshop.count("SELECT count(*) FROM calibration"), 1);
+    let again = workshop
+        .run("calibrate --sim --verify --json")
+        .with_status(0);
+    assert_eq!(again.objects().last().unwrap()["verified"], true, "{again}");
+    assert_eq!(workshop.count("SELECT sum(verified) FROM calibration"), 1);
+}
+
+#[test]
+fn a_drifted_source_fails_the_verification_and_the_rig_takes_no_lot() {
+    let workshop = Workshop::new("calibrate_drifted");
+    workshop.run("calibrate --sim").with_status(0);
+    workshop.change(
+        "config/sim.toml",
+        "source_current_a = 1.0",
+        "source_current_a = 1.05",
+    );
+    let failed = workshop
+        .run("calibrate --sim --verify --json")
+        .with_status(1);
+    let contact = failed
+        .objects()
+        .into_iter()
+        .find(|it| it["factor"] == "contact")
+        .unwrap();
+    assert_eq!(contact["holds"], false, "{failed}");
+    as_if_of_a_rig(&workshop, "");
+    let refused = workshop.run(RUN_ON_A_RIG).with_status(3);
+    assert!(
+        refused.stderr.contains("failed its last verification"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn a_rig_with_an_overdue_calibration_takes_no_lot_and_says_since_when() {
+    let workshop = Workshop::new("calibrate_overdue");
+    workshop.run("calibrate --sim").with_status(0);
+    as_if_of_a_rig(&workshop, ", due_at_us = 1000000000000000");
+    let refused = workshop.run(RUN_ON_A_RIG).with_status(3);
+    assert!(
+        refused.stderr.contains("ran out at 2001-09-09T01:46:40Z"),
+        "{refused}"
+    );
+    assert!(refused.stderr.contains("relayrig calibrate"), "{refused}");
+}
+
+#[test]
+fn nothing_to_verify_is_bad_input() {
+    let workshop = Workshop::new("calibrate_nothing");
+    let said = workshop.run("calibrate --sim --verify").with_status(2);
+    assert!(said.stderr.contains("no calibration for 12 V"), "{said}");
+}
