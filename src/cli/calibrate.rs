@@ -2,8 +2,8 @@
 //!
 //! Both measure as a run does before its lot, with no part of a lot after the golden ones. Calibrating stores
 //! what was found. `--verify` stores no factors: each found factor must lie within the combined expanded
-//! uncertainty (k = 2) of the stored one, and the stored calibration is marked with the outcome. A rig whose
-//! calibration ran out or failed takes no lot until it was calibrated again.
+//! uncertainty (k = 3, for fourteen must hold at once) of the stored one, and the stored calibration is marked with
+//! the outcome. A rig whose calibration ran out or failed takes no lot until it was calibrated again.
 
 mod compare;
 
@@ -12,7 +12,7 @@ use crate::config::{Plant, load_recipe};
 use crate::gauge::Calibration;
 use crate::history::{CalibrationRecord, Identity, Store, snapshot_hash};
 use anyhow::{Context, bail};
-use compare::{Compared, K};
+use compare::{Compared, K, K_OF_ALL};
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -195,7 +195,8 @@ fn verify(
         }
     }
     if args.json {
-        let it = json!({"type": "verification", "verified": verified, "due_at": due, "k": K});
+        let it =
+            json!({"type": "verification", "verified": verified, "due_at": due, "k": K_OF_ALL});
         writeln!(out, "{it}")?;
     } else {
         let outcome = if verified {
@@ -203,7 +204,10 @@ fn verify(
         } else {
             "verification failed"
         };
-        writeln!(out, "{outcome}, due {due}; +- is the combined U (k = {K})")?;
+        writeln!(
+            out,
+            "{outcome}, due {due}; +- is the combined U (k = {K_OF_ALL})"
+        )?;
     }
     Ok(if verified { super::DONE } else { NOT_VERIFIED })
 }

@@ -142,7 +142,7 @@ impl Study {
   relayrig study cycle --out figures
   relayrig study collision --out figures
   relayrig study accuracy --seeds 2 --parts 50 --recipe jzc-22f-009
-  relayrig study transient --cases tests/data/transients.json --rtol 1e-10 --json
+  relayrig study transient --cases src/cli/study/transient/cases.json --rtol 1e-10 --json
 
 Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input.")]
 pub struct StudyArgs {
