@@ -10,6 +10,7 @@ pub mod demo;
 pub mod history;
 #[cfg(feature = "sim")]
 mod plug;
+pub mod rig;
 pub mod run;
 #[cfg(feature = "sim")]
 pub mod sim;

@@ -7,7 +7,8 @@
 
 mod compare;
 
-use super::run::{self, Controls, PaceArg, RunArgs};
+use super::rig::RigArgs;
+use super::run::{self, Controls, RunArgs};
 use crate::config::{Plant, load_recipe};
 use crate::gauge::Calibration;
 use crate::history::{CalibrationRecord, Identity, Store, snapshot_hash};
@@ -15,7 +16,7 @@ use anyhow::{Context, bail};
 use compare::{Compared, K, K_OF_ALL};
 use serde_json::json;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use tokio::sync::mpsc;
 
@@ -33,30 +34,15 @@ const LOT: &str = "calibration";
 
 Exit status: 0 calibrated or verified, 1 verification failed, 2 bad input or nothing to verify, 3 the rig has trouble.")]
 pub struct CalibrateArgs {
-    /// On the simulated rig
-    #[arg(long)]
-    pub sim: bool,
+    /// The rig to calibrate.
+    #[command(flatten)]
+    pub rig: RigArgs,
     /// Measure again and compare with the stored calibration
     #[arg(long)]
     pub verify: bool,
-    /// How time passes on the simulated rig
-    #[arg(long, value_enum, default_value = "virtual", requires = "sim")]
-    pub pace: PaceArg,
     /// Recipe in config/recipes whose coil voltage chooses the golden parts
     #[arg(long, value_name = "NAME", default_value = "jzc-22f-012")]
     pub recipe: String,
-    /// Draws the simulated rig
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "sim")]
-    pub seed: u64,
-    /// World of the simulated rig instead of config/sim.toml
-    #[arg(long, value_name = "FILE", requires = "sim")]
-    pub world: Option<PathBuf>,
-    /// Fault of the simulated rig, see `relayrig sim --faults`
-    #[arg(long, value_name = "NAME[=VALUE]", requires = "sim")]
-    pub fault: Vec<String>,
-    /// Port of a line instead of the one in rig.toml
-    #[arg(long, value_name = "NAME=PORT", conflicts_with = "sim")]
-    pub line: Vec<String>,
     /// One JSON object per factor, then a summary
     #[arg(long)]
     pub json: bool,
@@ -67,10 +53,13 @@ pub fn run(config: &Path, db: &Path, args: &CalibrateArgs) -> anyhow::Result<i32
     let plant = Plant::load(config)?;
     let nominal_v = load_recipe(config, &args.recipe)?.part.nominal_v;
     if plant.golden.of_nominal(nominal_v).next().is_none() {
-        bail!("config/golden.toml: found no golden part of {nominal_v} V, expected at least 3");
+        bail!(
+            "{}: found no golden part of {nominal_v} V, expected at least 3",
+            config.join("golden.toml").display()
+        );
     }
     let stored = if args.verify {
-        Some(to_verify(&open(db)?, args.sim, nominal_v)?)
+        Some(to_verify(&open(db)?, args.rig.sim, nominal_v)?)
     } else {
         None
     };
@@ -95,26 +84,17 @@ pub fn run(config: &Path, db: &Path, args: &CalibrateArgs) -> anyhow::Result<i32
 }
 
 fn open(db: &Path) -> anyhow::Result<Store> {
-    let identity = Identity {
-        program: "relayrig".into(),
-        version: env!("CARGO_PKG_VERSION").into(),
-    };
-    Ok(Store::open(db, &identity)?)
+    Ok(Store::open(db, &Identity::of_this_program())?)
 }
 
 /// A lot without parts of its own.
 fn golden_only(args: &CalibrateArgs) -> RunArgs {
     RunArgs {
-        sim: args.sim,
-        pace: args.pace,
+        rig: args.rig.clone(),
         lot: LOT.into(),
         recipe: args.recipe.clone(),
         count: Some(0),
-        seed: args.seed,
-        world: args.world.clone(),
-        fault: args.fault.clone(),
         truth: None,
-        line: args.line.clone(),
         json: false,
         study: None,
     }

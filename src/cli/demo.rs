@@ -1,6 +1,7 @@
 //! `relayrig demo`: the main job with nothing to prepare.
 
-use super::run::{self, Controls, PaceArg, RunArgs, assemble};
+use super::rig::{PaceArg, RigArgs};
+use super::run::{self, Controls, RunArgs, assemble};
 use crate::config::{Plant, load_recipe};
 use crate::hmi::{self, access};
 use crate::view::Mimic;
@@ -41,16 +42,18 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
     let (orders, asked) = mpsc::channel(hmi::WAITING);
     let lot = format!("demo {}", jiff::Zoned::now().strftime("%Y-%m-%d %H:%M:%S"));
     let order = RunArgs {
-        sim: true,
-        pace: PaceArg::Real,
+        rig: RigArgs {
+            sim: true,
+            pace: PaceArg::Real,
+            seed: args.seed,
+            world: None,
+            fault: args.fault.clone(),
+            line: Vec::new(),
+        },
         lot,
         recipe: "jzc-22f-012".into(),
         count: args.count,
-        seed: args.seed,
-        world: None,
-        fault: args.fault.clone(),
         truth: None,
-        line: Vec::new(),
         json: false,
         study: None,
     };

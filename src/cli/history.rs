@@ -129,11 +129,7 @@ fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<i32> {
 
 /// Notes for the retention that `file` holds these runs whole.
 fn copied(db: &Path, filter: &Filter, file: &Path) -> anyhow::Result<()> {
-    let (program, version) = (
-        env!("CARGO_PKG_NAME").into(),
-        env!("CARGO_PKG_VERSION").into(),
-    );
-    let mut store = Store::open(db, &Identity { program, version })?;
+    let mut store = Store::open(db, &Identity::of_this_program())?;
     let file = std::path::absolute(file)?;
     let now_us = jiff::Timestamp::now().as_microsecond();
     store.copied(filter, &file.to_string_lossy(), now_us)?;

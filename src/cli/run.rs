@@ -9,6 +9,7 @@ mod table;
 mod traces;
 
 use super::calibrate;
+use super::rig::{PaceArg, RigArgs};
 use crate::bus::Pace;
 use crate::config::{Plant, load_recipe};
 use crate::cycle::{Event, Outside};
@@ -24,15 +25,6 @@ use std::sync::{Arc, OnceLock};
 use tokio::sync::{mpsc, watch};
 use traces::Traces;
 
-/// How rig time passes on the simulated rig.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum PaceArg {
-    /// As fast as the machine can: in-process streams, virtual time that starts at the wall clock
-    Virtual,
-    /// At real speed, through pseudo-terminals
-    Real,
-}
-
 /// A lot to run.
 #[derive(Debug, Clone, clap::Args)]
 #[command(after_help = "Examples:
@@ -41,12 +33,9 @@ pub enum PaceArg {
   relayrig run --sim --study grr --lot G --recipe jzc-22f-012
   relayrig run --lot A --recipe jzc-22f-012 --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1")]
 pub struct RunArgs {
-    /// On the simulated rig
-    #[arg(long)]
-    pub sim: bool,
-    /// How time passes on the simulated rig
-    #[arg(long, value_enum, default_value = "virtual", requires = "sim")]
-    pub pace: PaceArg,
+    /// The rig it runs on.
+    #[command(flatten)]
+    pub rig: RigArgs,
     /// Lot the parts belong to
     #[arg(long, value_name = "ID")]
     pub lot: String,
@@ -56,21 +45,9 @@ pub struct RunArgs {
     /// Parts of the lot; without it the lot goes on until it is stopped
     #[arg(long, value_name = "N")]
     pub count: Option<u64>,
-    /// Draws rig and lot of the simulated rig
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "sim")]
-    pub seed: u64,
-    /// World of the simulated rig instead of config/sim.toml
-    #[arg(long, value_name = "FILE", requires = "sim")]
-    pub world: Option<PathBuf>,
-    /// Fault of the simulated rig, see `relayrig sim --faults`
-    #[arg(long, value_name = "NAME[=VALUE]", requires = "sim")]
-    pub fault: Vec<String>,
     /// True values of every specimen go to this file
     #[arg(long, value_name = "FILE", requires = "sim")]
     pub truth: Option<PathBuf>,
-    /// Port of a line instead of the one in rig.toml
-    #[arg(long, value_name = "NAME=PORT", conflicts_with = "sim")]
-    pub line: Vec<String>,
     /// One JSON object per part, then a summary
     #[arg(long)]
     pub json: bool,
@@ -143,7 +120,7 @@ pub fn run_with(
     if args.count == Some(0) && controls.calibrates.is_none() {
         bail!("--count: found 0, expected at least 1");
     }
-    if args.sim && !cfg!(feature = "sim") {
+    if args.rig.sim && !cfg!(feature = "sim") {
         bail!("--sim: this is a plant build without the simulated rig");
     }
     if let Some(path) = &args.truth {
@@ -152,7 +129,7 @@ pub fn run_with(
     let plant = Plant::load(config)?;
     let recipe = Arc::new(load_recipe(config, &args.recipe)?);
     plant.admit(&recipe)?;
-    if !args.sim
+    if !args.rig.sim
         && controls.calibrates.is_none()
         && let Some(why) = calibrate::why_not(db, recipe.part.nominal_v)?
     {
@@ -170,7 +147,7 @@ pub fn run_with(
 }
 
 fn is_virtual(args: &RunArgs) -> bool {
-    args.sim && args.pace == PaceArg::Virtual
+    args.rig.sim && args.rig.pace == PaceArg::Virtual
 }
 
 async fn run_lot(

@@ -1,7 +1,7 @@
 //! The reader: parts that a filter leaves, one part with everything down to the raw replies.
 
 use super::error::{Doing, Result};
-use super::{CalibrationRecord, Filter, Measurement, Moment, Part, Sample, open, store};
+use super::{Filter, Measurement, Moment, Part, Sample, open};
 use rusqlite::{Connection, Row, params, params_from_iter};
 use std::path::{Path, PathBuf};
 
@@ -111,11 +111,6 @@ impl Archive {
             .prepare_cached("SELECT key FROM parameter ORDER BY id")
             .and_then(|mut it| it.query_map([], |row| row.get(0))?.collect())
             .doing("reading the parameters")
-    }
-
-    /// The calibration made last.
-    pub fn latest_calibration(&self) -> Result<Option<CalibrationRecord>> {
-        store::latest_calibration(&self.connection).doing("reading the latest calibration")
     }
 
     fn part(&self, row: &Row<'_>) -> rusqlite::Result<Part> {

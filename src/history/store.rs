@@ -21,6 +21,17 @@ pub struct Identity {
     pub version: String,
 }
 
+impl Identity {
+    /// Name and version of the program that is running.
+    #[must_use]
+    pub fn of_this_program() -> Self {
+        Self {
+            program: env!("CARGO_PKG_NAME").into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+        }
+    }
+}
+
 /// The one writer of a history file. Blocking: about one disk flush per call.
 #[derive(Debug)]
 pub struct Store {
@@ -185,12 +196,8 @@ impl Store {
         Ok(())
     }
 
-    /// The calibration made last, whether or not it is still valid.
-    pub fn latest_calibration(&self) -> Result<Option<CalibrationRecord>> {
-        latest_calibration(&self.connection).doing("reading the latest calibration")
-    }
-
-    /// The same among those of the simulated rig, or of the rig, for one coil voltage.
+    /// The calibration made last for one coil voltage, of the simulated rig or of the rig, whether or not it is
+    /// still valid.
     pub fn latest_calibration_of(
         &self,
         simulated: bool,
@@ -226,20 +233,6 @@ fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Resu
         Row::Landed(landed) => landing::landing(transaction, known, landed),
         Row::Alarm(alarm) => landing::alarm(transaction, known, alarm),
     })
-}
-
-/// Latest by the time it was made, then by the order of saving.
-pub(super) fn latest_calibration(
-    connection: &Connection,
-) -> rusqlite::Result<Option<CalibrationRecord>> {
-    connection
-        .query_row(
-            "SELECT made_at_us, due_at_us, hash, body, verified FROM calibration
-             ORDER BY made_at_us DESC, id DESC LIMIT 1",
-            [],
-            calibration,
-        )
-        .optional()
 }
 
 fn calibration(row: &rusqlite::Row<'_>) -> rusqlite::Result<CalibrationRecord> {

@@ -94,10 +94,7 @@ impl Gate {
     ) -> Result<Person, HmiError> {
         let person = self.who(headers).await?;
         let person = person.ok_or(HmiError::NotLoggedIn { reason: NOT_IN })?;
-        if person.role < role {
-            let (found, needed) = (person.role, role);
-            return Err(HmiError::NotAllowed { found, needed });
-        }
+        trusted(&person, role)?;
         Ok(person)
     }
 
@@ -116,6 +113,15 @@ impl Gate {
         let done = spawn_blocking(move || work(&mut held(&inner.register))).await;
         Ok(done.map_err(|_| HmiError::ReaderLost)??)
     }
+}
+
+/// Refuses a person whose role is weaker than `needed`.
+pub(super) fn trusted(person: &Person, needed: Role) -> Result<(), HmiError> {
+    let found = person.role;
+    if found < needed {
+        return Err(HmiError::NotAllowed { found, needed });
+    }
+    Ok(())
 }
 
 /// The value of `Set-Cookie` that opens a session, or ends it without a token.

@@ -1,4 +1,4 @@
-//! The screen: one status page, the view as JSON and as events, the history, figures for Prometheus.
+//! The screen: the operator's page, the view as JSON and as events, the history, figures for Prometheus.
 //!
 //! - A screen looks; it never writes to the rig. What it wants done it sends as an *order*, which the
 //!   station takes or refuses with the reason in its next turn.

@@ -56,11 +56,7 @@ pub struct Generated {
 /// Writes the parts into `db`, which may hold others already.
 pub fn generate(config: &Path, db: &Path, args: &GenerateArgs) -> anyhow::Result<Generated> {
     let recipe = load_recipe(config, &args.recipe)?;
-    let (program, version) = (
-        env!("CARGO_PKG_NAME").into(),
-        env!("CARGO_PKG_VERSION").into(),
-    );
-    let mut store = Store::open(db, &Identity { program, version })?;
+    let mut store = Store::open(db, &Identity::of_this_program())?;
     let until = args
         .until
         .map_or_else(|| jiff::Timestamp::now().as_microsecond(), |until| until.0);

@@ -42,11 +42,7 @@ pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<i32> {
         text(&bytes).and_then(|text| Ok(csv::read(text)?))
     };
     let records = records.with_context(|| name.to_string())?;
-    let (program, version) = (
-        env!("CARGO_PKG_NAME").into(),
-        env!("CARGO_PKG_VERSION").into(),
-    );
-    let mut store = Store::open(db, &Identity { program, version })?;
+    let mut store = Store::open(db, &Identity::of_this_program())?;
     let archive = Archive::open(db)?;
     let snapshot = format!(
         "# imported from a file with SHA-256 {}\n",

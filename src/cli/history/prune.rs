@@ -20,11 +20,7 @@ const DAY_US: i64 = 86_400_000_000;
 
 pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<i32> {
     anyhow::ensure!(db.exists(), "no history at {}", db.display());
-    let (program, version) = (
-        env!("CARGO_PKG_NAME").into(),
-        env!("CARGO_PKG_VERSION").into(),
-    );
-    let mut store = Store::open(db, &Identity { program, version })?;
+    let mut store = Store::open(db, &Identity::of_this_program())?;
     let now_us = jiff::Timestamp::now().as_microsecond();
     let before = now_us - DAY_US * i64::from(args.older_than_days);
     let runs = store.prunable(before)?;

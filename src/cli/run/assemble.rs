@@ -56,7 +56,7 @@ pub fn cycle(
         calibrated: calibration.is_some(),
         valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
         epoch_us: setup.epoch_us,
-        simulated: setup.args.sim,
+        simulated: setup.args.rig.sim,
         voltage_gain: wiring.analog_in(AnalogIn::CoilVoltageFine).gain,
     };
     let bench = Bench {

@@ -6,6 +6,7 @@
 //! time, as real ones do. Each rig's readings stay in the history as a lot of its own.
 
 use super::{Controls, RunArgs, run_with};
+use crate::cli::rig::RigArgs;
 use crate::gauge::Parameter;
 use crate::history::{Archive, Filter};
 use crate::quality::average_range::average_and_range;
@@ -22,6 +23,15 @@ const TRIALS: u64 = 3;
 /// Parts of the study unless `--count` says otherwise.
 const PARTS: u64 = 10;
 
+/// The rig of one operator: its own errors, the same parts fed again and again.
+fn refed(rig: &RigArgs, operator: u64, parts: u64) -> RigArgs {
+    let mut refed = rig.clone();
+    refed.seed += operator;
+    refed.fault.push(format!("refeed={parts}"));
+    refed.fault.push(format!("parts_seed={}", rig.seed));
+    refed
+}
+
 /// Runs the lots and tells the figures of every parameter; the result is the exit status of the last lot
 /// that did not end well, else 0.
 pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
@@ -34,15 +44,7 @@ pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
         let lot = RunArgs {
             lot: name(args, operator),
             count: Some(parts * TRIALS),
-            seed: args.seed + operator,
-            fault: [
-                args.fault.clone(),
-                vec![
-                    format!("refeed={parts}"),
-                    format!("parts_seed={}", args.seed),
-                ],
-            ]
-            .concat(),
+            rig: refed(&args.rig, operator, parts),
             study: None,
             json: false,
             ..args.clone()

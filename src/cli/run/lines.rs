@@ -105,7 +105,7 @@ pub fn open(
     pace: &Pace,
 ) -> anyhow::Result<(Lines, Behind)> {
     #[cfg(feature = "sim")]
-    if args.sim {
+    if args.rig.sim {
         return simulated::open(plant, config, args, pace);
     }
     let _ = config;
@@ -113,7 +113,7 @@ pub fn open(
         ends: Vec::new(),
         logs: Vec::new(),
     };
-    let overrides = overrides(plant, &args.line)?;
+    let overrides = overrides(plant, &args.rig.line)?;
     for line in plant.wiring.line_ids() {
         let port = overrides
             .iter()
@@ -196,18 +196,18 @@ mod simulated {
     ) -> anyhow::Result<(Lines, Behind)> {
         let rig = rigsim::build(&Options {
             config_dir: config.to_path_buf(),
-            world: args.world.clone(),
-            seed: args.seed,
+            world: args.rig.world.clone(),
+            seed: args.rig.seed,
             recipe: args.recipe.clone(),
             parts: args.count,
             golden: true,
-            faults: args.fault.clone(),
+            faults: args.rig.fault.clone(),
         })?;
         let mut lines = Lines {
             ends: Vec::new(),
             logs: Vec::new(),
         };
-        if args.pace == PaceArg::Real {
+        if args.rig.pace == PaceArg::Real {
             let ptys = pty::serve(&rig)?;
             for (name, path) in ptys.paths() {
                 let line = plant

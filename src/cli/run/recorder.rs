@@ -113,12 +113,8 @@ impl<'a> Recorder<'a> {
         eeprom: EepromCount,
         traces: Traces,
     ) -> anyhow::Result<(Self, Option<Calibration>)> {
-        let identity = Identity {
-            program: "relayrig".into(),
-            version: env!("CARGO_PKG_VERSION").into(),
-        };
-        let mut store = Store::open(db, &identity)?;
-        let calibration = if setup.args.sim || controls.calibrates.is_some() {
+        let mut store = Store::open(db, &Identity::of_this_program())?;
+        let calibration = if setup.args.rig.sim || controls.calibrates.is_some() {
             None
         } else {
             valid_calibration(&store, setup)?
@@ -130,11 +126,11 @@ impl<'a> Recorder<'a> {
             recipe_hash: rows::recipe_hash(setup),
             calibration_hash: calibration.as_ref().map(hash),
             opened_at_us: setup.epoch_us,
-            simulated: setup.args.sim,
-            seed: setup.args.sim.then_some(setup.args.seed),
+            simulated: setup.args.rig.sim,
+            seed: setup.args.rig.sim.then_some(setup.args.rig.seed),
         })?;
         controls.view.send_modify(|view| {
-            view.simulated = setup.args.sim;
+            view.simulated = setup.args.rig.sim;
             view.lot.clone_from(&setup.args.lot);
             view.recipe.clone_from(&setup.recipe.name);
             view.count = setup.args.count;

@@ -84,11 +84,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
 
 /// A rig records its parts alone: one transaction and one flush each.
 fn one_by_one(db: &Path) -> anyhow::Result<Figure> {
-    let identity = Identity {
-        program: "study".into(),
-        version: "0".into(),
-    };
-    let mut store = Store::open(db, &identity)?;
+    let mut store = Store::open(db, &Identity::of_this_program())?;
     store.begin_lot(&LotRecord {
         lot: "single".into(),
         recipe: "none".into(),

@@ -248,12 +248,15 @@ fn an_alarm_is_one_row_from_raised_to_cleared() {
 }
 
 #[test]
-fn the_latest_calibration_is_the_one_made_last() {
+fn the_latest_calibration_is_the_one_made_last_of_its_rig_and_coil() {
     let file = File::new();
     let mut store = file.store();
-    assert_eq!(store.latest_calibration().unwrap(), None);
-    let made = |made_at_us: i64| {
-        let body = format!("{{\"gain\":{made_at_us}}}");
+    let latest = |store: &Store| store.latest_calibration_of(false, 12.0).unwrap();
+    assert_eq!(latest(&store), None);
+    let of = |made_at_us: i64, simulated: bool, nominal_v: f64| {
+        let body = format!(
+            "{{\"made\":{made_at_us},\"simulated\":{simulated},\"nominal_v\":{nominal_v:.1}}}"
+        );
         CalibrationRecord {
             made_at_us,
             due_at_us: made_at_us + 100,
@@ -262,15 +265,19 @@ fn the_latest_calibration_is_the_one_made_last() {
             verified: false,
         }
     };
+    let made = |made_at_us: i64| of(made_at_us, false, 12.0);
     store.save_calibration(&made(20)).unwrap();
     store.save_calibration(&made(10)).unwrap();
-    assert_eq!(store.latest_calibration().unwrap(), Some(made(20)));
+    // Neither the simulated rig's nor those for another coil stand in for it.
+    store.save_calibration(&of(30, true, 12.0)).unwrap();
+    store.save_calibration(&of(40, false, 6.0)).unwrap();
+    assert_eq!(latest(&store), Some(made(20)));
     let verified = CalibrationRecord {
         verified: true,
         ..made(20)
     };
     store.save_calibration(&verified).unwrap();
-    assert_eq!(file.archive().latest_calibration().unwrap(), Some(verified));
+    assert_eq!(latest(&store), Some(verified));
 }
 
 #[test]

@@ -25,6 +25,8 @@ let theme = asked.get("theme") || kept.get("theme") ||
 if (language !== "zh") language = "en";
 let view = null;
 let me = null;
+// What is drawn, with what carries it.
+let bodies = [];
 // Where each actuator stood last, mm.
 const was = {};
 let heard = -Infinity;
@@ -162,6 +164,8 @@ async function fetchMimic() {
     const text = await (await fetch("/mimic.svg")).text();
     const svg = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
     at("mimic").replaceChildren(document.importNode(svg, true));
+    bodies = Array.from(at("mimic").querySelectorAll("[data-rides]"),
+      (body) => ({body, rides: JSON.parse(body.dataset.rides)}));
     showMimic();
   } catch { /* the page works without its picture */ }
 }
@@ -178,9 +182,9 @@ function showMimic() {
   }
   const held = {};
   for (const [place, token] of Object.entries(view.machine.places)) held[PLACES[place]] = token;
-  for (const body of at("mimic").querySelectorAll("[data-rides]")) {
+  for (const {body, rides} of bodies) {
     let right = 0, down = 0;
-    for (const [name, x, y] of JSON.parse(body.dataset.rides)) {
+    for (const [name, x, y] of rides) {
       right += x * (stands[name] || 0);
       down += y * (stands[name] || 0);
     }
@@ -250,21 +254,32 @@ function showLink() {
 // Every order has its place; one that would not be taken says why when it is pressed.
 function showOrders(link) {
   const buttons = view && view.machine ? view.machine.buttons : [];
-  const shown = ORDERS.map((order) => buttons.find((it) => it.order === order && it.with === "")).filter(Boolean);
-  at("orders").replaceChildren(...shown.map((button) => {
-    const element = make("button", word("order." + button.order), button.order === "stop" ? "stop" : "");
+  for (const element of at("orders").children) {
+    const button = buttons.find((it) => it.order === element.dataset.order && it.with === "");
     const why = whyNot(button, link);
-    element.type = "button";
-    element.dataset.order = button.order;
+    element.textContent = word("order." + element.dataset.order);
     element.setAttribute("aria-disabled", why !== "");
     element.title = why;
-    element.addEventListener("click", () => (why ? answer(why) : give(button.order)));
+  }
+}
+
+// Made once: a button that changed under the finger would lose the press.
+function makeOrders() {
+  at("orders").replaceChildren(...ORDERS.map((order) => {
+    const element = make("button", "", order === "stop" ? "stop" : "");
+    element.type = "button";
+    element.dataset.order = order;
+    element.addEventListener("click", () => {
+      const why = element.title;
+      if (why) answer(why);
+      else give(order);
+    });
     return element;
   }));
 }
 
 function whyNot(button, link) {
-  if (link === "ended") return word("stop.ended");
+  if (link === "ended" || !button) return word("stop.ended");
   if (me === null) return word("stop.login");
   if (button.enabled) return "";
   return language === "zh" ? button.why_zh : button.why_en;
@@ -383,6 +398,7 @@ at("theme").addEventListener("click", () => {
   showAll();
 });
 
+makeOrders();
 showAll();
 askWho();
 fetchMimic();

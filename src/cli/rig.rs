@@ -1,0 +1,35 @@
+//! Which rig a command works on: the one at serial ports, or the simulated one.
+
+use std::path::PathBuf;
+
+/// How rig time passes on the simulated rig.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum PaceArg {
+    /// As fast as the machine can: in-process streams, virtual time that starts at the wall clock
+    Virtual,
+    /// At real speed, through pseudo-terminals
+    Real,
+}
+
+/// The rig of a command.
+#[derive(Debug, Clone, clap::Args)]
+pub struct RigArgs {
+    /// On the simulated rig
+    #[arg(long)]
+    pub sim: bool,
+    /// How time passes on the simulated rig
+    #[arg(long, value_enum, default_value = "virtual", requires = "sim")]
+    pub pace: PaceArg,
+    /// Draws rig and parts of the simulated rig
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "sim")]
+    pub seed: u64,
+    /// World of the simulated rig instead of config/sim.toml
+    #[arg(long, value_name = "FILE", requires = "sim")]
+    pub world: Option<PathBuf>,
+    /// Fault of the simulated rig, see `relayrig sim --faults`
+    #[arg(long, value_name = "NAME[=VALUE]", requires = "sim")]
+    pub fault: Vec<String>,
+    /// Port of a line instead of the one in rig.toml
+    #[arg(long, value_name = "NAME=PORT", conflicts_with = "sim")]
+    pub line: Vec<String>,
+}
