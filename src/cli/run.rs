@@ -1,10 +1,13 @@
 //! `relayrig run`: a lot on a rig, or on the simulated rig in real or virtual time.
 
 pub(super) mod assemble;
+mod counts;
 mod grr;
 mod lines;
 mod recorder;
 mod rows;
+mod screen;
+mod summary;
 mod table;
 mod traces;
 

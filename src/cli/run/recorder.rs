@@ -4,9 +4,10 @@
 //! published, which is what lets the sorter open its gripper. The database works on a blocking thread,
 //! one short task per transaction.
 
+use super::counts::Counts;
 use super::table::Table;
 use super::traces::Traces;
-use super::{Controls, RunArgs, rows};
+use super::{Controls, RunArgs, rows, screen, summary};
 use crate::bus::LineLog;
 use crate::config::Plant;
 use crate::cycle::{Event, Profile};
@@ -19,7 +20,6 @@ use crate::history::{
 use crate::station::ledger::Kind;
 use crate::station::wants::{Ending, Interrupted, Judged, Landed};
 use crate::units::RigTime;
-use crate::view::{LastPart, RecentPart};
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
@@ -50,28 +50,6 @@ struct Underway {
     golden: u64,
 }
 
-/// Counts of the lot.
-#[derive(Debug, Default)]
-pub struct Counts {
-    /// Judged parts of the lot by verdict.
-    pub verdicts: BTreeMap<&'static str, u64>,
-    /// Confirmed parts of the lot by bin.
-    pub bins: BTreeMap<&'static str, u64>,
-    /// Alarms of the run.
-    pub alarms: u64,
-}
-
-impl Counts {
-    fn of(&self, verdict: &str) -> u64 {
-        self.verdicts.get(verdict).copied().unwrap_or(0)
-    }
-
-    /// Judged parts.
-    pub fn parts(&self) -> u64 {
-        self.verdicts.values().sum()
-    }
-}
-
 /// The recorder of one run.
 pub struct Recorder<'a> {
     setup: &'a Setup<'a>,
@@ -93,16 +71,6 @@ pub struct Recorder<'a> {
 
 /// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
-
-/// Parts in the strip of the last ones: two rows of ten.
-const RECENT: usize = 20;
-
-fn limits_of(recipe: &Recipe) -> BTreeMap<String, [Option<f64>; 2]> {
-    let limits = recipe.limits.iter();
-    limits
-        .map(|(parameter, limit)| (parameter.name().to_owned(), [limit.low, limit.high]))
-        .collect()
-}
 
 impl<'a> Recorder<'a> {
     /// Opens the history and the lot's run; on a rig, a calibration that is still valid comes back.
@@ -129,13 +97,7 @@ impl<'a> Recorder<'a> {
             simulated: setup.args.rig.sim,
             seed: setup.args.rig.sim.then_some(setup.args.rig.seed),
         })?;
-        controls.view.send_modify(|view| {
-            view.simulated = setup.args.rig.sim;
-            view.lot.clone_from(&setup.args.lot);
-            view.recipe.clone_from(&setup.recipe.name);
-            view.count = setup.args.count;
-            view.limits = limits_of(setup.recipe);
-        });
+        controls.view.send_modify(|view| screen::begun(view, setup));
         let recorder = Self {
             setup,
             controls,
@@ -259,6 +221,19 @@ impl<'a> Recorder<'a> {
         }));
     }
 
+    /// Progress bar and view.
+    fn show(&self, judged: &Judged) {
+        let rate = self
+            .lot_began
+            .and_then(|began| self.counts.per_hour(judged.at.since(began).as_seconds()));
+        self.bar.set_position(self.counts.parts());
+        self.bar.set_message(self.counts.in_short(rate));
+        let lines = self.traces.health();
+        self.controls.view.send_modify(|view| {
+            screen::judged(view, self.setup, &self.counts, judged, rate, lines)
+        });
+    }
+
     fn wall_us(&self, at: RigTime) -> i64 {
         self.setup.epoch_us + i64::try_from(at.0).unwrap_or(i64::MAX)
     }
@@ -286,55 +261,6 @@ impl<'a> Recorder<'a> {
             },
         );
         ordinal
-    }
-
-    /// Progress bar and view.
-    fn show(&self, judged: &Judged) {
-        let parts = self.counts.parts();
-        self.bar.set_position(parts);
-        let pass = self.counts.of("pass");
-        let rate = self.rate(judged.at);
-        self.bar.set_message(format!(
-            "{:.0} parts/h, yield {:.1} %",
-            rate.unwrap_or(0.0),
-            100.0 * pass as f64 / parts.max(1) as f64
-        ));
-        let text = |map: &BTreeMap<&'static str, u64>| {
-            map.iter()
-                .map(|(name, n)| ((*name).to_string(), *n))
-                .collect()
-        };
-        let json = rows::json(self.setup, judged, None, "");
-        let numbers = |key: &str| serde_json::from_value(json[key].clone()).unwrap_or_default();
-        let lines = self.traces.health();
-        self.controls.view.send_modify(|view| {
-            view.lines = lines;
-            view.judged = parts;
-            view.verdicts = text(&self.counts.verdicts);
-            view.bins = text(&self.counts.bins);
-            view.parts_per_hour = rate;
-            let bin = judged.part.bin.map_or("", |bin| bin.name());
-            view.recent.push(RecentPart {
-                seq: rows::number(&judged.part.kind, 0).0,
-                verdict: judged.verdict.name().into(),
-                bin: bin.into(),
-            });
-            let older = view.recent.len().saturating_sub(RECENT);
-            view.recent.drain(..older);
-            view.last = Some(LastPart {
-                seq: rows::number(&judged.part.kind, 0).0,
-                verdict: judged.verdict.name().into(),
-                bin: bin.into(),
-                reasons: judged.verdict.reasons(),
-                values: numbers("values"),
-                uncertainty: numbers("uncertainty"),
-            });
-        });
-    }
-
-    fn rate(&self, now: RigTime) -> Option<f64> {
-        let elapsed = now.since(self.lot_began?).as_seconds();
-        (elapsed > 0.0).then(|| self.counts.parts() as f64 / elapsed * 3600.0)
     }
 
     fn landed(&mut self, landed: &Landed, rows: &mut Vec<Row>) {
@@ -390,21 +316,6 @@ impl<'a> Recorder<'a> {
             .suspend(|| std::io::stdout().write_all(line.as_bytes()).ok());
     }
 
-    /// Where the wall time of the run went, seconds by phase.
-    fn wall_profile(&self, profile: &Profile) -> Value {
-        let spent = profile.scan_s + profile.step_s + profile.clear_s + profile.apply_s;
-        let history_s = self.writing.as_secs_f64();
-        let rest = (self.began.elapsed().as_secs_f64() - spent - history_s).max(0.0);
-        json!({
-            "scan": rows::rounded(profile.scan_s),
-            "step": rows::rounded(profile.step_s),
-            "clear": rows::rounded(profile.clear_s),
-            "apply": rows::rounded(profile.apply_s),
-            "history": rows::rounded(history_s),
-            "bus_simulator_runtime": rows::rounded(rest),
-        })
-    }
-
     /// Parts that never landed, the summary, and the end of the lot's run.
     pub fn close(
         mut self,
@@ -421,28 +332,13 @@ impl<'a> Recorder<'a> {
         let elapsed_s = self
             .lot_began
             .map_or(0.0, |began| end.since(began).as_seconds());
-        let mut summary = json!({
-            "type": "summary",
-            "parts": self.counts.parts(),
-            "pass": self.counts.of("pass"),
-            "fail": self.counts.of("fail"),
-            "void": self.counts.of("void"),
-            "bins": self.counts.bins,
-            "elapsed_s": rows::rounded(elapsed_s),
-            "wall_s": rows::rounded(self.began.elapsed().as_secs_f64()),
-            "parts_per_hour": if elapsed_s > 0.0 { (self.counts.parts() as f64 / elapsed_s * 3600.0).round() as u64 } else { 0 },
-            "alarms": self.counts.alarms,
-            "ended": format!("{ending:?}").to_lowercase(),
-        });
+        let mut summary = summary::of(&self.counts, ending, elapsed_s, self.began.elapsed());
         if let (Some(before), Some(after)) = (self.eeprom_at_start, (self.eeprom)()) {
             summary["eeprom_writes"] = json!(after - before);
         }
-        summary["wall_profile"] = self.wall_profile(profile);
-        let bytes: BTreeMap<&str, String> = logs
-            .iter()
-            .map(|(name, log)| (name.as_str(), format!("{:016x}", log.fingerprint())))
-            .collect();
-        summary["bytes"] = json!(bytes);
+        summary["wall_profile"] =
+            summary::wall_profile(profile, self.writing, self.began.elapsed());
+        summary["bytes"] = summary::bytes(logs);
         self.print(&summary);
         self.bar.finish_and_clear();
         if !self.setup.args.json && !self.controls.quiet {

@@ -1,6 +1,6 @@
 //! Results and bins at the end of a run, for a person.
 
-use super::recorder::Counts;
+use super::counts::Counts;
 use crate::gauge::Parameter;
 use crate::quality::Spread;
 use crate::station::wants::Judged;
