@@ -31,6 +31,7 @@ mod kill;
 mod lot;
 mod output;
 mod pace;
+mod parameters;
 mod scatter;
 mod sorting;
 #[cfg(test)]
@@ -250,6 +251,11 @@ fn made(folder: &Path) -> anyhow::Result<()> {
 
 #[cfg(feature = "sim")]
 fn transients(args: &StudyArgs) -> anyhow::Result<i32> {
+    if args.out.is_some() || args.seeds.is_some() || args.parts.is_some() || args.world.is_some() {
+        bail!(
+            "study transient: --out, --seeds, --parts and --world belong to studies that run lots; it prints one answer per case"
+        );
+    }
     let Some(cases) = &args.cases else {
         bail!("study transient: --cases is missing, expected a file of cases or `-`");
     };

@@ -134,3 +134,6 @@ fn expected_u(parameter: Parameter, recipe: &Recipe, accuracy: &AccuracySettings
     };
     COVERAGE_FACTOR * u
 }
+
+#[cfg(test)]
+mod tests;

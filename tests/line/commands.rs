@@ -156,6 +156,23 @@ fn a_word_the_program_does_not_know_is_bad_input() {
 }
 
 #[test]
+fn a_study_that_runs_no_lot_refuses_what_belongs_to_lots() {
+    let workshop = Workshop::new("studies-without-lots");
+    for (option, name) in [
+        ("--out figures", "transient --cases -"),
+        ("--seeds 2", "transient --cases -"),
+        ("--parts 2", "collision"),
+    ] {
+        let said = workshop
+            .run(&format!("study {name} {option}"))
+            .with_status(2);
+        let word = option.split(' ').next().unwrap();
+        assert!(said.stderr.contains(word), "{said}");
+        assert!(!workshop.has("figures"), "{option}");
+    }
+}
+
+#[test]
 fn the_default_configuration_passes_its_check() {
     let said = Workshop::new("config-check")
         .run("config check")

@@ -3,14 +3,13 @@
 //! Held against the bar is the median over lots of the rms error over good parts; beside it stand the worst
 //! lot, the median over lots of the mean error, the greatest error of any part and the pooled coverage.
 
-use super::bins;
 use super::chart::Chart;
 use super::error::{Pooled, unit};
-use super::exception;
 use super::figure::{Bar, Figure};
 use super::fleet::Order;
 use super::lot::Lot;
 use super::output::Report;
+use super::parameters;
 use crate::gauge::Parameter;
 
 /// Greatest rms error that is good enough, in the unit of [`unit`].
@@ -30,32 +29,14 @@ pub const fn allowed(parameter: Parameter) -> f64 {
 /// # Errors
 /// A lot that could not be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let lots = order.run_all()?;
-    let errors: Vec<Figure> = Parameter::ALL
-        .iter()
-        .map(|parameter| row(*parameter, &lots))
-        .collect();
-    let share =
-        |parameter: Parameter, figure: &Figure| Some(100.0 * figure.value? / allowed(parameter));
-    let bars = Parameter::ALL
-        .iter()
-        .zip(&errors)
-        .map(|(it, figure)| (figure.name.clone(), share(*it, figure)));
     let chart = Chart {
-        title: format!("rms error as a share of what is allowed: {}", order.about()),
+        title: "rms error as a share of what is allowed".into(),
         unit: "%",
-        from: 0.0,
         marks: vec![100.0],
-        bars: bars.collect(),
+        ..Chart::default()
     };
-    let groups = vec![errors, bins::outcome(&lots), bins::machine(&lots)];
-    Ok(Report {
-        study: "accuracy",
-        about: order.about(),
-        groups,
-        notes: exception::outcome(&lots),
-        chart,
-    })
+    let share = |parameter, value| 100.0 * value / allowed(parameter);
+    parameters::study("accuracy", order, row, share, chart)
 }
 
 fn row(parameter: Parameter, lots: &[Lot]) -> Figure {

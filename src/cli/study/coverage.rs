@@ -3,14 +3,13 @@
 //! Every lot has a rig of its own, so errors that stay the same within a lot are sampled too. Too high
 //! is as wrong as too low: an uncertainty that covers always has been stated too large.
 
-use super::bins;
 use super::chart::Chart;
 use super::error::Pooled;
-use super::exception;
 use super::figure::{Bar, Figure};
 use super::fleet::Order;
 use super::lot::Lot;
 use super::output::Report;
+use super::parameters;
 use crate::gauge::Parameter;
 
 /// Percent of values that may be covered.
@@ -21,29 +20,14 @@ const ALLOWED: (f64, f64) = (93.0, 98.0);
 /// # Errors
 /// A lot that could not be run.
 pub fn study(order: &Order) -> anyhow::Result<Report> {
-    let lots = order.run_all()?;
-    let covered: Vec<Figure> = Parameter::ALL
-        .iter()
-        .map(|parameter| row(*parameter, &lots))
-        .collect();
     let chart = Chart {
-        title: format!("coverage of the stated uncertainty: {}", order.about()),
+        title: "coverage of the stated uncertainty".into(),
         unit: "%",
         from: 80.0,
         marks: vec![ALLOWED.0, ALLOWED.1],
-        bars: covered
-            .iter()
-            .map(|figure| (figure.name.clone(), figure.value))
-            .collect(),
+        ..Chart::default()
     };
-    let groups = vec![covered, bins::outcome(&lots), bins::machine(&lots)];
-    Ok(Report {
-        study: "coverage",
-        about: order.about(),
-        groups,
-        notes: exception::outcome(&lots),
-        chart,
-    })
+    parameters::study("coverage", order, row, |_, percent| percent, chart)
 }
 
 fn row(parameter: Parameter, lots: &[Lot]) -> Figure {

@@ -3,7 +3,7 @@
 
 use super::Bench;
 use super::findings::Findings;
-use super::operate::gate0;
+use super::indication::gate0;
 use crate::gauge::threshold::{Direction, indicated};
 use crate::station::act::Readings;
 use crate::units::{Second, Volt};

@@ -3,7 +3,9 @@
 //! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
 //! voltage, so the timed one stays the last of those.
 
-use super::operate::{FastRamp, REPEAT_SD_V, SETTLES, again, fine_reading, gate0, release_start};
+use super::indication::{FastRamp, fine_reading, gate0};
+use super::operate::{SETTLES, release_start};
+use super::operate_fine::{REPEAT_SD_V, again};
 use super::ramp::{self, Expected, Met};
 use super::search::Search;
 use super::{Bench, Findings, INTERLOCK, Ramp, Stage, board};

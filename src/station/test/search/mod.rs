@@ -7,24 +7,17 @@
 //! 20 ms tell 16 mV, 30 ms less than 1 mV. A trial from rest approaches in two steps, as fine ramps do.
 
 mod bisection;
+mod outcome;
 mod pulse;
 mod staircase;
+mod trial;
 
-use super::operate::{APPROACH, APPROACH_TIME, dropped};
-use super::ramp::Expected;
-use super::{Bench, Findings, INTERLOCK, OFF, Stage, board};
-use crate::gauge::budget::{Budget, Reading, resolution};
-use crate::gauge::coil::{relative_per_kelvin, to_reference};
+use super::Bench;
 use crate::gauge::threshold::Direction;
-use crate::gauge::verdict::Judgement;
 use crate::gauge::{Parameter, Strategy};
-use crate::rig::point::DigitalOut::{
-    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
-};
-use crate::rig::sample::CountSample;
-use crate::station::act::{Act, Read, Readings};
-use crate::station::supply::Supply;
 use crate::units::{Celsius, Span, Volt};
+pub(super) use outcome::conclude;
+pub(super) use trial::acts;
 
 /// The interval that is searched, in standard deviations of the lot.
 const REACH: f64 = 4.5;
@@ -32,11 +25,6 @@ const REACH: f64 = 4.5;
 const WIDE: f64 = 6.0;
 /// No release threshold is looked for below this fraction of nominal.
 const LOWEST: f64 = 0.02;
-/// Flux and armature from one level to the next while the armature is sealed.
-const SEALS: Span = Span::ms(25);
-/// Fraction of nominal at which the armature is sealed.
-const SEAL: f64 = 0.95;
-
 /// Number of the attempt of a fine ramp that a search has placed.
 pub(super) const AFTER_SEARCH: u8 = 2;
 
@@ -160,184 +148,6 @@ impl Search {
             bisection::DWELL
         }
     }
-}
-
-pub(super) fn acts(
-    bench: &Bench,
-    supply: &mut Supply,
-    findings: &mut Findings,
-    direction: Direction,
-) -> Vec<Act> {
-    findings.armed = false;
-    let Some(part) = findings.track else {
-        return Vec::new();
-    };
-    let known = findings
-        .search
-        .filter(|search| search.direction == direction);
-    let search = known.unwrap_or_else(|| {
-        Search::new(bench, bench.strategy(parameter(direction)), direction, part)
-    });
-    findings.search = Some(search);
-    let test = &bench.recipe.test;
-    let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);
-    let mut acts = Vec::new();
-    if search.begins_anew() {
-        acts.extend(match direction {
-            Direction::Rising => from_rest(supply, findings, search.at),
-            Direction::Falling => from_sealed(bench, supply, findings, near),
-        });
-    }
-    acts.extend([
-        supply.step_to(search.at),
-        Act::Wait(search.dwell()),
-        Act::Read(Read::Board),
-        Act::Mark,
-    ]);
-    acts
-}
-
-/// Off, then two steps towards `at`: a single one from zero picks up some 30 mV below the threshold.
-fn from_rest(supply: &mut Supply, findings: &mut Findings, at: Volt) -> Vec<Act> {
-    let mut acts = dropped(findings);
-    let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
-    acts.extend([
-        coarse,
-        Act::WaitSinceMark(OFF),
-        supply.step_to(at * APPROACH),
-        board(&[
-            (RampMode, false),
-            (SelectNo, true),
-            (EventNoBreak, false),
-            (CoilDrive, true),
-        ]),
-        Act::Wait(APPROACH_TIME),
-    ]);
-    if supply.coarse() > Volt(0.1) {
-        acts.push(Act::Wait(takes));
-    }
-    acts
-}
-
-/// Operated and sealed at 0.95 of nominal.
-fn from_sealed(
-    bench: &Bench,
-    supply: &mut Supply,
-    findings: &mut Findings,
-    near: Volt,
-) -> Vec<Act> {
-    (findings.operated, findings.released) = (false, false);
-    let mut acts = Vec::new();
-    let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
-    if findings.operate.is_some() && findings.search.is_none_or(|search| search.trials == 0) {
-        acts.extend([coarse, Act::Wait(takes)]);
-    }
-    acts.extend([
-        supply.step_to(Volt(SEAL * bench.recipe.part.nominal_v)),
-        board(&[
-            (SourceOn, false),
-            (SourceReverse, false),
-            (RampMode, true),
-            (SelectNo, true),
-            (Arm, false),
-            (CoilDrive, true),
-        ]),
-        Act::Wait(INTERLOCK + SEALS),
-        // The flux of a sealed armature falls slowly: from the near end of the interval, not from above.
-        supply.step_to(near),
-        Act::Wait(SEALS),
-    ]);
-    acts
-}
-
-pub(super) fn conclude(
-    bench: &Bench,
-    readings: &Readings,
-    findings: &mut Findings,
-    direction: Direction,
-) -> Option<Stage> {
-    let (Some(seen), Some(mut search)) = (readings.boards.last(), findings.search) else {
-        findings.void("interface board not read");
-        return None;
-    };
-    let rising = direction == Direction::Rising;
-    let next = search.after(seen.no_closed == rising);
-    findings.operated = rising && seen.no_closed;
-    findings.still_ramping = Span(0);
-    if let Next::Try(level) = next {
-        search.at = level;
-        findings.search = Some(search);
-        return Some(Stage::Search(direction));
-    }
-    findings.search = None;
-    if bench.strategy(parameter(direction)).ramps() {
-        return placed(bench, findings, direction, next);
-    }
-    match next {
-        Next::Found(volts, step) => found(bench, findings, direction, volts, step, &readings.gates),
-        Next::Proven => {
-            let judgement = (parameter(direction), Judgement::Pass);
-            findings.proven.push(judgement);
-        }
-        Next::Ramp if rising => return Some(Stage::OperateCoarse),
-        Next::Ramp => return Some(Stage::ReleaseCoarse),
-        Next::Try(_) => {}
-    }
-    None
-}
-
-/// The fine ramp goes where a search in its service has found the threshold.
-fn placed(
-    bench: &Bench,
-    findings: &mut Findings,
-    direction: Direction,
-    next: Next,
-) -> Option<Stage> {
-    let Next::Found(volts, step) = next else {
-        findings.void(format!(
-            "{}: no threshold between the ends of the search",
-            parameter(direction)
-        ));
-        return None;
-    };
-    *findings.expected(direction) = Some(near(bench, direction, volts, step));
-    Some(match direction {
-        Direction::Rising => Stage::OperateFine(AFTER_SEARCH),
-        Direction::Falling => Stage::ReleaseFine(AFTER_SEARCH),
-    })
-}
-
-/// Where a fine ramp will show a threshold that levels have found.
-fn near(bench: &Bench, direction: Direction, volts: Volt, step: Volt) -> Expected {
-    let lag = match direction {
-        Direction::Rising => bench.operate_lag(),
-        Direction::Falling => bench.release_lag(),
-    };
-    Expected::new(volts + Volt(lag.fine_v.value), step.0.abs().max(0.010))
-}
-
-fn found(
-    bench: &Bench,
-    findings: &mut Findings,
-    direction: Direction,
-    volts: Volt,
-    step: Volt,
-    samples: &[[CountSample; 2]],
-) {
-    let Some(part) = findings.track else { return };
-    *findings.expected(direction) = Some(near(bench, direction, volts, step));
-    let value = volts.0 * to_reference(part, bench.reference_temperature());
-    let (level, kelvin) = (bench.calibration.level, bench.accuracy.part_minus_track_k);
-    let budget = Budget::default()
-        .with("level", (value * level.gain.u).hypot(level.offset_v.u))
-        .with(
-            "coil temperature",
-            value * kelvin * relative_per_kelvin(part),
-        )
-        .with("strategy", resolution(step.0))
-        .with_random("repeatability", bench.accuracy.operation_scatter_mv / 1e3);
-    let reading = Reading { value, budget };
-    findings.found(parameter(direction), reading, samples.iter().flatten());
 }
 
 /// What a direction measures.

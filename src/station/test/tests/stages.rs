@@ -1,6 +1,6 @@
 //! Conclusions on a moving armature: ramps, timed operation and release.
 
-use super::super::{Stage, operate, release, timing};
+use super::super::{Stage, operate, operate_fine, release, timing};
 use super::{PULLED, RESTING, assert_ends, at_23_c, bench, drop_of, ended, gates};
 use crate::gauge::Parameter;
 use crate::gauge::threshold::Direction;
@@ -84,7 +84,7 @@ fn a_fine_ramp_that_meets_its_event_gives_the_threshold() {
         fine: None,
     });
     let readings = watched(true, PULLED, 40.0);
-    let next = operate::conclude_fine(&bench(), &readings, &mut findings, 0);
+    let next = operate_fine::conclude(&bench(), &readings, &mut findings, 0);
     assert_eq!((next, ended(&findings)), (None, None));
     let result = findings.result(Parameter::OperateVoltage).unwrap();
     assert!((result.value - 7.91).abs() < 1e-9 && result.expanded() < 0.02);
@@ -101,14 +101,14 @@ fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
     let miss = |readings: &Readings| {
         let mut findings = ramp_from(7.8, 0.2);
         for attempt in 0..4 {
-            let next = operate::conclude_fine(&bench(), readings, &mut findings, attempt);
+            let next = operate_fine::conclude(&bench(), readings, &mut findings, attempt);
             let searched = Some(Stage::Search(Direction::Rising));
             let again = Some(Stage::OperateFine(attempt + 1));
             assert_eq!(next, if attempt == 1 { searched } else { again });
             assert_eq!(ended(&findings), None);
         }
         let centre = findings.expected_operate.unwrap().centre;
-        let last = operate::conclude_fine(&bench(), readings, &mut findings, 4);
+        let last = operate_fine::conclude(&bench(), readings, &mut findings, 4);
         assert_eq!(last, None);
         assert_ends(&findings, Bin::Retest, "not found in 5 fine ramps");
         centre
@@ -133,7 +133,7 @@ fn a_release_that_came_too_early_is_looked_for_higher() {
 fn an_event_after_the_ramp_has_stopped_is_looked_for_around_its_end() {
     let mut findings = ramp_from(7.8, 0.1);
     let readings = watched(true, PULLED, 80.0);
-    let next = operate::conclude_fine(&bench(), &readings, &mut findings, 0);
+    let next = operate_fine::conclude(&bench(), &readings, &mut findings, 0);
     assert_eq!(next, Some(Stage::OperateFine(1)));
     let expected = findings.expected_operate.unwrap();
     assert!((expected.centre.0 - 7.9).abs() < 1e-9);
