@@ -17,6 +17,8 @@ pub struct Pace {
 
 /// Real waits shorter than this are slept on the thread: tokio's timer would round them up to a millisecond or two.
 const FINE: Span = Span(1_000);
+/// A virtual clock that is held back stands this long at a time: half a frame of a screen.
+const HOLD: Span = Span(10_000);
 
 impl Pace {
     /// Wall-clock pace; rig time 0 is now.
@@ -78,6 +80,17 @@ impl Pace {
         let left = until.since(self.now());
         if left > Span(0) {
             std::thread::sleep(Duration::from_micros(left.0));
+        }
+    }
+
+    /// Keeps virtual time from passing faster than `speed` times the wall clock, for ever. Time lost on a busy machine is
+    /// not made up for: the rig gets slow there, never late.
+    pub async fn hold_back(self, speed: f64) {
+        let wall = Duration::from_micros(HOLD.0).div_f64(speed);
+        loop {
+            let began = std::time::Instant::now();
+            self.sleep(self.now() + HOLD).await;
+            std::thread::sleep(wall.saturating_sub(began.elapsed()));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `relayrig demo`: the main job with nothing to prepare.
 
-use super::rig::{PaceArg, RigArgs};
+use super::rig::{self, PaceArg, RigArgs};
 use super::run::{self, Controls, RunArgs, assemble};
 use crate::config::{Plant, load_recipe};
 use crate::hmi::{self, access};
@@ -15,7 +15,8 @@ use tokio::sync::{mpsc, watch};
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig demo
-  relayrig demo --listen 127.0.0.1:9000 --fault fall")]
+  relayrig demo --listen 127.0.0.1:9000 --fault fall
+  relayrig demo --speed 5")]
 pub struct DemoArgs {
     /// Where the page listens
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
@@ -23,6 +24,9 @@ pub struct DemoArgs {
     /// Fault of the simulated rig, see `relayrig sim --faults`
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub fault: Vec<String>,
+    /// In virtual time at X times the speed of the wall clock, instead of through pseudo-terminals
+    #[arg(long, value_name = "X", value_parser = rig::speed)]
+    pub speed: Option<f64>,
     /// Draws rig and lot
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -35,6 +39,7 @@ pub struct DemoArgs {
 pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
     let listener = std::net::TcpListener::bind(args.listen)
         .with_context(|| format!("--listen {}: the page cannot listen there", args.listen))?;
+    let address = listener.local_addr().context("the page's socket")?;
     let controls = Controls {
         stays: true,
         ..Controls::new(false)
@@ -44,7 +49,11 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
     let order = RunArgs {
         rig: RigArgs {
             sim: true,
-            pace: PaceArg::Real,
+            pace: match args.speed {
+                Some(_) => PaceArg::Virtual,
+                None => PaceArg::Real,
+            },
+            speed: args.speed,
             seed: args.seed,
             world: None,
             fault: args.fault.clone(),
@@ -63,7 +72,7 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
     let page = Page::start(listener, &controls, orders, db, mimic)?;
     eprintln!(
         "relayrig: simulated rig running, page at http://{}/, history in {}, Ctrl-C stops",
-        args.listen,
+        address,
         db.display()
     );
     let status = run::run_with(config, db, &order, &controls, asked);

@@ -20,6 +20,9 @@ pub struct RigArgs {
     /// How time passes on the simulated rig
     #[arg(long, value_enum, default_value = "virtual", requires = "sim")]
     pub pace: PaceArg,
+    /// Virtual time, but at most X times as fast as the wall clock
+    #[arg(long, value_name = "X", requires = "sim", value_parser = speed)]
+    pub speed: Option<f64>,
     /// Draws rig and parts of the simulated rig
     #[arg(long, value_name = "N", default_value_t = 1, requires = "sim")]
     pub seed: u64,
@@ -32,4 +35,11 @@ pub struct RigArgs {
     /// Port of a line instead of the one in rig.toml
     #[arg(long, value_name = "NAME=PORT", conflicts_with = "sim")]
     pub line: Vec<String>,
+}
+
+/// How often the wall clock; what a person can still follow, and a machine keep up with.
+pub fn speed(text: &str) -> Result<f64, String> {
+    let found = text.parse().ok();
+    let sensible = found.filter(|it| (0.1..=100.0).contains(it));
+    sensible.ok_or_else(|| format!("found {text}, expected a number from 0.1 to 100"))
 }

@@ -123,6 +123,9 @@ pub fn run_with(
     if args.count == Some(0) && controls.calibrates.is_none() {
         bail!("--count: found 0, expected at least 1");
     }
+    if args.rig.speed.is_some() && !is_virtual(args) {
+        bail!("--speed: found with --pace real, expected --pace virtual");
+    }
     if args.rig.sim && !cfg!(feature = "sim") {
         bail!("--sim: this is a plant build without the simulated rig");
     }
@@ -168,6 +171,9 @@ async fn run_lot(
         Pace::real()
     };
     let epoch_us = jiff::Timestamp::now().as_microsecond();
+    if let Some(speed) = args.rig.speed {
+        tokio::spawn(pace.hold_back(speed));
+    }
     let (mut lines, rig) = lines::open(&plant, config, args, &pace)?;
     let setup = Setup {
         plant: &plant,

@@ -11,6 +11,7 @@
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
 //! - `paper`: pages, sheets, another recipe, retention, parts fed again.
 //! - [`picture`]: the picture in README.md is that of `config/scene.toml`.
+//! - `screen`: the page in a real browser over `relayrig demo`.
 //! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
 //! - `unplugged`: a port that vanishes over pseudo-terminals.
 //! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
@@ -36,6 +37,8 @@ mod lots;
 mod paper;
 mod picture;
 mod program;
+#[cfg(all(feature = "sim", unix))]
+mod screen;
 #[cfg(feature = "sim")]
 mod storm;
 #[cfg(feature = "sim")]

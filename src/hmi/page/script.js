@@ -163,6 +163,8 @@ async function fetchMimic() {
   try {
     const text = await (await fetch("/mimic.svg")).text();
     const svg = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+    svg.dataset.label = "mimic";
+    svg.setAttribute("aria-label", word("mimic"));
     at("mimic").replaceChildren(document.importNode(svg, true));
     bodies = Array.from(at("mimic").querySelectorAll("[data-rides]"),
       (body) => ({body, rides: JSON.parse(body.dataset.rides)}));
@@ -293,6 +295,7 @@ function showAll() {
   document.documentElement.lang = language === "zh" ? "zh-CN" : "en";
   document.documentElement.dataset.theme = theme;
   for (const element of document.querySelectorAll("[data-word]")) element.textContent = word(element.dataset.word);
+  for (const element of document.querySelectorAll("[data-label]")) element.setAttribute("aria-label", word(element.dataset.label));
   showView();
   showWho();
 }

@@ -34,6 +34,7 @@ fn every_word_is_there_in_both_languages() {
 fn every_word_that_the_page_uses_is_in_the_table() {
     let table = table();
     let mut used = quoted(FRAME, "data-word=\"");
+    used.extend(quoted(FRAME, "data-label=\""));
     used.extend(quoted(SCRIPT, "word(\""));
     used.extend(quoted(SCRIPT, "{word: \""));
     // A key that ends in a dot is the begin of a family, completed by what the rig says.

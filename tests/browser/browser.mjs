@@ -1,0 +1,103 @@
+// A page in headless Chromium that remembers what it should not have done.
+//
+// MODULES is the folder with `node_modules`, CHROMIUM the browser, SCREENSHOTS where pictures go.
+
+import assert from "node:assert/strict";
+import { mkdirSync } from "node:fs";
+import { createRequire } from "node:module";
+import { join } from "node:path";
+import { PASSWORD } from "./rig.mjs";
+
+const require = createRequire(join(process.env.MODULES, "from.js"));
+const { chromium } = require("playwright-core");
+const axe = require("axe-core").source;
+
+const PICTURES = process.env.SCREENSHOTS;
+/** A panel PC and an office screen. */
+export const SIZES = [{ width: 1280, height: 800 }, { width: 1920, height: 1080 }];
+const QUIET = ["--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-background-networking",
+  "--disable-component-update", "--disable-sync", "--no-first-run", "--autoplay-policy=no-user-gesture-required"];
+
+export const open = () => chromium.launch({ executablePath: process.env.CHROMIUM, args: QUIET });
+
+/** A fresh page of `rig` at `path`, logged in with `role` if there is one. */
+export async function visit(browser, rig, { path = "/", role, language = "en", theme = "light", size = SIZES[0] } = {}) {
+  const context = await browser.newContext({ viewport: size, locale: language === "zh" ? "zh-CN" : "en-GB", colorScheme: theme, acceptDownloads: true });
+  const page = await context.newPage();
+  page.setDefaultTimeout(20_000);
+  page.sins = [];
+  page.on("pageerror", (error) => page.sins.push("error: " + error));
+  page.on("console", (line) => {
+    if (line.type() === "error" && !refusedOnPurpose(line)) page.sins.push("console: " + line.text());
+  });
+  page.on("request", (request) => {
+    const url = request.url();
+    if (!url.startsWith(rig.url + "/") && !url.startsWith("data:") && !url.startsWith("blob:")) page.sins.push("request: " + url);
+  });
+  await page.goto(rig.url + path);
+  await page.waitForSelector("body:not(.stale)");
+  if (role) await logIn(page, rig, role);
+  return page;
+}
+
+// Chromium writes a line for every answer that is a refusal; the page shows them to the user.
+const refusedOnPurpose = (line) => /the server responded with a status of 4(00|01|03|04|09|22|29)/.test(line.text());
+
+export async function logIn(page, rig, role) {
+  await page.click("#who");
+  await page.fill("#user", rig.who(role));
+  await page.fill("#password", PASSWORD);
+  await page.click("#login_go");
+  await page.waitForFunction((name) => document.getElementById("who").textContent.includes(name), rig.who(role));
+}
+
+/** No error, nobody else asked; then the page is closed. */
+export async function leave(page) {
+  assert.deepEqual(page.sins, []);
+  await page.context().close();
+}
+
+/** What axe finds wrong, contrast above all. */
+async function faults(page) {
+  // A transition under way would be measured half way.
+  await page.evaluate(() => Promise.all(document.getAnimations().map((it) => it.finished.catch(() => {}))));
+  const found = await page.evaluate(async (source) => {
+    new Function(source)();
+    const rules = { runOnly: ["wcag2a", "wcag2aa", "wcag21aa"] };
+    return (await window.axe.run(document, rules)).violations;
+  }, axe).catch((error) => { throw new Error("axe: " + error); });
+  return found.map((it) => it.id + ": " + it.nodes.map((node) => node.target.join(" ") + " " + node.failureSummary).join("; "));
+}
+
+/** What does not fit: the window scrolls, or something is cut off or hangs over the edge. */
+const tooLarge = (page) => page.evaluate(() => {
+  const root = document.scrollingElement;
+  const found = [];
+  if (root.scrollHeight > innerHeight || root.scrollWidth > innerWidth) found.push(`page ${root.scrollWidth}x${root.scrollHeight}`);
+  for (const it of document.querySelectorAll("body > *, main > section, main > section > *, button")) {
+    if (it.closest("[hidden], dialog:not([open])") || it.closest("[data-scrolls]") || it.scrollHeight === 0) continue;
+    const over = [it.scrollWidth - it.clientWidth, it.scrollHeight - it.clientHeight];
+    if (Math.max(...over) > 1 && getComputedStyle(it).overflow !== "visible") found.push(`${it.tagName} #${it.id} .${it.className} by ${over}`);
+    const box = it.getBoundingClientRect();
+    if (box.bottom > innerHeight + 1 || box.right > innerWidth + 1) found.push(`${it.tagName} #${it.id} ends at ${box.right},${box.bottom}`);
+  }
+  return found;
+});
+
+/** Kept under the build folder, to be looked at. */
+export async function picture(page, name) {
+  mkdirSync(PICTURES, { recursive: true });
+  await page.screenshot({ path: join(PICTURES, name + ".png") });
+}
+
+/** The page as it stands in both languages and both themes: it fits, can be read, and is kept as a picture. */
+export async function looks(page, name) {
+  for (const button of ["#language", "#theme", "#language", "#theme"]) {
+    const [language, theme] = await page.$eval("html", (it) => [it.lang.slice(0, 2), it.dataset.theme]);
+    const which = `${name}-${language}-${theme}`;
+    await picture(page, which);
+    assert.deepEqual(await tooLarge(page), [], which);
+    assert.deepEqual(await faults(page), [], which);
+    await page.click(button);
+  }
+}

@@ -1,0 +1,130 @@
+// The operator's page over a lot on the simulated rig.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { SIZES, leave, logIn, looks, open, picture, visit } from "./browser.mjs";
+import { WORDS, start } from "./rig.mjs";
+
+let rig, browser;
+before(async () => {
+  [rig, browser] = await Promise.all([start("operator", "--speed", "4"), open()]);
+});
+after(async () => {
+  await browser?.close();
+  await rig?.kill();
+});
+
+const text = (page, selector) => page.textContent(selector);
+const shown = (page, selector, expected) => page.waitForFunction(
+  ([selector, expected]) => document.querySelector(selector)?.textContent.includes(expected), [selector, expected]);
+
+test("the page loads without an error and says that it is a simulation", async () => {
+  const page = await visit(browser, rig);
+  assert.match(await text(page, "#simulated"), /SIMULATION/);
+  assert.match(await page.title(), /SIMULATION/);
+  assert.ok(await page.isVisible("#mimic polygon"));
+  await leave(page);
+});
+
+test("parts move through the picture, and the last verdict stays with its values", async () => {
+  const page = await visit(browser, rig);
+  await rig.until("a part is judged", (view) => view.last !== null);
+  const where = () => page.$$eval("#mimic .moving", (all) => all.map((it) => it.style.transform).join());
+  const first = await where();
+  await page.waitForFunction((first) => Array.from(document.querySelectorAll("#mimic .moving"), (it) => it.style.transform).join() !== first, first);
+  await page.waitForSelector("#mimic .part.held", { state: "attached" });
+  await shown(page, "#verdict", "PASS");
+  assert.equal(await page.$$eval("#values tr", (rows) => rows.length), 9);
+  assert.ok(await page.$$eval("#values svg", (bands) => bands.length) >= 5);
+  await leave(page);
+});
+
+test("whoever has not logged in is told so by every button, and by the rig", async () => {
+  const page = await visit(browser, rig);
+  await page.click('#orders [data-order="stop"]', { force: true });
+  await shown(page, "#order_answer", WORDS["stop.login"].en);
+  const status = await page.evaluate(async () => (await fetch("/api/orders", { method: "POST",
+    headers: { "Content-Type": "application/json" }, body: '{"order":"stop"}' })).status);
+  assert.equal(status, 401);
+  await leave(page);
+});
+
+test("a wrong password opens nothing, the right one does, and logging out closes it", async () => {
+  const page = await visit(browser, rig);
+  await page.click("#who");
+  await page.fill("#user", rig.who("operator"));
+  await page.fill("#password", "guessed wrong");
+  await page.click("#login_go");
+  await shown(page, "#login_answer", WORDS["login.401"].en);
+  await page.click("#login_cancel");
+  await logIn(page, rig, "operator");
+  await page.reload();
+  await shown(page, "#who", rig.who("operator"));
+  await page.click("#who");
+  await shown(page, "#who", WORDS.login.en);
+  assert.equal(await page.evaluate(async () => (await fetch("/api/me")).json()), null);
+  await leave(page);
+});
+
+test("a role that is too weak is refused", async () => {
+  const page = await visit(browser, rig, { role: "operator" });
+  const answer = await page.evaluate(async () => {
+    const reply = await fetch("/api/orders", { method: "POST", headers: { "Content-Type": "application/json" }, body: '{"order":"mode","mode":"manual"}' });
+    return [reply.status, (await reply.json()).reason];
+  });
+  assert.equal(answer[0], 403);
+  assert.match(answer[1], /maintainer; you are operator/);
+  await leave(page);
+});
+
+test("a lot is held and goes on, and a button that is not live says why", async () => {
+  const page = await visit(browser, rig, { role: "operator" });
+  await rig.until("the lot runs", (view) => view.machine.state === "Execute");
+  await page.click('#orders [data-order="unhold"]', { force: true });
+  await shown(page, "#order_answer", "unhold is possible in");
+  await page.click('#orders [data-order="hold"]');
+  await rig.until("held", (view) => view.machine.state === "Held");
+  await picture(page, "operator-held");
+  await page.click('#orders [data-order="unhold"]');
+  await rig.until("executes", (view) => view.machine.state === "Execute");
+  await leave(page);
+});
+
+test("language and theme change without a reload", async () => {
+  const page = await visit(browser, rig);
+  await page.evaluate(() => { window.same = true; });
+  await page.click("#language");
+  await shown(page, "#simulated", WORDS.simulation.zh);
+  assert.equal(await page.getAttribute("html", "lang"), "zh-CN");
+  await page.click("#theme");
+  assert.equal(await page.getAttribute("html", "data-theme"), "dark");
+  assert.ok(await page.evaluate(() => window.same));
+  await page.reload();
+  assert.equal(await page.getAttribute("html", "lang"), "zh-CN", "kept");
+  await leave(page);
+});
+
+for (const size of SIZES) {
+  test(`at ${size.width}x${size.height} nothing scrolls, nothing is cut off and everything can be read`, async () => {
+    const page = await visit(browser, rig, { size, role: "operator" });
+    await rig.until("a part is judged", (view) => view.last !== null);
+    await looks(page, `operator-${size.width}`);
+    await leave(page);
+  });
+}
+
+test("old values turn grey within 3 s, and the page comes back by itself", async () => {
+  const page = await visit(browser, rig);
+  await page.evaluate(() => { window.same = true; });
+  const killed = Date.now();
+  await rig.kill();
+  await page.waitForSelector("body.stale");
+  const took = Date.now() - killed;
+  assert.ok(took < 3000, `${took} ms`);
+  await picture(page, "operator-stale");
+  await rig.again();
+  await page.waitForSelector("body:not(.stale)");
+  assert.ok(await page.evaluate(() => window.same), "without a reload");
+  page.sins = page.sins.filter((it) => !/ERR_(CONNECTION_REFUSED|INCOMPLETE_CHUNKED_ENCODING|EMPTY_RESPONSE|CONNECTION_RESET)/.test(it));
+  await leave(page);
+});

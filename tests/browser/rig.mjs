@@ -1,0 +1,83 @@
+// The program under test: `relayrig demo` on a free port, with a history and people of its own.
+//
+// It runs in virtual time held to some times the wall clock: a busy machine makes the rig slow, never wrong.
+// RELAYRIG is the program; the working folder holds `config/`.
+
+import { spawn, spawnSync } from "node:child_process";
+import { readFileSync, rmSync } from "node:fs";
+
+export const PASSWORD = "open sesame";
+const PEOPLE = { operator: "li", maintainer: "wang", engineer: "zhao" };
+const PROGRAM = process.env.RELAYRIG;
+
+/** Starts `relayrig demo` with `words`; `name` is used once only. Resolves once the page can be asked for. */
+export async function start(name, ...words) {
+  const db = name + ".db";
+  for (const end of [".db", ".db-wal", ".db-shm", "-access.db"]) rmSync(name + end, { force: true });
+  for (const [role, user] of Object.entries(PEOPLE)) {
+    const added = spawnSync(PROGRAM, ["--db", db, "user", "add", user, "--role", role, "--stdin"], { input: PASSWORD + "\n" });
+    if (added.status !== 0) throw new Error(String(added.stderr));
+  }
+  const rig = new Rig(["--config", "config", "--log", "warn", "--db", db, "demo", "--listen", "127.0.0.1:0", ...words]);
+  await rig.listening;
+  return rig;
+}
+
+class Rig {
+  constructor(words) {
+    this.words = words;
+    this.run();
+  }
+
+  run() {
+    this.told = "";
+    this.process = spawn(PROGRAM, this.words, { stdio: ["ignore", "ignore", "pipe"] });
+    this.ended = new Promise((resolve) => this.process.on("exit", resolve));
+    this.listening = new Promise((resolve, reject) => {
+      this.process.stderr.on("data", (text) => {
+        this.told += text;
+        const found = /page at (http:\/\/[^/]+)\//.exec(this.told);
+        if (found) resolve(this.url = found[1]);
+      });
+      this.process.on("exit", () => reject(new Error("the program ended: " + this.told)));
+    });
+    // Of a program that ends when it is told to, nobody waits for the page.
+    this.listening.catch(() => {});
+  }
+
+  /** Name of the person with this role. */
+  who(role) {
+    return PEOPLE[role];
+  }
+
+  async view() {
+    return (await fetch(this.url + "/api/view")).json();
+  }
+
+  /** The first view of which `test` is true. */
+  async until(what, test, seconds = 40) {
+    const end = Date.now() + seconds * 1000;
+    for (;;) {
+      const view = await this.view();
+      if (test(view)) return view;
+      if (Date.now() > end) throw new Error(`not within ${seconds} s: ${what}; state ${view.state}, ${JSON.stringify(view.alarms)}`);
+      await new Promise((resolve) => setTimeout(resolve, 50));
+    }
+  }
+
+  /** Ends the program at once; its page is then at no address. */
+  async kill() {
+    this.process.kill("SIGKILL");
+    await this.ended;
+  }
+
+  /** Starts it again at the same address. */
+  async again() {
+    this.words[this.words.indexOf("--listen") + 1] = new URL(this.url).host;
+    this.run();
+    await this.listening;
+  }
+}
+
+/** Every word of the page, from its own table. */
+export const WORDS = JSON.parse(readFileSync(new URL("../../src/hmi/page/words.json", import.meta.url)));

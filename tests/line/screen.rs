@@ -1,0 +1,23 @@
+//! The page in a real browser: `tests/browser` over the built program, with what it needs installed where it is missing.
+//!
+//! Pictures of every page are left in `target/tmp/browser/screenshots`. One test file alone, over any build:
+//! `tests/browser/run PROGRAM config FOLDER tests/browser/operator.test.mjs`.
+
+use std::path::Path;
+use std::process::Command;
+
+#[test]
+fn the_page_does_in_a_browser_what_it_promises() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let done = Command::new(root.join("tests/browser/run"))
+        .arg(env!("CARGO_BIN_EXE_relayrig"))
+        .arg(root.join("config"))
+        .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("browser"))
+        .output()
+        .unwrap();
+    let said = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let (stdout, stderr) = (said(&done.stdout), said(&done.stderr));
+    assert!(done.status.success(), "{stdout}\n{stderr}");
+    let tried = stdout.contains(" pass ") && !stdout.contains(" pass 0\n");
+    assert!(tried, "no test was run: {stdout}");
+}
