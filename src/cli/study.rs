@@ -18,7 +18,9 @@
 mod accuracy;
 mod bins;
 mod chart;
+mod coil;
 mod collision;
+mod contact;
 mod coverage;
 mod cycle;
 mod decision;
@@ -29,6 +31,7 @@ mod fleet;
 mod history;
 mod kill;
 mod lot;
+mod method;
 mod output;
 mod pace;
 mod parameters;
@@ -37,6 +40,7 @@ mod sorting;
 #[cfg(test)]
 mod tests;
 mod threshold;
+mod timing;
 #[cfg(feature = "sim")]
 mod transient;
 mod variant;
@@ -61,8 +65,12 @@ const BAR_MISSED: i32 = 1;
 pub enum Study {
     /// Error of every parameter against the truth, and where parts went
     Accuracy,
+    /// Seconds against error of the coil resistance: settling, scans, self-heating, temperature
+    Coil,
     /// Ways to check a move: time against error and wrong verdicts
     Collision,
+    /// Seconds against error of contacts: polarities, drifting EMF, closures, early stop
+    Contact,
     /// How often the stated uncertainty covers the truth
     Coverage,
     /// Rig time of a test and of a cycle, and where it goes
@@ -79,6 +87,8 @@ pub enum Study {
     Pace,
     /// Good parts rejected, defects by bin, over many lots
     Sorting,
+    /// Error of times and bounce: latched and raw gates, reference clock, gate delay
+    Timing,
     /// The relay model of the simulated rig over the cases of a file
     Transient,
 }
@@ -88,6 +98,7 @@ impl Study {
     const fn usual(self) -> Option<(u64, u64)> {
         match self {
             Self::Accuracy => Some((10, 500)),
+            Self::Coil | Self::Contact | Self::Timing => Some((4, 40)),
             Self::Collision => None,
             Self::Coverage => Some((100, 10)),
             Self::Cycle => Some((1, 100)),
@@ -96,7 +107,7 @@ impl Study {
             Self::Kill => Some((300, 1)),
             Self::Pace => Some((3, 300)),
             Self::Sorting => Some((100, 110)),
-            Self::Threshold => Some((2, 40)),
+            Self::Threshold => Some((4, 40)),
             Self::Transient => None,
         }
     }
@@ -104,7 +115,9 @@ impl Study {
     fn name(self) -> &'static str {
         match self {
             Self::Accuracy => "accuracy",
+            Self::Coil => "coil",
             Self::Collision => "collision",
+            Self::Contact => "contact",
             Self::Coverage => "coverage",
             Self::Cycle => "cycle",
             Self::History => "history",
@@ -113,6 +126,7 @@ impl Study {
             Self::Kill => "kill",
             Self::Pace => "pace",
             Self::Sorting => "sorting",
+            Self::Timing => "timing",
             Self::Transient => "transient",
         }
     }
@@ -120,7 +134,9 @@ impl Study {
     fn report(self, order: &Order) -> anyhow::Result<Report> {
         match self {
             Self::Accuracy => accuracy::study(order),
+            Self::Coil => coil::study(order),
             Self::Collision => bail!("study collision runs no lot"),
+            Self::Contact => contact::study(order),
             Self::Coverage => coverage::study(order),
             Self::Cycle => cycle::study(order),
             Self::History => history::study(order),
@@ -129,6 +145,7 @@ impl Study {
             Self::Kill => kill::study(order),
             Self::Pace => pace::study(order),
             Self::Sorting => sorting::study(order),
+            Self::Timing => timing::study(order),
             Self::Transient => bail!("study transient runs no lot"),
         }
     }
@@ -206,6 +223,7 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         recipe: args.recipe.clone(),
         admitted: admitted(config, &args.recipe)?,
         world: args.world.clone(),
+        faults: Vec::new(),
         lots: args.seeds.unwrap_or(lots),
         parts: args.parts.unwrap_or(parts),
     };

@@ -5,7 +5,7 @@
 
 use super::budget::COVERAGE_FACTOR;
 use super::coil::relative_per_kelvin;
-use super::recipe::Recipe;
+use super::recipe::{Limit, Recipe};
 use super::settings::AccuracySettings;
 use super::{Parameter, Strategy};
 use crate::rig::fault::Fault;
@@ -16,6 +16,8 @@ use crate::units::Celsius;
 /// An output that is refreshed more rarely while it ramps makes steps of the coarse ramp that no counter
 /// resolves: 2 ms at 96 V/s are 0.19 V.
 pub const SLOWEST_REFRESH_MS: f64 = 2.0;
+/// Conversions per second of an I-7017F outside its fast mode: waiting for fewer reads what was there before.
+const SLOW_CONVERSIONS_PER_S: f64 = 10.0;
 /// Type code of an I-7080 that counts; 51 makes it measure frequency.
 const COUNTS: u8 = 0x50;
 
@@ -33,6 +35,21 @@ pub fn check(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> R
                 strategy.name(),
                 format!("a strategy that these modules can perform: {why}"),
             ));
+        }
+    }
+    if recipe.test.strategy.contact.stops_early {
+        for parameter in [
+            Parameter::ContactResistanceNo,
+            Parameter::ContactResistanceNc,
+        ] {
+            if recipe.limits.of(parameter) == Limit::default() {
+                let expected = format!("a limit of {parameter} to be clear of, or no early stop");
+                return Err(Fault::new(
+                    "test.strategy.contact.stops_early",
+                    true,
+                    expected,
+                ));
+            }
         }
     }
     for (parameter, limit) in recipe.limits.iter() {
@@ -78,6 +95,16 @@ pub fn hindrance(
         return Some(format!(
             "module {} masks the channel of contact_drop",
             module.name
+        ));
+    }
+    let coil = wiring.module(wiring.analog_in(AnalogIn::CoilVoltageFine).module);
+    if let Some(slow) = [module, coil].into_iter().find(|module| !module.fast)
+        && accuracy.conversions_per_s > SLOW_CONVERSIONS_PER_S
+    {
+        let promised = accuracy.conversions_per_s;
+        return Some(format!(
+            "module {} is not in fast mode, accuracy.conversions_per_s promises {promised}",
+            slow.name
         ));
     }
     let timer = wiring.module(wiring.counter(Counter::Gate0).module);

@@ -9,6 +9,7 @@
 //! | what is measured, in which unit | [`parameter`] |
 //! | what the part must do | [`recipe`] |
 //! | how a threshold is found, and whether modules and uncertainty allow it | [`strategy`], [`feasible`] |
+//! | how often coil and contacts are read | [`sampling`] |
 //! | what the instruments are known to do | [`calibration`], [`settings`] |
 //! | coil resistance | [`coil`] |
 //! | operate and release voltage | [`threshold`] |
@@ -24,6 +25,7 @@ pub mod contact;
 pub mod feasible;
 pub mod parameter;
 pub mod recipe;
+pub mod sampling;
 pub mod settings;
 pub mod strategy;
 pub mod threshold;

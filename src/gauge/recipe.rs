@@ -4,6 +4,7 @@
 //! a lot can store the very recipe it was judged by.
 
 use super::parameter::Parameter;
+use super::sampling::{CoilSampling, ContactSampling};
 use super::strategy::Strategy;
 use crate::rig::fault::Fault;
 use serde::{Deserialize, Serialize};
@@ -125,7 +126,7 @@ pub struct TestPlan {
     pub strategy: Strategies,
 }
 
-/// A strategy per threshold; one that is not named is `coarse_fine`.
+/// A strategy per threshold, one that is not named is `coarse_fine`; and how often the rest is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Strategies {
@@ -133,10 +134,14 @@ pub struct Strategies {
     pub operate_voltage_v: Strategy,
     /// Of the release threshold.
     pub release_voltage_v: Strategy,
+    /// Of the coil resistance.
+    pub coil: CoilSampling,
+    /// Of both contacts.
+    pub contact: ContactSampling,
 }
 
 impl Strategies {
-    /// Each with its key.
+    /// Each threshold with its own.
     pub fn each(&self) -> [(Parameter, Strategy); 2] {
         [
             (Parameter::OperateVoltage, self.operate_voltage_v),

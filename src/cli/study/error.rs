@@ -4,7 +4,7 @@
 //! bounce in ms, contacts in mOhm. Covered means `|value - truth| <= U`, `U` expanded with k = 2; a value
 //! without an uncertainty covers nothing.
 
-use super::lot::{Lot, Reading};
+use super::lot::{Lot, Part, Reading};
 use crate::gauge::Parameter;
 use crate::quality::Spread;
 use crate::quality::spread::median;
@@ -51,16 +51,20 @@ impl Errors {
             .good()
             .filter_map(|part| part.reading(parameter))
             .collect();
-        let errors: Vec<f64> = readings
-            .iter()
-            .map(|reading| error(parameter, reading))
-            .collect();
         Self {
-            spread: Spread::of(&errors),
             covered: readings
                 .iter()
                 .filter(|reading| is_covered(reading))
                 .count() as u64,
+            ..Self::listed(readings.iter().map(|reading| error(parameter, reading)))
+        }
+    }
+
+    /// Of errors without an uncertainty beside them.
+    fn listed(errors: impl Iterator<Item = f64>) -> Self {
+        Self {
+            spread: Spread::of(&errors.collect::<Vec<f64>>()),
+            covered: 0,
         }
     }
 
@@ -102,6 +106,12 @@ impl Pooled {
     /// Of the good parts of all lots.
     pub fn of(parameter: Parameter, lots: &[Lot]) -> Self {
         Self(lots.iter().map(|lot| Errors::of(parameter, lot)).collect())
+    }
+
+    /// Of good parts of all lots, of those for which `error` has one.
+    pub fn by(lots: &[Lot], error: impl Fn(&Part) -> Option<f64>) -> Self {
+        let of = |lot: &Lot| Errors::listed(lot.good().filter_map(&error));
+        Self(lots.iter().map(of).collect())
     }
 
     /// How many in all lots.

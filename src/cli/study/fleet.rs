@@ -25,6 +25,8 @@ pub struct Order {
     pub admitted: Admitted,
     /// World of the simulated rig; none is the one of the configuration.
     pub world: Option<PathBuf>,
+    /// Faults asked of the simulated rig, as `--fault` takes them.
+    pub faults: Vec<String>,
     /// How many lots.
     pub lots: u64,
     /// Parts of each.
@@ -127,6 +129,9 @@ impl Order {
         command.arg("--truth").arg(truth);
         if let Some(world) = &self.world {
             command.arg("--world").arg(world);
+        }
+        for fault in &self.faults {
+            command.arg("--fault").arg(fault);
         }
         command.stdin(std::process::Stdio::null());
         command

@@ -1,50 +1,52 @@
-//! The same rig a little different: a copy of the configuration with other strategies, another baud rate, or
-//! a world whose instruments err by nothing.
+//! The same rig a little different: a copy of the configuration with other values of a recipe, another baud
+//! rate, or a world whose instruments err by nothing.
 //!
 //! Both programs read the copy, so the line, the modules and the sequence are those of any lot; only what
-//! the name of the variant says is changed. The copy is gone with its owner.
+//! the variant names is changed. The copy is gone with its owner.
 
 use super::fleet::{Folder, Order};
-use crate::gauge::Strategy;
 use anyhow::{Context, anyhow};
-use std::cell::Cell;
 use std::path::{Path, PathBuf};
+use toml::{Table, Value};
 
-/// A world without errors of the rig, of temperature and of the part from operation to operation: what is left
-/// is the strategy's own. Noise and resolution of the converters stay.
-const EXACT_WORLD: &str = "[devices]
-ai_gain_pct = 0.0
-ai_offset_pct_of_range = 0.0
-ao_gain_pct = 0.0
-ao_offset_mv = 0.0
-ao_slope_pct = 0.0
-clock_ppm = 0.0
+/// A key by its path, and what it becomes.
+pub type Change = (&'static str, Value);
 
-[board]
-gate_delay_us = 0.0
-source_error_pct = 0.0
-
-[environment]
-part_minus_track_sd_k = 0.0
-rtd_error_sd_k = 0.0
-
-[lot]
-threshold_scatter_sd_mv = 0.0
-thermal_emf_sd_uv = 0.0
-
-[defects]
-rate_pct = 0.0
-";
+/// Instruments, temperature and operations that err by nothing: what is left is the strategy's own error. Noise
+/// and resolution of the converters stay. Defects have no place in it.
+const EXACT: [(&str, f64); 13] = [
+    ("devices.ai_gain_pct", 0.0),
+    ("devices.ai_offset_pct_of_range", 0.0),
+    ("devices.ao_gain_pct", 0.0),
+    ("devices.ao_offset_mv", 0.0),
+    ("devices.ao_slope_pct", 0.0),
+    ("devices.clock_ppm", 0.0),
+    ("board.gate_delay_us", 0.0),
+    ("board.source_error_pct", 0.0),
+    ("environment.part_minus_track_sd_k", 0.0),
+    ("environment.rtd_error_sd_k", 0.0),
+    ("lot.threshold_scatter_sd_mv", 0.0),
+    ("lot.thermal_emf_sd_uv", 0.0),
+    ("defects.rate_pct", 0.0),
+];
+/// Standard uncertainty of every certificate where instruments err by nothing: the files want one above zero.
+const CERTIFIED_U: f64 = 1e-6;
+/// Asking every module at the start takes a slower line than this longer than the usual watchdog waits, baud.
+const SLOW_BAUD: u32 = 19_200;
 
 /// What is different.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Variant {
-    /// Of both thresholds.
-    pub strategy: Strategy,
+    /// Keys of the recipe.
+    pub recipe: Vec<Change>,
     /// Of the measuring line, bits per second.
     pub baud: u32,
     /// Instruments that err by nothing.
     pub exact: bool,
+    /// Keys of the world, after that.
+    pub world: Vec<Change>,
+    /// Faults asked of the simulated rig.
+    pub faults: Vec<String>,
 }
 
 /// A configuration that has been changed.
@@ -55,48 +57,41 @@ pub struct Changed {
 }
 
 impl Variant {
+    /// Instruments that err by nothing on a line of so many baud.
+    pub fn exact(baud: u32, recipe: Vec<Change>) -> Self {
+        Self {
+            recipe,
+            baud,
+            exact: true,
+            world: Vec::new(),
+            faults: Vec::new(),
+        }
+    }
+
     /// The configuration of `order` with this variant's changes.
     ///
     /// # Errors
-    /// A file that cannot be read or written, or one without the line that is to be changed.
+    /// A file that cannot be read or written, or is no TOML.
     pub fn of(&self, order: &Order) -> anyhow::Result<Changed> {
         let folder = Folder::new()?;
         let to = folder.0.join("config");
         copy(&order.config, &to)?;
-        let strategy = self.strategy.name();
-        edit(
-            &to.join("recipes").join(format!("{}.toml", order.recipe)),
-            |line| {
-                let key = line.split('=').next().unwrap_or("").trim();
-                let chosen =
-                    matches!(key, "operate_voltage_v" | "release_voltage_v") && !line.contains('{');
-                chosen.then(|| format!("{key} = \"{strategy}\""))
-            },
-        )?;
-        let measuring = Cell::new(false);
-        edit(&to.join("rig.toml"), |line| {
-            if line.starts_with('[') {
-                measuring.set(line.starts_with("[line.measure]"));
-            }
-            let baud = measuring.get() && line.starts_with("baud");
-            // Asking every module at the start takes a slow line longer than the usual watchdog waits.
-            let watchdog = line.starts_with("host_watchdog_ms") && self.baud < 19_200;
-            match (baud, watchdog) {
-                (true, _) => Some(format!("baud = {}", self.baud)),
-                (false, true) => Some("host_watchdog_ms = 5000".to_owned()),
-                (false, false) => None,
-            }
-        })?;
-        let world = if self.exact {
-            let path = folder.0.join("exact.toml");
-            std::fs::write(&path, EXACT_WORLD).context("writing the world")?;
-            Some(path)
-        } else {
-            order.world.clone()
-        };
+        let recipe = to.join("recipes").join(format!("{}.toml", order.recipe));
+        edit(&recipe, |table| set_all(table, &self.recipe))?;
+        edit(&to.join("rig.toml"), |rig| self.change_rig(rig))?;
+        if self.exact {
+            edit(&to.join("golden.toml"), certify)?;
+        }
+        let world = folder.0.join("world.toml");
+        let base = order
+            .world
+            .as_ref()
+            .map_or(Ok(Table::new()), |path| table(path))?;
+        write(&world, &self.world_on(base)?)?;
         let order = Order {
             config: to,
-            world,
+            world: Some(world),
+            faults: self.faults.clone(),
             ..order.clone()
         };
         Ok(Changed {
@@ -104,6 +99,79 @@ impl Variant {
             _folder: folder,
         })
     }
+
+    fn change_rig(&self, rig: &mut Table) -> anyhow::Result<()> {
+        set(rig, "line.measure.baud", i64::from(self.baud).into())?;
+        if self.baud < SLOW_BAUD {
+            set(rig, "bus.host_watchdog_ms", 5000.into())?;
+        }
+        Ok(())
+    }
+
+    fn world_on(&self, mut world: Table) -> anyhow::Result<Table> {
+        if self.exact {
+            let nothing = EXACT.map(|(key, value)| (key, Value::from(value)));
+            set_all(&mut world, &nothing)?;
+        }
+        set_all(&mut world, &self.world)?;
+        Ok(world)
+    }
+}
+
+/// Certificates that are true.
+fn certify(golden: &mut Table) -> anyhow::Result<()> {
+    let parts = golden.get_mut("golden").and_then(Value::as_array_mut);
+    for part in parts.into_iter().flatten().filter_map(Value::as_table_mut) {
+        let certified = part
+            .iter_mut()
+            .filter_map(|(_, value)| value.as_table_mut());
+        for value in certified {
+            value.insert("u".into(), CERTIFIED_U.into());
+        }
+    }
+    Ok(())
+}
+
+fn set_all(table: &mut Table, changes: &[Change]) -> anyhow::Result<()> {
+    changes
+        .iter()
+        .try_for_each(|(key, value)| set(table, key, value.clone()))
+}
+
+/// Sets a key by its path; tables on the way are made.
+fn set(table: &mut Table, path: &str, value: Value) -> anyhow::Result<()> {
+    match path.split_once('.') {
+        None => {
+            table.insert(path.to_owned(), value);
+            Ok(())
+        }
+        Some((first, rest)) => {
+            let inner = table
+                .entry(first)
+                .or_insert_with(|| Table::new().into())
+                .as_table_mut()
+                .ok_or_else(|| anyhow!("{first} is no table"))?;
+            set(inner, rest, value)
+        }
+    }
+}
+
+fn table(path: &Path) -> anyhow::Result<Table> {
+    let told = || path.display().to_string();
+    let text = std::fs::read_to_string(path).with_context(told)?;
+    text.parse().with_context(told)
+}
+
+fn write(path: &Path, table: &Table) -> anyhow::Result<()> {
+    let told = || path.display().to_string();
+    let text = toml::to_string(table).with_context(told)?;
+    std::fs::write(path, text).with_context(told)
+}
+
+fn edit(path: &Path, change: impl Fn(&mut Table) -> anyhow::Result<()>) -> anyhow::Result<()> {
+    let mut read = table(path)?;
+    change(&mut read).with_context(|| path.display().to_string())?;
+    write(path, &read)
 }
 
 fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
@@ -121,25 +189,43 @@ fn copy(from: &Path, to: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Replaces the lines for which `change` has another one; at least one must be found.
-fn edit(path: &Path, change: impl Fn(&str) -> Option<String>) -> anyhow::Result<()> {
-    let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    let mut changed = 0;
-    let lines: Vec<String> = text
-        .lines()
-        .map(|line| match change(line) {
-            Some(other) => {
-                changed += 1;
-                other
-            }
-            None => line.to_owned(),
-        })
-        .collect();
-    if changed == 0 {
-        return Err(anyhow!(
-            "{}: found no line to change for the study",
-            path.display()
-        ));
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_key_is_set_by_its_path_and_its_neighbours_stay() {
+        let mut table: Table = "a = 1\n[b]\nc = 2\nd = 3\n".parse().expect("a table");
+        set(&mut table, "b.c", 7.into()).expect("a key of a table");
+        set(&mut table, "x.y", "new".into()).expect("a new table");
+        let expected = "a = 1\n[b]\nc = 7\nd = 3\n[x]\ny = \"new\"\n";
+        assert_eq!(table, expected.parse::<Table>().expect("a table"));
+        assert!(set(&mut table, "a.b", 1.into()).is_err(), "a is a number");
     }
-    std::fs::write(path, lines.join("\n") + "\n").with_context(|| path.display().to_string())
+
+    #[test]
+    fn what_a_variant_says_of_the_world_comes_after_what_is_exact() {
+        let variant = Variant {
+            world: vec![("devices.clock_ppm", 50.0.into())],
+            ..Variant::exact(115_200, Vec::new())
+        };
+        let own = "[devices]\nclock_ppm = 9.0\nao_gain_pct = 9.0\nlatency_ms_mean = 5.0\n";
+        let world = variant
+            .world_on(own.parse().expect("a table"))
+            .expect("a world");
+        let devices = world["devices"].as_table().expect("a table");
+        assert_eq!(devices["clock_ppm"], Value::from(50.0));
+        assert_eq!(devices["ao_gain_pct"], Value::from(0.0));
+        assert_eq!(devices["latency_ms_mean"], Value::from(5.0), "of --world");
+    }
+
+    #[test]
+    fn certificates_become_true() {
+        let text = "[[golden]]\nserial = \"G\"\noperate_voltage_v = { value = 7.4, u = 0.001 }\n";
+        let mut golden: Table = text.parse().expect("a table");
+        certify(&mut golden).expect("certificates");
+        let certified = &golden["golden"][0]["operate_voltage_v"];
+        assert_eq!(certified["u"], Value::from(CERTIFIED_U));
+        assert_eq!(certified["value"], Value::from(7.4));
+    }
 }

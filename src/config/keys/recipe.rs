@@ -2,6 +2,7 @@
 
 use crate::config::form::{Form, Key, Range, above_zero, from_to, key, optional, whole};
 use crate::gauge::Strategy;
+use crate::gauge::sampling::Polarities;
 
 const LENGTH: Range = Range {
     unit: "mm",
@@ -123,6 +124,48 @@ const DECISION: &[Key] = &[
     ),
 ];
 
+const COIL: &[Key] = &[
+    optional(
+        "settles_ms",
+        whole(1, 1000, "ms"),
+        "station",
+        "from the drive to the first conversion that counts; 13 where nothing is said",
+    ),
+    optional(
+        "scans",
+        whole(1, 100, ""),
+        "station",
+        "scans that are averaged; 1 where nothing is said",
+    ),
+];
+
+const CONTACT: &[Key] = &[
+    optional(
+        "polarities",
+        Form::Choice(&Polarities::NAMES),
+        "station",
+        "directions of the source on one closure; plus_minus where nothing is said",
+    ),
+    optional(
+        "closures",
+        whole(1, 20, ""),
+        "station",
+        "timed closures of either contact, at the most; 1 where nothing is said",
+    ),
+    optional(
+        "stops_early",
+        Form::Flag,
+        "station",
+        "no further closure once both contacts are 3 standard deviations clear of their limits",
+    ),
+    optional(
+        "closure_scatter_pct",
+        whole(0, 100, "%"),
+        "station",
+        "least scatter of a film from closure to closure (1 sd); 10 where nothing is said",
+    ),
+];
+
 const STRATEGY: &[Key] = &[
     optional(
         "operate_voltage_v",
@@ -135,6 +178,18 @@ const STRATEGY: &[Key] = &[
         Form::Choice(&Strategy::NAMES),
         "station",
         "how the release threshold is found",
+    ),
+    optional(
+        "coil",
+        Form::Table(COIL),
+        "station",
+        "how the coil resistance is read",
+    ),
+    optional(
+        "contact",
+        Form::Table(CONTACT),
+        "station",
+        "how the contacts are read",
     ),
 ];
 

@@ -123,6 +123,32 @@ fn a_masked_contact_channel_hinders_every_strategy() {
 }
 
 #[test]
+fn a_converter_out_of_fast_mode_is_refused_unless_nobody_counts_on_it() {
+    for name in ["contact_ai", "coil_ai"] {
+        let slow = |wiring: &mut Wiring| module(wiring, name).fast = false;
+        assert_eq!(hindered(slow), Strategy::ALL);
+        let [_, _, expected] = refused(Strategy::CoarseFine, slow);
+        assert!(expected.contains(&format!("module {name} is not in fast mode")));
+        let (mut wiring, mut accuracy) = plant();
+        slow(&mut wiring);
+        accuracy.conversions_per_s = 10.0;
+        assert_eq!(hindrance(Strategy::CoarseFine, &wiring, &accuracy), None);
+    }
+}
+
+#[test]
+fn closures_cannot_stop_early_where_no_limit_says_when() {
+    let (wiring, accuracy) = plant();
+    let mut recipe = recipe(Strategy::CoarseFine);
+    recipe.test.strategy.contact.stops_early = true;
+    check(&recipe, &wiring, &accuracy).unwrap();
+    recipe.limits = toml::from_str("[contact_resistance_no_mohm]\nhigh = 100.0\n").unwrap();
+    let fault = check(&recipe, &wiring, &accuracy).unwrap_err();
+    assert_eq!(fault.key, "test.strategy.contact.stops_early");
+    assert!(fault.expected.contains("contact_resistance_nc_mohm"));
+}
+
+#[test]
 fn outputs_refreshed_every_two_milliseconds_ramp_and_slower_ones_only_step() {
     let (wiring, mut accuracy) = plant();
     accuracy.ao_refresh_ms = 2.0;

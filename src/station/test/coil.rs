@@ -14,8 +14,6 @@ use crate::station::act::{Act, CoilScan, Read, Readings};
 use crate::station::supply::Supply;
 use crate::units::{Span, Volt};
 
-/// Current settles to 0.05 % in 7.6 L/R; an open armature has L/R of 1.7 ms.
-const SETTLES: Span = Span::ms(13);
 /// Channels of the coil converter that a recipe has enabled.
 const CHANNELS: usize = 2;
 /// Below this fraction of the pre-bias the supply or the probe-up chain is in trouble, not the coil.
@@ -40,6 +38,7 @@ const IDLE: [(DigitalOut, bool); 8] = [
 /// between arming and the ramp.
 pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
     let prebias = Volt(bench.recipe.test.prebias_v);
+    let sampling = bench.recipe.test.strategy.coil;
     let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
     let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
     let repeated = findings.attempts(Parameter::CoilResistance) > 0;
@@ -60,13 +59,20 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
             (SelectNo, true),
             (CoilDrive, true),
         ]),
-        Act::Wait(INTERLOCK + SETTLES),
+        Act::Wait(INTERLOCK + Span::ms(sampling.settles_ms.into())),
         Act::Mark,
         board(&[(Arm, true)]),
         Act::Read(Read::Gates),
         Act::ConvertSinceMark(bench.fresh(CHANNELS)),
         Act::Read(Read::Coil),
     ]);
+    for _ in 1..sampling.scans {
+        acts.extend([
+            Act::Mark,
+            Act::ConvertSinceMark(bench.round(CHANNELS)),
+            Act::Read(Read::Coil),
+        ]);
+    }
     acts
 }
 

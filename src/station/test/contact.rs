@@ -1,9 +1,10 @@
-//! Contact resistance of a closure: source on, both polarities, each read from a conversion that began
-//! after the source had settled.
+//! Contact resistance of a closure: source on, the polarities of the recipe, each read from a conversion that
+//! began after the source had settled.
 
 use super::{Bench, Findings, INTERLOCK, Stage, board};
 use crate::gauge::Parameter;
-use crate::gauge::contact::{Reversal, resistance};
+use crate::gauge::contact::{Closure, resistance, u_with_later_v};
+use crate::gauge::sampling::Polarities;
 use crate::gauge::verdict::Bin;
 use crate::rig::point::DigitalOut::{KelvinTest, SourceOn, SourceReverse};
 use crate::rig::sample::{Quality, Sample};
@@ -17,14 +18,31 @@ const EMF_MOVES_V: f64 = 30e-6 * 50.0;
 /// Current and amplifier have settled.
 pub(super) const SOURCE_SETTLES: Span = Span::ms(1);
 
-/// The reversed reading after a forward one; the source stays on and reversed.
-pub(super) fn reversed(bench: &Bench) -> [Act; 4] {
+/// The source turned round, and a reading.
+fn turned(bench: &Bench, reverse: bool) -> [Act; 4] {
     [
-        board(&[(SourceReverse, true)]),
+        board(&[(SourceReverse, reverse)]),
         Act::Mark,
         Act::ConvertSinceMark(INTERLOCK + SOURCE_SETTLES + bench.fresh(1)),
         Act::Read(Read::Drop),
     ]
+}
+
+/// The readings after a first forward one; the source stays on, the way it was driven last.
+pub(super) fn reversed(bench: &Bench) -> Vec<Act> {
+    let mut acts = turned(bench, true).to_vec();
+    match bench.recipe.test.strategy.contact.polarities {
+        Polarities::PlusMinus => {}
+        Polarities::PlusMinusMinusPlus => {
+            acts.extend([
+                Act::Mark,
+                Act::ConvertSinceMark(bench.round(1)),
+                Act::Read(Read::Drop),
+            ]);
+            acts.extend(turned(bench, false));
+        }
+    }
+    acts
 }
 
 /// Both polarities at rest. The temperature of the part is read while the first one is converted.
@@ -78,13 +96,16 @@ impl Unread {
     }
 }
 
-/// Both polarities of one closure from the first two drops of a stage.
-pub(super) fn reversal(readings: &Readings) -> Result<Reversal, Unread> {
+/// The closure that a stage has read with the polarities of the recipe.
+pub(super) fn closure(bench: &Bench, readings: &Readings) -> Result<Closure, Unread> {
     let compliance = readings.boards.iter().any(|board| board.compliance);
-    Ok(Reversal {
-        forward: drop_of(readings.drops.first(), compliance)?,
-        reverse: drop_of(readings.drops.get(1), compliance)?,
-    })
+    let drops: Result<Vec<Volt>, Unread> = readings
+        .drops
+        .iter()
+        .map(|sample| drop_of(Some(sample), compliance))
+        .collect();
+    let polarities = bench.recipe.test.strategy.contact.polarities;
+    Closure::of(&drops?, polarities).ok_or(Unread::Missing)
 }
 
 pub(super) fn conclude_nc(
@@ -98,10 +119,10 @@ pub(super) fn conclude_nc(
         }
         Some(_) | None => findings.void("track temperature not readable"),
     }
-    match reversal(readings) {
+    match closure(bench, readings) {
         Ok(closure) => {
-            findings.drop_zero = Some(closure.zero());
-            add_nc(bench, closure.drop(), &readings.drops, findings);
+            findings.drop_zero = Some(closure.zero);
+            add_nc(bench, closure.drop, &readings.drops, findings);
         }
         Err(unread) => unread.tell("NC contact", findings),
     }
@@ -119,17 +140,34 @@ pub(super) fn is_implausible(which: &str, mohm: f64, findings: &mut Findings) ->
     implausible
 }
 
+/// True when more closures would not change what is said of this contact.
+pub(super) fn is_clear(bench: &Bench, findings: &Findings, parameter: Parameter) -> bool {
+    let recipe = &bench.recipe;
+    let per_v = bench.calibration.contact_mohm_per_v.value;
+    let values: Vec<f64> = match parameter {
+        Parameter::ContactResistanceNc => findings.nc_drops.iter().map(|it| per_v * it.0).collect(),
+        Parameter::ContactResistanceNo
+        | Parameter::CoilResistance
+        | Parameter::OperateVoltage
+        | Parameter::ReleaseVoltage
+        | Parameter::OperateTime
+        | Parameter::ReleaseTime
+        | Parameter::OperateBounce
+        | Parameter::ReleaseBounce => findings.each(parameter).map(|it| it.value).collect(),
+    };
+    let u = findings
+        .result(parameter)
+        .map_or(f64::INFINITY, |reading| reading.budget.combined());
+    let sampling = recipe.test.strategy.contact;
+    sampling.is_clear(&values, u, &recipe.limits.of(parameter))
+}
+
 /// Adds one NC closure; the result is the mean of all closures read.
 pub(super) fn add_nc(bench: &Bench, drop: Volt, samples: &[Sample], findings: &mut Findings) {
     findings.nc_drops.push(drop);
-    // The first closure is read with both polarities. A later one is read forward only and takes its zero
-    // from the first, so that half of the first's noise enters twice.
-    let one = bench.reading_u_v();
-    let u = if findings.nc_drops.len() == 1 {
-        one / 2f64.sqrt()
-    } else {
-        one.hypot(EMF_MOVES_V)
-    };
+    let first = bench.recipe.test.strategy.contact.polarities.signs().len();
+    let later = findings.nc_drops.len() - 1;
+    let u = u_with_later_v(first, later, bench.reading_u_v(), EMF_MOVES_V);
     if let Some(reading) = resistance(&findings.nc_drops, bench.calibration.contact_mohm_per_v, u) {
         if is_implausible("NC contact", reading.value, findings) {
             return;

@@ -137,23 +137,23 @@ impl Findings {
         self.readings.retain(|(known, _)| *known != parameter);
     }
 
+    /// Each result of a parameter, in the order they came.
+    pub fn each(&self, parameter: Parameter) -> impl Iterator<Item = &Reading> {
+        self.readings
+            .iter()
+            .filter(move |(known, _)| *known == parameter)
+            .map(|(_, reading)| reading)
+    }
+
     /// Result of a parameter: the mean of its repetitions.
     pub fn result(&self, parameter: Parameter) -> Option<Reading> {
-        let repetitions: Vec<Reading> = self
-            .readings
-            .iter()
-            .filter(|(known, _)| *known == parameter)
-            .map(|(_, r)| r.clone())
-            .collect();
+        let repetitions: Vec<Reading> = self.each(parameter).cloned().collect();
         budget::mean(&repetitions)
     }
 
     /// How often a parameter was measured.
     pub fn attempts(&self, parameter: Parameter) -> usize {
-        self.readings
-            .iter()
-            .filter(|(known, _)| *known == parameter)
-            .count()
+        self.each(parameter).count()
     }
 
     /// Replies behind a parameter, in the order they came.

@@ -119,6 +119,9 @@ impl Test {
             }
             self.conclude(now);
             if self.stages.front() == Some(&Stage::Off) {
+                self.add_closure();
+            }
+            if self.stages.front() == Some(&Stage::Off) {
                 self.add_slow_repeats();
             }
             let Some(stage) = self.stages.pop_front() else {
@@ -173,6 +176,25 @@ impl Test {
             }
             self.stages.push_front(stage);
         }
+    }
+
+    /// Another timed closure of both contacts, while the recipe asks for one.
+    fn add_closure(&mut self) {
+        let (findings, recipe) = (&self.findings, &self.bench.recipe);
+        let sampling = recipe.test.strategy.contact;
+        let closures = findings.attempts(Parameter::ContactResistanceNo) as u64;
+        if self.slow_done || findings.stopped() || closures >= sampling.closures.into() {
+            return;
+        }
+        let clear = |parameter| contact::is_clear(&self.bench, findings, parameter);
+        if sampling.stops_early
+            && clear(Parameter::ContactResistanceNo)
+            && clear(Parameter::ContactResistanceNc)
+        {
+            return;
+        }
+        self.stages.push_front(Stage::TimedRelease);
+        self.stages.push_front(Stage::TimedOperate);
     }
 
     /// Repeats the stages whose results lie inside the guard band, once per test.

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod rests;
+mod sampling;
 mod stages;
 mod whole;
 

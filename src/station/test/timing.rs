@@ -2,7 +2,7 @@
 //! bounce; the closure it ends on is then read for its contact resistance.
 
 use super::coil::rest;
-use super::contact::{SOURCE_SETTLES, add_nc, drop_of, is_implausible, reversal, reversed};
+use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, reversed};
 use super::operate::dropped;
 use super::{Bench, Findings, OFF, Stage, board};
 use crate::gauge::Parameter;
@@ -39,6 +39,8 @@ pub(super) fn acts_operate(
     let off = OFF.max(std::mem::take(&mut findings.still_ramping));
     acts.extend([
         board(&[
+            (SourceOn, false),
+            (SourceReverse, false),
             (RampMode, false),
             (SelectNo, true),
             (EventNoBreak, false),
@@ -170,11 +172,11 @@ pub(super) fn conclude_operate(
         findings,
     );
     findings.operated = true;
-    match reversal(readings) {
+    match closure(bench, readings) {
         Ok(closure) => {
-            let u = bench.reading_u_v() / 2f64.sqrt();
+            let u = closure.u_v(bench.reading_u_v());
             if let Some(reading) =
-                resistance(&[closure.drop()], bench.calibration.contact_mohm_per_v, u)
+                resistance(&[closure.drop], bench.calibration.contact_mohm_per_v, u)
                 && !is_implausible("NO contact", reading.value, findings)
             {
                 findings.found(Parameter::ContactResistanceNo, reading, &readings.drops);

@@ -106,8 +106,16 @@ impl Board {
         let reference = self.commands.is_on(Out::ReferenceContact);
         let emf = relay
             .filter(|_| !reference)
-            .map_or(0.0, |r| r.specimen().emf_v);
+            .map_or(0.0, |r| r.specimen().emf_v + self.emf_drift_v());
         let monitor_a = self.table.monitor_v / (self.table.monitor_ohm + ohm);
         (self.contact_a(relay) + monitor_a) * ohm + emf
+    }
+
+    /// What the EMF has moved by since the selected contact closed, volts.
+    fn emf_drift_v(&self) -> f64 {
+        let closed_us = self
+            .closed_since_us
+            .map_or(0.0, |since| self.now_us - since);
+        self.table.emf_drift_uv_per_s * 1e-6 * closed_us * 1e-6
     }
 }

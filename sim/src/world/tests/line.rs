@@ -373,3 +373,23 @@ fn a_falling_ramp_latches_on_the_break_of_no() {
         "lag and temperature: {seen} against {truth}"
     );
 }
+
+#[test]
+fn an_emf_that_drifts_moves_the_drop_of_a_closed_contact_and_not_that_of_the_reference() {
+    let path = std::env::temp_dir().join(format!("rigsim-drift-{}.toml", std::process::id()));
+    std::fs::write(&path, "[board]\nemf_drift_uv_per_s = 5000.0\n").unwrap();
+    let mut hand = Hand::new(WorldOptions {
+        world_file: Some(path.clone()),
+        ..options(false)
+    });
+    std::fs::remove_file(&path).unwrap();
+    hand.feed();
+    let first = hand.reads("contact_drop");
+    hand.wait(100.0);
+    let moved = hand.reads("contact_drop") - first;
+    assert!((moved - 0.0005).abs() < 1e-12, "{moved}");
+    hand.set("reference_contact", true);
+    let first = hand.reads("contact_drop");
+    hand.wait(100.0);
+    assert_eq!(hand.reads("contact_drop"), first);
+}

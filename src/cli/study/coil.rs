@@ -1,0 +1,92 @@
+//! Seconds against error of the coil resistance: how long the current settles, how many scans are averaged, how
+//! the coil warms meanwhile, and what temperature and converter add.
+//!
+//! A conversion is free-running and counts only when it began after the settling; two channels share the
+//! converter, so a first scan takes three periods of it, each further one two. The bias of many scans is the
+//! self-heating at the pre-bias.
+
+use super::figure::{Bar, Figure};
+use super::fleet::Order;
+use super::method::{self, BAUDS, Paid};
+use super::output::Report;
+use super::variant::{Change, Variant};
+use crate::gauge::Parameter;
+
+const COIL: Paid = Paid {
+    parameter: Parameter::CoilResistance,
+    stages: &["coil"],
+    more_s: 0.0,
+};
+/// Milliseconds of settling, and scans: the third is what a recipe does that says nothing.
+const METHODS: [(i64, i64); 7] = [
+    (1, 1),
+    (4, 1),
+    (13, 1),
+    (25, 1),
+    (13, 4),
+    (13, 16),
+    (13, 64),
+];
+/// Total rms that production may have, percent.
+const TOTAL_PCT: f64 = 0.12;
+
+/// What is added to a world without errors, for production's own method.
+fn worlds() -> [(&'static str, Vec<Change>); 3] {
+    [
+        (
+            "with converter errors",
+            vec![
+                ("devices.ai_gain_pct", 0.1.into()),
+                ("devices.ai_offset_pct_of_range", 0.05.into()),
+            ],
+        ),
+        (
+            "with part 0.15 K off the track",
+            vec![("environment.part_minus_track_sd_k", 0.15.into())],
+        ),
+        (
+            "with thermometers 0.1 K off",
+            vec![("environment.rtd_error_sd_k", 0.1.into())],
+        ),
+    ]
+}
+
+/// Runs the lots and draws the report up.
+///
+/// # Errors
+/// A lot that could not be run.
+pub fn study(order: &Order) -> anyhow::Result<Report> {
+    let mut methods = Vec::new();
+    for baud in BAUDS {
+        for (settles_ms, scans) in METHODS {
+            let recipe = vec![
+                ("test.strategy.coil.settles_ms", settles_ms.into()),
+                ("test.strategy.coil.scans", scans.into()),
+            ];
+            let lots = method::lots(&Variant::exact(baud, recipe), order)?;
+            let name = format!("settle {settles_ms} ms, scans {scans}, {baud}");
+            methods.push(COIL.row(name, &lots));
+        }
+    }
+    let groups = vec![methods, errors(order)?];
+    Ok(method::report("coil", order, groups, 2, vec![TOTAL_PCT]))
+}
+
+/// Production's method in worlds with one error each, and with all of them.
+fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
+    let mut rows = Vec::new();
+    for (name, world) in worlds() {
+        let variant = Variant {
+            world,
+            ..Variant::exact(BAUDS[0], Vec::new())
+        };
+        rows.push(COIL.row(name, &method::lots(&variant, order)?));
+    }
+    let all = Variant {
+        exact: false,
+        ..Variant::exact(BAUDS[0], Vec::new())
+    };
+    let total = COIL.row("with every error of the world", &method::lots(&all, order)?);
+    rows.push(total.bar(Bar::AtMost(TOTAL_PCT)));
+    Ok(rows)
+}

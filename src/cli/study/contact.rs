@@ -1,0 +1,173 @@
+//! Seconds against error of contact resistance: polarities, a drifting EMF, closures, early stop.
+//!
+//! - Error is against the closures that were read: what the meter does. EMF of 10 uV stands in every world here.
+//! - Repeatability is another thing: the same bodies are fed again and again, and what one body shows differs by
+//!   its films. It falls with the root of the closures, and the reading has next to no part in it.
+//! - Seconds are those of all stages that read a contact; they give times and bounce as well.
+
+use super::figure::Figure;
+use super::fleet::Order;
+use super::lot::Lot;
+use super::method::{self, BAUDS, Paid};
+use super::output::Report;
+use super::variant::{Change, Variant};
+use crate::gauge::Parameter;
+use crate::quality::Spread;
+
+const STAGES: &[&str] = &["nc_contact", "timed_operate", "timed_release"];
+const CONTACTS: [(&str, Paid); 2] = [
+    ("NO", paid(Parameter::ContactResistanceNo)),
+    ("NC", paid(Parameter::ContactResistanceNc)),
+];
+/// Thermal EMF of a part, microvolts (1 sd).
+const EMF: Change = ("lot.thermal_emf_sd_uv", toml::Value::Float(10.0));
+/// Drift at which two polarities begin to err more by the EMF than by their noise, microvolts per second.
+const DRIFT: Change = ("board.emf_drift_uv_per_s", toml::Value::Float(5000.0));
+/// How often a body comes in the study of films.
+const PASSES: u64 = 6;
+
+const fn paid(parameter: Parameter) -> Paid {
+    Paid {
+        parameter,
+        stages: STAGES,
+        more_s: 0.0,
+    }
+}
+
+/// Polarities by the name of recipe and row.
+const POLARITIES: [(&str, &str); 2] = [("plus_minus", "+ -"), ("plus_minus_minus_plus", "+ - - +")];
+
+fn recipe(polarities: &str, closures: i64, stops_early: bool) -> Vec<Change> {
+    vec![
+        ("test.strategy.contact.polarities", polarities.into()),
+        ("test.strategy.contact.closures", closures.into()),
+        ("test.strategy.contact.stops_early", stops_early.into()),
+    ]
+}
+
+/// Runs the lots and draws the report up.
+///
+/// # Errors
+/// A lot that could not be run.
+pub fn study(order: &Order) -> anyhow::Result<Report> {
+    let groups = vec![
+        polarities(order)?,
+        drifting(order)?,
+        films(order)?,
+        early(order)?,
+    ];
+    Ok(method::report("contact", order, groups, 2, vec![0.3]))
+}
+
+fn rows(name: &str, lots: &[Lot]) -> [Figure; 2] {
+    CONTACTS.map(|(contact, paid)| paid.row(format!("{contact} {name}"), lots))
+}
+
+fn in_world(baud: u32, recipe: Vec<Change>, world: Vec<Change>) -> Variant {
+    Variant {
+        world,
+        ..Variant::exact(baud, recipe)
+    }
+}
+
+fn polarities(order: &Order) -> anyhow::Result<Vec<Figure>> {
+    let mut figures = Vec::new();
+    for baud in BAUDS {
+        for (key, sign) in POLARITIES {
+            for closures in [1, 3] {
+                let variant = in_world(baud, recipe(key, closures, false), vec![EMF]);
+                let name = format!("{sign}, closures {closures}, {baud}");
+                figures.extend(rows(&name, &method::lots(&variant, order)?));
+            }
+        }
+    }
+    Ok(figures)
+}
+
+fn drifting(order: &Order) -> anyhow::Result<Vec<Figure>> {
+    let mut figures = Vec::new();
+    for (key, sign) in POLARITIES {
+        let variant = in_world(BAUDS[0], recipe(key, 1, false), vec![EMF, DRIFT]);
+        let name = format!("{sign}, EMF drifts 5 mV/s");
+        figures.extend(rows(&name, &method::lots(&variant, order)?));
+    }
+    Ok(figures)
+}
+
+/// What one body shows from pass to pass, percent of its resistance.
+fn films(order: &Order) -> anyhow::Result<Vec<Figure>> {
+    let bodies = (order.parts / PASSES).max(2);
+    let order = Order {
+        parts: bodies * PASSES,
+        ..order.clone()
+    };
+    let mut figures: Vec<Figure> = Vec::new();
+    for closures in [1, 2, 4, 8] {
+        let variant = Variant {
+            faults: vec![format!("refeed={bodies}")],
+            ..in_world(BAUDS[0], recipe("plus_minus", closures, false), vec![EMF])
+        };
+        let lots = method::lots(&variant, &order)?;
+        for (contact, paid) in CONTACTS {
+            let name = format!("{contact} of the same body, closures {closures}");
+            figures.push(repeatability(name, &lots, paid, bodies));
+        }
+    }
+    Ok(by_root(figures))
+}
+
+/// Beside each row what the root of the closures makes of the first of its contact; NC has one more, at rest.
+fn by_root(figures: Vec<Figure>) -> Vec<Figure> {
+    let first: Vec<Option<f64>> = figures.iter().take(2).map(|row| row.value).collect();
+    let root = |place: usize| {
+        let (contact, closures) = (place % 2, 2f64.powi((place / 2) as i32));
+        let at_rest = contact as f64;
+        first[contact].map(|value| value * ((1.0 + at_rest) / (closures + at_rest)).sqrt())
+    };
+    let rows = figures.into_iter().enumerate();
+    rows.map(|(place, row)| row.with("by_root", root(place)))
+        .collect()
+}
+
+/// Pooled scatter of the values of one body, relative to its mean.
+fn repeatability(name: String, lots: &[Lot], paid: Paid, bodies: u64) -> Figure {
+    let body = |lot: &Lot, body: u64| -> Vec<f64> {
+        let again = lot.good().filter(|part| (part.seq - 1) % bodies == body);
+        again
+            .filter_map(|part| part.reading(paid.parameter))
+            .map(|reading| reading.value)
+            .collect()
+    };
+    let relative: Vec<f64> = lots
+        .iter()
+        .flat_map(|lot| (0..bodies).map(move |it| body(lot, it)))
+        .filter_map(|values| {
+            let spread = Spread::of(&values);
+            Some(100.0 * spread.sd()? / spread.mean()?)
+        })
+        .collect();
+    let n = relative.len() as f64;
+    let rms = (relative.iter().map(|it| it * it).sum::<f64>() / n).sqrt();
+    Figure::new(name, relative.len() as u64, Some(rms), "%")
+        .with("seconds", paid.seconds(lots).mean())
+}
+
+/// A part far from its limit is left after one closure, one near it is read up to eight times.
+fn early(order: &Order) -> anyhow::Result<Vec<Figure>> {
+    let mut figures = Vec::new();
+    for mohm in [20.0, 60.0, 80.0, 95.0] {
+        for stops_early in [true, false] {
+            let world = vec![
+                EMF,
+                ("lot.contact_no_mohm_median", mohm.into()),
+                ("lot.contact_ln_sd", 0.01.into()),
+            ];
+            let variant = in_world(BAUDS[0], recipe("plus_minus", 8, stops_early), world);
+            let lots = method::lots(&variant, order)?;
+            let way = if stops_early { "up to 8" } else { "8" };
+            let name = format!("NO of {mohm} mOhm, closures {way}");
+            figures.push(CONTACTS[0].1.row(name, &lots));
+        }
+    }
+    Ok(figures)
+}

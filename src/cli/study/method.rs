@@ -1,0 +1,101 @@
+//! Ways to measure side by side: one row of error and one of seconds for each, and their plot.
+//!
+//! Seconds are rig time, the mean over good parts of the stages that the method pays for. Error is the median
+//! over lots of the rms against the truth; bias the median over lots of the mean error; max that of any part.
+
+use super::chart::Chart;
+use super::error::{Pooled, unit};
+use super::figure::{Bar, Figure};
+use super::fleet::Order;
+use super::lot::{Lot, Part};
+use super::output::Report;
+use super::variant::Variant;
+use crate::gauge::Parameter;
+use crate::quality::Spread;
+
+/// Baud rates that are compared; bars are those of the first.
+pub const BAUDS: [u32; 2] = [115_200, 9600];
+
+/// What is paid for and what for it is had.
+#[derive(Debug, Clone, Copy)]
+pub struct Paid {
+    /// Whose error is told.
+    pub parameter: Parameter,
+    /// Stages whose time is booked on it.
+    pub stages: &'static [&'static str],
+    /// Seconds besides, that no stage of this test tells.
+    pub more_s: f64,
+}
+
+impl Paid {
+    /// Stages of which a part has at least one, in seconds.
+    pub fn seconds(&self, lots: &[Lot]) -> Spread {
+        let of = |name: &&str, part: &Part| part.stages.get(*name).copied();
+        let times: Vec<f64> = lots
+            .iter()
+            .flat_map(Lot::good)
+            .filter_map(|part| {
+                let told: Vec<f64> = self.stages.iter().filter_map(|it| of(it, part)).collect();
+                (!told.is_empty()).then(|| told.iter().sum::<f64>() + self.more_s)
+            })
+            .collect();
+        Spread::of(&times)
+    }
+
+    /// A row of error with its seconds beside it.
+    pub fn row(&self, name: impl Into<String>, lots: &[Lot]) -> Figure {
+        let errors = Pooled::of(self.parameter, lots);
+        self.row_of(name, lots, &errors)
+    }
+
+    /// The same for errors that are not those of the parameter's own value.
+    pub fn row_of(&self, name: impl Into<String>, lots: &[Lot], errors: &Pooled) -> Figure {
+        Figure::new(name, errors.n(), errors.median_rms(), unit(self.parameter))
+            .with("bias", errors.median_bias())
+            .with("max", errors.worst())
+            .with("seconds", self.seconds(lots).mean())
+    }
+
+    /// A row of seconds.
+    pub fn time(&self, name: &str, lots: &[Lot], at_most_s: f64) -> Figure {
+        let seconds = self.seconds(lots);
+        Figure::new(format!("{name} time"), seconds.n(), seconds.mean(), "s")
+            .with("longest", seconds.max())
+            .bar(Bar::AtMost(at_most_s))
+    }
+}
+
+/// Runs the lots of a variant.
+///
+/// # Errors
+/// A configuration that could not be changed, or a lot that could not be run.
+pub fn lots(variant: &Variant, order: &Order) -> anyhow::Result<Vec<Lot>> {
+    variant.of(order)?.order.run_all()
+}
+
+/// The report of a study that compares methods; its plot has a bar for every row of the first `drawn` groups.
+pub fn report(
+    study: &'static str,
+    order: &Order,
+    groups: Vec<Vec<Figure>>,
+    drawn: usize,
+    marks: Vec<f64>,
+) -> Report {
+    let rows = || groups.iter().take(drawn).flatten();
+    Report {
+        study,
+        about: format!(
+            "{}, instruments without errors unless a row says so",
+            order.about()
+        ),
+        notes: Vec::new(),
+        chart: Chart {
+            title: format!("rms error of a method: {}", order.about()),
+            unit: rows().next().map_or("", |row| row.unit),
+            from: 0.0,
+            marks,
+            bars: rows().map(|row| (row.name.clone(), row.value)).collect(),
+        },
+        groups,
+    }
+}

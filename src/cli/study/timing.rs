@@ -1,0 +1,121 @@
+//! Error of times and bounce: what the latch is for, and what clock, gate delay and bus add.
+//!
+//! Gate 0 ends at the first make, gate 1 is open whenever the contact is: alone it would be the time, bounce
+//! included. So the row of the raw gate is the sum of two values of the same test. A count is the floor of a
+//! length with a random phase: 8.2 us rms at 50 kHz, whatever the baud rate. A bounce is the difference of two counts.
+//! The truth of a time is that of the last operation: a mean over several would be held against one of them.
+
+use super::error::Pooled;
+use super::figure::{Bar, Figure};
+use super::fleet::Order;
+use super::lot::{Lot, Part};
+use super::method::{self, BAUDS, Paid};
+use super::output::Report;
+use super::variant::{Change, Variant};
+use crate::gauge::Parameter;
+
+const fn paid(parameter: Parameter, stages: &'static [&'static str]) -> Paid {
+    Paid {
+        parameter,
+        stages,
+        more_s: 0.0,
+    }
+}
+
+const OPERATE: &[&str] = &["timed_operate"];
+const RELEASE: &[&str] = &["timed_release"];
+/// Name, time and bounce of either direction.
+const DIRECTIONS: [(&str, Paid, Paid); 2] = [
+    (
+        "operate",
+        paid(Parameter::OperateTime, OPERATE),
+        paid(Parameter::OperateBounce, OPERATE),
+    ),
+    (
+        "release",
+        paid(Parameter::ReleaseTime, RELEASE),
+        paid(Parameter::ReleaseBounce, RELEASE),
+    ),
+];
+/// Total rms that production may have, ms.
+const TIME_MS: f64 = 0.02;
+const BOUNCE_MS: f64 = 0.05;
+
+/// Runs the lots and draws the report up.
+///
+/// # Errors
+/// A lot that could not be run.
+pub fn study(order: &Order) -> anyhow::Result<Report> {
+    let mut gates = Vec::new();
+    for baud in BAUDS {
+        let lots = method::lots(&Variant::exact(baud, Vec::new()), order)?;
+        gates.extend(rows(&baud.to_string(), &lots));
+    }
+    let groups = vec![gates, errors(order)?];
+    Ok(method::report(
+        "timing",
+        order,
+        groups,
+        2,
+        vec![TIME_MS, BOUNCE_MS],
+    ))
+}
+
+/// Latched and raw gate and the bounce between them, of both directions.
+fn rows(name: &str, lots: &[Lot]) -> Vec<Figure> {
+    let of = |(direction, time, bounce): &(&str, Paid, Paid)| {
+        let raw = Pooled::by(lots, |part| raw(part, time.parameter, bounce.parameter));
+        [
+            time.row(format!("{direction}, latched gate, {name}"), lots),
+            time.row_of(format!("{direction}, raw gate, {name}"), lots, &raw),
+            bounce.row(format!("{direction} bounce, {name}"), lots),
+        ]
+    };
+    DIRECTIONS.iter().flat_map(of).collect()
+}
+
+/// Error of a time that the contact itself would have ended, ms.
+fn raw(part: &Part, time: Parameter, bounce: Parameter) -> Option<f64> {
+    let (time, bounce) = (part.reading(time)?, part.reading(bounce)?);
+    Some(time.value + bounce.value - time.truth)
+}
+
+/// One operation in worlds with one error each, and with all of them.
+fn errors(order: &Order) -> anyhow::Result<Vec<Figure>> {
+    let worlds: [(&str, Vec<Change>); 2] = [
+        (
+            "reference clock up to 50 ppm off",
+            vec![("devices.clock_ppm", 50.0.into())],
+        ),
+        (
+            "gates up to 10 us late",
+            vec![("board.gate_delay_us", 10.0.into())],
+        ),
+    ];
+    let mut figures = Vec::new();
+    for (name, world) in worlds {
+        let variant = Variant {
+            world,
+            ..Variant::exact(BAUDS[0], Vec::new())
+        };
+        let lots = method::lots(&variant, order)?;
+        figures.extend(
+            rows(name, &lots)
+                .into_iter()
+                .filter(|row| !row.name.contains("raw")),
+        );
+    }
+    let all = Variant {
+        exact: false,
+        ..Variant::exact(BAUDS[0], Vec::new())
+    };
+    let lots = method::lots(&all, order)?;
+    for (direction, time, bounce) in DIRECTIONS {
+        let of = |paid: Paid, what: &str, bar: f64| {
+            let name = format!("{direction}{what}, every error of the world");
+            paid.row(name, &lots).bar(Bar::AtMost(bar))
+        };
+        figures.extend([of(time, "", TIME_MS), of(bounce, " bounce", BOUNCE_MS)]);
+    }
+    Ok(figures)
+}
