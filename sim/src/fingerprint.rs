@@ -12,7 +12,7 @@
 //! A module is its address from 0 here, but for the analog inputs. Time of analog inputs goes up and down, so that the
 //! mean over a window of the converter is a time of that window. What the outputs carry is recorded for the judge.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::config::LineSpec;
@@ -52,13 +52,26 @@ pub struct FingerprintLine {
     outputs: Outputs,
 }
 
+/// Changes that are kept of each output; a transaction makes one or two.
+const CHANGES: usize = 16;
+
+/// Since when (microseconds) an output carries what, the last change at the end.
+type Changes = VecDeque<(u64, u16)>;
+
+/// What the outputs of each module carry and carried.
 #[derive(Clone, Default)]
-struct Outputs(Arc<Mutex<BTreeMap<String, u16>>>);
+struct Outputs(Arc<Mutex<BTreeMap<String, Changes>>>);
 
 impl Outputs {
-    fn put(&self, module: &str, word: u16) {
+    fn put(&self, module: &str, word: u16, at_us: u64) {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        all.insert(module.to_owned(), word);
+        let changes = all.entry(module.to_owned()).or_default();
+        if changes.back().is_none_or(|(_, last)| *last != word) {
+            changes.push_back((at_us, word));
+        }
+        if changes.len() > CHANGES {
+            changes.pop_front();
+        }
     }
 }
 
@@ -108,14 +121,21 @@ impl FingerprintLine {
         })
     }
 
-    /// What the outputs of a module carry now: bits, or 65535ths of 10 V.
-    pub fn output(&self, address: u8) -> Option<u16> {
+    /// Whether the outputs of a module carried `word` (bits, or 65535ths of 10 V) at any time between, both included.
+    pub fn carried(&self, address: u8, word: u16, from_us: u64, to_us: u64) -> bool {
         let all = self
             .outputs
             .0
             .lock()
             .unwrap_or_else(PoisonError::into_inner);
-        all.get(&id(address)).copied()
+        let Some(changes) = all.get(&id(address)) else {
+            return false;
+        };
+        let ends = changes.iter().skip(1).map(|(at_us, _)| *at_us);
+        let spans = changes.iter().zip(ends.chain([u64::MAX]));
+        let mut then =
+            spans.filter(|((begin_us, _), end_us)| *begin_us <= to_us && *end_us >= from_us);
+        then.any(|((_, carried), _)| *carried == word)
     }
 }
 
@@ -224,7 +244,7 @@ impl Plant for Fingerprints {
 
     fn analog_out(&mut self, module: &str, volts: f64) {
         let code = (volts / 10.0 * 65_535.0).round() as u16;
-        self.outputs.put(module, code);
+        self.outputs.put(module, code, self.now_us);
     }
 
     fn digital_in(&mut self, module: &str) -> u16 {
@@ -232,7 +252,7 @@ impl Plant for Fingerprints {
     }
 
     fn digital_out(&mut self, module: &str, bits: u16) {
-        self.outputs.put(module, bits);
+        self.outputs.put(module, bits, self.now_us);
     }
 
     fn edges(&mut self, _module: &str, _channel: u8) -> u64 {
@@ -308,13 +328,20 @@ mod tests {
     fn outputs_bear_the_mark_of_their_module_until_the_host_writes() {
         let line = FingerprintLine::build(1, 115_200, &[]).unwrap();
         for address in 8..=0x0B {
-            assert_eq!(line.output(address), Some(marked(address, 0)));
+            assert!(line.carried(address, marked(address, 0), 0, 0));
         }
-        assert_eq!(ask(&line, "@098123", 0), ">");
-        assert_eq!(ask(&line, "#0AA123", 0), ">");
-        assert_eq!(
-            (line.output(9), line.output(0x0A)),
-            (Some(0x8123), Some(0xA123))
-        );
+        assert_eq!(ask(&line, "@098123", 2_000), ">");
+        assert_eq!(ask(&line, "#0AA123", 3_000), ">");
+        assert!(line.carried(9, 0x8123, 2_000, 9_000) && line.carried(0x0A, 0xA123, 3_000, 9_000));
+    }
+
+    #[test]
+    fn what_an_output_carried_is_known_for_the_time_that_it_did() {
+        let line = FingerprintLine::build(1, 115_200, &[]).unwrap();
+        assert_eq!(ask(&line, "@098123", 2_000), ">");
+        assert_eq!(ask(&line, "@098456", 5_000), ">");
+        let carried = |from_us, to_us| line.carried(9, 0x8123, from_us, to_us);
+        assert!(carried(2_000, 2_000) && carried(4_000, 9_000) && carried(1_000, 3_000));
+        assert!(!carried(0, 1_999) && !carried(5_001, 9_000));
     }
 }

@@ -85,6 +85,17 @@ pub enum LineError {
         /// What was asked.
         command: Command,
     },
+    /// A reply of this address was damaged before; asked again, the module said what does not agree. Two modules at
+    /// one address, a disturbed line, or a quantity that has changed between.
+    #[error(
+        "line {line}, {command}: not believed, another value when asked again after damaged replies"
+    )]
+    Contradicted {
+        /// Name of the line.
+        line: String,
+        /// What was asked.
+        command: Command,
+    },
     /// Somebody talks without being asked, and does not stop. Nothing was sent.
     #[error("line {line}, {command}: not sent, the line does not fall silent")]
     NeverSilent {

@@ -127,12 +127,14 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         Ok(heard)
     }
 
-    /// Sends `question`, whose reply names its module, and listens for that reply alone until `deadline`.
+    /// Sends `question`, whose reply names its module, and listens until `in_step` says of a frame that it is the one
+    /// waited for, or `deadline`.
     pub(super) async fn name(
         &mut self,
         question: &Command,
         with_checksum: bool,
         deadline: RigTime,
+        mut in_step: impl FnMut(&[u8]) -> bool,
     ) -> io::Result<Named> {
         let mut request = Vec::with_capacity(8);
         question.encode(with_checksum, &mut request);
@@ -163,7 +165,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
                 if frame.push(std::slice::from_ref(byte)).is_none() {
                     continue;
                 }
-                named.by_module = names(question, with_checksum, &frame);
+                named.by_module = in_step(frame.bytes());
                 named.strays |= !named.by_module;
                 let direction = if named.by_module {
                     Direction::Heard
@@ -230,14 +232,14 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         tokio::task::unconstrained(read).await
     }
 
-    /// Waits until nothing has been heard for `silence` since `last_heard`, or the reply to `question` has come, until
-    /// `limit` at the latest.
+    /// Waits until nothing has been heard for `silence` since `last_heard`, or `in_step` says of a frame that it is the
+    /// one waited for, until `limit` at the latest.
     pub(super) async fn silence(
         &mut self,
         silence: Span,
         last_heard: RigTime,
         limit: RigTime,
-        question: Option<(&Command, bool)>,
+        mut in_step: impl FnMut(&[u8]) -> bool,
     ) -> io::Result<Quiet> {
         let mut frame = Frame::new();
         let mut piece = [0; 2 * FRAME_LIMIT];
@@ -255,7 +257,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
             until = self.pace.now() + silence;
             for byte in &piece[..count] {
                 if frame.push(std::slice::from_ref(byte)).is_some() {
-                    if question.is_some_and(|(ask, sum)| names(ask, sum, &frame)) {
+                    if in_step(frame.bytes()) {
                         return Ok(Quiet::Named);
                     }
                     frame.clear();
@@ -270,13 +272,5 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
             .records()
             .trace
             .add(self.pace.now(), direction, bytes);
-    }
-}
-
-/// Yes and no are both said by the module that was asked.
-fn names(question: &Command, with_checksum: bool, frame: &Frame) -> bool {
-    match question.decode(frame.bytes(), with_checksum) {
-        Ok(_) => true,
-        Err(reason) => reason.is_answer(),
     }
 }

@@ -111,6 +111,7 @@ impl Health {
                 | LineError::Echo { .. }
                 | LineError::SecondReply { .. }
                 | LineError::OutOfStep { .. }
+                | LineError::Contradicted { .. }
                 | LineError::NeverSilent { .. },
             ) => module.other_errors += 1,
         }

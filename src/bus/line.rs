@@ -3,6 +3,7 @@
 use super::exchange::{Exchange, Frame};
 use super::owing::Owing;
 use super::talk::{Talk, Times, Trouble};
+use super::trust::Trust;
 use super::{Answer, LineError, LineSettings, Pace, PortError, Request};
 use crate::dcon::{Command, Common, Reply};
 use crate::units::{RigTime, Span};
@@ -57,6 +58,7 @@ pub async fn run_reopening<O: Ports>(
         frame: Frame::new(),
         silent: true,
         owing: Owing::default(),
+        trust: Trust::default(),
         reopen_at: RigTime(0),
         backoff,
         lost_because: PortError::Gone,
@@ -79,6 +81,7 @@ struct Line<O: Ports> {
     /// False after trouble, until the line has been silent for long enough.
     silent: bool,
     owing: Owing,
+    trust: Trust,
     reopen_at: RigTime,
     backoff: Span,
     lost_because: PortError,
@@ -155,6 +158,7 @@ impl<O: Ports> Line<O> {
             },
             settings: &self.settings,
             owing: &mut self.owing,
+            trust: &mut self.trust,
             silent: &mut self.silent,
         };
         talk.transact(command, &self.request, &mut self.frame, times)
@@ -206,6 +210,7 @@ impl<O: Ports> Line<O> {
             },
             Trouble::Echo => LineError::Echo { line, command },
             Trouble::OutOfStep => LineError::OutOfStep { line, command },
+            Trouble::Contradicted => LineError::Contradicted { line, command },
             Trouble::SecondReply => LineError::SecondReply { line, command },
             Trouble::NeverSilent => LineError::NeverSilent { line, command },
             Trouble::Broken(_) | Trouble::NoPort => LineError::PortLost {
@@ -243,6 +248,6 @@ fn may_repeat(command: &Command, outcome: &Result<Reply, LineError>) -> bool {
             Err(LineError::Reply { reason, .. }) => !reason.is_answer(),
             Err(LineError::TimeOut { .. } | LineError::Echo { .. }) => true,
             Err(LineError::SecondReply { .. } | LineError::OutOfStep { .. }) => true,
-            Err(LineError::NeverSilent { .. }) => true,
+            Err(LineError::NeverSilent { .. } | LineError::Contradicted { .. }) => true,
         }
 }

@@ -10,7 +10,8 @@
 //!    on its way. If it does not, the line must fall silent for the longest reply time and the grace for late
 //!    replies, and for a second whatever could be the reply that is owed needs a confirmation (`owing.rs`): `>`
 //!    replies carry no address, and a late one must not be taken for the next.
-//! 5. Only commands that change nothing are repeated, and at most as often as the request allows.
+//! 5. An address whose reply was damaged is heard twice for a while (`trust.rs`): where checksums fail, one in 256 passes.
+//! 6. Only commands that change nothing are repeated, and at most as often as the request allows.
 //!
 //! Troubles: a line that never falls silent answers [`LineError::NeverSilent`]; a lost port answers
 //! [`LineError::PortLost`] at the pace of a silent module, and is reopened with back-off.
@@ -31,6 +32,7 @@ mod recorded;
 mod settings;
 mod talk;
 mod trace;
+mod trust;
 mod wire;
 
 #[cfg(test)]
@@ -46,4 +48,5 @@ pub use raw::{RawReply, send_raw};
 pub use recorded::{Recorded, RecordedError, arrow, escaped};
 pub use settings::{LineSettings, longest_transaction};
 pub use trace::{Direction, Entry, Trace};
+pub use trust::PROBATION;
 pub use wire::Wire;

@@ -3,6 +3,7 @@
 use super::LineSettings;
 use super::exchange::{Exchange, Frame, Heard, Quiet};
 use super::owing::{Owing, question};
+use super::trust::Trust;
 use crate::dcon::{Address, Command, Reply, ReplyError};
 use crate::units::RigTime;
 use std::io;
@@ -15,6 +16,7 @@ pub(super) enum Trouble {
     Echo,
     SecondReply,
     OutOfStep,
+    Contradicted,
     NeverSilent,
     Broken(io::ErrorKind),
     NoPort,
@@ -26,10 +28,12 @@ impl From<io::Error> for Trouble {
     }
 }
 
-impl Trouble {
-    /// The module heard the question and declined.
-    fn is_answer(&self) -> bool {
-        matches!(self, Self::Reply(reason) if reason.is_answer())
+/// The module heard the question: it replied, or declined.
+fn is_answer(result: &Result<Reply, Trouble>) -> bool {
+    match result {
+        Ok(_) => true,
+        Err(Trouble::Reply(reason)) => reason.is_answer(),
+        Err(_) => false,
     }
 }
 
@@ -45,6 +49,7 @@ pub(super) struct Talk<'a, P> {
     pub(super) exchange: Exchange<'a, P>,
     pub(super) settings: &'a LineSettings,
     pub(super) owing: &'a mut Owing,
+    pub(super) trust: &'a mut Trust,
     /// False after trouble, until the line has been silent for long enough.
     pub(super) silent: &'a mut bool,
 }
@@ -63,7 +68,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             let now = self.now();
             let quiet = self
                 .exchange
-                .silence(rest, now, now + rest + rest, None)
+                .silence(rest, now, now + rest + rest, |_| false)
                 .await?;
             *self.silent = quiet != Quiet::Noisy;
             return Err(Trouble::NeverSilent);
@@ -74,25 +79,68 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             return self.tell(request).await;
         };
         let result = self.ask(command, request, frame, times).await;
-        let is_answer = result.as_ref().map_or_else(Trouble::is_answer, |_| true);
+        self.weigh(address, frame, &result);
         if let Err(Trouble::Broken(_)) = result {
             return result;
         }
-        if !is_answer {
+        if !is_answer(&result) {
             self.find_step(command, address).await?;
             return result;
         }
-        if *command == question(address)
-            || !self
-                .owing
-                .doubts(frame.bytes(), self.settings.checksum, self.now())
-        {
-            return result;
+        let checksum = self.settings.checksum;
+        if self.owing.doubts(frame.bytes(), checksum, self.now()) {
+            return match self.confirmed(command, address, request, frame).await? {
+                true => result,
+                false => Err(Trouble::OutOfStep),
+            };
         }
-        if self.confirmed(command, address, request, frame).await? {
-            return result;
+        match result {
+            Ok(first) if self.trust.on_probation(address) && command.repeatable() => {
+                let asked_at = times.asked_at;
+                self.repeated(command, address, request, frame, (first, asked_at))
+                    .await
+            }
+            result => result,
         }
-        Err(Trouble::OutOfStep)
+    }
+
+    /// A whole answer speaks for its address, damage against it. Silence and an echo say nothing of a second
+    /// module.
+    fn weigh(&mut self, address: Address, frame: &Frame, result: &Result<Reply, Trouble>) {
+        if is_answer(result) {
+            self.trust.whole(address);
+        } else if !frame.bytes().is_empty() && !matches!(result, Err(Trouble::Echo)) {
+            self.trust.damaged(address);
+        }
+    }
+
+    /// The first answer and when it was asked, if the module says what agrees with it when asked again.
+    async fn repeated(
+        &mut self,
+        command: &Command,
+        address: Address,
+        request: &[u8],
+        frame: &mut Frame,
+        (first, asked_at): (Reply, RigTime),
+    ) -> Result<Reply, Trouble> {
+        let mut again = Frame::new();
+        let second = self
+            .ask(command, request, &mut again, &mut Times::default())
+            .await;
+        self.weigh(address, &again, &second);
+        if let Ok(second) = second {
+            let apart_ms = self.now().since(asked_at).0.div_ceil(1_000);
+            if command.agree(&first, &second, apart_ms) {
+                return Ok(first);
+            }
+            self.trust.damaged(address);
+            return Err(Trouble::Contradicted);
+        }
+        *frame = again;
+        if !is_answer(&second) && !matches!(second, Err(Trouble::Broken(_))) {
+            self.find_step(command, address).await?;
+        }
+        second
     }
 
     fn now(&self) -> RigTime {
@@ -122,7 +170,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             .await?;
         times.answered_at = Some(self.now());
         let result = judge(command, self.settings.checksum, request, frame, heard);
-        if self.rests().await? || result.as_ref().is_err_and(|trouble| !trouble.is_answer()) {
+        if self.rests().await? || !is_answer(&result) {
             return result;
         }
         Err(Trouble::SecondReply)
@@ -152,43 +200,49 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             if let Err(Trouble::Broken(kind)) = again {
                 return Err(Trouble::Broken(kind));
             }
-            let is_answer = again.as_ref().map_or_else(Trouble::is_answer, |_| true);
-            same = is_answer && second.bytes() == first.bytes();
+            same = is_answer(&again) && second.bytes() == first.bytes();
         }
         Ok(self.find_step(command, address).await? && same)
     }
 
     /// Asks the module who it is until it answers, for as long as a silence would have to last. True when it did, and
-    /// nothing else was heard.
+    /// nothing else was heard. Every reply that `address` owes and that is not proved to have come stays owed.
     async fn find_step(&mut self, command: &Command, address: Address) -> Result<bool, Trouble> {
-        let ask_name = question(address);
+        self.owing.owed(*command, self.now());
+        let checksum = self.settings.checksum;
         let mut last_heard = self.now();
         let mut alone = true;
         let limit = self.now() + self.settings.step_limit(command, address);
+        let patience = self.settings.time_out(&question(address));
         // The name is given in microseconds or not before its time-out, so the limit ends this.
-        while *command != ask_name && self.now() + self.settings.time_out(&ask_name) <= limit {
-            let deadline = self.now() + self.settings.time_out(&ask_name);
-            let checksum = self.settings.checksum;
-            let named = self.exchange.name(&ask_name, checksum, deadline).await?;
+        while self.now() + patience <= limit {
+            let ask_name = self.owing.question(address);
+            self.owing.owed(ask_name, self.now());
+            let owing = &mut *self.owing;
+            let in_step =
+                |frame: &[u8]| owing.settle(address, frame, checksum) && !owing.owes(command);
+            let deadline = self.exchange.pace.now() + patience;
+            let named = self
+                .exchange
+                .name(&ask_name, checksum, deadline, in_step)
+                .await?;
             last_heard = named.last_heard;
             alone &= !named.strays;
             if named.by_module && self.rests().await? {
-                self.owing.paid(address);
                 return Ok(alone);
             }
         }
         let rest = self.settings.silence(command);
-        let name = (&ask_name, self.settings.checksum);
         let limit = self.now() + rest;
+        let owing = &mut *self.owing;
+        let in_step = |frame: &[u8]| owing.settle(address, frame, checksum) && !owing.owes(command);
         let quiet = self
             .exchange
-            .silence(rest, last_heard, limit, Some(name))
+            .silence(rest, last_heard, limit, in_step)
             .await?;
         *self.silent = quiet != Quiet::Noisy;
-        if quiet == Quiet::Named && self.rests().await? {
-            self.owing.paid(address);
-        } else if *command != ask_name {
-            self.owing.owed(*command, self.now());
+        if quiet == Quiet::Named {
+            self.rests().await?;
         }
         Ok(false)
     }

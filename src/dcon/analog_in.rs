@@ -140,4 +140,13 @@ impl AnalogIn {
             Self::WriteChannelRange { .. } => (Store, Shape::Accepted),
         }
     }
+
+    /// Of the terminals, where readings are asked for.
+    pub(super) fn range(&self) -> Option<TypeCode> {
+        let (_, shape) = self.table();
+        let (Shape::Reading(form) | Shape::Readings(form)) = shape else {
+            return None;
+        };
+        Some(form.range)
+    }
 }

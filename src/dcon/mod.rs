@@ -21,6 +21,7 @@
 //! Absent by design: factory calibration and trim (`$AA0`, `$AA1`, `$AA3` of outputs, `~AAE`) cannot be written
 //! down with these types, so no slip of the rig can spoil a module.
 
+mod agreement;
 mod analog_in;
 mod analog_out;
 mod bits;

@@ -3,8 +3,8 @@
 //!
 //! The line task of the controller is driven through its public face over an in-process stream in virtual time. Judged:
 //!
-//! - a reading must come from the module and channel that were asked (else it is *foreign*), and have been taken
-//!   while the transaction ran (else *stale*; analog inputs: within the age of a free-running conversion);
+//! - a reading must come from the module and channel that were asked (else it is *foreign*), and have been true
+//!   between question and answer (else *stale*; analog inputs: within the age of a free-running conversion);
 //! - an accepted write must have been carried out (else *hollow*);
 //! - a failure must name line, address and command (else *nameless*);
 //! - every request must be answered within [`PATIENCE`] of rig time (else it *hangs*).
@@ -294,6 +294,7 @@ fn kind(error: &LineError) -> &'static str {
         LineError::NeverSilent { .. } => "line never silent",
         LineError::PortLost { .. } => "port lost",
         LineError::OutOfStep { .. } => "reply of unknown origin",
+        LineError::Contradicted { .. } => "another value when asked again",
     }
 }
 
@@ -330,16 +331,17 @@ fn found(answer: &Answer, reply: &Reply, line: &FingerprintLine) -> Found {
         (Command::Digital(..), Reply::Bits(bits)) if address <= 7 => {
             word(answer, address, bits.word())
         }
-        (Command::Digital(..), Reply::Bits(bits)) => carried(address, bits.word(), line),
-        (Command::Digital(_, Digital::Write(written)), Reply::Accepted) => {
-            told(line.output(address) == Some(written.bits()), Found::Hollow)
-        }
+        (Command::Digital(..), Reply::Bits(bits)) => read_back(answer, address, bits.word(), line),
+        (Command::Digital(_, Digital::Write(written)), Reply::Accepted) => told(
+            carried(answer, address, written.bits(), line),
+            Found::Hollow,
+        ),
         (Command::AnalogOut(_, AnalogOut::Write { level, .. }), Reply::Accepted) => told(
-            line.output(address).map(i32::from) == Some(level.steps()),
+            carried(answer, address, level.steps() as u16, line),
             Found::Hollow,
         ),
         (Command::AnalogOut(..), Reply::Level(level)) => {
-            carried(address, level.steps() as u16, line)
+            read_back(answer, address, level.steps() as u16, line)
         }
         (_, _) => Found::True,
     }
@@ -372,10 +374,15 @@ fn word(answer: &Answer, address: u8, word: u16) -> Found {
     told(age <= taken + fingerprint::WORD_STEP_US, Found::Stale)
 }
 
-/// What is read back must be what the outputs carry.
-fn carried(address: u8, word: u16, line: &FingerprintLine) -> Found {
+/// What is read back must be what the outputs carried while it was asked: a restart just after the answer makes no
+/// lie of it.
+fn read_back(answer: &Answer, address: u8, word: u16, line: &FingerprintLine) -> Found {
     if fingerprint::origin_of_word(word) != address {
         return Found::Foreign;
     }
-    told(line.output(address) == Some(word), Found::Stale)
+    told(carried(answer, address, word, line), Found::Stale)
+}
+
+fn carried(answer: &Answer, address: u8, word: u16, line: &FingerprintLine) -> bool {
+    line.carried(address, word, answer.asked_at.0, answer.answered_at.0)
 }

@@ -1,0 +1,71 @@
+//! Damage seen at an address gives away the damage that passes for a reply.
+
+use super::*;
+
+/// A count whose last checksum digit is wrong.
+const DAMAGED: &[u8] = b">0000001ED5\r";
+/// 30 and two more, 90 000 000.
+const SOON: &[u8] = b">0000001FD5\r";
+const ELSEWHERE: &[u8] = b">055D4A80F9\r";
+
+fn say(bytes: &'static [u8]) -> Vec<Say> {
+    vec![(2_000, bytes)]
+}
+
+fn asked_of(script: Vec<Vec<Say>>, requests: &[(Command, u8)]) -> (Vec<Answer>, usize) {
+    let (got, asked) = in_virtual_time(played(settings(), script, requests));
+    (got, asked.len())
+}
+
+#[test]
+fn after_a_damaged_reply_an_address_is_heard_twice() {
+    let script = vec![say(DAMAGED), say(THIRTY), say(SOON)];
+    let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1)]);
+    assert!(matches!(got[0].outcome, Err(LineError::Reply { .. })));
+    assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Count(30)), 3));
+    assert_eq!(got[1].raw, ">0000001ED4");
+}
+
+#[test]
+fn what_does_not_agree_with_itself_is_not_believed() {
+    let script = vec![
+        say(DAMAGED),
+        say(ELSEWHERE),
+        say(THIRTY),
+        say(THIRTY),
+        say(SOON),
+    ];
+    let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1), (count(), 1)]);
+    let text = got[1].outcome.as_ref().unwrap_err().to_string();
+    assert!(
+        text.starts_with("line measure, 03: ") && text.contains("another value when asked again"),
+        "{text}"
+    );
+    assert_eq!((got[2].outcome.clone(), asked), (Ok(Reply::Count(30)), 5));
+}
+
+#[test]
+fn other_addresses_and_outputs_are_believed_at_their_first_word() {
+    let other = Counter::Read(UpTo::new(0).unwrap()).to(Address(5));
+    let write = Digital::Write(OutputWord::sixteen(0x1234)).to(Address(3));
+    let script = vec![say(DAMAGED), say(THIRTY), say(b">3E\r")];
+    let (got, asked) = asked_of(script, &[(count(), 1), (other, 1), (write, 1)]);
+    assert_eq!(got[1].outcome, Ok(Reply::Count(30)));
+    assert_eq!((got[2].outcome.clone(), asked), (Ok(Reply::Accepted), 3));
+}
+
+#[test]
+fn the_probation_ends_with_a_hundred_whole_answers() {
+    let mut script = vec![say(DAMAGED)];
+    script.extend(vec![say(THIRTY); 300]);
+    let (got, asked) = asked_of(script, &[(count(), 1); 61]);
+    assert!(got[1..].iter().all(|answer| answer.outcome.is_ok()));
+    // Fifty are heard twice, ten once.
+    assert_eq!(asked, 1 + usize::from(PROBATION) + 10);
+}
+
+#[test]
+fn a_silent_module_is_not_suspected_of_anything() {
+    let (got, asked) = asked_of(vec![vec![], say(THIRTY)], &[(count(), 1), (count(), 1)]);
+    assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Count(30)), 2));
+}
