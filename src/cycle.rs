@@ -10,10 +10,12 @@
 mod commission;
 mod desk;
 pub mod mimic;
+mod patience;
 mod publish;
 mod rota;
 mod still;
 mod traffic;
+mod underway;
 
 pub use traffic::LineEnds;
 
@@ -34,6 +36,7 @@ use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Inputs, Interrupted, Wants};
 use crate::units::{RigTime, Span};
 use crate::view::View;
+use patience::Patience;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
@@ -94,6 +97,7 @@ pub struct Cycle {
     image: Image,
     outputs: Outputs,
     traffic: Traffic,
+    patience: Patience,
     outside: Outside,
     job_done: Option<JobDone>,
     bus_alarm: Option<Alarm>,
@@ -147,6 +151,7 @@ impl Cycle {
             image: Image::new(Arc::clone(&wiring)),
             outputs: Outputs::new(Arc::clone(&wiring)),
             traffic: Traffic::new(&wiring, lines),
+            patience: Patience::new(&wiring),
             wiring,
             pace,
             station,
@@ -244,7 +249,7 @@ impl Cycle {
         match (purpose, trouble) {
             (Purpose::Write { module, job }, None) => {
                 self.outputs.confirmed(module);
-                self.traffic.written(module);
+                self.patience.written(module);
                 self.finish_job(job, answer.answered_at, None);
             }
             // A module that ignores writes has had its host watchdog trip: it stands at its safe value.
@@ -252,7 +257,7 @@ impl Cycle {
                 self.outputs.confirmed(module);
             }
             (Purpose::Write { module, job }, Some(trouble)) => {
-                if self.traffic.may_rewrite(module) {
+                if self.patience.may_rewrite(module) {
                     self.outputs.failed(module);
                     if job {
                         self.traffic.rewrite_for_job(module);
@@ -269,12 +274,12 @@ impl Cycle {
                 self.finish_job(true, answer.answered_at, trouble);
             }
             (Purpose::Scan, Some(trouble)) => {
-                if let Some(times) = self.traffic.scan_failed(line, &answer.command) {
+                if let Some(times) = self.patience.scan_failed(line, &answer.command) {
                     self.bus_alarm
                         .get_or_insert(Alarm::bus(&format!("{trouble}, {times} times in a row")));
                 }
             }
-            (Purpose::Scan, None) => self.traffic.scan_answered(line, &answer.command),
+            (Purpose::Scan, None) => self.patience.scan_answered(line, &answer.command),
             (Purpose::Check, Some(trouble)) => {
                 self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
             }
@@ -298,7 +303,7 @@ impl Cycle {
         let orders = self.orders();
         self.making_safe = packml::is_aborted(self.station.outer());
         if self.making_safe {
-            self.traffic.forgive();
+            self.patience.forgive();
         }
         let inputs = Inputs {
             abort: self.outside.abort.load(Ordering::Acquire),

@@ -35,7 +35,8 @@ pub struct Answer {
     pub tries_used: u8,
 }
 
-/// Why a transaction brought no reply that can be believed. Each says line, module and command.
+/// Why a transaction brought no reply that can be believed. Each says line, module, command and cause in one sentence:
+/// alarms and screens show nothing else.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LineError {
     /// Nothing, or no end, in time.
@@ -56,7 +57,6 @@ pub enum LineError {
         /// What was asked.
         command: Command,
         /// What is the matter with it.
-        #[source]
         reason: ReplyError,
     },
     /// The request came back: the converter does not mute its receiver while it sends.
@@ -105,14 +105,13 @@ pub enum LineError {
         command: Command,
     },
     /// There is no port.
-    #[error("line {line}, {command}: port lost")]
+    #[error("line {line}, {command}: port lost: {reason}")]
     PortLost {
         /// Name of the line.
         line: String,
         /// What was, or should have been, asked.
         command: Command,
-        /// Why it cannot be used.
-        #[source]
+        /// Why it cannot be used; names its path.
         reason: PortError,
     },
 }

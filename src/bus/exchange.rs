@@ -6,7 +6,7 @@ use crate::dcon::{Command, FRAME_LIMIT};
 use crate::units::{RigTime, Span};
 use std::future::poll_fn;
 use std::io;
-use std::pin::Pin;
+use std::pin::{Pin, pin};
 use std::task::Poll;
 use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, ReadBuf};
 use tokio::time::Sleep;
@@ -105,20 +105,17 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         frame: &mut Frame,
     ) -> io::Result<Heard> {
         frame.clear();
-        let timer = self.pace.sleep(deadline);
-        tokio::pin!(timer);
+        let mut timer = pin!(self.pace.sleep(deadline));
         if !self.write(request, timer.as_mut()).await? {
             return Ok(Heard::Nothing);
         }
         let mut piece = [0; 2 * FRAME_LIMIT];
         let heard = loop {
-            tokio::select! {
-                biased;
-                count = self.port.read(&mut piece) => match count? {
-                    0 => return Err(io::ErrorKind::UnexpectedEof.into()),
-                    count => if let Some(heard) = frame.push(&piece[..count]) { break heard },
-                },
-                () = timer.as_mut() => break Heard::Nothing,
+            let Some(count) = self.piece(&mut piece, timer.as_mut()).await? else {
+                break Heard::Nothing;
+            };
+            if let Some(heard) = frame.push(&piece[..count]) {
+                break heard;
             }
         };
         if !frame.bytes().is_empty() {
@@ -143,22 +140,16 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
             strays: false,
             last_heard: self.pace.now(),
         };
-        let timer = self.pace.sleep(deadline);
-        tokio::pin!(timer);
+        let mut timer = pin!(self.pace.sleep(deadline));
         if !self.write(&request, timer.as_mut()).await? {
             return Ok(named);
         }
         let mut frame = Frame::new();
         let mut piece = [0; 2 * FRAME_LIMIT];
         while !named.by_module {
-            let count = tokio::select! {
-                biased;
-                count = self.port.read(&mut piece) => count?,
-                () = timer.as_mut() => break,
+            let Some(count) = self.piece(&mut piece, timer.as_mut()).await? else {
+                break;
             };
-            if count == 0 {
-                return Err(io::ErrorKind::UnexpectedEof.into());
-            }
             named.last_heard = self.pace.now();
             for byte in &piece[..count] {
                 named.strays |= named.by_module;
@@ -185,8 +176,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
 
     /// Writes and listens to nobody.
     pub(super) async fn tell(&mut self, request: &[u8], deadline: RigTime) -> io::Result<()> {
-        let timer = self.pace.sleep(deadline);
-        tokio::pin!(timer);
+        let mut timer = pin!(self.pace.sleep(deadline));
         self.write(request, timer).await.map(|_| ())
     }
 
@@ -197,6 +187,33 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
             biased;
             written = self.port.write_all(bytes) => written.map(|()| true),
             () = timer => Ok(false),
+        }
+    }
+
+    /// Characters as they come; none when `timer` has fired and nothing is waiting.
+    ///
+    /// A host that was kept from running wakes with its timer fired *and* the reply in the buffer of the port. Such a
+    /// module was not silent: before it is given up the reactor is asked once more, which takes no time.
+    async fn piece(
+        &mut self,
+        piece: &mut [u8],
+        timer: Pin<&mut Sleep>,
+    ) -> io::Result<Option<usize>> {
+        let in_time = tokio::select! {
+            biased;
+            count = self.port.read(piece) => Some(count?),
+            () = timer => None,
+        };
+        let count = match in_time {
+            Some(count) => Some(count),
+            None => {
+                tokio::task::yield_now().await;
+                self.read_now(piece).await?
+            }
+        };
+        match count {
+            Some(0) => Err(io::ErrorKind::UnexpectedEof.into()),
+            count => Ok(count),
         }
     }
 
@@ -245,14 +262,10 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         let mut piece = [0; 2 * FRAME_LIMIT];
         let mut until = last_heard + silence;
         while until <= limit {
-            let count = tokio::select! {
-                biased;
-                count = self.port.read(&mut piece) => count?,
-                () = self.pace.sleep(until) => return Ok(Quiet::Silent),
+            let timer = pin!(self.pace.sleep(until));
+            let Some(count) = self.piece(&mut piece, timer).await? else {
+                return Ok(Quiet::Silent);
             };
-            if count == 0 {
-                return Err(io::ErrorKind::UnexpectedEof.into());
-            }
             self.note(Direction::Stray, &piece[..count]);
             until = self.pace.now() + silence;
             for byte in &piece[..count] {

@@ -214,8 +214,9 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
         let mut alone = true;
         let limit = self.now() + self.settings.step_limit(command, address);
         let patience = self.settings.time_out(&question(address));
-        // The name is given in microseconds or not before its time-out, so the limit ends this.
-        while self.now() + patience <= limit {
+        // Once at least: the clock goes on between two lines of code. The name is given in microseconds or not before
+        // its time-out, so the limit ends this.
+        loop {
             let ask_name = self.owing.question(address);
             self.owing.owed(ask_name, self.now());
             let owing = &mut *self.owing;
@@ -230,6 +231,9 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             alone &= !named.strays;
             if named.by_module && self.rests().await? {
                 return Ok(alone);
+            }
+            if self.now() + patience > limit {
+                break;
             }
         }
         let rest = self.settings.silence(command);

@@ -11,6 +11,7 @@ use std::future::Future;
 use tokio::io::{AsyncReadExt, AsyncWriteExt, DuplexStream, duplex};
 use tokio::sync::mpsc;
 
+mod late_host;
 mod ports;
 mod records;
 mod replay;

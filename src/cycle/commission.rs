@@ -1,4 +1,5 @@
-//! Before anything moves: every module is asked who it is and how it is set, and compared with the wiring.
+//! Before anything moves: every module is asked who it is and how it is set, and compared with the wiring. Nobody
+//! waits for an emergency stop yet, so that a question is tried as often as the bus settings allow, on every line.
 
 use super::traffic::{Purpose, Traffic};
 use crate::bus::Pace;
@@ -94,11 +95,9 @@ async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<
             if lost_status && answer.outcome.is_err() {
                 continue;
             }
-            let reply = answer.outcome.map_err(|error| {
-                let cause = std::error::Error::source(&error)
-                    .map_or_else(String::new, |cause| format!(": {cause}"));
-                Alarm::bus(&format!("{error}{cause} ({} tries)", answer.tries_used))
-            })?;
+            let reply = answer
+                .outcome
+                .map_err(|error| Alarm::bus(&format!("{error} ({} tries)", answer.tries_used)))?;
             let check = &checks[index];
             if let Some(mismatch) = judge(wiring, check, &reply) {
                 if mismatch.what == "host watchdog" {

@@ -33,7 +33,7 @@ impl Cycle {
         self.traffic.only_writes();
         while !self.traffic.is_quiet() {
             let now = self.pace.now();
-            self.traffic.forgive();
+            self.patience.forgive();
             self.scan(now);
             self.traffic.dispatch(now);
             self.wait(now, Some(now + IDLE)).await;
@@ -47,7 +47,7 @@ impl Cycle {
         self.making_safe = true;
         while self.pace.now() < end {
             let now = self.pace.now();
-            self.traffic.forgive();
+            self.patience.forgive();
             self.scan(now);
             for write in self.outputs.writes() {
                 let purpose = Purpose::Write {

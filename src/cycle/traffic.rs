@@ -4,8 +4,9 @@
 //! every second transaction of its line's scan ([`super::rota`]).
 
 use super::rota::{Next, Rota};
+use super::underway::JobUnderway;
 use crate::bus::{Answer, Request};
-use crate::dcon::{Address, Command, Common};
+use crate::dcon::{Command, Common};
 use crate::rig::point::DigitalIn;
 use crate::rig::wiring::{LineId, ModuleId, Wiring};
 use crate::station::act::JobDone;
@@ -67,14 +68,6 @@ struct Slot {
     scan_due: RigTime,
 }
 
-/// A measuring job under way.
-#[derive(Debug, Default)]
-struct JobUnderway {
-    parts: usize,
-    last: RigTime,
-    trouble: Option<String>,
-}
-
 /// All lines.
 pub struct Traffic {
     slots: Vec<Slot>,
@@ -84,11 +77,8 @@ pub struct Traffic {
     job: Option<JobUnderway>,
     beam: Option<Command>,
     beam_line: LineId,
-    rewrites: Vec<u8>,
-    job_rewrites: Vec<ModuleId>,
-    failed_scans: Vec<(LineId, Option<Address>, u8)>,
-    tries: u8,
     scanning: bool,
+    check_tries: u8,
     ticket: u64,
     now: RigTime,
 }
@@ -140,11 +130,8 @@ impl Traffic {
             job: None,
             beam: None,
             beam_line: estop_line,
-            rewrites: vec![0; wiring.modules.len()],
-            job_rewrites: Vec::new(),
-            failed_scans: Vec::new(),
-            tries: wiring.bus.tries,
             scanning: false,
+            check_tries: wiring.bus.tries,
             ticket: 0,
             now: RigTime(0),
         }
@@ -171,31 +158,6 @@ impl Traffic {
             .map_or(1, |slot| slot.tries)
     }
 
-    /// A scan was not answered; how often in a row, once that is as often as the bus settings allow.
-    pub fn scan_failed(&mut self, line: LineId, command: &Command) -> Option<u8> {
-        let address = command.address();
-        let known = self
-            .failed_scans
-            .iter()
-            .position(|(l, a, _)| *l == line && *a == address);
-        let index = known.unwrap_or_else(|| {
-            self.failed_scans.push((line, address, 0));
-            self.failed_scans.len() - 1
-        });
-        let times = &mut self.failed_scans[index].2;
-        *times += 1;
-        (*times >= self.tries).then_some(*times)
-    }
-
-    /// A scan was answered: failures before it no longer count.
-    pub fn scan_answered(&mut self, line: LineId, command: &Command) {
-        if !self.failed_scans.is_empty() {
-            let address = command.address();
-            self.failed_scans
-                .retain(|(l, a, _)| *l != line || *a != address);
-        }
-    }
-
     /// The time of this turn.
     pub fn note_time(&mut self, now: RigTime) {
         self.now = now;
@@ -216,7 +178,7 @@ impl Traffic {
         if matches!(purpose, Purpose::Job | Purpose::Write { job: true, .. })
             && let Some(job) = &mut self.job
         {
-            job.parts += 1;
+            job.part_begun();
         }
         if let Some(slot) = self.slots.iter_mut().find(|slot| slot.ends.line == line) {
             slot.queue.push_back((command, purpose));
@@ -228,35 +190,16 @@ impl Traffic {
         self.beam = command;
     }
 
-    /// Counts a failed write; true while it may be tried again.
-    pub fn may_rewrite(&mut self, module: ModuleId) -> bool {
-        self.rewrites[module.0] += 1;
-        self.rewrites[module.0] < self.tries
-    }
-
     /// A lost write of the job will be written again; the job waits for it.
     pub fn rewrite_for_job(&mut self, module: ModuleId) {
         if let Some(job) = &mut self.job {
-            job.parts = job.parts.saturating_sub(1);
-            self.job_rewrites.push(module);
+            job.rewrites(module);
         }
     }
 
     /// True once for a module whose lost write the job waits for.
     pub fn is_rewrite_for_job(&mut self, module: ModuleId) -> bool {
-        let before = self.job_rewrites.len();
-        self.job_rewrites.retain(|known| *known != module);
-        before != self.job_rewrites.len() && self.job.is_some()
-    }
-
-    /// Forgets failed writes: at the end every module is written until it confirms.
-    pub fn forgive(&mut self) {
-        self.rewrites.fill(0);
-    }
-
-    /// A write was confirmed: failures before it no longer count.
-    pub fn written(&mut self, module: ModuleId) {
-        self.rewrites[module.0] = 0;
+        self.job.as_mut().is_some_and(|job| job.waits_for(module))
     }
 
     /// A new measuring job.
@@ -267,7 +210,6 @@ impl Traffic {
     /// Forgets the job and what was queued for it.
     pub fn drop_job(&mut self) {
         self.job = None;
-        self.job_rewrites.clear();
         for slot in &mut self.slots {
             slot.queue
                 .retain(|(_, purpose)| matches!(purpose, Purpose::Write { .. }));
@@ -276,27 +218,16 @@ impl Traffic {
 
     /// A job that needed no transaction is done at once.
     pub fn job_if_empty(&mut self, now: RigTime) -> Option<JobDone> {
-        self.job.take_if(|job| job.parts == 0).map(|_| JobDone {
-            at: now,
-            trouble: None,
-        })
+        let done = self.job.as_ref()?.if_empty(now)?;
+        self.job = None;
+        Some(done)
     }
 
     /// One transaction of the job is over; the answer of the job when it was the last.
     pub fn job_part_done(&mut self, at: RigTime, trouble: Option<String>) -> Option<JobDone> {
-        let job = self.job.as_mut()?;
-        job.parts = job.parts.saturating_sub(1);
-        job.last = at;
-        if job.trouble.is_none() {
-            job.trouble = trouble;
-        }
-        if job.parts > 0 {
-            return None;
-        }
-        self.job.take().map(|job| JobDone {
-            at: job.last,
-            trouble: job.trouble,
-        })
+        let done = self.job.as_mut()?.part_done(at, trouble)?;
+        self.job = None;
+        Some(done)
     }
 
     /// Starts the next transaction on every idle line.
@@ -310,10 +241,16 @@ impl Traffic {
             };
             self.ticket += 1;
             let slot = &mut self.slots[index];
+            let tries = match purpose {
+                Purpose::Check => self.check_tries,
+                Purpose::Write { .. } | Purpose::Job | Purpose::Scan | Purpose::Heartbeat => {
+                    slot.tries
+                }
+            };
             let request = Request {
                 ticket: self.ticket,
                 command,
-                tries: slot.tries,
+                tries,
             };
             // The queue is one deep and the slot idle, so there is room; a closed queue means the line's task ended.
             if slot.ends.requests.try_send(request).is_ok() {

@@ -120,12 +120,18 @@ pub enum Counter {
     EnableAlarmOf(UpTo<1>),
     /// `@AADAN`, mode 0.
     DisableAlarmOf(UpTo<1>),
+    /// `@AARP`, `@AARA`: the limit of counter 0 and 1; in mode 1 the high and the high-high limit of counter 0.
+    ReadLimit(UpTo<1>),
+    /// `@AAPA(data)`, `@AASA(data)`.
+    WriteLimit(UpTo<1>, u32),
     /// `@AADO0D`: the two outputs; refused while an alarm owns them.
     WriteOutputs(UpTo<3>),
     /// `$AA8` of the 7080D: what the display shows.
     ReadDisplay,
-    /// `$AA8V` of the 7080D: 0 or 1 a counter, 2 the host's text.
+    /// `$AA8V` of the 7080D: 0 or 1 a counter, 2 the host's number.
     WriteDisplay(Channel),
+    /// `$AA9(data)` of the 7080D: the host's number, five digits.
+    WriteDisplayed(u16),
 }
 
 impl Counter {
@@ -166,9 +172,20 @@ impl Counter {
             Self::ClearAlarm => request.to(b'@', to).text(b"CA"),
             Self::EnableAlarmOf(n) => request.to(b'@', to).text(b"EA").digit(n),
             Self::DisableAlarmOf(n) => request.to(b'@', to).text(b"DA").digit(n),
+            Self::ReadLimit(n) => request
+                .to(b'@', to)
+                .text([b"RP", b"RA"][usize::from(n.get())]),
+            Self::WriteLimit(n, value) => request
+                .to(b'@', to)
+                .text([b"PA", b"SA"][usize::from(n.get())])
+                .hex(value, 8),
             Self::WriteOutputs(outputs) => request.to(b'@', to).text(b"DO0").digit(outputs),
             Self::ReadDisplay => request.to(b'$', to).text(b"8"),
             Self::WriteDisplay(what) => request.to(b'$', to).text(b"8").digit(what),
+            Self::WriteDisplayed(number) => request
+                .to(b'$', to)
+                .text(b"9")
+                .decimal(u32::from(number), 5),
         };
     }
 
@@ -176,7 +193,9 @@ impl Counter {
         match *self {
             Self::Read(_) => (Read, Shape::Count),
             Self::ReadOverflow(_) | Self::ReadRunning(_) | Self::ReadFilter => (Read, Shape::Flag),
-            Self::ReadPreset(_) | Self::ReadMaximum(_) => (Read, Shape::Setting32),
+            Self::ReadPreset(_) | Self::ReadMaximum(_) | Self::ReadLimit(_) => {
+                (Read, Shape::Setting32)
+            }
             Self::ReadGate => (Read, Shape::Gate),
             Self::ReadInputs => (Read, Shape::Inputs),
             Self::ReadFilterWidth(_) => (
@@ -189,7 +208,9 @@ impl Counter {
             Self::ReadThreshold(_) => (Read, Shape::Decimal { digits: 2, max: 50 }),
             Self::ReadAlarm => (Read, Shape::Alarm),
             Self::ReadDisplay => (Read, Shape::Decimal { digits: 1, max: 2 }),
-            Self::Reset(_) | Self::Run(..) | Self::ClearAlarm => (Act, Shape::Accepted),
+            Self::Reset(_) | Self::Run(..) | Self::ClearAlarm | Self::WriteDisplayed(_) => {
+                (Act, Shape::Accepted)
+            }
             Self::WriteOutputs(_) => (Output, Shape::Accepted),
             Self::WritePreset(..)
             | Self::WriteMaximum(..)
@@ -203,6 +224,7 @@ impl Counter {
             | Self::DisableAlarm
             | Self::EnableAlarmOf(_)
             | Self::DisableAlarmOf(_)
+            | Self::WriteLimit(..)
             | Self::WriteDisplay(_) => (Store, Shape::Accepted),
         }
     }

@@ -49,6 +49,12 @@ pub enum Common {
     },
     /// `$AAP`, newer firmware: 0 DCON, 1 Modbus RTU.
     ReadProtocol,
+    /// `$AAPN`, newer firmware, within INIT*: Modbus RTU instead of DCON after the next power-on. Whoever sends it
+    /// does not reach the module with DCON any more.
+    WriteProtocol {
+        /// False: DCON.
+        modbus: bool,
+    },
     /// `~AAI`: soft INIT, within the window.
     EnterSoftInit,
     /// `~AATnn`: opens the window of soft INIT.
@@ -90,6 +96,7 @@ impl Common {
                 .text(b"RD")
                 .hex(u32::from(delay_ms.get()), 2),
             Self::ReadProtocol => request.to(b'$', to).text(b"P"),
+            Self::WriteProtocol { modbus } => request.to(b'$', to).text(b"P").flag(modbus),
             Self::EnterSoftInit => request.to(b'~', to).text(b"I"),
             Self::OpenSoftInit { seconds } => request
                 .to(b'~', to)
@@ -113,6 +120,7 @@ impl Common {
             Self::ReadResponseDelay => (Read, Shape::Byte),
             Self::WriteResponseDelay { .. } => (Store, Shape::Accepted),
             Self::ReadProtocol => (Read, Shape::Flag),
+            Self::WriteProtocol { .. } => (Store, Shape::Accepted),
             Self::EnterSoftInit => (Act, Shape::Accepted),
             Self::OpenSoftInit { .. } => (Act, Shape::Accepted),
         }

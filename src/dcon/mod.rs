@@ -42,6 +42,7 @@ mod shape;
 mod type_code;
 mod understand;
 mod words;
+mod written;
 
 #[cfg(test)]
 mod tests;
@@ -61,4 +62,5 @@ pub use level::{Level, LevelError, OutputForm};
 pub use reading::{Reading, Readings, Value};
 pub use reply::{Reply, Text};
 pub use type_code::{FullScale, TypeCode, Unit};
-pub use understand::{Family, factory, readings, understand};
+pub use understand::{Family, factory, understand};
+pub use written::readings;

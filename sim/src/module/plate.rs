@@ -145,6 +145,9 @@ impl Plate {
             (b'$', b"M") => dcon::done_with(address, &self.name),
             (b'$', b"I") => dcon::done_hex(address, u64::from(!self.init_grounded), 1),
             (b'$', b"P") if self.newer => dcon::done_hex(address, 0, 1),
+            // Modbus is not simulated: DCON may be chosen again, and nothing else.
+            (b'$', b"P0") if self.newer && self.init_grounded => dcon::done(address),
+            (b'$', [b'P', b'0' | b'1']) if self.newer => dcon::refused(address),
             (b'%', body) => self.configure(body, now_us, fits),
             (b'~', [b'T', high, low]) if self.newer => match dcon::hex_byte(&[*high, *low]) {
                 Some(seconds @ 0..=60) => {

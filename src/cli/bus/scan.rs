@@ -29,6 +29,9 @@ pub struct ScanArgs {
     /// With checksum, without, or both
     #[arg(long, value_enum, default_value = "both")]
     checksum: Checksums,
+    /// Milliseconds that a module may think; more for slow modules, converters in a network, a busy computer
+    #[arg(long, value_name = "MS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=1_000))]
+    allowance: u64,
     /// One JSON object per module
     #[arg(long)]
     json: bool,
@@ -138,7 +141,8 @@ struct Asking {
 impl Asking {
     fn open(args: &ScanArgs, rate: u32, checksum: bool) -> anyhow::Result<Self> {
         let port = args.port.open(rate)?;
-        let settings = args.port.settings(rate, checksum);
+        let mut settings = args.port.settings(rate, checksum);
+        settings.digital_allowance_ms = args.allowance;
         let log = settings.log.clone();
         let (requests, to_line) = mpsc::channel(1);
         let (from_line, answers) = mpsc::channel(1);

@@ -195,6 +195,42 @@ pub(super) fn counter_rows() -> Vec<(Command, &'static str, &'static str, Reply)
             "!02",
             done,
         ),
+        (
+            Counter::ReadLimit(n(0)).to(A1),
+            "@01RP",
+            "!01FFFFFFFF",
+            Reply::Count(u32::MAX),
+        ),
+        (
+            Counter::ReadLimit(n(1)).to(A1),
+            "@01RA",
+            "!0100000010",
+            Reply::Count(16),
+        ),
+        (
+            Counter::WriteLimit(n(0), 16).to(A1),
+            "@01PA00000010",
+            "!01",
+            done,
+        ),
+        (
+            Counter::WriteLimit(n(1), 16).to(A1),
+            "@01SA00000010",
+            "!01",
+            done,
+        ),
         (Counter::ReadDisplay.to(Address(3)), "$038", "!032", five(2)),
+        (
+            Counter::WriteDisplay(ch(2)).to(Address(3)),
+            "$0382",
+            "!03",
+            done,
+        ),
+        (
+            Counter::WriteDisplayed(12_345).to(Address(3)),
+            "$03912345",
+            "!03",
+            done,
+        ),
     ]
 }

@@ -53,6 +53,12 @@ fn common_rows() -> Vec<(Command, &'static str, &'static str, Reply)> {
         (Common::ReadFirmware.to(A1), "$01F", "!01A2.0", text("A2.0")),
         (Common::ReadName.to(A1), "$01M", "!017017R", text("7017R")),
         (
+            Common::WriteProtocol { modbus: true }.to(A1),
+            "$01P1",
+            "!01",
+            done,
+        ),
+        (
             Common::WriteName(ModuleName::new("7080X").unwrap()).to(A1),
             "~01O7080X",
             "!01",

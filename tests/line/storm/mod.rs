@@ -2,7 +2,8 @@
 
 mod rage;
 
-use rage::{EVERY_FAULT, rage};
+use rage::{EVERY_FAULT, in_virtual_time, rage, storm};
+use std::time::Duration;
 
 /// Enough for every fault to strike some two hundred times.
 const TRANSACTIONS: u64 = 20_000;
@@ -39,4 +40,25 @@ fn each_fault_alone_is_told_in_its_own_way() {
             "{often}: {weather:#?}"
         );
     }
+}
+
+/// A late host runs for so long, 7.3 ms of rig time, and then not at all for longer than any time-out, 95 ms.
+const RUNS: Duration = Duration::from_millis(7_301);
+const SLEEPS: Duration = Duration::from_millis(95_003);
+
+#[test]
+fn a_host_that_wakes_late_takes_no_module_for_silent() {
+    let weather = in_virtual_time(async {
+        tokio::spawn(async {
+            loop {
+                tokio::time::sleep(RUNS).await;
+                tokio::time::advance(SLEEPS).await;
+            }
+        });
+        storm(1, 2_000, &[]).await
+    });
+    assert!(weather.is_honest(), "{weather:#?}");
+    assert_eq!(weather.believed, 2_000, "{weather:#?}");
+    // It slept for most of the time.
+    assert!(weather.rig_s > 2_000.0 * 0.02, "{weather:#?}");
 }

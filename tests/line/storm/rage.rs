@@ -105,15 +105,21 @@ impl Ports for PlugPorts {
 
 /// Lets the storm rage over so many transactions.
 pub fn rage(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
-    let runtime = tokio::runtime::Builder::new_current_thread()
+    in_virtual_time(storm(seed, transactions, faults))
+}
+
+/// Tokio's paused clock, which jumps to the next deadline whenever every task waits.
+pub fn in_virtual_time<F: Future>(what: F) -> F::Output {
+    tokio::runtime::Builder::new_current_thread()
         .enable_time()
         .start_paused(true)
         .build()
-        .expect("a runtime");
-    runtime.block_on(storm(seed, transactions, faults))
+        .expect("a runtime")
+        .block_on(what)
 }
 
-async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
+/// As [`rage`], on a runtime that is there already.
+pub async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
     let line = FingerprintLine::build(seed, 115_200, faults).expect("known faults");
     let pace = Pace::virtual_time();
     let (_, plug) = wire::plugs(&line.rig).remove(0);

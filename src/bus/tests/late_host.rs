@@ -1,0 +1,124 @@
+//! A busy host: it wakes late, and its clock goes on between two lines of code. Neither makes a module silent.
+
+use super::*;
+use std::io;
+use std::pin::Pin;
+use std::task::{Context, Poll};
+use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
+
+/// A port in front of a host that sleeps until `wakes_at`: the reply lies in its buffer long since, and the reactor
+/// notices it when it is asked the next time after that.
+struct Unnoticed {
+    pace: Pace,
+    wakes_at: RigTime,
+    awake: bool,
+    reply: &'static [u8],
+}
+
+impl AsyncRead for Unnoticed {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        _: &mut Context<'_>,
+        buffer: &mut ReadBuf<'_>,
+    ) -> Poll<io::Result<()>> {
+        if self.pace.now() < self.wakes_at || !std::mem::replace(&mut self.awake, true) {
+            return Poll::Pending;
+        }
+        let reply = std::mem::take(&mut self.reply);
+        if reply.is_empty() {
+            return Poll::Pending;
+        }
+        buffer.put_slice(reply);
+        Poll::Ready(Ok(()))
+    }
+}
+
+impl AsyncWrite for Unnoticed {
+    fn poll_write(
+        self: Pin<&mut Self>,
+        _: &mut Context<'_>,
+        bytes: &[u8],
+    ) -> Poll<io::Result<usize>> {
+        Poll::Ready(Ok(bytes.len()))
+    }
+
+    fn poll_flush(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+
+    fn poll_shutdown(self: Pin<&mut Self>, _: &mut Context<'_>) -> Poll<io::Result<()>> {
+        Poll::Ready(Ok(()))
+    }
+}
+
+/// One question through `port`.
+async fn asked<P: AsyncRead + AsyncWrite + Unpin + Send>(
+    port: P,
+    pace: Pace,
+    command: Command,
+) -> Answer {
+    let (ask, to_line) = mpsc::channel(1);
+    let (from_line, mut answers) = mpsc::channel(1);
+    let request = Request {
+        ticket: 0,
+        command,
+        tries: 1,
+    };
+    ask.send(request).await.unwrap();
+    drop(ask);
+    let (answer, ()) = tokio::join!(
+        answers.recv(),
+        run(port, settings(), pace, to_line, from_line)
+    );
+    answer.unwrap()
+}
+
+#[test]
+fn a_reply_that_waited_while_the_host_slept_is_heard() {
+    let limit = settings().time_out(&count());
+    let answer = |reply| {
+        in_virtual_time(async move {
+            let pace = Pace::virtual_time();
+            let port = Unnoticed {
+                pace,
+                wakes_at: pace.now() + limit,
+                awake: false,
+                reply,
+            };
+            asked(port, pace, count()).await
+        })
+    };
+    let heard = answer(THIRTY);
+    assert_eq!(heard.outcome, Ok(Reply::Count(30)));
+    assert_eq!(heard.answered_at.since(heard.asked_at), limit);
+    assert!(matches!(
+        answer(b"").outcome,
+        Err(LineError::TimeOut { .. })
+    ));
+}
+
+#[test]
+fn a_silent_module_is_asked_its_name_in_real_time_too() {
+    let asked_for_its_name = tokio::runtime::Builder::new_current_thread()
+        .enable_time()
+        .build()
+        .unwrap()
+        .block_on(async {
+            let pace = Pace::real();
+            let (ours, mut theirs) = duplex(64);
+            let module = async move {
+                let mut names = 0;
+                while let Some(request) = next_request(&mut theirs).await {
+                    if let Some(name) = named(&request) {
+                        names += 1;
+                        let _ = theirs.write_all(name.as_bytes()).await;
+                    }
+                }
+                names
+            };
+            let (names, answer) = tokio::join!(module, asked(ours, pace, count()));
+            assert!(matches!(answer.outcome, Err(LineError::TimeOut { .. })));
+            names
+        });
+    assert_eq!(asked_for_its_name, 1);
+}
