@@ -176,7 +176,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
 
     /// Writes and listens to nobody.
     pub(super) async fn tell(&mut self, request: &[u8], deadline: RigTime) -> io::Result<()> {
-        let mut timer = pin!(self.pace.sleep(deadline));
+        let timer = pin!(self.pace.sleep(deadline));
         self.write(request, timer).await.map(|_| ())
     }
 

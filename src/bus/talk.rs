@@ -210,13 +210,12 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
     async fn find_step(&mut self, command: &Command, address: Address) -> Result<bool, Trouble> {
         self.owing.owed(*command, self.now());
         let checksum = self.settings.checksum;
-        let mut last_heard = self.now();
         let mut alone = true;
         let limit = self.now() + self.settings.step_limit(command, address);
         let patience = self.settings.time_out(&question(address));
         // Once at least: the clock goes on between two lines of code. The name is given in microseconds or not before
         // its time-out, so the limit ends this.
-        loop {
+        let last_heard = loop {
             let ask_name = self.owing.question(address);
             self.owing.owed(ask_name, self.now());
             let owing = &mut *self.owing;
@@ -227,15 +226,14 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
                 .exchange
                 .name(&ask_name, checksum, deadline, in_step)
                 .await?;
-            last_heard = named.last_heard;
             alone &= !named.strays;
             if named.by_module && self.rests().await? {
                 return Ok(alone);
             }
             if self.now() + patience > limit {
-                break;
+                break named.last_heard;
             }
-        }
+        };
         let rest = self.settings.silence(command);
         let limit = self.now() + rest;
         let owing = &mut *self.owing;

@@ -61,7 +61,8 @@ impl Drop for Bench {
 #[test]
 fn scan_finds_every_module_with_its_name_and_configuration_and_nobody_else() {
     let bench = Bench::new("bus_scan");
-    let (status, out, _) = bench.bus("scan --baud 115200 --addresses 00-13 --checksum on --allowance 120 --json");
+    let (status, out, _) =
+        bench.bus("scan --baud 115200 --addresses 00-13 --checksum on --allowance 120 --json");
     let found: Vec<Value> = out
         .lines()
         .map(|line| serde_json::from_str(line).unwrap())
