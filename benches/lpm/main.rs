@@ -27,8 +27,14 @@ fn main() {
     println!(
         "one query alone, best of several passes, ns; cost of the clock taken off: {clock} ns"
     );
-    let quick = std::env::args().any(|argument| argument == "--quick");
-    for size in SIZES.into_iter().filter(|size| !quick || *size <= 1_000) {
+    let asked = |name: &str| std::env::args().any(|argument| argument == name);
+    let largest = if asked("--quick") { 1_000 } else { usize::MAX };
+    let least = if asked("--bar") { 1_000 } else { 0 };
+    let largest = if asked("--bar") { 1_000 } else { largest };
+    for size in SIZES
+        .into_iter()
+        .filter(|size| (least..=largest).contains(size))
+    {
         let world = world(size);
         println!(
             "\n## n = {size}: plate of {:.2} m, highest top {:.0} mm",
@@ -48,13 +54,9 @@ struct Bench {
 }
 
 fn built(world: &World) -> Model {
-    let mut model = Model::new();
-    for (shape, pose) in &world.elements {
-        model
-            .insert("element", shape, pose)
-            .expect("a body of the scene");
-    }
-    model
+    let elements = world.elements.iter();
+    let named = elements.map(|(shape, pose)| ("element", shape, pose));
+    Model::of(named).expect("the bodies of the scene")
 }
 
 fn stop(model: &Model, mover: &Mover, way: &Move) -> Option<f64> {

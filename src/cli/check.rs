@@ -105,12 +105,12 @@ fn read_text(path: &Path) -> anyhow::Result<String> {
 }
 
 fn built(scene: &Scene) -> anyhow::Result<(Model, Vec<ElementKey>)> {
-    let mut model = Model::new();
-    let mut keys = Vec::with_capacity(scene.elements.len());
-    for element in &scene.elements {
-        let key = model.insert(&element.id, &element.shape, &element.pose);
-        keys.push(key.with_context(|| format!("element {}", element.id))?);
-    }
+    let elements = scene.elements.iter();
+    let model = Model::of(elements.map(|it| (it.id.as_str(), &it.shape, &it.pose)));
+    let model = model.map_err(|(number, flaw)| {
+        anyhow!(flaw).context(format!("element {}", scene.elements[number].id))
+    })?;
+    let keys = model.keys().collect();
     Ok((model, keys))
 }
 

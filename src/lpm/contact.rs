@@ -6,12 +6,12 @@
 //! way for all that comes after it.
 
 use super::distance::Gap;
-use super::model::Standing;
 use super::mover::Group;
 use super::parts::{Part, Parts};
 use super::passage::{Passage, Pending, once_in_order};
 use super::prism::{Meeting, Prism};
 use super::space::{Bundle, LANES};
+use super::standing::Stands;
 use super::straight::{self, Hit};
 use super::turning::Turning;
 
@@ -40,7 +40,7 @@ impl Found {
     pub(crate) fn hit(&self, passage: &Passage) -> Hit {
         match self.searched {
             Some(gap) => Hit { t: self.t, gap },
-            None => passage.touch(&passage.element(self.element).piece, self.local, self.t),
+            None => passage.touch(&passage.piece(self.element), self.local, self.t),
         }
     }
 }
@@ -139,12 +139,12 @@ impl Search<'_> {
         if !self.passage.counts(element) {
             return;
         }
-        match &part.prism {
-            Some(prism) if element.piece.upright => {
-                let found = self.met(number, element, part, prism);
+        match (&part.prism, &element.form) {
+            (Some(prism), Stands::Upright(standing)) => {
+                let found = self.met(number, standing, part, prism);
                 self.offer(found);
             }
-            Some(_) | None => self.pending.push(Pending {
+            (Some(_), Stands::Askew(_)) | (None, _) => self.pending.push(Pending {
                 order: part.sweep.first_over(&bundle.cover(lane)),
                 element: number,
                 local: part.local,
@@ -163,10 +163,9 @@ impl Search<'_> {
 
     /// Both upright, the way straight.
     #[inline]
-    fn met(&self, number: u32, element: &Standing, part: &Part, mover: &Prism) -> Option<Found> {
+    fn met(&self, number: u32, standing: &Prism, part: &Part, mover: &Prism) -> Option<Found> {
         let (run, margin) = (self.passage.path.displacement, self.passage.way.margin_mm);
-        let standing = Prism::of(&element.piece);
-        let t = Meeting::new(&standing, mover, run, margin).first(self.until())?;
+        let t = Meeting::new(standing, mover, run, margin).first(self.until())?;
         let found = |t, searched| Found {
             t,
             element: number,
@@ -181,7 +180,8 @@ impl Search<'_> {
             .passage
             .path
             .piece_at(self.passage.local(part.local), 0.0);
-        let hit = straight::first_within(&element.piece, &at_start, run, margin, t, self.until())?;
+        let hit =
+            straight::first_within(&standing.piece(), &at_start, run, margin, t, self.until())?;
         Some(found(hit.t, Some(hit.gap)))
     }
 
@@ -199,7 +199,7 @@ impl Search<'_> {
 
     fn searched(&self, pair: &Pending) -> Option<Found> {
         let path = self.passage.path;
-        let element = &self.passage.element(pair.element).piece;
+        let element = &self.passage.piece(pair.element);
         let local = self.passage.local(pair.local);
         let (margin, until) = (self.passage.way.margin_mm, self.until());
         let hit = match &path.turn {

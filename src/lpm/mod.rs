@@ -87,6 +87,7 @@ pub mod scene;
 mod shape;
 mod solid;
 mod space;
+mod standing;
 mod straight;
 #[cfg(test)]
 mod tests;

@@ -1,40 +1,24 @@
 //! The model of the standing elements: who stands where. What is asked of it: [`question`](super::question).
 
 use super::answer::ElementKey;
-use super::name::Name;
-use super::piece::{Piece, each_piece};
+use super::name::{Name, Names};
 use super::pose::{Frame, Pose};
 use super::shape::{Flaw, Shape};
 use super::solid::Interior;
-use super::space::Space;
+use super::space::{Filling, Space};
+use super::standing::{NONE, Pieces};
 
 /// The standing elements. Elements are put in and taken out one by one; nothing is rebuilt.
 #[derive(Debug, Clone, Default)]
 pub struct Model {
     slots: Vec<Slot>,
     free: Vec<u32>,
+    names: Names,
     pub(crate) space: Space,
-    /// By the numbers that the space knows.
-    pub(crate) pieces: Vec<Standing>,
-    free_pieces: Vec<u32>,
+    pub(crate) pieces: Pieces,
     /// Slots of elements with a closed mesh: those can hold a body without touching it.
     pub(crate) hollow: Vec<u32>,
 }
-
-/// A piece where it stands.
-#[derive(Debug, Clone)]
-pub(crate) struct Standing {
-    pub(crate) piece: Piece,
-    /// Slot of its element.
-    pub(crate) owner: u32,
-    /// Another piece of the same element, or [`NONE`].
-    sibling: u32,
-    /// What [`Space::insert`] said.
-    gridded: bool,
-}
-
-/// No piece.
-const NONE: u32 = u32::MAX;
 
 #[derive(Debug, Clone, Default)]
 struct Slot {
@@ -64,46 +48,57 @@ impl Model {
     pub fn insert(&mut self, id: &str, shape: &Shape, pose: &Pose) -> Result<ElementKey, Flaw> {
         shape.check()?;
         pose.check()?;
-        let frame = Frame::of(pose.rotation);
         let slot = self.free.pop().unwrap_or(self.slots.len() as u32);
-        let mut first = NONE;
-        each_piece(shape, |piece| {
-            first = self.stand(piece.placed(&frame, pose.position), slot, first);
-        });
-        let interior = Interior::of(shape).map(|interior| interior.placed(&frame, pose.position));
+        if slot as usize == self.slots.len() {
+            self.slots.push(Slot::default());
+        }
+        let first = self.pieces.stand(&mut self.space, shape, pose, slot);
+        self.slots[slot as usize].element = Some(self.element(id, shape, pose, slot, first));
+        Ok(self.key(slot))
+    }
+
+    /// A model of many elements at once: the same as one [`Model::insert`] after the other, sooner.
+    /// [`Model::keys`] are in the order of the elements.
+    ///
+    /// # Errors
+    /// The number of the first element that has a [`Flaw`].
+    pub fn of<'a>(
+        elements: impl Iterator<Item = (&'a str, &'a Shape, &'a Pose)>,
+    ) -> Result<Model, (usize, Flaw)> {
+        let mut model = Model::new();
+        model.slots.reserve(elements.size_hint().0);
+        model.pieces.reserve(elements.size_hint().0);
+        let mut filling = Filling::of(elements.size_hint().0);
+        for (number, (id, shape, pose)) in elements.enumerate() {
+            let flawed = |flaw| (number, flaw);
+            shape.check().map_err(flawed)?;
+            pose.check().map_err(flawed)?;
+            let first = model.pieces.stand(&mut filling, shape, pose, number as u32);
+            let element = model.element(id, shape, pose, number as u32, first);
+            model.slots.push(Slot {
+                generation: 0,
+                element: Some(element),
+            });
+        }
+        model.space = filling.space();
+        Ok(model)
+    }
+
+    fn element(&mut self, id: &str, shape: &Shape, pose: &Pose, slot: u32, first: u32) -> Element {
+        let interior = Interior::of(shape);
+        let interior =
+            interior.map(|interior| interior.placed(&Frame::of(pose.rotation), pose.position));
         if interior
             .as_ref()
             .is_some_and(|interior| !interior.solids.is_empty())
         {
             self.hollow.push(slot);
         }
-        let element = Element {
-            id: Name::of(id),
+        Element {
+            id: self.names.keep(id),
             first,
             interior: interior.map(Box::new),
-        };
-        if slot as usize == self.slots.len() {
-            self.slots.push(Slot::default());
         }
-        self.slots[slot as usize].element = Some(element);
-        Ok(self.key(slot))
-    }
-
-    fn stand(&mut self, piece: Piece, owner: u32, sibling: u32) -> u32 {
-        let number = self.free_pieces.pop().unwrap_or(self.pieces.len() as u32);
-        let gridded = self.space.insert(number, piece.bounds());
-        let standing = Standing {
-            piece,
-            owner,
-            sibling,
-            gridded,
-        };
-        if number as usize == self.pieces.len() {
-            self.pieces.push(standing);
-        } else {
-            self.pieces[number as usize] = standing;
-        }
-        number
     }
 
     /// Takes an element out; false when it is not there (any more).
@@ -118,18 +113,30 @@ impl Model {
             return false;
         };
         slot.generation += 1;
+        self.names.leave(&element.id);
         let mut number = element.first;
-        while let Some(standing) = self.pieces.get(number as usize) {
-            self.space
-                .remove(number, standing.piece.bounds(), standing.gridded);
-            self.free_pieces.push(number);
+        while number != NONE {
+            let bounds = self.pieces.bounds(number);
+            let standing = self.pieces.let_go(number);
+            self.space.remove(number, bounds);
             number = standing.sibling;
         }
         if element.interior.is_some() {
             self.hollow.retain(|known| *known != key.slot);
         }
         self.free.push(key.slot);
+        if self.names.is_mostly_gaps() {
+            self.rewrite_names();
+        }
         true
+    }
+
+    fn rewrite_names(&mut self) {
+        let mut fresh = Names::default();
+        for element in self.slots.iter_mut().filter_map(|slot| slot.element.as_mut()) {
+            element.id = fresh.keep(self.names.text(&element.id));
+        }
+        self.names = fresh;
     }
 
     /// Name of an element; `"(undecidable)"` for [`ElementKey::UNDECIDABLE`], `"(removed)"` for one that is gone.
@@ -142,7 +149,7 @@ impl Model {
             .get(key.slot as usize)
             .filter(|slot| slot.generation == key.generation);
         slot.and_then(|slot| slot.element.as_ref())
-            .map_or("(removed)", |element| element.id.as_str())
+            .map_or("(removed)", |element| self.names.text(&element.id))
     }
 
     /// Number of elements.
@@ -162,10 +169,11 @@ impl Model {
 
     /// Heap that the model occupies, bytes; closed meshes, which are kept apart, not counted.
     pub fn heap_bytes(&self) -> usize {
-        let numbers = self.free.capacity() + self.free_pieces.capacity() + self.hollow.capacity();
+        let numbers = self.free.capacity() + self.hollow.capacity();
         self.slots.capacity() * size_of::<Slot>()
-            + self.pieces.capacity() * size_of::<Standing>()
+            + self.pieces.heap_bytes()
             + numbers * size_of::<u32>()
+            + self.names.heap_bytes()
             + self.space.heap_bytes()
     }
 
@@ -192,8 +200,10 @@ impl Model {
     }
 
     fn centres(&self, element: &Element) -> Vec<[f64; 3]> {
-        let piece = |number: u32| self.pieces.get(number as usize);
-        let chain = std::iter::successors(piece(element.first), |standing| piece(standing.sibling));
-        chain.map(|standing| standing.piece.centre).collect()
+        let known = |number: u32| (number != NONE).then_some(number);
+        let chain = std::iter::successors(known(element.first), |number| {
+            known(self.pieces.at(*number).sibling)
+        });
+        chain.map(|number| self.pieces.piece(number).centre).collect()
     }
 }

@@ -1,40 +1,57 @@
-//! Names of elements without a heap: most are short.
+//! Names of elements, one behind the other in one text: no allocation for each.
 
-/// Characters kept in place; a longer name has its own allocation.
-const SHORT: usize = 22;
-
-/// Text of an element's name.
-#[derive(Debug, Clone)]
-pub(crate) enum Name {
-    /// UTF-8 in the first `length` bytes.
-    Short { length: u8, bytes: [u8; SHORT] },
-    /// Longer than [`SHORT`].
-    Long(Box<str>),
+/// Where the name of an element stands in [`Names`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Name {
+    start: u32,
+    length: u32,
 }
 
-impl Name {
-    pub(crate) fn of(text: &str) -> Name {
-        let mut bytes = [0; SHORT];
-        match bytes.get_mut(..text.len()) {
-            Some(place) => {
-                place.copy_from_slice(text.as_bytes());
-                Name::Short {
-                    length: text.len() as u8,
-                    bytes,
-                }
-            }
-            None => Name::Long(text.into()),
+/// The names of all elements. A name that is no longer wanted leaves a gap; its owners are asked for
+/// theirs again when the gaps outweigh the rest ([`Names::is_mostly_gaps`]).
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Names {
+    text: String,
+    gaps: usize,
+}
+
+/// Gaps below this are not worth the trouble, bytes.
+const SMALL: usize = 4096;
+
+impl Names {
+    /// Writes a name down.
+    #[inline]
+    pub(crate) fn keep(&mut self, text: &str) -> Name {
+        let start = self.text.len() as u32;
+        self.text.push_str(text);
+        Name {
+            start,
+            length: text.len() as u32,
         }
     }
 
-    pub(crate) fn as_str(&self) -> &str {
-        match self {
-            Name::Short { length, bytes } => {
-                let used = &bytes[..usize::from(*length)];
-                std::str::from_utf8(used).expect("copied from a whole text")
-            }
-            Name::Long(text) => text,
+    pub(crate) fn text(&self, name: &Name) -> &str {
+        &self.text[name.start as usize..][..name.length as usize]
+    }
+
+    /// The name is not wanted any more.
+    pub(crate) fn leave(&mut self, name: &Name) {
+        self.gaps += name.length as usize;
+        // The last one leaves no gap: what is put in and taken out again costs nothing.
+        if (name.start + name.length) as usize == self.text.len() {
+            self.text.truncate(name.start as usize);
+            self.gaps -= name.length as usize;
         }
+    }
+
+    /// Whether it is time to write the wanted names into a fresh text.
+    pub(crate) fn is_mostly_gaps(&self) -> bool {
+        self.gaps > SMALL && 2 * self.gaps > self.text.len()
+    }
+
+    /// Heap in use, bytes.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        self.text.capacity()
     }
 }
 
@@ -44,11 +61,24 @@ mod tests {
 
     #[test]
     fn a_name_comes_back_as_it_was_given() {
-        for length in 0..50 {
-            for letter in ["x", "ü", "漢"] {
-                let text = letter.repeat(length);
-                assert_eq!(Name::of(&text).as_str(), text);
-            }
+        let mut names = Names::default();
+        let texts: Vec<String> = ["", "x", "\u{fc}", "\u{6f22}"].map(|it| it.repeat(30)).into();
+        let kept: Vec<Name> = texts.iter().map(|text| names.keep(text)).collect();
+        for (text, name) in texts.iter().zip(&kept) {
+            assert_eq!(names.text(name), text);
         }
+    }
+
+    #[test]
+    fn the_last_name_leaves_no_gap() {
+        let mut names = Names::default();
+        let first = names.keep("first");
+        for _ in 0..3 {
+            let last = names.keep("last");
+            names.leave(&last);
+        }
+        assert_eq!((names.text.as_str(), names.gaps), ("first", 0));
+        names.leave(&first);
+        assert_eq!(names.gaps, 0);
     }
 }

@@ -68,7 +68,7 @@ impl Passage<'_> {
     }
 
     fn pair_least(&self, pair: &Pending, cutoff: f64) -> Option<(f64, f64)> {
-        let element = &self.element(pair.element).piece;
+        let element = &self.piece(pair.element);
         let local = self.local(pair.local);
         match &self.path.turn {
             None => {

@@ -2,10 +2,11 @@
 
 use super::answer::Move;
 use super::distance::gap;
-use super::model::{Model, Standing};
+use super::model::Model;
 use super::mover::Mover;
 use super::path::Path;
 use super::piece::Piece;
+use super::standing::Standing;
 use super::straight::Hit;
 use super::vector::{length, scale};
 
@@ -53,7 +54,12 @@ impl<'a> Passage<'a> {
     /// A piece that stands, by its number.
     #[inline]
     pub(crate) fn element(&self, number: u32) -> &'a Standing {
-        &self.model.pieces[number as usize]
+        self.model.pieces.at(number)
+    }
+
+    /// The same as a whole, for searches.
+    pub(crate) fn piece(&self, number: u32) -> Piece {
+        self.model.pieces.piece(number)
     }
 
     /// A piece of the mover, by its index.

@@ -3,7 +3,7 @@
 use super::piece::{NOISE, Piece};
 use super::pose::{Frame, Pose, Turn};
 use super::space::Sweep;
-use super::vector::{Vec3, along, is_finite, reach, sub};
+use super::vector::{Vec3, along, reach, sub};
 
 /// A move between two checked poses; `t` runs from 0 to 1.
 #[derive(Debug, Clone, Copy)]
@@ -18,9 +18,11 @@ pub(crate) struct Path {
 
 impl Path {
     /// `None` when a number is not finite: nothing can be said about such a move.
+    #[inline]
     pub(crate) fn between(from: &Pose, to: &Pose) -> Option<Path> {
-        from.check().ok()?;
-        to.check().ok()?;
+        if !(from.is_sound() && to.is_sound()) {
+            return None;
+        }
         let turn = if from.rotation == to.rotation {
             None
         } else {
@@ -32,10 +34,11 @@ impl Path {
             start: Frame::of(from.rotation),
             turn,
         };
-        is_finite(path.displacement).then_some(path)
+        Some(path)
     }
 
     /// Origin of the mover at `t`.
+    #[inline]
     pub(crate) fn origin(&self, t: f64) -> Vec3 {
         along(self.from, t, self.displacement)
     }
@@ -49,6 +52,7 @@ impl Path {
     }
 
     /// The sum of magnitudes of everything that enters a position on the way, mm.
+    #[inline]
     pub(crate) fn span(&self) -> f64 {
         reach(self.from) + reach(self.displacement)
     }

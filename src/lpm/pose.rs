@@ -60,6 +60,7 @@ impl Frame {
     ///
     /// Dividing by the squared length instead of normalising first keeps quarter turns exact:
     /// `[0.7071067811865476, 0, 0, 0.7071067811865475]` must not tilt or stretch a block.
+    #[inline]
     pub(crate) fn of(rotation: [f64; 4]) -> Frame {
         let [w, x, y, z] = rotation;
         if x == 0.0 && y == 0.0 && z == 0.0 {

@@ -14,7 +14,8 @@
 //! three slacks: below 1e-7 mm for coordinates of 1e6 mm.
 
 use super::piece::{Form, NOISE, Piece};
-use super::pose::Frame;
+use super::pose::{Frame, Pose};
+use super::shape::Shape;
 use super::vector::{Vec3, reach};
 
 /// Relative error allowed for what is computed here from the difference of two places and the run:
@@ -22,7 +23,7 @@ use super::vector::{Vec3, reach};
 const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 
 /// An upright block or cylinder, as far as its own straight ways are concerned.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prism {
     centre: Vec3,
     /// Half extents of the footprint along `axis` and across (0 of a disc), and of the height, mm.
@@ -39,7 +40,7 @@ impl Prism {
     /// Of a piece that is upright.
     #[inline]
     pub(crate) fn of(piece: &Piece) -> Prism {
-        let (half, radius, axis) = footprint(piece, [piece.frame.x[0], piece.frame.x[1]]);
+        let (half, radius, axis) = footprint(piece.form, [piece.frame.x[0], piece.frame.x[1]]);
         Prism {
             centre: piece.centre,
             half,
@@ -49,11 +50,40 @@ impl Prism {
         }
     }
 
+    /// Of a block or a cylinder alone, when it stands upright at `pose`.
+    #[inline]
+    pub(crate) fn standing(shape: &Shape, pose: &Pose) -> Option<Prism> {
+        let (form, span) = match shape {
+            Shape::Block { half } => (Form::Block(*half), reach(*half)),
+            Shape::Cylinder { radius, height } => (
+                Form::Cylinder {
+                    radius: *radius,
+                    half: height / 2.0,
+                },
+                2.0 * radius + height,
+            ),
+            Shape::Compound(_) | Shape::Mesh(_) => return None,
+        };
+        let [_, x, y, _] = pose.rotation;
+        if x != 0.0 || y != 0.0 {
+            return None;
+        }
+        let axis = Frame::of(pose.rotation).x;
+        let (half, radius, axis) = footprint(form, [axis[0], axis[1]]);
+        Some(Prism {
+            centre: pose.position,
+            half,
+            radius,
+            axis,
+            span,
+        })
+    }
+
     /// Of an upright piece whose parent, turned by the upright `frame`, stands at `position`.
     #[inline]
     pub(crate) fn placed(piece: &Piece, frame: &Frame, position: Vec3) -> Prism {
         let x = frame.apply(piece.frame.x);
-        let (half, radius, axis) = footprint(piece, [x[0], x[1]]);
+        let (half, radius, axis) = footprint(piece.form, [x[0], x[1]]);
         let (centre, span) = piece.place(frame, position);
         Prism {
             centre,
@@ -61,6 +91,31 @@ impl Prism {
             radius,
             axis,
             span,
+        }
+    }
+
+    /// The whole piece again, its footprint perhaps turned by quarters.
+    pub(crate) fn piece(&self) -> Piece {
+        let [x, y] = self.axis;
+        let frame = Frame {
+            x: [x, y, 0.0],
+            y: [-y, x, 0.0],
+            z: [0.0, 0.0, 1.0],
+        };
+        let form = if self.radius > 0.0 {
+            Form::Cylinder {
+                radius: self.radius,
+                half: self.half[2],
+            }
+        } else {
+            Form::Block(self.half)
+        };
+        Piece {
+            centre: self.centre,
+            frame,
+            form,
+            span: self.span,
+            upright: true,
         }
     }
 
@@ -81,8 +136,8 @@ impl Prism {
 
 /// Half extents, radius and first axis; the axis turned by quarters until it lies next to x.
 #[inline]
-fn footprint(piece: &Piece, x: [f64; 2]) -> (Vec3, f64, [f64; 2]) {
-    match piece.form {
+fn footprint(form: Form, x: [f64; 2]) -> (Vec3, f64, [f64; 2]) {
+    match form {
         Form::Block([a, b, c]) => {
             let (half, x) = if x[0].abs() >= x[1].abs() {
                 ([a, b, c], x)

@@ -56,13 +56,13 @@ impl Model {
         let nearest = Passage::new(self, &body, &path, way).least(range_mm)?;
         Some(Clearance {
             distance_mm: nearest.distance_mm,
-            nearest: self.key(self.pieces[nearest.element as usize].owner),
+            nearest: self.key(self.pieces.at(nearest.element).owner),
             t: nearest.t,
         })
     }
 
     fn owner(&self, found: &Found) -> ElementKey {
-        self.key(self.pieces[found.element as usize].owner)
+        self.key(self.pieces.at(found.element).owner)
     }
 
     /// An element that holds the mover, or is held by it, without touching.

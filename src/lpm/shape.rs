@@ -3,7 +3,6 @@
 //! Bodies are closed sets: their surface belongs to them, so touching is contact.
 
 use super::pose::Pose;
-use super::vector::is_finite;
 
 /// Largest coordinate or size the arithmetic is proven for, mm.
 pub const LARGEST_COORDINATE_MM: f64 = 1e6;
@@ -101,8 +100,14 @@ impl Shape {
     ///
     /// # Errors
     /// The first [`Flaw`] with its path inside the shape (`half[1]`, `parts[2].radius`).
+    #[inline]
     pub fn check(&self) -> Result<(), Flaw> {
-        check_shape(self, "", 0)
+        match self {
+            // Words are made only where there is something to complain of.
+            Shape::Block { half } if half.iter().all(is_size) => Ok(()),
+            Shape::Cylinder { radius, height } if is_size(radius) && is_size(height) => Ok(()),
+            _ => check_shape(self, "", 0),
+        }
     }
 }
 
@@ -111,8 +116,24 @@ impl Pose {
     ///
     /// # Errors
     /// [`Flaw::Coordinate`] or [`Flaw::Rotation`].
+    #[inline]
     pub fn check(&self) -> Result<(), Flaw> {
-        check_pose(self, "")
+        if self.is_sound() {
+            Ok(())
+        } else {
+            check_pose(self, "")
+        }
+    }
+
+    /// What [`Pose::check`] accepts.
+    #[inline]
+    pub(crate) fn is_sound(&self) -> bool {
+        let [w, x, y, z] = self.rotation;
+        let squared = w * w + x * x + y * y + z * z;
+        let placed = |member: &f64| member.abs() <= LARGEST_COORDINATE_MM;
+        // Outside this range the squared length has lost its digits to under- or overflow; what is
+        // not finite is outside, too.
+        self.position.iter().all(placed) && squared > 1e-200 && squared < 1e200
     }
 }
 
@@ -177,8 +198,13 @@ fn check_mesh(mesh: &Mesh, path: &str) -> Result<(), Flaw> {
     Ok(())
 }
 
+#[inline]
+fn is_size(found: &f64) -> bool {
+    *found > 0.0 && *found <= LARGEST_COORDINATE_MM
+}
+
 fn check_size(found: f64, path: impl Fn() -> String) -> Result<(), Flaw> {
-    if found > 0.0 && found <= LARGEST_COORDINATE_MM {
+    if is_size(&found) {
         Ok(())
     } else {
         Err(Flaw::Size {
@@ -202,18 +228,8 @@ fn check_point(point: [f64; 3], path: &str) -> Result<(), Flaw> {
 }
 
 fn check_pose(pose: &Pose, path: &str) -> Result<(), Flaw> {
-    // The words of a complaint are only made when there is one: every question checks two poses.
-    let placed = pose
-        .position
-        .iter()
-        .all(|member| member.abs() <= LARGEST_COORDINATE_MM);
-    if !placed {
-        check_point(pose.position, &format!("{path}position"))?;
-    }
-    let [w, x, y, z] = pose.rotation;
-    let squared = w * w + x * x + y * y + z * z;
-    // Outside this range the squared length has lost its digits to under- or overflow.
-    if w.is_finite() && is_finite([x, y, z]) && squared > 1e-200 && squared < 1e200 {
+    check_point(pose.position, &format!("{path}position"))?;
+    if pose.is_sound() {
         Ok(())
     } else {
         Err(Flaw::Rotation {

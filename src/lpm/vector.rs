@@ -61,7 +61,3 @@ pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
 pub(crate) fn negate(a: Vec3) -> Vec3 {
     [-a[0], -a[1], -a[2]]
 }
-
-pub(crate) fn is_finite(a: Vec3) -> bool {
-    a.iter().all(|member| member.is_finite())
-}

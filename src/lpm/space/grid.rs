@@ -1,106 +1,27 @@
 //! Grid information `V` of all layers: what stands over which square of the baseplate.
 //!
 //! A cell is one word (bit k: layer k has something here) and a chain of bundles of silhouettes. A
-//! piece is entered in every cell that its silhouette touches. Bundles come from one pool, so that
-//! putting in and taking out asks the allocator for nothing.
+//! piece is entered in every cell that its silhouette touches. Words and chains are kept apart: a
+//! way over empty squares reads words only.
 
-use super::silhouettes::{Bundle, Cover, NONE};
+use super::area::{Area, GROWTH};
+use super::layers::Reach;
+use super::pool::{Cell, Chain, Pool};
+use super::silhouettes::{Cover, NONE};
 
-/// Edge of a cell, mm: about the pitch at which fixture elements stand; a power of two, so that
-/// dividing by it is exact.
-pub(crate) const PITCH_MM: f64 = 64.0;
 /// Pieces over more cells than this are kept in the open cell (the baseplate).
 const MOST_CELLS_OF_A_PIECE: i64 = 128;
 /// Largest grid, in cells; pieces farther out are kept in the open cell.
 const MOST_CELLS: i64 = 1 << 18;
-/// Cells added around a piece that stands outside.
-const GROWTH: i32 = 4;
-
-/// Columns and rows, both ends included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Area {
-    pub(crate) low: [i32; 2],
-    pub(crate) high: [i32; 2],
-}
-
-impl Area {
-    /// What a silhouette touches.
-    #[inline]
-    pub(crate) fn of(cover: &Cover) -> Area {
-        let cell = |coordinate: f32| cell_of(f64::from(coordinate));
-        Area {
-            low: [cell(cover.low[0]), cell(cover.low[1])],
-            high: [cell(cover.high[0]), cell(cover.high[1])],
-        }
-    }
-
-    fn cells(&self) -> i64 {
-        let edge = |axis: usize| i64::from(self.high[axis]) - i64::from(self.low[axis]) + 1;
-        edge(0) * edge(1)
-    }
-
-    fn holds(&self, other: &Area) -> bool {
-        (0..2).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
-    }
-
-    /// Both, with room to grow where `other` reaches out.
-    fn with(&self, other: &Area) -> Area {
-        let span = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) / 4 + GROWTH;
-        let below = |axis: usize| {
-            if other.low[axis] < self.low[axis] {
-                other.low[axis] - span
-            } else {
-                self.low[axis]
-            }
-        };
-        let above = |axis: usize| {
-            if other.high[axis] > self.high[axis] {
-                other.high[axis] + span
-            } else {
-                self.high[axis]
-            }
-        };
-        Area {
-            low: [below(0), below(1)],
-            high: [above(0), above(1)],
-        }
-    }
-
-    fn columns(&self) -> i64 {
-        i64::from(self.high[0]) - i64::from(self.low[0]) + 1
-    }
-}
-
-/// Column or row of a coordinate. Rounding is monotone, so covering areas stay covering.
-#[inline]
-pub(crate) fn cell_of(coordinate: f64) -> i32 {
-    let scaled = coordinate * (1.0 / PITCH_MM);
-    let whole = scaled as i32;
-    whole.saturating_sub(i32::from(f64::from(whole) > scaled))
-}
-
-/// One square of the baseplate.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Cell {
-    /// Bit k: layer k has something here.
-    pub(crate) layers: u64,
-    /// Newest bundle; the only one that need not be full.
-    head: u32,
-}
-
-impl Cell {
-    const EMPTY: Cell = Cell {
-        layers: 0,
-        head: NONE,
-    };
-}
 
 /// The squares, and one open cell for pieces too large or too far out for them.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
     area: Area,
     columns: usize,
-    cells: Vec<Cell>,
+    /// Of each cell, as in [`Cell`].
+    layers: Vec<u64>,
+    heads: Vec<u32>,
     open: Cell,
     pool: Pool,
 }
@@ -108,52 +29,49 @@ pub(crate) struct Grid {
 impl Default for Grid {
     fn default() -> Grid {
         Grid {
-            // Nothing lies in an area whose ends are crossed.
-            area: Area {
-                low: [0; 2],
-                high: [-1; 2],
-            },
+            area: Area::NOWHERE,
             columns: 0,
-            cells: Vec::new(),
+            layers: Vec::new(),
+            heads: Vec::new(),
             open: Cell::EMPTY,
             pool: Pool::default(),
         }
     }
 }
 
-/// All bundles, used and spare.
-#[derive(Debug, Clone, Default)]
-struct Pool {
-    bundles: Vec<Bundle>,
-    spare: Vec<u32>,
-}
-
 impl Grid {
-    /// Enters a piece wherever its silhouette lies. True when that is the grid, false for the open cell:
-    /// taking it out needs to know.
-    pub(crate) fn put(&mut self, piece: u32, layer: u8, cover: &Cover) -> bool {
+    /// Enters a piece wherever its silhouette lies.
+    pub(crate) fn put(&mut self, piece: u32, reach: Reach, cover: &Cover) {
         let area = Area::of(cover);
-        if area.cells() > MOST_CELLS_OF_A_PIECE || !self.reach_over(&area) {
-            self.pool.put(&mut self.open, piece, layer, cover);
-            return false;
+        if is_small(&area) && self.reach_over(&area) {
+            self.each_cell(&area, |pool, cell| pool.put(cell, piece, reach, cover));
+        } else {
+            self.pool.put(&mut self.open, piece, reach, cover);
         }
-        let pool = &mut self.pool;
-        each_cell(&mut self.cells, &self.area, &area, |cell| {
-            pool.put(cell, piece, layer, cover);
-        });
-        true
     }
 
     /// Takes a piece out again.
-    pub(crate) fn take(&mut self, piece: u32, cover: &Cover, gridded: bool) {
-        let pool = &mut self.pool;
-        if gridded {
-            each_cell(&mut self.cells, &self.area, &Area::of(cover), |cell| {
-                pool.take(cell, piece);
-            });
-        } else {
-            pool.take(&mut self.open, piece);
+    pub(crate) fn take(&mut self, piece: u32, cover: &Cover) {
+        let area = Area::of(cover);
+        let mut known = false;
+        if is_small(&area) && self.area.holds(&area) {
+            self.each_cell(&area, |pool, cell| known = pool.take(cell, piece));
         }
+        // What stood too far out when it came is in the open cell, however large the grid is now.
+        if !known {
+            self.pool.take(&mut self.open, piece);
+        }
+    }
+
+    fn each_cell(&mut self, area: &Area, mut change: impl FnMut(&mut Pool, &mut Cell)) {
+        for_each_place(self.area.low, self.columns, area, |at| {
+            let mut cell = Cell {
+                layers: self.layers[at],
+                head: self.heads[at],
+            };
+            change(&mut self.pool, &mut cell);
+            (self.layers[at], self.heads[at]) = (cell.layers, cell.head);
+        });
     }
 
     /// The part of an area that has cells.
@@ -165,33 +83,30 @@ impl Grid {
         (low[0] <= high[0] && low[1] <= high[1]).then_some(Area { low, high })
     }
 
-    /// The cell of a column and a row that [`Grid::common`] found.
+    /// Number of the cell of a column and a row that [`Grid::common`] found; the next column is the
+    /// next number.
     #[inline]
-    pub(crate) fn cell(&self, column: i32, row: i32) -> &Cell {
-        let place =
-            (row - self.area.low[1]) as usize * self.columns + (column - self.area.low[0]) as usize;
-        &self.cells[place]
+    pub(crate) fn place(&self, column: i32, row: i32) -> usize {
+        (row - self.area.low[1]) as usize * self.columns + (column - self.area.low[0]) as usize
     }
 
-    /// The cell of what has no square.
-    pub(crate) fn open(&self) -> &Cell {
-        &self.open
+    /// The bundles of a cell that has something in one of these layers.
+    #[inline]
+    pub(crate) fn in_layers(&self, place: usize, layers: u64) -> Option<Chain<'_>> {
+        (self.layers[place] & layers != 0).then(|| self.pool.chain(self.heads[place]))
     }
 
-    /// The bundles of a cell.
+    /// The bundles of what has no square, likewise.
     #[inline]
-    pub(crate) fn bundles(&self, cell: &Cell) -> Chain<'_> {
-        Chain {
-            bundles: &self.pool.bundles,
-            next: cell.head,
-        }
+    pub(crate) fn open_in_layers(&self, layers: u64) -> Option<Chain<'_>> {
+        (self.open.layers & layers != 0).then(|| self.pool.chain(self.open.head))
     }
 
     /// Heap in use, bytes.
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.cells.capacity() * size_of::<Cell>()
-            + self.pool.bundles.capacity() * size_of::<Bundle>()
-            + self.pool.spare.capacity() * size_of::<u32>()
+        self.layers.capacity() * size_of::<u64>()
+            + self.heads.capacity() * size_of::<u32>()
+            + self.pool.heap_bytes()
     }
 
     /// Makes the grid reach over `area`; false when it would become too large.
@@ -199,7 +114,7 @@ impl Grid {
         if self.area.holds(area) {
             return true;
         }
-        let grown = if self.cells.is_empty() {
+        let grown = if self.layers.is_empty() {
             Area {
                 low: area.low.map(|low| low - GROWTH),
                 high: area.high.map(|high| high + GROWTH),
@@ -210,96 +125,96 @@ impl Grid {
         if grown.cells() > MOST_CELLS {
             return false;
         }
-        let mut cells = vec![Cell::EMPTY; grown.cells() as usize];
-        let columns = grown.columns() as usize;
-        if self.columns > 0 {
-            let first = (self.area.low[1] - grown.low[1]) as usize * columns
-                + (self.area.low[0] - grown.low[0]) as usize;
-            for (row, old) in self.cells.chunks(self.columns).enumerate() {
-                cells[first + row * columns..][..old.len()].copy_from_slice(old);
-            }
+        let mut larger = Grid::over(grown);
+        for row in self.area.low[1]..=self.area.high[1] {
+            let (from, to) = (
+                self.place(self.area.low[0], row),
+                larger.place(self.area.low[0], row),
+            );
+            larger.layers[to..to + self.columns]
+                .copy_from_slice(&self.layers[from..from + self.columns]);
+            larger.heads[to..to + self.columns]
+                .copy_from_slice(&self.heads[from..from + self.columns]);
         }
-        (self.cells, self.columns, self.area) = (cells, columns, grown);
+        (self.layers, self.heads) = (larger.layers, larger.heads);
+        (self.columns, self.area) = (larger.columns, larger.area);
         true
     }
-}
 
-fn each_cell(cells: &mut [Cell], own: &Area, area: &Area, mut change: impl FnMut(&mut Cell)) {
-    let columns = own.columns();
-    for row in area.low[1]..=area.high[1] {
-        let start = i64::from(row - own.low[1]) * columns - i64::from(own.low[0]);
-        let range =
-            (start + i64::from(area.low[0])) as usize..=(start + i64::from(area.high[0])) as usize;
-        cells[range].iter_mut().for_each(&mut change);
-    }
-}
-
-impl Pool {
-    fn put(&mut self, cell: &mut Cell, piece: u32, layer: u8, cover: &Cover) {
-        let full = self
-            .bundles
-            .get(cell.head as usize)
-            .is_none_or(Bundle::is_full);
-        if full {
-            let fresh = self.spare.pop().unwrap_or_else(|| {
-                self.bundles.push(Bundle::EMPTY);
-                (self.bundles.len() - 1) as u32
-            });
-            self.bundles[fresh as usize].next = cell.head;
-            cell.head = fresh;
+    /// Empty cells.
+    fn over(area: Area) -> Grid {
+        let cells = area.cells() as usize;
+        Grid {
+            area,
+            columns: area.columns() as usize,
+            layers: vec![0; cells],
+            heads: vec![NONE; cells],
+            ..Grid::default()
         }
-        self.bundles[cell.head as usize].push(piece, layer, cover);
-        cell.layers |= 1 << layer;
     }
 
-    /// The last piece of the newest bundle fills the gap.
-    fn take(&mut self, cell: &mut Cell, piece: u32) {
-        let mut at = cell.head;
-        while at != NONE {
-            if let Some(lane) = self.bundles[at as usize].lane_of(piece) {
-                self.fill(cell.head, at, lane);
-                break;
+    /// A grid with pieces numbered from 0: the same as [`Grid::put`] for one after the other. Squares
+    /// are counted first, so that every cell gets all its bundles at once.
+    pub(crate) fn filled(silhouettes: &[(Cover, Reach)]) -> Grid {
+        let areas: Vec<Area> = silhouettes
+            .iter()
+            .map(|(cover, _)| Area::of(cover))
+            .collect();
+        let small = areas.iter().filter(|area| is_small(area)).copied();
+        let whole = small.reduce(|whole, area| whole.around(&area));
+        let fitting = whole.filter(|whole| whole.cells() <= MOST_CELLS);
+        let mut grid = fitting.map_or_else(Grid::default, Grid::over);
+        let pieces = areas.iter().zip(silhouettes);
+        if fitting.is_some() {
+            grid.reserve(pieces.clone().filter(|(area, _)| is_small(area)));
+        }
+        for (number, (area, (cover, reach))) in pieces.enumerate() {
+            if fitting.is_some() && is_small(area) {
+                grid.put_reserved(number as u32, *reach, cover, area);
+            } else {
+                grid.put(number as u32, *reach, cover);
             }
-            at = self.bundles[at as usize].next;
         }
-        let head = &self.bundles[cell.head as usize];
-        if head.is_empty() {
-            self.spare.push(cell.head);
-            cell.head = head.next;
-        }
-        cell.layers = 0;
-        let mut at = cell.head;
-        while at != NONE {
-            let bundle = &self.bundles[at as usize];
-            cell.layers |= bundle.word();
-            at = bundle.next;
-        }
+        grid
     }
-
-    fn fill(&mut self, head: u32, at: u32, lane: usize) {
-        let Some((last, layer, cover)) = self.bundles[head as usize].pop() else {
-            return;
-        };
-        let bundle = &mut self.bundles[at as usize];
-        if lane < bundle.len() {
-            bundle.set(lane, last, layer, &cover);
-        }
-    }
-}
-
-/// The bundles of one cell, newest first.
-pub(crate) struct Chain<'a> {
-    bundles: &'a [Bundle],
-    next: u32,
-}
-
-impl<'a> Iterator for Chain<'a> {
-    type Item = &'a Bundle;
 
     #[inline]
-    fn next(&mut self) -> Option<&'a Bundle> {
-        let bundle = self.bundles.get(self.next as usize)?;
-        self.next = bundle.next;
-        Some(bundle)
+    fn put_reserved(&mut self, piece: u32, reach: Reach, cover: &Cover, area: &Area) {
+        for_each_place(self.area.low, self.columns, area, |at| {
+            self.pool
+                .put_reserved(&mut self.heads[at], piece, reach, cover);
+        });
+    }
+
+    /// Bundles for what will be entered, and the words of the cells.
+    fn reserve<'a>(&mut self, pieces: impl Iterator<Item = (&'a Area, &'a (Cover, Reach))>) {
+        let mut counts = vec![0u32; self.layers.len()];
+        for (area, (_, reach)) in pieces {
+            let word = reach.word();
+            for_each_place(self.area.low, self.columns, area, |at| {
+                counts[at] += 1;
+                self.layers[at] |= word;
+            });
+        }
+        for (head, count) in self.heads.iter_mut().zip(counts) {
+            *head = self.pool.reserve(count);
+        }
+    }
+}
+
+/// Whether a piece gets squares, not the open cell.
+#[inline]
+fn is_small(area: &Area) -> bool {
+    area.cells() <= MOST_CELLS_OF_A_PIECE
+}
+
+/// Shows the number of each cell of `area` in a grid that begins at `low`.
+#[inline]
+fn for_each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(usize)) {
+    let wide = (area.high[0] - area.low[0]) as usize;
+    let mut first = (area.low[1] - low[1]) as usize * columns + (area.low[0] - low[0]) as usize;
+    for _ in area.low[1]..=area.high[1] {
+        (first..=first + wide).for_each(&mut show);
+        first += columns;
     }
 }

@@ -1,40 +1,65 @@
-//! Layers: the checking space cut along z at the real bottoms and tops of what stands in it.
+//! Layers: the checking space cut along z, each layer with the real bottom and top of what is in it.
 //!
-//! A layer is `{h1, h2, V, B}`. It holds the pieces whose bottom lies in one step of [`STEP_MM`],
-//! begins at the lowest real bottom (`h1`) and ends at the highest real top (`h2`) of its members.
-//! A piece belongs to exactly one layer, so nothing is copied; layers may overlap in height. `V`, the
-//! grid information, is kept for all layers together as one word per cell of the
-//! [`Grid`](super::grid::Grid) (bit k: layer k has something here), `B`, the silhouettes, as the
-//! bundles of the cell ([`Bundle`](super::silhouettes::Bundle)).
+//! A layer is `{h1, h2, V, B}`: one step of [`STEP_MM`] of the height, from the lowest real bottom
+//! that lies in it (`h1`) to the highest real top (`h2`). A piece belongs to every layer that it
+//! reaches into, but is copied into none: of `V`, the grid information, a layer has one bit in the
+//! word of each cell of the [`Grid`](super::grid::Grid) (bit k: layer k has something here), `B`,
+//! the silhouettes, are kept by cell for all layers ([`Bundle`](super::silhouettes::Bundle)).
 //!
 //! The checking space Omega reaches from the lowest `h1` to the highest `h2` and follows them.
 
 /// Layers fit the bits of one word.
 const LAYERS: usize = 64;
 
-/// Height of a step of bottoms, mm: elements of one level of a fixture share a layer, those of the
-/// next level do not.
+/// Height of a layer, mm: a third of the lowest elements of a fixture, so that a hand that passes
+/// over them shares no layer with them.
 const STEP_MM: f32 = 8.0;
 
-/// Steps below the top of the baseplate; lower bottoms belong to the lowest layer, those above all
-/// steps (440 mm) to the highest.
+/// Layers below the top of the baseplate; whatever lies lower belongs to the lowest layer, what
+/// lies above all steps (440 mm) to the highest.
 const STEPS_BELOW: f32 = 8.0;
 
-/// The layer of a bottom, and the step of any height. Monotone, which is all that safety needs.
+/// The layer of a height. Monotone, which is all that safety needs.
+#[inline]
 fn step(height_mm: f32) -> usize {
     // A cast from float to integer saturates, NaN is 0.
-    (height_mm / STEP_MM + STEPS_BELOW).clamp(0.0, (LAYERS - 1) as f32) as usize
+    (height_mm * (1.0 / STEP_MM) + STEPS_BELOW).clamp(0.0, (LAYERS - 1) as f32) as usize
+}
+
+/// The layers that a piece reaches into: the lowest and the highest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Reach {
+    pub(crate) low: u8,
+    pub(crate) high: u8,
+}
+
+impl Reach {
+    /// Of a piece between two heights, mm.
+    #[inline]
+    pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {
+        Reach {
+            low: step(bottom_mm) as u8,
+            high: step(top_mm) as u8,
+        }
+    }
+
+    /// One bit a layer.
+    #[inline]
+    pub(crate) fn word(self) -> u64 {
+        u64::MAX << self.low & u64::MAX >> (LAYERS - 1 - usize::from(self.high))
+    }
 }
 
 /// All layers, and Omega.
 #[derive(Debug, Clone)]
 pub(crate) struct Layers {
-    /// Real bottom and top of each layer, mm.
+    /// Pieces that pass through each layer from below to above, that begin in it, that end in it.
+    passing: [u32; LAYERS],
+    beginning: [u32; LAYERS],
+    ending: [u32; LAYERS],
+    /// Lowest bottom of those that begin, highest top of those that end in a layer, mm.
     h1: [f32; LAYERS],
     h2: [f32; LAYERS],
-    members: [u32; LAYERS],
-    /// Of each step: the layers that begin below it and reach it.
-    reaching: [u64; LAYERS],
     /// Bottom and top of Omega, mm.
     bottom: f32,
     top: f32,
@@ -43,10 +68,11 @@ pub(crate) struct Layers {
 impl Default for Layers {
     fn default() -> Layers {
         Layers {
+            passing: [0; LAYERS],
+            beginning: [0; LAYERS],
+            ending: [0; LAYERS],
             h1: [f32::INFINITY; LAYERS],
             h2: [f32::NEG_INFINITY; LAYERS],
-            members: [0; LAYERS],
-            reaching: [0; LAYERS],
             bottom: f32::INFINITY,
             top: f32::NEG_INFINITY,
         }
@@ -54,58 +80,62 @@ impl Default for Layers {
 }
 
 impl Layers {
-    /// Layer of a piece with this bottom, mm.
-    pub(crate) fn of(bottom_mm: f32) -> u8 {
-        step(bottom_mm) as u8
+    /// Takes a piece between two heights (mm) in and says which layers it now belongs to.
+    #[inline]
+    pub(crate) fn join(&mut self, bottom_mm: f32, top_mm: f32) -> Reach {
+        let reach = Reach::of(bottom_mm, top_mm);
+        let (low, high) = (usize::from(reach.low), usize::from(reach.high));
+        if let Some(between) = self.passing.get_mut(low + 1..high) {
+            between.iter_mut().for_each(|count| *count += 1);
+        }
+        self.beginning[low] += 1;
+        self.ending[high] += 1;
+        self.h1[low] = self.h1[low].min(bottom_mm);
+        self.h2[high] = self.h2[high].max(top_mm);
+        self.bottom = self.bottom.min(bottom_mm);
+        self.top = self.top.max(top_mm);
+        reach
     }
 
-    /// Takes a piece between two heights (mm) in and says which layer it now belongs to.
-    pub(crate) fn join(&mut self, h1: f32, h2: f32) -> u8 {
-        let layer = step(h1);
-        self.members[layer] += 1;
-        self.h1[layer] = self.h1[layer].min(h1);
-        if h2 > self.h2[layer] {
-            self.h2[layer] = h2;
-            let (above, last) = (layer + 1, step(h2));
-            if above <= last {
-                self.reaching[above..=last]
-                    .iter_mut()
-                    .for_each(|word| *word |= 1 << layer);
+    /// Lets a piece go. `h1` and `h2` of a layer stay (a superset is safe) until nothing begins or
+    /// ends there.
+    pub(crate) fn leave(&mut self, reach: Reach) {
+        let (low, high) = (usize::from(reach.low), usize::from(reach.high));
+        if let Some(between) = self.passing.get_mut(low + 1..high) {
+            between.iter_mut().for_each(|count| *count -= 1);
+        }
+        self.beginning[low] -= 1;
+        self.ending[high] -= 1;
+        if self.beginning[low] == 0 {
+            let h1 = std::mem::replace(&mut self.h1[low], f32::INFINITY);
+            if h1 <= self.bottom {
+                self.bottom = self.h1.iter().copied().fold(f32::INFINITY, f32::min);
             }
         }
-        self.bottom = self.bottom.min(h1);
-        self.top = self.top.max(h2);
-        layer as u8
-    }
-
-    /// Lets a piece go. The heights of a layer stay (a superset is safe) until it is empty.
-    pub(crate) fn leave(&mut self, layer: u8) {
-        let layer = layer as usize;
-        self.members[layer] -= 1;
-        if self.members[layer] > 0 {
-            return;
-        }
-        let (h1, h2) = (self.h1[layer], self.h2[layer]);
-        self.h1[layer] = f32::INFINITY;
-        self.h2[layer] = f32::NEG_INFINITY;
-        self.reaching[layer..=step(h2)]
-            .iter_mut()
-            .for_each(|word| *word &= !(1 << layer));
-        if h1 <= self.bottom || h2 >= self.top {
-            self.bottom = self.h1.iter().copied().fold(f32::INFINITY, f32::min);
-            self.top = self.h2.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        if self.ending[high] == 0 {
+            let h2 = std::mem::replace(&mut self.h2[high], f32::NEG_INFINITY);
+            if h2 >= self.top {
+                self.top = self.h2.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            }
         }
     }
 
-    /// One bit for each layer that may reach into the heights `low..=high` (mm); none outside Omega.
+    /// One bit for each layer in which something may reach into the heights `low..=high` (mm); none
+    /// outside Omega.
     #[inline]
     pub(crate) fn meeting(&self, low: f32, high: f32) -> u64 {
         if high < self.bottom || low > self.top {
             return 0;
         }
         let (first, last) = (step(low), step(high));
-        let beginning = u64::MAX << first & u64::MAX >> (LAYERS - 1 - last);
-        beginning | self.reaching[first]
+        let outermost = [first, last].map(|layer| u64::from(self.is_void(layer, low, high)) << layer);
+        (u64::MAX << first & u64::MAX >> (LAYERS - 1 - last)) & !(outermost[0] | outermost[1])
+    }
+
+    /// Whether `low..=high` lies between the real tops and the real bottoms of a layer.
+    #[inline]
+    fn is_void(&self, layer: usize, low: f32, high: f32) -> bool {
+        self.passing[layer] == 0 && self.h2[layer] < low && self.h1[layer] > high
     }
 }
 
@@ -118,7 +148,7 @@ mod tests {
     fn no_layer_that_reaches_into_the_asked_heights_is_left_out() {
         let mut dice = Dice(3);
         let mut layers = Layers::default();
-        let mut standing: Vec<(f32, f32, u8)> = Vec::new();
+        let mut standing: Vec<(f32, f32, Reach)> = Vec::new();
         for round in 0..3_000 {
             let bottom = (300.0 * dice.signed() + 150.0) as f32;
             let top = bottom + (60.0 * dice.signed().abs()) as f32;
@@ -130,10 +160,10 @@ mod tests {
             let low = (400.0 * dice.signed()) as f32;
             let high = low + (30.0 * dice.signed().abs()) as f32;
             let word = layers.meeting(low, high);
-            for (bottom, top, layer) in &standing {
+            for (bottom, top, reach) in &standing {
                 let meets = *bottom <= high && *top >= low;
                 assert!(
-                    !meets || word >> layer & 1 == 1,
+                    !meets || word & reach.word() != 0,
                     "{bottom} {top} {low} {high}"
                 );
             }
@@ -152,5 +182,16 @@ mod tests {
         assert_eq!(layers.meeting(0.1, 300.0), 0);
         layers.leave(plate);
         assert_eq!(layers.meeting(-1e6, 1e6), 0);
+    }
+
+    #[test]
+    fn what_passes_between_the_real_ends_of_a_layer_shares_none() {
+        let mut layers = Layers::default();
+        layers.join(-20.0, 2.0);
+        layers.join(5.0, 40.0);
+        assert_eq!(layers.meeting(3.0, 4.0), 0);
+        assert_eq!(layers.meeting(2.0, 4.0).count_ones(), 1);
+        assert_eq!(layers.meeting(3.0, 5.0).count_ones(), 1);
+        assert_eq!(layers.meeting(40.5, 200.0), layers.meeting(48.0, 200.0));
     }
 }

@@ -11,8 +11,10 @@
 //! Squares are passed in the order of the way, so that a question about the first contact ends
 //! where the first contact is. Pieces are put in and taken out one by one; nothing is ever rebuilt.
 
+mod area;
 mod grid;
 mod layers;
+mod pool;
 mod silhouettes;
 mod sweep;
 
@@ -20,8 +22,10 @@ pub(crate) use silhouettes::{Bundle, Cover, LANES};
 pub(crate) use sweep::Sweep;
 
 use super::vector::Vec3;
-use grid::{Area, Cell, Grid, PITCH_MM, cell_of};
-use layers::Layers;
+use area::{Area, PITCH_MM, cell_of};
+use grid::Grid;
+use layers::{Layers, Reach};
+use pool::Chain;
 
 /// Ways shorter than this, mm, along the axis of the bands are not followed band by band.
 const SLOWEST_MM: f64 = 1e-9;
@@ -34,18 +38,11 @@ pub(crate) struct Space {
 }
 
 impl Space {
-    /// Enters a piece; the result is wanted back by [`Space::remove`].
-    pub(crate) fn insert(&mut self, piece: u32, bounds: (Vec3, Vec3)) -> bool {
-        let cover = Cover::of(bounds);
-        let layer = self.layers.join(cover.low[2], cover.high[2]);
-        self.grid.put(piece, layer, &cover)
-    }
-
     /// Takes a piece out by the bounds it came with.
-    pub(crate) fn remove(&mut self, piece: u32, bounds: (Vec3, Vec3), gridded: bool) {
+    pub(crate) fn remove(&mut self, piece: u32, bounds: (Vec3, Vec3)) {
         let cover = Cover::of(bounds);
-        self.layers.leave(Layers::of(cover.low[2]));
-        self.grid.take(piece, &cover, gridded);
+        self.layers.leave(Reach::of(cover.low[2], cover.high[2]));
+        self.grid.take(piece, &cover);
     }
 
     /// Heap in use, bytes.
@@ -68,12 +65,61 @@ impl Space {
             until: 1.0,
             visit,
         };
-        if layers == 0 || walk.cell(self.grid.open()) {
+        if layers == 0 || walk.bundles(self.grid.open_in_layers(layers)) {
             return;
         }
         if let Some(area) = self.grid.common(&Area::of(&cover)) {
             walk.squares(sweep, &area);
         }
+    }
+}
+
+/// Where pieces are entered by their bounds.
+pub(crate) trait Entering {
+    /// Enters the piece of this number.
+    fn enter(&mut self, piece: u32, bounds: (Vec3, Vec3));
+}
+
+impl Entering for Space {
+    fn enter(&mut self, piece: u32, bounds: (Vec3, Vec3)) {
+        let cover = Cover::of(bounds);
+        let reach = self.layers.join(cover.low[2], cover.high[2]);
+        self.grid.put(piece, reach, &cover);
+    }
+}
+
+/// A space in the making: many pieces that come at once.
+#[derive(Debug, Default)]
+pub(crate) struct Filling {
+    layers: Layers,
+    silhouettes: Vec<(Cover, Reach)>,
+}
+
+impl Filling {
+    /// Room for so many pieces.
+    pub(crate) fn of(count: usize) -> Filling {
+        Filling {
+            layers: Layers::default(),
+            silhouettes: Vec::with_capacity(count),
+        }
+    }
+
+    /// The space, as if each piece had been inserted.
+    pub(crate) fn space(self) -> Space {
+        Space {
+            grid: Grid::filled(&self.silhouettes),
+            layers: self.layers,
+        }
+    }
+}
+
+impl Entering for Filling {
+    /// Pieces come in the order of their numbers, from 0.
+    #[inline]
+    fn enter(&mut self, _piece: u32, bounds: (Vec3, Vec3)) {
+        let cover = Cover::of(bounds);
+        let reach = self.layers.join(cover.low[2], cover.high[2]);
+        self.silhouettes.push((cover, reach));
     }
 }
 
@@ -88,11 +134,8 @@ struct Walk<'a, V> {
 impl<V: FnMut(&Bundle, u32) -> f64> Walk<'_, V> {
     /// True when the rest of the way does not matter.
     #[inline]
-    fn cell(&mut self, cell: &Cell) -> bool {
-        if cell.layers & self.layers == 0 {
-            return false;
-        }
-        for bundle in self.grid.bundles(cell) {
+    fn bundles(&mut self, chain: Option<Chain<'_>>) -> bool {
+        for bundle in chain.into_iter().flatten() {
             let meeting = bundle.meeting(&self.cover);
             if meeting != 0 {
                 self.until = (self.visit)(bundle, meeting);
@@ -118,7 +161,7 @@ impl<V: FnMut(&Bundle, u32) -> f64> Walk<'_, V> {
     fn few(&mut self, area: &Area) {
         for row in area.low[1]..=area.high[1] {
             for column in area.low[0]..=area.high[0] {
-                if self.cell(self.grid.cell(column, row)) {
+                if self.bundles(self.grid.in_layers(self.grid.place(column, row), self.layers)) {
                     return;
                 }
             }
@@ -154,12 +197,12 @@ impl<V: FnMut(&Bundle, u32) -> f64> Walk<'_, V> {
                 cell_of(high).min(area.high[across]),
             );
             for square in from..=to {
-                let cell = if AXIS == 0 {
-                    self.grid.cell(band, square)
+                let place = if AXIS == 0 {
+                    self.grid.place(band, square)
                 } else {
-                    self.grid.cell(square, band)
+                    self.grid.place(square, band)
                 };
-                if self.cell(cell) {
+                if self.bundles(self.grid.in_layers(place, self.layers)) {
                     return;
                 }
             }

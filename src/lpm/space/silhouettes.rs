@@ -5,6 +5,7 @@
 //! mm at 1 m, 0.06 mm at 1 km), never safety: a rounded box holds the true one, and what overlaps
 //! by rounding only is sorted out by the exact phase.
 
+use super::layers::Reach;
 use crate::lpm::vector::Vec3;
 
 /// Pieces of one bundle: the width of two SSE registers or one AVX register.
@@ -19,11 +20,13 @@ const ULP: f64 = 1.2e-7;
 const TINY_MM: f64 = 1e-37;
 
 /// An f32 that is not above `x`.
+#[inline]
 fn below(x: f64) -> f32 {
     (x - (x.abs() * ULP + TINY_MM)) as f32
 }
 
 /// An f32 that is not below `x`.
+#[inline]
 fn above(x: f64) -> f32 {
     (x + (x.abs() * ULP + TINY_MM)) as f32
 }
@@ -36,6 +39,7 @@ pub(crate) struct Cover {
 }
 
 impl Cover {
+    #[inline]
     pub(crate) fn of((low, high): (Vec3, Vec3)) -> Cover {
         Cover {
             low: low.map(below),
@@ -62,22 +66,31 @@ pub(crate) struct Bundle {
     low: [[f32; LANES]; 3],
     high: [[f32; LANES]; 3],
     pieces: [u32; LANES],
-    layers: [u8; LANES],
+    reaches: [Reach; LANES],
     count: u32,
     /// Next bundle of the same cell; always a full one.
     pub(super) next: u32,
 }
 
 impl Bundle {
-    pub(super) const EMPTY: Bundle = Bundle {
+    const EMPTY: Bundle = Bundle {
         low: [[f32::INFINITY; LANES]; 3],
         high: [[f32::NEG_INFINITY; LANES]; 3],
         pieces: [0; LANES],
-        layers: [0; LANES],
+        reaches: [Reach { low: 0, high: 0 }; LANES],
         count: 0,
         next: NONE,
     };
 
+    /// An empty bundle, and the bundle that follows it in its cell.
+    pub(super) fn before(next: u32) -> Bundle {
+        Bundle {
+            next,
+            ..Bundle::EMPTY
+        }
+    }
+
+    #[inline]
     pub(super) fn is_full(&self) -> bool {
         self.count as usize == LANES
     }
@@ -90,42 +103,47 @@ impl Bundle {
         self.count as usize
     }
 
-    pub(super) fn push(&mut self, piece: u32, layer: u8, cover: &Cover) {
+    #[inline]
+    pub(super) fn push(&mut self, piece: u32, reach: Reach, cover: &Cover) {
         let lane = self.count as usize;
         self.count += 1;
-        self.set(lane, piece, layer, cover);
+        self.set(lane, piece, reach, cover);
     }
 
-    pub(super) fn pop(&mut self) -> Option<(u32, u8, Cover)> {
+    #[inline]
+    pub(super) fn pop(&mut self) -> Option<(u32, Reach, Cover)> {
         let lane = self.count.checked_sub(1)? as usize;
-        let last = (self.pieces[lane], self.layers[lane], self.cover(lane));
+        let last = (self.pieces[lane], self.reaches[lane], self.cover(lane));
         let nowhere = Cover {
             low: [f32::INFINITY; 3],
             high: [f32::NEG_INFINITY; 3],
         };
-        self.set(lane, 0, 0, &nowhere);
+        self.set(lane, 0, Reach { low: 0, high: 0 }, &nowhere);
         self.count -= 1;
         Some(last)
     }
 
-    pub(super) fn set(&mut self, lane: usize, piece: u32, layer: u8, cover: &Cover) {
+    #[inline]
+    pub(super) fn set(&mut self, lane: usize, piece: u32, reach: Reach, cover: &Cover) {
         for axis in 0..3 {
             self.low[axis][lane] = cover.low[axis];
             self.high[axis][lane] = cover.high[axis];
         }
         self.pieces[lane] = piece;
-        self.layers[lane] = layer;
+        self.reaches[lane] = reach;
     }
 
+    #[inline]
     pub(super) fn lane_of(&self, piece: u32) -> Option<usize> {
         let used = &self.pieces[..self.count as usize];
         used.iter().position(|known| *known == piece)
     }
 
     /// Word of the layers of this bundle.
+    #[inline]
     pub(super) fn word(&self) -> u64 {
-        let used = &self.layers[..self.count as usize];
-        used.iter().fold(0, |word, layer| word | 1 << layer)
+        let used = &self.reaches[..self.count as usize];
+        used.iter().fold(0, |word, reach| word | reach.word())
     }
 
     /// One silhouette.
@@ -221,7 +239,7 @@ mod tests {
         for _ in 0..2_000 {
             let mut bundle = Bundle::EMPTY;
             for piece in 0..5 {
-                bundle.push(piece, 0, &drawn(&mut dice));
+                bundle.push(piece, Reach { low: 0, high: 0 }, &drawn(&mut dice));
             }
             let asked = drawn(&mut dice);
             let word = bundle.meeting(&asked);

@@ -1,0 +1,139 @@
+//! Bundles of all cells in one block: putting in and taking out asks the allocator for nothing.
+
+use super::layers::Reach;
+use super::silhouettes::{Bundle, Cover, LANES, NONE};
+
+/// What a cell keeps: the layers that have something here (bit k: layer k) and its newest bundle,
+/// the only one that need not be full.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Cell {
+    pub(super) layers: u64,
+    pub(super) head: u32,
+}
+
+impl Cell {
+    pub(super) const EMPTY: Cell = Cell {
+        layers: 0,
+        head: NONE,
+    };
+}
+
+/// All bundles, used and spare.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Pool {
+    pub(super) bundles: Vec<Bundle>,
+    spare: Vec<u32>,
+}
+
+impl Pool {
+    /// Adds a silhouette to a cell.
+    pub(super) fn put(&mut self, cell: &mut Cell, piece: u32, reach: Reach, cover: &Cover) {
+        let full = self
+            .bundles
+            .get(cell.head as usize)
+            .is_none_or(Bundle::is_full);
+        if full {
+            let fresh = self.spare.pop().unwrap_or_else(|| {
+                self.bundles.push(Bundle::before(NONE));
+                (self.bundles.len() - 1) as u32
+            });
+            self.bundles[fresh as usize].next = cell.head;
+            cell.head = fresh;
+        }
+        self.bundles[cell.head as usize].push(piece, reach, cover);
+        cell.layers |= reach.word();
+    }
+
+    /// Bundles for so many silhouettes of one new cell, one after the other; the result is the first.
+    pub(super) fn reserve(&mut self, count: u32) -> u32 {
+        let mut next = NONE;
+        let first = self.bundles.len() as u32;
+        for at in first..first + count.div_ceil(LANES as u32) {
+            self.bundles.push(Bundle::before(next));
+            next = at;
+        }
+        if count == 0 { NONE } else { first }
+    }
+
+    /// Adds a silhouette to reserved bundles; `head` becomes the newest.
+    #[inline]
+    pub(super) fn put_reserved(
+        &mut self,
+        head: &mut u32,
+        piece: u32,
+        reach: Reach,
+        cover: &Cover,
+    ) {
+        *head += u32::from(self.bundles[*head as usize].is_full());
+        self.bundles[*head as usize].push(piece, reach, cover);
+    }
+
+    /// Takes a silhouette out of a cell, if it is there: the last of the newest bundle fills the gap.
+    pub(super) fn take(&mut self, cell: &mut Cell, piece: u32) -> bool {
+        let Some((at, lane)) = self.whereabouts(cell.head, piece) else {
+            return false;
+        };
+        self.fill(cell.head, at, lane);
+        let head = &self.bundles[cell.head as usize];
+        if head.is_empty() {
+            self.spare.push(cell.head);
+            cell.head = head.next;
+        }
+        cell.layers = self
+            .chain(cell.head)
+            .fold(0, |word, bundle| word | bundle.word());
+        true
+    }
+
+    fn whereabouts(&self, head: u32, piece: u32) -> Option<(u32, usize)> {
+        let mut at = head;
+        while let Some(bundle) = self.bundles.get(at as usize) {
+            if let Some(lane) = bundle.lane_of(piece) {
+                return Some((at, lane));
+            }
+            at = bundle.next;
+        }
+        None
+    }
+
+    fn fill(&mut self, head: u32, at: u32, lane: usize) {
+        let Some((last, reach, cover)) = self.bundles[head as usize].pop() else {
+            return;
+        };
+        let bundle = &mut self.bundles[at as usize];
+        if lane < bundle.len() {
+            bundle.set(lane, last, reach, &cover);
+        }
+    }
+
+    /// The bundles of a cell, by its newest.
+    #[inline]
+    pub(super) fn chain(&self, head: u32) -> Chain<'_> {
+        Chain {
+            bundles: &self.bundles,
+            next: head,
+        }
+    }
+
+    /// Heap in use, bytes.
+    pub(super) fn heap_bytes(&self) -> usize {
+        self.bundles.capacity() * size_of::<Bundle>() + self.spare.capacity() * size_of::<u32>()
+    }
+}
+
+/// The bundles of one cell, newest first.
+pub(crate) struct Chain<'a> {
+    bundles: &'a [Bundle],
+    next: u32,
+}
+
+impl<'a> Iterator for Chain<'a> {
+    type Item = &'a Bundle;
+
+    #[inline]
+    fn next(&mut self) -> Option<&'a Bundle> {
+        let bundle = self.bundles.get(self.next as usize)?;
+        self.next = bundle.next;
+        Some(bundle)
+    }
+}
