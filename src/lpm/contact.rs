@@ -3,17 +3,20 @@
 //! Upright pairs on a straight way are judged as soon as the broad phase shows them
 //! ([`prism`](super::prism)). Whatever needs a search (tilted pieces, triangles, turns) is put on a
 //! list, each pair once, and searched in the order in which the boxes meet. A contact shortens the
-//! way for all that comes after it.
+//! way for all that comes after it, so for the first contact the pair whose boxes meet first is judged
+//! first.
 
+use super::candidates::Candidates;
 use super::distance::Gap;
-use super::mover::Group;
-use super::parts::{Part, Parts};
+use super::mover::{Group, MOST_OF_A_GROUP, hull};
 use super::passage::{Passage, Pending, once_in_order};
-use super::prism::{Meeting, Prism};
-use super::space::{Bundle, LANES};
+use super::prism::{Meeting, Prism, Run};
+use super::space::{Boxes, Bundle, Cover, LANES, Sweep, Visit, above};
 use super::standing::Stands;
 use super::straight::{self, Hit};
+use super::touch::touch;
 use super::turning::Turning;
+use super::vector::sub;
 
 /// What a contact is wanted for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,22 +28,37 @@ pub(crate) enum Wanted {
 }
 
 /// A pair within the margin at `t`.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Found {
     t: f64,
     /// Number of the standing piece.
     pub(crate) element: u32,
-    local: u32,
-    /// When a search has found it.
-    searched: Option<Gap>,
+    how: How,
+}
+
+/// What is known of a contact.
+#[derive(Debug, Clone)]
+enum How {
+    /// Index of the piece of the mover, both upright: the rest follows in closed form.
+    Closed(u32),
+    /// A search has found it. (Apart, so that closed forms carry no load.)
+    Searched(Box<Gap>),
 }
 
 impl Found {
     /// Where and when.
     pub(crate) fn hit(&self, passage: &Passage) -> Hit {
-        match self.searched {
-            Some(gap) => Hit { t: self.t, gap },
-            None => passage.touch(&passage.piece(self.element), self.local, self.t),
+        let gap = match (&self.how, &passage.element(self.element).form) {
+            (How::Closed(local), Stands::Upright(element)) => {
+                let mover = passage.prism_at(*local, self.t);
+                mover.map(|mover| touch(element, &mover, sub(mover.centre, element.centre)))
+            }
+            (How::Closed(_), Stands::Askew(_)) => None,
+            (How::Searched(gap), _) => Some(**gap),
+        };
+        Hit {
+            t: self.t,
+            gap: gap.expect("closed forms are of upright pieces"),
         }
     }
 }
@@ -49,159 +67,218 @@ impl Passage<'_> {
     /// A contact within the margin; `None` is proof that there is none.
     #[inline]
     pub(crate) fn contact(&self, wanted: Wanted) -> Option<Found> {
-        let mut search = Search {
-            passage: self,
+        let mut found = Findings {
             wanted,
             best: None,
             pending: Vec::new(),
         };
+        let run = Run::of(self.path.displacement);
         for group in &self.body.groups {
-            search.group(group);
-            if search.is_done() {
-                return search.best;
+            let boxes = group.boxes(self.path, self.way.margin_mm);
+            let sweep = Sweep::new(hull(&boxes), self.path.displacement);
+            let until = found.until();
+            let mut search = Search::new(self, group, &run, &mut found, &boxes, &sweep);
+            self.model.space.walk(&sweep, until, &mut search);
+            if found.until() < 0.0 {
+                return found.best;
             }
         }
-        if !search.pending.is_empty() {
-            search.searches();
+        if !found.pending.is_empty() {
+            self.searches(&mut found);
         }
-        search.best
+        found.best
     }
 }
 
-struct Search<'a> {
-    passage: &'a Passage<'a>,
+/// What is found so far.
+struct Findings {
     wanted: Wanted,
     best: Option<Found>,
     pending: Vec<Pending>,
 }
 
-impl Search<'_> {
-    /// Nothing that is still to come can matter.
-    #[inline]
-    fn is_done(&self) -> bool {
-        match (&self.best, self.wanted) {
-            (None, _) => false,
-            (Some(_), Wanted::Any) => true,
-            (Some(best), Wanted::First) => best.t <= 0.0,
-        }
-    }
-
-    /// The part of the way that still matters.
+impl Findings {
+    /// The part of the way that still matters; below 0: nothing does.
     #[inline]
     fn until(&self) -> f64 {
-        match &self.best {
-            Some(_) if self.is_done() => -1.0,
-            Some(best) => best.t,
-            None => 1.0,
-        }
-    }
-
-    fn group(&mut self, group: &Group) {
-        let passage = self.passage;
-        let margin = passage.way.margin_mm;
-        let sweep = group.sweep(passage.path, margin);
-        let mut parts = None;
-        passage.model.space.walk(&sweep, |bundle, lanes| {
-            let parts = parts.get_or_insert(Parts::UNPLACED);
-            let parts = parts.placed(passage, group, margin, self.until());
-            self.bundle(bundle, lanes, parts);
-            self.until()
-        });
-    }
-
-    #[inline]
-    fn bundle(&mut self, bundle: &Bundle, lanes: u32, parts: &mut [Part]) {
-        for index in 0..parts.len() {
-            let mut meeting = lanes & bundle.meeting(&parts[index].cover);
-            while meeting != 0 {
-                let lane = meeting.trailing_zeros() as usize % LANES;
-                meeting &= meeting - 1;
-                let before = self.until();
-                self.pair(bundle, lane, &parts[index]);
-                let until = self.until();
-                if until < 0.0 {
-                    return;
-                }
-                if until < before {
-                    parts
-                        .iter_mut()
-                        .for_each(|part| part.cover = part.sweep.cover(until));
-                    meeting &= bundle.meeting(&parts[index].cover);
-                }
-            }
-        }
-    }
-
-    #[inline]
-    fn pair(&mut self, bundle: &Bundle, lane: usize, part: &Part) {
-        let number = bundle.piece(lane);
-        let element = self.passage.element(number);
-        if !self.passage.counts(element) {
-            return;
-        }
-        match (&part.prism, &element.form) {
-            (Some(prism), Stands::Upright(standing)) => {
-                let found = self.met(number, standing, part, prism);
-                self.offer(found);
-            }
-            (Some(_), Stands::Askew(_)) | (None, _) => self.pending.push(Pending {
-                order: part.sweep.first_over(&bundle.cover(lane)),
-                element: number,
-                local: part.local,
-            }),
+        match (&self.best, self.wanted) {
+            (None, _) => 1.0,
+            (Some(_), Wanted::Any) => -1.0,
+            (Some(best), Wanted::First) if best.t <= 0.0 => -1.0,
+            (Some(best), Wanted::First) => best.t,
         }
     }
 
     #[inline]
     fn offer(&mut self, found: Option<Found>) {
         if let Some(found) = found
-            && self.best.is_none_or(|known| found.t < known.t)
+            && self.best.as_ref().is_none_or(|known| found.t < known.t)
         {
             self.best = Some(found);
         }
     }
+}
 
-    /// Both upright, the way straight.
+/// One group of pieces on its way.
+struct Search<'a, 'b> {
+    passage: &'a Passage<'a>,
+    group: &'a Group,
+    run: &'a Run,
+    found: &'b mut Findings,
+    boxes: &'a Boxes<MOST_OF_A_GROUP>,
+    sweep: &'a Sweep,
+    /// The pieces where the way begins, as far as they were looked at.
+    prisms: [Option<Prism>; MOST_OF_A_GROUP],
+    candidates: Candidates,
+}
+
+impl Visit for Search<'_, '_> {
+    /// For any contact every one is as good, so pieces are judged at once; for the first one they wait.
     #[inline]
-    fn met(&self, number: u32, standing: &Prism, part: &Part, mover: &Prism) -> Option<Found> {
-        let (run, margin) = (self.passage.path.displacement, self.passage.way.margin_mm);
-        let t = Meeting::new(standing, mover, run, margin).first(self.until())?;
-        let found = |t, searched| Found {
-            t,
-            element: number,
-            local: part.local,
-            searched,
-        };
+    fn in_order(&self) -> bool {
+        self.found.wanted == Wanted::First
+    }
+
+    #[inline]
+    fn bundle(&mut self, bundle: &Bundle, lanes: u32, entry: &[f32; LANES]) -> bool {
+        let mut left = lanes;
+        while left != 0 {
+            let lane = left.trailing_zeros() as usize % LANES;
+            left &= left - 1;
+            if !self.in_order() {
+                self.piece(bundle.piece(lane), &bundle.boxes.cover(lane));
+                if self.found.until() < 0.0 {
+                    return true;
+                }
+                continue;
+            }
+            if self.candidates.is_full() && self.pause() < 0.0 {
+                return true;
+            }
+            self.candidates.push(entry[lane], bundle.piece(lane));
+        }
+        false
+    }
+
+    #[inline]
+    fn pause(&mut self) -> f64 {
+        while let Some(piece) = self.candidates.earliest(self.found.until()) {
+            let cover = Cover::of(self.passage.model.pieces.bounds(piece));
+            self.piece(piece, &cover);
+        }
+        self.found.until()
+    }
+}
+
+impl<'a, 'b> Search<'a, 'b> {
+    #[inline]
+    fn new(
+        passage: &'a Passage<'a>,
+        group: &'a Group,
+        run: &'a Run,
+        found: &'b mut Findings,
+        boxes: &'a Boxes<MOST_OF_A_GROUP>,
+        sweep: &'a Sweep,
+    ) -> Search<'a, 'b> {
+        Search {
+            passage,
+            group,
+            run,
+            found,
+            boxes,
+            sweep,
+            prisms: [None; MOST_OF_A_GROUP],
+            candidates: Candidates::NONE,
+        }
+    }
+
+    /// A standing piece that the group may meet: which of its pieces do?
+    #[inline]
+    fn piece(&mut self, element: u32, cover: &Cover) {
+        let until = self.found.until();
+        let crossing = self
+            .boxes
+            .crossing(cover, &self.sweep.pace.reversed(), above(until));
+        let mut places = crossing.lanes & self.group.used();
+        while places != 0 {
+            let place = places.trailing_zeros() as usize % MOST_OF_A_GROUP;
+            places &= places - 1;
+            let entry = f64::from(crossing.entry[place]);
+            if entry <= self.found.until() {
+                self.judge(entry, element, place);
+            }
+        }
+    }
+
+    #[inline]
+    fn judge(&mut self, entry: f64, number: u32, place: usize) {
+        let passage = self.passage;
+        let element = passage.element(number);
+        if !passage.counts(element) {
+            return;
+        }
+        let local = self.group.first + place;
+        match (&element.form, &passage.body.prisms[local]) {
+            (Stands::Upright(standing), Some(own)) if passage.level => {
+                let path = passage.path;
+                let mover = self.prisms[place]
+                    .get_or_insert_with(|| own.carried(path.start(), path.origin(0.0)));
+                let found = passage.met(self.run, standing, mover, self.found.until());
+                self.found.offer(found.map(|(t, gap)| Found {
+                    t,
+                    element: number,
+                    how: gap.map_or(How::Closed(local as u32), |gap| {
+                        How::Searched(Box::new(gap))
+                    }),
+                }));
+            }
+            _ => self.found.pending.push(Pending {
+                order: entry,
+                element: number,
+                local: local as u32,
+            }),
+        }
+    }
+}
+
+impl Passage<'_> {
+    /// Two upright pieces on a level way; with a margin the place of the contact has been searched, too.
+    #[inline]
+    fn met(
+        &self,
+        run: &Run,
+        element: &Prism,
+        mover: &Prism,
+        until: f64,
+    ) -> Option<(f64, Option<Gap>)> {
+        let margin = self.way.margin_mm;
+        let t = Meeting::new(element, mover, run, margin).first(until)?;
         if margin == 0.0 {
-            return Some(found(t, None));
+            return Some((t, None));
         }
         // Within the margin in height and in the plane: over an edge the distance is larger.
-        let at_start = self
-            .passage
-            .path
-            .piece_at(self.passage.local(part.local), 0.0);
-        let hit =
-            straight::first_within(&standing.piece(), &at_start, run, margin, t, self.until())?;
-        Some(found(hit.t, Some(hit.gap)))
+        let (element, mover) = (element.piece(), mover.piece());
+        let hit = straight::first_within(&element, &mover, run.way, margin, t, until)?;
+        Some((hit.t, Some(hit.gap)))
     }
 
-    fn searches(&mut self) {
-        let mut pending = std::mem::take(&mut self.pending);
+    fn searches(&self, found: &mut Findings) {
+        let mut pending = std::mem::take(&mut found.pending);
         once_in_order(&mut pending);
         for pair in pending {
-            if pair.order > self.until() {
+            if pair.order > found.until() {
                 return;
             }
-            let found = self.searched(&pair);
-            self.offer(found);
+            let searched = self.searched(&pair, found.until());
+            found.offer(searched);
         }
     }
 
-    fn searched(&self, pair: &Pending) -> Option<Found> {
-        let path = self.passage.path;
-        let element = &self.passage.piece(pair.element);
-        let local = self.passage.local(pair.local);
-        let (margin, until) = (self.passage.way.margin_mm, self.until());
+    fn searched(&self, pair: &Pending, until: f64) -> Option<Found> {
+        let path = self.path;
+        let element = &self.piece(pair.element);
+        let local = self.local(pair.local);
+        let margin = self.way.margin_mm;
         let hit = match &path.turn {
             None => {
                 let at_start = path.piece_at(local, 0.0);
@@ -218,8 +295,7 @@ impl Search<'_> {
         Some(Found {
             t: hit.t,
             element: pair.element,
-            local: pair.local,
-            searched: Some(hit.gap),
+            how: How::Searched(Box::new(hit.gap)),
         })
     }
 }

@@ -50,8 +50,9 @@
 //! | `prism::ROUNDING` | 32 roundings, relative | closed forms, between two places and a fraction of the way |
 //! | `distance::RESOLUTION_MM` | 1e-9 mm | where a search for a plane stops |
 //! | `space::sweep::SLACK_MM` | 1e-6 mm | places along the way in the broad phase; costs candidates, no answers |
-//! | `silhouettes::ULP` | 1.2e-7, relative | rounding outward to f32, likewise |
-//! | `passage::BEFORE_CONTACT_MM` | 1e-6 mm | where the normal of a contact is taken; no verdict depends on it |
+//! | `space::cover::ULP` | 1.2e-7, relative | rounding outward to f32, likewise |
+//! | `mover::SINGLE`, `space::boxes::EARLIER` | 1e-6, relative | boxes of the mover and their times in f32, likewise |
+//! | `space::sweep::SLOWEST_MM` | 1e-9 mm | what counts as rest on an axis, likewise |
 //! | `turning::band_mm` | 1e-7 to 5e-4 mm | how near to the margin a turning move counts as contact |
 //! | `turning::LEAST_RESOLUTION_MM` | 2e-4 mm | least distance of turning moves |
 //!
@@ -68,6 +69,7 @@
 )]
 
 mod answer;
+mod candidates;
 mod contact;
 mod distance;
 pub mod exact;
@@ -76,7 +78,6 @@ mod mover;
 mod name;
 mod nearest;
 mod outline;
-mod parts;
 mod passage;
 mod path;
 mod piece;
@@ -91,6 +92,7 @@ mod standing;
 mod straight;
 #[cfg(test)]
 mod tests;
+mod touch;
 mod turning;
 mod vector;
 

@@ -133,7 +133,11 @@ impl Model {
 
     fn rewrite_names(&mut self) {
         let mut fresh = Names::default();
-        for element in self.slots.iter_mut().filter_map(|slot| slot.element.as_mut()) {
+        for element in self
+            .slots
+            .iter_mut()
+            .filter_map(|slot| slot.element.as_mut())
+        {
             element.id = fresh.keep(self.names.text(&element.id));
         }
         self.names = fresh;
@@ -204,6 +208,8 @@ impl Model {
         let chain = std::iter::successors(known(element.first), |number| {
             known(self.pieces.at(*number).sibling)
         });
-        chain.map(|number| self.pieces.piece(number).centre).collect()
+        chain
+            .map(|number| self.pieces.piece(number).centre)
+            .collect()
     }
 }

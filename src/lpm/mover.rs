@@ -1,11 +1,12 @@
 //! Bodies that move: taken apart once, asked about often.
 
 use super::path::Path;
-use super::piece::{NOISE, Piece, pieces_of};
+use super::piece::{Piece, pieces_of};
+use super::prism::Prism;
 use super::shape::{Flaw, Shape};
 use super::solid::Interior;
-use super::space::Sweep;
-use super::vector::{Vec3, add, dot, length, reach};
+use super::space::{Boxes, Cover, SLOWEST_MM};
+use super::vector::{add, length, reach};
 use std::borrow::Cow;
 
 /// Pieces of a group: as many as are placed at once without asking for memory.
@@ -15,24 +16,30 @@ pub(crate) const MOST_OF_A_GROUP: usize = 4;
 #[derive(Debug, Clone)]
 pub struct Mover {
     pub(crate) pieces: Vec<Piece>,
+    /// Of those pieces that are upright in the frame of the body.
+    pub(crate) prisms: Vec<Option<Prism>>,
     pub(crate) groups: Vec<Group>,
     interior: Option<Interior>,
 }
 
-/// A few pieces in one box: the whole is asked about before its parts are.
+/// A few pieces that are asked about at once, by the boxes around them in the frame of the body.
 #[derive(Debug, Clone)]
 pub(crate) struct Group {
     /// Of the first piece.
     pub(crate) first: usize,
     pub(crate) count: usize,
-    /// Box in the frame of the body, rounded outward, mm.
-    centre: Vec3,
-    half: Vec3,
+    /// Centres and half extents, member by member, mm; unused places repeat the first piece.
+    centres: [[f32; MOST_OF_A_GROUP]; 3],
+    halves: [[f32; MOST_OF_A_GROUP]; 3],
     /// Largest distance of a point from the origin of the body, rounded outward, mm.
     ball: f64,
     /// The scale of rounding errors, mm.
     span: f64,
 }
+
+/// Relative error allowed for the boxes of a group at their place: fewer than ten roundings to
+/// single precision, of magnitudes that sum up to the span of group and way.
+const SINGLE: f64 = 1e-6;
 
 impl Mover {
     /// Takes a shape apart.
@@ -47,6 +54,10 @@ impl Mover {
         Ok(Mover {
             groups: groups.collect(),
             interior: Interior::of(shape),
+            prisms: pieces
+                .iter()
+                .map(|piece| piece.upright.then(|| Prism::of(piece)))
+                .collect(),
             pieces,
         })
     }
@@ -77,53 +88,85 @@ impl Mover {
 
 impl Group {
     fn of(first: usize, pieces: &[Piece]) -> Group {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        let (mut ball, mut span) = (0.0_f64, 0.0_f64);
-        for piece in pieces {
-            let bounds = piece.bounds();
-            for axis in 0..3 {
-                low[axis] = low[axis].min(bounds.0[axis]);
-                high[axis] = high[axis].max(bounds.1[axis]);
-            }
-            ball = ball.max(reach_of(piece));
-            span = span.max(piece.span + reach(piece.centre));
-        }
-        Group {
+        let mut group = Group {
             first,
             count: pieces.len(),
-            centre: [0, 1, 2].map(|axis: usize| 0.5 * (low[axis] + high[axis])),
-            half: [0, 1, 2].map(|axis: usize| 0.5 * (high[axis] - low[axis])),
-            ball,
-            span,
+            centres: [[0.0; MOST_OF_A_GROUP]; 3],
+            halves: [[0.0; MOST_OF_A_GROUP]; 3],
+            ball: 0.0,
+            span: 0.0,
+        };
+        for place in 0..MOST_OF_A_GROUP {
+            let piece = pieces.get(place).unwrap_or(&pieces[0]);
+            let (low, high) = piece.bounds();
+            for axis in 0..3 {
+                group.centres[axis][place] = (0.5 * (low[axis] + high[axis])) as f32;
+                group.halves[axis][place] = (0.5 * (high[axis] - low[axis])) as f32;
+            }
+            group.ball = group.ball.max(reach_of(piece));
+            group.span = group
+                .span
+                .max(2.0 * (piece.span + reach(piece.centre) + piece.radius()));
         }
+        group
     }
 
-    /// The box of the group on its way, rounded outward and widened by `margin` (mm).
+    /// Bits of the places that are in use.
+    #[inline]
+    pub(crate) fn used(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+
+    /// The boxes of the pieces where the way begins, rounded outward and widened by `margin` (mm).
     ///
     /// Of a turning group: the box of the ball it stays in, whatever the turn.
     #[inline]
-    pub(crate) fn sweep(&self, path: &Path, margin: f64) -> Sweep {
-        let noise = NOISE * (self.span + reach(path.origin(0.0)));
-        let (centre, half) = self.box_at_start(path);
-        let side =
-            |sign: f64| [0, 1, 2].map(|axis: usize| centre[axis] + sign * (half[axis] + noise));
-        path.sweep((side(-1.0), side(1.0)), margin)
+    pub(crate) fn boxes(&self, path: &Path, margin: f64) -> Boxes<MOST_OF_A_GROUP> {
+        let wider = margin + SINGLE * (margin + self.span + path.span()) + SLOWEST_MM;
+        let wider = (wider * (1.0 + SINGLE)) as f32;
+        let origin = path.origin(0.0).map(|member| member as f32);
+        let mut boxes = Boxes::NOWHERE;
+        for axis in 0..3 {
+            let (centres, halves) = self.along(axis, path);
+            for place in 0..MOST_OF_A_GROUP {
+                let (centre, half) = (centres[place] + origin[axis], halves[place] + wider);
+                boxes.low[axis][place] = centre - half;
+                boxes.high[axis][place] = centre + half;
+            }
+        }
+        boxes
     }
 
+    /// Centres, as seen from the origin, and half extents along an axis of the parent frame.
     #[inline]
-    fn box_at_start(&self, path: &Path) -> (Vec3, Vec3) {
+    fn along(&self, axis: usize, path: &Path) -> ([f32; MOST_OF_A_GROUP], [f32; MOST_OF_A_GROUP]) {
         if path.turn.is_some() {
-            return (path.origin(0.0), [self.ball; 3]);
+            return ([0.0; MOST_OF_A_GROUP], [self.ball as f32; MOST_OF_A_GROUP]);
         }
         let frame = path.start();
         if frame.is_identity() {
-            return (add(self.centre, path.origin(0.0)), self.half);
+            return (self.centres[axis], self.halves[axis]);
         }
-        let half = [0, 1, 2].map(|axis: usize| {
-            let images = [frame.x, frame.y, frame.z].map(|image| image[axis].abs());
-            dot(images, self.half)
-        });
-        (add(frame.apply(self.centre), path.origin(0.0)), half)
+        let images = [frame.x, frame.y, frame.z].map(|image| image[axis] as f32);
+        let mut placed = ([0.0; MOST_OF_A_GROUP], [0.0; MOST_OF_A_GROUP]);
+        for (own, image) in images.into_iter().enumerate() {
+            for place in 0..MOST_OF_A_GROUP {
+                placed.0[place] += image * self.centres[own][place];
+                placed.1[place] += image.abs() * self.halves[own][place];
+            }
+        }
+        placed
+    }
+}
+
+/// The box around four boxes.
+#[inline]
+pub(crate) fn hull(boxes: &Boxes<MOST_OF_A_GROUP>) -> Cover {
+    let least = |of: &[f32; MOST_OF_A_GROUP]| of[0].min(of[1]).min(of[2].min(of[3]));
+    let most = |of: &[f32; MOST_OF_A_GROUP]| of[0].max(of[1]).max(of[2].max(of[3]));
+    Cover {
+        low: [0, 1, 2].map(|axis: usize| least(&boxes.low[axis])),
+        high: [0, 1, 2].map(|axis: usize| most(&boxes.high[axis])),
     }
 }
 

@@ -62,7 +62,9 @@ mod tests {
     #[test]
     fn a_name_comes_back_as_it_was_given() {
         let mut names = Names::default();
-        let texts: Vec<String> = ["", "x", "\u{fc}", "\u{6f22}"].map(|it| it.repeat(30)).into();
+        let texts: Vec<String> = ["", "x", "\u{fc}", "\u{6f22}"]
+            .map(|it| it.repeat(30))
+            .into();
         let kept: Vec<Name> = texts.iter().map(|text| names.keep(text)).collect();
         for (text, name) in texts.iter().zip(&kept) {
             assert_eq!(names.text(name), text);

@@ -1,8 +1,8 @@
 //! The least distance over a way: every pair whose boxes come near enough, the nearest boxes first.
 
-use super::parts::Parts;
+use super::mover::{Group, MOST_OF_A_GROUP, hull};
 use super::passage::{Passage, Pending, once_in_order};
-use super::space::LANES;
+use super::space::{Bundle, Cover, LANES, Sweep, Visit};
 use super::straight;
 use super::turning::Turning;
 
@@ -14,6 +14,46 @@ pub(crate) struct Nearest {
     pub(crate) element: u32,
     /// Fraction of the way.
     pub(crate) t: f64,
+}
+
+/// Collects pairs that come near enough.
+struct Near<'a> {
+    passage: &'a Passage<'a>,
+    group: &'a Group,
+    /// Of the pieces of the group on their whole way.
+    covers: [Cover; MOST_OF_A_GROUP],
+    range_mm: f64,
+    pending: &'a mut Vec<Pending>,
+}
+
+impl Visit for Near<'_> {
+    fn in_order(&self) -> bool {
+        false
+    }
+
+    fn bundle(&mut self, bundle: &Bundle, lanes: u32, _entry: &[f32; LANES]) -> bool {
+        for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
+            let (element, cover) = (bundle.piece(lane), bundle.boxes.cover(lane));
+            if !self.passage.counts(self.passage.element(element)) {
+                continue;
+            }
+            for (place, own) in self.covers[..self.group.count].iter().enumerate() {
+                let order = own.distance(&cover);
+                if order <= self.range_mm {
+                    self.pending.push(Pending {
+                        order,
+                        element,
+                        local: (self.group.first + place) as u32,
+                    });
+                }
+            }
+        }
+        false
+    }
+
+    fn pause(&mut self) -> f64 {
+        1.0
+    }
 }
 
 impl Passage<'_> {
@@ -44,25 +84,21 @@ impl Passage<'_> {
     /// Pairs whose boxes come within `range_mm` of each other, with the distance of the boxes.
     fn within(&self, range_mm: f64) -> Vec<Pending> {
         let mut pending = Vec::new();
+        let run = self.path.displacement;
         for group in &self.body.groups {
-            let mut parts = Parts::UNPLACED;
-            let sweep = group.sweep(self.path, range_mm);
-            self.model.space.walk(&sweep, |bundle, lanes| {
-                for part in parts.placed(self, group, 0.0, 1.0) {
-                    for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-                        let number = bundle.piece(lane);
-                        let order = part.cover.distance(&bundle.cover(lane));
-                        if order <= range_mm && self.counts(self.element(number)) {
-                            pending.push(Pending {
-                                order,
-                                element: number,
-                                local: part.local,
-                            });
-                        }
-                    }
-                }
-                1.0
-            });
+            let own = group.boxes(self.path, 0.0);
+            let swept = [0, 1, 2, 3].map(|place: usize| own.cover(place).swept(run));
+            let mut near = Near {
+                passage: self,
+                group,
+                covers: swept,
+                range_mm,
+                pending: &mut pending,
+            };
+            let wide = group.boxes(self.path, range_mm);
+            self.model
+                .space
+                .walk(&Sweep::new(hull(&wide), run), 1.0, &mut near);
         }
         pending
     }

@@ -1,18 +1,12 @@
 //! One body on one way through the model.
 
 use super::answer::Move;
-use super::distance::gap;
 use super::model::Model;
 use super::mover::Mover;
 use super::path::Path;
 use super::piece::Piece;
+use super::prism::Prism;
 use super::standing::Standing;
-use super::straight::Hit;
-use super::vector::{length, scale};
-
-/// How far before a contact its plane is looked for, mm: of bodies that touch no plane between
-/// them is better than any other.
-const BEFORE_CONTACT_MM: f64 = 1e-6;
 
 /// A body, its way and the model.
 pub(crate) struct Passage<'a> {
@@ -74,15 +68,10 @@ impl<'a> Passage<'a> {
         self.way.ignore.is_empty() || !self.way.ignore.contains(&self.model.key(element.owner))
     }
 
-    /// Where and along which normal an element and a piece of the mover come to touch at `t`.
-    pub(crate) fn touch(&self, element: &Piece, local: u32, t: f64) -> Hit {
-        let run = self.path.displacement;
-        let back = BEFORE_CONTACT_MM / length(run);
-        let before = if back < t { t - back } else { 0.0 };
-        let mover = self.path.piece_at(self.local(local), 0.0);
-        let mut gap = gap(element, &mover, scale(run, before), None);
-        gap.lower = 0.0;
-        Hit { t, gap }
+    /// A piece of the mover at `t` of a level way, if it is upright.
+    pub(crate) fn prism_at(&self, index: u32, t: f64) -> Option<Prism> {
+        let own = self.body.prisms[index as usize].as_ref()?;
+        Some(own.carried(self.path.start(), self.path.origin(t)))
     }
 }
 

@@ -1,24 +1,23 @@
 //! The way of a mover: a straight translation, or position linear and rotation the shortest turn.
 
-use super::piece::{NOISE, Piece};
+use super::piece::Piece;
 use super::pose::{Frame, Pose, Turn};
-use super::space::Sweep;
 use super::vector::{Vec3, along, reach, sub};
 
 /// A move between two checked poses; `t` runs from 0 to 1.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(crate) struct Path {
     from: Vec3,
     /// Whole displacement of the origin, mm.
     pub(crate) displacement: Vec3,
     start: Frame,
-    /// `None`: the move is a translation.
-    pub(crate) turn: Option<Turn>,
+    /// `None`: the move is a translation. (Apart: most are.)
+    pub(crate) turn: Option<Box<Turn>>,
 }
 
 impl Path {
     /// `None` when a number is not finite: nothing can be said about such a move.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn between(from: &Pose, to: &Pose) -> Option<Path> {
         if !(from.is_sound() && to.is_sound()) {
             return None;
@@ -26,7 +25,7 @@ impl Path {
         let turn = if from.rotation == to.rotation {
             None
         } else {
-            Turn::between(from.rotation, to.rotation)
+            Turn::between(from.rotation, to.rotation).map(Box::new)
         };
         let path = Path {
             from: from.position,
@@ -61,17 +60,5 @@ impl Path {
     #[inline]
     pub(crate) fn start(&self) -> &Frame {
         &self.start
-    }
-
-    /// How a box that stands there at the start is moved, widened by `margin` and the rounding of the way, mm.
-    #[inline]
-    pub(crate) fn sweep(&self, (low, high): (Vec3, Vec3), margin: f64) -> Sweep {
-        // A margin may be larger than any coordinate: then its own rounding counts.
-        let wider = margin * (1.0 + 1e-12) + NOISE * self.span();
-        Sweep {
-            low: low.map(|member| member - wider),
-            high: high.map(|member| member + wider),
-            displacement: self.displacement,
-        }
     }
 }

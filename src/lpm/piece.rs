@@ -165,7 +165,8 @@ impl Piece {
 }
 
 /// Whether `a + b` lost nothing to rounding (the error term of an exact sum, after Knuth).
-fn is_exact_sum(a: Vec3, b: Vec3) -> bool {
+#[inline]
+pub(crate) fn is_exact_sum(a: Vec3, b: Vec3) -> bool {
     (0..3).all(|axis| {
         let sum = a[axis] + b[axis];
         let second = sum - a[axis];

@@ -13,10 +13,10 @@
 //! returned is never late, and `None` is proof. In reverse, whoever is reported has come within
 //! three slacks: below 1e-7 mm for coordinates of 1e6 mm.
 
-use super::piece::{Form, NOISE, Piece};
+use super::piece::{Form, NOISE, Piece, is_exact_sum};
 use super::pose::{Frame, Pose};
 use super::shape::Shape;
-use super::vector::{Vec3, reach};
+use super::vector::{Vec3, add, reach};
 
 /// Relative error allowed for what is computed here from the difference of two places and the run:
 /// fewer than 16 roundings of 2^-53 each lie between them and a fraction of the way, twice that is paid.
@@ -25,13 +25,13 @@ const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 /// An upright block or cylinder, as far as its own straight ways are concerned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prism {
-    centre: Vec3,
+    pub(crate) centre: Vec3,
     /// Half extents of the footprint along `axis` and across (0 of a disc), and of the height, mm.
-    half: Vec3,
+    pub(crate) half: Vec3,
     /// Radius of a disc, 0 of a rectangle, mm.
-    radius: f64,
+    pub(crate) radius: f64,
     /// First axis of the footprint, within 45 degrees of x.
-    axis: [f64; 2],
+    pub(crate) axis: [f64; 2],
     /// The scale of rounding errors, mm; see [`Piece::span`].
     span: f64,
 }
@@ -79,19 +79,23 @@ impl Prism {
         })
     }
 
-    /// Of an upright piece whose parent, turned by the upright `frame`, stands at `position`.
+    /// The same carried along by its parent, which stands turned by the upright `frame` at `position`.
     #[inline]
-    pub(crate) fn placed(piece: &Piece, frame: &Frame, position: Vec3) -> Prism {
-        let x = frame.apply(piece.frame.x);
-        let (half, radius, axis) = footprint(piece.form, [x[0], x[1]]);
-        let (centre, span) = piece.place(frame, position);
-        Prism {
-            centre,
-            half,
-            radius,
-            axis,
-            span,
+    pub(crate) fn carried(&self, frame: &Frame, position: Vec3) -> Prism {
+        let mut placed = *self;
+        if !frame.is_identity() {
+            let [x, y] = self.axis;
+            let turned = frame.apply([x, y, 0.0]);
+            placed.centre = frame.apply(self.centre);
+            if self.radius == 0.0 {
+                (placed.half, placed.axis) = beside_x(self.half, [turned[0], turned[1]]);
+            }
         }
+        if !is_exact_sum(placed.centre, position) {
+            placed.span += reach(position);
+        }
+        placed.centre = add(placed.centre, position);
+        placed
     }
 
     /// The whole piece again, its footprint perhaps turned by quarters.
@@ -119,6 +123,22 @@ impl Prism {
         }
     }
 
+    /// Whether the footprint lies along x and y.
+    #[inline]
+    fn is_straight(&self) -> bool {
+        self.axis == [1.0, 0.0]
+    }
+
+    /// In the axes of the footprint.
+    #[inline]
+    pub(crate) fn along(&self, v: Vec3) -> [f64; 2] {
+        if self.is_straight() {
+            return [v[0], v[1]];
+        }
+        let [x, y] = self.axis;
+        [v[0] * x + v[1] * y, v[1] * x - v[0] * y]
+    }
+
     /// Bounding box, rounded outward.
     #[inline]
     pub(crate) fn bounds(&self) -> (Vec3, Vec3) {
@@ -134,17 +154,12 @@ impl Prism {
     }
 }
 
-/// Half extents, radius and first axis; the axis turned by quarters until it lies next to x.
+/// Half extents, radius and first axis.
 #[inline]
 fn footprint(form: Form, x: [f64; 2]) -> (Vec3, f64, [f64; 2]) {
     match form {
-        Form::Block([a, b, c]) => {
-            let (half, x) = if x[0].abs() >= x[1].abs() {
-                ([a, b, c], x)
-            } else {
-                ([b, a, c], [x[1], -x[0]])
-            };
-            let axis = if x[0] < 0.0 { [-x[0], -x[1]] } else { x };
+        Form::Block(half) => {
+            let (half, axis) = beside_x(half, x);
             (half, 0.0, axis)
         }
         Form::Cylinder { radius, half } => ([0.0, 0.0, half], radius, [1.0, 0.0]),
@@ -153,13 +168,49 @@ fn footprint(form: Form, x: [f64; 2]) -> (Vec3, f64, [f64; 2]) {
     }
 }
 
+/// A rectangle by half extents and first axis, turned by quarters until that lies next to x.
+#[inline]
+fn beside_x([a, b, c]: Vec3, x: [f64; 2]) -> (Vec3, [f64; 2]) {
+    let (half, x) = if x[0].abs() >= x[1].abs() {
+        ([a, b, c], x)
+    } else {
+        ([b, a, c], [x[1], -x[0]])
+    };
+    (half, if x[0] < 0.0 { [-x[0], -x[1]] } else { x })
+}
+
+/// A straight way, and how long it takes for a millimetre.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Run {
+    pub(crate) way: Vec3,
+    /// Reciprocals; 0 of an axis on which nothing moves.
+    pace: Vec3,
+}
+
+impl Run {
+    /// By `way`, mm.
+    #[inline]
+    pub(crate) fn of(way: Vec3) -> Run {
+        Run {
+            way,
+            pace: way.map(pace),
+        }
+    }
+}
+
+/// The reciprocal of a rate; 0 of one that is too slow for a quotient.
+#[inline]
+fn pace(rate: f64) -> f64 {
+    if rate.abs() < 1e-290 { 0.0 } else { 1.0 / rate }
+}
+
 /// An element and a mover that runs past it, both upright.
 pub(crate) struct Meeting<'a> {
     element: &'a Prism,
     mover: &'a Prism,
     /// From the element to the mover at the start.
     apart: Vec3,
-    run: Vec3,
+    run: &'a Run,
     /// Growth of every figure, mm: margin and slack.
     grown: f64,
     slack: f64,
@@ -170,9 +221,15 @@ type Window = (f64, f64);
 
 impl<'a> Meeting<'a> {
     #[inline]
-    pub(crate) fn new(element: &'a Prism, mover: &'a Prism, run: Vec3, margin: f64) -> Meeting<'a> {
+    pub(crate) fn new(
+        element: &'a Prism,
+        mover: &'a Prism,
+        run: &'a Run,
+        margin: f64,
+    ) -> Meeting<'a> {
         let apart = [0, 1, 2].map(|axis: usize| mover.centre[axis] - element.centre[axis]);
-        let slack = NOISE * (element.span + mover.span) + ROUNDING * (reach(apart) + reach(run));
+        let slack =
+            NOISE * (element.span + mover.span) + ROUNDING * (reach(apart) + reach(run.way));
         Meeting {
             element,
             mover,
@@ -191,7 +248,7 @@ impl<'a> Meeting<'a> {
         let window = slab(
             (0.0, until),
             self.apart[2],
-            self.run[2],
+            (self.run.way[2], self.run.pace[2]),
             heights + self.grown,
         )?;
         match (self.element.radius > 0.0, self.mover.radius > 0.0) {
@@ -206,14 +263,26 @@ impl<'a> Meeting<'a> {
     fn rounded(&self, window: Window, framed: &Prism) -> Option<f64> {
         let radius = self.element.radius + self.mover.radius;
         let half = [0, 1].map(|axis: usize| self.element.half[axis] + self.mover.half[axis]);
-        let (p, v) = (along(framed, self.apart), along(framed, self.run));
+        let p = framed.along(self.apart);
+        let rates = self.rates(framed);
         let reach = radius + self.grown;
-        let window = slab(window, p[0], v[0], half[0] + reach)?;
-        let window = slab(window, p[1], v[1], half[1] + reach)?;
+        let window = slab(window, p[0], rates[0], half[0] + reach)?;
+        let window = slab(window, p[1], rates[1], half[1] + reach)?;
         if radius == 0.0 && self.grown == self.slack {
             return Some(window.0);
         }
+        let v = rates.map(|(rate, _)| rate);
         corner(window, p, v, half, reach + self.slack)
+    }
+
+    /// The run along the axes of a footprint, with the reciprocals.
+    #[inline]
+    fn rates(&self, framed: &Prism) -> [(f64, f64); 2] {
+        let (way, pace_of) = (&self.run.way, &self.run.pace);
+        if framed.is_straight() {
+            return [(way[0], pace_of[0]), (way[1], pace_of[1])];
+        }
+        framed.along(*way).map(|rate| (rate, pace(rate)))
     }
 
     fn octagon(&self, window: Window) -> Option<f64> {
@@ -224,48 +293,39 @@ impl<'a> Meeting<'a> {
 
     /// The slabs of one rectangle, grown by the other one.
     fn askew(&self, window: Window, framed: &Prism, other: &Prism) -> Option<Window> {
-        let [cos, sin] = along(framed, [other.axis[0], other.axis[1], 0.0]).map(f64::abs);
-        let (p, v) = (along(framed, self.apart), along(framed, self.run));
+        let [cos, sin] = framed
+            .along([other.axis[0], other.axis[1], 0.0])
+            .map(f64::abs);
+        let p = framed.along(self.apart);
+        let rates = self.rates(framed);
         let [a, b, _] = other.half;
         let window = slab(
             window,
             p[0],
-            v[0],
+            rates[0],
             framed.half[0] + a * cos + b * sin + self.grown,
         )?;
         slab(
             window,
             p[1],
-            v[1],
+            rates[1],
             framed.half[1] + a * sin + b * cos + self.grown,
         )
     }
 }
 
-/// In the axes of a footprint.
+/// The part of `window` in which `|start + t rate| <= half`; of the rate, its reciprocal, too.
 #[inline]
-fn along(framed: &Prism, v: Vec3) -> [f64; 2] {
-    let [x, y] = framed.axis;
-    if y == 0.0 && x == 1.0 {
-        return [v[0], v[1]];
-    }
-    [v[0] * x + v[1] * y, v[1] * x - v[0] * y]
-}
-
-/// The part of `window` in which `|start + t rate| <= half`.
-#[inline]
-fn slab((low, high): Window, start: f64, rate: f64, half: f64) -> Option<Window> {
-    let half = if rate.abs() < 1e-290 {
-        // Too slow for a quotient: what it covers at all is added to the slab.
+fn slab((low, high): Window, start: f64, (rate, pace): (f64, f64), half: f64) -> Option<Window> {
+    if pace == 0.0 {
+        // What it covers at all is added to the slab.
         if start.abs() > half + rate.abs() {
             return None;
         }
         return Some((low, high));
-    } else {
-        half
-    };
+    }
     let near = half.copysign(rate);
-    let (first, last) = ((-near - start) / rate, (near - start) / rate);
+    let (first, last) = ((-near - start) * pace, (near - start) * pace);
     let low = if first > low { first } else { low };
     let high = if last < high { last } else { high };
     if low > high { None } else { Some((low, high)) }

@@ -88,7 +88,7 @@ impl Model {
 }
 
 /// `None` when the move or the mover is not valid.
-#[inline]
+#[inline(always)]
 fn readied<'a>(mover: &'a impl Moving, way: &Move) -> Option<(Cow<'a, Mover>, Path)> {
     let margin_valid = way.margin_mm >= 0.0 && way.margin_mm.is_finite();
     let path = Path::between(&way.from, &way.to).filter(|_| margin_valid)?;

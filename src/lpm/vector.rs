@@ -3,19 +3,23 @@
 /// A point, a displacement or a direction.
 pub(crate) type Vec3 = [f64; 3];
 
+#[inline]
 pub(crate) fn add(a: Vec3, b: Vec3) -> Vec3 {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
+#[inline]
 pub(crate) fn sub(a: Vec3, b: Vec3) -> Vec3 {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
+#[inline]
 pub(crate) fn scale(a: Vec3, factor: f64) -> Vec3 {
     [a[0] * factor, a[1] * factor, a[2] * factor]
 }
 
 /// `a + factor * b`.
+#[inline]
 pub(crate) fn along(a: Vec3, factor: f64, b: Vec3) -> Vec3 {
     [
         a[0] + factor * b[0],
@@ -24,10 +28,12 @@ pub(crate) fn along(a: Vec3, factor: f64, b: Vec3) -> Vec3 {
     ]
 }
 
+#[inline]
 pub(crate) fn dot(a: Vec3, b: Vec3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+#[inline]
 pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
     [
         a[1] * b[2] - a[2] * b[1],
@@ -36,11 +42,13 @@ pub(crate) fn cross(a: Vec3, b: Vec3) -> Vec3 {
     ]
 }
 
+#[inline]
 pub(crate) fn length(a: Vec3) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// Largest sum of magnitudes: an easy upper bound of the length.
+#[inline]
 pub(crate) fn reach(a: Vec3) -> f64 {
     a[0].abs() + a[1].abs() + a[2].abs()
 }
@@ -49,6 +57,7 @@ pub(crate) fn reach(a: Vec3) -> f64 {
 ///
 /// The vector is first scaled by its largest member, so that directions of vectors as short as
 /// 1e-150 mm keep all their digits.
+#[inline]
 pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
     let largest = a[0].abs().max(a[1].abs()).max(a[2].abs());
     if !(largest > 1e-150 && largest < 1e150) {
@@ -58,6 +67,7 @@ pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
     Some(scale(scaled, 1.0 / length(scaled)))
 }
 
+#[inline]
 pub(crate) fn negate(a: Vec3) -> Vec3 {
     [-a[0], -a[1], -a[2]]
 }

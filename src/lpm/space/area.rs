@@ -1,6 +1,6 @@
 //! Which squares of the baseplate something covers.
 
-use super::silhouettes::Cover;
+use super::cover::Cover;
 
 /// Edge of a cell, mm: about the pitch at which fixture elements stand; a power of two, so that
 /// dividing by it is exact.

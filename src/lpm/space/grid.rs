@@ -5,9 +5,10 @@
 //! way over empty squares reads words only.
 
 use super::area::{Area, GROWTH};
+use super::cover::Cover;
 use super::layers::Reach;
 use super::pool::{Cell, Chain, Pool};
-use super::silhouettes::{Cover, NONE};
+use super::silhouettes::NONE;
 
 /// Pieces over more cells than this are kept in the open cell (the baseplate).
 const MOST_CELLS_OF_A_PIECE: i64 = 128;
@@ -93,7 +94,8 @@ impl Grid {
     /// The bundles of a cell that has something in one of these layers.
     #[inline]
     pub(crate) fn in_layers(&self, place: usize, layers: u64) -> Option<Chain<'_>> {
-        (self.layers[place] & layers != 0).then(|| self.pool.chain(self.heads[place]))
+        let word = self.layers.get(place).copied().unwrap_or(0);
+        (word & layers != 0).then(|| self.pool.chain(self.heads[place]))
     }
 
     /// The bundles of what has no square, likewise.

@@ -128,7 +128,8 @@ impl Layers {
             return 0;
         }
         let (first, last) = (step(low), step(high));
-        let outermost = [first, last].map(|layer| u64::from(self.is_void(layer, low, high)) << layer);
+        let outermost =
+            [first, last].map(|layer| u64::from(self.is_void(layer, low, high)) << layer);
         (u64::MAX << first & u64::MAX >> (LAYERS - 1 - last)) & !(outermost[0] | outermost[1])
     }
 

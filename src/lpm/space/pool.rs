@@ -1,7 +1,8 @@
 //! Bundles of all cells in one block: putting in and taking out asks the allocator for nothing.
 
+use super::cover::Cover;
 use super::layers::Reach;
-use super::silhouettes::{Bundle, Cover, LANES, NONE};
+use super::silhouettes::{Bundle, LANES, NONE};
 
 /// What a cell keeps: the layers that have something here (bit k: layer k) and its newest bundle,
 /// the only one that need not be full.
@@ -57,13 +58,7 @@ impl Pool {
 
     /// Adds a silhouette to reserved bundles; `head` becomes the newest.
     #[inline]
-    pub(super) fn put_reserved(
-        &mut self,
-        head: &mut u32,
-        piece: u32,
-        reach: Reach,
-        cover: &Cover,
-    ) {
+    pub(super) fn put_reserved(&mut self, head: &mut u32, piece: u32, reach: Reach, cover: &Cover) {
         *head += u32::from(self.bundles[*head as usize].is_full());
         self.bundles[*head as usize].push(piece, reach, cover);
     }
@@ -73,7 +68,7 @@ impl Pool {
         let Some((at, lane)) = self.whereabouts(cell.head, piece) else {
             return false;
         };
-        self.fill(cell.head, at, lane);
+        self.close(cell.head, at, lane);
         let head = &self.bundles[cell.head as usize];
         if head.is_empty() {
             self.spare.push(cell.head);
@@ -96,13 +91,11 @@ impl Pool {
         None
     }
 
-    fn fill(&mut self, head: u32, at: u32, lane: usize) {
-        let Some((last, reach, cover)) = self.bundles[head as usize].pop() else {
-            return;
-        };
-        let bundle = &mut self.bundles[at as usize];
-        if lane < bundle.len() {
-            bundle.set(lane, last, reach, &cover);
+    fn close(&mut self, head: u32, at: u32, lane: usize) {
+        let places = [at as usize, head as usize];
+        match self.bundles.get_disjoint_mut(places) {
+            Ok([gap, newest]) => gap.refill(lane, newest),
+            Err(_) => self.bundles[head as usize].close(lane),
         }
     }
 

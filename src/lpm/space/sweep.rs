@@ -1,52 +1,79 @@
 //! A box on its way: what the broad phase asks with.
 
-use super::silhouettes::Cover;
+use super::cover::Cover;
 use crate::lpm::vector::Vec3;
-
-/// A box that is translated: `low..high` at the start (margin included), then by `displacement`, mm.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Sweep {
-    pub(crate) low: Vec3,
-    pub(crate) high: Vec3,
-    pub(crate) displacement: Vec3,
-}
 
 /// Slack of a place along the way, mm: the rounding of times and products below, at most 2e-9 mm
 /// within 3e6 mm, many times over.
 const SLACK_MM: f64 = 1e-6;
 
-impl Sweep {
-    /// The box around the way up to the fraction `until`.
+/// Ways shorter than this on an axis, mm, are counted as rest; every box on a way is widened by it.
+pub(crate) const SLOWEST_MM: f64 = 1e-9;
+
+/// How long a box takes for a millimetre of each axis, as a fraction of its way; infinite at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pace(pub(crate) [f32; 3]);
+
+impl Pace {
+    /// Of a box that is moved by `run`, mm.
     #[inline]
-    pub(crate) fn covered(&self, until: f64) -> (Vec3, Vec3) {
-        let mut covered = (self.low, self.high);
-        for axis in 0..3 {
-            let way = self.displacement[axis] * until;
-            covered.0[axis] += way.min(0.0);
-            covered.1[axis] += way.max(0.0);
-        }
-        covered
+    pub(crate) fn of(run: Vec3) -> Pace {
+        let of = |way: f64| {
+            if way.abs() < SLOWEST_MM {
+                f32::INFINITY
+            } else {
+                1.0 / way as f32
+            }
+        };
+        Pace([of(run[0]), of(run[1]), of(run[2])])
     }
 
-    /// The box around the way up to the fraction `until`, in single precision.
+    /// Of the rest of the world, as the box sees it.
+    #[inline]
+    pub(crate) fn reversed(self) -> Pace {
+        let [x, y, z] = self.0;
+        Pace([-x, -y, -z])
+    }
+}
+
+/// A box that is translated by `run`, mm.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sweep {
+    /// At the start, margin included.
+    pub(crate) start: Cover,
+    pub(crate) run: Vec3,
+    pub(crate) pace: Pace,
+}
+
+impl Sweep {
+    #[inline]
+    pub(crate) fn new(start: Cover, run: Vec3) -> Sweep {
+        Sweep {
+            start,
+            run,
+            pace: Pace::of(run),
+        }
+    }
+
+    /// Around the way up to the fraction `until`.
     #[inline]
     pub(crate) fn cover(&self, until: f64) -> Cover {
-        Cover::of(self.covered(until))
+        let [x, y, z] = self.run;
+        self.start.swept([x * until, y * until, z * until])
     }
 
-    /// Part of the move during which `axis` overlaps `low..high`; only for an axis that moves.
+    /// Whether the way runs along more than one axis: then its box holds much that is not on the way.
     #[inline]
-    pub(crate) fn during(&self, axis: usize, low: f64, high: f64) -> (f64, f64) {
-        self.during_by(axis, 1.0 / self.displacement[axis], low, high)
+    pub(crate) fn is_slanted(&self) -> bool {
+        let moving = |axis: usize| u32::from(self.run[axis].abs() >= SLOWEST_MM);
+        moving(0) + moving(1) + moving(2) > 1
     }
 
-    /// The same with the reciprocal of the displacement on `axis`.
+    /// Part of the move during which `axis` overlaps `low..high`; `pace` is the reciprocal of its run.
     #[inline]
-    pub(crate) fn during_by(&self, axis: usize, pace: f64, low: f64, high: f64) -> (f64, f64) {
-        let (behind, ahead) = (
-            low - self.high[axis] - SLACK_MM,
-            high - self.low[axis] + SLACK_MM,
-        );
+    pub(crate) fn during(&self, axis: usize, pace: f64, low: f64, high: f64) -> (f64, f64) {
+        let behind = low - f64::from(self.start.high[axis]) - SLACK_MM;
+        let ahead = high - f64::from(self.start.low[axis]) + SLACK_MM;
         let (one, two) = (behind * pace, ahead * pace);
         (one.min(two), one.max(two))
     }
@@ -54,20 +81,10 @@ impl Sweep {
     /// What is covered on `axis` between two fractions of the move.
     #[inline]
     pub(crate) fn between(&self, axis: usize, first: f64, last: f64) -> (f64, f64) {
-        let rate = self.displacement[axis];
-        let (one, two) = (rate * first, rate * last);
+        let (one, two) = (self.run[axis] * first, self.run[axis] * last);
         (
-            self.low[axis] + one.min(two) - SLACK_MM,
-            self.high[axis] + one.max(two) + SLACK_MM,
+            f64::from(self.start.low[axis]) + one.min(two) - SLACK_MM,
+            f64::from(self.start.high[axis]) + one.max(two) + SLACK_MM,
         )
-    }
-
-    /// Not before this fraction of the way does the box meet `cover`.
-    pub(crate) fn first_over(&self, cover: &Cover) -> f64 {
-        let moving = (0..3).filter(|axis| self.displacement[*axis].abs() > 1e-9);
-        moving.fold(0.0, |first, axis| {
-            let (low, high) = (f64::from(cover.low[axis]), f64::from(cover.high[axis]));
-            self.during(axis, low, high).0.max(first)
-        })
     }
 }

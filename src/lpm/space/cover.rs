@@ -1,0 +1,77 @@
+//! Boxes of single precision around boxes of double precision.
+
+use crate::lpm::vector::Vec3;
+
+/// More than half a unit in the last place of an f32, relative.
+const ULP: f64 = 1.2e-7;
+/// Below this an f32 loses digits (denormal), mm.
+const TINY_MM: f64 = 1e-37;
+
+/// An f32 that is below `x`.
+#[inline]
+pub(crate) fn below(x: f64) -> f32 {
+    (x - (x.abs() * ULP + TINY_MM)) as f32
+}
+
+/// An f32 that is above `x`.
+#[inline]
+pub(crate) fn above(x: f64) -> f32 {
+    (x + (x.abs() * ULP + TINY_MM)) as f32
+}
+
+/// A box of single precision that holds a box of double precision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Cover {
+    pub(crate) low: [f32; 3],
+    pub(crate) high: [f32; 3],
+}
+
+impl Cover {
+    #[inline]
+    pub(crate) fn of((low, high): (Vec3, Vec3)) -> Cover {
+        Cover {
+            low: [below(low[0]), below(low[1]), below(low[2])],
+            high: [above(high[0]), above(high[1]), above(high[2])],
+        }
+    }
+
+    /// Around the way of this box by `run`, mm.
+    #[inline]
+    pub(crate) fn swept(&self, run: Vec3) -> Cover {
+        let low = |axis: usize| below(f64::from(self.low[axis]) + run[axis].min(0.0));
+        let high = |axis: usize| above(f64::from(self.high[axis]) + run[axis].max(0.0));
+        Cover {
+            low: [low(0), low(1), low(2)],
+            high: [high(0), high(1), high(2)],
+        }
+    }
+
+    /// Not above the distance of what the covers hold, mm.
+    pub(crate) fn distance(&self, other: &Cover) -> f64 {
+        let squared = (0..3).fold(0.0, |sum, axis| {
+            let beyond = f64::from(other.low[axis]) - f64::from(self.high[axis]);
+            let behind = f64::from(self.low[axis]) - f64::from(other.high[axis]);
+            let apart = beyond.max(behind).max(0.0);
+            sum + apart * apart
+        });
+        squared.sqrt() * (1.0 - 8.0 * f64::EPSILON)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lpm::distance::tests::Dice;
+
+    #[test]
+    fn a_cover_holds_what_it_covers() {
+        let mut dice = Dice(7);
+        for exponent in -45..7 {
+            for _ in 0..200 {
+                let x = dice.signed() * 10f64.powi(exponent);
+                assert!(f64::from(below(x)) < x && x < f64::from(above(x)), "{x:e}");
+            }
+        }
+        assert!(f64::from(below(0.0)) < 0.0 && f64::from(above(-0.0)) > 0.0);
+    }
+}

@@ -1,0 +1,204 @@
+//! Where two upright pieces come to touch, and along which normal: in closed form.
+//!
+//! At the first contact one of the figures of [`prism`](super::prism) has just been reached: a slab of
+//! the height, a side, a round corner. It is the one that the mover is least deep in. Of bodies that
+//! overlap from the start it is the shortest way out.
+
+use super::distance::Gap;
+use super::prism::Prism;
+use super::vector::{Vec3, add};
+
+/// What the mover is least deep in, in the plane.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    /// Depth below zero, distance above it, mm.
+    beyond: f64,
+    /// Unit vector from the element to the mover.
+    normal: [f64; 2],
+    /// Point of the element, from its centre.
+    at: [f64; 2],
+}
+
+/// The contact of two pieces whose centres lie `apart`, from the element to the mover.
+pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
+    let side = side(element, mover, apart);
+    let height = shared(element.half[2], mover.half[2], apart[2]);
+    let above = apart[2].abs() - element.half[2] - mover.half[2];
+    let (normal, z) = if above > side.beyond {
+        let up = 1.0f64.copysign(apart[2]);
+        ([0.0, 0.0, up], element.half[2] * up)
+    } else {
+        ([side.normal[0], side.normal[1], 0.0], height)
+    };
+    Gap {
+        lower: 0.0,
+        normal,
+        on_element: add(element.centre, [side.at[0], side.at[1], z]),
+    }
+}
+
+fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
+    match (element.radius > 0.0, mover.radius > 0.0) {
+        (false, false) if element.axis != mover.axis => askew(element, mover, apart),
+        (true, false) => rounded(element, mover, mover, apart),
+        (false, _) | (true, true) => rounded(element, mover, element, apart),
+    }
+}
+
+/// Rectangles with common axes, discs, or one of each; `framed` gives the axes.
+fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side {
+    let p = framed.along(apart);
+    let radius = element.radius + mover.radius;
+    let over = [0, 1].map(|axis: usize| p[axis].abs() - element.half[axis] - mover.half[axis]);
+    let (beyond, normal) = if over[0] > 0.0 && over[1] > 0.0 {
+        let size = over[0].hypot(over[1]);
+        let normal = [0, 1].map(|axis: usize| (over[axis] / size).copysign(p[axis]));
+        (size - radius, normal)
+    } else if over[0] >= over[1] {
+        (over[0] - radius, [1.0f64.copysign(p[0]), 0.0])
+    } else {
+        (over[1] - radius, [0.0, 1.0f64.copysign(p[1])])
+    };
+    let at = [0, 1].map(|axis: usize| {
+        let middle = shared(element.half[axis], mover.half[axis], p[axis]);
+        middle + element.radius * normal[axis]
+    });
+    Side {
+        beyond,
+        normal: out_of(framed, normal),
+        at: out_of(framed, at),
+    }
+}
+
+/// Two rectangles that are turned against each other: four sides may be the last.
+fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
+    let own = deepest(element, mover, apart);
+    let other = deepest(mover, element, apart);
+    let (beyond, normal) = if own.0 >= other.0 { own } else { other };
+    // The corner of the mover that comes first, as far as it lies over the element.
+    let corner = support(mover, [-normal[0], -normal[1]]);
+    let tip = element.along([apart[0] + corner[0], apart[1] + corner[1], 0.0]);
+    let at = if own.0 >= other.0 {
+        let within = [0, 1].map(|axis: usize| {
+            let half = element.half[axis];
+            tip[axis].clamp(-half, half)
+        });
+        out_of(element, within)
+    } else {
+        support(element, normal)
+    };
+    Side { beyond, normal, at }
+}
+
+/// Of the sides of `framed`: how far beyond them `other` lies, and the normal from the element to the
+/// mover. (The centres lie `apart`; a side of the mover counts the other way round, which is the same.)
+fn deepest(framed: &Prism, other: &Prism, apart: Vec3) -> (f64, [f64; 2]) {
+    let p = framed.along(apart);
+    let [cos, sin] = framed
+        .along([other.axis[0], other.axis[1], 0.0])
+        .map(f64::abs);
+    let [a, b, _] = other.half;
+    let over = [
+        p[0].abs() - framed.half[0] - a * cos - b * sin,
+        p[1].abs() - framed.half[1] - a * sin - b * cos,
+    ];
+    if over[0] >= over[1] {
+        (over[0], out_of(framed, [1.0f64.copysign(p[0]), 0.0]))
+    } else {
+        (over[1], out_of(framed, [0.0, 1.0f64.copysign(p[1])]))
+    }
+}
+
+/// The corner of a rectangle that lies farthest along `n`, from its centre.
+fn support(of: &Prism, n: [f64; 2]) -> [f64; 2] {
+    let local = of.along([n[0], n[1], 0.0]);
+    out_of(
+        of,
+        [0, 1].map(|axis: usize| of.half[axis].copysign(local[axis])),
+    )
+}
+
+/// The middle of what two intervals about 0 and about `apart` share, or the end of the first next to
+/// the second.
+fn shared(half: f64, other: f64, apart: f64) -> f64 {
+    let low = (-half).max(apart - other);
+    let high = half.min(apart + other);
+    ((low + high) / 2.0).clamp(-half, half)
+}
+
+/// From the axes of a footprint into the common frame.
+fn out_of(framed: &Prism, local: [f64; 2]) -> [f64; 2] {
+    let [x, y] = framed.axis;
+    [local[0] * x - local[1] * y, local[0] * y + local[1] * x]
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::lpm::distance::tests::Dice;
+    use crate::lpm::vector::{along, length};
+    use crate::lpm::{Pose, Shape};
+
+    fn drawn(dice: &mut Dice) -> Prism {
+        let size = |dice: &mut Dice| 1.5 + dice.signed();
+        let shape = if dice.pick(3) == 0 {
+            Shape::Cylinder {
+                radius: size(dice),
+                height: size(dice),
+            }
+        } else {
+            Shape::Block {
+                half: [size(dice), size(dice), size(dice)],
+            }
+        };
+        let yaw = if dice.pick(2) == 0 {
+            0.0
+        } else {
+            3.0 * dice.signed()
+        };
+        Prism::standing(&shape, &Pose::yawed(dice.vector(), yaw)).unwrap()
+    }
+
+    fn depth(element: &Prism, mover: &Prism, n: Vec3) -> f64 {
+        let apart = [0, 1, 2].map(|axis| mover.centre[axis] - element.centre[axis]);
+        let [a, b] = [element.piece(), mover.piece()];
+        a.extent(n) + b.extent(n.map(|member| -member))
+            - (0..3).map(|axis| apart[axis] * n[axis]).sum::<f64>()
+    }
+
+    #[test]
+    fn the_way_out_along_the_normal_parts_the_bodies_and_the_point_lies_on_the_element() {
+        let mut dice = Dice(21);
+        let mut deep = 0;
+        for _ in 0..2_000 {
+            let (element, mover) = (drawn(&mut dice), drawn(&mut dice));
+            let apart = [0, 1, 2].map(|axis| mover.centre[axis] - element.centre[axis]);
+            let gap = touch(&element, &mover, apart);
+            assert!((length(gap.normal) - 1.0).abs() < 1e-12);
+            let out = depth(&element, &mover, gap.normal);
+            let up = [0.0, 0.0, 1.0f64.copysign(apart[2])];
+            assert!(out <= depth(&element, &mover, up) + 1e-9);
+            deep += u32::from(out > 0.1);
+            let moved = along(apart, out + 1e-9, gap.normal);
+            let mut shifted = mover;
+            shifted.centre = add(element.centre, moved);
+            assert!(depth(&element, &shifted, gap.normal) <= 0.0);
+            let piece = element.piece();
+            let point = [0, 1, 2].map(|axis| gap.on_element[axis] - element.centre[axis]);
+            for n in [
+                [1.0, 0.0, 0.0],
+                [0.0, 1.0, 0.0],
+                [0.0, 0.0, 1.0],
+                [0.6, 0.8, 0.0],
+            ] {
+                let reach = (0..3).map(|axis| point[axis] * n[axis]).sum::<f64>();
+                assert!(
+                    reach.abs() <= piece.extent(n) + 1e-9,
+                    "{element:?} {mover:?} {gap:?}"
+                );
+            }
+        }
+        assert!(deep > 500, "only {deep}");
+    }
+}
