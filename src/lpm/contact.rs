@@ -8,7 +8,7 @@
 
 use super::candidates::Candidates;
 use super::distance::Gap;
-use super::mover::{Group, MOST_OF_A_GROUP, hull};
+use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending, once_in_order};
 use super::prism::{Meeting, Prism, Run};
 use super::space::{Boxes, Bundle, Cover, LANES, Sweep, Visit, above};
@@ -71,13 +71,13 @@ impl Passage<'_> {
             wanted,
             best: None,
             pending: Vec::new(),
+            run: None,
         };
-        let run = Run::of(self.path.displacement);
         for group in &self.body.groups {
-            let boxes = group.boxes(self.path, self.way.margin_mm);
-            let sweep = Sweep::new(hull(&boxes), self.path.displacement);
+            let hull = group.hull(self.path, self.way.margin_mm);
+            let sweep = Sweep::new(hull, self.path.displacement);
             let until = found.until();
-            let mut search = Search::new(self, group, &run, &mut found, &boxes, &sweep);
+            let mut search = Search::new(self, group, &mut found, &sweep);
             self.model.space.walk(&sweep, until, &mut search);
             if found.until() < 0.0 {
                 return found.best;
@@ -95,6 +95,8 @@ struct Findings {
     wanted: Wanted,
     best: Option<Found>,
     pending: Vec<Pending>,
+    /// When it was wanted before.
+    run: Option<Run>,
 }
 
 impl Findings {
@@ -123,10 +125,10 @@ impl Findings {
 struct Search<'a, 'b> {
     passage: &'a Passage<'a>,
     group: &'a Group,
-    run: &'a Run,
     found: &'b mut Findings,
-    boxes: &'a Boxes<MOST_OF_A_GROUP>,
     sweep: &'a Sweep,
+    /// The boxes of the pieces, when they were wanted before.
+    boxes: Option<Boxes<MOST_OF_A_GROUP>>,
     /// The pieces where the way begins, as far as they were looked at.
     prisms: [Option<Prism>; MOST_OF_A_GROUP],
     candidates: Candidates,
@@ -136,7 +138,7 @@ impl Visit for Search<'_, '_> {
     /// For any contact every one is as good, so pieces are judged at once; for the first one they wait.
     #[inline]
     fn in_order(&self) -> bool {
-        self.found.wanted == Wanted::First
+        self.found.wanted == Wanted::First && self.passage.path.displacement != [0.0; 3]
     }
 
     #[inline]
@@ -175,18 +177,15 @@ impl<'a, 'b> Search<'a, 'b> {
     fn new(
         passage: &'a Passage<'a>,
         group: &'a Group,
-        run: &'a Run,
         found: &'b mut Findings,
-        boxes: &'a Boxes<MOST_OF_A_GROUP>,
         sweep: &'a Sweep,
     ) -> Search<'a, 'b> {
         Search {
             passage,
             group,
-            run,
             found,
-            boxes,
             sweep,
+            boxes: None,
             prisms: [None; MOST_OF_A_GROUP],
             candidates: Candidates::NONE,
         }
@@ -196,9 +195,11 @@ impl<'a, 'b> Search<'a, 'b> {
     #[inline]
     fn piece(&mut self, element: u32, cover: &Cover) {
         let until = self.found.until();
-        let crossing = self
+        let (path, margin) = (self.passage.path, self.passage.way.margin_mm);
+        let boxes = self
             .boxes
-            .crossing(cover, &self.sweep.pace.reversed(), above(until));
+            .get_or_insert_with(|| self.group.boxes(path, margin));
+        let crossing = boxes.crossing(cover, &self.sweep.pace.reversed(), above(until));
         let mut places = crossing.lanes & self.group.used();
         while places != 0 {
             let place = places.trailing_zeros() as usize % MOST_OF_A_GROUP;
@@ -223,7 +224,12 @@ impl<'a, 'b> Search<'a, 'b> {
                 let path = passage.path;
                 let mover = self.prisms[place]
                     .get_or_insert_with(|| own.carried(path.start(), path.origin(0.0)));
-                let found = passage.met(self.run, standing, mover, self.found.until());
+                let until = self.found.until();
+                let run = self
+                    .found
+                    .run
+                    .get_or_insert_with(|| Run::of(path.displacement));
+                let found = passage.met(run, standing, mover, until);
                 self.found.offer(found.map(|(t, gap)| Found {
                     t,
                     element: number,

@@ -31,6 +31,9 @@ pub(crate) struct Group {
     /// Centres and half extents, member by member, mm; unused places repeat the first piece.
     centres: [[f32; MOST_OF_A_GROUP]; 3],
     halves: [[f32; MOST_OF_A_GROUP]; 3],
+    /// The box around all of them, likewise.
+    centre: [f32; 3],
+    half: [f32; 3],
     /// Largest distance of a point from the origin of the body, rounded outward, mm.
     ball: f64,
     /// The scale of rounding errors, mm.
@@ -93,20 +96,29 @@ impl Group {
             count: pieces.len(),
             centres: [[0.0; MOST_OF_A_GROUP]; 3],
             halves: [[0.0; MOST_OF_A_GROUP]; 3],
+            centre: [0.0; 3],
+            half: [0.0; 3],
             ball: 0.0,
             span: 0.0,
         };
+        let (mut least, mut most) = pieces[0].bounds();
         for place in 0..MOST_OF_A_GROUP {
             let piece = pieces.get(place).unwrap_or(&pieces[0]);
             let (low, high) = piece.bounds();
             for axis in 0..3 {
                 group.centres[axis][place] = (0.5 * (low[axis] + high[axis])) as f32;
                 group.halves[axis][place] = (0.5 * (high[axis] - low[axis])) as f32;
+                least[axis] = least[axis].min(low[axis]);
+                most[axis] = most[axis].max(high[axis]);
             }
             group.ball = group.ball.max(reach_of(piece));
             group.span = group
                 .span
                 .max(2.0 * (piece.span + reach(piece.centre) + piece.radius()));
+        }
+        for axis in 0..3 {
+            group.centre[axis] = (0.5 * (least[axis] + most[axis])) as f32;
+            group.half[axis] = (0.5 * (most[axis] - least[axis])) as f32;
         }
         group
     }
@@ -117,19 +129,25 @@ impl Group {
         (1 << self.count) - 1
     }
 
+    /// How far beyond its size a box is widened for `margin` and all rounding to single precision, mm.
+    #[inline]
+    fn wider(&self, path: &Path, margin: f64) -> f32 {
+        let wider = margin + SINGLE * (margin + self.span + path.span()) + SLOWEST_MM;
+        (wider * (1.0 + SINGLE)) as f32
+    }
+
     /// The boxes of the pieces where the way begins, rounded outward and widened by `margin` (mm).
     ///
     /// Of a turning group: the box of the ball it stays in, whatever the turn.
-    #[inline]
     pub(crate) fn boxes(&self, path: &Path, margin: f64) -> Boxes<MOST_OF_A_GROUP> {
-        let wider = margin + SINGLE * (margin + self.span + path.span()) + SLOWEST_MM;
-        let wider = (wider * (1.0 + SINGLE)) as f32;
-        let origin = path.origin(0.0).map(|member| member as f32);
+        let wider = self.wider(path, margin);
+        let origin = path.origin(0.0);
         let mut boxes = Boxes::NOWHERE;
         for axis in 0..3 {
-            let (centres, halves) = self.along(axis, path);
+            let origin = origin[axis] as f32;
+            let turned = self.turned(axis, path, &self.centres, &self.halves);
             for place in 0..MOST_OF_A_GROUP {
-                let (centre, half) = (centres[place] + origin[axis], halves[place] + wider);
+                let (centre, half) = (turned.0[place] + origin, turned.1[place] + wider);
                 boxes.low[axis][place] = centre - half;
                 boxes.high[axis][place] = centre + half;
             }
@@ -137,36 +155,47 @@ impl Group {
         boxes
     }
 
+    /// The box around all of them, likewise.
+    #[inline]
+    pub(crate) fn hull(&self, path: &Path, margin: f64) -> Cover {
+        let wider = self.wider(path, margin);
+        let origin = path.origin(0.0);
+        let (centre, half) = (self.centre.map(|it| [it]), self.half.map(|it| [it]));
+        let side = |axis: usize, sign: f32| {
+            let ([centre], [half]) = self.turned(axis, path, &centre, &half);
+            centre + origin[axis] as f32 + sign * (half + wider)
+        };
+        Cover {
+            low: [side(0, -1.0), side(1, -1.0), side(2, -1.0)],
+            high: [side(0, 1.0), side(1, 1.0), side(2, 1.0)],
+        }
+    }
+
     /// Centres, as seen from the origin, and half extents along an axis of the parent frame.
     #[inline]
-    fn along(&self, axis: usize, path: &Path) -> ([f32; MOST_OF_A_GROUP], [f32; MOST_OF_A_GROUP]) {
+    fn turned<const N: usize>(
+        &self,
+        axis: usize,
+        path: &Path,
+        centres: &[[f32; N]; 3],
+        halves: &[[f32; N]; 3],
+    ) -> ([f32; N], [f32; N]) {
         if path.turn.is_some() {
-            return ([0.0; MOST_OF_A_GROUP], [self.ball as f32; MOST_OF_A_GROUP]);
+            return ([0.0; N], [self.ball as f32; N]);
+        }
+        if path.is_unturned() {
+            return (centres[axis], halves[axis]);
         }
         let frame = path.start();
-        if frame.is_identity() {
-            return (self.centres[axis], self.halves[axis]);
-        }
         let images = [frame.x, frame.y, frame.z].map(|image| image[axis] as f32);
-        let mut placed = ([0.0; MOST_OF_A_GROUP], [0.0; MOST_OF_A_GROUP]);
+        let mut turned = ([0.0; N], [0.0; N]);
         for (own, image) in images.into_iter().enumerate() {
-            for place in 0..MOST_OF_A_GROUP {
-                placed.0[place] += image * self.centres[own][place];
-                placed.1[place] += image.abs() * self.halves[own][place];
+            for place in 0..N {
+                turned.0[place] += image * centres[own][place];
+                turned.1[place] += image.abs() * halves[own][place];
             }
         }
-        placed
-    }
-}
-
-/// The box around four boxes.
-#[inline]
-pub(crate) fn hull(boxes: &Boxes<MOST_OF_A_GROUP>) -> Cover {
-    let least = |of: &[f32; MOST_OF_A_GROUP]| of[0].min(of[1]).min(of[2].min(of[3]));
-    let most = |of: &[f32; MOST_OF_A_GROUP]| of[0].max(of[1]).max(of[2].max(of[3]));
-    Cover {
-        low: [0, 1, 2].map(|axis: usize| least(&boxes.low[axis])),
-        high: [0, 1, 2].map(|axis: usize| most(&boxes.high[axis])),
+        turned
     }
 }
 

@@ -1,6 +1,6 @@
 //! The least distance over a way: every pair whose boxes come near enough, the nearest boxes first.
 
-use super::mover::{Group, MOST_OF_A_GROUP, hull};
+use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending, once_in_order};
 use super::space::{Bundle, Cover, LANES, Sweep, Visit};
 use super::straight;
@@ -95,10 +95,8 @@ impl Passage<'_> {
                 range_mm,
                 pending: &mut pending,
             };
-            let wide = group.boxes(self.path, range_mm);
-            self.model
-                .space
-                .walk(&Sweep::new(hull(&wide), run), 1.0, &mut near);
+            let sweep = Sweep::new(group.hull(self.path, range_mm), run);
+            self.model.space.walk(&sweep, 1.0, &mut near);
         }
         pending
     }

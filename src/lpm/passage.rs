@@ -35,7 +35,7 @@ impl<'a> Passage<'a> {
         path: &'a Path,
         way: &'a Move<'a>,
     ) -> Passage<'a> {
-        let level = path.turn.is_none() && path.start().is_upright();
+        let level = path.turn.is_none() && (path.is_unturned() || path.start().is_upright());
         Passage {
             model,
             body,

@@ -11,6 +11,7 @@ pub(crate) struct Path {
     /// Whole displacement of the origin, mm.
     pub(crate) displacement: Vec3,
     start: Frame,
+    is_unturned: bool,
     /// `None`: the move is a translation. (Apart: most are.)
     pub(crate) turn: Option<Box<Turn>>,
 }
@@ -31,6 +32,7 @@ impl Path {
             from: from.position,
             displacement: sub(to.position, from.position),
             start: Frame::of(from.rotation),
+            is_unturned: from.rotation[1..] == [0.0; 3],
             turn,
         };
         Some(path)
@@ -54,6 +56,12 @@ impl Path {
     #[inline]
     pub(crate) fn span(&self) -> f64 {
         reach(self.from) + reach(self.displacement)
+    }
+
+    /// Whether the frame of the mover is the common one at the start.
+    #[inline]
+    pub(crate) fn is_unturned(&self) -> bool {
+        self.is_unturned
     }
 
     /// Orientation of the mover at the start.

@@ -51,7 +51,7 @@ fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side 
     let radius = element.radius + mover.radius;
     let over = [0, 1].map(|axis: usize| p[axis].abs() - element.half[axis] - mover.half[axis]);
     let (beyond, normal) = if over[0] > 0.0 && over[1] > 0.0 {
-        let size = over[0].hypot(over[1]);
+        let size = (over[0] * over[0] + over[1] * over[1]).sqrt();
         let normal = [0, 1].map(|axis: usize| (over[axis] / size).copysign(p[axis]));
         (size - radius, normal)
     } else if over[0] >= over[1] {

@@ -26,7 +26,12 @@ impl Area {
     /// What a silhouette touches.
     #[inline]
     pub(crate) fn of(cover: &Cover) -> Area {
-        let cell = |coordinate: f32| cell_of(f64::from(coordinate));
+        // The same as `cell_of`, which dividing by a power of two makes exact here, too.
+        let cell = |coordinate: f32| {
+            let scaled = coordinate * (1.0 / PITCH_MM as f32);
+            let whole = scaled as i32;
+            whole.saturating_sub(i32::from(whole as f32 > scaled))
+        };
         Area {
             low: [cell(cover.low[0]), cell(cover.low[1])],
             high: [cell(cover.high[0]), cell(cover.high[1])],

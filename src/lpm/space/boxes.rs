@@ -5,7 +5,7 @@
 //! never safety: a rounded box holds the true one, and what overlaps by rounding only is sorted out by
 //! the exact phase.
 
-use super::cover::Cover;
+use super::cover::{Cover, larger, smaller};
 use super::sweep::Pace;
 
 /// `N` boxes, a multiple of four.
@@ -83,18 +83,6 @@ impl<const N: usize> Boxes<N> {
             entry,
         }
     }
-}
-
-/// The smaller one, `b` when they cannot be compared.
-#[inline]
-fn smaller(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-/// The larger one, `b` when they cannot be compared.
-#[inline]
-fn larger(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
 }
 
 /// Bit k: `a[k] <= b[k]`.

@@ -19,6 +19,22 @@ pub(crate) fn above(x: f64) -> f32 {
     (x + (x.abs() * ULP + TINY_MM)) as f32
 }
 
+/// The smaller one, `b` when they cannot be compared.
+#[inline]
+pub(crate) fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The larger one, `b` when they cannot be compared.
+#[inline]
+pub(crate) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// Four units in the last place of an f32, relative, and its least whole-digit number, mm.
+const SINGLE: f32 = 4.0 * f32::EPSILON;
+const TINY: f32 = f32::MIN_POSITIVE;
+
 /// A box of single precision that holds a box of double precision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cover {
@@ -38,12 +54,19 @@ impl Cover {
     /// Around the way of this box by `run`, mm.
     #[inline]
     pub(crate) fn swept(&self, run: Vec3) -> Cover {
-        let low = |axis: usize| below(f64::from(self.low[axis]) + run[axis].min(0.0));
-        let high = |axis: usize| above(f64::from(self.high[axis]) + run[axis].max(0.0));
-        Cover {
-            low: [low(0), low(1), low(2)],
-            high: [high(0), high(1), high(2)],
+        let mut swept = *self;
+        for (axis, way) in run.into_iter().enumerate() {
+            let way = way as f32;
+            // Nothing is added at rest; the slack is twice what the sum and the way may have lost.
+            if way != 0.0 {
+                let (low, high) = (self.low[axis], self.high[axis]);
+                let slack = (low.abs() + way.abs()) * SINGLE + TINY;
+                swept.low[axis] = low + smaller(way, 0.0) - slack;
+                let slack = (high.abs() + way.abs()) * SINGLE + TINY;
+                swept.high[axis] = high + larger(way, 0.0) + slack;
+            }
         }
+        swept
     }
 
     /// Not above the distance of what the covers hold, mm.
@@ -73,5 +96,23 @@ mod tests {
             }
         }
         assert!(f64::from(below(0.0)) < 0.0 && f64::from(above(-0.0)) > 0.0);
+    }
+
+    #[test]
+    fn the_cover_of_a_way_holds_its_end() {
+        let mut dice = Dice(11);
+        for exponent in -12..6 {
+            for _ in 0..200 {
+                let at = dice.vector().map(|member| member * 1e3);
+                let run = dice.vector().map(|member| member * 10f64.powi(exponent));
+                let start = Cover::of((at, at));
+                let swept = start.swept(run);
+                for axis in 0..3 {
+                    let end = [start.low, start.high].map(|it| f64::from(it[axis]) + run[axis]);
+                    assert!(f64::from(swept.low[axis]) <= end[0].min(f64::from(start.low[axis])));
+                    assert!(f64::from(swept.high[axis]) >= end[1].max(f64::from(start.high[axis])));
+                }
+            }
+        }
     }
 }

@@ -91,6 +91,26 @@ impl Grid {
         (row - self.area.low[1]) as usize * self.columns + (column - self.area.low[0]) as usize
     }
 
+    /// From the number of a cell to that of the next column (axis 0) or row (1).
+    #[inline]
+    pub(crate) fn stride(&self, axis: usize) -> usize {
+        [1, self.columns][axis]
+    }
+
+    /// Whether one of `steps` + 1 cells in a line may have something in one of these layers. Up to
+    /// four are asked at once, without a branch between them; of more it is not known.
+    #[inline]
+    pub(crate) fn has_something(
+        &self,
+        first: usize,
+        stride: usize,
+        steps: i32,
+        layers: u64,
+    ) -> bool {
+        let word = |step: i32| self.layers[first + stride * step.min(steps) as usize];
+        steps > 3 || steps >= 0 && (word(0) | word(1) | word(2) | word(3)) & layers != 0
+    }
+
     /// The bundles of a cell that has something in one of these layers.
     #[inline]
     pub(crate) fn in_layers(&self, place: usize, layers: u64) -> Option<Chain<'_>> {

@@ -23,7 +23,8 @@ const STEPS_BELOW: f32 = 8.0;
 #[inline]
 fn step(height_mm: f32) -> usize {
     // A cast from float to integer saturates, NaN is 0.
-    (height_mm * (1.0 / STEP_MM) + STEPS_BELOW).clamp(0.0, (LAYERS - 1) as f32) as usize
+    let steps = (height_mm * (1.0 / STEP_MM) + STEPS_BELOW) as i32;
+    steps.clamp(0, LAYERS as i32 - 1) as usize
 }
 
 /// The layers that a piece reaches into: the lowest and the highest.

@@ -110,6 +110,12 @@ impl<'a, V: Visit> Walk<'a, V> {
     fn every_square(&mut self, area: &Area) {
         for row in area.low[1]..=area.high[1] {
             let first = self.grid.place(area.low[0], row);
+            if !self
+                .grid
+                .has_something(first, 1, area.high[0] - area.low[0], self.layers)
+            {
+                continue;
+            }
             for place in first..=first + (area.high[0] - area.low[0]) as usize {
                 if let Some(chain) = self.grid.in_layers(place, self.layers)
                     && self.bundles(chain)
@@ -145,13 +151,21 @@ impl<'a, V: Visit> Walk<'a, V> {
                 .between(across, first.max(0.0), last.min(self.until));
             let from = cell_of(low).max(area.low[across]);
             let to = cell_of(high).min(area.high[across]);
+            let first = if AXIS == 0 {
+                self.grid.place(band, from)
+            } else {
+                self.grid.place(from, band)
+            };
+            let stride = self.grid.stride(across);
+            if !self
+                .grid
+                .has_something(first, stride, to - from, self.layers)
+            {
+                continue;
+            }
             let mut shown = false;
-            for square in from..=to {
-                let place = if AXIS == 0 {
-                    self.grid.place(band, square)
-                } else {
-                    self.grid.place(square, band)
-                };
+            for square in 0..=to - from {
+                let place = first + stride * square as usize;
                 if let Some(chain) = self.grid.in_layers(place, self.layers) {
                     shown = true;
                     if self.bundles(chain) {
