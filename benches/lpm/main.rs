@@ -1,8 +1,10 @@
 //! Speed of the collision core against its peers, in one run: `cargo bench --bench lpm`.
 //!
 //! Printed are nanoseconds and ratios (how many times the peer needs) of mean and 99th percentile,
-//! warm and cold, and how many answers differ. `-- --quick` stops at 1,000 elements.
+//! warm and cold, and how many answers differ. `-- --quick` stops at 1,000 elements, `-- --bar` is 1,000
+//! alone, `-- --growth` asks the core alone how its cost grows from 10 to 100,000 elements.
 
+mod growth;
 mod peer;
 mod timing;
 mod world;
@@ -19,6 +21,10 @@ const SIZES: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
 const QUERIES: usize = 2_000;
 /// Queries of each kind with cold caches.
 const COLD_QUERIES: usize = 300;
+/// Margin of the rows that have one, mm.
+const MARGIN_MM: f64 = 0.5;
+/// Higher than anything stands, mm.
+const FAR_ABOVE_MM: f64 = 10_000.0;
 /// Range of the clearance question, mm: that of `check`.
 const RANGE_MM: f64 = 25.0;
 
@@ -28,13 +34,15 @@ fn main() {
         "one query alone, best of several passes, ns; cost of the clock taken off: {clock} ns"
     );
     let asked = |name: &str| std::env::args().any(|argument| argument == name);
-    let largest = if asked("--quick") { 1_000 } else { usize::MAX };
-    let least = if asked("--bar") { 1_000 } else { 0 };
-    let largest = if asked("--bar") { 1_000 } else { largest };
-    for size in SIZES
-        .into_iter()
-        .filter(|size| (least..=largest).contains(size))
-    {
+    if asked("--growth") {
+        return growth::report(clock);
+    }
+    let sizes: &[usize] = match (asked("--quick"), asked("--bar")) {
+        (_, true) => &[1_000],
+        (true, false) => &[10, 100, 1_000],
+        (false, false) => &SIZES,
+    };
+    for size in sizes.iter().copied() {
         let world = world(size);
         println!(
             "\n## n = {size}: plate of {:.2} m, highest top {:.0} mm",
@@ -103,6 +111,8 @@ impl Bench {
         for kind in KINDS {
             self.kind(kind, &moves(world, kind, QUERIES));
         }
+        self.margins(world);
+        self.floor(world);
         println!(
             "\n{:<10} {:>5} {:<14} {:>22}   {:>19} {:>19}",
             "cold", "", "question", "ours, ns", "f64 one call", "f64 over pairs"
@@ -154,6 +164,33 @@ impl Bench {
         row(kind, &share, "clearance", &least, &[]);
     }
 
+    /// First contact with half a millimetre to be kept: both sides search then.
+    fn margins(&self, world: &World) {
+        for kind in ["jog5", "descend", "local300"] {
+            let mut ways = moves(world, kind, QUERIES);
+            ways.iter_mut().for_each(|way| way.margin_mm = MARGIN_MM);
+            let first = warm(&ways, self.clock, |way| stop(&self.model, &self.mover, way));
+            let pairs = warm(&ways, self.clock, |way| self.double.pairs_first(way));
+            row(kind, "", "within 0.5 mm", &first, &[pairs]);
+        }
+    }
+
+    /// What a question costs that meets nothing: taking poses and boxes, and one look at the layers.
+    /// No row above can be faster.
+    fn floor(&self, world: &World) {
+        let mut ways = moves(world, "disc_yaw0", QUERIES);
+        for way in &mut ways {
+            way.from.position[2] += FAR_ABOVE_MM;
+            way.to.position[2] += FAR_ABOVE_MM;
+        }
+        let any = warm(&ways, self.clock, |way| {
+            self.model.any_hit(&self.mover, way)
+        });
+        let one = warm(&ways, self.clock, |way| self.double.compound(way));
+        let pairs = warm(&ways, self.clock, |way| self.double.pairs_any(way));
+        row("far above", "0%", "any hit", &any, &[one, pairs]);
+    }
+
     fn cold_kind(&self, kind: &str, ways: &[Move]) {
         let Bench {
             clock,
@@ -182,6 +219,15 @@ impl Bench {
             "",
             "whole model",
             &ours,
+            &[rebuild, rebuild, single],
+        );
+        // All that is built, written once: building cannot be faster.
+        let copy = rounds(times, || (), |()| self.model.clone());
+        row(
+            "build",
+            "",
+            "copy of it",
+            &copy,
             &[rebuild, rebuild, single],
         );
         let picked: Vec<usize> = (0..QUERIES)

@@ -123,7 +123,8 @@ macro_rules! peer {
                         let at = from * *local;
                         let bounds = part.compute_aabb(&at);
                         let ray = Ray::new(Vector::ZERO, run);
-                        let (shift, half) = (-bounds.center(), bounds.half_extents());
+                        let margin = Vector::splat(way.margin_mm as $real);
+                        let (shift, half) = (-bounds.center(), bounds.half_extents() + margin);
                         let best = self.scene.bvh().find_best(
                             least,
                             |node: &BvhNode, best| {
@@ -133,7 +134,7 @@ macro_rules! peer {
                                 };
                                 sum.cast_local_ray(&ray, best, true).unwrap_or(<$real>::MAX)
                             },
-                            |leaf, best| self.pair(leaf, &at, run, part, best),
+                            |leaf, best| self.pair(leaf, &at, way, part, best),
                         );
                         if let Some((_, hit)) = best {
                             least = hit.time_of_impact;
@@ -165,7 +166,7 @@ macro_rules! peer {
                                 let met = intersection_test(place, &**element, &at, &**part);
                                 return met.is_ok_and(|met| met.intersecting);
                             }
-                            self.pair(leaf, &at, run, part, 1.0).is_some()
+                            self.pair(leaf, &at, way, part, 1.0).is_some()
                         })
                     })
                 }
@@ -174,7 +175,7 @@ macro_rules! peer {
                     &self,
                     leaf: u32,
                     at: &Pose,
-                    run: Vector,
+                    way: &lpm::Move,
                     part: &SharedShape,
                     best: $real,
                 ) -> Option<ShapeCastHit> {
@@ -184,9 +185,12 @@ macro_rules! peer {
                         Vector::ZERO,
                         &**element,
                         at,
-                        run,
+                        run(way),
                         &**part,
-                        options(best),
+                        ShapeCastOptions {
+                            target_distance: way.margin_mm as $real,
+                            ..options(best)
+                        },
                     );
                     hit.ok().flatten()
                 }

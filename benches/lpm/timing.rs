@@ -69,19 +69,23 @@ pub fn cold<Q, A>(queries: &[Q], clock_ns: f64, ask: impl Fn(&Q) -> A) -> Spread
     Spread::of(times.collect())
 }
 
-/// Distribution of `rounds` runs of something large, ns.
+/// Runs of which the best counts, of something large.
+const TRIES: usize = 3;
+
+/// Distribution of `rounds` measurements of something large, each the best of [`TRIES`], ns.
 pub fn rounds<S, A>(
     rounds: usize,
     mut ready: impl FnMut() -> S,
     mut run: impl FnMut(S) -> A,
 ) -> Spread {
-    let times = (0..rounds).map(|_| {
+    let mut once = || {
         let state = ready();
         let start = Instant::now();
         let made = black_box(run(state));
         let spent = start.elapsed().as_nanos() as f64;
         drop(made);
         spent
-    });
-    Spread::of(times.collect())
+    };
+    let best = |once: &mut dyn FnMut() -> f64| (0..TRIES).map(|_| once()).fold(f64::MAX, f64::min);
+    Spread::of((0..rounds).map(|_| best(&mut once)).collect())
 }

@@ -165,7 +165,7 @@ impl Visit for Search<'_, '_> {
     #[inline]
     fn pause(&mut self) -> f64 {
         while let Some(piece) = self.candidates.earliest(self.found.until()) {
-            let cover = Cover::of(self.passage.model.pieces.bounds(piece));
+            let cover = self.passage.model.pieces.cover(piece);
             self.piece(piece, &cover);
         }
         self.found.until()
@@ -225,10 +225,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 let mover = self.prisms[place]
                     .get_or_insert_with(|| own.carried(path.start(), path.origin(0.0)));
                 let until = self.found.until();
-                let run = self
-                    .found
-                    .run
-                    .get_or_insert_with(|| Run::of(path.displacement));
+                let run = self.found.run.get_or_insert_with(|| Run::of(path));
                 let found = passage.met(run, standing, mover, until);
                 self.found.offer(found.map(|(t, gap)| Found {
                     t,

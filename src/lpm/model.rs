@@ -84,21 +84,25 @@ impl Model {
         Ok(model)
     }
 
+    #[inline]
     fn element(&mut self, id: &str, shape: &Shape, pose: &Pose, slot: u32, first: u32) -> Element {
-        let interior = Interior::of(shape);
-        let interior =
-            interior.map(|interior| interior.placed(&Frame::of(pose.rotation), pose.position));
-        if interior
-            .as_ref()
-            .is_some_and(|interior| !interior.solids.is_empty())
-        {
-            self.hollow.push(slot);
-        }
+        let interior = match shape {
+            Shape::Block { .. } | Shape::Cylinder { .. } => None,
+            Shape::Compound(_) | Shape::Mesh(_) => self.interior(shape, pose, slot),
+        };
         Element {
             id: self.names.keep(id),
             first,
-            interior: interior.map(Box::new),
+            interior,
         }
+    }
+
+    fn interior(&mut self, shape: &Shape, pose: &Pose, slot: u32) -> Option<Box<Interior>> {
+        let interior = Interior::of(shape)?.placed(&Frame::of(pose.rotation), pose.position);
+        if !interior.solids.is_empty() {
+            self.hollow.push(slot);
+        }
+        Some(Box::new(interior))
     }
 
     /// Takes an element out; false when it is not there (any more).
@@ -116,10 +120,8 @@ impl Model {
         self.names.leave(&element.id);
         let mut number = element.first;
         while number != NONE {
-            let bounds = self.pieces.bounds(number);
-            let standing = self.pieces.let_go(number);
-            self.space.remove(number, bounds);
-            number = standing.sibling;
+            self.space.remove(number, &self.pieces.cover(number));
+            number = self.pieces.let_go(number);
         }
         if element.interior.is_some() {
             self.hollow.retain(|known| *known != key.slot);

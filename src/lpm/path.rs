@@ -1,13 +1,14 @@
 //! The way of a mover: a straight translation, or position linear and rotation the shortest turn.
 
-use super::piece::Piece;
+use super::piece::{Piece, is_exact_sum};
 use super::pose::{Frame, Pose, Turn};
-use super::vector::{Vec3, along, reach, sub};
+use super::vector::{Vec3, along, negate, reach, sub};
 
 /// A move between two checked poses; `t` runs from 0 to 1.
 #[derive(Debug, Clone)]
 pub(crate) struct Path {
     from: Vec3,
+    to: Vec3,
     /// Whole displacement of the origin, mm.
     pub(crate) displacement: Vec3,
     start: Frame,
@@ -30,6 +31,7 @@ impl Path {
         };
         let path = Path {
             from: from.position,
+            to: to.position,
             displacement: sub(to.position, from.position),
             start: Frame::of(from.rotation),
             is_unturned: from.rotation[1..] == [0.0; 3],
@@ -56,6 +58,12 @@ impl Path {
     #[inline]
     pub(crate) fn span(&self) -> f64 {
         reach(self.from) + reach(self.displacement)
+    }
+
+    /// Whether nothing was rounded between both ends and the displacement.
+    #[inline]
+    pub(crate) fn is_exact(&self) -> bool {
+        is_exact_sum(self.to, negate(self.from))
     }
 
     /// Whether the frame of the mover is the common one at the start.

@@ -80,12 +80,14 @@ impl Piece {
         } else {
             frame.apply(self.centre)
         };
-        let rounded = if is_exact_sum(turned, position) {
-            0.0
-        } else {
-            reach(position)
-        };
-        (add(turned, position), self.span + rounded)
+        let mut span = self.span;
+        if !frame.is_identity() {
+            span += reach(self.centre);
+        }
+        if !is_exact_sum(turned, position) {
+            span += reach(position) + reach(turned);
+        }
+        (add(turned, position), span)
     }
 
     /// How far the piece reaches along `n` from its centre: the support function.
@@ -211,9 +213,14 @@ fn descend(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, show: &mut imp
         }
         Shape::Compound(parts) => {
             for (Pose { position, rotation }, part) in parts {
-                let place = add(frame.apply(*position), centre);
+                let offset = frame.apply(*position);
                 let turned = frame.then(&Frame::of(*rotation));
-                descend(part, &turned, place, span + reach(*position), show);
+                let rounded = if frame.is_identity() && is_exact_sum(offset, centre) {
+                    0.0
+                } else {
+                    reach(*position) + reach(centre)
+                };
+                descend(part, &turned, add(offset, centre), span + rounded, show);
             }
         }
         Shape::Mesh(mesh) => {

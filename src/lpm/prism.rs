@@ -10,9 +10,12 @@
 //! Every slab and disc is grown by [`Meeting::slack`]: [`NOISE`] for how the pieces came to their
 //! places, [`ROUNDING`] for what is computed here. A line that meets the true figure meets the
 //! grown one, earlier by at least that slack divided by its speed; so the fraction that is
-//! returned is never late, and `None` is proof. In reverse, whoever is reported has come within
+//! returned is never late, and `None` is proof. Where a corner is grazed and nothing had been rounded
+//! before, [`grazing`] may move the fraction later, to the true one rounded down. In reverse, whoever is reported has come within
 //! three slacks: below 1e-7 mm for coordinates of 1e6 mm.
 
+use super::grazing::{self, Twofold};
+use super::path::Path;
 use super::piece::{Form, NOISE, Piece, is_exact_sum};
 use super::pose::{Frame, Pose};
 use super::shape::Shape;
@@ -21,6 +24,14 @@ use super::vector::{Vec3, add, reach};
 /// Relative error allowed for what is computed here from the difference of two places and the run:
 /// fewer than 16 roundings of 2^-53 each lie between them and a fraction of the way, twice that is paid.
 const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
+
+/// By how much a grazing contact may come early before more digits are wanted, mm: a tenth of what is
+/// promised.
+const GRAZED_MM: f64 = 1e-7;
+
+/// Contacts that are nearer than this to where a round corner ends are left as they are, mm: beyond it
+/// a side may come first, by more than all rounding.
+const ROUND_MM: f64 = 1e-3;
 
 /// An upright block or cylinder, as far as its own straight ways are concerned.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,6 +95,7 @@ impl Prism {
     pub(crate) fn carried(&self, frame: &Frame, position: Vec3) -> Prism {
         let mut placed = *self;
         if !frame.is_identity() {
+            placed.span += reach(self.centre);
             let [x, y] = self.axis;
             let turned = frame.apply([x, y, 0.0]);
             placed.centre = frame.apply(self.centre);
@@ -92,7 +104,7 @@ impl Prism {
             }
         }
         if !is_exact_sum(placed.centre, position) {
-            placed.span += reach(position);
+            placed.span += reach(position) + reach(placed.centre);
         }
         placed.centre = add(placed.centre, position);
         placed
@@ -121,6 +133,17 @@ impl Prism {
             span: self.span,
             upright: true,
         }
+    }
+
+    /// Whether it stands exactly where the numbers of the scene put it.
+    fn is_exact(&self) -> bool {
+        let [a, b, c] = self.half;
+        let own = if self.radius > 0.0 {
+            2.0 * self.radius + 2.0 * c
+        } else {
+            a + b + c
+        };
+        self.span == own && self.is_straight()
     }
 
     /// Whether the footprint lies along x and y.
@@ -185,15 +208,19 @@ pub(crate) struct Run {
     pub(crate) way: Vec3,
     /// Reciprocals; 0 of an axis on which nothing moves.
     pace: Vec3,
+    /// Nothing was rounded between both ends and the way.
+    is_exact: bool,
 }
 
 impl Run {
-    /// By `way`, mm.
+    /// Of a straight path.
     #[inline]
-    pub(crate) fn of(way: Vec3) -> Run {
+    pub(crate) fn of(path: &Path) -> Run {
+        let way = path.displacement;
         Run {
             way,
-            pace: way.map(pace),
+            pace: [pace(way[0]), pace(way[1]), pace(way[2])],
+            is_exact: path.is_exact(),
         }
     }
 }
@@ -272,7 +299,44 @@ impl<'a> Meeting<'a> {
             return Some(window.0);
         }
         let v = rates.map(|(rate, _)| rate);
-        corner(window, p, v, half, reach + self.slack)
+        let t = corner(window, p, v, half, reach + self.slack)?;
+        Some(self.grazed(framed, t).unwrap_or(t))
+    }
+
+    /// The fraction in twice the digits, where a round corner is grazed and nothing was rounded on
+    /// the way to the places; not before `t`, where the grown figures meet.
+    fn grazed(&self, framed: &Prism, t: f64) -> Option<f64> {
+        let at = [0, 1].map(|axis: usize| self.apart[axis] + t * self.run.way[axis]);
+        let half = [0, 1].map(|axis: usize| self.element.half[axis] + self.mover.half[axis]);
+        let w = [0, 1].map(|axis: usize| at[axis] - half[axis].copysign(at[axis]));
+        let [u, v, _] = self.run.way;
+        let (radius, speed) = (self.element.radius + self.mover.radius, u.hypot(v));
+        let closing = (w[0] * u + w[1] * v).abs();
+        // The contact moves by the slack divided by the sine of the angle of the graze.
+        if closing * GRAZED_MM > self.slack * radius * speed {
+            return None;
+        }
+        // On a way along an axis no side comes before the end of its corner.
+        let on_corner = |axis: usize| {
+            let beyond = at[axis].abs() - half[axis];
+            half[axis] == 0.0 || self.run.way[1 - axis] == 0.0 || beyond > ROUND_MM
+        };
+        let unrounded = self.run.is_exact && self.element.is_exact() && self.mover.is_exact();
+        let alone = self.grown == self.slack && framed.is_straight();
+        if !(unrounded && alone && on_corner(0) && on_corner(1)) {
+            return None;
+        }
+        let from = [0, 1].map(|axis: usize| {
+            let apart = Twofold::sum(self.mover.centre[axis], -self.element.centre[axis]);
+            let half = Twofold::sum(self.element.half[axis], self.mover.half[axis]);
+            if at[axis] > 0.0 {
+                apart.minus(half)
+            } else {
+                apart.plus(half)
+            }
+        });
+        let radius = Twofold::sum(self.element.radius, self.mover.radius);
+        Some(grazing::first(from, [u, v], radius)?.max(t))
     }
 
     /// The run along the axes of a footprint, with the reciprocals.

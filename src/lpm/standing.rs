@@ -7,8 +7,7 @@ use super::piece::{Piece, each_piece};
 use super::pose::{Frame, Pose};
 use super::prism::Prism;
 use super::shape::Shape;
-use super::space::Entering;
-use super::vector::Vec3;
+use super::space::{Cover, Entering};
 
 /// No piece.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -54,7 +53,8 @@ impl Pieces {
     ) -> u32 {
         // What nearly all elements are needs no detour by the general piece.
         if let Some(prism) = Prism::standing(shape, pose) {
-            return self.enter(space, Stands::Upright(prism), prism.bounds(), owner, NONE);
+            let cover = Cover::of(prism.bounds());
+            return self.enter(space, Stands::Upright(prism), &cover, owner, NONE);
         }
         let frame = Frame::of(pose.rotation);
         let mut first = NONE;
@@ -65,7 +65,8 @@ impl Pieces {
             } else {
                 Stands::Askew(kept(&mut self.askew, &mut self.free_askew, piece))
             };
-            first = self.enter(space, form, piece.bounds(), owner, first);
+            let cover = Cover::of(piece.bounds());
+            first = self.enter(space, form, &cover, owner, first);
         });
         first
     }
@@ -75,7 +76,7 @@ impl Pieces {
         &mut self,
         space: &mut impl Entering,
         form: Stands,
-        bounds: (Vec3, Vec3),
+        cover: &Cover,
         owner: u32,
         sibling: u32,
     ) -> u32 {
@@ -85,18 +86,18 @@ impl Pieces {
             sibling,
         };
         let number = kept(&mut self.standing, &mut self.free, standing);
-        space.enter(number, bounds);
+        space.enter(number, cover);
         number
     }
 
-    /// Forgets a piece and gives back what was known of it.
-    pub(crate) fn let_go(&mut self, number: u32) -> Standing {
-        let standing = *self.at(number);
-        if let Stands::Askew(whole) = standing.form {
+    /// Forgets a piece and says which is the next one of its element.
+    #[inline]
+    pub(crate) fn let_go(&mut self, number: u32) -> u32 {
+        if let Stands::Askew(whole) = self.at(number).form {
             self.free_askew.push(whole);
         }
         self.free.push(number);
-        standing
+        self.at(number).sibling
     }
 
     #[inline]
@@ -112,11 +113,12 @@ impl Pieces {
         }
     }
 
-    /// Bounding box, rounded outward.
-    pub(crate) fn bounds(&self, number: u32) -> (Vec3, Vec3) {
+    /// Its box.
+    #[inline]
+    pub(crate) fn cover(&self, number: u32) -> Cover {
         match &self.at(number).form {
-            Stands::Upright(prism) => prism.bounds(),
-            Stands::Askew(whole) => self.askew[*whole as usize].bounds(),
+            Stands::Upright(prism) => Cover::of(prism.bounds()),
+            Stands::Askew(whole) => Cover::of(self.askew[*whole as usize].bounds()),
         }
     }
 

@@ -20,11 +20,20 @@ const MOST_CELLS: i64 = 1 << 18;
 pub(crate) struct Grid {
     area: Area,
     columns: usize,
-    /// Of each cell, as in [`Cell`].
+    /// Of each cell, as in [`Cell`]; then of the open one.
     layers: Vec<u64>,
     heads: Vec<u32>,
-    open: Cell,
+    open_layers: u64,
+    open_head: u32,
     pool: Pool,
+}
+
+/// A piece on its way into a grid.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Silhouette {
+    pub(crate) cover: Cover,
+    pub(crate) reach: Reach,
+    pub(crate) area: Area,
 }
 
 impl Default for Grid {
@@ -34,7 +43,8 @@ impl Default for Grid {
             columns: 0,
             layers: Vec::new(),
             heads: Vec::new(),
-            open: Cell::EMPTY,
+            open_layers: 0,
+            open_head: NONE,
             pool: Pool::default(),
         }
     }
@@ -47,7 +57,7 @@ impl Grid {
         if is_small(&area) && self.reach_over(&area) {
             self.each_cell(&area, |pool, cell| pool.put(cell, piece, reach, cover));
         } else {
-            self.pool.put(&mut self.open, piece, reach, cover);
+            self.in_the_open(|pool, cell| pool.put(cell, piece, reach, cover));
         }
     }
 
@@ -60,19 +70,23 @@ impl Grid {
         }
         // What stood too far out when it came is in the open cell, however large the grid is now.
         if !known {
-            self.pool.take(&mut self.open, piece);
+            self.in_the_open(|pool, cell| {
+                pool.take(cell, piece);
+            });
         }
     }
 
-    fn each_cell(&mut self, area: &Area, mut change: impl FnMut(&mut Pool, &mut Cell)) {
+    #[inline]
+    fn each_cell(&mut self, area: &Area, mut change: impl FnMut(&mut Pool, Cell<'_>)) {
         for_each_place(self.area.low, self.columns, area, |at| {
-            let mut cell = Cell {
-                layers: self.layers[at],
-                head: self.heads[at],
-            };
-            change(&mut self.pool, &mut cell);
-            (self.layers[at], self.heads[at]) = (cell.layers, cell.head);
+            let (layers, head) = (&mut self.layers[at], &mut self.heads[at]);
+            change(&mut self.pool, Cell { layers, head });
         });
+    }
+
+    fn in_the_open(&mut self, change: impl FnOnce(&mut Pool, Cell<'_>)) {
+        let (layers, head) = (&mut self.open_layers, &mut self.open_head);
+        change(&mut self.pool, Cell { layers, head });
     }
 
     /// The part of an area that has cells.
@@ -121,7 +135,7 @@ impl Grid {
     /// The bundles of what has no square, likewise.
     #[inline]
     pub(crate) fn open_in_layers(&self, layers: u64) -> Option<Chain<'_>> {
-        (self.open.layers & layers != 0).then(|| self.pool.chain(self.open.head))
+        (self.open_layers & layers != 0).then(|| self.pool.chain(self.open_head))
     }
 
     /// Heap in use, bytes.
@@ -177,50 +191,48 @@ impl Grid {
 
     /// A grid with pieces numbered from 0: the same as [`Grid::put`] for one after the other. Squares
     /// are counted first, so that every cell gets all its bundles at once.
-    pub(crate) fn filled(silhouettes: &[(Cover, Reach)]) -> Grid {
-        let areas: Vec<Area> = silhouettes
-            .iter()
-            .map(|(cover, _)| Area::of(cover))
-            .collect();
-        let small = areas.iter().filter(|area| is_small(area)).copied();
-        let whole = small.reduce(|whole, area| whole.around(&area));
+    pub(crate) fn filled(silhouettes: &[Silhouette]) -> Grid {
+        let small = silhouettes.iter().filter(|it| is_small(&it.area));
+        let whole = small
+            .map(|it| it.area)
+            .reduce(|whole, area| whole.around(&area));
         let fitting = whole.filter(|whole| whole.cells() <= MOST_CELLS);
         let mut grid = fitting.map_or_else(Grid::default, Grid::over);
-        let pieces = areas.iter().zip(silhouettes);
-        if fitting.is_some() {
-            grid.reserve(pieces.clone().filter(|(area, _)| is_small(area)));
-        }
-        for (number, (area, (cover, reach))) in pieces.enumerate() {
-            if fitting.is_some() && is_small(area) {
-                grid.put_reserved(number as u32, *reach, cover, area);
+        let reserved = |it: &Silhouette| fitting.is_some() && is_small(&it.area);
+        grid.reserve(silhouettes.iter().filter(|it| reserved(it)));
+        for (number, it) in silhouettes.iter().enumerate() {
+            let number = number as u32;
+            if reserved(it) {
+                grid.put_reserved(number, it);
             } else {
-                grid.put(number as u32, *reach, cover);
+                grid.put(number, it.reach, &it.cover);
             }
         }
         grid
     }
 
-    #[inline]
-    fn put_reserved(&mut self, piece: u32, reach: Reach, cover: &Cover, area: &Area) {
-        for_each_place(self.area.low, self.columns, area, |at| {
-            self.pool
-                .put_reserved(&mut self.heads[at], piece, reach, cover);
-        });
-    }
-
     /// Bundles for what will be entered, and the words of the cells.
-    fn reserve<'a>(&mut self, pieces: impl Iterator<Item = (&'a Area, &'a (Cover, Reach))>) {
+    fn reserve<'a>(&mut self, silhouettes: impl Iterator<Item = &'a Silhouette>) {
         let mut counts = vec![0u32; self.layers.len()];
-        for (area, (_, reach)) in pieces {
-            let word = reach.word();
-            for_each_place(self.area.low, self.columns, area, |at| {
+        for it in silhouettes {
+            let word = it.reach.word();
+            for_each_place(self.area.low, self.columns, &it.area, |at| {
                 counts[at] += 1;
                 self.layers[at] |= word;
             });
         }
+        self.pool.expect(&counts);
         for (head, count) in self.heads.iter_mut().zip(counts) {
             *head = self.pool.reserve(count);
         }
+    }
+
+    #[inline]
+    fn put_reserved(&mut self, piece: u32, it: &Silhouette) {
+        for_each_place(self.area.low, self.columns, &it.area, |at| {
+            self.pool
+                .put_reserved(&mut self.heads[at], piece, it.reach, &it.cover);
+        });
     }
 }
 

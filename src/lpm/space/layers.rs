@@ -35,6 +35,12 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
+    /// Of nothing.
+    pub(crate) const NONE: Reach = Reach {
+        low: LAYERS as u8 - 1,
+        high: 0,
+    };
+
     /// Of a piece between two heights, mm.
     #[inline]
     pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {

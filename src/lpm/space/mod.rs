@@ -27,8 +27,8 @@ pub(crate) use silhouettes::{Bundle, LANES};
 pub(crate) use sweep::{SLOWEST_MM, Sweep};
 pub(crate) use walk::Visit;
 
-use super::vector::Vec3;
-use grid::Grid;
+use area::Area;
+use grid::{Grid, Silhouette};
 use layers::{Layers, Reach};
 use walk::Walk;
 
@@ -40,11 +40,11 @@ pub(crate) struct Space {
 }
 
 impl Space {
-    /// Takes a piece out by the bounds it came with.
-    pub(crate) fn remove(&mut self, piece: u32, bounds: (Vec3, Vec3)) {
-        let cover = Cover::of(bounds);
+    /// Takes a piece out by the cover it came with.
+    #[inline]
+    pub(crate) fn remove(&mut self, piece: u32, cover: &Cover) {
         self.layers.leave(Reach::of(cover.low[2], cover.high[2]));
-        self.grid.take(piece, &cover);
+        self.grid.take(piece, cover);
     }
 
     /// Heap in use, bytes.
@@ -63,17 +63,17 @@ impl Space {
     }
 }
 
-/// Where pieces are entered by their bounds.
+/// Where pieces are entered by their covers.
 pub(crate) trait Entering {
     /// Enters the piece of this number.
-    fn enter(&mut self, piece: u32, bounds: (Vec3, Vec3));
+    fn enter(&mut self, piece: u32, cover: &Cover);
 }
 
 impl Entering for Space {
-    fn enter(&mut self, piece: u32, bounds: (Vec3, Vec3)) {
-        let cover = Cover::of(bounds);
+    #[inline]
+    fn enter(&mut self, piece: u32, cover: &Cover) {
         let reach = self.layers.join(cover.low[2], cover.high[2]);
-        self.grid.put(piece, reach, &cover);
+        self.grid.put(piece, reach, cover);
     }
 }
 
@@ -81,7 +81,7 @@ impl Entering for Space {
 #[derive(Debug, Default)]
 pub(crate) struct Filling {
     layers: Layers,
-    silhouettes: Vec<(Cover, Reach)>,
+    silhouettes: Vec<Silhouette>,
 }
 
 impl Filling {
@@ -105,9 +105,11 @@ impl Filling {
 impl Entering for Filling {
     /// Pieces come in the order of their numbers, from 0.
     #[inline]
-    fn enter(&mut self, _piece: u32, bounds: (Vec3, Vec3)) {
-        let cover = Cover::of(bounds);
-        let reach = self.layers.join(cover.low[2], cover.high[2]);
-        self.silhouettes.push((cover, reach));
+    fn enter(&mut self, _piece: u32, cover: &Cover) {
+        self.silhouettes.push(Silhouette {
+            cover: *cover,
+            reach: self.layers.join(cover.low[2], cover.high[2]),
+            area: Area::of(cover),
+        });
     }
 }

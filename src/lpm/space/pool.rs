@@ -4,19 +4,11 @@ use super::cover::Cover;
 use super::layers::Reach;
 use super::silhouettes::{Bundle, LANES, NONE};
 
-/// What a cell keeps: the layers that have something here (bit k: layer k) and its newest bundle,
+/// What is kept of a cell: the layers that have something here (bit k: layer k) and its newest bundle,
 /// the only one that need not be full.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Cell {
-    pub(super) layers: u64,
-    pub(super) head: u32,
-}
-
-impl Cell {
-    pub(super) const EMPTY: Cell = Cell {
-        layers: 0,
-        head: NONE,
-    };
+pub(super) struct Cell<'a> {
+    pub(super) layers: &'a mut u64,
+    pub(super) head: &'a mut u32,
 }
 
 /// All bundles, used and spare.
@@ -28,21 +20,36 @@ pub(super) struct Pool {
 
 impl Pool {
     /// Adds a silhouette to a cell.
-    pub(super) fn put(&mut self, cell: &mut Cell, piece: u32, reach: Reach, cover: &Cover) {
-        let full = self
-            .bundles
-            .get(cell.head as usize)
-            .is_none_or(Bundle::is_full);
-        if full {
-            let fresh = self.spare.pop().unwrap_or_else(|| {
-                self.bundles.push(Bundle::before(NONE));
-                (self.bundles.len() - 1) as u32
-            });
-            self.bundles[fresh as usize].next = cell.head;
-            cell.head = fresh;
+    #[inline]
+    pub(super) fn put(&mut self, cell: Cell<'_>, piece: u32, reach: Reach, cover: &Cover) {
+        match self.bundles.get_mut(*cell.head as usize) {
+            Some(head) if !head.is_full() => head.push(piece, reach, cover),
+            Some(_) | None => {
+                *cell.head = self.fresh(*cell.head);
+                self.bundles[*cell.head as usize].push(piece, reach, cover);
+            }
         }
-        self.bundles[cell.head as usize].push(piece, reach, cover);
-        cell.layers |= reach.word();
+        *cell.layers |= reach.word();
+    }
+
+    /// An empty bundle before `next`.
+    fn fresh(&mut self, next: u32) -> u32 {
+        match self.spare.pop() {
+            Some(spare) => {
+                self.bundles[spare as usize].next = next;
+                spare
+            }
+            None => {
+                self.bundles.push(Bundle::before(next));
+                (self.bundles.len() - 1) as u32
+            }
+        }
+    }
+
+    /// Room for the bundles of so many silhouettes in each cell.
+    pub(super) fn expect(&mut self, counts: &[u32]) {
+        let bundles = counts.iter().map(|count| count.div_ceil(LANES as u32));
+        self.bundles.reserve_exact(bundles.sum::<u32>() as usize);
     }
 
     /// Bundles for so many silhouettes of one new cell, one after the other; the result is the first.
@@ -64,18 +71,18 @@ impl Pool {
     }
 
     /// Takes a silhouette out of a cell, if it is there: the last of the newest bundle fills the gap.
-    pub(super) fn take(&mut self, cell: &mut Cell, piece: u32) -> bool {
-        let Some((at, lane)) = self.whereabouts(cell.head, piece) else {
+    pub(super) fn take(&mut self, cell: Cell<'_>, piece: u32) -> bool {
+        let Some((at, lane)) = self.whereabouts(*cell.head, piece) else {
             return false;
         };
-        self.close(cell.head, at, lane);
-        let head = &self.bundles[cell.head as usize];
+        self.close(*cell.head, at, lane);
+        let head = &self.bundles[*cell.head as usize];
         if head.is_empty() {
-            self.spare.push(cell.head);
-            cell.head = head.next;
+            self.spare.push(*cell.head);
+            *cell.head = head.next;
         }
-        cell.layers = self
-            .chain(cell.head)
+        *cell.layers = self
+            .chain(*cell.head)
             .fold(0, |word, bundle| word | bundle.word());
         true
     }

@@ -7,7 +7,7 @@ use super::layers::Reach;
 /// Pieces of one bundle.
 pub(crate) const LANES: usize = 8;
 
-/// No bundle.
+/// No bundle, no piece.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Eight silhouettes and whose they are. Lanes from `count` on meet nothing.
@@ -28,8 +28,8 @@ impl Bundle {
     pub(super) fn before(next: u32) -> Bundle {
         Bundle {
             boxes: Boxes::NOWHERE,
-            pieces: [0; LANES],
-            reaches: [Reach { low: 0, high: 0 }; LANES],
+            pieces: [NONE; LANES],
+            reaches: [Reach::NONE; LANES],
             count: 0,
             next,
         }
@@ -85,20 +85,25 @@ impl Bundle {
             self.boxes.low[axis][last] = f32::INFINITY;
             self.boxes.high[axis][last] = f32::INFINITY;
         }
+        self.pieces[last] = NONE;
+        self.reaches[last] = Reach::NONE;
         self.count -= 1;
     }
 
     #[inline]
     pub(super) fn lane_of(&self, piece: u32) -> Option<usize> {
-        let used = &self.pieces[..self.count as usize];
-        used.iter().position(|known| *known == piece)
+        let lanes = 0..LANES;
+        let word = lanes.fold(0, |word, lane| {
+            word | u32::from(self.pieces[lane] == piece) << lane
+        });
+        (word != 0).then(|| word.trailing_zeros() as usize % LANES)
     }
 
     /// Word of the layers of this bundle.
     #[inline]
     pub(super) fn word(&self) -> u64 {
-        let used = &self.reaches[..self.count as usize];
-        used.iter().fold(0, |word, reach| word | reach.word())
+        let reaches = self.reaches.iter();
+        reaches.fold(0, |word, reach| word | reach.word())
     }
 
     #[inline]

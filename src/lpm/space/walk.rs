@@ -81,17 +81,15 @@ impl<'a, V: Visit> Walk<'a, V> {
     /// True when the rest does not matter.
     fn bundles(&mut self, chain: Chain<'_>) -> bool {
         let (sweep, until) = (self.sweep, above(self.until));
+        // What only shares the box around the way is met by no time at all.
+        let timed = self.is_slanted || self.visit.in_order();
         for bundle in chain {
-            let mut lanes = bundle.boxes.meeting(&self.cover);
-            if lanes == 0 {
-                continue;
-            }
-            let mut entry = [0.0; LANES];
-            if self.is_slanted || self.visit.in_order() {
+            let (lanes, entry) = if timed {
                 let crossing = bundle.boxes.crossing(&sweep.start, &sweep.pace, until);
-                lanes &= crossing.lanes;
-                entry = crossing.entry;
-            }
+                (crossing.lanes, crossing.entry)
+            } else {
+                (bundle.boxes.meeting(&self.cover), [0.0; LANES])
+            };
             if lanes != 0 && self.visit.bundle(bundle, lanes, &entry) {
                 return true;
             }

@@ -169,3 +169,30 @@ fn a_rim_stops_on_a_corner() {
     let truth = 1.0 - (10.0 + 5.0 / 2f64.sqrt()) / 40.0;
     assert!(t <= truth && truth - t < 1e-12, "{t} {truth}");
 }
+
+#[test]
+fn a_graze_that_touches_in_one_point_stops_there_to_a_nanometre() {
+    let pin = standing(&cylinder(30.0, 20.0), Pose::at([1000.0, 500.0, 0.0]));
+    // The way (4, 3) touches a disc of 50 + 30 at 80 mm from its centre: (-48, 64).
+    let across = straight([-3048.0, -2436.0, 0.0], [4952.0, 3564.0, 0.0]);
+    let cases = [
+        (across, cylinder(50.0, 10.0), 0.5),
+        // Along the mantle, and a block whose side ends where the mantle is touched.
+        (
+            straight([1080.0, -500.0, 0.0], [1080.0, 1500.0, 0.0]),
+            cylinder(50.0, 10.0),
+            0.5,
+        ),
+        (
+            straight([1080.0, -500.0, 0.0], [1080.0, 1500.0, 0.0]),
+            block(50.0, 40.0, 5.0),
+            0.48,
+        ),
+    ];
+    for (way, mover, touched) in cases {
+        let length = (0..3).map(|axis| way.to.position[axis] - way.from.position[axis]);
+        let length = length.map(|run| run * run).sum::<f64>().sqrt();
+        let early = (touched - stop(&pin, &mover, &way).unwrap()) * length;
+        assert!((0.0..1e-6).contains(&early), "{early:e} mm early");
+    }
+}
