@@ -1,16 +1,17 @@
 //! Contacts on a way: closed forms at once, searches later.
 //!
 //! Upright pairs on a straight way are judged as soon as the broad phase shows them
-//! ([`prism`](super::prism)). Whatever needs a search (tilted pieces, triangles, turns) is put on a
+//! ([`meeting`](super::meeting)). Whatever needs a search (tilted pieces, triangles, turns) is put on a
 //! list, each pair once, and searched in the order in which the boxes meet. A contact shortens the
 //! way for all that comes after it, so for the first contact the pair whose boxes meet first is judged
 //! first.
 
 use super::candidates::Candidates;
 use super::distance::Gap;
+use super::meeting::{Meeting, Run};
 use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending, once_in_order};
-use super::prism::{Meeting, Prism, Run};
+use super::prism::Prism;
 use super::space::{Boxes, Bundle, Cover, LANES, Sweep, Visit, above};
 use super::standing::Stands;
 use super::straight::{self, Hit};

@@ -13,7 +13,7 @@
 //!
 //! # Beyond it: continuous and exact
 //! The paper checks poses, this module checks ways. Upright blocks and cylinders on a straight way
-//! meet in closed form: `prism`. Along a straight move the distance of any two convex pieces is
+//! meet in closed form: `meeting`. Along a straight move the distance of any two convex pieces is
 //! convex, so first contact and least distance follow from a few separating planes, for the true
 //! shapes (cylinders stay round, in any orientation): `straight`. Turning moves advance
 //! conservatively with a second-order bound: `turning`.
@@ -23,7 +23,7 @@
 //! Bodies are closed sets: touching is contact. *Blocked* means that the distance comes within the
 //! margin, or that this could not be excluded. The proof of *clear*:
 //! 1. A pair of upright pieces on a straight way is cleared when a line misses a figure that was
-//!    grown by twice the rounding of the arithmetic (`prism`, where the argument stands).
+//!    grown by twice the rounding of the arithmetic (`meeting`, where the argument stands).
 //! 2. Any other pair of convex pieces is cleared for a stretch of the way only by an evaluated plane.
 //!    Its separation is computed in f64 from the support functions of both pieces, and a forward error
 //!    bound is subtracted (`piece::NOISE` times the sum of all magnitudes that entered). How the
@@ -47,10 +47,10 @@
 //! | name | value | for |
 //! |---|---|---|
 //! | `piece::NOISE` | 96 roundings, relative | everything between the numbers of a scene and a plane or a figure |
-//! | `prism::ROUNDING` | 32 roundings, relative | closed forms, between two places and a fraction of the way |
+//! | `meeting::ROUNDING` | 32 roundings, relative | closed forms, between two places and a fraction of the way |
 //! | `grazing::ROUNDING` | 2^-94, relative | contacts that graze, in twice the digits |
-//! | `prism::GRAZED_MM` | 1e-7 mm | by how much a graze may come early before that is asked |
-//! | `prism::ROUND_MM` | 1e-3 mm | how far from the end of a round corner that is sound |
+//! | `meeting::GRAZED_MM` | 1e-7 mm | by how much a graze may come early before that is asked |
+//! | `meeting::ROUND_MM` | 1e-3 mm | how far from the end of a round corner that is sound |
 //! | `distance::RESOLUTION_MM` | 1e-9 mm | where a search for a plane stops |
 //! | `space::sweep::SLACK_MM` | 1e-6 mm | places along the way in the broad phase; costs candidates, no answers |
 //! | `space::cover::ULP` | 1.2e-7, relative | rounding outward to f32, likewise |
@@ -80,6 +80,7 @@ mod contact;
 mod distance;
 pub mod exact;
 mod grazing;
+mod meeting;
 mod model;
 mod mover;
 mod name;

@@ -1,6 +1,6 @@
 //! Where two upright pieces come to touch, and along which normal: in closed form.
 //!
-//! At the first contact one of the figures of [`prism`](super::prism) has just been reached: a slab of
+//! At the first contact one of the figures of [`meeting`](super::meeting) has just been reached: a slab of
 //! the height, a side, a round corner. It is the one that the mover is least deep in. Of bodies that
 //! overlap from the start it is the shortest way out.
 
