@@ -26,7 +26,7 @@ impl Area {
     /// What a silhouette touches.
     #[inline]
     pub(crate) fn of(cover: &Cover) -> Area {
-        // The same as `cell_of`, which dividing by a power of two makes exact here, too.
+        // Rounding is monotone, so covering areas stay covering.
         let cell = |coordinate: f32| {
             let scaled = coordinate * (1.0 / PITCH_MM as f32);
             let whole = scaled as i32;
@@ -84,12 +84,4 @@ impl Area {
     pub(super) fn columns(&self) -> i64 {
         i64::from(self.high[0]) - i64::from(self.low[0]) + 1
     }
-}
-
-/// Column or row of a coordinate. Rounding is monotone, so covering areas stay covering.
-#[inline]
-pub(crate) fn cell_of(coordinate: f64) -> i32 {
-    let scaled = coordinate * (1.0 / PITCH_MM);
-    let whole = scaled as i32;
-    whole.saturating_sub(i32::from(f64::from(whole) > scaled))
 }

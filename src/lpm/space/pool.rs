@@ -49,7 +49,8 @@ impl Pool {
     /// Room for the bundles of so many silhouettes in each cell, and for one of the open cell.
     pub(super) fn expect(&mut self, counts: &[u32]) {
         let bundles = counts.iter().map(|count| count.div_ceil(LANES as u32));
-        self.bundles.reserve_exact(1 + bundles.sum::<u32>() as usize);
+        self.bundles
+            .reserve_exact(1 + bundles.sum::<u32>() as usize);
     }
 
     /// Bundles for so many silhouettes of one new cell, one after the other; the result is the first.

@@ -3,9 +3,9 @@
 use super::cover::Cover;
 use crate::lpm::vector::Vec3;
 
-/// Slack of a place along the way, mm: the rounding of times and products below, at most 2e-9 mm
-/// within 3e6 mm, many times over.
-const SLACK_MM: f64 = 1e-6;
+/// Slack of a place along the way, mm: the rounding of slopes and products, at most 2e-9 mm within 3e6 mm,
+/// many times over.
+pub(crate) const SLACK_MM: f64 = 1e-6;
 
 /// Ways shorter than this on an axis, mm, are counted as rest; every box on a way is widened by it.
 pub(crate) const SLOWEST_MM: f64 = 1e-9;
@@ -67,24 +67,5 @@ impl Sweep {
     pub(crate) fn is_slanted(&self) -> bool {
         let moving = |axis: usize| u32::from(self.run[axis].abs() >= SLOWEST_MM);
         moving(0) + moving(1) + moving(2) > 1
-    }
-
-    /// Part of the move during which `axis` overlaps `low..high`; `pace` is the reciprocal of its run.
-    #[inline]
-    pub(crate) fn during(&self, axis: usize, pace: f64, low: f64, high: f64) -> (f64, f64) {
-        let behind = low - f64::from(self.start.high[axis]) - SLACK_MM;
-        let ahead = high - f64::from(self.start.low[axis]) + SLACK_MM;
-        let (one, two) = (behind * pace, ahead * pace);
-        (one.min(two), one.max(two))
-    }
-
-    /// What is covered on `axis` between two fractions of the move.
-    #[inline]
-    pub(crate) fn between(&self, axis: usize, first: f64, last: f64) -> (f64, f64) {
-        let (one, two) = (self.run[axis] * first, self.run[axis] * last);
-        (
-            f64::from(self.start.low[axis]) + one.min(two) - SLACK_MM,
-            f64::from(self.start.high[axis]) + one.max(two) + SLACK_MM,
-        )
     }
 }
