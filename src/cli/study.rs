@@ -17,6 +17,7 @@
 
 mod accuracy;
 mod bins;
+mod chance;
 mod chart;
 mod coil;
 mod collision;

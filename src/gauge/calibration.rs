@@ -5,6 +5,7 @@
 //! and from golden parts, never from the specimens they are later used on. A calibration without
 //! golden parts has no lag corrections and measures no threshold ([`Calibration::lags`] is `None`).
 
+use super::lag::LagLine;
 use crate::units::Volt;
 use serde::{Deserialize, Serialize};
 
@@ -86,6 +87,9 @@ pub struct Lag {
     /// Parts that have taught the coarse lag.
     #[serde(default)]
     pub coarse_n: u32,
+    /// The lag of a part whose operate time is known; none for release, whose event has no flight before it.
+    #[serde(default)]
+    pub line: Option<LagLine>,
 }
 
 impl Lag {

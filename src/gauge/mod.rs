@@ -12,7 +12,7 @@
 //! | how often coil and contacts are read | [`sampling`] |
 //! | what the instruments are known to do | [`calibration`], [`settings`] |
 //! | coil resistance | [`coil`] |
-//! | operate and release voltage | [`threshold`] |
+//! | operate and release voltage | [`threshold`], [`lag`] |
 //! | times and bounce | [`timing`] |
 //! | contact resistance | [`contact`] |
 //! | how sure | [`budget`] |
@@ -23,6 +23,7 @@ pub mod calibration;
 pub mod coil;
 pub mod contact;
 pub mod feasible;
+pub mod lag;
 pub mod parameter;
 pub mod recipe;
 pub mod sampling;

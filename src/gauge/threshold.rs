@@ -111,6 +111,7 @@ mod tests {
             coarse_sd_v: 0.0,
             coarse_u_v: 0.01,
             coarse_n: 5,
+            line: None,
         };
         let doubt = RampDoubt {
             slope: Factor::new(1.5, 0.0),

@@ -7,6 +7,7 @@ use super::test::{Findings, Ramp};
 use crate::gauge::Parameter;
 use crate::gauge::calibration::{Factor, Lag, Lags};
 use crate::gauge::coil::{relative_per_kelvin, to_reference};
+use crate::gauge::lag::{LagLine, Shown};
 use crate::gauge::settings::{AccuracySettings, Certified, GoldenPart};
 use crate::units::Celsius;
 
@@ -23,6 +24,7 @@ pub struct CoarseLag {
     n: f64,
     mean: f64,
     squares: f64,
+    line: Option<LagLine>,
 }
 
 impl CoarseLag {
@@ -37,6 +39,20 @@ impl CoarseLag {
         let step = lag - self.mean;
         self.mean += step / self.n;
         self.squares += step * (lag - self.mean);
+    }
+
+    /// The same of an operate ramp, whose lag follows the operate time; `rate_v_per_s` is that of the ramp.
+    pub fn learn_with_time(&mut self, ramp: Ramp, operate_ms: Option<f64>, rate_v_per_s: f64) {
+        self.learn(ramp);
+        if let (Some(fine), Some(operate_ms)) = (ramp.fine, operate_ms) {
+            let shown = Shown {
+                operate_ms,
+                seen_v: ramp.coarse.0,
+            };
+            self.line
+                .get_or_insert_with(|| LagLine::before(rate_v_per_s))
+                .learn(shown, (ramp.coarse - fine).0);
+        }
     }
 
     /// Mean and standard deviation for the next part; a guess wins while nothing was seen.
@@ -66,6 +82,7 @@ impl CoarseLag {
             coarse_sd_v,
             coarse_u_v: self.uncertainty_v(),
             coarse_n: self.n as u32,
+            line: self.line,
         }
     }
 }

@@ -7,6 +7,7 @@ use super::trouble::Alarm;
 use super::wants::Wants;
 use super::{Station, golden, reference};
 use crate::gauge::Calibration;
+use crate::gauge::Parameter;
 use crate::gauge::calibration::Lags;
 use crate::gauge::verdict::Verdict;
 use crate::units::RigTime;
@@ -39,10 +40,11 @@ impl Station {
             let findings = &judged.findings;
             // A slow or sticking part would spoil the place of the ramp for all that follow.
             if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
-                findings
-                    .operate
-                    .into_iter()
-                    .for_each(|ramp| self.coarse.0.learn(ramp));
+                let time = findings.result(Parameter::OperateTime).map(|it| it.value);
+                let rate = self.bench.calibration.coarse_v_per_s.value;
+                if let Some(ramp) = findings.operate {
+                    self.coarse.0.learn_with_time(ramp, time, rate);
+                }
                 findings
                     .release
                     .into_iter()

@@ -1,64 +1,33 @@
 //! False accepts and false rejects: counted against the truth, and as the rule predicts them.
 //!
-//! Predicted from what the rows say: a parameter's good parts are taken as normal with the mean and standard
-//! deviation of their values (less the variance of measurement), the measurement as normal with the stated
-//! uncertainty. With a guard band `w` a part is accepted when its value lies inside the limit by `w`; the
-//! chances are integrated over the process (JCGM 106:2012, 9.5). Within the guard band a part is measured
-//! again, so a reject predicted for one measurement is an upper end.
+//! Predicted from what the rows say ([`super::chance`]). A lot in the middle of its limits has next to no risk, and
+//! a count of nothing proves little; so a second lot stands at the limit of the operate voltage, one standard
+//! deviation inside, where one part in six is beyond it and one in twenty is measured again.
+//!
+//! What every part of a lot shares (golden parts, instruments) makes lots differ by more than chance does: a count is
+//! held against its prediction with three standard deviations of the sum over lots, as the lots themselves scatter.
 
 use super::bins;
+use super::chance::Chance;
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
 use super::fleet::Order;
-use super::lot::{Lot, Reading};
+use super::lot::{Lot, Part, Reading};
+use super::method::{self, BAUDS};
 use super::output::Report;
+use super::variant::Variant;
+use crate::config::load_recipe;
 use crate::gauge::Parameter;
 use crate::quality::Spread;
-use statrs::distribution::{ContinuousCDF, Normal};
+use crate::quality::spread::median;
 use std::ops::RangeInclusive;
 
-/// Steps of the integral over +-8 standard deviations of the process.
-const STEPS: u32 = 40_000;
 /// Parts per million.
 const PPM: f64 = 1e6;
-
-/// A process and a measurement, in the unit of the parameter.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Chance {
-    /// Mean of the true values.
-    pub mean: f64,
-    /// Their standard deviation.
-    pub sd: f64,
-    /// Standard uncertainty of one measurement.
-    pub u: f64,
-}
-
-impl Chance {
-    /// Chances of a false accept and of a false reject, with the limits moved inwards by `guard`.
-    ///
-    /// `None` where a spread is not positive.
-    pub fn of(&self, limits: &RangeInclusive<f64>, guard: f64) -> Option<(f64, f64)> {
-        let process = Normal::new(self.mean, self.sd).ok()?;
-        let noise = Normal::new(0.0, self.u).ok()?;
-        let width = 16.0 * self.sd / f64::from(STEPS);
-        let (mut accept, mut reject) = (0.0, 0.0);
-        for step in 0..STEPS {
-            let from = self.mean - 8.0 * self.sd + width * f64::from(step);
-            let (truth, share) = (
-                from + width / 2.0,
-                process.cdf(from + width) - process.cdf(from),
-            );
-            let taken =
-                noise.cdf(limits.end() - guard - truth) - noise.cdf(limits.start() + guard - truth);
-            if limits.contains(&truth) {
-                reject += share * (1.0 - taken);
-            } else {
-                accept += share * taken.max(0.0);
-            }
-        }
-        Some((accept, reject))
-    }
-}
+/// Voltage of the part that `[lot]` of a world describes.
+const LOT_V: f64 = 12.0;
+/// What a U must fall by to be that of a slow repetition: noise alone moves it by less.
+const AGAIN: f64 = 0.98;
 
 /// Runs the lots and draws the report up.
 ///
@@ -84,43 +53,34 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
             .map(|row| (row.name.clone(), row.value))
             .collect(),
     };
-    let expected: f64 = rows.iter().filter_map(|row| row.value).sum();
+    let told = |what: fn(&Figure) -> Option<f64>| rows.iter().filter_map(what).sum::<f64>() / PPM;
+    let risks = (told(false_accept), told(|row| row.value));
+    let groups = vec![
+        counted("", &lots, risks),
+        at_limit(order, &lots)?,
+        bins::outcome(&lots),
+        rows,
+    ];
     Ok(Report {
         study: "decision",
         about: order.about(),
-        groups: vec![rows, counted(&lots, expected), bins::outcome(&lots)],
+        groups,
         notes: Vec::new(),
         chart,
     })
 }
 
+fn false_accept(row: &Figure) -> Option<f64> {
+    let mut more = row.more.iter();
+    more.find(|(key, _)| *key == "false_accept")
+        .and_then(|(_, value)| *value)
+}
+
 /// What the rule predicts of one parameter, parts per million; beside it, without a guard band.
 fn predicted(parameter: Parameter, limits: &RangeInclusive<f64>, lots: &[Lot]) -> Figure {
-    let readings: Vec<Reading> = lots
-        .iter()
-        .flat_map(Lot::good)
-        .filter_map(|part| part.reading(parameter))
-        .collect();
-    let values = Spread::of(&readings.iter().map(|it| it.value).collect::<Vec<f64>>());
-    let u = Spread::of(
-        &readings
-            .iter()
-            .filter_map(|it| it.uncertainty)
-            .collect::<Vec<f64>>(),
-    );
-    let chance = values
-        .mean()
-        .zip(values.sd())
-        .zip(u.mean())
-        .map(|((mean, sd), expanded)| {
-            let u = expanded / 2.0;
-            Chance {
-                mean,
-                sd: (sd * sd - u * u).max(sd * sd * 0.01).sqrt(),
-                u,
-            }
-        });
-    let with = |guard: f64| chance.and_then(|it| it.of(limits, guard * 2.0 * it.u));
+    let readings = readings(parameter, lots);
+    let chance = chance(&readings);
+    let with = |guard: f64| chance.and_then(|it| it.of(limits, guard));
     let ppm = |chance: Option<f64>| chance.map(|it| it * PPM);
     Figure::new(
         parameter.name(),
@@ -133,63 +93,91 @@ fn predicted(parameter: Parameter, limits: &RangeInclusive<f64>, lots: &[Lot]) -
     .with("unguarded_accept", ppm(with(0.0).map(|it| it.0)))
 }
 
-/// What happened, over good and bad parts alike.
-fn counted(lots: &[Lot], expected_ppm: f64) -> Vec<Figure> {
-    let all = || lots.iter().flat_map(|lot| &lot.parts);
-    let n = all().count() as u64;
-    let accepted = all()
-        .filter(|part| !part.deserves_to_pass() && bins::has_passed(part))
-        .count();
-    let rejected = all()
-        .filter(|part| part.deserves_to_pass() && part.verdict == "fail")
-        .count();
-    let expected = expected_ppm / PPM * n as f64;
-    let allowed = (expected + 3.0 * expected.sqrt()).floor() + 1.0;
-    vec![
-        Figure::count("false accepts, counted", n, Some(accepted as u64)).bar(Bar::AtMost(0.0)),
-        Figure::count("false rejects, counted", n, Some(rejected as u64))
-            .with("predicted", Some(expected))
-            .bar(Bar::AtMost(allowed)),
-    ]
+fn readings(parameter: Parameter, lots: &[Lot]) -> Vec<Reading> {
+    lots.iter()
+        .flat_map(Lot::good)
+        .filter_map(|part| part.reading(parameter))
+        .collect()
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// Process and measurement behind the rows: the values are normal, less the variance of measurement; U is that
+/// of most parts, and that of those whose U is clearly smaller is the one of slow repetitions.
+fn chance(readings: &[Reading]) -> Option<Chance> {
+    let values = Spread::of(&readings.iter().map(|it| it.value).collect::<Vec<f64>>());
+    let stated: Vec<f64> = readings.iter().filter_map(|it| it.uncertainty).collect();
+    let u = median(&stated)? / 2.0;
+    let again: Vec<f64> = stated
+        .iter()
+        .map(|expanded| expanded / 2.0)
+        .filter(|it| *it < AGAIN * u)
+        .collect();
+    let sd = values.sd()?;
+    Some(Chance {
+        mean: values.mean()?,
+        sd: (sd * sd - u * u).max(sd * sd * 0.01).sqrt(),
+        u,
+        again: median(&again),
+    })
+}
 
-    fn ppm(chance: Chance, limit: f64, guard: f64) -> (f64, f64) {
-        let (accept, reject) = chance
-            .of(&(f64::NEG_INFINITY..=limit), guard)
-            .expect("a process with a spread");
-        (accept * PPM, reject * PPM)
-    }
+/// The same rig with a lot whose operate voltage stands one standard deviation inside its limit.
+fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
+    let known = |(parameter, _): &&(Parameter, _)| *parameter == Parameter::OperateVoltage;
+    let limits = order.admitted.iter().find(known).map(|(_, limits)| limits);
+    let usual = chance(&readings(Parameter::OperateVoltage, lots));
+    let (Some(limits), Some(usual)) = (limits.filter(|it| it.end().is_finite()), usual) else {
+        return Ok(Vec::new());
+    };
+    let mean = limits.end() - usual.sd;
+    let of_lot = LOT_V / load_recipe(&order.config, &order.recipe)?.part.nominal_v;
+    let variant = Variant {
+        exact: false,
+        world: vec![("lot.operate_v_mean", (mean * of_lot).into())],
+        ..Variant::exact(BAUDS[0], vec![("test.expected_operate_v", mean.into())])
+    };
+    let lots = method::lots(&variant, order)?;
+    let chance = chance(&readings(Parameter::OperateVoltage, &lots));
+    let risks = chance
+        .and_then(|it| it.of(limits, 1.0))
+        .unwrap_or((f64::NAN, f64::NAN));
+    let mut figures = counted("at the limit: ", &lots, risks);
+    let rows = readings(Parameter::OperateVoltage, &lots);
+    let again = rows.iter().filter(|row| is_again(row, chance)).count();
+    figures.push(Figure::count(
+        "at the limit: measured again",
+        rows.len() as u64,
+        Some(again as u64),
+    ));
+    Ok(figures)
+}
 
-    #[test]
-    fn a_pickup_process_of_7_88_v_has_the_risks_of_the_tables() {
-        let of = |u| Chance {
-            mean: 7.88,
-            sd: 0.30,
-            u,
-        };
-        let (accept, reject) = ppm(of(0.020), 9.0, 0.0);
-        assert!(
-            (accept - 8.60).abs() < 0.1 && (reject - 11.8).abs() < 0.1,
-            "{accept} {reject}"
-        );
-        let (accept, reject) = ppm(of(0.050), 9.0, 0.100);
-        assert!(
-            (accept - 0.44).abs() < 0.02 && (reject - 305.0).abs() < 3.0,
-            "{accept} {reject}"
-        );
-    }
+fn is_again(reading: &Reading, chance: Option<Chance>) -> bool {
+    let (u, usual) = (reading.uncertainty, chance.map(|it| 2.0 * it.u));
+    u.zip(usual).is_some_and(|(u, usual)| u < AGAIN * usual)
+}
 
-    #[test]
-    fn without_a_spread_there_is_no_chance() {
-        let none = Chance {
-            mean: 1.0,
-            sd: 0.0,
-            u: 0.1,
-        };
-        assert_eq!(none.of(&(0.0..=2.0), 0.0), None);
-    }
+/// What happened, over good and bad parts alike, beside what was to be expected of so many.
+fn counted(which: &str, lots: &[Lot], (accept, reject): (f64, f64)) -> Vec<Figure> {
+    let row = |what: &str, risk: f64, is: fn(&Part) -> bool| {
+        let each: Vec<f64> = lots
+            .iter()
+            .map(|lot| lot.parts.iter().filter(|part| is(part)).count() as f64)
+            .collect();
+        let n: u64 = lots.iter().map(|lot| lot.parts.len() as u64).sum();
+        let (found, expected) = (each.iter().sum::<f64>(), risk * n as f64);
+        let by_lots = Spread::of(&each).sd().unwrap_or(0.0) * (each.len() as f64).sqrt();
+        let sd = by_lots.max(expected.sqrt());
+        let (low, high) = ((expected - 3.0 * sd).ceil(), (expected + 3.0 * sd).floor());
+        Figure::count(format!("{which}{what}, counted"), n, Some(found as u64))
+            .with("predicted", Some(expected))
+            .bar(Bar::Within(low.max(0.0), high))
+    };
+    vec![
+        row("false accepts", accept, |part| {
+            !part.deserves_to_pass() && bins::has_passed(part)
+        }),
+        row("false rejects", reject, |part| {
+            part.deserves_to_pass() && part.verdict == "fail"
+        }),
+    ]
 }

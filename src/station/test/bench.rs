@@ -129,5 +129,6 @@ fn untaught(coarse_v: f64) -> Lag {
         coarse_sd_v: UNTAUGHT_SD_V,
         coarse_u_v: f64::INFINITY,
         coarse_n: 0,
+        line: None,
     }
 }

@@ -4,6 +4,7 @@ use super::{Bench, Ramp};
 use crate::gauge::budget::Reading;
 use crate::gauge::calibration::Lag;
 use crate::gauge::coil::to_reference;
+use crate::gauge::lag::Shown;
 use crate::gauge::strategy::{from_two_rates, growth_s};
 use crate::gauge::threshold::{Direction, RampDoubt, quasi_static};
 use crate::gauge::timing::counts;
@@ -22,30 +23,38 @@ pub(super) fn gate0(bench: &Bench, readings: &Readings) -> Option<Second> {
     ))
 }
 
-/// A coarse ramp whose lag golden parts and lot have taught.
-pub(super) struct FastRamp {
-    /// Indicated voltage.
-    pub seen: Volt,
-    /// Length of the gate.
-    pub gate: Second,
-    /// Lag of this direction.
-    pub lag: Lag,
-}
-
-impl FastRamp {
-    /// The threshold, with the scatter of the lag in its budget.
-    pub(super) fn reading(&self, bench: &Bench, part: Celsius) -> Reading {
-        let as_fine = self.seen - Volt(self.lag.coarse_v);
-        let doubt = RampDoubt {
-            slope: bench.calibration.coarse_v_per_s,
-            slope_known: true,
-            ..doubt(bench)
-        };
-        let reference = bench.reference_temperature();
-        let mut reading = quasi_static(as_fine, self.gate, self.lag, part, reference, doubt);
-        reading.budget = reading.budget.with_random("strategy", self.lag.coarse_u_v);
-        reading
-    }
+/// The threshold behind a coarse ramp whose lag golden parts and lot have taught.
+///
+/// The scatter that was learned holds what a coarse ramp does not know of itself: resolution, repeatability, the
+/// error of its slope; each would otherwise be counted twice. With the operate time the lag is that of this very part.
+pub(super) fn coarse_reading(
+    bench: &Bench,
+    (seen, lag): (Volt, Lag),
+    operate_ms: Option<f64>,
+    part: Celsius,
+) -> Reading {
+    let shown = operate_ms.map(|operate_ms| Shown {
+        operate_ms,
+        seen_v: seen.0,
+    });
+    let line = lag.line.zip(shown).map(|(line, shown)| line.lag_v(shown));
+    let (lag_v, scatter_v) = line.unwrap_or((lag.coarse_v, lag.coarse_u_v));
+    // What was learned holds the operation of the fine ramp as well, which is none of this value's.
+    let operation_v = bench.accuracy.operation_scatter_mv / 1e3;
+    let own_v = (scatter_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
+    let doubt = RampDoubt {
+        slope: bench.calibration.coarse_v_per_s,
+        slope_known: true,
+        operation_v: 0.0,
+        refresh: Second(0.0),
+        // The line follows the indication, and an error of gain with it.
+        level: line.map_or(bench.calibration.level.gain.u, |_| 0.0),
+        ..doubt(bench)
+    };
+    let reference = bench.reference_temperature();
+    let mut reading = quasi_static(seen - Volt(lag_v), Second(0.0), lag, part, reference, doubt);
+    reading.budget = reading.budget.with_random("strategy", own_v.sqrt());
+    reading
 }
 
 /// Threshold from a fine ramp: less the lag of golden parts, or, by two rates, from both ramps.

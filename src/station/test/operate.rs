@@ -1,6 +1,6 @@
 //! Operate voltage on the coarse ramp from the pre-bias: an estimate to some 10 mV that places the fine ramp.
 
-use super::indication::{FastRamp, gate0};
+use super::indication::{coarse_reading, gate0};
 use super::ramp::{Expected, stopped_at};
 use super::{Bench, Findings, INTERLOCK, OFF, Ramp, Stage, board};
 use crate::gauge::Parameter;
@@ -110,12 +110,7 @@ pub(super) fn conclude_coarse(
     if strategy.trusts_coarse()
         && let Some(part) = findings.track
     {
-        let fast = FastRamp {
-            seen: coarse,
-            gate,
-            lag,
-        };
-        let reading = fast.reading(bench, part);
+        let reading = coarse_reading(bench, (coarse, lag), None, part);
         findings.found(
             Parameter::OperateVoltage,
             reading,
@@ -123,6 +118,20 @@ pub(super) fn conclude_coarse(
         );
     }
     (!strategy.ramps()).then_some(Stage::OperateFine(0))
+}
+
+/// A value that rests on the coarse ramp alone is corrected once the operate time of the part is known.
+pub(super) fn refine(bench: &Bench, readings: &Readings, findings: &mut Findings) {
+    let trusted = bench.strategy(Parameter::OperateVoltage).trusts_coarse();
+    let coarse = findings.operate.filter(|ramp| ramp.fine.is_none());
+    let time = findings.result(Parameter::OperateTime);
+    if let (true, Some(ramp), Some(time), Some(part)) = (trusted, coarse, time, findings.track) {
+        let lag = bench.operate_lag();
+        let reading = coarse_reading(bench, (ramp.coarse, lag), Some(time.value), part);
+        findings.forget(Parameter::OperateVoltage);
+        let samples = readings.gates.iter().flatten();
+        findings.found(Parameter::OperateVoltage, reading, samples);
+    }
 }
 
 /// How long the coarse ramp needs from its event back down to [`release_start`]: it has gone on while the

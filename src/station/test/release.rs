@@ -3,7 +3,7 @@
 //! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
 //! voltage, so the timed one stays the last of those.
 
-use super::indication::{FastRamp, fine_reading, gate0};
+use super::indication::{coarse_reading, fine_reading, gate0};
 use super::operate::{SETTLES, release_start};
 use super::operate_fine::{REPEAT_SD_V, again};
 use super::ramp::{self, Expected, Met};
@@ -28,8 +28,9 @@ const SEAL_TIME: Span = Span::ms(25);
 /// Slowest break after the end of a ramp that is still taken for its event.
 const LATE: Span = Span::ms(12);
 
-/// Seals the armature and steps to the start of a falling ramp, armed. An armature that is still operated
-/// from the stage before is sealed from there; `ramp_left` says how long a ramp still runs after its mark.
+/// Seals the armature and steps to the start of a falling ramp, armed: ARM is a pulse, so that it may rise again as
+/// soon as the contact has broken. An armature that is still operated from the stage before is sealed from there,
+/// once the ramp that may still run has ended.
 fn seal(bench: &Bench, supply: &mut Supply, findings: &mut Findings, start: Volt) -> Vec<Act> {
     let operated = std::mem::take(&mut findings.operated);
     findings.released = false;
@@ -64,21 +65,51 @@ fn seal(bench: &Bench, supply: &mut Supply, findings: &mut Findings, start: Volt
         Act::Mark,
         board(&[(Arm, true)]),
         Act::Read(Read::Gates),
+        board(&[(Arm, false)]),
         Act::WaitSinceMark(SETTLES),
     ]);
     acts
 }
 
-fn until_break(takes: Span) -> [Act; 4] {
+/// What comes after a ramp, when all goes well.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Then {
+    /// Another ramp: counter 0 is enough, and the word is that of a rising ramp already.
+    Ramp,
+    /// The timed operation: it takes both counters over, and finds window and latch cleared. No start event comes
+    /// of a drive that goes off while NO is selected, so ARM may rise in the same word.
+    Timed,
+}
+
+/// The drive goes off once NO has broken; from that event on the armature falls.
+fn until_break(takes: Span, then: Then) -> [Act; 4] {
+    let mut off = vec![(CoilDrive, false), (EventNoBreak, false)];
+    let gates = match then {
+        Then::Ramp => Read::Gate,
+        Then::Timed => {
+            off.extend([(RampMode, false), (Arm, true)]);
+            Read::Gates
+        }
+    };
     [
         Act::Until {
             point: DigitalIn::Latch,
             within: takes + LATE,
         },
-        board(&[(CoilDrive, false), (Arm, false)]),
         Act::Mark,
-        Act::Read(Read::Gates),
+        Act::Board(off),
+        Act::Read(gates),
     ]
+}
+
+fn after_coarse(bench: &Bench) -> Then {
+    let fine = [Parameter::OperateVoltage, Parameter::ReleaseVoltage]
+        .map(|parameter| bench.strategy(parameter).always_fine());
+    if fine.contains(&true) {
+        Then::Ramp
+    } else {
+        Then::Timed
+    }
 }
 
 pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
@@ -92,7 +123,7 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
     findings.ramp_start = Some(supply.total());
     let (ramp, takes) = supply.ramp_coarse(Volt(0.0));
     acts.push(ramp);
-    acts.extend(until_break(takes));
+    acts.extend(until_break(takes, after_coarse(bench)));
     acts
 }
 
@@ -116,12 +147,7 @@ pub(super) fn conclude_coarse(
             if strategy.trusts_coarse()
                 && let Some(part) = findings.track
             {
-                let reading = FastRamp {
-                    seen: coarse,
-                    gate,
-                    lag,
-                }
-                .reading(bench, part);
+                let reading = coarse_reading(bench, (coarse, lag), None, part);
                 findings.found(
                     Parameter::ReleaseVoltage,
                     reading,
@@ -164,7 +190,7 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
     findings.ramp_span = Some(placed.span);
     let (ramp, takes) = supply.jump_and_ramp(-ramp::JUMP, -way);
     acts.push(ramp);
-    acts.extend(until_break(takes));
+    acts.extend(until_break(takes, Then::Timed));
     acts
 }
 

@@ -3,7 +3,7 @@
 
 use super::coil::rest;
 use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, reversed};
-use super::operate::dropped;
+use super::operate::{self, dropped};
 use super::{Bench, Findings, OFF, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::contact::resistance;
@@ -172,6 +172,7 @@ pub(super) fn conclude_operate(
         findings,
     );
     findings.operated = true;
+    operate::refine(bench, readings, findings);
     match closure(bench, readings) {
         Ok(closure) => {
             let u = closure.u_v(bench.reading_u_v());

@@ -45,6 +45,7 @@ fn calibration() -> Calibration {
         coarse_sd_v: 0.01,
         coarse_u_v: 0.01,
         coarse_n: 5,
+        line: None,
     };
     Calibration {
         simulated: true,

@@ -2,14 +2,17 @@
 
 use super::super::{Stage, operate, operate_fine, release, timing};
 use super::{PULLED, RESTING, assert_ends, at_23_c, bench, drop_of, ended, gates};
-use crate::gauge::Parameter;
+use crate::gauge::lag::{LagLine, Shown};
 use crate::gauge::threshold::Direction;
 use crate::gauge::verdict::Bin;
+use crate::gauge::{Parameter, Strategy};
 use crate::rig::sample::Quality;
-use crate::station::act::{BoardInputs, Readings};
-use crate::station::test::Findings;
+use crate::station::act::{Act, BoardInputs, Read, Readings};
+use crate::station::supply::Supply;
 use crate::station::test::ramp::Expected;
+use crate::station::test::{Bench, Findings};
 use crate::units::Volt;
+use std::sync::Arc;
 
 /// A stage that waited for the latch: seen or not, the board after it, gate 0 open for so long.
 fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
@@ -234,4 +237,74 @@ fn a_closure_with_the_source_in_compliance_fails_by_contact() {
     findings.drop_zero = Some(Volt(0.0));
     timing::conclude_release(&bench(), &readings, &mut findings);
     assert_ends(&findings, Bin::Contact, "NC contact");
+}
+
+/// The default bench on the strategy `ramp`, with a line taught by parts of which each millisecond of operate time
+/// showed 96 mV more.
+fn on_the_ramp() -> Bench {
+    let mut line = LagLine::before(96.0);
+    for at in 0..40 {
+        let (late_ms, off_v) = (f64::from(at % 7) * 0.1, f64::from(at % 5) * 0.2);
+        let shown = Shown {
+            operate_ms: 4.4 + late_ms,
+            seen_v: 8.5 + off_v,
+        };
+        line.learn(shown, 0.85 + 0.096 * (late_ms - 0.3));
+    }
+    let mut bench = bench();
+    let strategy = &mut Arc::make_mut(&mut bench.recipe).test.strategy;
+    strategy.operate_voltage_v = Strategy::Ramp;
+    let lags = Arc::make_mut(&mut bench.calibration).lags.as_mut().unwrap();
+    lags.operate.line = Some(line);
+    bench
+}
+
+#[test]
+fn a_coarse_value_is_corrected_by_the_operate_time_of_the_same_part() {
+    let bench = on_the_ramp();
+    for (counts, slower_ms) in [(235, 0.0), (245, 0.2)] {
+        let mut findings = ramp_from(5.0, 6.0);
+        operate::conclude_coarse(&bench, &watched(true, PULLED, 40.0), &mut findings);
+        let first = findings.result(Parameter::OperateVoltage).unwrap();
+        assert!((first.value - 8.04).abs() < 1e-6, "by the mean lag");
+        timing::conclude_operate(&bench, &timed(true, [counts, counts]), &mut findings);
+        let corrected = findings.result(Parameter::OperateVoltage).unwrap();
+        assert_eq!(findings.attempts(Parameter::OperateVoltage), 1);
+        let expected = 8.89 - (0.85 + 0.096 * slower_ms);
+        assert!(
+            (corrected.value - expected).abs() < 1e-3,
+            "{}",
+            corrected.value
+        );
+        assert!(corrected.expanded() < first.expanded());
+    }
+}
+
+#[test]
+fn a_fine_value_is_not_touched_by_the_operate_time() {
+    let bench = on_the_ramp();
+    let mut findings = ramp_from(7.8, 0.2);
+    findings.operate = Some(super::super::Ramp {
+        coarse: Volt(8.8),
+        fine: None,
+    });
+    operate_fine::conclude(&bench, &watched(true, PULLED, 40.0), &mut findings, 0);
+    let fine = findings.result(Parameter::OperateVoltage);
+    timing::conclude_operate(&bench, &timed(true, [300, 300]), &mut findings);
+    assert_eq!(findings.result(Parameter::OperateVoltage), fine);
+}
+
+#[test]
+fn both_counters_are_read_where_the_timed_operation_takes_them_over() {
+    for (fine, read) in [(true, Read::Gate), (false, Read::Gates)] {
+        let mut bench = bench();
+        if !fine {
+            let strategy = &mut Arc::make_mut(&mut bench.recipe).test.strategy;
+            strategy.operate_voltage_v = Strategy::Ramp;
+            strategy.release_voltage_v = Strategy::Ramp;
+        }
+        let mut supply = Supply::new(&bench.calibration);
+        let acts = release::acts_coarse(&bench, &mut supply, &mut at_23_c());
+        assert_eq!(acts.last(), Some(&Act::Read(read)));
+    }
 }
