@@ -15,6 +15,8 @@ pub mod run;
 #[cfg(feature = "sim")]
 pub mod sim;
 #[cfg(feature = "sim")]
+pub mod story;
+#[cfg(feature = "sim")]
 pub mod study;
 pub mod user;
 
@@ -76,6 +78,9 @@ pub enum Command {
     /// Only the simulated rig, on pseudo-terminals in real time
     #[cfg(feature = "sim")]
     Sim(sim::SimArgs),
+    /// Play a script of troubles and orders on the simulated rig and tell what happened
+    #[cfg(feature = "sim")]
+    Story(story::StoryArgs),
     /// Figures that anyone can reprint, each beside its bar
     #[cfg(feature = "sim")]
     Study(study::StudyArgs),
@@ -106,6 +111,8 @@ impl Cli {
             Command::Calibrate(args) => calibrate::run(&self.config, &self.db, &args),
             #[cfg(feature = "sim")]
             Command::Sim(args) => sim::run(&self.config, &args),
+            #[cfg(feature = "sim")]
+            Command::Story(args) => story::run(&self.config, &self.db, &args),
             #[cfg(feature = "sim")]
             Command::Study(args) => study::run(&self.config, &args),
             Command::Config(args) => config::run(&self.config, &args),

@@ -47,8 +47,10 @@ use traffic::{Purpose, Traffic};
 const IDLE: Span = Span::ms(50);
 
 /// What a run leaves for the history, in the order it happened.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub enum Event {
+    /// The outer machine has entered a state.
+    State(packml::State),
     /// A part was judged.
     Judged(Box<crate::station::wants::Judged>),
     /// Its beam saw it.
@@ -110,6 +112,8 @@ pub struct Cycle {
     orders_closed: bool,
     verified: bool,
     publish_at: RigTime,
+    /// State of the outer machine that was told last.
+    told: packml::State,
     /// Longest time that the emergency-stop input was not known anew.
     worst_age: Span,
 }
@@ -165,6 +169,7 @@ impl Cycle {
             orders_closed: false,
             verified: false,
             publish_at: RigTime(0),
+            told: packml::State::Stopped,
             worst_age: Span(0),
         }
     }
@@ -456,6 +461,10 @@ impl Cycle {
         if wants.alarms_changed {
             let standing = self.station.annunciator().standing().to_vec();
             self.tell(Event::Standing(standing));
+        }
+        let state = self.station.outer();
+        if std::mem::replace(&mut self.told, state) != state {
+            self.tell(Event::State(state));
         }
     }
 

@@ -8,6 +8,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 
 use serde::Serialize;
 
+use crate::error::SimError;
 use crate::rig::{Record, Scene};
 use crate::terminal::Plant;
 
@@ -147,5 +148,9 @@ impl Record for Watched {
 
     fn crashes(&mut self) -> Vec<String> {
         self.scene.crashes()
+    }
+
+    fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
+        self.scene.strike(fault, value)
     }
 }

@@ -11,10 +11,12 @@ use std::sync::mpsc::Receiver;
 
 use crate::config::LineSpec;
 use crate::dcon;
+use crate::error::SimError;
 use crate::fault::{Event, Faults};
 use crate::journal::{Entry, Watched};
 use crate::line::wire_us;
 use crate::module::Module;
+use crate::shared;
 use crate::terminal::Plant;
 use crate::uart;
 
@@ -25,6 +27,15 @@ pub trait Record {
 
     /// Bodies that touched where they must not, in words.
     fn crashes(&mut self) -> Vec<String>;
+
+    /// A fault of the world strikes from now on; `value` counts parts.
+    ///
+    /// # Errors
+    /// The world has no such fault, or it cannot strike while the world runs.
+    fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
+        let _ = value;
+        Err(SimError::UnknownFault { name: fault.into() })
+    }
 }
 
 /// A world: terminals in front, truth behind.
@@ -195,6 +206,23 @@ impl Rig {
     /// Everything that the outputs do from now on.
     pub fn journal(&mut self) -> Receiver<Entry> {
         self.scene.listen()
+    }
+
+    /// A fault, `NAME` or `NAME=VALUE`, strikes while the rig runs: times in its value count from now.
+    ///
+    /// # Errors
+    /// The fault is unknown, its value unfit, or it is only for the start.
+    pub fn strike(&mut self, text: &str) -> Result<(), SimError> {
+        let (name, value) = shared::split(text);
+        if self.faults.add_from(self.now_us, name, value)? {
+            let known = |target: &str| {
+                self.modules.iter().any(|module| module.id() == target)
+                    || self.lines.iter().any(|line| line.name == target)
+            };
+            return shared::check_targets(&self.faults, known);
+        }
+        let number = value.map(|text| shared::number(name, text)).transpose()?;
+        self.scene.strike(name, number)
     }
 
     /// See [`Record::truth`].

@@ -52,7 +52,10 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
             world_faults.push(world_fault(&table, name, value)?);
         }
     }
-    check_targets(&faults, &file)?;
+    check_targets(&faults, |target| {
+        file.modules.iter().any(|module| module.id == target)
+            || file.lines.iter().any(|line| line.name == target)
+    })?;
     let world = World::build(&WorldOptions {
         config_dir: options.config_dir.clone(),
         world_file: options.world.clone(),
@@ -114,28 +117,24 @@ fn world_fault(
     if !table.fault.contains_key(name) {
         return Err(SimError::UnknownFault { name: name.into() });
     }
-    let number = match value {
-        None => f64::NAN,
-        Some(text) => match text.parse::<f64>() {
-            Ok(number) if number.is_finite() => number,
-            _ => {
-                return Err(SimError::FaultValue {
-                    name: name.into(),
-                    found: text.into(),
-                    expected: "a number".into(),
-                });
-            }
-        },
-    };
+    let number = value.map_or(Ok(f64::NAN), |text| number(name, text))?;
     Ok((name.into(), number))
 }
 
+/// The value of a fault of the world.
+pub(crate) fn number(name: &str, text: &str) -> Result<f64, SimError> {
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(SimError::FaultValue {
+            name: name.into(),
+            found: text.into(),
+            expected: "a number".into(),
+        }),
+    }
+}
+
 /// A fault that strikes a module or line which does not exist would silently do nothing.
-fn check_targets(faults: &Faults, file: &RigFile) -> Result<(), SimError> {
-    let known = |target: &str| {
-        file.modules.iter().any(|module| module.id == target)
-            || file.lines.iter().any(|line| line.name == target)
-    };
+pub(crate) fn check_targets(faults: &Faults, known: impl Fn(&str) -> bool) -> Result<(), SimError> {
     match faults.targets().find(|target| !known(target)) {
         None => Ok(()),
         Some(target) => Err(SimError::FaultValue {
@@ -168,6 +167,10 @@ impl Record for World {
 
     fn crashes(&mut self) -> Vec<String> {
         World::crashes(self)
+    }
+
+    fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
+        World::strike(self, fault, value)
     }
 }
 
@@ -221,6 +224,14 @@ impl SharedRig {
     /// Everything that the outputs do from now on.
     pub fn journal(&self) -> std::sync::mpsc::Receiver<crate::journal::Entry> {
         self.rig().journal()
+    }
+
+    /// A fault, `NAME` or `NAME=VALUE`, strikes while the rig runs: times in its value count from now.
+    ///
+    /// # Errors
+    /// The fault is unknown, its value unfit, or it is only for the start.
+    pub fn strike(&self, fault: &str) -> Result<(), SimError> {
+        self.rig().strike(fault)
     }
 
     /// Truth of every lot part that has entered the nest, in order.

@@ -8,7 +8,7 @@
 mod compare;
 
 use super::rig::RigArgs;
-use super::run::{self, Controls, RunArgs};
+use super::run::{self, Controls, Orders, RunArgs};
 use crate::config::{Plant, load_recipe};
 use crate::gauge::Calibration;
 use crate::history::{CalibrationRecord, Identity, Store, snapshot_hash};
@@ -18,7 +18,6 @@ use serde_json::json;
 use std::io::Write;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
-use tokio::sync::mpsc;
 
 /// The stored factors do not hold any more.
 const NOT_VERIFIED: i32 = 1;
@@ -68,8 +67,7 @@ pub fn run(config: &Path, db: &Path, args: &CalibrateArgs) -> anyhow::Result<i32
         calibrates: Some(Arc::clone(&found)),
         ..Controls::new(true)
     };
-    let (_nobody, orders) = mpsc::channel(1);
-    let status = run::run_with(config, db, &golden_only(args), &controls, orders)?;
+    let status = run::run_with(config, db, &golden_only(args), &controls, Orders::Nobody)?;
     if status != super::DONE {
         return Ok(status);
     }

@@ -1,7 +1,7 @@
 //! `relayrig demo`: the main job with nothing to prepare.
 
 use super::rig::{self, PaceArg, RigArgs};
-use super::run::{self, Controls, RunArgs, assemble};
+use super::run::{self, Controls, Orders, RunArgs, assemble};
 use crate::config::{Plant, load_recipe};
 use crate::hmi::{self, access};
 use crate::view::Mimic;
@@ -75,7 +75,7 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
         address,
         db.display()
     );
-    let status = run::run_with(config, db, &order, &controls, asked);
+    let status = run::run_with(config, db, &order, &controls, Orders::Screens(asked));
     page.end();
     status
 }

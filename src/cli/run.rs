@@ -4,6 +4,7 @@ pub(super) mod assemble;
 mod counts;
 mod grr;
 mod lines;
+mod orders;
 mod recorder;
 mod rows;
 mod screen;
@@ -17,10 +18,11 @@ use crate::bus::Pace;
 use crate::config::{Plant, load_recipe};
 use crate::cycle::{Event, Outside};
 use crate::gauge::{Calibration, Recipe};
-use crate::hmi::Asked;
 use crate::station::wants::Ending;
 use crate::view::View;
 use anyhow::{Context, bail};
+use orders::Desk;
+pub use orders::Orders;
 use recorder::{Recorder, Setup};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -102,8 +104,7 @@ pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
     if let Some(StudyArg::Grr) = args.study {
         return grr::run(config, db, args);
     }
-    let (_nobody, orders) = mpsc::channel(1);
-    run_with(config, db, args, &Controls::new(false), orders)
+    run_with(config, db, args, &Controls::new(false), Orders::Nobody)
 }
 
 /// As [`run`], with controls that somebody else holds too.
@@ -112,7 +113,7 @@ pub fn run_with(
     db: &Path,
     args: &RunArgs,
     controls: &Controls,
-    orders: mpsc::Receiver<Asked>,
+    orders: Orders,
 ) -> anyhow::Result<i32> {
     if args.lot.is_empty() || args.lot.len() > 200 {
         bail!(
@@ -163,7 +164,7 @@ async fn run_lot(
     db: &Path,
     args: &RunArgs,
     controls: &Controls,
-    orders: mpsc::Receiver<Asked>,
+    orders: Orders,
 ) -> anyhow::Result<i32> {
     let pace = if is_virtual(args) {
         Pace::virtual_time()
@@ -181,6 +182,7 @@ async fn run_lot(
         args,
         epoch_us,
     };
+    let desk = Desk::open(orders, &rig, pace, &controls.stop)?;
     let traces = Traces::new(db, &plant, &lines.logs);
     let (mut recorder, calibration) =
         Recorder::open(db, &setup, controls, rig.eeprom_count(), traces)?;
@@ -192,7 +194,7 @@ async fn run_lot(
         recorded: Arc::clone(&recorded),
         stop: Arc::clone(&controls.stop),
         abort: Arc::clone(&controls.abort),
-        orders,
+        orders: desk.orders,
         epoch_us,
         history_lost: Arc::clone(&history_lost),
         view: controls.view.clone(),
@@ -215,7 +217,7 @@ async fn run_lot(
         }
     });
     let running = tokio::spawn(cycle.run());
-    let kept = recorder.keep(received, &recorded).await;
+    let kept = recorder.keep(received, &recorded, desk.onlooker).await;
     if let Err(error) = &kept {
         tracing::error!("history: {error:#}");
         history_lost.store(true, Ordering::Release);
@@ -234,6 +236,9 @@ async fn run_lot(
         return Ok(super::RIG_TROUBLE);
     }
     closed?;
+    if let Some(playing) = desk.playing {
+        return Ok(playing.await.unwrap_or(super::RIG_TROUBLE));
+    }
     Ok(match ending {
         Ending::Complete => super::DONE,
         Ending::Stopped => super::STOPPED,

@@ -175,7 +175,8 @@ impl Station {
             | Command::Unsuspend
             | Command::Complete => {}
         }
-        if command == Command::Start && !self.wants_more() {
+        let complete = !self.wants_more() && self.ledger.inside() == 0;
+        if command == Command::Start && complete {
             // A person who starts a complete lot wants as many parts again.
             self.plan.count = self.plan.count.map(|count| count + self.plan_count);
         }

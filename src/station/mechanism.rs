@@ -184,7 +184,7 @@ impl Mechanism {
             if self.is_there(&underway, now, image) {
                 self.arrived(underway.movement, &mut found);
             } else if now.since(underway.since) > self.timeout_of(underway.movement) {
-                self.late(underway, now, &mut found);
+                self.late(underway, &mut found);
             } else {
                 self.underway.push(underway);
             }
@@ -215,17 +215,18 @@ impl Mechanism {
         }
     }
 
-    fn late(&mut self, underway: Underway, now: RigTime, found: &mut Found) {
-        let (movement, elapsed) = (underway.movement, now.since(underway.since));
+    fn late(&mut self, underway: Underway, found: &mut Found) {
+        let movement = underway.movement;
+        let limit = self.timeout_of(movement);
         let tried = self.tried.iter().filter(|one| **one == movement).count();
         match movement.way_back() {
             Some(back) if tried < usize::from(RETRIES) => {
                 self.tried.push(movement);
                 self.again.push(Again { movement, back });
-                found.alarms.push(Alarm::retried(movement, elapsed));
+                found.alarms.push(Alarm::retried(movement, limit));
                 found.motions.push(back);
             }
-            Some(_) | None => found.alarms.push(Alarm::not_reached(movement, elapsed)),
+            Some(_) | None => found.alarms.push(Alarm::not_reached(movement, limit)),
         }
         self.underway.push(underway);
     }

@@ -156,6 +156,7 @@ pub const TRANSITIONS: &[Transition] = &[
     done(State::Execute, State::Completing),
     order(State::Execute, Command::Complete, State::Completing),
     done(State::Completing, State::Complete),
+    order(State::Completing, Command::Hold, State::Holding),
     order(State::Complete, Command::Reset, State::Resetting),
     order(State::Execute, Command::Hold, State::Holding),
     done(State::Holding, State::Held),

@@ -75,14 +75,7 @@ impl Recovery {
                     self.stage = Stage::Drive(turn.now);
                 }
             }
-            Stage::Drive(since) => {
-                turn.wants.wake_at = Some(since + DRIVE_RESET);
-                if turn.now.since(since) >= DRIVE_RESET {
-                    turn.wants.outputs.push((DigitalOut::AxisReset, false));
-                    turn.wants.outputs.push((DigitalOut::AxisServoOn, true));
-                    self.stage = Stage::Up;
-                }
-            }
+            Stage::Drive(since) => self.drive(turn, since),
             Stage::Up if !turn.arrived(Move::SortUp) => self.ask(turn, Move::SortUp),
             Stage::Up => {
                 if let Some(seen) = Seen::of(turn) {
@@ -105,6 +98,21 @@ impl Recovery {
         self.refused += 1;
         self.left.rotate_left(1);
         self.refused < self.left.len()
+    }
+
+    /// A drive that has not taken its reset is told again: the axis would not move.
+    fn drive(&mut self, turn: &mut Turn, since: RigTime) {
+        let taken = since + DRIVE_RESET;
+        let looked = turn.image.input_at(DigitalIn::AxisAlarm) >= Some(taken);
+        if turn.now < taken {
+            turn.wants.wake_at = Some(taken);
+        } else if looked && turn.seen(DigitalIn::AxisAlarm, true) {
+            turn.alarm(Alarm::axis_drive());
+        } else if looked {
+            turn.wants.outputs.push((DigitalOut::AxisReset, false));
+            turn.wants.outputs.push((DigitalOut::AxisServoOn, true));
+            self.stage = Stage::Up;
+        }
     }
 
     fn ask(&mut self, turn: &mut Turn, movement: Move) {

@@ -31,9 +31,9 @@ impl Alarm {
     }
 
     /// An actuator did not show the end of its motion in time.
-    pub fn not_reached(movement: Move, after: Span) -> Self {
+    pub fn not_reached(movement: Move, limit: Span) -> Self {
         let key = movement.actuator_key();
-        let ms = after.0 / 1000;
+        let ms = limit.0 / 1000;
         let wanted: Vec<String> = movement
             .arrival()
             .iter()
@@ -42,7 +42,7 @@ impl Alarm {
         Self::new(
             format!("{key}_not_reached"),
             format!(
-                "{movement:?} not finished after {ms} ms (expects {}). Check air, sensor and obstacles at the {key}.",
+                "{movement:?} not finished within {ms} ms (expects {}). Check air, sensor and obstacles at the {key}.",
                 wanted.join(", ")
             ),
             format!(
@@ -190,12 +190,12 @@ impl Alarm {
     }
 
     /// A stroke did not arrive and is tried once more.
-    pub fn retried(movement: Move, after: Span) -> Self {
+    pub fn retried(movement: Move, limit: Span) -> Self {
         let key = movement.actuator_key();
-        let ms = after.0 / 1000;
+        let ms = limit.0 / 1000;
         Self::new(
             format!("{key}_retried"),
-            format!("{movement:?} not finished after {ms} ms; it goes back and tries once more."),
+            format!("{movement:?} not finished within {ms} ms; it goes back and tries once more."),
             format!("{key} 动作 {movement:?} 在 {ms} 毫秒内未到位；退回后重试一次。"),
         )
     }

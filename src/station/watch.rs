@@ -23,6 +23,7 @@ struct Stand {
 pub struct Watch {
     stands: Vec<Stand>,
     bounces: u64,
+    /// The drive's alarm was told; it stays on until a reset of the drive.
     drive_told: bool,
 }
 
@@ -46,7 +47,6 @@ impl Watch {
     /// Nothing stands.
     pub fn forget(&mut self) {
         self.stands.clear();
-        self.drive_told = false;
     }
 
     /// Flickers seen.
@@ -58,9 +58,13 @@ impl Watch {
     pub fn look(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let seen = |point: DigitalIn| image.input(point, now, SENSOR_AGE);
         let mut alarms = Vec::new();
-        if seen(DigitalIn::AxisAlarm) == Some(true) && !self.drive_told {
-            self.drive_told = true;
-            alarms.push(Alarm::axis_drive());
+        match seen(DigitalIn::AxisAlarm) {
+            Some(true) if !self.drive_told => {
+                self.drive_told = true;
+                alarms.push(Alarm::axis_drive());
+            }
+            Some(false) => self.drive_told = false,
+            Some(true) | None => {}
         }
         let bounces = &mut self.bounces;
         self.stands.retain_mut(|stand| {

@@ -12,6 +12,7 @@
 //! - `paper`: pages, sheets, another recipe, retention, parts fed again.
 //! - [`picture`]: the picture in README.md is that of `config/scene.toml`.
 //! - `screen`: the page in a real browser over `relayrig demo`.
+//! - `stories`: scripts of troubles and orders, and what happened, as a mechanic would tell it.
 //! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
 //! - `unplugged`: a port that vanishes over pseudo-terminals.
 //! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
@@ -39,6 +40,8 @@ mod picture;
 mod program;
 #[cfg(all(feature = "sim", unix))]
 mod screen;
+#[cfg(feature = "sim")]
+mod stories;
 #[cfg(feature = "sim")]
 mod storm;
 #[cfg(feature = "sim")]

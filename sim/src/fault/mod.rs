@@ -101,6 +101,19 @@ impl Faults {
     /// # Errors
     /// The value does not have the form of the fault.
     pub fn add(&mut self, name: &str, value: Option<&str>) -> Result<bool, SimError> {
+        self.add_from(0, name, value)
+    }
+
+    /// Adds one whose times are counted from `now_us`.
+    ///
+    /// # Errors
+    /// As [`Faults::add`].
+    pub fn add_from(
+        &mut self,
+        now_us: u64,
+        name: &str,
+        value: Option<&str>,
+    ) -> Result<bool, SimError> {
         let families: [&mut dyn Family; 5] = [
             &mut self.loss,
             &mut self.timing,
@@ -111,7 +124,8 @@ impl Faults {
         for family in families {
             let known = family.list().iter().find(|known| known.name == name);
             if let Some(known) = known {
-                family.add(&Asked::read(name, value.unwrap_or(known.default))?)?;
+                let asked = Asked::read(name, value.unwrap_or(known.default))?;
+                family.add(&asked.from(now_us))?;
                 return Ok(true);
             }
         }
@@ -224,6 +238,21 @@ mod tests {
             assert_eq!(reply, Some((0, b">\r".to_vec())));
         }
         assert_eq!(faults.rng, Faults::none(1).rng);
+    }
+
+    #[test]
+    fn a_fault_of_a_running_rig_counts_its_times_from_now() {
+        let mut faults = Faults::none(1);
+        let value = Some("motion@1..3");
+        assert!(faults.add_from(10_000_000, "line_cut", value).unwrap());
+        for (now_us, dead) in [
+            (2_000_000, false),
+            (10_999_999, false),
+            (11_000_000, true),
+            (13_000_000, false),
+        ] {
+            assert_eq!(faults.line_dead("motion", now_us), dead, "{now_us}");
+        }
     }
 
     #[test]

@@ -73,6 +73,13 @@ impl<'a> Asked<'a> {
         })
     }
 
+    /// The same, with its times counted from `now_us`.
+    pub(super) fn from(mut self, now_us: u64) -> Self {
+        self.window.from_us += now_us;
+        self.window.until_us = self.window.until_us.map(|until_us| until_us + now_us);
+        self
+    }
+
     pub(super) fn probability(&self) -> Result<f64, SimError> {
         self.probability_in(self.value)
     }

@@ -6,29 +6,51 @@ use super::table::FaultSpec;
 use crate::config::ConfigError;
 use std::collections::BTreeMap;
 
+/// What the value of a fault counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Seconds of rig time; it ends by itself.
+    Timed,
+    /// Lot parts as they leave the magazine, from 1; it strikes once.
+    OfPart,
+    /// Something of the whole rig, from its start.
+    OfStart,
+}
+
 macro_rules! faults {
-    ($($name:ident = $text:literal),* $(,)?) => {
+    ($($kind:ident { $($name:ident = $text:literal),* $(,)? })*) => {
         /// A fault of mechanism, board or part; `config/sim.toml` says what each does.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[allow(missing_docs)] // explained beside the default in config/sim.toml
-        pub enum Fault { $($name),* }
+        pub enum Fault { $($($name,)*)* }
 
         impl Fault {
             /// The fault of this name.
             pub fn from_name(name: &str) -> Option<Self> {
-                match name { $($text => Some(Fault::$name),)* _ => None }
+                match name { $($($text => Some(Fault::$name),)*)* _ => None }
+            }
+
+            /// What its value counts.
+            pub fn kind(self) -> Kind {
+                match self { $($(Fault::$name => Kind::$kind,)*)* }
             }
         }
     };
 }
 
 faults! {
-    JamPusher = "jam_pusher", StuckClamp = "stuck_clamp", NoPart = "no_part",
-    DoublePart = "double_part", Fall = "fall", ProbeDirty = "probe_dirty",
-    BeamBlind = "beam_blind", AxisAlarm = "axis_alarm", StuckLift = "stuck_lift",
-    StuckGripper = "stuck_gripper", Door = "door", Estop = "estop", Air = "air",
-    StopButton = "stop_button", Drift = "drift", Refeed = "refeed",
-    PartsSeed = "parts_seed",
+    OfPart {
+        JamPusher = "jam_pusher", StuckClamp = "stuck_clamp", NoPart = "no_part",
+        DoublePart = "double_part", Fall = "fall", ProbeDirty = "probe_dirty",
+        BeamBlind = "beam_blind", AxisAlarm = "axis_alarm", StuckLift = "stuck_lift",
+        StuckGripper = "stuck_gripper",
+    }
+    Timed {
+        Door = "door", Estop = "estop", Air = "air", StopButton = "stop_button",
+    }
+    OfStart {
+        Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",
+    }
 }
 
 /// The faults asked for, with their values.
@@ -61,6 +83,17 @@ impl Faults {
             .map(resolve)
             .collect::<Result<_, _>>()
             .map(Self)
+    }
+
+    /// Faults that have a time, each with its second.
+    pub fn timed(&self) -> impl Iterator<Item = (Fault, f64)> + '_ {
+        let asked = self.0.iter().copied();
+        asked.filter(|(fault, _)| fault.kind() == Kind::Timed)
+    }
+
+    /// One more that is to strike at a part.
+    pub fn ask(&mut self, fault: Fault, part: f64) {
+        self.0.push((fault, part));
     }
 
     /// Values asked for under one name.

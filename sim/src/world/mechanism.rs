@@ -99,11 +99,10 @@ impl Mechanism {
             table.sort_z_ms,
             table.gripper_ms,
         ];
-        let timed = [Fault::Door, Fault::Estop, Fault::Air, Fault::StopButton];
         let at = |s: f64| (s.max(0.0) * 1e6) as u64;
-        let later: Vec<(u64, Later)> = timed
-            .into_iter()
-            .flat_map(|f| faults.values(f).map(move |s| (at(s), Later::Disturb(f))))
+        let later: Vec<(u64, Later)> = faults
+            .timed()
+            .map(|(fault, s)| (at(s), Later::Disturb(fault)))
             .collect();
         let mut mechanism = Self {
             table: table.clone(),
@@ -179,6 +178,17 @@ impl Mechanism {
             self.happen(what, now_us);
         }
         self.schedule();
+    }
+
+    /// A fault that has a time strikes now.
+    pub fn disturb(&mut self, fault: Fault, now_us: u64) {
+        self.later.push((now_us, Later::Disturb(fault)));
+        self.schedule();
+    }
+
+    /// A fault is to strike at a part (counted from 1).
+    pub fn ask(&mut self, fault: Fault, part: f64) {
+        self.faults.ask(fault, part);
     }
 
     fn at(&self, stroke: Stroke) -> &Cylinder {

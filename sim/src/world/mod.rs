@@ -35,13 +35,14 @@ pub mod wiring;
 use std::path::PathBuf;
 
 use crate::config::{ConfigError, RigFile, read_rig, read_world};
+use crate::error::SimError;
 use crate::terminal::Plant;
 use axis::Axis;
 use board::Board;
 use draw::{Draw, Subject};
 use edges::Edges;
 use environment::Environment;
-use fault::{Fault, Faults};
+use fault::{Fault, Faults, Kind};
 use magazine::{Magazine, Part};
 use mechanism::Mechanism;
 use relay::Relay;
@@ -138,6 +139,29 @@ impl World {
     /// Bodies that touched where they must not, in order of time.
     pub fn crashes(&self) -> Vec<String> {
         self.mechanism.crashes().to_vec()
+    }
+
+    /// A fault strikes from now on; `value` counts parts.
+    ///
+    /// # Errors
+    /// There is no such fault, it is only for the start, or the part is not named.
+    pub fn strike(&mut self, name: &str, value: Option<f64>) -> Result<(), SimError> {
+        let Some(fault) = Fault::from_name(name) else {
+            return Err(SimError::UnknownFault { name: name.into() });
+        };
+        let wrong = |expected: &str| SimError::FaultValue {
+            name: name.into(),
+            found: value.map_or_else(|| "nothing".into(), |value| value.to_string()),
+            expected: expected.into(),
+        };
+        match (fault.kind(), value) {
+            (Kind::Timed, None) => self.mechanism.disturb(fault, self.now_us),
+            (Kind::Timed, Some(_)) => return Err(wrong("no value: it strikes now")),
+            (Kind::OfPart, Some(part)) => self.mechanism.ask(fault, part),
+            (Kind::OfPart, None) => return Err(wrong("the number of a part")),
+            (Kind::OfStart, _) => return Err(wrong("to be asked for at the start")),
+        }
+        Ok(())
     }
 
     fn relay(&self) -> Option<&Relay> {

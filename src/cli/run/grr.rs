@@ -5,7 +5,7 @@
 //! of the simulated rig), fed again in the same order (`refeed`), and operate a little differently every
 //! time, as real ones do. Each rig's readings stay in the history as a lot of its own.
 
-use super::{Controls, RunArgs, run_with};
+use super::{Controls, Orders, RunArgs, run_with};
 use crate::cli::rig::RigArgs;
 use crate::gauge::Parameter;
 use crate::history::{Archive, Filter};
@@ -14,7 +14,6 @@ use crate::quality::gauge_rr::{GaugeRr, Reading, anova};
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
-use tokio::sync::mpsc;
 
 /// Rigs that take the place of operators; AIAG's customary number, as the two below.
 const OPERATORS: u64 = 3;
@@ -49,8 +48,7 @@ pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
             json: false,
             ..args.clone()
         };
-        let (_nobody, orders) = mpsc::channel(1);
-        let status = run_with(config, db, &lot, &Controls::new(true), orders)?;
+        let status = run_with(config, db, &lot, &Controls::new(true), Orders::Nobody)?;
         if status != crate::cli::DONE {
             return Ok(status);
         }

@@ -40,6 +40,12 @@ impl Behind {
         Box::new(|| None)
     }
 
+    /// The simulated rig, to meddle with.
+    #[cfg(feature = "sim")]
+    pub fn rig(&self) -> Option<rigsim::SharedRig> {
+        self.rig.clone()
+    }
+
     /// Writes the truth file and reports bodies that touched.
     pub fn finish(&self, args: &RunArgs) -> anyhow::Result<()> {
         #[cfg(feature = "sim")]

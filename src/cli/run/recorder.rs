@@ -118,17 +118,22 @@ impl<'a> Recorder<'a> {
         Ok((recorder, calibration))
     }
 
-    /// Keeps events until the cycle has ended.
+    /// Keeps events until the cycle has ended; an onlooker hears each of them.
     pub async fn keep(
         &mut self,
         mut events: mpsc::UnboundedReceiver<Event>,
         recorded: &AtomicU64,
+        onlooker: Option<mpsc::UnboundedSender<Event>>,
     ) -> anyhow::Result<()> {
         let mut batch = Vec::new();
         while events.recv_many(&mut batch, 64).await > 0 {
             let mut rows = Vec::new();
             let mut durable = None;
             for event in batch.drain(..) {
+                if let Some(onlooker) = &onlooker {
+                    // One who has gone misses nothing.
+                    let _ = onlooker.send(event.clone());
+                }
                 durable = self.take(event, &mut rows)?.or(durable);
             }
             self.write(rows).await?;
@@ -186,7 +191,7 @@ impl<'a> Recorder<'a> {
                 }));
             }
             Event::Interrupted(interrupted) => self.interrupted(&interrupted, rows),
-            Event::Standing(_) => {}
+            Event::Standing(_) | Event::State(_) => {}
             Event::Calibrated(calibration) => self.calibrated(&calibration)?,
             Event::LotBegan(at) => {
                 self.lot_began = Some(at);

@@ -1,0 +1,171 @@
+//! Plays a script beside a running lot: waits, strikes, orders, and has everything told.
+
+use super::script::{Awaited, Deed, Script};
+use super::told::Told;
+use crate::bus::Pace;
+use crate::cli::DONE;
+use crate::cycle::Event;
+use crate::hmi::Asked;
+use crate::station::ledger::Kind;
+use crate::station::packml::State;
+use crate::units::{RigTime, Span};
+use crate::view::Order;
+use rigsim::SharedRig;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use tokio::sync::{mpsc, oneshot};
+
+/// Nothing has happened for so long: nothing will any more.
+pub const PATIENCE: Span = Span::ms(180_000);
+/// Something in the script never came.
+const NEVER_CAME: i32 = 1;
+
+/// A script to be played.
+#[derive(Debug)]
+pub struct Play {
+    script: Script,
+}
+
+/// What a line of the script may wait for.
+#[derive(Debug, Default)]
+struct Seen {
+    lot: bool,
+    state: Option<State>,
+    alarms: BTreeSet<String>,
+    judged: BTreeSet<u64>,
+    left: BTreeSet<u64>,
+    landed: BTreeSet<u64>,
+    /// Number in the lot by ordinal.
+    numbers: BTreeMap<u64, u64>,
+}
+
+impl Play {
+    /// Ready to begin.
+    pub fn new(script: Script) -> Self {
+        Self { script }
+    }
+
+    /// Plays until the run has ended; the exit status.
+    pub async fn run(
+        self,
+        mut events: mpsc::UnboundedReceiver<Event>,
+        orders: mpsc::Sender<Asked>,
+        rig: SharedRig,
+        pace: Pace,
+        stop: Arc<AtomicBool>,
+    ) -> i32 {
+        let mut told = Told::new(&self.script);
+        let mut seen = Seen::default();
+        let mut lines = self.script.lines.iter().peekable();
+        let (mut last, mut due) = (pace.now(), None);
+        let mut whole = true;
+        loop {
+            let now = pace.now();
+            match lines.peek() {
+                Some(line) if due.is_none() && seen.holds(&line.event) => {
+                    due = Some(now + line.after)
+                }
+                Some(_) => {}
+                None if seen.is_over() => stop.store(true, Ordering::Release),
+                None => {}
+            }
+            tokio::select! {
+                biased;
+                event = events.recv() => match event {
+                    Some(_) if stop.load(Ordering::Acquire) => {}
+                    Some(event) => {
+                        last = now;
+                        seen.note(&event);
+                        told.event(&event, pace.now());
+                    }
+                    None => break,
+                },
+                () = pace.sleep_until(due.unwrap_or(last + PATIENCE)) => {
+                    if let Some(line) = lines.next_if(|_| due.is_some()) {
+                        (last, due) = (pace.now(), None);
+                        play(&line.deed, &orders, &rig, pace, &mut told).await;
+                    } else if std::mem::replace(&mut whole, false) {
+                        told.silence(lines.peek().copied(), pace.now());
+                        stop.store(true, Ordering::Release);
+                        last = RigTime(u64::MAX / 2);
+                    }
+                }
+            }
+        }
+        whole &= lines.peek().is_none();
+        let text = told.end(&rig.crashes());
+        // A reader that has gone away ends nothing.
+        std::io::stdout().write_all(text.as_bytes()).ok();
+        if whole { DONE } else { NEVER_CAME }
+    }
+}
+
+async fn play(
+    deed: &Deed,
+    orders: &mpsc::Sender<Asked>,
+    rig: &SharedRig,
+    pace: Pace,
+    told: &mut Told,
+) {
+    match deed {
+        Deed::Fault(fault) => {
+            let struck = rig.strike(fault).map_err(|error| error.to_string());
+            told.fault(fault, struck, pace.now());
+        }
+        Deed::Order(words, order) => {
+            let answer = ask(order, orders).await;
+            told.order(words, answer, pace.now());
+        }
+    }
+}
+
+/// The station's answer; the reason why not.
+async fn ask(order: &Order, orders: &mpsc::Sender<Asked>) -> Result<(), String> {
+    let (answer, answered) = oneshot::channel();
+    let order = order.clone();
+    let gone = |_| "the run has ended".to_owned();
+    orders
+        .send(Asked { order, answer })
+        .await
+        .map_err(|_| "the run has ended".to_owned())?;
+    answered.await.map_err(gone)?.map_err(|why| why.en)
+}
+
+impl Seen {
+    fn note(&mut self, event: &Event) {
+        match event {
+            Event::State(state) => self.state = Some(*state),
+            Event::LotBegan(_) => self.lot = true,
+            Event::Alarm(alarm, _) => {
+                self.alarms.insert(alarm.code.clone());
+            }
+            Event::Judged(judged) => {
+                if let Kind::Lot(number) = judged.part.kind {
+                    self.numbers.insert(judged.part.ordinal, number);
+                    self.judged.insert(number);
+                }
+            }
+            Event::Left(left) => self.left.extend(self.numbers.get(&left.ordinal)),
+            Event::Landed(landed) => self.landed.extend(self.numbers.get(&landed.part.ordinal)),
+            Event::Interrupted(_) | Event::Standing(_) | Event::Calibrated(_) => {}
+        }
+    }
+
+    /// The lot is done, or was ended before.
+    fn is_over(&self) -> bool {
+        matches!(self.state, Some(State::Complete | State::Stopped))
+    }
+
+    fn holds(&self, event: &Awaited) -> bool {
+        match event {
+            Awaited::Lot => self.lot,
+            Awaited::State(state) => self.state == Some(*state),
+            Awaited::Alarm(code) => self.alarms.contains(code),
+            Awaited::Judged(part) => self.judged.contains(part),
+            Awaited::Left(part) => self.left.contains(part),
+            Awaited::Landed(part) => self.landed.contains(part),
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Troubles as stories that a mechanic could read: a script in `stories/NAME.txt`, what happened in `NAME.told`.
+//!
+//! Every story is compared byte for byte, its script played to the end; and whatever happens, nothing touches, no
+//! body lies elsewhere than its row says, and no part that was judged lacks its row. With `RELAYRIG_RENEW=1` in the
+//! environment the told files are written anew: read the difference before it is committed.
+
+use crate::program::{Workshop, objects};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// Stories at once: each is a process of its own.
+const AT_ONCE: usize = 2;
+
+fn scripts() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/line/stories");
+    let entries = fs::read_dir(folder).unwrap();
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|ending| ending == "txt"));
+    files.sort();
+    files
+}
+
+#[test]
+fn every_trouble_goes_as_its_story_says() {
+    let left = Mutex::new(scripts());
+    let broken = Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for _ in 0..AT_ONCE {
+            scope.spawn(|| {
+                while let Some(script) = { left.lock().unwrap().pop() } {
+                    broken.lock().unwrap().extend(told_otherwise(&script));
+                }
+            });
+        }
+    });
+    let broken = broken.into_inner().unwrap();
+    assert!(broken.is_empty(), "\n{}", broken.join("\n"));
+}
+
+/// Every way in which the story of a script is not the one that was told before, or is none.
+fn told_otherwise(script: &Path) -> Vec<String> {
+    let name = script.file_stem().unwrap().to_string_lossy();
+    let workshop = Workshop::new(&format!("story-{name}"));
+    let said = workshop.run(&format!("story {} --truth t.jsonl", script.display()));
+    let file = script.with_extension("told");
+    if std::env::var_os("RELAYRIG_RENEW").is_some() {
+        fs::write(&file, &said.stdout).unwrap();
+    }
+    let mut broken = misplaced(&name, &workshop);
+    if said.status != 0 || said.stdout.contains("TOUCHED") {
+        broken.push(format!("{name}: {said}"));
+    }
+    if fs::read_to_string(&file).ok().as_deref() != Some(said.stdout.as_str()) {
+        broken.push(format!(
+            "{name}: told otherwise than in {} (RELAYRIG_RENEW=1 writes it anew):\n{}",
+            file.display(),
+            said.stdout
+        ));
+    }
+    broken
+}
+
+/// Bodies that lie elsewhere than their row says, or have no row.
+fn misplaced(name: &str, workshop: &Workshop) -> Vec<String> {
+    let landed = |body: &serde_json::Value| {
+        let bin = body["landed_in"].as_str()?.to_owned();
+        let seq = &body["seq"];
+        let row = format!(
+            "SELECT count(*) FROM part WHERE kind = 'lot' AND seq = {seq} AND bin = '{bin}'"
+        );
+        (workshop.count(&row) != 1)
+            .then(|| format!("{name}: part {seq} lies in {bin}, its row does not say so"))
+    };
+    objects(&workshop.read("t.jsonl"))
+        .iter()
+        .filter_map(landed)
+        .collect()
+}
