@@ -353,7 +353,9 @@ impl Cycle {
     fn apply(&mut self, now: RigTime, wants: &mut Wants) {
         if wants.safe {
             self.outputs.everything_safe();
-            self.traffic.drop_job();
+            for module in self.traffic.drop_all() {
+                self.outputs.confirmed(module);
+            }
         }
         for (point, on) in wants.outputs.drain(..) {
             if let Err(needs) = self.outputs.set(point, on) {
@@ -473,11 +475,18 @@ impl Cycle {
         let _ = self.outside.events.send(event);
     }
 
+    /// First instant at which the emergency-stop contact will not be known any more.
+    fn contact_unknown(&self, now: RigTime) -> Option<RigTime> {
+        let until = self.image.emergency_stop_known_until()?;
+        (until >= now).then_some(until + Span(1))
+    }
+
     /// Until an answer, the station's own deadline, or the next scan.
     async fn wait(&mut self, now: RigTime, wake_at: Option<RigTime>) {
         let until = wake_at
             .unwrap_or(now + IDLE)
-            .min(self.traffic.next_due(now).unwrap_or(now + IDLE));
+            .min(self.traffic.next_due(now).unwrap_or(now + IDLE))
+            .min(self.contact_unknown(now).unwrap_or(now + IDLE));
         tokio::select! {
             biased;
             () = self.traffic.answer() => {}

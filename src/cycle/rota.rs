@@ -1,23 +1,26 @@
 //! Whose turn it is in the scan of a line.
 //!
-//! The module with the emergency-stop contact is every second transaction. The turns between go to the watched beam and
+//! The module with the emergency-stop contact is every second transaction, whatever the others are: a write, too, waits
+//! for it. The turns between go to the watched beam and
 //! the other modules alternately, and now and then to the question whether a module has restarted. Each list has a
 //! counter of its own, so that none of them can starve another, however many there are.
 
 use crate::dcon::Command;
 
-/// One turn in so many asks a module whether it has restarted. Even, so that it never falls on the contact's turns.
-const RESET_EVERY: usize = 32;
+/// One turn in so many, those of the contact left out, asks a module whether it has restarted.
+const RESET_EVERY: usize = 16;
 
 /// The scan of one line.
 #[derive(Debug)]
 pub(super) struct Rota {
     /// Every second turn, if the line carries the emergency-stop contact.
-    pub(super) priority: Option<Command>,
+    priority: Option<Command>,
     /// The other modules.
-    pub(super) others: Vec<Command>,
+    others: Vec<Command>,
     /// Reset status of every module with outputs.
     pub(super) resets: Vec<Command>,
+    /// The transaction before was another one.
+    contact_is_due: bool,
     turn: usize,
     next_other: usize,
     next_reset: usize,
@@ -43,6 +46,7 @@ impl Rota {
             priority,
             others,
             resets,
+            contact_is_due: true,
             turn: 0,
             next_other: 0,
             next_reset: 0,
@@ -50,15 +54,25 @@ impl Rota {
         }
     }
 
+    /// The poll of the contact when its turn has come.
+    pub(super) fn contact(&mut self) -> Option<Command> {
+        let is_due = std::mem::take(&mut self.contact_is_due);
+        self.priority.filter(|_| is_due)
+    }
+
+    /// A transaction that is not the poll of the contact.
+    pub(super) fn something_else(&mut self) {
+        self.contact_is_due = true;
+    }
+
     /// None when there is nothing to ask in this turn.
     pub(super) fn next(&mut self, beam: Option<Command>) -> Option<Next> {
-        let turn = self.turn;
-        self.turn += 1;
-        if turn.is_multiple_of(2)
-            && let Some(command) = self.priority
-        {
+        if let Some(command) = self.contact() {
             return Some(Next::Priority(command));
         }
+        self.something_else();
+        let turn = self.turn;
+        self.turn += 1;
         if turn % RESET_EVERY == RESET_EVERY - 1
             && let Some(command) = round(&self.resets, &mut self.next_reset)
         {
@@ -125,7 +139,7 @@ mod tests {
             let others: Vec<Command> = (0..modules).map(|n| poll(0x20 + n)).collect();
             let resets: Vec<Command> = (0..modules).map(|n| reset(0x20 + n)).collect();
             let mut rota = Rota::new(Some(poll(0x11)), others.clone(), resets.clone());
-            let turns = RESET_EVERY * 60;
+            let turns = 2 * RESET_EVERY * 60;
             let counts = counted(&mut rota, Some(beam()), turns);
             assert_eq!(of(&counts, poll(0x11)), turns / 2);
             let fair = (turns / 2 - 60) / 2 / usize::from(modules);
@@ -144,6 +158,17 @@ mod tests {
             }
             assert!(of(&counts, beam()).abs_diff((turns / 2 - 60) / 2) <= 1);
         }
+    }
+
+    #[test]
+    fn between_two_other_transactions_the_contact_is_asked() {
+        let mut rota = Rota::new(Some(poll(0x11)), vec![poll(0x12)], Vec::new());
+        rota.something_else();
+        assert_eq!(rota.contact(), Some(poll(0x11)));
+        assert_eq!(rota.contact(), None, "it was asked just now");
+        rota.something_else();
+        assert_eq!(rota.next(None), Some(Next::Priority(poll(0x11))));
+        assert_eq!(rota.next(None), Some(Next::Other(poll(0x12))));
     }
 
     #[test]

@@ -79,6 +79,8 @@ pub struct Traffic {
     beam_line: LineId,
     scanning: bool,
     check_tries: u8,
+    /// Safe writes are queued: they go before the contact.
+    making_safe: bool,
     ticket: u64,
     now: RigTime,
 }
@@ -132,6 +134,7 @@ impl Traffic {
             beam_line: estop_line,
             scanning: false,
             check_tries: wiring.bus.tries,
+            making_safe: false,
             ticket: 0,
             now: RigTime(0),
         }
@@ -207,13 +210,18 @@ impl Traffic {
         self.job = Some(JobUnderway::default());
     }
 
-    /// Forgets the job and what was queued for it.
-    pub fn drop_job(&mut self) {
+    /// Forgets the job and everything that was queued, writes too: safe ones come in their place, and before any poll.
+    /// Gives the module of each write that was forgotten.
+    pub fn drop_all(&mut self) -> Vec<ModuleId> {
         self.job = None;
-        for slot in &mut self.slots {
-            slot.queue
-                .retain(|(_, purpose)| matches!(purpose, Purpose::Write { .. }));
-        }
+        self.making_safe = true;
+        let slots = self.slots.iter_mut();
+        let queued = slots.flat_map(|slot| std::mem::take(&mut slot.queue));
+        let written = queued.filter_map(|(_, purpose)| match purpose {
+            Purpose::Write { module, .. } => Some(module),
+            Purpose::Job | Purpose::Scan | Purpose::Check | Purpose::Heartbeat => None,
+        });
+        written.collect()
     }
 
     /// A job that needed no transaction is done at once.
@@ -232,6 +240,12 @@ impl Traffic {
 
     /// Starts the next transaction on every idle line.
     pub fn dispatch(&mut self, now: RigTime) {
+        let writes = |slot: &Slot| {
+            slot.queue
+                .iter()
+                .any(|(_, it)| matches!(it, Purpose::Write { .. }))
+        };
+        self.making_safe &= self.slots.iter().any(writes);
         for index in 0..self.slots.len() {
             if self.slots[index].busy.is_some() {
                 continue;
@@ -261,6 +275,17 @@ impl Traffic {
 
     fn choose(&mut self, index: usize, now: RigTime) -> Option<(Command, Purpose)> {
         let slot = &mut self.slots[index];
+        let waits = slot.heartbeat_due <= now || !slot.queue.is_empty();
+        if waits
+            && self.scanning
+            && !self.making_safe
+            && let Some(poll) = slot.rota.contact()
+        {
+            return Some((poll, Purpose::Scan));
+        }
+        if waits {
+            slot.rota.something_else();
+        }
         let write = slot
             .queue
             .iter()

@@ -264,6 +264,18 @@ impl Image {
         fresh.then(|| terminal.read(model.input_bits(word.bits)))
     }
 
+    /// The emergency-stop contact; unknown from the age on at which it counts as open.
+    pub fn emergency_stop_ok(&self, now: RigTime) -> Option<bool> {
+        let max_age = self.wiring.emergency_stop_max_age();
+        self.input(DigitalIn::EmergencyStopOk, now, max_age)
+    }
+
+    /// Last instant at which the emergency-stop contact is known unless it is read again.
+    pub fn emergency_stop_known_until(&self) -> Option<RigTime> {
+        let asked = self.input_at(DigitalIn::EmergencyStopOk)?;
+        Some(asked + self.wiring.emergency_stop_max_age())
+    }
+
     /// When a digital input was last asked for.
     pub fn input_at(&self, point: DigitalIn) -> Option<RigTime> {
         self.words[self.wiring.digital_in(point).module.0].map(|word| word.at)

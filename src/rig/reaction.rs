@@ -1,21 +1,24 @@
 //! How long the emergency-stop contact may go unnoticed: a number derived from the wiring.
 //!
-//! The module that carries the contact is asked in every second transaction of its line. The contact
-//! opens, at worst, just after it was asked. Then passes
+//! The module that carries the contact is asked in every second transaction of its line, writes and beams
+//! notwithstanding. The contact opens, at worst, just after it was looked at. Then passes
 //!
+//! - the rest of that poll: answered at the last moment, said again and confirmed by the name of its module, each at
+//!   the last moment, as after a module that was silent: its late reply could be taken for the contact's,
 //! - one other transaction, the longest of that line, failing: request, time-out, the question to the silent module
 //!   who is there, not answered either, and a wait for silence, broken once by a late reply,
-//! - the poll that sees the contact open, answered at the last moment, said again and confirmed by the name of its
-//!   module, each at the last moment: the late reply of the silent module could be taken for the contact's,
-//! - one write that makes outputs safe, answered at the last moment,
+//! - the poll that sees the contact open, as long as the one before,
+//! - one write to each module of the line that has outputs, answered at the last moment,
 //!
-//! and a rest of two characters after each. A late reply is taken to begin at most one allowance after the
+//! and a rest of two characters after each. A line without the contact begins its writes after the longest that one
+//! transaction of its own may take. A late reply is taken to begin at most one allowance after the
 //! time-out. A poll that is not answered needs no bound of its own: a contact not known for
 //! [`Wiring::emergency_stop_max_age`] counts as open. Commands on this line have one try ([`Wiring::tries_on`]).
 //! Wire times are those of 8N1, ten bits a character; reads, host OK and event counters of a running lot are no
 //! longer than the frames assumed here.
 
 use super::fault::Fault;
+use super::point::DigitalOut;
 use super::wiring::{LineId, Wiring};
 use crate::units::Span;
 
@@ -36,16 +39,29 @@ impl Wiring {
 
     /// Worst time from the opening of the emergency-stop contact to outputs written.
     pub fn longest_reaction(&self) -> Span {
-        let line = self.emergency_stop_line();
+        let moved = DigitalOut::ALL.iter().filter(|point| point.moves());
+        let lines = moved.map(|point| self.module(self.digital_out(*point).module).line);
+        let made_safe = lines.map(|line| self.longest_writing(line)).max();
+        self.emergency_stop_max_age() + made_safe.unwrap_or_default()
+    }
+
+    /// From the decision until every output of a line has been written.
+    fn longest_writing(&self, line: LineId) -> Span {
+        let busy = match line == self.emergency_stop_line() {
+            true => Span(0),
+            false => self.longest_failure(line),
+        };
         let write = self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance());
-        self.emergency_stop_max_age() + write
+        let modules = self.modules_on(line).map(|module| self.module(module));
+        let writes = modules.filter(|module| module.model.has_outputs());
+        writes.fold(busy, |time, _| time + write)
     }
 
     /// Age at which the emergency-stop contact no longer counts as known: by then the next answer must have come,
     /// whatever befell the one transaction between.
     pub fn emergency_stop_max_age(&self) -> Span {
         let line = self.emergency_stop_line();
-        self.longest_failure(line) + self.confirmed(line)
+        self.confirmed(line) + self.longest_failure(line) + self.confirmed(line)
     }
 
     /// Age at which an input that was asked for by name no longer counts as the answer to that question: read and
@@ -134,20 +150,21 @@ mod tests {
     }
 
     #[test]
-    fn the_bound_is_failure_poll_and_write() {
-        // Frames of 13 + 12 + 2 characters with 30 ms, six times (given up, who is there, poll, poll again, who is
-        // there, write), and 12 characters with 30 ms; each wire time rounded up to the microsecond.
+    fn the_bound_is_poll_failure_poll_and_a_write_to_each_module() {
+        // Frames of 13 + 12 + 2 characters with 30 ms, ten times (poll, poll again, who is there, given up, who is
+        // there, poll, poll again, who is there, two writes), and 12 characters with 30 ms; each wire time rounded up
+        // to the microsecond.
         let bound = Wiring::resolve(&settings()).unwrap().longest_reaction();
-        assert_eq!(bound, Span(6 * (2_344 + 30_000) + (1_042 + 30_000)));
+        assert_eq!(bound, Span(10 * (2_344 + 30_000) + (1_042 + 30_000)));
     }
 
     #[test]
     fn a_slower_line_or_an_analog_module_beside_the_contact_lengthens_it() {
         let mut slow = settings();
         slow.line.get_mut("motion").unwrap().baud = 9600;
-        slow.safety.estop_reaction_ms = 400.0;
+        slow.safety.estop_reaction_ms = 700.0;
         let bound = Wiring::resolve(&slow).unwrap().longest_reaction();
-        assert_eq!(bound, Span(6 * (28_125 + 30_000) + (12_500 + 30_000)));
+        assert_eq!(bound, Span(10 * (28_125 + 30_000) + (12_500 + 30_000)));
         let mut shared = settings();
         let contact = shared.digital_in.get_mut("emergency_stop_ok").unwrap();
         (contact.module, contact.channel) = ("board_di".to_owned(), 11);

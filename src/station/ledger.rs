@@ -200,6 +200,12 @@ impl Ledger {
         }
     }
 
+    /// The part that was let go sticks to the fingers.
+    pub fn keep_hold(&mut self) {
+        assert!(self.gripper.is_none(), "kept hold of a second part");
+        self.gripper = self.falling.take().map(|falling| falling.part);
+    }
+
     /// The beam saw the falling part.
     pub fn land(&mut self) -> Option<Falling> {
         let falling = self.falling.take()?;

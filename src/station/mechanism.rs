@@ -55,7 +55,7 @@ pub struct Mechanism {
     strokes: Strokes,
     timeout: Vec<(&'static str, Span)>,
     underway: Vec<Underway>,
-    /// Asked for in single step and not released yet.
+    /// Asked for and not released yet.
     waiting: Vec<Move>,
     again: Vec<Again>,
     /// Work strokes tried again for the part now in hand.
@@ -123,7 +123,12 @@ impl Mechanism {
         self.underway.iter().map(|underway| underway.movement)
     }
 
-    /// Motions that wait for a step; none of their actuators counts as arrived.
+    /// Some actuator may have left its end, or its sensor bounces: within [`DEBOUNCE`] it is known.
+    pub fn is_in_doubt(&self) -> bool {
+        self.watch.is_in_doubt()
+    }
+
+    /// Motions that wait for a step, or until no sensor is in doubt; none of their actuators counts as arrived.
     pub fn keep_waiting(&mut self, movements: &[Move]) {
         self.waiting.clear();
         self.waiting.extend_from_slice(movements);

@@ -132,6 +132,8 @@ pub struct Station {
     dark: Vec<(crate::rig::point::DigitalIn, RigTime)>,
     /// Motions that wait for a step in maintenance.
     stepwise: VecDeque<Move>,
+    /// Motions that wait until no end sensor is in doubt.
+    postponed: Vec<Move>,
     /// A person asked for the suspension; it does not end by itself.
     suspended_by_order: bool,
     asked_verify: bool,
@@ -182,6 +184,7 @@ impl Station {
             lamps: Lamps::default(),
             dark: Vec::new(),
             stepwise: VecDeque::new(),
+            postponed: Vec::new(),
             suspended_by_order: false,
             asked_verify: false,
             golden_left,
@@ -285,6 +288,7 @@ impl Station {
             self.act(now, inputs, &mut wants);
             self.raise_all(now, &mut wants);
         }
+        self.postpone(now, &mut wants);
         debug_assert!(self.ledger.balances(), "a part is in two places or in none");
         self.annunciator.unshelve(now);
         wants.alarms_changed = self.annunciator.take_changed();

@@ -4,6 +4,7 @@ use super::Station;
 use super::act::JobDone;
 use super::clamp::{Beside, Clamp};
 use super::feed::Feed;
+use super::mechanism::DEBOUNCE;
 use super::packml::Mode;
 use super::sort::Sort;
 use super::wants::{Inputs, Wants};
@@ -44,10 +45,21 @@ impl Station {
         (self.feed, self.clamp, self.sort, self.last_left) = (feed, clamp, sort, last_left);
         if self.mode == Mode::Maintenance {
             self.stepwise.extend(wants.motions.drain(before..));
-            let waiting: Vec<_> = self.stepwise.iter().copied().collect();
-            self.mechanism.keep_waiting(&waiting);
         }
         self.learn(wants);
+    }
+
+    /// No motion begins while an end sensor is in doubt: the guard would have to assume the whole stroke.
+    pub(super) fn postpone(&mut self, now: RigTime, wants: &mut Wants) {
+        self.postponed.append(&mut wants.motions);
+        if self.mechanism.is_in_doubt() {
+            let soon = now + DEBOUNCE;
+            wants.wake_at = Some(wants.wake_at.map_or(soon, |at| at.min(soon)));
+        } else {
+            wants.motions.append(&mut self.postponed);
+        }
+        let waiting = self.stepwise.iter().chain(&self.postponed).copied();
+        self.mechanism.keep_waiting(&waiting.collect::<Vec<_>>());
     }
 
     fn note_begin(&mut self, wants: &mut Wants) {

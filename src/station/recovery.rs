@@ -79,6 +79,10 @@ impl Recovery {
             Stage::Up if !turn.arrived(Move::SortUp) => self.ask(turn, Move::SortUp),
             Stage::Up => {
                 if let Some(seen) = Seen::of(turn) {
+                    if was_pushed(turn.ledger, &seen) {
+                        let golden = turn.next_golden();
+                        turn.ledger.enter_nest(golden);
+                    }
                     reconcile(turn.ledger, &seen, releasing, &mut turn.wants.trouble);
                     self.leave_gripped(turn.ledger);
                     (self.stage, self.asked) = (Stage::Home, None);
@@ -202,6 +206,12 @@ pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, alarms: &mut
         }
         (true, true) | (false, false) => {}
     }
+}
+
+/// The part of the pocket had reached the nest when the sequence was cut off.
+fn was_pushed(ledger: &Ledger, seen: &Seen) -> bool {
+    let inside = ledger.pocket && ledger.nest.is_none() && !seen.pocket && seen.nest;
+    inside && ledger.gripper.is_some() == seen.gripper
 }
 
 /// Parts that had moved on when the sequence was cut off, or were set down again.

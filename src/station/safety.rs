@@ -24,8 +24,9 @@ const FULL: Span = Span::ms(500);
 impl Station {
     /// Sensors, motions, lines, and the part that is falling.
     pub(super) fn look(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
-        let found = self.mechanism.update(now, inputs.image);
+        let mut found = self.mechanism.update(now, inputs.image);
         wants.motions.extend(found.motions);
+        self.still_in_nest(now, inputs.image, &mut found.alarms);
         let mut there = self.safety(now, inputs.image);
         there.extend(self.full_bins(now, inputs.image));
         there.extend(self.still_starved(now, inputs.image));
@@ -49,6 +50,19 @@ impl Station {
             self.sort,
         );
         wants.trouble.extend(patience);
+    }
+
+    /// Fingers that lost their part before it was handed over have left it in the nest.
+    fn still_in_nest(&self, now: RigTime, image: &Image, alarms: &mut [Alarm]) {
+        let there = self.ledger.gripper.is_none()
+            && image.input(DigitalIn::NestPresent, now, SENSOR_AGE) == Some(true);
+        let dropped = Alarm::part_dropped();
+        for alarm in alarms
+            .iter_mut()
+            .filter(|alarm| there && **alarm == dropped)
+        {
+            *alarm = Alarm::part_stuck();
+        }
     }
 
     /// Safety inputs: open is an alarm, unknown is one after the first scan.
@@ -76,7 +90,11 @@ impl Station {
         let late = now.since(self.began.unwrap_or(now)) > FIRST_SCAN;
         let (mut alarms, mut unread) = (Vec::new(), Vec::new());
         for (point, code, en, zh) in inputs {
-            match image.input(point, now, SENSOR_AGE) {
+            let seen = match point {
+                DigitalIn::EmergencyStopOk => image.emergency_stop_ok(now),
+                other => image.input(other, now, SENSOR_AGE),
+            };
+            match seen {
                 Some(true) => {}
                 Some(false) => alarms.push(Alarm::safety(code, en, zh)),
                 None => unread.push(point),
@@ -205,6 +223,7 @@ impl Station {
         self.clamp = Clamp::Empty;
         self.sort = Sort::Returning;
         self.stepwise.clear();
+        self.postponed.clear();
         self.mechanism.forget();
         self.homed = false;
     }

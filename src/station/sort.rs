@@ -4,6 +4,8 @@
 //! returning -> over nest -> lowering -> at part -> (nest closes fingers, lifts) -> carrying
 //!           -> over bin -> opening -> returning
 //! ```
+//! Open fingers that still show a part do not go back: it would be set down on the next one.
+//!
 //! A part is let go only when its rows are durable and the part before has passed its beam. z comes
 //! down early, during the test, once the pusher is back.
 
@@ -13,10 +15,14 @@ use super::turn::Turn;
 use super::wants::Landed;
 use crate::gauge::verdict::Bin;
 use crate::rig::axis::{AxisStation, AxisTable};
+use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};
 
 /// From the opening of the gripper to the beam at the latest.
 const FALL: Span = Span::ms(1500);
+
+/// A part that the open fingers still show so long after they began to open sticks to them.
+const STICKS: Span = Span::ms(500);
 
 /// A second body that clings to the part follows it through the beam within this time.
 const SECOND_BODY: Span = Span::ms(80);
@@ -76,10 +82,7 @@ impl Sort {
             }
             Sort::Carrying(bin) => Sort::Carrying(bin),
             Sort::OverBin(bin, since) => over_bin(turn, table, bin, since),
-            Sort::Opening if turn.arrived(Move::GripperOpen) => {
-                turn.drive(Move::AxisTo(AxisStation::Nest));
-                Sort::Returning
-            }
+            Sort::Opening if turn.arrived(Move::GripperOpen) => opened(turn),
             Sort::Opening => Sort::Opening,
         }
     }
@@ -118,6 +121,21 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
     };
     turn.ledger.drop_over(bin, turn.now, before.count);
     turn.drive(Move::GripperOpen);
+    Sort::Opening
+}
+
+/// Open fingers go back empty only.
+fn opened(turn: &mut Turn) -> Sort {
+    if turn.seen(DigitalIn::GripperPart, false) {
+        turn.drive(Move::AxisTo(AxisStation::Nest));
+        return Sort::Returning;
+    }
+    let falling = turn.ledger.falling.as_ref();
+    let sticks = falling.is_some_and(|it| it.seen.is_none() && turn.now.since(it.since) > STICKS);
+    if sticks && turn.seen(DigitalIn::GripperPart, true) {
+        turn.ledger.keep_hold();
+        turn.alarm(Alarm::part_sticks());
+    }
     Sort::Opening
 }
 

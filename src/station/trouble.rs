@@ -171,12 +171,21 @@ impl Alarm {
         )
     }
 
-    /// The nest still shows a part after the gripper went up.
+    /// The nest still shows the part that the gripper was to take.
     pub fn part_stuck() -> Self {
         Self::new(
             "part_stuck",
-            "The gripper is up but a part is still in the nest. Free the part.",
-            "夹爪已上升但测试位仍有工件。请取下工件。",
+            "The gripper was to take the part, but it is still in the nest. Free the part.",
+            "夹爪应已取走工件，但测试位仍有工件。请松开工件。",
+        )
+    }
+
+    /// Open fingers that still hold a part.
+    pub fn part_sticks() -> Self {
+        Self::new(
+            "part_stuck",
+            "The fingers are open but a part is still between them. Take it out.",
+            "夹爪已张开但仍有工件。请取出工件。",
         )
     }
 

@@ -1,6 +1,7 @@
 //! Actuators that stand: each must go on showing the end where it stopped, and never both ends at once.
 //!
-//! A look that differs for less than [`DEBOUNCE`] is a bounce: counted, not believed. A sensor that was
+//! A look that differs for less than [`DEBOUNCE`] is a bounce: counted, not believed; while it is not known which, no
+//! motion begins. A sensor that was
 //! not read says nothing here; that is trouble of its line.
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
@@ -47,6 +48,12 @@ impl Watch {
     /// Nothing stands.
     pub fn forget(&mut self) {
         self.stands.clear();
+    }
+
+    /// An end sensor differs from where its actuator stands, and it is not known yet whether that is a bounce.
+    pub fn is_in_doubt(&self) -> bool {
+        let mut stands = self.stands.iter();
+        stands.any(|stand| stand.left_since.is_some() || stand.both_since.is_some())
     }
 
     /// Flickers seen.

@@ -43,10 +43,13 @@ faults! {
         JamPusher = "jam_pusher", StuckClamp = "stuck_clamp", NoPart = "no_part",
         DoublePart = "double_part", Fall = "fall", ProbeDirty = "probe_dirty",
         BeamBlind = "beam_blind", AxisAlarm = "axis_alarm", StuckLift = "stuck_lift",
-        StuckGripper = "stuck_gripper",
+        StuckGripper = "stuck_gripper", Turned = "turned", PartMisses = "part_misses",
+        PartStays = "part_stays", PartSticks = "part_sticks",
     }
     Timed {
         Door = "door", Estop = "estop", Air = "air", StopButton = "stop_button",
+        BinFull = "bin_full", Starved = "starved", SensorStuck = "sensor_stuck",
+        SensorLost = "sensor_lost", SensorBounce = "sensor_bounce",
     }
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",

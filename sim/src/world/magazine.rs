@@ -123,6 +123,9 @@ impl Magazine {
             specimen.kelvin[3] = false;
             specimen.pins.present[3] = false;
         }
+        if faults.strikes(Fault::Turned, number) {
+            specimen.turn();
+        }
         let double = faults.strikes(Fault::DoublePart, number);
         let (track, air) = (self.track_c, self.ambient_c);
         let relay = Relay::new(specimen, &self.world, draw, now_us as f64, track, air);

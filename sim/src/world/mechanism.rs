@@ -49,6 +49,7 @@ enum Later {
     LiftOff,
     LetGo,
     Slip,
+    TakenOut,
     Trip,
     Dark(In),
     Lit(In),
@@ -203,6 +204,21 @@ impl Mechanism {
         !self.is_disturbed(Fault::Air) && !self.is_disturbed(Fault::Estop)
     }
 
+    /// Every valve is off, or there is no air.
+    fn only_springs_move(&self) -> bool {
+        let valves = [
+            Out::EscapementRelease,
+            Out::PusherExtend,
+            Out::ClampClose,
+            Out::ClampOpen,
+            Out::ProbeLift,
+            Out::SortZLower,
+            Out::GripperClose,
+            Out::GripperRelease,
+        ];
+        !self.has_air() || !valves.iter().any(|valve| self.commands.is_on(*valve))
+    }
+
     fn schedule(&mut self) {
         let strokes = self.cylinders.iter().filter_map(Cylinder::due_us);
         let others = self
@@ -286,7 +302,7 @@ impl Mechanism {
         match what {
             Later::LiftOff => self.lift_off(now_us),
             Later::LetGo => self.let_go(now_us),
-            Later::Slip => self.lose(),
+            Later::Slip | Later::TakenOut => self.lose(),
             Later::Trip => self.axis.trip(now_us),
             Later::Dark(beam) => self.dark.push(beam),
             Later::Lit(beam) => self.dark.retain(|&b| b != beam),
@@ -301,7 +317,9 @@ impl Mechanism {
                 self.disturbance_changed(now_us);
             }
             Later::Calm(fault) => {
-                self.disturbed.retain(|&f| f != fault);
+                // One that was struck again goes on until the later end.
+                let first = self.disturbed.iter().position(|&other| other == fault);
+                first.map(|place| self.disturbed.remove(place));
                 self.disturbance_changed(now_us);
             }
         }

@@ -224,16 +224,20 @@ impl Specimen {
             Defect::UnstableContact => {
                 self.spoil_contact(ContactFilm::Unstable(table.unstable_contact_mohm), draw);
             }
-            Defect::Turned => {
-                self.pins.present = [false; 5];
-                self.kelvin = [true, true, false, true, true];
-            }
+            Defect::Turned => self.turn(),
             Defect::MissingPin => {
                 let pin = draw.below(5) as usize;
                 self.pins.present[pin] = false;
                 self.kelvin[pin] = false;
             }
         }
+    }
+
+    /// The wrong way round.
+    pub fn turn(&mut self) {
+        self.defect = Some(Defect::Turned);
+        self.pins.present = [false; 5];
+        self.kelvin = [true, true, false, true, true];
     }
 
     fn nominal_ohm(&self, world: &WorldTable) -> f64 {

@@ -191,3 +191,20 @@ fn the_first_part_has_no_cycle_and_the_next_counts_from_it() {
         assert_eq!(nest.last_left, Some(nest.shop.now));
     }
 }
+
+#[test]
+fn a_part_that_was_interrupted_is_clamped_and_not_tested() {
+    let mut nest = Nest::loaded(None);
+    let part = nest.shop.ledger.nest.as_mut().unwrap();
+    part.interrupted = Some("emergency_stop".into());
+    let clamp = nest.step(Clamp::Empty, None);
+    nest.shop.carried_out(Move::ClampClose);
+    nest.shop.carried_out(Move::PusherRetract);
+    let clamp = nest.step(clamp, None);
+    assert!(matches!(clamp, Clamp::Judged) && nest.motions().is_empty());
+    let part = nest.shop.ledger.nest.as_ref().unwrap();
+    assert_eq!(
+        (part.bin, nest.shop.wants.judged.len()),
+        (Some(Bin::Retest), 1)
+    );
+}

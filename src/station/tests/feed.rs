@@ -170,3 +170,32 @@ fn golden_parts_come_first_in_the_order_of_the_magazine() {
     );
     assert_eq!(shop.golden.len(), 4);
 }
+
+/// The escapement was opened for the given time and nothing has come; it closes again.
+fn called_in_vain(shop: &mut Shop, attempt: u8) -> Feed {
+    let since = shop.now;
+    shop.now = since + Span::ms(1501);
+    shop.scan();
+    let feed = step(Feed::Releasing { since, attempt }, shop, true);
+    assert_eq!(feed, Feed::Closing { attempts: attempt });
+    shop.carried_out(Move::EscapementHold);
+    feed
+}
+
+#[test]
+fn a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls() {
+    for attempt in [1, 2] {
+        let mut shop = Shop::at_rest();
+        let closed = called_in_vain(&mut shop, attempt);
+        assert_eq!(step(closed, &mut shop, false), Feed::Empty);
+        let again = step(closed, &mut shop, true);
+        shop.set(DigitalIn::PocketPresent, true);
+        shop.after(50);
+        assert_eq!(
+            step(closed, &mut shop, true),
+            Feed::Empty,
+            "it came while it closed"
+        );
+        assert_eq!(step(again, &mut shop, true), Feed::Holding);
+    }
+}

@@ -6,6 +6,7 @@ mod annunciator;
 mod clamp;
 mod feed;
 mod golden;
+mod graph;
 mod instruments;
 mod ledger;
 mod machine;

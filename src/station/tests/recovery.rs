@@ -68,6 +68,17 @@ fn what_is_at_home_already_is_not_moved_but_the_axis_is() {
 }
 
 #[test]
+fn a_part_that_the_pusher_had_brought_to_the_nest_is_neither_lost_nor_found() {
+    let mut shop = Shop::at_rest();
+    shop.ledger.enter_pocket();
+    shop.set(DigitalIn::NestPresent, true);
+    shop.scan();
+    carried_out(&mut shop);
+    assert!(!shop.ledger.pocket && shop.ledger.nest.is_some());
+    assert_eq!((shop.ledger.lost, shop.ledger.found), (0, 0));
+}
+
+#[test]
 fn the_drive_is_reset_and_its_servo_on_before_anything_moves() {
     let mut shop = nothing_home();
     let mut recovery = Recovery::default();

@@ -90,10 +90,13 @@ fn safety_inputs_that_are_no_longer_read_are_trouble() {
     while machine.shop.now.since(start) < Span::ms(3100) {
         machine.turn();
     }
-    machine.shop.now = machine.shop.now + Span::ms(400);
+    machine.shop.now = machine.shop.now + machine.shop.wiring.emergency_stop_max_age();
     assert!(machine.turn_without_scan().alarms.is_empty());
     machine.shop.now = machine.shop.now + Span(1);
-    assert_safe(&machine.turn_without_scan(), "sensor_stale");
+    let wants = machine.turn_without_scan();
+    assert_safe(&wants, "sensor_stale");
+    let stale = &wants.alarms[0].text_en;
+    assert!(stale.contains("emergency_stop_ok"), "{stale}");
 }
 
 #[test]

@@ -219,3 +219,27 @@ fn a_count_read_before_the_fingers_opened_says_nothing() {
     let falling = shop.ledger.falling.as_ref().unwrap();
     assert_eq!(falling.seen, None);
 }
+
+#[test]
+fn open_fingers_go_back_when_they_are_seen_empty() {
+    let (sort, mut shop) = falling(Bin::Pass, 0);
+    shop.set(DigitalIn::GripperPart, true);
+    shop.scan();
+    assert_eq!(step(sort, &mut shop, false), Sort::Opening);
+    assert!(shop.wants.motions.is_empty());
+    shop.set(DigitalIn::GripperPart, false);
+    shop.scan();
+    assert_eq!(step(sort, &mut shop, false), Sort::Returning);
+    assert_eq!(shop.wants.motions, [HOME]);
+}
+
+#[test]
+fn a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told() {
+    let (sort, mut shop) = falling(Bin::Pass, 0);
+    shop.set(DigitalIn::GripperPart, true);
+    shop.after(500);
+    assert_eq!(step(sort, &mut shop, false), Sort::Opening);
+    assert_eq!(shop.alarms(), ["part_stuck"]);
+    assert!(shop.ledger.falling.is_none() && shop.ledger.gripper.is_some());
+    assert!(shop.ledger.balances());
+}

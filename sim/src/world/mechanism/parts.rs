@@ -47,6 +47,7 @@ impl Mechanism {
     pub(super) fn drop_into_pocket(&mut self, now_us: u64) {
         let free = self.places.pocket.is_none() && self.at(Stroke::Pusher).at_rest(now_us);
         if !free
+            || self.is_disturbed(Fault::Starved)
             || self
                 .faults
                 .strikes(Fault::NoPart, self.magazine.next_number())
@@ -60,7 +61,9 @@ impl Mechanism {
         let Some(part) = self.places.pushed.take() else {
             return;
         };
-        if self.places.nest.is_some() {
+        if self.faults.strikes(Fault::PartMisses, part.number) {
+            self.places.finish(&part);
+        } else if self.places.nest.is_some() {
             self.crash(now_us, "a part was pushed into an occupied nest");
             self.places.finish(&part);
         } else {
@@ -81,19 +84,29 @@ impl Mechanism {
         if !self.places.gripped {
             return;
         }
-        if ![Stroke::JawLeft, Stroke::JawRight]
-            .iter()
-            .all(|&j| self.at(j).at_rest(now_us))
-        {
+        self.places.gripped = false;
+        let number = self.places.nest.as_ref().and_then(|part| part.number);
+        let open = [Stroke::JawLeft, Stroke::JawRight].map(|jaw| self.at(jaw).at_rest(now_us));
+        let held = open != [true, true];
+        // The spring of z alone does not tear a part out: the fingers slide off.
+        if self.faults.strikes(Fault::PartStays, number) || (held && self.only_springs_move()) {
+            return;
+        }
+        if held {
             self.crash(now_us, "a part was torn out of jaws that were not open");
         }
-        self.places.gripped = false;
         self.places.carried = self.places.nest.take();
     }
 
     /// The fingers have opened far enough to let a part go.
     pub(super) fn let_go(&mut self, now_us: u64) {
         self.places.gripped = false;
+        let number = self.places.carried.as_ref().and_then(|part| part.number);
+        if self.faults.strikes(Fault::PartSticks, number) {
+            let hold = (self.table.fault_hold_ms * 1000.0) as u64;
+            self.later.push((now_us + hold, Later::TakenOut));
+            return;
+        }
         let x = self.axis.x_mm(now_us);
         let near = |at: f64| (x - at).abs() <= self.table.axis_window_mm;
         let bin = self
@@ -141,7 +154,7 @@ impl Mechanism {
         }
     }
 
-    /// A carried part falls on the floor.
+    /// A carried part falls on the floor, or into somebody's hand.
     pub(super) fn lose(&mut self) {
         if let Some(part) = self.places.carried.take() {
             self.places.finish(&part);

@@ -4,6 +4,9 @@ use super::{Mechanism, Stroke};
 use crate::world::fault::Fault;
 use crate::world::signal::In;
 
+/// A loose contact is off for so long, and on for three times as long.
+const FLICKER_US: u64 = 10_000;
+
 impl Mechanism {
     /// A signal of the mechanism; `None` where it is none of its own.
     pub fn signal(&self, signal: In, now_us: u64) -> Option<bool> {
@@ -15,14 +18,20 @@ impl Mechanism {
             In::AirOk => Some(self.has_air()),
             In::EscapementHold => rest(Stroke::Escapement),
             In::PocketPresent => Some(self.places.pocket.is_some()),
+            In::TrackLevel if self.is_disturbed(Fault::Starved) => Some(false),
             In::TrackLevel => Some(self.magazine.waiting() >= self.table.track_level_parts),
+            In::PusherRetracted if self.is_disturbed(Fault::SensorBounce) => {
+                Some(self.at(Stroke::Pusher).at_rest(now_us) && now_us / FLICKER_US % 4 != 0)
+            }
             In::PusherRetracted => rest(Stroke::Pusher),
+            In::PusherExtended if self.is_disturbed(Fault::SensorStuck) => Some(true),
             In::PusherExtended => far(Stroke::Pusher),
             In::NestPresent => Some(self.places.nest.is_some()),
             In::JawLeftOpen => rest(Stroke::JawLeft),
             In::JawLeftClosed => far(Stroke::JawLeft),
             In::JawRightOpen => rest(Stroke::JawRight),
             In::JawRightClosed => far(Stroke::JawRight),
+            In::ProbeDown if self.is_disturbed(Fault::SensorLost) => Some(false),
             In::ProbeDown => rest(Stroke::ProbeLift),
             In::ProbeUp => far(Stroke::ProbeLift),
             In::AxisInPosition => Some(self.axis.is_in_position()),
@@ -34,6 +43,7 @@ impl Mechanism {
             In::GripperPart => Some(self.places.gripped || self.places.carried.is_some()),
             In::ButtonStart | In::ButtonReset => Some(false),
             In::ButtonStop => Some(self.is_disturbed(Fault::StopButton)),
+            In::BeamPass if self.is_disturbed(Fault::BinFull) => Some(true),
             In::BeamPass
             | In::BeamCoil
             | In::BeamVoltage

@@ -1,0 +1,108 @@
+//! Feed, nest and sorter, each stepped from every state under every combination of its small inputs; what follows
+//! upon what is compared with a drawing, `golden/{feed,nest,sorter}.dot`.
+//!
+//! Inputs are those that the machine looks at: where each actuator is seen (one end, the other, neither), part
+//! sensors, what the ledger holds, permissions, and whether a deadline has passed. A state that stays is not drawn,
+//! unless it asks for something. With `RELAYRIG_RENEW=1` in the environment the drawings are made anew.
+
+mod feed;
+mod nest;
+mod sorter;
+
+use super::Shop;
+use crate::rig::point::DigitalIn;
+use crate::station::moves::Move;
+use crate::station::wants::Wants;
+use std::collections::BTreeSet;
+
+/// What was seen to follow upon what.
+#[derive(Debug, Default)]
+struct Graph {
+    edges: BTreeSet<String>,
+    steps: u64,
+}
+
+impl Graph {
+    /// One step from a state to another, and what it asked for.
+    fn add(&mut self, from: &str, to: &str, wants: &Wants) {
+        self.steps += 1;
+        let alarms = wants.trouble.iter().map(|alarm| alarm.code.clone());
+        let motions = wants.motions.iter().map(|movement| named(*movement));
+        let asked: Vec<String> = motions.chain(alarms).collect();
+        if from != to || !asked.is_empty() {
+            let label = asked.join(", ");
+            self.edges
+                .insert(format!("  {from} -> {to} [label=\"{label}\"];\n"));
+        }
+    }
+
+    /// Compares with the drawing, and looks that every combination was tried.
+    fn is(&self, name: &str, drawn: &str, steps: u64) {
+        let edges: String = self.edges.iter().map(String::as_str).collect();
+        let dot = format!("digraph {name} {{\n{edges}}}\n");
+        if std::env::var_os("RELAYRIG_RENEW").is_some() {
+            let folder =
+                std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/station/tests/golden");
+            std::fs::write(folder.join(format!("{name}.dot")), &dot).unwrap();
+        }
+        assert_eq!(self.steps, steps, "{name}: combinations tried");
+        assert_eq!(
+            dot, drawn,
+            "{name}: look at what has changed and keep the drawing (RELAYRIG_RENEW=1)"
+        );
+    }
+
+    /// Every edge is walked by one of the named facts, and each of these is a test of this folder.
+    fn is_told_by(&self, facts: &[(&str, &str, &str)], tests: &str) {
+        for (from, to, fact) in facts {
+            let edge = format!("  {from} -> {to} [");
+            assert!(
+                self.edges.iter().any(|known| known.starts_with(&edge)),
+                "no such edge: {from} -> {to}"
+            );
+            assert!(
+                tests.contains(&format!("fn {fact}()")),
+                "no such test: {fact}"
+            );
+        }
+        for edge in &self.edges {
+            let walked = facts
+                .iter()
+                .any(|(from, to, _)| edge.starts_with(&format!("  {from} -> {to} [")));
+            assert!(walked, "no named test walks {edge}");
+        }
+    }
+}
+
+/// A motion without the point of the axis, of which there are many.
+fn named(movement: Move) -> String {
+    match movement {
+        Move::AxisTo(_) => "AxisTo".to_owned(),
+        other => format!("{other:?}"),
+    }
+}
+
+/// Every combination of `n` truths.
+fn truths<const N: usize>() -> impl Iterator<Item = [bool; N]> {
+    (0..1_u32 << N).map(|bits| std::array::from_fn(|n| bits >> n & 1 == 1))
+}
+
+/// Where an actuator is seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Seen {
+    Rest,
+    Far,
+    Between,
+}
+
+const SEEN: [Seen; 3] = [Seen::Rest, Seen::Far, Seen::Between];
+
+/// Puts the sensors of an actuator to where it is to be seen.
+fn show(shop: &mut Shop, rest: &[DigitalIn], far: &[DigitalIn], seen: Seen) {
+    for point in rest {
+        shop.set(*point, seen == Seen::Rest);
+    }
+    for point in far {
+        shop.set(*point, seen == Seen::Far);
+    }
+}

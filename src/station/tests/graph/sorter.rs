@@ -1,0 +1,153 @@
+//! The sorter: eight states, eleven inputs, and what falls.
+
+use super::{Graph, SEEN, Seen, show, truths};
+use crate::gauge::verdict::Bin;
+use crate::rig::axis::AxisStation;
+use crate::rig::point::DigitalIn;
+use crate::station::ledger::Ledger;
+use crate::station::moves::Move;
+use crate::station::sort::Sort;
+use crate::station::tests::Shop;
+use crate::units::{RigTime, Span};
+
+fn name(sort: Sort) -> &'static str {
+    match sort {
+        Sort::Returning => "Returning",
+        Sort::OverNest => "OverNest",
+        Sort::Lowering => "Lowering",
+        Sort::AtPart => "AtPart",
+        Sort::Loaded => "Loaded",
+        Sort::Carrying(_) => "Carrying",
+        Sort::OverBin(..) => "OverBin",
+        Sort::Opening => "Opening",
+    }
+}
+
+/// Every state, and the point of the axis that it has to do with.
+fn states(shop: &Shop) -> [(Sort, AxisStation); 8] {
+    let over = RigTime(shop.now.0 - 500);
+    let bin = AxisStation::Bin(Bin::Pass);
+    [
+        (Sort::Returning, AxisStation::Nest),
+        (Sort::OverNest, AxisStation::Nest),
+        (Sort::Lowering, AxisStation::Nest),
+        (Sort::AtPart, AxisStation::Nest),
+        (Sort::Loaded, bin),
+        (Sort::Carrying(Bin::Pass), bin),
+        (Sort::OverBin(Bin::Pass, over), bin),
+        (Sort::Opening, bin),
+    ]
+}
+
+/// A part is in the gripper from `Loaded` to `OverBin`; one that was let go may fall, since long or not.
+fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
+    let mut ledger = Ledger::default();
+    let mut lift = || {
+        ledger.enter_pocket();
+        ledger.enter_nest(None);
+        ledger.lift();
+    };
+    if falling {
+        lift();
+    }
+    let carries = matches!(sort, Sort::Loaded | Sort::Carrying(_) | Sort::OverBin(..));
+    if falling {
+        ledger.drop_over(Bin::Pass, since, 0);
+    }
+    if carries {
+        ledger.enter_pocket();
+        ledger.enter_nest(None);
+        ledger.lift();
+    }
+    if let Some(part) = &mut ledger.gripper {
+        part.bin = Some(Bin::Pass);
+    }
+    ledger
+}
+
+#[test]
+fn the_sorter_is_the_drawing() {
+    let mut graph = Graph::default();
+    let mut shop = Shop::at_rest();
+    let table = shop.wiring.axis.clone();
+    for number in 0..8 {
+        let (_, station) = states(&shop)[number];
+        shop.stands(Move::AxisTo(station));
+        shop.carried_out(Move::AxisTo(station));
+        for (z, gripper) in SEEN.iter().flat_map(|one| SEEN.map(|other| (*one, other))) {
+            for [axis, pusher, dark, part] in truths() {
+                show(&mut shop, &[DigitalIn::SortZUp], &[DigitalIn::SortZDown], z);
+                shop.set(DigitalIn::AxisInPosition, axis);
+                shop.set(DigitalIn::PusherRetracted, pusher);
+                shop.set(DigitalIn::GripperOpen, gripper == Seen::Rest);
+                shop.set(DigitalIn::GripperPart, part);
+                shop.set(table.beam(Bin::Pass), dark);
+                shop.after(1);
+                for [counted, testing, resting, falling, late, recorded] in truths() {
+                    if counted {
+                        shop.beam(table.beam(Bin::Pass), 0);
+                    }
+                    let (sort, _) = states(&shop)[number];
+                    let ago = if late { Span::ms(501) } else { Span::ms(500) };
+                    shop.ledger = ledger(sort, falling, RigTime(shop.now.0 - ago.0));
+                    shop.recorded = if recorded { u64::MAX } else { 0 };
+                    let mut turn = shop.turn();
+                    turn.resting = resting;
+                    let next = sort.step(&mut turn, &table, testing);
+                    graph.add(name(sort), name(next), &shop.wants);
+                    assert!(shop.ledger.balances());
+                }
+            }
+        }
+    }
+    graph.is(
+        "sorter",
+        include_str!("../golden/sorter.dot"),
+        8 * 9 * 16 * 64,
+    );
+    graph.is_told_by(FACTS, include_str!("../sort.rs"));
+}
+
+/// From, to, and the test that walks there.
+const FACTS: &[(&str, &str, &str)] = &[
+    (
+        "Returning",
+        "OverNest",
+        "z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open",
+    ),
+    (
+        "OverNest",
+        "Lowering",
+        "z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open",
+    ),
+    (
+        "Lowering",
+        "AtPart",
+        "the_fingers_stand_around_the_part_once_z_is_down",
+    ),
+    (
+        "Loaded",
+        "Carrying",
+        "a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest",
+    ),
+    (
+        "Carrying",
+        "OverBin",
+        "a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest",
+    ),
+    (
+        "OverBin",
+        "Opening",
+        "a_part_is_let_go_only_when_its_record_is_durable",
+    ),
+    (
+        "Opening",
+        "Returning",
+        "open_fingers_go_back_when_they_are_seen_empty",
+    ),
+    (
+        "Opening",
+        "Opening",
+        "a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told",
+    ),
+];
