@@ -1,4 +1,4 @@
-//! What the outputs do: every change of a digital output, and every host watchdog that expires.
+//! What the outputs do: every change of a digital output, every host watchdog that expires, and what struck the rig.
 //!
 //! It is taken at the terminals, between modules and world, so that it shows what an actuator would have felt.
 //! Off until somebody listens.
@@ -24,6 +24,13 @@ pub enum Entry {
         module: String,
         /// Bit n = channel n.
         bits: u16,
+    },
+    /// A fault has struck while the rig ran.
+    Struck {
+        /// Rig time, microseconds.
+        t_us: u64,
+        /// As it was asked for.
+        fault: String,
     },
     /// A host watchdog has expired; the outputs stand as its module left them.
     Expired {
@@ -77,6 +84,14 @@ impl Watched {
             module: module.to_owned(),
             last_request_us: self.last_request_us,
             carries: self.carries.get(module).copied().unwrap_or(0.0),
+        });
+    }
+
+    /// A fault strikes now.
+    pub(crate) fn struck(&mut self, fault: &str) {
+        self.tell(Entry::Struck {
+            t_us: self.now_us,
+            fault: fault.to_owned(),
         });
     }
 

@@ -214,6 +214,7 @@ impl Rig {
     /// The fault is unknown, its value unfit, or it is only for the start.
     pub fn strike(&mut self, text: &str) -> Result<(), SimError> {
         let (name, value) = shared::split(text);
+        self.scene.struck(text);
         if self.faults.add_from(self.now_us, name, value)? {
             let known = |target: &str| {
                 self.modules.iter().any(|module| module.id() == target)

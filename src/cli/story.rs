@@ -17,6 +17,7 @@ use super::rig::{PaceArg, RigArgs};
 use super::run::{self, Controls, Orders, RunArgs};
 use anyhow::Context;
 pub use play::Play;
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 /// A script to play.
@@ -46,6 +47,9 @@ pub struct StoryArgs {
     /// True values of every specimen go to this file
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
+    /// Every fault of the script and every change of a digital output go to this file, one object per line
+    #[arg(long, value_name = "FILE")]
+    pub journal: Option<PathBuf>,
 }
 
 /// Runs the command; the result is the exit status.
@@ -56,11 +60,13 @@ pub fn run(config: &Path, db: &Path, args: &StoryArgs) -> anyhow::Result<i32> {
     let named = || args.script.display().to_string();
     let text = std::fs::read_to_string(&args.script).with_context(named)?;
     let script = script::parse(&text).with_context(named)?;
+    let journal = args.journal.as_deref().map(created).transpose()?;
     let lot = args.script.file_stem().unwrap_or_default();
     let order = RunArgs {
         rig: RigArgs {
             sim: true,
             pace: PaceArg::Virtual,
+            speed: None,
             seed: args.seed,
             world: None,
             fault: script.faults.clone(),
@@ -82,6 +88,10 @@ pub fn run(config: &Path, db: &Path, args: &StoryArgs) -> anyhow::Result<i32> {
         db,
         &order,
         &controls,
-        Orders::Script(Play::new(script)),
+        Orders::Script(Play::new(script, journal)),
     )
+}
+
+fn created(journal: &Path) -> anyhow::Result<File> {
+    File::create(journal).with_context(|| format!("--journal {}", journal.display()))
 }

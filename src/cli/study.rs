@@ -38,6 +38,7 @@ mod pace;
 mod parameters;
 mod scatter;
 mod sorting;
+mod stop;
 #[cfg(test)]
 mod tests;
 mod threshold;
@@ -80,6 +81,8 @@ pub enum Study {
     History,
     /// False accepts and rejects, counted and as the decision rule predicts them
     Decision,
+    /// The emergency stop at every instant of a cycle, and how long outputs stay on
+    Stop,
     /// Seconds against error of every strategy for the thresholds
     Threshold,
     /// Lots killed at random instants: rows lost, rows twice, damage
@@ -109,6 +112,7 @@ impl Study {
             Self::Pace => Some((3, 300)),
             Self::Sorting => Some((100, 110)),
             Self::Threshold => Some((4, 40)),
+            Self::Stop => Some((16, 25)),
             Self::Transient => None,
         }
     }
@@ -128,6 +132,7 @@ impl Study {
             Self::Pace => "pace",
             Self::Sorting => "sorting",
             Self::Timing => "timing",
+            Self::Stop => "stop",
             Self::Transient => "transient",
         }
     }
@@ -147,6 +152,7 @@ impl Study {
             Self::Pace => pace::study(order),
             Self::Sorting => sorting::study(order),
             Self::Timing => timing::study(order),
+            Self::Stop => stop::study(order),
             Self::Transient => bail!("study transient runs no lot"),
         }
     }

@@ -273,6 +273,10 @@ impl Station {
         if self.ended {
             return wants;
         }
+        if inputs.verified {
+            // What was read before the modules were asked is stale by now, and no trouble.
+            (self.sensed, self.began) = (false, Some(now));
+        }
         self.began.get_or_insert(now);
         for order in std::mem::take(&mut inputs.orders) {
             let answer = self.order(order, now, &mut wants);

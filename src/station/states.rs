@@ -270,9 +270,6 @@ impl Station {
 
     fn clear(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
         if inputs.verified {
-            // What was read before the modules were asked is stale by now, and no trouble.
-            self.sensed = false;
-            self.began = Some(now);
             self.done(now, wants);
         } else if !self.asked_verify {
             self.asked_verify = true;

@@ -11,10 +11,14 @@ use crate::station::packml::State;
 use crate::units::{RigTime, Span};
 use crate::view::Order;
 use rigsim::SharedRig;
+use rigsim::journal::Entry;
+use serde_json::json;
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Write;
+use std::fs::File;
+use std::io::{BufWriter, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
 use tokio::sync::{mpsc, oneshot};
 
 /// Nothing has happened for so long: nothing will any more.
@@ -26,6 +30,7 @@ const NEVER_CAME: i32 = 1;
 #[derive(Debug)]
 pub struct Play {
     script: Script,
+    journal: Option<File>,
 }
 
 /// What a line of the script may wait for.
@@ -42,9 +47,9 @@ struct Seen {
 }
 
 impl Play {
-    /// Ready to begin.
-    pub fn new(script: Script) -> Self {
-        Self { script }
+    /// Ready to begin; what the outputs did goes to `journal`.
+    pub fn new(script: Script, journal: Option<File>) -> Self {
+        Self { script, journal }
     }
 
     /// Plays until the run has ended; the exit status.
@@ -56,6 +61,7 @@ impl Play {
         pace: Pace,
         stop: Arc<AtomicBool>,
     ) -> i32 {
+        let journal = self.journal.map(|file| (file, rig.journal()));
         let mut told = Told::new(&self.script);
         let mut seen = Seen::default();
         let mut lines = self.script.lines.iter().peekable();
@@ -96,10 +102,25 @@ impl Play {
         }
         whole &= lines.peek().is_none();
         let text = told.end(&rig.crashes());
+        if let Some((file, entries)) = journal
+            && let Err(error) = kept(file, &entries)
+        {
+            tracing::error!("--journal: {error}");
+            whole = false;
+        }
         // A reader that has gone away ends nothing.
         std::io::stdout().write_all(text.as_bytes()).ok();
         if whole { DONE } else { NEVER_CAME }
     }
+}
+
+/// What the journal holds, one object per line.
+fn kept(file: File, entries: &Receiver<Entry>) -> std::io::Result<()> {
+    let mut file = BufWriter::new(file);
+    for entry in entries.try_iter() {
+        writeln!(file, "{}", json!(entry))?;
+    }
+    file.flush()
 }
 
 async fn play(

@@ -20,9 +20,9 @@ impl Mechanism {
             In::PocketPresent => Some(self.places.pocket.is_some()),
             In::TrackLevel if self.is_disturbed(Fault::Starved) => Some(false),
             In::TrackLevel => Some(self.magazine.waiting() >= self.table.track_level_parts),
-            In::PusherRetracted if self.is_disturbed(Fault::SensorBounce) => {
-                Some(self.at(Stroke::Pusher).at_rest(now_us) && now_us / FLICKER_US % 4 != 0)
-            }
+            In::PusherRetracted if self.is_disturbed(Fault::SensorBounce) => Some(
+                self.at(Stroke::Pusher).at_rest(now_us) && !(now_us / FLICKER_US).is_multiple_of(4),
+            ),
             In::PusherRetracted => rest(Stroke::Pusher),
             In::PusherExtended if self.is_disturbed(Fault::SensorStuck) => Some(true),
             In::PusherExtended => far(Stroke::Pusher),
