@@ -77,3 +77,19 @@ fn misplaced(name: &str, workshop: &Workshop) -> Vec<String> {
         .filter_map(landed)
         .collect()
 }
+
+/// Twelve instants here; `study stop` has as many as one likes.
+#[test]
+fn after_an_emergency_stop_at_any_instant_of_a_cycle_outputs_are_off_in_time_and_the_lot_goes_on() {
+    let workshop = Workshop::new("emergency-stops");
+    let said = workshop
+        .run("study stop --seeds 2 --parts 6 --json")
+        .with_status(0);
+    let rows = said.objects();
+    let on: Option<f64> = rows
+        .iter()
+        .map(|row| row["outputs_were_on"].as_f64())
+        .take(2)
+        .sum();
+    assert!(on >= Some(6.0), "{said}");
+}
