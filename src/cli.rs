@@ -8,6 +8,7 @@ pub mod config;
 #[cfg(feature = "sim")]
 pub mod demo;
 pub mod history;
+pub mod lot;
 #[cfg(feature = "sim")]
 mod plug;
 pub mod rig;
@@ -19,6 +20,7 @@ pub mod story;
 #[cfg(feature = "sim")]
 pub mod study;
 pub mod user;
+pub mod wear;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
@@ -93,6 +95,10 @@ pub enum Command {
     Check(check::CheckArgs),
     /// Lots, parts, filters, statistics
     History(history::HistoryArgs),
+    /// Where a lot stands; hold, release or close it
+    Lot(lot::LotArgs),
+    /// How often probes and jaws were used since they were replaced
+    Wear(wear::WearArgs),
     /// People who may log in at the screen
     User(user::UserArgs),
     /// The operation process card of a recipe
@@ -119,6 +125,8 @@ impl Cli {
             Command::Bus(args) => bus::run(&args),
             Command::Check(args) => check::run(args),
             Command::History(args) => history::run(&self.config, &self.db, args),
+            Command::Lot(args) => lot::run(&self.db, &args),
+            Command::Wear(args) => wear::run(&self.db, &args),
             Command::User(args) => user::run(&self.db, args),
             Command::Card(args) => card::run(&self.config, &args),
             Command::Quality(args) => history::run_quality(args),

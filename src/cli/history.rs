@@ -7,6 +7,7 @@ mod filter;
 mod generate;
 mod import;
 mod lots;
+mod orders;
 mod output;
 pub(in crate::cli) mod paper;
 mod prune;
@@ -47,7 +48,8 @@ enum Command {
     /// Parts that a filter leaves
     #[command(
         after_help = "Examples:\n  relayrig history query --lot A --verdict fail\n  \
-        relayrig history query --param operate_voltage_v --min 8.5 --format csv"
+        relayrig history query --param operate_voltage_v --min 8.5 --format csv\n  \
+        relayrig history query --suspect"
     )]
     Query(query::QueryArgs),
     /// Statistics and capability of one parameter
@@ -68,6 +70,10 @@ enum Command {
         relayrig history report --alarms --out alarms.html"
     )]
     Report(report::ReportArgs),
+    /// Who ordered what at which screen, and whether it was taken
+    #[command(after_help = "Examples:\n  relayrig history orders --lot A\n  \
+        relayrig history orders --who li --since 2026-03-01T00:00:00Z --refused")]
+    Orders(orders::OrdersArgs),
     /// Parts as CSV (UTF-8 with byte order mark) or as a spreadsheet with charts
     #[command(
         after_help = "Examples:\n  relayrig history export --lot A lot-a.csv\n  \
@@ -113,6 +119,7 @@ fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<i32> {
         Command::List(args) => lots::run(&Archive::open(db)?, &args)?,
         Command::Show(args) => show::run(&Archive::open(db)?, &args)?,
         Command::Query(args) => query::run(&Archive::open(db)?, &args)?,
+        Command::Orders(args) => orders::run(&Archive::open(db)?, &args)?,
         Command::Stats(args) => stats::run(&Archive::open(db)?, &args)?,
         Command::Spc(args) => spc::run(&Archive::open(db)?, &args)?,
         Command::Report(args) => report::run(&Archive::open(db)?, &args)?,

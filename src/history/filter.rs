@@ -5,6 +5,7 @@
 //! verdict at the first value of the range, so that only parts that match are touched.
 
 use super::Moment;
+use super::gates::SUSPECT;
 use rusqlite::types::Value;
 use serde::Deserialize;
 
@@ -34,6 +35,8 @@ pub struct Filter {
     pub min: Option<f64>,
     /// Greatest value of `param`, included.
     pub max: Option<f64>,
+    /// Only parts between a good golden check and one that failed.
+    pub suspect: bool,
     /// At most so many parts, the first ones in order of judgement.
     pub limit: Option<u64>,
 }
@@ -88,7 +91,8 @@ impl Filter {
     /// Part row and value of one parameter, in no order. Reads the index alone unless the filter
     /// asks for a bin or a time.
     pub(super) fn series(&self, param: &str) -> Select {
-        let joined = self.bin.is_some() || self.since.is_some() || self.until.is_some();
+        let joined =
+            self.suspect || self.bin.is_some() || self.since.is_some() || self.until.is_some();
         let mut select = self.values(param, "m.part_id, m.value", joined);
         if joined {
             self.part_conditions(&mut select, true);
@@ -133,6 +137,28 @@ impl Filter {
         select
     }
 
+    /// Orders, with name of lot and number of run, in order of time.
+    pub(super) fn orders(&self, who: Option<&str>) -> Select {
+        let mut select = Select::default();
+        select.sql.push_str(
+            "SELECT ordered.at_us, lot.name, run.number, ordered.who, ordered.role, ordered.origin, \
+             ordered.what, ordered.refused FROM ordered LEFT JOIN run ON run.id = ordered.run_id \
+             LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
+        );
+        self.run_conditions(&mut select, "ordered");
+        if let Some(since) = self.since {
+            select.add(" AND ordered.at_us >= ?", since.0);
+        }
+        if let Some(until) = self.until {
+            select.add(" AND ordered.at_us < ?", until.0);
+        }
+        if let Some(who) = who {
+            select.add(" AND ordered.who = ?", who.to_owned());
+        }
+        select.sql.push_str(" ORDER BY ordered.id");
+        select
+    }
+
     /// How many parts there are.
     pub(super) fn count(&self) -> Select {
         let parts = self.parts();
@@ -153,10 +179,11 @@ impl Filter {
         select
     }
 
-    /// How many production parts passed, and how many of them without a second attempt at anything.
+    /// How many production parts passed, and how many of them not in a retest and without a second attempt.
     pub(super) fn passed(&self) -> Select {
         let sql = "SELECT count(*), ifnull(sum(NOT EXISTS (SELECT 1 FROM measurement AS m \
-                   WHERE m.part_id = part.id AND m.attempt > 1)), 0) \
+                   WHERE m.part_id = part.id AND m.attempt > 1) \
+                   AND part.run_id NOT IN (SELECT run_id FROM retest)), 0) \
                    FROM part WHERE part.verdict = 'pass'"
             .to_owned();
         let mut select = Select {
@@ -237,6 +264,9 @@ impl Filter {
         }
         if let Some(bin) = &self.bin {
             select.add(" AND part.bin = ?", bin.clone());
+        }
+        if self.suspect {
+            select.sql.push_str(SUSPECT);
         }
     }
 }

@@ -26,7 +26,7 @@ pub(super) fn run(
             lot.opened_at_us
         ],
     )?;
-    transaction.query_row(
+    let made = transaction.query_row(
         "INSERT INTO run (lot_id, number, recipe_id, calibration_hash, opened_at_us, source, seed,
            written_by)
          SELECT lot.id, (SELECT ifnull(max(number), 0) + 1 FROM run WHERE lot_id = lot.id),
@@ -43,7 +43,14 @@ pub(super) fn run(
             written_by
         ],
         |row| Ok((row.get(0)?, row.get(1)?)),
-    )
+    )?;
+    if let Some(consented_by) = &lot.retest {
+        transaction.execute(
+            "INSERT INTO retest (run_id, consented_by) VALUES (?1, ?2)",
+            params![made.0, consented_by],
+        )?;
+    }
+    Ok(made)
 }
 
 /// A part with its measurements and samples, or nothing when it is already there.

@@ -22,6 +22,8 @@ pub struct LotSummary {
     pub source: String,
     /// Seed of the simulated rig.
     pub seed: Option<String>,
+    /// Of a retest run: who agreed to it.
+    pub retest: Option<String>,
     /// Begin of the run.
     pub opened: Moment,
     /// End; none while it runs or when it was cut off.
@@ -57,7 +59,7 @@ pub struct Yield {
 pub struct Passed {
     /// After all attempts.
     pub finally: u64,
-    /// Without a second attempt at any measurement.
+    /// Not in a retest run, and without a second attempt at any measurement.
     pub at_first: u64,
 }
 
@@ -126,7 +128,8 @@ impl Archive {
         let runs = filter.runs();
         let mut statement = self.connection.prepare(&format!(
             "SELECT lot.name, run.number, recipe.name, recipe.hash, run.calibration_hash,
-               run.source, run.seed, run.opened_at_us, run.closed_at_us, run.id
+               run.source, run.seed, run.opened_at_us, run.closed_at_us, run.id,
+               (SELECT consented_by FROM retest WHERE run_id = run.id)
              FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
              WHERE run.id IN ({}) ORDER BY run.opened_at_us, run.id",
             runs.sql
@@ -140,6 +143,7 @@ impl Archive {
                 calibration_hash: row.get(4)?,
                 source: row.get(5)?,
                 seed: row.get(6)?,
+                retest: row.get(10)?,
                 opened: Moment(row.get(7)?),
                 closed: row.get::<_, Option<i64>>(8)?.map(Moment),
                 counts: Yield::default(),

@@ -14,18 +14,21 @@
 //!
 //! Not here: deciding anything (gauge, station), statistics (quality), a clock.
 
+mod alarm_states;
 mod alarms;
 mod archive;
 mod backup;
 pub mod csv;
 mod error;
 mod filter;
+mod gates;
 mod import;
 mod insert;
 mod landing;
 mod lots;
 mod moment;
 mod open;
+mod orders;
 mod part;
 mod record;
 mod rejudge;
@@ -33,15 +36,19 @@ mod retention;
 mod store;
 mod values;
 mod views;
+mod wear;
 
+pub use alarm_states::{AlarmChange, AlarmChangeRecord, AlarmLeft};
 pub use alarms::Alarm;
 pub use archive::Archive;
 pub use error::{HistoryError, Result};
 pub use filter::Filter;
+pub use gates::{GoldenCheck, GoldenCheckRecord, LotStanding, LotState, LotStateRecord, LotYield};
 pub use import::{ImportError, ImportRow, parse_import, parse_records};
 pub use lots::{LotSummary, Passed, Yield};
 pub use moment::{Moment, MomentError};
 pub use open::{APPLICATION_ID, SCHEMA};
+pub use orders::{OrderRecord, Ordered};
 pub use part::{Measurement, Part, Sample};
 pub use record::{
     AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord,
@@ -51,6 +58,7 @@ pub use rejudge::rejudged;
 pub use retention::Pruned;
 pub use store::{Identity, Store};
 pub use values::{LimitsSeen, Values};
+pub use wear::{Wear, WearRecord};
 
 #[cfg(test)]
 mod tests;

@@ -15,8 +15,11 @@ use std::time::Duration;
 pub const APPLICATION_ID: i64 = 0x5252_6967;
 
 /// Step `n` brings schema `n` to `n + 1`. Steps are only ever added.
-pub(super) const MIGRATIONS: [&str; 2] =
-    [include_str!("schema/v1.sql"), include_str!("schema/v2.sql")];
+pub(super) const MIGRATIONS: [&str; 3] = [
+    include_str!("schema/v1.sql"),
+    include_str!("schema/v2.sql"),
+    include_str!("schema/v3.sql"),
+];
 
 /// Latest schema this program knows.
 pub const SCHEMA: i64 = MIGRATIONS.len() as i64;

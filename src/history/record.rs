@@ -3,6 +3,7 @@
 //! They know nothing of the station or the gauge: texts, numbers and integer microseconds UTC. A
 //! number that is not finite is stored as no number at all.
 
+use super::{AlarmChangeRecord, GoldenCheckRecord, LotStateRecord, OrderRecord, WearRecord};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -25,6 +26,8 @@ pub struct LotRecord {
     pub simulated: bool,
     /// Seed of the simulated rig.
     pub seed: Option<u64>,
+    /// Of a run that tests parts of the lot again: who agreed to it.
+    pub retest: Option<String>,
 }
 
 /// One judged part with everything measured on it.
@@ -171,6 +174,16 @@ pub enum Row {
     Interrupted(InterruptedRecord),
     /// An alarm that came, or went.
     Alarm(AlarmRecord),
+    /// What became of an alarm.
+    AlarmChange(AlarmChangeRecord),
+    /// A lot changes its state.
+    LotState(LotStateRecord),
+    /// Golden parts were compared with their certificates.
+    GoldenCheck(GoldenCheckRecord),
+    /// An order with its answer.
+    Order(OrderRecord),
+    /// Uses of what wears.
+    Wear(WearRecord),
 }
 
 /// SHA-256 of a snapshot's text, hexadecimal: the name under which it is stored once.

@@ -97,6 +97,7 @@ fn emptied(transaction: &Transaction<'_>, run: i64, now_us: i64) -> rusqlite::Re
         "DELETE FROM sample WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
         "DELETE FROM measurement WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
         "DELETE FROM part WHERE run_id = ?1",
+        "DELETE FROM alarm_state WHERE alarm_id IN (SELECT id FROM alarm WHERE run_id = ?1)",
         "DELETE FROM alarm WHERE run_id = ?1",
     ] {
         transaction.execute(sql, [run])?;

@@ -5,8 +5,8 @@
 
 use super::error::{Doing, HistoryError, Result};
 use super::{
-    AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, PartRecord, Row, insert, landing,
-    open,
+    AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, PartRecord, Row, alarm_states, gates,
+    insert, landing, open, orders, wear,
 };
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::collections::HashMap;
@@ -116,6 +116,18 @@ impl Store {
             .doing(DOING)?;
         transaction.commit().doing(DOING)?;
         Ok(number)
+    }
+
+    /// The calibration that the open run of the lot measures by from now on.
+    pub fn calibrated(&mut self, lot: &str, hash: &str) -> Result<()> {
+        let run = self.known.run(lot)?;
+        self.connection
+            .execute(
+                "UPDATE run SET calibration_hash = ?2 WHERE id = ?1",
+                params![run, hash],
+            )
+            .doing("freezing the calibration of a run")?;
+        Ok(())
     }
 
     /// Ends the run of the lot; rows for it are refused from now on.
@@ -232,6 +244,13 @@ fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Resu
         Row::Interrupted(it) => landing::interrupted(transaction, known, it),
         Row::Landed(landed) => landing::landing(transaction, known, landed),
         Row::Alarm(alarm) => landing::alarm(transaction, known, alarm),
+        Row::AlarmChange(it) => alarm_states::change(transaction, it),
+        Row::LotState(it) => gates::state(transaction, it)
+            .map(|_| ())
+            .doing("recording the state of a lot"),
+        Row::GoldenCheck(it) => gates::golden_check(transaction, known, it),
+        Row::Order(it) => orders::insert(transaction, known, it),
+        Row::Wear(it) => wear::add(transaction, it),
     })
 }
 

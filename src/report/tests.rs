@@ -34,6 +34,7 @@ fn run() -> LotSummary {
         calibration_hash: None,
         source: "simulated".into(),
         seed: None,
+        retest: None,
         opened: Moment(0),
         closed: Some(Moment(60_000_000)),
         counts: Yield {

@@ -38,6 +38,9 @@ pub(super) struct PartArgs {
     /// Production parts, golden parts, or both
     #[arg(long, value_parser = ["lot", "golden", "all"], default_value = "lot")]
     pub kind: String,
+    /// Only parts between a good golden check and one that failed
+    #[arg(long)]
+    pub suspect: bool,
     /// At most so many parts, the first ones in order of judgement
     #[arg(long, value_name = "N")]
     pub limit: Option<u64>,
@@ -76,6 +79,7 @@ impl PartArgs {
             verdict: self.verdict.clone(),
             bin: self.bin.clone(),
             kind: Some(self.kind.clone()),
+            suspect: self.suspect,
             limit: self.limit,
             ..self.runs.filter()
         }

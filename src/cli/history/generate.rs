@@ -80,6 +80,7 @@ pub fn generate(config: &Path, db: &Path, args: &GenerateArgs) -> anyhow::Result
             opened_at_us,
             simulated: true,
             seed: Some(args.seed),
+            retest: None,
         })?;
         let of_lot = LOT.min(args.parts - done.parts);
         let mut seq = 0;

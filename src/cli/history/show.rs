@@ -1,7 +1,7 @@
 //! `history show`: a lot with its runs, or a part with everything that was measured on it.
 
-use super::lots;
 use super::output::{Format, FormatArgs, Output, Table, figure, text};
+use super::{lots, orders};
 use crate::history::{Archive, Filter, LotSummary, Part};
 use clap::Args;
 use std::io::Write;
@@ -36,7 +36,14 @@ pub(super) fn run(archive: &Archive, args: &ShowArgs) -> anyhow::Result<()> {
         "no lot {lot:?} (or no such run); see `history list`"
     );
     match args.seq {
-        None => whole_lot(&lots, args.format.format(), &mut out)?,
+        None => {
+            whole_lot(&lots, args.format.format(), &mut out)?;
+            if args.format.format() == Format::Table {
+                let ordered = archive.orders(&filter, None)?;
+                writeln!(out, "{} orders", ordered.len())?;
+                orders::write(&ordered, Format::Table, &mut out)?;
+            }
+        }
         Some(seq) => one_part(archive, args, seq, &mut out)?,
     }
     Ok(out.flush()?)

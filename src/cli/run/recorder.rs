@@ -96,6 +96,7 @@ impl<'a> Recorder<'a> {
             opened_at_us: setup.epoch_us,
             simulated: setup.args.rig.sim,
             seed: setup.args.rig.sim.then_some(setup.args.rig.seed),
+            retest: None,
         })?;
         controls.view.send_modify(|view| screen::begun(view, setup));
         let recorder = Self {

@@ -1,6 +1,7 @@
 //! Facts about the history, one folder file per side of it.
 #![allow(clippy::unwrap_used)]
 
+mod gates;
 mod migrating;
 mod reading;
 mod rejudging;

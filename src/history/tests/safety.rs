@@ -118,7 +118,8 @@ fn every_table_is_strict_and_every_column_has_its_remark() {
     names.sort_unstable();
     assert_eq!(
         names.join(" "),
-        "alarm calibration export lot measurement parameter part recipe run sample"
+        "alarm alarm_state calibration export golden_check lot lot_state measurement ordered \
+         parameter part recipe retest run sample wear"
     );
     for (table, sql) in &tables {
         assert!(sql.contains(") STRICT"), "{table}");

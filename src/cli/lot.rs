@@ -1,0 +1,176 @@
+//! `relayrig lot`: where a lot stands, and a person who holds, releases or closes it.
+//!
+//! What a person decides here is an order like those of a screen: it stands in the audit of orders with the name.
+
+use super::DONE;
+use crate::history::{
+    Archive, Filter, Identity, LotState, LotStateRecord, OrderRecord, Row, Store,
+};
+use anyhow::{Context, ensure};
+use serde_json::json;
+use std::io::Write;
+use std::path::Path;
+
+/// What is asked of a lot.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  relayrig lot show A
+  relayrig lot hold A --by li --reason 'wrong label on the reel'
+  relayrig lot release A --by li --reason 'label was corrected'
+  relayrig lot close A --by li
+
+A lot that is held takes no run. A run that is under way goes on to its end.")]
+pub struct LotArgs {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Action {
+    /// State, recipe and calibration by their hashes, first and final yield, golden checks, suspect parts
+    #[command(after_help = "Example: relayrig lot show A --json")]
+    Show {
+        /// Name of the lot
+        lot: String,
+        /// One JSON object
+        #[arg(long)]
+        json: bool,
+    },
+    /// No run of the lot before it is released
+    #[command(after_help = "Example: relayrig lot hold A --by li --reason 'wrong label'")]
+    Hold(Decision),
+    /// The lot may be run again
+    #[command(
+        after_help = "Example: relayrig lot release A --by li --reason 'golden part cleaned'"
+    )]
+    Release(Decision),
+    /// The lot is complete as it is
+    #[command(
+        after_help = "Example: relayrig lot close A --by li --reason 'rest of the reel returned'"
+    )]
+    Close(Decision),
+}
+
+/// Who decides, and why.
+#[derive(Debug, clap::Args)]
+struct Decision {
+    /// Name of the lot
+    lot: String,
+    /// Who decides
+    #[arg(long, value_name = "NAME")]
+    by: String,
+    /// Why
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    reason: String,
+}
+
+/// Runs the command; the result is the exit status.
+pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<i32> {
+    match &args.action {
+        Action::Show { lot, json } => show(&Archive::open(db)?, lot, *json)?,
+        Action::Hold(it) => decide(db, it, "hold_lot", LotState::Held)?,
+        Action::Release(it) => decide(db, it, "release_lot", LotState::Open)?,
+        Action::Close(it) => decide(db, it, "close_lot", LotState::Complete)?,
+    }
+    Ok(DONE)
+}
+
+fn decide(db: &Path, it: &Decision, order: &str, state: LotState) -> anyhow::Result<()> {
+    ensure!(
+        !it.by.trim().is_empty(),
+        "--by: found nothing, expected a name"
+    );
+    let held = state == LotState::Held;
+    ensure!(
+        !held || !it.reason.is_empty(),
+        "--reason: found nothing, expected why the lot is held"
+    );
+    known(&Archive::open(db)?, &it.lot)?;
+    let at_us = jiff::Timestamp::now().as_microsecond();
+    let what = json!({"order": order, "lot": it.lot, "reason": it.reason});
+    let rows = [
+        Row::Order(OrderRecord {
+            lot: None,
+            at_us,
+            who: it.by.clone(),
+            role: String::new(),
+            origin: "command line".into(),
+            what: what.to_string(),
+            refused: None,
+        }),
+        Row::LotState(LotStateRecord {
+            lot: it.lot.clone(),
+            state,
+            why: held.then(|| format!("{} ({})", it.reason, it.by)),
+            at_us,
+        }),
+    ];
+    Ok(Store::open(db, &Identity::of_this_program())?.record(&rows)?)
+}
+
+fn known(archive: &Archive, lot: &str) -> anyhow::Result<crate::history::LotStanding> {
+    archive
+        .standing(lot)?
+        .with_context(|| format!("no lot {lot:?}; see `relayrig history list`"))
+}
+
+fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
+    let standing = known(archive, lot)?;
+    let filter = Filter {
+        lot: Some(lot.to_owned()),
+        ..Filter::default()
+    };
+    let (runs, counts) = (archive.lots(&filter)?, archive.lot_yield(lot)?);
+    let checks = archive.golden_checks(&filter)?;
+    let mut out = std::io::stdout().lock();
+    if as_json {
+        let it = json!({"lot": lot, "standing": standing, "yield": counts, "runs": runs, "golden_checks": checks});
+        writeln!(out, "{it}")?;
+        return Ok(());
+    }
+    let why = standing
+        .why
+        .map_or_else(String::new, |why| format!(": {why}"));
+    writeln!(
+        out,
+        "lot {lot} {} since {}{why}",
+        standing.state.name(),
+        standing.since
+    )?;
+    for run in &runs {
+        let calibration = run.calibration_hash.as_deref().map_or("none", short);
+        let consent = run.retest.as_ref();
+        let retest = consent.map_or_else(String::new, |who| format!(", retest agreed to by {who}"));
+        writeln!(
+            out,
+            "run {}: recipe {} {}, calibration {calibration}, {} of {} passed{retest}",
+            run.run,
+            run.recipe,
+            short(&run.recipe_hash),
+            run.counts.pass,
+            run.counts.parts
+        )?;
+    }
+    let percent = |n: u64| 100.0 * n as f64 / counts.parts.max(1) as f64;
+    writeln!(
+        out,
+        "first-pass yield {:.2} % of {}, final {:.2} %, {} suspect",
+        percent(counts.first_pass),
+        counts.parts,
+        percent(counts.first_pass + counts.retest_pass),
+        counts.suspect
+    )?;
+    for it in &checks {
+        let outcome = if it.passed { "good" } else { "FAILED" };
+        writeln!(
+            out,
+            "golden check of run {} at {}: {outcome}, {}",
+            it.run, it.at, it.text
+        )?;
+    }
+    Ok(())
+}
+
+fn short(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
+}

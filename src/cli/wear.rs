@@ -1,0 +1,84 @@
+//! `relayrig wear`: how often probes and jaws were used since they were replaced.
+
+use super::{BAD_INPUT, DONE};
+use crate::history::{Identity, Store};
+use anyhow::ensure;
+use serde_json::json;
+use std::io::Write;
+use std::path::Path;
+
+/// What is asked of the counters.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  relayrig wear list
+  relayrig wear replaced probe_touches --by li
+
+Limits are [wear] of lot.toml; at a limit the line goes on and says so.")]
+pub struct WearArgs {
+    /// Counters of the simulated rig
+    #[arg(long, global = true)]
+    sim: bool,
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Action {
+    /// Every counter
+    #[command(after_help = "Example: relayrig wear list --json")]
+    List {
+        /// One JSON object per counter
+        #[arg(long)]
+        json: bool,
+    },
+    /// What wears was replaced: its counter begins anew
+    #[command(after_help = "Example: relayrig wear replaced probe_touches --by li")]
+    Replaced {
+        /// Name of the counter
+        name: String,
+        /// Who replaced it
+        #[arg(long, value_name = "NAME")]
+        by: String,
+    },
+}
+
+/// Runs the command; the result is the exit status.
+pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<i32> {
+    let mut store = Store::open(db, &Identity::of_this_program())?;
+    match &args.action {
+        Action::List { json } => list(&store, args.sim, *json)?,
+        Action::Replaced { name, by } => {
+            ensure!(
+                !by.trim().is_empty(),
+                "--by: found nothing, expected a name"
+            );
+            let at_us = jiff::Timestamp::now().as_microsecond();
+            if !store.replaced(args.sim, name, by, at_us)? {
+                let known = store.wear(args.sim)?;
+                let known: Vec<&str> = known.iter().map(|it| it.name.as_str()).collect();
+                eprintln!(
+                    "relayrig: found no counter {name:?}, expected one of {}",
+                    known.join(", ")
+                );
+                return Ok(BAD_INPUT);
+            }
+        }
+    }
+    Ok(DONE)
+}
+
+fn list(store: &Store, sim: bool, as_json: bool) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    for it in store.wear(sim)? {
+        if as_json {
+            writeln!(out, "{}", json!(it))?;
+            continue;
+        }
+        let replaced = match (it.replaced, it.replaced_by) {
+            (Some(at), Some(by)) => format!("replaced {at} by {by}"),
+            (_, _) => "never replaced".to_owned(),
+        };
+        writeln!(out, "{:<16}{:>10}  {replaced}", it.name, it.count)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,124 @@
+//! What became of an alarm: returned, acknowledged, shelved (ISA-18.2), kept over a restart.
+//!
+//! A change speaks of a code and reaches every occurrence of it that it concerns, on the rig of the run (or on the
+//! simulated one): an alarm that came three times is acknowledged once.
+
+use super::Store;
+use super::error::{Doing, Result};
+use rusqlite::{Connection, Transaction, params};
+
+/// What happened to an alarm.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum AlarmChange {
+    /// Its cause has gone.
+    Returned,
+    /// A person has seen it.
+    Acknowledged {
+        /// Who.
+        by: String,
+    },
+    /// It is not shown for a while.
+    Shelved {
+        /// Until when.
+        until_us: i64,
+        /// Who put it there.
+        by: String,
+        /// Why.
+        reason: String,
+    },
+}
+
+/// A change of an alarm.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AlarmChangeRecord {
+    /// Alarms of the simulated rig are not those of the rig.
+    pub simulated: bool,
+    /// Its code; none: every one that nobody has seen.
+    pub code: Option<String>,
+    /// When.
+    pub at_us: i64,
+    /// What.
+    pub change: AlarmChange,
+}
+
+/// An alarm that nobody had seen when its run ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct AlarmLeft {
+    /// Its code.
+    pub code: String,
+    /// The message as shown.
+    pub text: String,
+    /// How often it came.
+    pub count: u32,
+    /// Not to be shown before this.
+    pub shelved_until_us: Option<i64>,
+}
+
+const CONCERNED: &str = "(?1 IS NULL OR alarm.code = ?1) AND alarm.run_id IN \
+    (SELECT id FROM run WHERE (source = 'simulated') = ?2)";
+
+pub(super) fn change(tx: &Transaction<'_>, it: &AlarmChangeRecord) -> Result<()> {
+    let made = match &it.change {
+        AlarmChange::Returned => tx.execute(
+            &format!(
+                "UPDATE alarm SET cleared_at_us = ?3 WHERE cleared_at_us IS NULL AND {CONCERNED}"
+            ),
+            params![it.code, it.simulated, it.at_us],
+        ),
+        AlarmChange::Acknowledged { by } => tx.execute(
+            &format!(
+                "INSERT INTO alarm_state (alarm_id, acknowledged_at_us, acknowledged_by)
+                 SELECT id, ?3, ?4 FROM alarm WHERE {CONCERNED}
+                 ON CONFLICT (alarm_id) DO UPDATE SET
+                   acknowledged_at_us = excluded.acknowledged_at_us,
+                   acknowledged_by = excluded.acknowledged_by
+                 WHERE acknowledged_at_us IS NULL"
+            ),
+            params![it.code, it.simulated, it.at_us, by],
+        ),
+        AlarmChange::Shelved {
+            until_us,
+            by,
+            reason,
+        } => tx.execute(
+            &format!(
+                "INSERT INTO alarm_state (alarm_id, shelved_until_us, shelved_by, shelf_reason)
+                 SELECT id, ?3, ?4, ?5 FROM alarm WHERE {CONCERNED}
+                   AND id NOT IN (SELECT alarm_id FROM alarm_state
+                     WHERE acknowledged_at_us IS NOT NULL AND cleared_at_us IS NOT NULL)
+                 ON CONFLICT (alarm_id) DO UPDATE SET shelved_until_us = excluded.shelved_until_us,
+                   shelved_by = excluded.shelved_by, shelf_reason = excluded.shelf_reason"
+            ),
+            params![it.code, it.simulated, until_us, by, reason],
+        ),
+    };
+    made.doing("recording what became of an alarm")?;
+    Ok(())
+}
+
+fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<AlarmLeft>> {
+    connection
+        .prepare(
+            "SELECT alarm.code, alarm.text, count(*), max(alarm_state.shelved_until_us), max(alarm.id)
+             FROM alarm LEFT JOIN alarm_state ON alarm_state.alarm_id = alarm.id
+             WHERE alarm_state.acknowledged_at_us IS NULL
+               AND alarm.run_id IN (SELECT id FROM run WHERE (source = 'simulated') = ?1)
+             GROUP BY alarm.code ORDER BY max(alarm.id)",
+        )?
+        .query_map([simulated], |row| {
+            Ok(AlarmLeft {
+                code: row.get(0)?,
+                text: row.get(1)?,
+                count: row.get(2)?,
+                shelved_until_us: row.get(3)?,
+            })
+        })?
+        .collect()
+}
+
+impl Store {
+    /// Alarms of the rig (or the simulated one) that nobody has seen yet, one per code, oldest first.
+    pub fn alarms_left(&self, simulated: bool) -> Result<Vec<AlarmLeft>> {
+        left(self.connection(), simulated).doing("reading alarms that nobody has seen")
+    }
+}

@@ -1,0 +1,272 @@
+//! States of lots, golden checks and suspect parts, retests, orders, what became of alarms, wear.
+
+use super::*;
+
+fn check(lot: &str, at_us: i64, passed: bool) -> Row {
+    Row::GoldenCheck(GoldenCheckRecord {
+        lot: lot.into(),
+        at_us,
+        passed,
+        text: "G-12-1".into(),
+    })
+}
+
+fn suspects(file: &File) -> Vec<(String, u64)> {
+    let filter = Filter {
+        suspect: true,
+        ..Filter::default()
+    };
+    let parts = file.archive().query(&filter).unwrap();
+    parts.into_iter().map(|it| (it.lot, it.seq)).collect()
+}
+
+/// Parts 1 to `count`, judged at as many seconds.
+fn parts(name: &str, count: u64) -> Vec<Row> {
+    let one = |seq| Row::Part(part(name, seq, "pass", 7.0));
+    (1..=count).map(one).collect()
+}
+
+#[test]
+fn what_was_judged_between_a_good_check_and_a_failed_one_is_suspect() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    store.record(&parts("A", 6)).unwrap();
+    store.record(&[check("A", 2_500_000, true)]).unwrap();
+    assert!(suspects(&file).is_empty());
+    store.record(&[check("A", 5_000_000, false)]).unwrap();
+    let expected = [
+        ("A".to_owned(), 3),
+        ("A".to_owned(), 4),
+        ("A".to_owned(), 5),
+    ];
+    assert_eq!(suspects(&file), expected);
+    let by_value = Filter {
+        suspect: true,
+        ..Filter::default()
+    };
+    let values = file
+        .archive()
+        .values("operate_voltage_v", &by_value)
+        .unwrap();
+    assert_eq!(values.values.len(), 3);
+    let checks = file.archive().golden_checks(&Filter::default()).unwrap();
+    assert_eq!(checks[0].suspect_since, None);
+    assert_eq!(checks[1].suspect_since, Some(Moment(2_500_000)));
+}
+
+#[test]
+fn a_check_sent_again_is_one_check() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    store.record(&[check("A", 7, true)]).unwrap();
+    store.record(&[check("A", 7, true)]).unwrap();
+    assert_eq!(count(&file.by_hand(), "golden_check"), 1);
+}
+
+#[test]
+fn on_a_rig_a_failed_check_reaches_into_the_lots_before_and_a_simulated_rig_is_another_every_run() {
+    let file = File::new();
+    let mut store = file.store();
+    let of = |name: &str, simulated| LotRecord {
+        simulated,
+        ..lot(name)
+    };
+    for (name, simulated) in [("sim", true), ("rig 1", false), ("rig 2", false)] {
+        store.begin_lot(&of(name, simulated)).unwrap();
+        store.record(&parts(name, 2)).unwrap();
+    }
+    store.record(&[check("rig 2", 9_000_000, false)]).unwrap();
+    let lots: Vec<String> = suspects(&file).into_iter().map(|it| it.0).collect();
+    assert_eq!(lots, ["rig 1", "rig 1", "rig 2", "rig 2"]);
+}
+
+#[test]
+fn a_lot_is_where_it_was_put_last_and_open_before() {
+    let file = File::new();
+    let mut store = file.store();
+    assert_eq!(store.begin_lot(&lot("A")).unwrap(), 1);
+    let standing = || file.archive().standing("A").unwrap().unwrap();
+    assert_eq!(standing().state, LotState::Open);
+    assert_eq!(standing().recipe, "jzc-22f-012");
+    for state in LotState::ALL {
+        let record = LotStateRecord {
+            lot: "A".into(),
+            state,
+            why: (state == LotState::Held).then(|| "discard limit".into()),
+            at_us: 9,
+        };
+        store.record(&[Row::LotState(record)]).unwrap();
+        assert_eq!(standing().state, state);
+        assert_eq!(standing().why.is_some(), state == LotState::Held);
+    }
+    assert_eq!(file.archive().standing("B").unwrap(), None);
+}
+
+#[test]
+fn a_retest_adds_to_the_final_yield_and_leaves_the_first_pass_yield() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    let rows = [part("A", 1, "pass", 7.0), part("A", 2, "fail", 9.5)].map(Row::Part);
+    store.record(&rows).unwrap();
+    store.close_lot("A", 10).unwrap();
+    let again = LotRecord {
+        retest: Some("Li Na".into()),
+        ..lot("A")
+    };
+    assert_eq!(store.begin_lot(&again).unwrap(), 2);
+    store
+        .record(&[Row::Part(part("A", 1, "pass", 8.9))])
+        .unwrap();
+    let archive = file.archive();
+    let expected = LotYield {
+        parts: 2,
+        first_pass: 1,
+        retest_pass: 1,
+        suspect: 0,
+    };
+    assert_eq!(archive.lot_yield("A").unwrap(), expected);
+    let passed = archive.passed(&Filter::default()).unwrap();
+    assert_eq!((passed.finally, passed.at_first), (2, 1));
+    let consents: Vec<_> = archive.lots(&Filter::default()).unwrap();
+    assert_eq!(consents[1].retest.as_deref(), Some("Li Na"));
+    assert_eq!(consents[0].retest, None);
+}
+
+#[test]
+fn the_calibration_that_a_run_measures_by_stays_with_it() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    store.calibrated("A", "0123").unwrap();
+    let lots = file.archive().lots(&Filter::default()).unwrap();
+    assert_eq!(lots[0].calibration_hash.as_deref(), Some("0123"));
+    assert!(store.calibrated("B", "0123").is_err());
+}
+
+#[test]
+fn an_order_is_kept_with_who_where_what_and_why_not() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    let order = |at_us, who: &str, refused: Option<&str>| {
+        Row::Order(OrderRecord {
+            lot: (at_us > 1).then(|| "A".into()),
+            at_us,
+            who: who.into(),
+            role: "operator".into(),
+            origin: "127.0.0.1".into(),
+            what: r#"{"order":"start"}"#.into(),
+            refused: refused.map(str::to_owned),
+        })
+    };
+    let rows = [
+        order(1, "", Some("nobody is logged in")),
+        order(2, "li'na", None),
+        order(3, "li'na", None),
+    ];
+    store.record(&rows).unwrap();
+    let archive = file.archive();
+    let all = archive.orders(&Filter::default(), None).unwrap();
+    assert_eq!(all.len(), 3);
+    assert_eq!(
+        (all[0].run, all[0].refused.as_deref()),
+        (None, Some("nobody is logged in"))
+    );
+    assert_eq!((all[1].lot.as_deref(), all[1].at), (Some("A"), Moment(2)));
+    assert_eq!(all[1].what["order"], "start");
+    let late = Filter {
+        since: Some(Moment(3)),
+        lot: Some("A".into()),
+        ..Filter::default()
+    };
+    assert_eq!(archive.orders(&late, Some("li'na")).unwrap().len(), 1);
+    assert!(
+        archive
+            .orders(&late, Some("somebody else"))
+            .unwrap()
+            .is_empty()
+    );
+}
+
+fn change(code: Option<&str>, change: AlarmChange) -> Row {
+    Row::AlarmChange(AlarmChangeRecord {
+        simulated: true,
+        code: code.map(str::to_owned),
+        at_us: 50,
+        change,
+    })
+}
+
+#[test]
+fn an_alarm_that_nobody_has_seen_is_left_over_until_somebody_has() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    for (code, at_us) in [("door_open", 10), ("air_lost", 20), ("door_open", 30)] {
+        let alarm = AlarmRecord {
+            lot: Some("A".into()),
+            code: code.into(),
+            text: "text".into(),
+            raised_at_us: at_us,
+            ..AlarmRecord::default()
+        };
+        store.alarm(&alarm).unwrap();
+    }
+    store
+        .record(&[change(Some("door_open"), AlarmChange::Returned)])
+        .unwrap();
+    let shelved = AlarmChange::Shelved {
+        until_us: 99,
+        by: "li".into(),
+        reason: "sensor ordered".into(),
+    };
+    store.record(&[change(Some("air_lost"), shelved)]).unwrap();
+    let left = store.alarms_left(true).unwrap();
+    let seen: Vec<_> = left
+        .iter()
+        .map(|it| (it.code.as_str(), it.count, it.shelved_until_us))
+        .collect();
+    assert_eq!(seen, [("air_lost", 1, Some(99)), ("door_open", 2, None)]);
+    assert!(store.alarms_left(false).unwrap().is_empty(), "another rig");
+    let by = || AlarmChange::Acknowledged { by: "li".into() };
+    store.record(&[change(Some("door_open"), by())]).unwrap();
+    assert_eq!(store.alarms_left(true).unwrap().len(), 1);
+    store.record(&[change(None, by())]).unwrap();
+    assert!(store.alarms_left(true).unwrap().is_empty());
+    let query =
+        "SELECT count(*) FROM alarm_state WHERE acknowledged_by = 'li' AND acknowledged_at_us = 50";
+    assert_eq!(
+        file.by_hand()
+            .query_row(query, [], |row| row.get::<_, i64>(0))
+            .unwrap(),
+        3
+    );
+    assert_eq!(count(&file.by_hand(), "alarm WHERE cleared_at_us = 50"), 2);
+}
+
+#[test]
+fn wear_adds_up_over_runs_and_begins_anew_when_it_was_replaced() {
+    let file = File::new();
+    let mut store = file.store();
+    let more = |more| {
+        Row::Wear(WearRecord {
+            simulated: false,
+            name: "probe_touches".into(),
+            more,
+        })
+    };
+    store.record(&[more(3)]).unwrap();
+    store.record(&[more(4)]).unwrap();
+    assert_eq!(store.wear(false).unwrap()[0].count, 7);
+    assert!(store.wear(true).unwrap().is_empty());
+    assert!(store.replaced(false, "probe_touches", "li", 60).unwrap());
+    assert!(!store.replaced(false, "pins", "li", 60).unwrap());
+    let wear = &store.wear(false).unwrap()[0];
+    assert_eq!(
+        (wear.count, wear.replaced, wear.replaced_by.as_deref()),
+        (0, Some(Moment(60)), Some("li"))
+    );
+}
