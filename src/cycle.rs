@@ -31,9 +31,10 @@ use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
 use crate::station::act::{Job, JobDone, Read};
 use crate::station::annunciator::Standing;
+use crate::station::gates::Uses;
 use crate::station::packml;
 use crate::station::trouble::Alarm;
-use crate::station::wants::{Ending, Inputs, Interrupted, Wants};
+use crate::station::wants::{Checked, Ending, Inputs, Interrupted, Wants};
 use crate::units::{RigTime, Span};
 use crate::view::View;
 use patience::Patience;
@@ -62,9 +63,13 @@ pub enum Event {
     /// An alarm was raised.
     Alarm(Alarm, RigTime),
     /// The list of alarms that stand has changed.
-    Standing(Vec<Standing>),
+    Standing(Vec<Standing>, RigTime),
     /// Calibration and golden parts are complete.
     Calibrated(Box<crate::gauge::Calibration>),
+    /// A golden check has come out.
+    Checked(Checked, RigTime),
+    /// Uses of what wears, since the start.
+    Uses(Uses),
     /// The lot itself began.
     LotBegan(RigTime),
 }
@@ -445,8 +450,14 @@ impl Cycle {
         for left in wants.left.drain(..) {
             self.tell(Event::Left(left));
         }
+        if !wants.landed.is_empty() || wants.ending.is_some() {
+            self.tell(Event::Uses(self.station.uses()));
+        }
         for landed in wants.landed.drain(..) {
             self.tell(Event::Landed(landed));
+        }
+        if let Some(checked) = wants.checked.take() {
+            self.tell(Event::Checked(checked, now));
         }
         if let Some(calibration) = wants.calibrated.take() {
             self.tell(Event::Calibrated(Box::new(calibration)));
@@ -462,7 +473,7 @@ impl Cycle {
         }
         if wants.alarms_changed {
             let standing = self.station.annunciator().standing().to_vec();
-            self.tell(Event::Standing(standing));
+            self.tell(Event::Standing(standing, now));
         }
         let state = self.station.outer();
         if std::mem::replace(&mut self.told, state) != state {

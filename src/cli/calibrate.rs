@@ -93,6 +93,7 @@ fn golden_only(args: &CalibrateArgs) -> RunArgs {
         recipe: args.recipe.clone(),
         count: Some(0),
         truth: None,
+        retest: None,
         json: false,
         study: None,
     }

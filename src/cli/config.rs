@@ -14,11 +14,11 @@ pub enum Args {
         after_help = "Examples:\n  relayrig config check\n  relayrig --config plant2 config check"
     )]
     Check,
-    /// Print the JSON schema of a file: rig, golden, recipe or card
+    /// Print the JSON schema of a file: rig, golden, recipe, card or lot
     #[command(after_help = "Example:\n  relayrig config schema recipe > recipe.schema.json")]
     Schema {
         /// Which file
-        #[arg(value_parser = ["rig", "golden", "recipe", "card"])]
+        #[arg(value_parser = ["rig", "golden", "recipe", "card", "lot"])]
         name: String,
     },
 }
@@ -125,9 +125,12 @@ fn schema_text(name: &str) -> anyhow::Result<String> {
         "rig" => ("rig.toml", keys::rig::FILE),
         "golden" => ("golden.toml", keys::golden::FILE),
         "card" => ("card.toml", keys::card::FILE),
+        "lot" => ("lot.toml", keys::lot::FILE),
         "recipe" => ("recipes/NAME.toml", keys::recipe::FILE),
         other => {
-            anyhow::bail!("config schema: found \"{other}\", expected rig, golden, recipe or card")
+            anyhow::bail!(
+                "config schema: found \"{other}\", expected rig, golden, recipe, card or lot"
+            )
         }
     };
     let text = serde_json::to_string_pretty(&schema(title, keys)).context("writing the schema")?;
@@ -161,7 +164,7 @@ mod tests {
         let message = schema_text("sim").unwrap_err().to_string();
         assert_eq!(
             message,
-            "config schema: found \"sim\", expected rig, golden, recipe or card"
+            "config schema: found \"sim\", expected rig, golden, recipe, card or lot"
         );
     }
 }

@@ -63,6 +63,7 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
         recipe: "jzc-22f-012".into(),
         count: args.count,
         truth: None,
+        retest: None,
         json: false,
         study: None,
     };

@@ -2,6 +2,8 @@
 
 pub(super) mod assemble;
 mod counts;
+mod diary;
+mod gate;
 mod grr;
 mod lines;
 mod orders;
@@ -35,6 +37,7 @@ use traces::Traces;
 #[command(after_help = "Examples:
   relayrig run --sim --lot A --recipe jzc-22f-012 --count 20
   relayrig run --sim --pace real --lot A --recipe jzc-22f-012 --count 5 --json
+  relayrig run --lot A --recipe jzc-22f-012 --count 12 --retest 'Li Na'
   relayrig run --sim --study grr --lot G --recipe jzc-22f-012
   relayrig run --lot A --recipe jzc-22f-012 --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1")]
 pub struct RunArgs {
@@ -56,6 +59,9 @@ pub struct RunArgs {
     /// One JSON object per part, then a summary
     #[arg(long)]
     pub json: bool,
+    /// Test parts of the lot again, to which NAME has agreed; the first results stay
+    #[arg(long, value_name = "NAME")]
+    pub retest: Option<String>,
     /// Instead of one lot: ten parts (or --count) three times over three rigs, and what the gauge adds
     #[arg(long, value_enum, value_name = "NAME", requires = "sim")]
     pub study: Option<StudyArg>,
@@ -136,6 +142,9 @@ pub fn run_with(
     let plant = Plant::load(config)?;
     let recipe = Arc::new(load_recipe(config, &args.recipe)?);
     plant.admit(&recipe)?;
+    if controls.calibrates.is_none() {
+        gate::admit(db, &plant, &recipe, args)?;
+    }
     if !args.rig.sim
         && controls.calibrates.is_none()
         && let Some(why) = calibrate::why_not(db, recipe.part.nominal_v)?
@@ -184,8 +193,7 @@ async fn run_lot(
     };
     let desk = Desk::open(orders, &rig, pace, &controls.stop)?;
     let traces = Traces::new(db, &plant, &lines.logs);
-    let (mut recorder, calibration) =
-        Recorder::open(db, &setup, controls, rig.eeprom_count(), traces)?;
+    let (mut recorder, known) = Recorder::open(db, &setup, controls, rig.eeprom_count(), traces)?;
     let (events, received) = mpsc::unbounded_channel::<Event>();
     let recorded = Arc::new(AtomicU64::new(0));
     let history_lost = Arc::new(AtomicBool::new(false));
@@ -201,7 +209,7 @@ async fn run_lot(
     };
     let cycle = assemble::cycle(
         &setup,
-        calibration,
+        known,
         pace,
         std::mem::take(&mut lines.ends),
         outside,

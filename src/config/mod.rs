@@ -6,6 +6,7 @@
 //! | `scene.toml` | the bodies around the nest | `GuardSettings` |
 //! | `golden.toml` (named in `rig.toml`) | certified relays | `GoldenSet` |
 //! | `card.toml` | what the process card says of the plant | `CardSettings` |
+//! | `lot.toml`, which may be missing | gates of a lot | `LotSettings` |
 //! | `recipes/NAME.toml` | one kind of part | `Recipe` |
 //!
 //! Three steps, each with its own kind of message, all of one form
@@ -19,6 +20,7 @@ pub mod check;
 pub mod error;
 pub mod form;
 pub mod keys;
+mod lot;
 pub mod nearest;
 pub mod plant;
 #[cfg(test)]

@@ -4,6 +4,7 @@ use super::check::File;
 use super::error::ConfigError;
 use super::form::Key;
 use super::keys;
+use super::lot::load_lot;
 use super::tree::{Node, NotToml, not_toml};
 use crate::gauge::settings::{AccuracySettings, CalibrationSettings, GoldenSet, ReferenceSettings};
 use crate::gauge::{Recipe, feasible};
@@ -11,6 +12,7 @@ use crate::guard::{Actuator, Guard, GuardSettings};
 use crate::rig::fault::Fault;
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::Wiring;
+use crate::station::gates::LotSettings;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use std::path::{Path, PathBuf};
@@ -33,6 +35,8 @@ pub struct Plant {
     pub calibration: CalibrationSettings,
     /// Golden parts.
     pub golden: GoldenSet,
+    /// Gates of a lot.
+    pub lot: LotSettings,
     /// Text of `rig.toml`, for the record of a lot.
     pub rig_text: String,
 }
@@ -66,6 +70,7 @@ impl Plant {
             accuracy: gauge.accuracy,
             calibration: gauge.calibration,
             golden,
+            lot: load_lot(dir)?,
             rig_text: rig.text,
         })
     }

@@ -73,6 +73,7 @@ mod tests {
             ("golden", keys::golden::FILE),
             ("recipe", keys::recipe::FILE),
             ("card", keys::card::FILE),
+            ("lot", keys::lot::FILE),
         ] {
             let rows = rows(keys);
             assert!(

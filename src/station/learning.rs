@@ -2,9 +2,10 @@
 //! and from every good part where the next fine ramp goes.
 
 use super::act::Runner;
+use super::gates::Told;
 use super::ledger::Kind;
 use super::trouble::Alarm;
-use super::wants::Wants;
+use super::wants::{Judged, Wants};
 use super::{Station, golden, reference};
 use crate::gauge::Calibration;
 use crate::gauge::Parameter;
@@ -30,52 +31,71 @@ impl Station {
         Ok(())
     }
 
-    /// Golden parts teach the lags, every part the place of the fine ramp.
+    /// What the parts judged in this turn say of the rig and of the lot.
     pub(super) fn learn(&mut self, wants: &mut Wants) {
-        for judged in wants
-            .judged
-            .iter()
-            .filter(|one| one.part.interrupted.is_none())
-        {
-            let findings = &judged.findings;
-            // A slow or sticking part would spoil the place of the ramp for all that follow.
-            if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
-                let time = findings.result(Parameter::OperateTime).map(|it| it.value);
-                let rate = self.bench.calibration.coarse_v_per_s.value;
-                if let Some(ramp) = findings.operate {
-                    self.coarse.0.learn_with_time(ramp, time, rate);
+        let mut told = Told::default();
+        for judged in &wants.judged {
+            match &judged.part.kind {
+                Kind::Golden(serial) if self.gates.is_checking() => {
+                    self.check(judged, serial, &mut told);
                 }
-                findings
-                    .release
-                    .into_iter()
-                    .for_each(|ramp| self.coarse.1.learn(ramp));
+                Kind::Golden(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
+                Kind::Golden(_) => self.learn_from(judged, &mut wants.calibrated, &mut told),
+                Kind::Lot(_) => {
+                    self.count_discards(judged, &mut told);
+                    self.learn_from(judged, &mut wants.calibrated, &mut told);
+                }
             }
-            if let Kind::Golden(serial) = &judged.part.kind {
-                let known = self.plan.golden.iter().find(|part| part.serial == *serial);
-                let reference = self.bench.reference_temperature();
-                let learned = match known {
-                    Some(part) => self.golden_run.learn(part, reference, findings),
-                    None => Err(format!("golden part {serial} has no certificate")),
+        }
+        wants.trouble.extend(told.trouble);
+        wants.checked = told.checked;
+    }
+
+    /// Golden parts teach the lags, every part the place of the fine ramp.
+    fn learn_from(
+        &mut self,
+        judged: &Judged,
+        calibrated: &mut Option<Calibration>,
+        told: &mut Told,
+    ) {
+        let findings = &judged.findings;
+        // A slow or sticking part would spoil the place of the ramp for all that follow.
+        if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
+            let time = findings.result(Parameter::OperateTime).map(|it| it.value);
+            let rate = self.bench.calibration.coarse_v_per_s.value;
+            if let Some(ramp) = findings.operate {
+                self.coarse.0.learn_with_time(ramp, time, rate);
+            }
+            findings
+                .release
+                .into_iter()
+                .for_each(|ramp| self.coarse.1.learn(ramp));
+        }
+        if let Kind::Golden(serial) = &judged.part.kind {
+            let known = self.plan.golden.iter().find(|part| part.serial == *serial);
+            let reference = self.bench.reference_temperature();
+            let learned = match known {
+                Some(part) => self.golden_run.learn(part, reference, findings),
+                None => Err(format!("golden part {serial} has no certificate")),
+            };
+            if let Err(why) = learned {
+                told.trouble.push(Alarm::calibration(&why));
+                return;
+            }
+        }
+        let still_golden = matches!(judged.part.kind, Kind::Golden(_));
+        match self.new_lags(still_golden) {
+            Ok((lags, complete)) => {
+                let calibration = Calibration {
+                    lags: Some(lags),
+                    ..(*self.bench.calibration).clone()
                 };
-                if let Err(why) = learned {
-                    wants.trouble.push(Alarm::calibration(&why));
-                    return;
+                if complete {
+                    *calibrated = Some(calibration.clone());
                 }
+                self.bench.calibration = Arc::new(calibration);
             }
-            let still_golden = matches!(judged.part.kind, Kind::Golden(_));
-            match self.new_lags(still_golden) {
-                Ok((lags, complete)) => {
-                    let calibration = Calibration {
-                        lags: Some(lags),
-                        ..(*self.bench.calibration).clone()
-                    };
-                    if complete {
-                        wants.calibrated = Some(calibration.clone());
-                    }
-                    self.bench.calibration = Arc::new(calibration);
-                }
-                Err(why) => wants.trouble.push(Alarm::calibration(&why)),
-            }
+            Err(why) => told.trouble.push(Alarm::calibration(&why)),
         }
     }
 

@@ -7,6 +7,7 @@
 //! again), an actuator that leaves the end where it stood, both end sensors on at once, the drive's alarm. A
 //! sensor that flickers for less than [`DEBOUNCE`] is believed to bounce and counted.
 
+use super::gates::Uses;
 use super::moves::{Move, Strokes};
 use super::trouble::Alarm;
 use super::watch::Watch;
@@ -62,6 +63,7 @@ pub struct Mechanism {
     tried: Vec<Move>,
     watch: Watch,
     strokes_made: Vec<(&'static str, u64)>,
+    uses: Uses,
     axis_at: Option<AxisStation>,
     part_size: PartSize,
 }
@@ -78,6 +80,7 @@ impl Mechanism {
             tried: Vec::new(),
             watch: Watch::default(),
             strokes_made: Vec::new(),
+            uses: Uses::default(),
             axis_at: None,
             part_size,
         }
@@ -153,8 +156,14 @@ impl Mechanism {
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
         let strokes = self.strokes_made.iter().copied();
         strokes
+            .chain(self.uses.each())
             .chain([("sensor_bounces", self.watch.bounces())])
             .collect()
+    }
+
+    /// Uses of what wears since the start.
+    pub fn uses(&self) -> Uses {
+        self.uses
     }
 
     /// A motion was driven.
@@ -164,6 +173,8 @@ impl Mechanism {
         self.underway
             .retain(|underway| underway.movement.actuator_key() != key);
         self.watch.left(key);
+        self.uses.probe_touches += u64::from(movement == Move::ProbesUp);
+        self.uses.jaw_closings += u64::from(movement == Move::ClampClose);
         match self
             .strokes_made
             .iter_mut()

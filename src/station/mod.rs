@@ -6,7 +6,7 @@
 //! The outer machine is [`packml`]; what a state does is in `states`, who may ask for what in `asked`.
 //! 1. `Resetting`: [`recovery`] brings every actuator to its rest end and discharges what is found inside;
 //! 2. `Starting`: without a valid calibration probes up in the empty nest, [`reference`] measurements;
-//! 3. `Execute`: golden parts when there is no calibration, then the lot. [`feed`], [`clamp`] (with the
+//! 3. `Execute`: golden parts when there is no calibration, then the lot behind its [`gates`]. [`feed`], [`clamp`] (with the
 //!    [`test`]) and [`sort`] overlap; parts are handed over in the [`ledger`];
 //! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go as far as they can rest.
 //!
@@ -23,6 +23,7 @@ mod asked;
 pub mod catalogue;
 pub mod clamp;
 pub mod feed;
+pub mod gates;
 pub mod golden;
 mod lamps;
 mod learning;
@@ -54,6 +55,7 @@ use act::Runner;
 use annunciator::Annunciator;
 use clamp::Clamp;
 use feed::Feed;
+use gates::{Gates, LotSettings, Uses};
 use golden::{CoarseLag, GoldenRun};
 use lamps::Lamps;
 use ledger::Ledger;
@@ -87,6 +89,10 @@ pub struct Plan {
     pub voltage_gain: f64,
     /// A person is at a screen: alarms, stops and the end of the lot do not end the run.
     pub stays: bool,
+    /// Gates of the lot.
+    pub lot: LotSettings,
+    /// Uses of what wears before this run.
+    pub worn: Uses,
 }
 
 /// What `Starting` is doing.
@@ -138,6 +144,9 @@ pub struct Station {
     suspended_by_order: bool,
     asked_verify: bool,
     golden_left: VecDeque<GoldenPart>,
+    /// Golden parts that this run has asked for so far.
+    golden_planned: u64,
+    gates: Gates,
     golden_run: GoldenRun,
     coarse: (CoarseLag, CoarseLag),
     last_left: Option<RigTime>,
@@ -158,7 +167,7 @@ impl Station {
         } else {
             plan.golden.iter().cloned().collect()
         };
-        Self {
+        let mut station = Self {
             fresh: true,
             plan_count: plan.count.unwrap_or(0),
             plan,
@@ -187,14 +196,20 @@ impl Station {
             postponed: Vec::new(),
             suspended_by_order: false,
             asked_verify: false,
+            golden_planned: golden_left.len() as u64,
             golden_left,
+            gates: Gates::default(),
             golden_run: GoldenRun::default(),
             coarse: (CoarseLag::default(), CoarseLag::default()),
             last_left: None,
             lot_began: false,
             stopping: false,
             ended: false,
+        };
+        if station.plan.calibrated && station.plan.lot.golden_check.at_start {
+            station.begin_check();
         }
+        station
     }
 
     /// The part ledger.

@@ -26,7 +26,8 @@ impl Station {
         let test_running = matches!(self.clamp, Clamp::Testing(_) | Clamp::Judged);
         let was_empty = matches!(self.clamp, Clamp::Empty);
         let (feed, clamp) = (self.feed, std::mem::replace(&mut self.clamp, Clamp::Empty));
-        let (mut sort, mut last_left, bench) = (self.sort, self.last_left, self.bench.clone());
+        let (mut sort, mut last_left, mut bench) = (self.sort, self.last_left, self.bench.clone());
+        bench.thorough = self.is_thorough();
         let table = self.table.clone();
         let before = wants.motions.len();
         let mut turn = self.turn(now, &inputs, wants);
@@ -73,14 +74,9 @@ impl Station {
 
     /// Parts of the lot still to come out of the magazine.
     pub(super) fn wants_more(&self) -> bool {
-        let golden = if self.plan.calibrated {
-            0
-        } else {
-            self.plan.golden.len() as u64
-        };
         self.plan
             .count
-            .is_none_or(|count| self.ledger.own() < golden + count)
+            .is_none_or(|count| self.ledger.own() < self.golden_planned + count)
     }
 
     /// Nothing inside but, without `pocket`, a part that waits there; rows of the last one are durable.

@@ -36,6 +36,7 @@ impl Station {
         }
         wants.trouble.extend(inputs.bus.clone());
         wants.trouble.extend(there);
+        wants.trouble.extend(self.worn());
         let table = self.table.clone();
         sort::confirm(&mut self.turn(now, inputs, wants), &table);
         if !self.dark.is_empty() {

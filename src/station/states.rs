@@ -124,8 +124,10 @@ impl Station {
             State::Resetting => self.reset(now, inputs, wants),
             State::Starting => self.begin(now, &inputs, wants),
             State::Execute => {
+                self.look_for_check(now, wants);
                 self.produce(now, inputs, wants, self.wants_more(), true);
-                if self.state == State::Execute && !self.wants_more() {
+                let done = !self.wants_more() && !self.gates.is_checking();
+                if self.state == State::Execute && done {
                     self.done(now, wants);
                 }
             }

@@ -261,6 +261,44 @@ impl Alarm {
         )
     }
 
+    /// A golden part has to be measured, and nobody can have put it into the magazine.
+    pub fn golden_check_due(serial: &str) -> Self {
+        Self::new(
+            "golden_check_due",
+            format!(
+                "A golden check is due. Put golden part {serial} in front of all others, then unhold."
+            ),
+            format!("需要用标准件检查。请把标准件 {serial} 放到所有工件之前，然后解除保持。"),
+        )
+    }
+
+    /// A golden part does not read as certified.
+    pub fn golden_check_failed(why: &str) -> Self {
+        Self::new(
+            "golden_check_failed",
+            format!("Golden check failed: {why}. Parts since the last good check are suspect."),
+            format!("标准件检查未通过：{why}。自上次合格检查以来的工件均为可疑件。"),
+        )
+    }
+
+    /// More parts have failed than the lot may have.
+    pub fn discard_limit(failed: u64, judged: u64, limit_pct: f64) -> Self {
+        Self::new(
+            "lot_discard_limit",
+            format!("{failed} of {judged} parts failed, more than {limit_pct} % of the lot."),
+            format!("{judged} 件中有 {failed} 件不合格，超过批次的 {limit_pct} %。"),
+        )
+    }
+
+    /// Something was used as often as it lasts.
+    pub fn worn(what: &str, count: u64, limit: u64) -> Self {
+        Self::new(
+            format!("{what}_worn"),
+            format!("The {what} were used {count} times, the limit is {limit}. Replace them."),
+            format!("{what} 已使用 {count} 次，寿命上限为 {limit} 次。请更换。"),
+        )
+    }
+
     /// Calibration did not come out.
     pub fn calibration(text: &str) -> Self {
         Self::new(

@@ -104,6 +104,15 @@ pub struct Left {
     pub cycle: Option<Second>,
 }
 
+/// A golden check that has come out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Checked {
+    /// The golden part reads as certified.
+    pub passed: bool,
+    /// Which part, or what was found instead.
+    pub text: String,
+}
+
 /// How a run ends.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ending {
@@ -140,6 +149,8 @@ pub struct Wants {
     pub left: Vec<Left>,
     /// A calibration that is complete.
     pub calibrated: Option<Calibration>,
+    /// A golden check has come out.
+    pub checked: Option<Checked>,
     /// All outputs to their safe values, now.
     pub safe: bool,
     /// The lot itself has begun (after calibration and golden parts).

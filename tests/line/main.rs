@@ -6,6 +6,7 @@
 //! - `calibrate`: factors stored, verified, and a rig that takes no lot without them.
 //! - [`commands`]: the built program given wrong files and simple orders.
 //! - `full_disk`: a history that may not grow any more while a lot runs.
+//! - `gates`: golden checks, suspect parts, discard limit, first articles, retests, wear.
 //! - `interruptions`: lots that are stopped or killed, and what is left of them.
 //! - `killed`: the controller killed over pseudo-terminals, and outputs safe in time.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
@@ -27,6 +28,8 @@ mod check;
 mod commands;
 #[cfg(all(feature = "sim", unix))]
 mod full_disk;
+#[cfg(feature = "sim")]
+mod gates;
 #[cfg(all(feature = "sim", unix))]
 mod interruptions;
 #[cfg(all(feature = "sim", unix))]

@@ -53,6 +53,7 @@ faults! {
     }
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",
+        GoldenEvery = "golden_every",
     }
 }
 

@@ -59,7 +59,10 @@ pub struct Magazine {
     seed: u64,
     golden: Vec<Certificate>,
     lot: Option<u64>,
-    out: u64,
+    /// Lot parts between two golden ones, once the lot has begun.
+    golden_every: Option<u64>,
+    /// Golden and lot parts that have left.
+    out: (u64, u64),
     track_c: f64,
     ambient_c: f64,
 }
@@ -72,6 +75,7 @@ impl Magazine {
     pub fn load(
         options: &WorldOptions,
         world: &WorldTable,
+        faults: &Faults,
         track_c: f64,
         ambient_c: f64,
     ) -> Result<Self, ConfigError> {
@@ -88,7 +92,11 @@ impl Magazine {
             seed,
             golden,
             lot,
-            out: 0,
+            golden_every: faults
+                .values(Fault::GoldenEvery)
+                .next()
+                .map(|it| it.max(1.0) as u64),
+            out: (0, 0),
             track_c,
             ambient_c,
         })
@@ -96,16 +104,23 @@ impl Magazine {
 
     /// Parts that still wait, `u64::MAX` for an endless lot.
     pub fn waiting(&self) -> u64 {
-        let golden = self.golden.len() as u64;
-        self.lot
-            .map_or(u64::MAX, |lot| (golden + lot).saturating_sub(self.out))
+        let ahead = (self.golden.len() as u64).saturating_sub(self.out.0);
+        let lot = |lot: u64| ahead + lot.saturating_sub(self.out.1);
+        self.lot.map_or(u64::MAX, lot)
     }
 
-    /// Place in the lot (from 1) of the part that leaves next.
+    /// Place in the lot (from 1) of the part that leaves next; none when it is a golden one.
     pub fn next_number(&self) -> Option<u64> {
-        (self.out + 1)
-            .checked_sub(self.golden.len() as u64)
-            .filter(|&n| n > 0)
+        (self.out.0 >= self.golden_due()).then_some(self.out.1 + 1)
+    }
+
+    /// Golden parts that belong before the next lot part.
+    fn golden_due(&self) -> u64 {
+        let again = self.golden_every.map_or(0, |every| self.out.1 / every);
+        match self.golden.len() as u64 {
+            0 => 0,
+            first => first + again,
+        }
     }
 
     /// The next part leaves; `None` from an empty track.
@@ -116,9 +131,12 @@ impl Magazine {
         let number = self.next_number();
         let (mut specimen, draw) = match number {
             Some(n) => self.lot_part(n - 1, faults),
-            None => self.golden_part(self.out),
+            None => self.golden_part(self.out.0),
         };
-        self.out += 1;
+        match number {
+            Some(_) => self.out.1 += 1,
+            None => self.out.0 += 1,
+        }
         if faults.strikes(Fault::ProbeDirty, number) {
             specimen.kelvin[3] = false;
             specimen.pins.present[3] = false;
@@ -151,8 +169,13 @@ impl Magazine {
     }
 
     fn golden_part(&self, index: u64) -> (Specimen, Draw) {
-        let paper = &self.golden[index as usize];
-        let specimen = Specimen::of_certificate(&self.world, self.scale, self.seed, index, paper);
+        let body = if index < self.golden.len() as u64 {
+            index
+        } else {
+            0
+        };
+        let paper = &self.golden[body as usize];
+        let specimen = Specimen::of_certificate(&self.world, self.scale, self.seed, body, paper);
         (
             specimen,
             Draw::new(self.seed, Subject::GoldenOperations, index),

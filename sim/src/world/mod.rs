@@ -96,7 +96,7 @@ impl World {
         let mut draw = Draw::new(options.seed, Subject::Rig, 0);
         let environment = Environment::new(&table.environment, &mut draw);
         let (track, ambient) = (environment.track_c, environment.ambient_c);
-        let magazine = Magazine::load(options, &table, track, ambient)?;
+        let magazine = Magazine::load(options, &table, &faults, track, ambient)?;
         let drift = faults.values(Fault::Drift).next();
         let wiring = Wiring::new(&rig);
         let board = Board::new(

@@ -1,6 +1,6 @@
 //! Puts a cycle together from configuration, recipe and calibration.
 
-use super::recorder::Setup;
+use super::recorder::{Known, Setup};
 use crate::bus::Pace;
 #[cfg(feature = "sim")]
 use crate::config::Plant;
@@ -27,12 +27,13 @@ use std::sync::Arc;
 /// A cycle that is ready to run.
 pub fn cycle(
     setup: &Setup,
-    calibration: Option<Calibration>,
+    known: Known,
     pace: Pace,
     lines: Vec<LineEnds>,
     outside: Outside,
     stays: bool,
 ) -> anyhow::Result<Cycle> {
+    let Known { calibration, worn } = known;
     let plant = setup.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     let wiring = Arc::clone(&plant.wiring);
@@ -58,6 +59,8 @@ pub fn cycle(
         epoch_us: setup.epoch_us,
         simulated: setup.args.rig.sim,
         voltage_gain: wiring.analog_in(AnalogIn::CoilVoltageFine).gain,
+        lot: plant.lot.clone(),
+        worn,
     };
     let bench = Bench {
         calibration: Arc::new(calibration.unwrap_or_else(|| uncalibrated(recipe.part.nominal_v))),
@@ -66,6 +69,7 @@ pub fn cycle(
         accuracy: plant.accuracy,
         nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
             .map(|output| nominal_v_per_s(&wiring, output)),
+        thorough: false,
     };
     let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), size_of(setup.recipe));
     let station = Station::new(plan, bench, wiring.axis.clone(), mechanism);

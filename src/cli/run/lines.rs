@@ -193,6 +193,15 @@ mod simulated {
     use crate::cli::plug::PlugPorts;
     use rigsim::{Options, pty, wire};
 
+    /// The faults asked for; and the magazine is loaded as the golden checks of the lot want it, as a person would.
+    fn faults(plant: &Plant, args: &RunArgs) -> Vec<String> {
+        let mut faults = args.rig.fault.clone();
+        let asked = faults.iter().any(|it| it.starts_with("golden_every"));
+        let every = plant.lot.golden_check.after_parts.filter(|_| !asked);
+        faults.extend(every.map(|every| format!("golden_every={every}")));
+        faults
+    }
+
     /// The simulated rig behind its lines.
     pub fn open(
         plant: &Plant,
@@ -207,7 +216,7 @@ mod simulated {
             recipe: args.recipe.clone(),
             parts: args.count,
             golden: true,
-            faults: args.rig.fault.clone(),
+            faults: faults(plant, args),
         })?;
         let mut lines = Lines {
             ends: Vec::new(),

@@ -5,6 +5,7 @@
 //! one short task per transaction.
 
 use super::counts::Counts;
+use super::diary::Diary;
 use super::table::Table;
 use super::traces::Traces;
 use super::{Controls, RunArgs, rows, screen, summary};
@@ -14,9 +15,10 @@ use crate::cycle::{Event, Profile};
 use crate::gauge::verdict::{Bin, Verdict};
 use crate::gauge::{Calibration, Recipe};
 use crate::history::{
-    AlarmRecord, CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row,
-    Store, snapshot_hash,
+    CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, LotState, Row, Store,
+    snapshot_hash,
 };
+use crate::station::gates::Uses;
 use crate::station::ledger::Kind;
 use crate::station::wants::{Ending, Interrupted, Judged, Landed};
 use crate::units::RigTime;
@@ -67,6 +69,15 @@ pub struct Recorder<'a> {
     traces: Traces,
     eeprom_at_start: Option<u64>,
     writing: Duration,
+    diary: Diary,
+}
+
+/// What the history knows of the rig before a run.
+pub struct Known {
+    /// A calibration that is still valid.
+    pub calibration: Option<Calibration>,
+    /// Uses of what wears.
+    pub worn: Uses,
 }
 
 /// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
@@ -80,7 +91,7 @@ impl<'a> Recorder<'a> {
         controls: &'a Controls,
         eeprom: EepromCount,
         traces: Traces,
-    ) -> anyhow::Result<(Self, Option<Calibration>)> {
+    ) -> anyhow::Result<(Self, Known)> {
         let mut store = Store::open(db, &Identity::of_this_program())?;
         let calibration = if setup.args.rig.sim || controls.calibrates.is_some() {
             None
@@ -96,8 +107,11 @@ impl<'a> Recorder<'a> {
             opened_at_us: setup.epoch_us,
             simulated: setup.args.rig.sim,
             seed: setup.args.rig.sim.then_some(setup.args.rig.seed),
-            retest: None,
+            retest: setup.args.retest.clone(),
         })?;
+        let diary = Diary::new(&setup.args.lot, setup.args.rig.sim);
+        store.record(&[diary.lot(LotState::Running, None, setup.epoch_us)])?;
+        let worn = worn(&store, setup.args.rig.sim)?;
         controls.view.send_modify(|view| screen::begun(view, setup));
         let recorder = Self {
             setup,
@@ -115,8 +129,9 @@ impl<'a> Recorder<'a> {
             traces,
             eeprom_at_start: None,
             writing: Duration::ZERO,
+            diary,
         };
-        Ok((recorder, calibration))
+        Ok((recorder, Known { calibration, worn }))
     }
 
     /// Keeps events until the cycle has ended; an onlooker hears each of them.
@@ -182,18 +197,21 @@ impl<'a> Recorder<'a> {
                 }
                 let lines = self.traces.health();
                 self.controls.view.send_modify(|view| view.lines = lines);
-                rows.push(Row::Alarm(AlarmRecord {
-                    lot: Some(self.setup.args.lot.clone()),
-                    code: alarm.code,
-                    line: None,
-                    text: alarm.text_en,
-                    raised_at_us: self.wall_us(at),
-                    cleared_at_us: None,
-                }));
+                rows.extend(self.diary.alarm(&alarm, self.wall_us(at)));
             }
             Event::Interrupted(interrupted) => self.interrupted(&interrupted, rows),
-            Event::Standing(_) | Event::State(_) => {}
-            Event::Calibrated(calibration) => self.calibrated(&calibration)?,
+            Event::State(_) => {}
+            Event::Standing(standing, at) => {
+                rows.extend(self.diary.standing(&standing, self.wall_us(at)));
+            }
+            Event::Checked(checked, at) => {
+                rows.push(self.diary.checked(&checked, self.wall_us(at)));
+            }
+            Event::Uses(uses) => rows.extend(self.diary.uses(uses)),
+            Event::Calibrated(calibration) => {
+                rows.push(self.diary.calibrated(calibration.made_at_us));
+                self.calibrated(&calibration)?;
+            }
             Event::LotBegan(at) => {
                 self.lot_began = Some(at);
                 self.eeprom_at_start = (self.eeprom)();
@@ -302,14 +320,15 @@ impl<'a> Recorder<'a> {
         }
         let body = serde_json::to_string(calibration)?;
         let store = self.store.as_mut().context("the history is closed")?;
+        let hash = snapshot_hash(&body);
         store.save_calibration(&CalibrationRecord {
             made_at_us: calibration.made_at_us,
             due_at_us: calibration.due_at_us,
-            hash: snapshot_hash(&body),
+            hash: hash.clone(),
             body,
             verified: true,
         })?;
-        Ok(())
+        Ok(store.calibrated(&self.setup.args.lot, &hash)?)
     }
 
     fn print(&self, object: &Value) {
@@ -353,6 +372,8 @@ impl<'a> Recorder<'a> {
         }
         let end_us = self.wall_us(end);
         if let Some(store) = &mut self.store {
+            let ended: Vec<Row> = self.diary.ended(ending, end_us).into_iter().collect();
+            store.record(&ended)?;
             store.close_lot(&self.setup.args.lot, end_us)?;
         }
         Ok(())
@@ -363,6 +384,19 @@ fn hash(calibration: &Calibration) -> String {
     serde_json::to_string(calibration)
         .map(|body| snapshot_hash(&body))
         .unwrap_or_default()
+}
+
+fn worn(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
+    let wear = store.wear(simulated)?;
+    let of = |name: &str| {
+        wear.iter()
+            .find(|it| it.name == name)
+            .map_or(0, |it| it.count)
+    };
+    Ok(Uses {
+        probe_touches: of("probe_touches"),
+        jaw_closings: of("jaw_closings"),
+    })
 }
 
 /// The stored calibration, provided it is not overdue.

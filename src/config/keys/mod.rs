@@ -2,5 +2,6 @@
 
 pub mod card;
 pub mod golden;
+pub mod lot;
 pub mod recipe;
 pub mod rig;

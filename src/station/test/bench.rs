@@ -34,6 +34,8 @@ pub struct Bench {
     pub accuracy: AccuracySettings,
     /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
     pub nominal_v_per_s: [f64; 2],
+    /// The slow strategy for every result: a golden check or a first article.
+    pub thorough: bool,
 }
 
 impl Bench {
@@ -99,6 +101,7 @@ impl Bench {
         };
         let mut each = self.recipe.test.strategy.each().into_iter();
         match each.find(|(known, _)| *known == parameter) {
+            Some(_) if self.thorough => Strategy::CoarseFine,
             Some((_, Strategy::Adaptive)) if lag.coarse_n < FIRST_PARTS => Strategy::CoarseFine,
             Some((_, strategy)) if lag.fine_v.u.is_finite() => strategy,
             Some(_) | None => Strategy::CoarseFine,

@@ -197,7 +197,7 @@ impl Test {
         self.stages.push_front(Stage::TimedOperate);
     }
 
-    /// Repeats the stages whose results lie inside the guard band, once per test.
+    /// Repeats the stages whose results lie inside the guard band (of a thorough test: all), once per test.
     fn add_slow_repeats(&mut self) {
         if self.slow_done || self.findings.stopped() {
             return;
@@ -205,7 +205,7 @@ impl Test {
         self.slow_done = true;
         let mut stages: Vec<Stage> = Vec::new();
         for (parameter, judgement) in self.judgements() {
-            if !matches!(judgement, Judgement::Conditional(_)) {
+            if !self.bench.thorough && !matches!(judgement, Judgement::Conditional(_)) {
                 continue;
             }
             let stage = Stage::of(parameter);

@@ -1,5 +1,6 @@
 //! A machine whose actuators always arrive and whose parts are bad in a known way, with its station.
 
+use super::instruments::golden_parts;
 use super::shop::mechanism;
 use super::{Shop, bench};
 use crate::gauge::verdict::Bin;
@@ -7,6 +8,7 @@ use crate::rig::axis::AxisStation;
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogIn, Counter, DigitalIn, DigitalOut};
 use crate::station::act::{Job, JobDone, Read};
+use crate::station::gates::{LotSettings, Uses};
 use crate::station::moves::Move;
 use crate::station::orders::{Order, Refused};
 use crate::station::trouble::Alarm;
@@ -108,6 +110,8 @@ fn plan(count: Option<u64>) -> Plan {
         valid_us: 0,
         epoch_us: 0,
         voltage_gain: 1.6,
+        lot: LotSettings::default(),
+        worn: Uses::default(),
     }
 }
 
@@ -153,6 +157,29 @@ impl Machine {
         };
         machine.station = of_plan(plan, &machine.shop);
         machine
+    }
+
+    /// Behind these gates, with the golden parts of the default plant.
+    pub fn of_lot(
+        count: Option<u64>,
+        magazine: Vec<Specimen>,
+        lot: LotSettings,
+        stays: bool,
+    ) -> Self {
+        let mut machine = Self::new(count, magazine);
+        let plan = Plan {
+            stays,
+            lot,
+            golden: golden_parts(),
+            ..plan(count)
+        };
+        machine.station = of_plan(plan, &machine.shop);
+        machine
+    }
+
+    /// What wears was used so often before.
+    pub fn wore(&mut self, worn: Uses) {
+        self.station.plan.worn = worn;
     }
 
     /// Gives an order and has it answered in the next turn.

@@ -5,6 +5,7 @@ mod act;
 mod annunciator;
 mod clamp;
 mod feed;
+mod gates;
 mod golden;
 mod graph;
 mod instruments;

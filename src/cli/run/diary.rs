@@ -1,0 +1,203 @@
+//! Rows of a run beside its parts: the state of its lot, alarms and what becomes of them, golden checks, wear.
+
+use crate::history::{
+    AlarmChange, AlarmChangeRecord, AlarmRecord, GoldenCheckRecord, LotState, LotStateRecord, Row,
+    WearRecord,
+};
+use crate::station::annunciator::Standing;
+use crate::station::gates::Uses;
+use crate::station::trouble::Alarm;
+use crate::station::wants::{Checked, Ending};
+
+/// Alarms after which a lot takes no run before somebody releases it.
+const HOLDS: [&str; 2] = ["golden_check_failed", "lot_discard_limit"];
+/// The alarm that says that golden parts do not agree with their certificates.
+const NOT_CALIBRATED: &str = "calibration_failed";
+
+/// What was told of a run so far.
+#[derive(Debug)]
+pub struct Diary {
+    lot: String,
+    simulated: bool,
+    /// Codes of alarms whose cause is there.
+    active: Vec<String>,
+    /// The code of the alarm that holds the lot.
+    held: Option<String>,
+    uses: Uses,
+}
+
+impl Diary {
+    /// Of a run of `lot`.
+    pub fn new(lot: &str, simulated: bool) -> Self {
+        Self {
+            lot: lot.to_owned(),
+            simulated,
+            active: Vec::new(),
+            held: None,
+            uses: Uses::default(),
+        }
+    }
+
+    /// The lot is in this state from now on.
+    pub fn lot(&self, state: LotState, why: Option<String>, at_us: i64) -> Row {
+        Row::LotState(LotStateRecord {
+            lot: self.lot.clone(),
+            state,
+            why,
+            at_us,
+        })
+    }
+
+    /// An alarm came.
+    pub fn alarm(&mut self, alarm: &Alarm, at_us: i64) -> Vec<Row> {
+        let mut rows = vec![Row::Alarm(AlarmRecord {
+            lot: Some(self.lot.clone()),
+            code: alarm.code.clone(),
+            line: None,
+            text: alarm.text_en.clone(),
+            raised_at_us: at_us,
+            cleared_at_us: None,
+        })];
+        if alarm.code == NOT_CALIBRATED {
+            rows.push(self.check(false, &alarm.text_en, at_us));
+        }
+        if HOLDS.contains(&alarm.code.as_str()) {
+            self.held = Some(alarm.code.clone());
+            rows.push(self.lot(LotState::Held, Some(alarm.text_en.clone()), at_us));
+        }
+        rows
+    }
+
+    /// The alarms that stand have changed: some causes may have gone, and the lot may go on.
+    pub fn standing(&mut self, standing: &[Standing], at_us: i64) -> Vec<Row> {
+        let active: Vec<String> = standing
+            .iter()
+            .filter(|one| one.is_active())
+            .map(|one| one.alarm.code.clone())
+            .collect();
+        let gone = self.active.iter().filter(|code| !active.contains(code));
+        let mut rows: Vec<Row> = gone.map(|code| self.returned(code, at_us)).collect();
+        if self.held.take_if(|held| !active.contains(held)).is_some() {
+            rows.push(self.lot(LotState::Running, None, at_us));
+        }
+        self.active = active;
+        rows
+    }
+
+    fn returned(&self, code: &str, at_us: i64) -> Row {
+        Row::AlarmChange(AlarmChangeRecord {
+            simulated: self.simulated,
+            code: Some(code.to_owned()),
+            at_us,
+            change: AlarmChange::Returned,
+        })
+    }
+
+    /// A golden check has come out.
+    pub fn checked(&self, checked: &Checked, at_us: i64) -> Row {
+        self.check(checked.passed, &checked.text, at_us)
+    }
+
+    /// A calibration is complete, which is a check by itself.
+    pub fn calibrated(&self, at_us: i64) -> Row {
+        self.check(true, "calibration", at_us)
+    }
+
+    fn check(&self, passed: bool, text: &str, at_us: i64) -> Row {
+        Row::GoldenCheck(GoldenCheckRecord {
+            lot: self.lot.clone(),
+            at_us,
+            passed,
+            text: text.to_owned(),
+        })
+    }
+
+    /// Uses since the last time.
+    pub fn uses(&mut self, uses: Uses) -> Vec<Row> {
+        let before = std::mem::replace(&mut self.uses, uses);
+        let each = uses.each().into_iter().zip(before.each());
+        each.filter(|((_, now), (_, before))| now > before)
+            .map(|((name, now), (_, before))| {
+                Row::Wear(WearRecord {
+                    simulated: self.simulated,
+                    name: name.to_owned(),
+                    more: now - before,
+                })
+            })
+            .collect()
+    }
+
+    /// Where the lot stands after the run.
+    pub fn ended(&self, ending: &Ending, at_us: i64) -> Option<Row> {
+        let state = match (ending, &self.held) {
+            (_, Some(_)) => return None,
+            (Ending::Complete, None) => LotState::Complete,
+            (Ending::Stopped | Ending::Alarm, None) => LotState::Open,
+        };
+        Some(self.lot(state, None, at_us))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::station::annunciator::Annunciator;
+    use crate::units::RigTime;
+
+    fn diary() -> Diary {
+        Diary::new("A", false)
+    }
+
+    fn states(rows: &[Row]) -> Vec<LotState> {
+        let state = |row: &Row| match row {
+            Row::LotState(it) => Some(it.state),
+            _other => None,
+        };
+        rows.iter().filter_map(state).collect()
+    }
+
+    #[test]
+    fn a_failed_check_holds_the_lot_until_the_alarm_is_cleared() {
+        let mut diary = diary();
+        let alarm = Alarm::golden_check_failed("G-12-1 reads high");
+        let mut list = Annunciator::default();
+        list.raise(&alarm, RigTime(1));
+        assert_eq!(states(&diary.alarm(&alarm, 1)), [LotState::Held]);
+        assert!(diary.standing(list.standing(), 1).is_empty());
+        assert_eq!(diary.ended(&Ending::Alarm, 2), None);
+        list.cleared();
+        let rows = diary.standing(list.standing(), 3);
+        assert_eq!(states(&rows), [LotState::Running]);
+        assert_eq!(rows.len(), 2, "the alarm has returned and the lot runs");
+        let row = diary.ended(&Ending::Complete, 4);
+        assert_eq!(
+            states(&row.into_iter().collect::<Vec<_>>()),
+            [LotState::Complete]
+        );
+    }
+
+    #[test]
+    fn an_alarm_of_the_machine_leaves_the_lot_open() {
+        let mut diary = diary();
+        let alarm = Alarm::no_part();
+        assert!(states(&diary.alarm(&alarm, 1)).is_empty());
+        let row = diary.ended(&Ending::Alarm, 2);
+        assert_eq!(
+            states(&row.into_iter().collect::<Vec<_>>()),
+            [LotState::Open]
+        );
+    }
+
+    #[test]
+    fn wear_is_told_as_what_was_added() {
+        let mut diary = diary();
+        let uses = |probe_touches| Uses {
+            probe_touches,
+            jaw_closings: 0,
+        };
+        assert_eq!(diary.uses(uses(3)).len(), 1);
+        assert!(diary.uses(uses(3)).is_empty());
+        let rows = diary.uses(uses(5));
+        assert!(matches!(&rows[..], [Row::Wear(it)] if it.more == 2));
+    }
+}

@@ -1,0 +1,210 @@
+//! What opens and closes the gates of a lot.
+
+use super::instruments::golden_parts;
+use super::machine::{Machine, Specimen};
+use crate::gauge::Parameter;
+use crate::gauge::budget::{Budget, Reading};
+use crate::gauge::settings::GoldenPart;
+use crate::rig::sample::Sample;
+use crate::station::gates::{CheckSettings, LotSettings, Uses, WearSettings};
+use crate::station::golden::check;
+use crate::station::ledger::Kind;
+use crate::station::orders::Order;
+use crate::station::packml::{Command, State};
+use crate::station::test::Findings;
+use crate::station::wants::Ending;
+
+const BAD: Specimen = Specimen::OpenCoil;
+
+/// What a test finds on a golden part that is so many standard deviations off in one parameter.
+fn read(part: &GoldenPart, off: Parameter, deviations: f64) -> Findings {
+    let mut findings = Findings::default();
+    for (parameter, certified) in [
+        (Parameter::CoilResistance, part.coil_resistance_ohm),
+        (Parameter::OperateVoltage, part.operate_voltage_v),
+        (Parameter::ReleaseVoltage, part.release_voltage_v),
+    ] {
+        let u = 0.003_f64;
+        let by = if parameter == off { deviations } else { 0.0 };
+        let reading = Reading {
+            value: certified.value + by * u.hypot(certified.u),
+            budget: Budget::default().with("test", u),
+        };
+        findings.found::<Sample>(parameter, reading, []);
+    }
+    findings
+}
+
+#[test]
+fn a_golden_part_agrees_with_its_certificate_within_three_standard_deviations() {
+    let part = &golden_parts()[0];
+    for parameter in [
+        Parameter::CoilResistance,
+        Parameter::OperateVoltage,
+        Parameter::ReleaseVoltage,
+    ] {
+        for (deviations, agrees) in [
+            (0.0, true),
+            (2.9, true),
+            (-2.9, true),
+            (3.1, false),
+            (-3.1, false),
+            (f64::NAN, false),
+        ] {
+            let found = check(part, &read(part, parameter, deviations));
+            assert_eq!(found.is_ok(), agrees, "{parameter} {deviations}: {found:?}");
+        }
+    }
+    let nothing = check(part, &Findings::default());
+    assert!(nothing.is_err_and(|why| why.contains("coil_resistance_ohm")));
+}
+
+/// Every part of this magazine has a broken coil, the golden one too: no check can be passed.
+fn checked(settings: CheckSettings, stays: bool) -> Machine {
+    let lot = LotSettings {
+        golden_check: settings,
+        ..LotSettings::default()
+    };
+    Machine::of_lot(Some(6), vec![BAD; 9], lot, stays)
+}
+
+fn after_parts(parts: u64) -> CheckSettings {
+    CheckSettings {
+        after_parts: Some(parts),
+        ..CheckSettings::default()
+    }
+}
+
+fn kinds(machine: &mut Machine) -> Vec<String> {
+    let mut kinds = Vec::new();
+    for _ in 0..20_000 {
+        let wants = machine.turn();
+        kinds.extend(wants.judged.iter().map(|one| match &one.part.kind {
+            Kind::Golden(_) => "golden".to_owned(),
+            Kind::Lot(seq) => seq.to_string(),
+        }));
+        let rests = machine.station.outer() == State::Held;
+        if wants.ending.is_some() || rests {
+            break;
+        }
+    }
+    kinds
+}
+
+#[test]
+fn nothing_but_a_golden_part_is_judged_after_a_check_that_failed() {
+    let mut machine = checked(after_parts(2), true);
+    assert_eq!(kinds(&mut machine), ["1", "2", "golden"]);
+    assert_eq!(machine.station.outer(), State::Held);
+    machine.order(Order::Command(Command::Unhold)).unwrap();
+    assert_eq!(kinds(&mut machine), ["golden"], "the gate stays closed");
+    let failed = machine.station.annunciator().standing();
+    assert_eq!(failed[0].alarm.code, "golden_check_failed");
+}
+
+#[test]
+fn without_a_person_a_check_that_failed_ends_the_run() {
+    let mut machine = checked(after_parts(2), false);
+    assert_eq!(machine.run().ending, Some(Ending::Alarm));
+}
+
+#[test]
+fn a_check_at_the_start_comes_before_the_first_part() {
+    let settings = CheckSettings {
+        at_start: true,
+        ..CheckSettings::default()
+    };
+    let mut machine = checked(settings, true);
+    assert_eq!(kinds(&mut machine), ["golden"]);
+}
+
+#[test]
+fn after_so_many_hours_the_line_holds_and_asks_for_the_golden_part() {
+    let settings = CheckSettings {
+        after_h: Some(2.0 / 3600.0),
+        ..CheckSettings::default()
+    };
+    let mut machine = checked(settings, true);
+    let made = kinds(&mut machine);
+    assert!(
+        !made.is_empty() && !made.contains(&"golden".to_owned()),
+        "{made:?}"
+    );
+    let due = &machine.station.annunciator().standing()[0].alarm;
+    assert!(due.code == "golden_check_due" && due.text_en.contains("G-12-1"));
+    machine.order(Order::Command(Command::Unhold)).unwrap();
+    assert_eq!(
+        kinds(&mut machine).first().map(String::as_str),
+        Some("golden")
+    );
+}
+
+#[test]
+fn a_golden_part_that_was_interrupted_has_said_nothing() {
+    let mut machine = checked(after_parts(1), true);
+    while machine
+        .station
+        .ledger()
+        .nest
+        .as_ref()
+        .is_none_or(|part| matches!(part.kind, Kind::Lot(_)))
+    {
+        machine.turn();
+    }
+    machine.order(Order::Command(Command::Abort)).unwrap();
+    for command in [Command::Clear, Command::Reset, Command::Start] {
+        while machine.station.may(command).is_err() {
+            machine.turn();
+        }
+        machine.order(Order::Command(command)).unwrap();
+    }
+    let kinds = kinds(&mut machine);
+    assert_eq!(
+        kinds.first().map(String::as_str),
+        Some("golden"),
+        "{kinds:?}"
+    );
+}
+
+#[test]
+fn the_discard_limit_is_told_once_with_the_first_part_too_many() {
+    let lot = LotSettings {
+        discard_limit_pct: Some(34.0),
+        ..LotSettings::default()
+    };
+    let mut machine = Machine::of_lot(Some(6), vec![BAD; 6], lot, true);
+    assert_eq!(kinds(&mut machine), ["1", "2", "3"], "two of six are 33 %");
+    machine.order(Order::Command(Command::Unhold)).unwrap();
+    assert_eq!(kinds(&mut machine).len(), 3, "the person goes on with it");
+}
+
+#[test]
+fn wear_of_earlier_runs_counts() {
+    let lot = LotSettings {
+        wear: WearSettings {
+            probe_touches: Some(102),
+            jaw_closings: Some(1000),
+        },
+        ..LotSettings::default()
+    };
+    let worn = Uses {
+        probe_touches: 100,
+        jaw_closings: 0,
+    };
+    let mut machine = Machine::of_lot(Some(3), vec![BAD; 3], lot, false);
+    machine.wore(worn);
+    let mut told = Vec::new();
+    loop {
+        let wants = machine.turn();
+        told.extend(
+            wants
+                .alarms
+                .iter()
+                .map(|alarm| (alarm.code.clone(), machine.station.uses().probe_touches)),
+        );
+        if wants.ending.is_some() {
+            break;
+        }
+    }
+    assert_eq!(told, [("probes_worn".to_owned(), 2)]);
+}

@@ -1,0 +1,203 @@
+//! Gates of a lot: golden checks, suspect parts, discard limit, first articles, the frozen recipe, retests, wear.
+
+use crate::program::{Said, Workshop};
+
+/// A lot on the simulated rig, seed 1.
+fn run(workshop: &Workshop, count: u64, more: &str) -> Said {
+    workshop.run(&format!(
+        "run --sim --pace virtual --lot A --recipe jzc-22f-012 --count {count} --seed 1 --json {more}"
+    ))
+}
+
+fn with_lot(name: &str, settings: &str) -> Workshop {
+    let workshop = Workshop::new(name);
+    workshop.write("config/lot.toml", settings);
+    workshop
+}
+
+fn state(workshop: &Workshop) -> String {
+    let states = workshop.texts("SELECT state FROM lot_state");
+    assert_eq!(states.len(), 1);
+    states[0].clone()
+}
+
+#[test]
+fn a_golden_part_is_measured_after_every_so_many_parts_and_counts_for_none() {
+    let workshop = with_lot("gates_checked", "[golden_check]\nafter_parts = 3\n");
+    let said = run(&workshop, 8, "--truth t.jsonl").with_status(0);
+    assert_eq!(said.objects().last().unwrap()["parts"], 8, "{said}");
+    let checks = workshop.texts("SELECT text FROM golden_check WHERE passed ORDER BY at_us");
+    assert_eq!(checks, ["calibration", "G-12-1", "G-12-1"]);
+    assert_eq!(workshop.count("SELECT count(*) FROM golden_check"), 3);
+    assert_eq!(
+        workshop.count("SELECT count(*) FROM part WHERE kind = 'golden'"),
+        7
+    );
+    let slow = "SELECT min(attempt) FROM measurement JOIN part ON part.id = part_id
+                WHERE kind = 'golden' AND seq > 5";
+    assert!(workshop.count(slow) > 1, "the slow strategy");
+    assert_eq!(state(&workshop), "complete");
+    assert_eq!(workshop.read("t.jsonl").lines().count(), 8);
+    let frozen = "SELECT count(*) FROM run JOIN calibration ON calibration.hash = calibration_hash";
+    assert_eq!(workshop.count(frozen), 1);
+}
+
+#[test]
+fn a_check_that_fails_ends_the_run_holds_the_lot_and_makes_what_came_since_the_last_good_one_suspect()
+ {
+    let workshop = with_lot("gates_drifted", "[golden_check]\nafter_parts = 4\n");
+    run(&workshop, 9, "--fault drift=20").with_status(3);
+    let alarms = workshop.texts("SELECT code FROM alarm");
+    assert_eq!(alarms, ["golden_check_failed"]);
+    let suspects = workshop
+        .run("history query --suspect --json")
+        .with_status(0);
+    let seqs: Vec<i64> = suspects
+        .objects()
+        .iter()
+        .map(|it| it["seq"].as_i64().unwrap())
+        .collect();
+    assert_eq!(seqs, [1, 2, 3, 4]);
+    let refused = run(&workshop, 9, "").with_status(2);
+    assert!(
+        refused.stderr.contains("held since") && refused.stderr.contains("relayrig lot release"),
+        "{refused}"
+    );
+    workshop
+        .run("lot release A --by li --reason cleaned")
+        .with_status(0);
+    let orders = workshop
+        .run("history orders --who li --json")
+        .with_status(0);
+    assert_eq!(orders.objects()[0]["what"]["order"], "release_lot");
+    run(&workshop, 2, "").with_status(0);
+    assert_eq!(state(&workshop), "complete");
+    let shown = workshop.run("lot show A").with_status(0);
+    assert!(
+        shown.stdout.contains("4 suspect") && shown.stdout.contains("FAILED"),
+        "{shown}"
+    );
+}
+
+#[test]
+fn more_failed_parts_than_the_lot_may_have_hold_it() {
+    let workshop = with_lot("gates_discarded", "discard_limit_pct = 5.0\n");
+    workshop.change("config/sim.toml", "rate_pct = 4.0", "rate_pct = 75.0");
+    run(&workshop, 40, "").with_status(3);
+    assert_eq!(
+        workshop.texts("SELECT code FROM alarm"),
+        ["lot_discard_limit"]
+    );
+    let failed = "SELECT count(*) FROM part WHERE kind = 'lot' AND verdict = 'fail'";
+    assert_eq!(workshop.count(failed), 3, "two of forty are 5 %");
+    assert_eq!(state(&workshop), "held");
+}
+
+#[test]
+fn the_first_articles_are_measured_by_the_slow_strategy_and_the_others_are_not() {
+    let workshop = with_lot("gates_first", "first_article_parts = 2\n");
+    run(&workshop, 4, "").with_status(0);
+    let attempts = |seq: u32| {
+        workshop.count(&format!(
+            "SELECT sum(attempt) FROM measurement JOIN part ON part.id = part_id
+             WHERE kind = 'lot' AND seq = {seq}"
+        ))
+    };
+    let each: Vec<i64> = (1..=4).map(attempts).collect();
+    assert_eq!(each[0], each[1]);
+    assert!(each[0] >= 4 * 9 && each[2] < 15 && each[3] < 15, "{each:?}");
+}
+
+#[test]
+fn a_lot_goes_on_with_the_recipe_it_was_begun_with_until_it_is_closed() {
+    let workshop = Workshop::new("gates_frozen");
+    run(&workshop, 4, "--fault door").with_status(3);
+    assert_eq!(state(&workshop), "open");
+    workshop.change(
+        "config/recipes/jzc-22f-012.toml",
+        "slow_repeats = 3 ",
+        "slow_repeats = 4 ",
+    );
+    let refused = run(&workshop, 1, "").with_status(2);
+    assert!(
+        refused.stderr.contains("--recipe") && refused.stderr.contains("lot close"),
+        "{refused}"
+    );
+    workshop.run("lot close A --by li").with_status(0);
+    run(&workshop, 1, "").with_status(0);
+    assert_eq!(
+        workshop.count("SELECT count(DISTINCT recipe_id) FROM run"),
+        2
+    );
+}
+
+#[test]
+fn a_retest_keeps_the_first_result_and_names_who_agreed() {
+    let workshop = Workshop::new("gates_retest");
+    let early = run(&workshop, 1, "--retest li").with_status(2);
+    assert!(early.stderr.contains("no run of lot"), "{early}");
+    workshop.change("config/sim.toml", "rate_pct = 4.0", "rate_pct = 75.0");
+    run(&workshop, 6, "").with_status(0);
+    let first = workshop.count("SELECT count(*) FROM part WHERE kind = 'lot' AND verdict = 'pass'");
+    workshop.change("config/sim.toml", "rate_pct = 75.0", "rate_pct = 0.0");
+    run(&workshop, 2, "--retest li").with_status(0);
+    let shown = workshop
+        .run("lot show A --json")
+        .with_status(0)
+        .objects()
+        .remove(0);
+    assert_eq!(shown["yield"]["parts"], 6);
+    assert_eq!(shown["yield"]["first_pass"], first);
+    assert_eq!(shown["yield"]["retest_pass"], 2);
+    assert_eq!(shown["runs"][1]["retest"], "li");
+}
+
+#[test]
+fn worn_probes_are_told_once_the_line_goes_on_and_the_counter_outlives_the_run() {
+    let workshop = with_lot("gates_worn", "[wear]\nprobe_touches = 8\n");
+    run(&workshop, 3, "").with_status(0);
+    assert_eq!(workshop.texts("SELECT code FROM alarm"), ["probes_worn"]);
+    let touches = || workshop.count("SELECT count FROM wear WHERE name = 'probe_touches'");
+    // References in the empty nest, five golden parts, three of the lot.
+    assert_eq!(touches(), 9);
+    run(&workshop, 1, "").with_status(0);
+    assert_eq!(touches(), 16);
+    workshop
+        .run("wear --sim replaced probe_touches --by li")
+        .with_status(0);
+    assert_eq!(touches(), 0);
+    let wrong = workshop
+        .run("wear --sim replaced pins --by li")
+        .with_status(2);
+    assert!(wrong.stderr.contains("probe_touches"), "{wrong}");
+}
+
+#[test]
+fn a_lot_without_gates_needs_no_file_and_a_wrong_key_is_named_with_its_line() {
+    let workshop = Workshop::new("gates_file");
+    std::fs::remove_file(workshop.folder.join("config/lot.toml")).unwrap();
+    workshop.run("config check").with_status(0);
+    workshop.write(
+        "config/lot.toml",
+        "discard_limit_pct = 5.0\n[golden_check]\nafter_part = 3\n",
+    );
+    let wrong = workshop.run("config check").with_status(2);
+    assert!(
+        wrong.stderr.contains("lot.toml:3") && wrong.stderr.contains("after_parts"),
+        "{wrong}"
+    );
+}
+
+#[test]
+fn a_check_without_a_golden_part_of_the_voltage_is_refused_before_anything_moves() {
+    let workshop = with_lot("gates_no_golden", "[golden_check]\nafter_h = 1.0\n");
+    let text = workshop
+        .read("config/golden.toml")
+        .replace("nominal_v = 12.0", "nominal_v = 11.0");
+    workshop.write("config/golden.toml", &text);
+    let said = run(&workshop, 1, "").with_status(2);
+    assert!(
+        said.stderr.contains("[golden_check]") && said.stderr.contains("12 V"),
+        "{said}"
+    );
+}
