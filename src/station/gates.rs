@@ -148,7 +148,7 @@ impl Station {
     /// A golden part comes next: nothing else is judged before one has read as certified.
     pub(super) fn begin_check(&mut self) {
         let next: VecDeque<GoldenPart> = self.plan.golden.first().cloned().into_iter().collect();
-        self.golden_planned += next.len() as u64;
+        self.golden_planned += next.len().saturating_sub(self.golden_left.len()) as u64;
         self.gates.checking = !next.is_empty();
         self.golden_left = next;
     }

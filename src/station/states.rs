@@ -176,6 +176,9 @@ impl Station {
         self.clamp = super::Clamp::Empty;
         self.sort = Sort::Returning;
         self.last_left = None;
+        if self.gates.is_checking() {
+            self.begin_check();
+        }
         let ledger = &mut self.ledger;
         for part in ledger.nest.iter_mut().chain(&mut ledger.gripper) {
             part.interrupted.get_or_insert_with(|| "by a reset".into());

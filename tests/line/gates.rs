@@ -88,8 +88,9 @@ fn more_failed_parts_than_the_lot_may_have_hold_it() {
         workshop.texts("SELECT code FROM alarm"),
         ["lot_discard_limit"]
     );
+    // Two of forty are 5 %; the third ended the run, which nobody watches, on its way to the bin.
     let failed = "SELECT count(*) FROM part WHERE kind = 'lot' AND verdict = 'fail'";
-    assert_eq!(workshop.count(failed), 3, "two of forty are 5 %");
+    assert_eq!(workshop.count(failed), 2);
     assert_eq!(state(&workshop), "held");
 }
 

@@ -50,6 +50,15 @@ const OFF: Span = Span::ms(12);
 /// A change of drive, selection or direction comes so late while the source is on.
 const INTERLOCK: Span = Span::ms(2);
 
+/// Stages of the slow strategy in the order of the test.
+const SLOW: [Stage; 5] = [
+    Stage::Coil,
+    Stage::OperateFine(0),
+    Stage::ReleaseFine(0),
+    Stage::TimedOperate,
+    Stage::TimedRelease,
+];
+
 /// What the test wants from its surroundings.
 #[derive(Debug)]
 pub enum Progress {
@@ -203,20 +212,18 @@ impl Test {
             return;
         }
         self.slow_done = true;
-        let mut stages: Vec<Stage> = Vec::new();
-        for (parameter, judgement) in self.judgements() {
-            if !self.bench.thorough && !matches!(judgement, Judgement::Conditional(_)) {
-                continue;
-            }
-            let stage = Stage::of(parameter);
-            if !stages.contains(&stage) {
-                stages.push(stage);
-            }
-        }
-        for stage in stages {
-            for _ in 0..self.bench.recipe.decision.slow_repeats {
-                self.stages.push_front(stage);
-            }
+        let doubtful = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
+        let again: Vec<Stage> = self
+            .judgements()
+            .iter()
+            .filter(|(_, judgement)| self.bench.thorough || doubtful(judgement))
+            .map(|(parameter, _)| Stage::of(*parameter))
+            .collect();
+        // In the order of the test: a fine release ramp right after the timed operation would start from
+        // another flux than the one its lag was learned from.
+        for _ in 0..self.bench.recipe.decision.slow_repeats {
+            let round = SLOW.iter().rev().filter(|stage| again.contains(stage));
+            round.for_each(|stage| self.stages.push_front(*stage));
         }
     }
 
