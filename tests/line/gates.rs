@@ -34,7 +34,7 @@ fn a_golden_part_is_measured_after_every_so_many_parts_and_counts_for_none() {
         7
     );
     let slow = "SELECT min(attempt) FROM measurement JOIN part ON part.id = part_id
-                WHERE kind = 'golden' AND seq > 5";
+                WHERE kind = 'golden' AND seq > 5 AND parameter_id = 2";
     assert!(workshop.count(slow) > 1, "the slow strategy");
     assert_eq!(state(&workshop), "complete");
     assert_eq!(workshop.read("t.jsonl").lines().count(), 8);
@@ -106,7 +106,7 @@ fn the_first_articles_are_measured_by_the_slow_strategy_and_the_others_are_not()
     };
     let each: Vec<i64> = (1..=4).map(attempts).collect();
     assert_eq!(each[0], each[1]);
-    assert!(each[0] >= 4 * 9 && each[2] < 15 && each[3] < 15, "{each:?}");
+    assert!(each[0] > 30 && each[2] < 15 && each[3] < 15, "{each:?}");
 }
 
 #[test]
