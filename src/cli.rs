@@ -1,5 +1,6 @@
 //! The commands, one file each. The only place that names the simulator.
 
+pub mod alarm;
 pub mod bus;
 pub mod calibrate;
 pub mod card;
@@ -95,6 +96,8 @@ pub enum Command {
     Check(check::CheckArgs),
     /// Lots, parts, filters, statistics
     History(history::HistoryArgs),
+    /// Alarms that nobody has seen yet; acknowledge or shelve them
+    Alarm(alarm::AlarmArgs),
     /// Where a lot stands; hold, release or close it
     Lot(lot::LotArgs),
     /// How often probes and jaws were used since they were replaced
@@ -125,6 +128,7 @@ impl Cli {
             Command::Bus(args) => bus::run(&args),
             Command::Check(args) => check::run(args),
             Command::History(args) => history::run(&self.config, &self.db, args),
+            Command::Alarm(args) => alarm::run(&self.db, &args),
             Command::Lot(args) => lot::run(&self.db, &args),
             Command::Wear(args) => wear::run(&self.db, &args),
             Command::User(args) => user::run(&self.db, args),

@@ -36,7 +36,7 @@ use crate::station::packml;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Checked, Ending, Inputs, Interrupted, Wants};
 use crate::units::{RigTime, Span};
-use crate::view::View;
+use crate::view::{Answered, View};
 use patience::Patience;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -68,6 +68,8 @@ pub enum Event {
     Calibrated(Box<crate::gauge::Calibration>),
     /// A golden check has come out.
     Checked(Checked, RigTime),
+    /// An order was answered.
+    Ordered(Box<Answered>, RigTime),
     /// Uses of what wears, since the start.
     Uses(Uses),
     /// The lot itself began.
@@ -202,7 +204,7 @@ impl Cycle {
             lap(&mut self.profile.clear_s, &mut clock);
             self.apply(now, &mut wants);
             lap(&mut self.profile.apply_s, &mut clock);
-            self.answer(&mut wants);
+            self.answer(&mut wants, now);
             self.record(now, &mut wants);
             self.publish(now, wants.ending.is_some());
             if wants.verify {
@@ -310,7 +312,7 @@ impl Cycle {
         if let Some(asked_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
             self.worst_age = self.worst_age.max(now.since(asked_at));
         }
-        let orders = self.orders();
+        let orders = self.orders(now);
         self.making_safe = packml::is_aborted(self.station.outer());
         if self.making_safe {
             self.patience.forgive();

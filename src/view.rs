@@ -6,7 +6,7 @@ mod order;
 
 pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
 pub use mimic::{Mimic, MimicBody};
-pub use order::{NotTaken, ORDERS, Order};
+pub use order::{Answered, By, NotTaken, ORDERS, Order};
 
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -149,7 +149,8 @@ pub fn run_with(
         && controls.calibrates.is_none()
         && let Some(why) = calibrate::why_not(db, recipe.part.nominal_v)?
     {
-        tracing::error!(code = "calibration_invalid", "{why}");
+        tracing::error!(code = gate::INVALID, "{why}");
+        gate::refuse(db, &recipe, args, &why)?;
         return Ok(super::RIG_TROUBLE);
     }
     let mut builder = tokio::runtime::Builder::new_current_thread();

@@ -1,11 +1,12 @@
 //! Orders of screens: taken in, handed to the station, answered; and motions by hand.
 
-use super::{Cycle, publish};
+use super::{Cycle, Event, publish};
+use crate::hmi::Asked;
 use crate::station::moves::Move;
 use crate::station::orders::{Order, Refused};
 use crate::station::wants::Wants;
 use crate::units::RigTime;
-use crate::view::NotTaken;
+use crate::view::{Answered, NotTaken};
 
 fn not_taken(why: Refused) -> NotTaken {
     NotTaken {
@@ -15,28 +16,41 @@ fn not_taken(why: Refused) -> NotTaken {
 }
 
 impl Cycle {
-    /// Orders that have come in; one that is no order is answered at once.
-    pub(super) fn orders(&mut self) -> Vec<Order> {
+    /// Orders that have come in; one that is denied or no order is answered at once.
+    pub(super) fn orders(&mut self, now: RigTime) -> Vec<Order> {
         while let Ok(asked) = self.outside.orders.try_recv() {
             self.asked.push(asked);
         }
         let mut orders = Vec::new();
         for asked in std::mem::take(&mut self.asked) {
-            match publish::read(&asked.order) {
+            let denied = asked.denied.as_ref().map(|why| Refused::new(why, why));
+            match denied.map_or_else(|| publish::read(&asked.order), Err) {
                 Ok(order) => {
                     orders.push(order);
                     self.asked.push(asked);
                 }
-                Err(why) => asked.say(Err(not_taken(why))),
+                Err(why) => self.say(asked, Err(why), now),
             }
         }
         orders
     }
 
-    pub(super) fn answer(&mut self, wants: &mut Wants) {
-        for (asked, answer) in self.asked.drain(..).zip(wants.answers.drain(..)) {
-            asked.say(answer.map_err(not_taken));
+    pub(super) fn answer(&mut self, wants: &mut Wants, now: RigTime) {
+        let asked: Vec<_> = self.asked.drain(..).collect();
+        for (asked, answer) in asked.into_iter().zip(wants.answers.drain(..)) {
+            self.say(asked, answer, now);
         }
+    }
+
+    /// Answers whoever asked, and tells the audit.
+    fn say(&self, asked: Asked, answer: Result<(), Refused>, now: RigTime) {
+        let answered = Answered {
+            order: asked.order.clone(),
+            by: asked.by.clone(),
+            refused: answer.as_ref().err().map(|why| why.en.clone()),
+        };
+        self.tell(Event::Ordered(Box::new(answered), now));
+        asked.say(answer.map_err(not_taken));
     }
 
     /// A motion by hand: refused is an answer to who asked, not an alarm.

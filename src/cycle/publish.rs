@@ -53,9 +53,12 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
         "step" => Ok(Order::Step),
         "lamp_test" => Ok(Order::LampTest),
         "acknowledge" => Ok(Order::Acknowledge(named)),
-        "shelve" => match named {
-            Some(code) => Ok(Order::Shelve(code, order.minutes.unwrap_or(30))),
-            None => Err(expected("alarm", vec!["the code of an alarm"], None)),
+        "shelve" => match (named, order.reason.as_deref().map(str::trim)) {
+            (Some(code), Some(reason)) if !reason.is_empty() => {
+                Ok(Order::Shelve(code, orders::shelf_minutes(order.minutes)))
+            }
+            (Some(_), _) => Err(expected("reason", vec!["why it is shelved"], None)),
+            (None, _) => Err(expected("alarm", vec!["the code of an alarm"], None)),
         },
         other => Err(expected("order", view::ORDERS.to_vec(), Some(other))),
     }
@@ -256,6 +259,7 @@ mod tests {
                 motion: Some("pusher_extend".into()),
                 alarm: Some("door_open".into()),
                 minutes: None,
+                reason: Some("sensor is on its way".into()),
             };
             assert!(read(&order).is_ok(), "{word}");
         }

@@ -41,6 +41,7 @@ use crate::view::Mimic;
 pub use gate::Gate;
 pub use orders::{Asked, WAITING};
 
+use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -75,6 +76,7 @@ pub async fn serve(
     ended: watch::Receiver<bool>,
 ) -> std::io::Result<()> {
     let router = router::router(shared, ended.clone());
+    let router = router.into_make_service_with_connect_info::<SocketAddr>();
     let service = axum::serve(listener, router).with_graceful_shutdown(over(ended.clone()));
     tokio::select! {
         served = service => served,

@@ -2,18 +2,20 @@
 //!
 //! An order goes to the cycle, which answers it in its next turn: taken, or not now and why, in English and
 //! Chinese. A client can tell "not now" (409) from "no such thing" (400). Nothing is stored here: an order
-//! that the controller does not take at once is refused, never kept for later.
+//! that the controller does not take at once is refused, never kept for later. What a person may not order goes
+//! to the controller too, marked as denied, because the audit has one writer. Strangers leave nothing there.
 
-use super::access::Role;
+use super::access::{Person, Role};
 use super::error::HmiError;
 use super::router::Desk;
 use super::{gate, origin};
-use crate::view::{NotTaken, ORDERS, Order};
+use crate::view::{By, NotTaken, ORDERS, Order};
 use axum::Json;
-use axum::extract::State;
-use axum::extract::rejection::JsonRejection;
+use axum::extract::rejection::{ExtensionRejection, JsonRejection};
+use axum::extract::{ConnectInfo, State};
 use axum::http::HeaderMap;
 use serde::Serialize;
+use std::net::SocketAddr;
 use tokio::sync::oneshot;
 
 /// Orders that wait for the next turn; more at once than fingers on a panel.
@@ -24,6 +26,10 @@ pub const WAITING: usize = 16;
 pub struct Asked {
     /// What is wanted.
     pub order: Order,
+    /// Who wants it.
+    pub by: By,
+    /// It is not to be taken, for this reason; it comes for the audit alone.
+    pub denied: Option<String>,
     /// The way back.
     pub answer: oneshot::Sender<Result<(), NotTaken>>,
 }
@@ -44,20 +50,26 @@ pub(super) struct Taken {
 /// `POST /api/orders`.
 pub(super) async fn order(
     State(desk): State<Desk>,
+    from: Result<ConnectInfo<SocketAddr>, ExtensionRejection>,
     headers: HeaderMap,
     body: Result<Json<Order>, JsonRejection>,
 ) -> Result<Json<Taken>, HmiError> {
     origin::ours(&headers)?;
     let person = desk.shared.gate.at_least(Role::Operator, &headers).await?;
     let Json(order) = body?;
-    gate::trusted(&person, needs(&order))?;
-    let Some(word) = ORDERS.into_iter().find(|known| *known == order.order) else {
-        return Err(HmiError::UnknownOrder {
-            found: order.order.chars().take(40).collect(),
-            known: ORDERS.join(", "),
-        });
+    let by = By {
+        who: person.name.clone(),
+        role: person.role.to_string(),
+        origin: from.map_or_else(|_| String::new(), |from| from.0.ip().to_string()),
     };
-    match give(&desk, order).await {
+    let word = match allowed(&person, &order) {
+        Ok(word) => word,
+        Err(refused) => {
+            note(&desk, order, by, refused.to_string());
+            return Err(refused);
+        }
+    };
+    match give(&desk, order, by).await {
         None => Err(HmiError::NotNow {
             order: word,
             reason: "the controller has ended or does not answer; nothing was done".into(),
@@ -80,8 +92,38 @@ fn needs(order: &Order) -> Role {
     }
 }
 
-async fn give(desk: &Desk, order: Order) -> Option<Result<(), NotTaken>> {
+/// The word of an order that is known and that the person may give.
+fn allowed(person: &Person, order: &Order) -> Result<&'static str, HmiError> {
+    gate::trusted(person, needs(order))?;
+    let mut known = ORDERS.into_iter();
+    known
+        .find(|known| *known == order.order)
+        .ok_or_else(|| HmiError::UnknownOrder {
+            found: order.order.chars().take(40).collect(),
+            known: ORDERS.join(", "),
+        })
+}
+
+async fn give(desk: &Desk, order: Order, by: By) -> Option<Result<(), NotTaken>> {
     let (answer, answered) = oneshot::channel();
-    desk.shared.orders.try_send(Asked { order, answer }).ok()?;
+    let asked = Asked {
+        order,
+        by,
+        denied: None,
+        answer,
+    };
+    desk.shared.orders.try_send(asked).ok()?;
     answered.await.ok()
+}
+
+/// For the audit; a controller that has ended or is too busy to listen writes none.
+fn note(desk: &Desk, order: Order, by: By, why: String) {
+    let (answer, _nobody_waits) = oneshot::channel();
+    let asked = Asked {
+        order,
+        by,
+        denied: Some(why),
+        answer,
+    };
+    let _ = desk.shared.orders.try_send(asked);
 }

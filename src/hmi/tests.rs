@@ -17,8 +17,8 @@ use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
 use tokio::sync::{mpsc, watch};
 use tokio::task::JoinHandle;
 use tower::ServiceExt;
@@ -27,10 +27,14 @@ use tower::ServiceExt;
 const PASSWORD: &str = "open sesame";
 
 /// A screen with both ends of its channels.
+type Denied = Arc<Mutex<Vec<String>>>;
+
 struct Bench {
     view: watch::Sender<View>,
     ended: watch::Sender<bool>,
     stop: Arc<AtomicBool>,
+    /// Orders that came for the audit alone.
+    denied: Denied,
     controller: JoinHandle<()>,
     orders: mpsc::Sender<Asked>,
     router: Router,
@@ -54,8 +58,9 @@ impl Bench {
         let (view, looking) = watch::channel(some_view());
         let (ended, over) = watch::channel(false);
         let stop = Arc::new(AtomicBool::new(false));
+        let denied = Denied::default();
         let (orders, asked) = mpsc::channel(WAITING);
-        let controller = tokio::spawn(controller(asked, Arc::clone(&stop)));
+        let controller = tokio::spawn(controller(asked, Arc::clone(&stop), Arc::clone(&denied)));
         let people = db.with_file_name("people.db");
         let mut register = Register::open(&people).unwrap();
         for (name, role) in [("li", Role::Operator), ("wang", Role::Maintainer)] {
@@ -76,6 +81,7 @@ impl Bench {
             view,
             ended,
             stop,
+            denied,
             controller,
             orders,
             router,
@@ -124,8 +130,15 @@ impl Bench {
 }
 
 /// Takes `stop` and the orders of maintenance, and nothing else.
-async fn controller(mut asked: mpsc::Receiver<Asked>, stop: Arc<AtomicBool>) {
+async fn controller(mut asked: mpsc::Receiver<Asked>, stop: Arc<AtomicBool>, denied: Denied) {
     while let Some(asked) = asked.recv().await {
+        if let Some(why) = &asked.denied {
+            denied.lock().unwrap().push(format!(
+                "{} {} {}: {why}",
+                asked.by.role, asked.by.who, asked.order.order
+            ));
+            continue;
+        }
         let answer = match asked.order.order.as_str() {
             "stop" => {
                 stop.store(true, Ordering::SeqCst);

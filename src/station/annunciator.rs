@@ -88,19 +88,17 @@ impl Annunciator {
         std::mem::take(&mut self.changed)
     }
 
-    /// Puts in an alarm that nobody had acknowledged when the program ended.
-    pub fn inherit(&mut self, alarm: Alarm, condition: Condition, count: u32) {
+    /// Puts in an alarm that nobody had acknowledged when the program ended: what its cause does now is found out
+    /// anew, what nobody has seen stays unseen, and what was shelved stays on the shelf.
+    pub fn inherit(&mut self, alarm: Alarm, count: u32, shelved_until: Option<RigTime>) {
+        self.changed = true;
         self.standing.push(Standing {
             alarm,
-            // What the cause does now is found out anew; what nobody has seen stays unseen.
-            condition: match condition {
-                Condition::Unacknowledged | Condition::Returned => Condition::Returned,
-                Condition::Acknowledged => return,
-            },
+            condition: Condition::Returned,
             raised: RigTime(0),
             count,
             first_out: false,
-            shelved_until: None,
+            shelved_until,
             inherited: true,
         });
     }

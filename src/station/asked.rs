@@ -2,13 +2,10 @@
 
 use super::Station;
 use super::annunciator::Standing;
-use super::orders::{Order, Refused};
+use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::wants::{Jog, Wants};
 use crate::units::{RigTime, Span};
-
-/// Longest time on the shelf.
-const SHELF_MINUTES: u32 = 480;
 
 impl Station {
     /// Takes an order or says why not.
@@ -43,7 +40,7 @@ impl Station {
                 }
             }
             Order::Shelve(code, minutes) => {
-                let minutes = minutes.clamp(1, SHELF_MINUTES);
+                let minutes = shelf_minutes(Some(minutes));
                 let until = now + Span::ms(u64::from(minutes) * 60_000);
                 if !self.annunciator.shelve(&code, until) {
                     return Err(no_alarm());

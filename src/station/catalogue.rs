@@ -4,6 +4,8 @@
 //! A code that names an actuator (`pusher_not_reached`) is listed by its ending. A code that is not here
 //! cannot be raised: `every_alarm_that_the_station_can_raise_is_in_the_catalogue`.
 
+mod gates;
+
 /// What an alarm stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stops {
@@ -79,8 +81,8 @@ const fn abort(
     }
 }
 
-/// The catalogue.
-pub const CATALOGUE: &[Entry] = &[
+/// Alarms of the machine.
+const MACHINE: &[Entry] = &[
     abort(
         "emergency_stop",
         Goes::BySensor,
@@ -232,6 +234,19 @@ pub const CATALOGUE: &[Entry] = &[
         ),
     ),
     abort(
+        "calibration_overdue",
+        Goes::ByClear,
+        0,
+        (
+            "The calibration has run out during the lot.",
+            "校准在批次进行中已过期。",
+        ),
+        (
+            "Put the golden parts at the head of the magazine, then clear, reset and start: the start calibrates.",
+            "把标准件放到料道最前端，然后清除、复位并启动：启动时自动校准。",
+        ),
+    ),
+    abort(
         "part_not_in_nest",
         Goes::ByClear,
         0,
@@ -348,69 +363,6 @@ pub const CATALOGUE: &[Entry] = &[
         action: ("Empty the bin.", "请清空料箱。"),
     },
     Entry {
-        code: "golden_check_due",
-        stops: Stops::Hold,
-        goes: Goes::ByClear,
-        retries: 0,
-        cause: (
-            "The last golden check is longer ago than the lot allows.",
-            "距上次标准件检查的时间已超过批次规定。",
-        ),
-        consequence: RESTS,
-        action: (
-            "Put the golden part named in front of all others, also of one that waits in the pocket, then unhold.",
-            "把所示标准件放到所有工件之前（包括料窝中等待的工件），然后解除保持。",
-        ),
-    },
-    Entry {
-        code: "golden_check_failed",
-        stops: Stops::Hold,
-        goes: Goes::ByClear,
-        retries: 0,
-        cause: (
-            "A golden part does not read as its certificate says: dirty probes, drift, or another part.",
-            "标准件测量结果与证书不符：探针脏污、漂移或工件放错。",
-        ),
-        consequence: (
-            "The line rests; parts since the last good check are suspect; nothing but a golden part is judged next.",
-            "生产线暂停；自上次合格检查以来的工件为可疑件；下一件只能是标准件。",
-        ),
-        action: (
-            "Clean the probes, put the golden part in front of all others, then unhold; if it fails again, stop and calibrate.",
-            "清洁探针，把标准件放到所有工件之前，然后解除保持；若仍未通过，停机并校准。",
-        ),
-    },
-    Entry {
-        code: "lot_discard_limit",
-        stops: Stops::Hold,
-        goes: Goes::ByClear,
-        retries: 0,
-        cause: (
-            "More parts have failed than the lot may have.",
-            "不合格件数超过批次允许值。",
-        ),
-        consequence: RESTS,
-        action: (
-            "Decide whether the lot is discarded; unhold goes on with it.",
-            "决定批次是否拒收；解除保持则继续。",
-        ),
-    },
-    Entry {
-        code: "_worn",
-        stops: Stops::Nothing,
-        goes: Goes::ByClear,
-        retries: 0,
-        cause: (
-            "Probes or jaws were used as often as they last.",
-            "探针或夹爪已达到使用寿命。",
-        ),
-        consequence: GOES_ON,
-        action: (
-            "Replace them at the next occasion and say so with `relayrig wear replaced`.",
-            "择机更换，并用 `relayrig wear replaced` 登记。",
-        ),
-    },
-    Entry {
         code: "_retried",
         stops: Stops::Nothing,
         goes: Goes::AtOnce,
@@ -475,12 +427,18 @@ pub const CATALOGUE: &[Entry] = &[
     },
 ];
 
+/// Every entry.
+pub fn every() -> impl Iterator<Item = &'static Entry> {
+    MACHINE.iter().chain(gates::GATES)
+}
+
+/// Alarms after which nothing is measured before a new calibration.
+pub const NEEDS_CALIBRATION: [&str; 2] = ["calibration_failed", "calibration_overdue"];
+
 /// The entry of a code; codes that name an actuator are found by their ending.
 pub fn entry(code: &str) -> Option<&'static Entry> {
-    CATALOGUE
-        .iter()
-        .find(|entry| match entry.code.strip_prefix('_') {
-            Some(_) => code.ends_with(entry.code),
-            None => entry.code == code,
-        })
+    every().find(|entry| match entry.code.strip_prefix('_') {
+        Some(_) => code.ends_with(entry.code),
+        None => entry.code == code,
+    })
 }

@@ -6,6 +6,7 @@
 //!   by hours nobody can have put it there, so that the line holds and asks for it. A check that fails holds the line,
 //!   and the next part has to be a golden one again: nothing else is judged before one has read as certified.
 //!   A golden part that was interrupted has said nothing: the check is made anew.
+//! - *Calibration*: one that runs out during a lot stops it; the next start makes a new one.
 //! - *Discard limit*: more failed parts than the lot may have hold the line, once.
 //! - *Wear*: a counter at its limit is told, once, and the line goes on.
 
@@ -155,6 +156,10 @@ impl Station {
 
     /// Looks whether a golden check is due while parts are being made.
     pub(super) fn look_for_check(&mut self, now: RigTime, wants: &mut Wants) {
+        let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
+        if !self.is_calibrating() && self.bench.calibration.due_at_us <= at_us {
+            return wants.trouble.push(Alarm::calibration_overdue());
+        }
         if self.gates.checking || self.is_calibrating() || !self.wants_more() {
             return;
         }
@@ -177,7 +182,7 @@ impl Station {
     }
 
     /// Golden parts that teach the lags are still to come or have not taught them yet.
-    fn is_calibrating(&self) -> bool {
+    pub(super) fn is_calibrating(&self) -> bool {
         let lags = self.bench.calibration.lags;
         !self.golden_left.is_empty() || lags.is_none_or(|lags| !lags.operate.fine_v.u.is_finite())
     }

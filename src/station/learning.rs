@@ -12,6 +12,7 @@ use crate::gauge::Parameter;
 use crate::gauge::calibration::Lags;
 use crate::gauge::verdict::Verdict;
 use crate::units::RigTime;
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 impl Station {
@@ -29,6 +30,25 @@ impl Station {
             ..calibration
         });
         Ok(())
+    }
+
+    /// References and golden parts are measured again with the next start; the golden parts have to lie in front.
+    pub(super) fn recalibrate(&mut self) {
+        self.plan.calibrated = false;
+        self.referenced = false;
+        self.restart_golden_run();
+    }
+
+    /// All golden parts again: those that were read belong to a run that was cut off.
+    pub(super) fn restart_golden_run(&mut self) {
+        let all: VecDeque<_> = self.plan.golden.iter().cloned().collect();
+        self.golden_planned += all.len().saturating_sub(self.golden_left.len()) as u64;
+        self.golden_left = all;
+        self.golden_run = golden::GoldenRun::default();
+        self.bench.calibration = Arc::new(Calibration {
+            lags: None,
+            ..(*self.bench.calibration).clone()
+        });
     }
 
     /// What the parts judged in this turn say of the rig and of the lot.

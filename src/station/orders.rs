@@ -21,8 +21,13 @@ pub enum Order {
     LampTest,
     /// A person has seen the alarm of this code; `None`: every alarm.
     Acknowledge(Option<String>),
-    /// The alarm of this code is not to be shown for so many minutes.
+    /// The alarm of this code is not to be shown for so many minutes, see [`shelf_minutes`].
     Shelve(String, u32),
+}
+
+/// Minutes on the shelf of an order that names so many: at least one, at most a shift; half an hour when it names none.
+pub fn shelf_minutes(asked: Option<u32>) -> u32 {
+    asked.unwrap_or(30).clamp(1, 480)
 }
 
 /// Why an order was not taken.

@@ -175,6 +175,9 @@ impl Station {
         let Some(entry) = catalogue::entry(&alarm.code) else {
             return self.abort(&alarm.code, now, wants);
         };
+        if catalogue::NEEDS_CALIBRATION.contains(&entry.code) && !packml::is_aborted(self.state) {
+            self.recalibrate();
+        }
         match entry.stops {
             Stops::Abort => {
                 let parked = matches!(self.state, State::Stopped | State::Complete);

@@ -178,6 +178,8 @@ impl Station {
         self.last_left = None;
         if self.gates.is_checking() {
             self.begin_check();
+        } else if self.is_calibrating() && self.referenced {
+            self.restart_golden_run();
         }
         let ledger = &mut self.ledger;
         for part in ledger.nest.iter_mut().chain(&mut ledger.gripper) {

@@ -299,6 +299,15 @@ impl Alarm {
         )
     }
 
+    /// The calibration may not be used any more.
+    pub fn calibration_overdue() -> Self {
+        Self::new(
+            "calibration_overdue",
+            "The calibration has run out. The next start makes a new one from the golden parts.",
+            "校准已过期。下次启动时将用标准件重新校准。",
+        )
+    }
+
     /// Calibration did not come out.
     pub fn calibration(text: &str) -> Self {
         Self::new(

@@ -23,22 +23,47 @@ pub const ORDERS: [&str; 16] = [
 ];
 
 /// An order; members that its word does not need are let pass.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Order {
     /// One of [`ORDERS`].
     pub order: String,
     /// Of `mode`: `production`, `maintenance`, `manual`.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mode: Option<String>,
     /// Of `jog`: `pusher_extend`, ...
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
     /// Of `acknowledge` (without it: all) and `shelve`: code of the alarm.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alarm: Option<String>,
     /// Of `shelve`, 1 to 480; 30 without it.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minutes: Option<u32>,
+    /// Of `shelve`: why.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reason: Option<String>,
+}
+
+/// Who orders, and from where.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct By {
+    /// Name at login.
+    pub who: String,
+    /// Role at login.
+    pub role: String,
+    /// Address of the screen.
+    pub origin: String,
+}
+
+/// An order with its answer, for the audit.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Answered {
+    /// What was ordered.
+    pub order: Order,
+    /// Who ordered it.
+    pub by: By,
+    /// Why it was refused, English; none when it was taken.
+    pub refused: Option<String>,
 }
 
 /// Why an order was not taken.

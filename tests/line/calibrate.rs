@@ -69,6 +69,12 @@ fn a_rig_with_an_overdue_calibration_takes_no_lot_and_says_since_when() {
         "{refused}"
     );
     assert!(refused.stderr.contains("relayrig calibrate"), "{refused}");
+    let alarms = workshop.texts("SELECT code FROM alarm");
+    assert_eq!(
+        alarms,
+        ["calibration_invalid"],
+        "an alarm stands in the history"
+    );
 }
 
 #[test]

@@ -202,3 +202,27 @@ fn a_check_without_a_golden_part_of_the_voltage_is_refused_before_anything_moves
         "{said}"
     );
 }
+
+#[test]
+fn an_alarm_that_ended_a_run_is_left_over_until_somebody_has_seen_it() {
+    let workshop = Workshop::new("gates_alarms");
+    run(&workshop, 4, "--fault door").with_status(3);
+    let left = |workshop: &Workshop| workshop.run("alarm list --sim --json").objects();
+    let code = left(&workshop)[0]["code"].clone();
+    assert_eq!(code, "door_open");
+    workshop
+        .run("alarm shelve door_open --sim --minutes 5 --by li --reason hinge")
+        .with_status(0);
+    assert!(left(&workshop)[0]["shelved_until"].is_string());
+    let unknown = workshop
+        .run("alarm acknowledge no_such --sim --by li")
+        .with_status(2);
+    assert!(unknown.stderr.contains("door_open"), "{unknown}");
+    workshop
+        .run("alarm acknowledge --sim --by li")
+        .with_status(0);
+    assert!(left(&workshop).is_empty());
+    let orders = workshop.run("history orders --who li --json").objects();
+    assert_eq!(orders.len(), 2);
+    assert_eq!(orders[0]["what"]["reason"], "hinge");
+}

@@ -11,14 +11,17 @@ use crate::gauge::calibration::{Factor, InputLine, OutputLine};
 use crate::gauge::feasible::nominal_v_per_s;
 use crate::gauge::{Calibration, Recipe};
 use crate::guard::{Actuator, Guard, PartSize};
+use crate::history::AlarmLeft;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::{AnalogIn, AnalogOut};
 use crate::rig::wiring::StrokeLimits;
+use crate::station::catalogue;
 use crate::station::mechanism::Mechanism;
 use crate::station::moves::Strokes;
 use crate::station::test::Bench;
+use crate::station::trouble::Alarm;
 use crate::station::{Plan, Station};
-use crate::units::Span;
+use crate::units::{RigTime, Span};
 #[cfg(feature = "sim")]
 use crate::view::Mimic;
 use anyhow::Context;
@@ -33,7 +36,11 @@ pub fn cycle(
     outside: Outside,
     stays: bool,
 ) -> anyhow::Result<Cycle> {
-    let Known { calibration, worn } = known;
+    let Known {
+        calibration,
+        worn,
+        alarms,
+    } = known;
     let plant = setup.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     let wiring = Arc::clone(&plant.wiring);
@@ -72,7 +79,11 @@ pub fn cycle(
         thorough: false,
     };
     let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), size_of(setup.recipe));
-    let station = Station::new(plan, bench, wiring.axis.clone(), mechanism);
+    let mut station = Station::new(plan, bench, wiring.axis.clone(), mechanism);
+    // Without a person nobody could see them.
+    for left in alarms.into_iter().filter(|_| stays) {
+        inherit(&mut station, left, setup.epoch_us);
+    }
     Ok(Cycle::new(wiring, pace, station, guard, lines, outside))
 }
 
@@ -81,6 +92,15 @@ pub fn cycle(
 pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     Ok(mimic::mimic(guard.drawing(&size_of(recipe))))
+}
+
+/// An alarm of a run before stands again, unseen.
+fn inherit(station: &mut Station, left: AlarmLeft, epoch_us: i64) {
+    let zh = catalogue::entry(&left.code).map_or("", |entry| entry.cause.1);
+    let until = left.shelved_until_us.map(|until_us| until_us - epoch_us);
+    let until = until.and_then(|us| u64::try_from(us).ok()).map(RigTime);
+    let alarm = Alarm::new(left.code, left.text, zh);
+    station.annunciator_mut().inherit(alarm, left.count, until);
 }
 
 fn size_of(recipe: &Recipe) -> PartSize {

@@ -1,13 +1,15 @@
 //! Rows of a run beside its parts: the state of its lot, alarms and what becomes of them, golden checks, wear.
 
 use crate::history::{
-    AlarmChange, AlarmChangeRecord, AlarmRecord, GoldenCheckRecord, LotState, LotStateRecord, Row,
-    WearRecord,
+    AlarmChange, AlarmChangeRecord, AlarmRecord, GoldenCheckRecord, LotState, LotStateRecord,
+    OrderRecord, Row, WearRecord,
 };
 use crate::station::annunciator::Standing;
 use crate::station::gates::Uses;
+use crate::station::orders::shelf_minutes;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Checked, Ending};
+use crate::view::Answered;
 
 /// Alarms after which a lot takes no run before somebody releases it.
 const HOLDS: [&str; 2] = ["golden_check_failed", "lot_discard_limit"];
@@ -91,6 +93,40 @@ impl Diary {
             at_us,
             change: AlarmChange::Returned,
         })
+    }
+
+    /// An order was answered; what it does to alarms is kept with them.
+    pub fn ordered(&self, it: &Answered, at_us: i64) -> Vec<Row> {
+        let by = &it.by;
+        let mut rows = vec![Row::Order(OrderRecord {
+            lot: Some(self.lot.clone()),
+            at_us,
+            who: by.who.clone(),
+            role: by.role.clone(),
+            origin: by.origin.clone(),
+            what: serde_json::to_string(&it.order).unwrap_or_else(|_| "null".into()),
+            refused: it.refused.clone(),
+        })];
+        let minutes = i64::from(shelf_minutes(it.order.minutes));
+        let who = by.who.clone();
+        let change = match it.order.order.as_str() {
+            "acknowledge" => AlarmChange::Acknowledged { by: who },
+            "shelve" => AlarmChange::Shelved {
+                until_us: at_us + minutes * 60_000_000,
+                by: who,
+                reason: it.order.reason.clone().unwrap_or_default(),
+            },
+            _other => return rows,
+        };
+        if it.refused.is_none() {
+            rows.push(Row::AlarmChange(AlarmChangeRecord {
+                simulated: self.simulated,
+                code: it.order.alarm.clone(),
+                at_us,
+                change,
+            }));
+        }
+        rows
     }
 
     /// A golden check has come out.
@@ -186,6 +222,30 @@ mod tests {
             states(&row.into_iter().collect::<Vec<_>>()),
             [LotState::Open]
         );
+    }
+
+    #[test]
+    fn an_acknowledgement_is_kept_with_who_gave_it_and_one_that_was_refused_changes_no_alarm() {
+        let asked = |refused: Option<&str>| Answered {
+            order: crate::view::Order {
+                order: "acknowledge".into(),
+                alarm: Some("door_open".into()),
+                ..Default::default()
+            },
+            by: crate::view::By {
+                who: "li".into(),
+                ..Default::default()
+            },
+            refused: refused.map(str::to_owned),
+        };
+        let rows = diary().ordered(&asked(None), 5);
+        let [Row::Order(order), Row::AlarmChange(change)] = &rows[..] else {
+            panic!("{rows:?}")
+        };
+        assert_eq!((order.who.as_str(), order.at_us), ("li", 5));
+        assert_eq!(order.what, r#"{"order":"acknowledge","alarm":"door_open"}"#);
+        assert_eq!(change.code.as_deref(), Some("door_open"));
+        assert_eq!(diary().ordered(&asked(Some("no such alarm")), 5).len(), 1);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::RunArgs;
 use crate::config::Plant;
 use crate::gauge::Recipe;
-use crate::history::{Archive, LotState};
+use crate::history::{AlarmRecord, Archive, Identity, LotRecord, LotState, Store};
 use anyhow::bail;
 use std::path::Path;
 
@@ -46,4 +46,30 @@ pub fn admit(db: &Path, plant: &Plant, recipe: &Recipe, args: &RunArgs) -> anyho
         ),
         LotState::Open | LotState::Running | LotState::Complete => Ok(()),
     }
+}
+
+/// Alarm of a rig that takes no lot before it was calibrated again.
+pub const INVALID: &str = "calibration_invalid";
+
+/// The lot gets a run without parts, whose alarm says why.
+pub fn refuse(db: &Path, recipe: &Recipe, args: &RunArgs, why: &str) -> anyhow::Result<()> {
+    let mut store = Store::open(db, &Identity::of_this_program())?;
+    let now_us = jiff::Timestamp::now().as_microsecond();
+    store.begin_lot(&LotRecord {
+        lot: args.lot.clone(),
+        recipe: recipe.name.clone(),
+        recipe_snapshot: recipe.source_text.clone(),
+        recipe_hash: recipe.hash.clone(),
+        opened_at_us: now_us,
+        retest: args.retest.clone(),
+        ..LotRecord::default()
+    })?;
+    store.alarm(&AlarmRecord {
+        lot: Some(args.lot.clone()),
+        code: INVALID.into(),
+        text: why.to_owned(),
+        raised_at_us: now_us,
+        ..AlarmRecord::default()
+    })?;
+    Ok(store.close_lot(&args.lot, now_us)?)
 }

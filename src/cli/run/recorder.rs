@@ -15,8 +15,8 @@ use crate::cycle::{Event, Profile};
 use crate::gauge::verdict::{Bin, Verdict};
 use crate::gauge::{Calibration, Recipe};
 use crate::history::{
-    CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, LotState, Row, Store,
-    snapshot_hash,
+    AlarmLeft, CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, LotState,
+    Row, Store, snapshot_hash,
 };
 use crate::station::gates::Uses;
 use crate::station::ledger::Kind;
@@ -78,6 +78,8 @@ pub struct Known {
     pub calibration: Option<Calibration>,
     /// Uses of what wears.
     pub worn: Uses,
+    /// Alarms that nobody has seen yet.
+    pub alarms: Vec<AlarmLeft>,
 }
 
 /// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
@@ -112,6 +114,7 @@ impl<'a> Recorder<'a> {
         let diary = Diary::new(&setup.args.lot, setup.args.rig.sim);
         store.record(&[diary.lot(LotState::Running, None, setup.epoch_us)])?;
         let worn = worn(&store, setup.args.rig.sim)?;
+        let alarms = store.alarms_left(setup.args.rig.sim)?;
         controls.view.send_modify(|view| screen::begun(view, setup));
         let recorder = Self {
             setup,
@@ -131,7 +134,12 @@ impl<'a> Recorder<'a> {
             writing: Duration::ZERO,
             diary,
         };
-        Ok((recorder, Known { calibration, worn }))
+        let known = Known {
+            calibration,
+            worn,
+            alarms,
+        };
+        Ok((recorder, known))
     }
 
     /// Keeps events until the cycle has ended; an onlooker hears each of them.
@@ -206,6 +214,9 @@ impl<'a> Recorder<'a> {
             }
             Event::Checked(checked, at) => {
                 rows.push(self.diary.checked(&checked, self.wall_us(at)));
+            }
+            Event::Ordered(answered, at) => {
+                rows.extend(self.diary.ordered(&answered, self.wall_us(at)));
             }
             Event::Uses(uses) => rows.extend(self.diary.uses(uses)),
             Event::Calibrated(calibration) => {

@@ -37,6 +37,21 @@ async fn an_unknown_order_is_answered_with_the_known_ones() {
 }
 
 #[tokio::test]
+async fn what_a_person_may_not_order_and_what_is_no_order_go_to_the_audit_with_the_name() {
+    let bench = Bench::new();
+    bench
+        .order(r#"{"order":"shelve","alarm":"door_open","reason":"x"}"#)
+        .await
+        .refused(403);
+    bench.order(r#"{"order":"halt"}"#).await.refused(400);
+    bench.order(r#"{"order":"stop"}"#).await;
+    let denied = bench.denied.lock().unwrap().clone();
+    assert_eq!(denied.len(), 2, "{denied:?}");
+    assert!(denied[0].starts_with("operator li shelve: "), "{denied:?}");
+    assert!(denied[1].starts_with("operator li halt: "), "{denied:?}");
+}
+
+#[tokio::test]
 async fn a_body_that_is_no_order_is_refused() {
     let bench = Bench::new();
     for body in [

@@ -1,6 +1,7 @@
 //! Alarms that stand: states of ISA-18.2, first-out, repeats, shelf.
 
 use crate::station::annunciator::{Annunciator, Condition};
+use crate::station::catalogue::Stops;
 use crate::station::trouble::Alarm;
 use crate::units::{RigTime, Span};
 
@@ -97,8 +98,14 @@ fn a_shelved_alarm_comes_back_when_its_time_is_over() {
 #[test]
 fn what_nobody_had_seen_before_a_restart_is_still_unseen_after_it() {
     let mut list = Annunciator::default();
-    list.inherit(jam(), Condition::Unacknowledged, 3);
-    list.inherit(door(), Condition::Acknowledged, 1);
+    list.inherit(jam(), 3, Some(RigTime(10)));
     assert_eq!(states(&list), [("pusher_not_reached", Condition::Returned)]);
+    assert!(
+        list.stopping(Stops::Abort).is_none(),
+        "its cause is found out anew"
+    );
+    assert!(list.standing()[0].shelved_until.is_some());
+    list.unshelve(RigTime(10));
+    assert!(list.standing()[0].shelved_until.is_none());
     assert_eq!(list.standing()[0].count, 3);
 }

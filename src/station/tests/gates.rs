@@ -208,3 +208,26 @@ fn wear_of_earlier_runs_counts() {
     }
     assert_eq!(told, [("probes_worn".to_owned(), 2)]);
 }
+
+#[test]
+fn a_calibration_that_runs_out_stops_the_lot_and_the_next_start_calibrates() {
+    let mut machine = Machine::of_lot(Some(6), vec![BAD; 6], LotSettings::default(), true);
+    while machine.landed.is_empty() {
+        machine.turn();
+    }
+    machine.calibration_runs_out();
+    let told: Vec<String> = machine
+        .turn()
+        .alarms
+        .into_iter()
+        .map(|alarm| alarm.code)
+        .collect();
+    assert_eq!(told, ["calibration_overdue"]);
+    for command in [Command::Clear, Command::Reset, Command::Start] {
+        while machine.station.may(command).is_err() {
+            machine.turn();
+        }
+        machine.order(Order::Command(command)).unwrap();
+    }
+    assert_eq!(machine.station.state(), "calibrating");
+}

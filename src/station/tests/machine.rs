@@ -177,6 +177,12 @@ impl Machine {
         machine
     }
 
+    /// The calibration may not be used any more from now on.
+    pub fn calibration_runs_out(&mut self) {
+        let calibration = std::sync::Arc::make_mut(&mut self.station.bench.calibration);
+        calibration.due_at_us = i64::try_from(self.shop.now.0).unwrap();
+    }
+
     /// What wears was used so often before.
     pub fn wore(&mut self, worn: Uses) {
         self.station.plan.worn = worn;

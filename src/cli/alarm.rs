@@ -1,0 +1,152 @@
+//! `relayrig alarm`: alarms that nobody has seen yet, of runs that have ended.
+//!
+//! While a controller runs its own screen is the place (`POST /api/orders`): it would not hear of what is done here.
+
+use super::DONE;
+use crate::history::{
+    AlarmChange, AlarmChangeRecord, AlarmLeft, Identity, Moment, OrderRecord, Row, Store,
+};
+use crate::station::orders::shelf_minutes;
+use anyhow::{bail, ensure};
+use serde_json::json;
+use std::io::Write;
+use std::path::Path;
+
+/// What is asked of the alarms.
+#[derive(Debug, clap::Args)]
+#[command(after_help = "Examples:
+  relayrig alarm list
+  relayrig alarm acknowledge door_open --by li
+  relayrig alarm acknowledge --by li
+  relayrig alarm shelve bin_full --minutes 60 --by li --reason 'sensor is on its way'")]
+pub struct AlarmArgs {
+    /// Alarms of the simulated rig
+    #[arg(long, global = true)]
+    sim: bool,
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Action {
+    /// Alarms that nobody has acknowledged
+    #[command(after_help = "Example: relayrig alarm list --sim --json")]
+    List {
+        /// One JSON object per alarm
+        #[arg(long)]
+        json: bool,
+    },
+    /// Somebody has seen an alarm, or all of them
+    #[command(after_help = "Example: relayrig alarm acknowledge door_open --by li")]
+    Acknowledge {
+        /// Its code; without it every alarm
+        code: Option<String>,
+        /// Who has seen it
+        #[arg(long, value_name = "NAME")]
+        by: String,
+    },
+    /// An alarm is not shown for a while
+    #[command(
+        after_help = "Example: relayrig alarm shelve bin_full --by li --reason 'sensor is on its way'"
+    )]
+    Shelve {
+        /// Its code
+        code: String,
+        /// How long, 1 to 480
+        #[arg(long, value_name = "N", default_value_t = 30)]
+        minutes: u32,
+        /// Who puts it there
+        #[arg(long, value_name = "NAME")]
+        by: String,
+        /// Why
+        #[arg(long, value_name = "TEXT")]
+        reason: String,
+    },
+}
+
+/// Runs the command; the result is the exit status.
+pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<i32> {
+    let mut store = Store::open(db, &Identity::of_this_program())?;
+    let left = store.alarms_left(args.sim)?;
+    let now_us = jiff::Timestamp::now().as_microsecond();
+    let (code, by, change, what) = match &args.action {
+        Action::List { json } => {
+            list(&left, *json)?;
+            return Ok(DONE);
+        }
+        Action::Acknowledge { code, by } => {
+            let change = AlarmChange::Acknowledged { by: by.clone() };
+            (
+                code.as_deref(),
+                by,
+                change,
+                json!({"order": "acknowledge", "alarm": code}),
+            )
+        }
+        Action::Shelve {
+            code,
+            minutes,
+            by,
+            reason,
+        } => {
+            ensure!(
+                !reason.trim().is_empty(),
+                "--reason: found nothing, expected why it is shelved"
+            );
+            let minutes = shelf_minutes(Some(*minutes));
+            let change = AlarmChange::Shelved {
+                until_us: now_us + i64::from(minutes) * 60_000_000,
+                by: by.clone(),
+                reason: reason.clone(),
+            };
+            let what =
+                json!({"order": "shelve", "alarm": code, "minutes": minutes, "reason": reason});
+            (Some(code.as_str()), by, change, what)
+        }
+    };
+    ensure!(
+        !by.trim().is_empty(),
+        "--by: found nothing, expected a name"
+    );
+    if let Some(code) = code.filter(|code| left.iter().all(|it| it.code != *code)) {
+        let known: Vec<&str> = left.iter().map(|it| it.code.as_str()).collect();
+        bail!(
+            "found no alarm {code:?} that nobody has seen, expected one of {}",
+            known.join(", ")
+        );
+    }
+    let order = OrderRecord {
+        at_us: now_us,
+        who: by.clone(),
+        origin: "command line".into(),
+        what: what.to_string(),
+        ..OrderRecord::default()
+    };
+    let changed = AlarmChangeRecord {
+        simulated: args.sim,
+        code: code.map(str::to_owned),
+        at_us: now_us,
+        change,
+    };
+    store.record(&[Row::Order(order), Row::AlarmChange(changed)])?;
+    Ok(DONE)
+}
+
+fn list(left: &[AlarmLeft], as_json: bool) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    for it in left {
+        let shelved = it.shelved_until_us.map(|us| Moment(us).to_string());
+        if as_json {
+            let it = json!({"code": it.code, "count": it.count, "text": it.text, "shelved_until": shelved});
+            writeln!(out, "{it}")?;
+            continue;
+        }
+        let shelved = shelved.map_or_else(String::new, |until| format!(", shelved until {until}"));
+        writeln!(
+            out,
+            "{} ({} times{shelved}): {}",
+            it.code, it.count, it.text
+        )?;
+    }
+    Ok(())
+}

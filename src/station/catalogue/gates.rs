@@ -1,0 +1,69 @@
+//! Alarms of the gates of a lot, and of what wears.
+
+use super::{Entry, GOES_ON, Goes, RESTS, Stops};
+
+pub(super) const GATES: &[Entry] = &[
+    Entry {
+        code: "golden_check_due",
+        stops: Stops::Hold,
+        goes: Goes::ByClear,
+        retries: 0,
+        cause: (
+            "The last golden check is longer ago than the lot allows.",
+            "距上次标准件检查的时间已超过批次规定。",
+        ),
+        consequence: RESTS,
+        action: (
+            "Put the golden part named in front of all others, also of one that waits in the pocket, then unhold.",
+            "把所示标准件放到所有工件之前（包括料窝中等待的工件），然后解除保持。",
+        ),
+    },
+    Entry {
+        code: "golden_check_failed",
+        stops: Stops::Hold,
+        goes: Goes::ByClear,
+        retries: 0,
+        cause: (
+            "A golden part does not read as its certificate says: dirty probes, drift, or another part.",
+            "标准件测量结果与证书不符：探针脏污、漂移或工件放错。",
+        ),
+        consequence: (
+            "The line rests; parts since the last good check are suspect; nothing but a golden part is judged next.",
+            "生产线暂停；自上次合格检查以来的工件为可疑件；下一件只能是标准件。",
+        ),
+        action: (
+            "Clean the probes, put the golden part in front of all others, then unhold; if it fails again, stop and calibrate.",
+            "清洁探针，把标准件放到所有工件之前，然后解除保持；若仍未通过，停机并校准。",
+        ),
+    },
+    Entry {
+        code: "lot_discard_limit",
+        stops: Stops::Hold,
+        goes: Goes::ByClear,
+        retries: 0,
+        cause: (
+            "More parts have failed than the lot may have.",
+            "不合格件数超过批次允许值。",
+        ),
+        consequence: RESTS,
+        action: (
+            "Decide whether the lot is discarded; unhold goes on with it.",
+            "决定批次是否拒收；解除保持则继续。",
+        ),
+    },
+    Entry {
+        code: "_worn",
+        stops: Stops::Nothing,
+        goes: Goes::ByClear,
+        retries: 0,
+        cause: (
+            "Probes or jaws were used as often as they last.",
+            "探针或夹爪已达到使用寿命。",
+        ),
+        consequence: GOES_ON,
+        action: (
+            "Replace them at the next occasion and say so with `relayrig wear replaced`.",
+            "择机更换，并用 `relayrig wear replaced` 登记。",
+        ),
+    },
+];
