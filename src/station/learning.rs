@@ -36,11 +36,6 @@ impl Station {
     pub(super) fn recalibrate(&mut self) {
         self.plan.calibrated = false;
         self.referenced = false;
-        self.restart_golden_run();
-    }
-
-    /// All golden parts again: those that were read belong to a run that was cut off.
-    pub(super) fn restart_golden_run(&mut self) {
         let all: VecDeque<_> = self.plan.golden.iter().cloned().collect();
         self.golden_planned += all.len().saturating_sub(self.golden_left.len()) as u64;
         self.golden_left = all;
@@ -104,7 +99,20 @@ impl Station {
             }
         }
         let still_golden = matches!(judged.part.kind, Kind::Golden(_));
-        match self.new_lags(still_golden) {
+        self.take_lags(still_golden, calibrated, told);
+    }
+
+    /// The last golden part was interrupted: what the others taught has to do, or the calibration has failed.
+    pub(super) fn end_golden_run(&mut self, wants: &mut Wants) {
+        if self.referenced && self.golden_left.is_empty() && self.is_calibrating() {
+            let mut told = Told::default();
+            self.take_lags(true, &mut wants.calibrated, &mut told);
+            wants.trouble.extend(told.trouble);
+        }
+    }
+
+    fn take_lags(&mut self, golden: bool, calibrated: &mut Option<Calibration>, told: &mut Told) {
+        match self.new_lags(golden) {
             Ok((lags, complete)) => {
                 let calibration = Calibration {
                     lags: Some(lags),

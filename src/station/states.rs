@@ -178,9 +178,8 @@ impl Station {
         self.last_left = None;
         if self.gates.is_checking() {
             self.begin_check();
-        } else if self.is_calibrating() && self.referenced {
-            self.restart_golden_run();
         }
+        self.end_golden_run(wants);
         let ledger = &mut self.ledger;
         for part in ledger.nest.iter_mut().chain(&mut ledger.gripper) {
             part.interrupted.get_or_insert_with(|| "by a reset".into());
