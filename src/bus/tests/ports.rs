@@ -137,7 +137,12 @@ async fn a_line_runs_over_a_terminal_at_real_pace_and_keeps_it_for_itself() {
 
     let (ask, to_line) = mpsc::channel(1);
     let (from_line, mut answers) = mpsc::channel(1);
-    tokio::spawn(run(port, settings(), Pace::real(), to_line, from_line));
+    // What is asked here is no matter of time; a busy machine may let the device wait.
+    let patient = LineSettings {
+        digital_allowance_ms: 5000,
+        ..settings()
+    };
+    tokio::spawn(run(port, patient, Pace::real(), to_line, from_line));
     for ticket in 0..3 {
         let request = Request {
             ticket,
