@@ -11,6 +11,7 @@ use serde::Serialize;
 use crate::error::SimError;
 use crate::rig::{Record, Scene};
 use crate::terminal::Plant;
+use crate::truth::BodyTruth;
 
 /// One thing that happened.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -167,5 +168,17 @@ impl Record for Watched {
 
     fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
         self.scene.strike(fault, value)
+    }
+
+    fn bodies(&mut self) -> Vec<BodyTruth> {
+        self.scene.bodies()
+    }
+
+    fn calm(&mut self) {
+        self.scene.calm();
+    }
+
+    fn driven(&mut self) -> Vec<(u64, &'static str)> {
+        self.scene.driven()
     }
 }

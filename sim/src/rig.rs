@@ -18,6 +18,7 @@ use crate::line::wire_us;
 use crate::module::Module;
 use crate::shared;
 use crate::terminal::Plant;
+use crate::truth::BodyTruth;
 use crate::uart;
 
 /// What the world knows and no module ever tells.
@@ -36,6 +37,19 @@ pub trait Record {
         let _ = value;
         Err(SimError::UnknownFault { name: fault.into() })
     }
+
+    /// Every body that has left the magazine, in order of leaving; none where there is no magazine.
+    fn bodies(&mut self) -> Vec<BodyTruth> {
+        Vec::new()
+    }
+
+    /// What began to move because an output told it to, and when, microseconds; the last ones.
+    fn driven(&mut self) -> Vec<(u64, &'static str)> {
+        Vec::new()
+    }
+
+    /// Faults of the world that still wait are called off.
+    fn calm(&mut self) {}
 }
 
 /// A world: terminals in front, truth behind.
@@ -234,6 +248,21 @@ impl Rig {
     /// See [`Record::crashes`].
     pub fn crashes(&mut self) -> Vec<String> {
         self.scene.crashes()
+    }
+
+    /// See [`Record::bodies`].
+    pub fn bodies(&mut self) -> Vec<BodyTruth> {
+        self.scene.bodies()
+    }
+
+    /// See [`Record::calm`]; faults of lines and modules end by their windows.
+    pub fn calm(&mut self) {
+        self.scene.calm();
+    }
+
+    /// See [`Record::driven`].
+    pub fn driven(&mut self) -> Vec<(u64, &'static str)> {
+        self.scene.driven()
     }
 
     fn run_events(&mut self, t_us: u64) {

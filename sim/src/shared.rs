@@ -12,6 +12,7 @@ use crate::module::habit::{self, Habit};
 use crate::module::plate::Commissioning;
 use crate::rig::{Record, Reply, Rig};
 use crate::terminal::ModuleSpec;
+use crate::truth::BodyTruth;
 use crate::world::{World, WorldOptions};
 
 /// Which rig, which lot, which troubles.
@@ -36,6 +37,12 @@ pub struct Options {
 /// A rig that all its lines use; cloning shares it.
 #[derive(Clone)]
 pub struct SharedRig(Arc<Mutex<Rig>>);
+
+impl std::fmt::Debug for SharedRig {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("SharedRig").finish_non_exhaustive()
+    }
+}
 
 /// Builds the rig of `config_dir` with the errors and parts that the seed draws.
 ///
@@ -172,6 +179,18 @@ impl Record for World {
     fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
         World::strike(self, fault, value)
     }
+
+    fn bodies(&mut self) -> Vec<BodyTruth> {
+        World::bodies(self)
+    }
+
+    fn driven(&mut self) -> Vec<(u64, &'static str)> {
+        World::driven(self)
+    }
+
+    fn calm(&mut self) {
+        World::calm(self);
+    }
 }
 
 impl SharedRig {
@@ -237,6 +256,21 @@ impl SharedRig {
     /// Truth of every lot part that has entered the nest, in order.
     pub fn truth(&self) -> Vec<serde_json::Value> {
         self.rig().truth()
+    }
+
+    /// Every body that has left the magazine, in order of leaving.
+    pub fn bodies(&self) -> Vec<BodyTruth> {
+        self.rig().bodies()
+    }
+
+    /// Faults of the world that still wait for their part or their instant are called off.
+    pub fn calm(&self) {
+        self.rig().calm();
+    }
+
+    /// What began to move because an output told it to, and when, microseconds; the last ones.
+    pub fn driven(&self) -> Vec<(u64, &'static str)> {
+        self.rig().driven()
     }
 
     /// Bodies that touched where they must not.

@@ -1,4 +1,4 @@
-//! What a specimen really was: the record that judges the controller.
+//! What a specimen really was and where its body went: the record that judges the controller.
 
 use serde::Serialize;
 
@@ -29,4 +29,45 @@ pub struct PartTruth {
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.
     pub landed_in: Option<String>,
+}
+
+/// Somewhere between magazine and bin.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Place {
+    /// Before the pusher.
+    Pocket,
+    /// In front of a pusher that is under way.
+    Pusher,
+    /// In the nest.
+    Nest,
+    /// Between fingers that have lifted it.
+    Gripper,
+    /// Falling down a chute.
+    Air,
+    /// Come to rest in this bin.
+    Bin(String),
+    /// Come to rest beside every bin.
+    Floor,
+}
+
+/// One body, golden parts included.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyTruth {
+    /// A golden part.
+    pub golden: bool,
+    /// Where it came to and when, rig time in microseconds, in order of time.
+    pub path: Vec<(u64, Place)>,
+    /// What it was.
+    pub part: PartTruth,
+}
+
+impl BodyTruth {
+    /// Where it was at an instant; none before it left the magazine.
+    pub fn at(&self, t_us: u64) -> Option<&Place> {
+        let earlier = self.path.iter().rev();
+        earlier
+            .map(|(since, place)| (*since, place))
+            .find(|(since, _)| *since <= t_us)
+            .map(|(_, place)| place)
+    }
 }

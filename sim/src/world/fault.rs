@@ -108,6 +108,11 @@ impl Faults {
             .map(|(_, v)| *v)
     }
 
+    /// Whatever still waits for its part is called off.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
     /// Takes away a fault that strikes once at a part (counted from 1); true if it was asked for.
     pub fn strikes(&mut self, fault: Fault, part: Option<u64>) -> bool {
         let hit = |(f, v): &(Fault, f64)| *f == fault && part == Some(*v as u64);

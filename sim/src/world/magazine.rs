@@ -12,7 +12,7 @@ use super::{
     fault::{Fault, Faults},
 };
 use crate::config::ConfigError;
-use crate::truth::PartTruth;
+use crate::truth::{BodyTruth, PartTruth, Place};
 
 /// A part outside the magazine.
 #[derive(Debug, Clone)]
@@ -25,8 +25,8 @@ pub struct Part {
     pub number: Option<u64>,
     /// A second body clings to it.
     pub double: bool,
-    /// Bin in which it came to rest.
-    pub landed_in: Option<String>,
+    /// Where it has been, and since when, microseconds.
+    pub path: Vec<(u64, Place)>,
 }
 
 impl Part {
@@ -46,8 +46,25 @@ impl Part {
             contact_resistance_no_mohm: record.mean_mohm(Contact::No),
             contact_resistance_nc_mohm: record.mean_mohm(Contact::Nc),
             defect: spec.defect.map(super::defect::Defect::name),
-            landed_in: self.landed_in.clone(),
+            landed_in: match self.path.last() {
+                Some((_, Place::Bin(bin))) => Some(bin.clone()),
+                _ => None,
+            },
         }
+    }
+
+    /// The same with its way.
+    pub fn body(&self) -> BodyTruth {
+        BodyTruth {
+            golden: self.number.is_none(),
+            path: self.path.clone(),
+            part: self.truth(),
+        }
+    }
+
+    /// It comes to a place.
+    pub fn goes(&mut self, now_us: u64, place: Place) {
+        self.path.push((now_us, place));
     }
 }
 
@@ -152,7 +169,7 @@ impl Magazine {
             seq: 0,
             number,
             double,
-            landed_in: None,
+            path: vec![(now_us, Place::Pocket)],
         })
     }
 

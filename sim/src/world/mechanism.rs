@@ -18,6 +18,8 @@ use super::places::Places;
 use super::signal::{Commands, In, Out};
 use super::table::MechanismTable;
 use crate::config::Bin;
+use crate::truth::{BodyTruth, Place};
+use std::collections::VecDeque;
 
 /// A cylinder of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,6 +43,19 @@ impl Stroke {
         Self::SortZ,
         Self::Gripper,
     ];
+
+    /// As in `config/scene.toml`.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Escapement => "escapement",
+            Self::Pusher => "pusher",
+            Self::JawLeft => "jaw_left",
+            Self::JawRight => "jaw_right",
+            Self::ProbeLift => "probe_lift",
+            Self::SortZ => "sort_z",
+            Self::Gripper => "gripper",
+        }
+    }
 }
 
 /// Something that happens by itself later.
@@ -61,6 +76,9 @@ enum Later {
 /// A pin block up or a gripper down within this distance of the nest is in the pusher's way, mm.
 const NEAR_NEST_MM: f64 = 40.0;
 
+/// So many motions are remembered: a quarter of an hour of production.
+const DRIVEN: usize = 8_192;
+
 /// The mechanism with its parts.
 #[derive(Debug, Clone)]
 pub struct Mechanism {
@@ -79,6 +97,7 @@ pub struct Mechanism {
     later: Vec<(u64, Later)>,
     next_us: u64,
     crashes: Vec<String>,
+    driven: VecDeque<(u64, &'static str)>,
 }
 
 impl Mechanism {
@@ -120,6 +139,7 @@ impl Mechanism {
             later,
             next_us: u64::MAX,
             crashes: Vec::new(),
+            driven: VecDeque::new(),
         };
         mechanism.schedule();
         mechanism
@@ -133,6 +153,37 @@ impl Mechanism {
     /// Bodies that touched where they must not, in order of time.
     pub fn crashes(&self) -> &[String] {
         &self.crashes
+    }
+
+    /// Every body that has left the magazine, in order of leaving.
+    pub fn bodies(&self) -> Vec<BodyTruth> {
+        let falling = self.later.iter().filter_map(|(_, what)| match what {
+            Later::Land(_, part) => Some(part.body()),
+            _ => None,
+        });
+        let mut all: Vec<BodyTruth> = self.places.bodies().chain(falling).collect();
+        all.sort_by_key(|body| body.path.first().map(|(at, _)| *at));
+        all
+    }
+
+    /// What began to move because an output told it to, and when, microseconds; the last [`DRIVEN`] of them.
+    pub fn driven(&self) -> impl Iterator<Item = (u64, &'static str)> + '_ {
+        self.driven.iter().copied()
+    }
+
+    fn note_driven(&mut self, now_us: u64, what: &'static str) {
+        self.driven.push_back((now_us, what));
+        if self.driven.len() > DRIVEN {
+            self.driven.pop_front();
+        }
+    }
+
+    /// Faults that still wait for their part or their instant are called off.
+    pub fn calm(&mut self) {
+        self.faults.clear();
+        self.later
+            .retain(|(_, what)| !matches!(what, Later::Disturb(_)));
+        self.schedule();
     }
 
     /// The pin block is up: the probe-up chain is closed.
@@ -200,6 +251,21 @@ impl Mechanism {
         self.disturbed.contains(&fault)
     }
 
+    /// With every valve off (an abort, a module that fell to its safe outputs) only springs move.
+    fn any_valve_on(&self) -> bool {
+        let valves = [
+            Out::EscapementRelease,
+            Out::PusherExtend,
+            Out::ClampClose,
+            Out::ClampOpen,
+            Out::ProbeLift,
+            Out::SortZLower,
+            Out::GripperClose,
+            Out::GripperRelease,
+        ];
+        valves.iter().any(|valve| self.commands.is_on(*valve))
+    }
+
     fn has_air(&self) -> bool {
         !self.is_disturbed(Fault::Air) && !self.is_disturbed(Fault::Estop)
     }
@@ -238,7 +304,10 @@ impl Mechanism {
             (Stroke::SortZ, Out::SortZLower),
         ];
         for (stroke, out) in single {
-            self.send(stroke, air && on.is_on(out), now_us);
+            let driven = air && on.is_on(out);
+            if self.send(stroke, driven, now_us) && driven {
+                self.note_driven(now_us, stroke.name());
+            }
         }
         let bistable = [
             (Stroke::JawLeft, Out::ClampClose, Out::ClampOpen),
@@ -246,22 +315,27 @@ impl Mechanism {
             (Stroke::Gripper, Out::GripperClose, Out::GripperRelease),
         ];
         for (stroke, far, back) in bistable {
-            match (air, on.is_on(far), on.is_on(back)) {
+            let began = match (air, on.is_on(far), on.is_on(back)) {
                 (true, true, false) => self.send(stroke, true, now_us),
                 (true, false, true) => self.send(stroke, false, now_us),
-                (_, _, _) => {}
+                (_, _, _) => false,
+            };
+            if began {
+                self.note_driven(now_us, stroke.name());
             }
         }
     }
 
-    fn send(&mut self, stroke: Stroke, far: bool, now_us: u64) {
+    /// False when it was sent there before.
+    fn send(&mut self, stroke: Stroke, far: bool, now_us: u64) -> bool {
         if far == self.at(stroke).is_sent_far() {
-            return;
+            return false;
         }
         let scatter = self.draw.normal(1.0, self.table.scatter_pct / 100.0);
         let stalls = far && self.stalls(stroke);
         self.cylinders[stroke as usize].send(far, now_us, scatter, stalls);
         self.stroke_began(stroke, far, now_us);
+        true
     }
 
     fn stalls(&mut self, stroke: Stroke) -> bool {
@@ -285,6 +359,7 @@ impl Mechanism {
         if !self.axis.go(point, now_us) {
             return;
         }
+        self.note_driven(now_us, "sort_axis");
         if !self.at(Stroke::SortZ).at_rest(now_us) {
             self.crash(now_us, "the sort axis moved while sort z was not up");
         }
@@ -302,12 +377,12 @@ impl Mechanism {
         match what {
             Later::LiftOff => self.lift_off(now_us),
             Later::LetGo => self.let_go(now_us),
-            Later::Slip | Later::TakenOut => self.lose(),
+            Later::Slip | Later::TakenOut => self.lose(now_us),
             Later::Trip => self.axis.trip(now_us),
             Later::Dark(beam) => self.dark.push(beam),
             Later::Lit(beam) => self.dark.retain(|&b| b != beam),
             Later::Land(bin, mut part) => {
-                part.landed_in = Some(bin);
+                part.goes(now_us, Place::Bin(bin));
                 self.places.finish(&part);
             }
             Later::Disturb(fault) => {

@@ -37,6 +37,7 @@ use std::path::PathBuf;
 use crate::config::{ConfigError, RigFile, read_rig, read_world};
 use crate::error::SimError;
 use crate::terminal::Plant;
+use crate::truth::BodyTruth;
 use axis::Axis;
 use board::Board;
 use draw::{Draw, Subject};
@@ -134,6 +135,21 @@ impl World {
             .into_iter()
             .filter_map(|t| serde_json::to_value(t).ok())
             .collect()
+    }
+
+    /// Every body that has left the magazine, in order of leaving.
+    pub fn bodies(&self) -> Vec<BodyTruth> {
+        self.mechanism.bodies()
+    }
+
+    /// Faults that still wait for their part or their instant are called off.
+    pub fn calm(&mut self) {
+        self.mechanism.calm();
+    }
+
+    /// What began to move because an output told it to, and when, microseconds; the last ones.
+    pub fn driven(&self) -> Vec<(u64, &'static str)> {
+        self.mechanism.driven().collect()
     }
 
     /// Bodies that touched where they must not, in order of time.

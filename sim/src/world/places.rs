@@ -1,7 +1,7 @@
 //! Where every part is: each place holds the part itself, so none is in two places.
 
 use super::magazine::Part;
-use crate::truth::PartTruth;
+use crate::truth::{BodyTruth, PartTruth, Place};
 
 /// The places of the line between magazine and bin.
 #[derive(Debug, Clone, Default)]
@@ -17,7 +17,7 @@ pub struct Places {
     /// In the gripper, clear of the nest.
     pub carried: Option<Box<Part>>,
     entered: u64,
-    done: Vec<PartTruth>,
+    done: Vec<BodyTruth>,
 }
 
 impl Places {
@@ -27,6 +27,7 @@ impl Places {
             self.entered += 1;
             part.seq = self.entered;
         }
+        part.goes(now_us, Place::Nest);
         while part.relay.advance(now_us as f64).is_some() {}
         self.nest = Some(part);
     }
@@ -38,9 +39,7 @@ impl Places {
 
     /// A part has left the line.
     pub fn finish(&mut self, part: &Part) {
-        if part.seq > 0 {
-            self.done.push(part.truth());
-        }
+        self.done.push(part.body());
     }
 
     /// Number in the lot of the part that the fingers hold.
@@ -51,14 +50,18 @@ impl Places {
 
     /// Truth of every lot part that has entered the nest, in that order.
     pub fn truth(&self) -> Vec<PartTruth> {
-        let inside = [&self.nest, &self.carried];
-        let live = inside
-            .into_iter()
-            .flatten()
-            .filter(|p| p.seq > 0)
-            .map(|p| p.truth());
-        let mut all: Vec<PartTruth> = self.done.iter().cloned().chain(live).collect();
+        let inside = [&self.nest, &self.carried].into_iter().flatten();
+        let done = self.done.iter().map(|body| body.part.clone());
+        let mut all: Vec<PartTruth> = done.chain(inside.map(|p| p.truth())).collect();
+        all.retain(|t| t.seq > 0);
         all.sort_by_key(|t| t.seq);
         all
+    }
+
+    /// Every body that has left the magazine and is not in the air, in no order.
+    pub fn bodies(&self) -> impl Iterator<Item = BodyTruth> + '_ {
+        let inside = [&self.pocket, &self.pushed, &self.nest, &self.carried];
+        let inside = inside.into_iter().flatten().map(|part| part.body());
+        self.done.iter().cloned().chain(inside)
     }
 }

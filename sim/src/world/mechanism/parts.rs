@@ -1,10 +1,18 @@
 //! What strokes do to the parts, and to each other where they must not.
 
 use super::{Later, Mechanism, NEAR_NEST_MM, Stroke};
+use crate::truth::Place;
 use crate::world::cylinder::Cylinder;
 use crate::world::fault::Fault;
 use crate::world::magazine::Part;
 use crate::world::signal::In;
+
+/// Takes the part of one place to another one.
+fn moved(from: &mut Option<Box<Part>>, now_us: u64, to: Place) -> Option<Box<Part>> {
+    let mut part = from.take()?;
+    part.goes(now_us, to);
+    Some(part)
+}
 
 impl Mechanism {
     /// What a stroke does to the parts as it begins.
@@ -13,10 +21,10 @@ impl Mechanism {
         match (stroke, far) {
             (Stroke::Pusher, true) => {
                 self.check_pusher(now_us);
-                self.places.pushed = self.places.pocket.take();
+                self.places.pushed = moved(&mut self.places.pocket, now_us, Place::Pusher);
             }
             (Stroke::Pusher, false) if self.places.pushed.is_some() => {
-                self.places.pocket = self.places.pushed.take();
+                self.places.pocket = moved(&mut self.places.pushed, now_us, Place::Pocket);
             }
             (Stroke::SortZ, true) => self.check_lowering(now_us),
             (Stroke::SortZ, false) if self.places.gripped => {
@@ -58,13 +66,15 @@ impl Mechanism {
     }
 
     pub(super) fn push_into_nest(&mut self, now_us: u64) {
-        let Some(part) = self.places.pushed.take() else {
+        let Some(mut part) = self.places.pushed.take() else {
             return;
         };
         if self.faults.strikes(Fault::PartMisses, part.number) {
+            part.goes(now_us, Place::Floor);
             self.places.finish(&part);
         } else if self.places.nest.is_some() {
             self.crash(now_us, "a part was pushed into an occupied nest");
+            part.goes(now_us, Place::Floor);
             self.places.finish(&part);
         } else {
             self.places.enter_nest(part, now_us);
@@ -95,7 +105,7 @@ impl Mechanism {
         if held {
             self.crash(now_us, "a part was torn out of jaws that were not open");
         }
-        self.places.carried = self.places.nest.take();
+        self.places.carried = moved(&mut self.places.nest, now_us, Place::Gripper);
     }
 
     /// The fingers have opened far enough to let a part go.
@@ -118,9 +128,9 @@ impl Mechanism {
             None if near(0.0) && self.at(Stroke::SortZ).at_far(now_us) => {
                 return self.put_back(now_us);
             }
-            None => return self.lose(),
+            None => return self.lose(now_us),
         };
-        if let Some(part) = self.places.carried.take() {
+        if let Some(part) = moved(&mut self.places.carried, now_us, Place::Air) {
             self.fall(part, name, beam, now_us);
         }
     }
@@ -143,10 +153,11 @@ impl Mechanism {
 
     /// A carried part that is set down in the nest.
     pub(super) fn put_back(&mut self, now_us: u64) {
-        if let Some(part) = self.places.carried.take() {
+        if let Some(mut part) = self.places.carried.take() {
             match self.places.nest.is_some() {
                 true => {
                     self.crash(now_us, "a part was set down on another one");
+                    part.goes(now_us, Place::Floor);
                     self.places.finish(&part);
                 }
                 false => self.places.enter_nest(part, now_us),
@@ -155,8 +166,8 @@ impl Mechanism {
     }
 
     /// A carried part falls on the floor, or into somebody's hand.
-    pub(super) fn lose(&mut self) {
-        if let Some(part) = self.places.carried.take() {
+    pub(super) fn lose(&mut self, now_us: u64) {
+        if let Some(part) = moved(&mut self.places.carried, now_us, Place::Floor) {
             self.places.finish(&part);
         }
     }
