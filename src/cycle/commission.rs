@@ -4,53 +4,71 @@
 use super::traffic::{Purpose, Traffic};
 use crate::bus::Pace;
 use crate::dcon::{Command, Common};
-use crate::rig::commission::{judge, verification};
+use crate::rig::commission::{Mismatch, judge, verification};
 use crate::rig::wiring::{ModuleId, Wiring};
+use crate::station::reference;
 use crate::station::trouble::Alarm;
 use std::collections::BTreeMap;
 
-/// Asks everything, line by line in parallel; the first disagreement or silent module is the alarm. A module
-/// whose host watchdog has tripped stands at its safe outputs and has switched its watchdog off: it is made ready
-/// again, which writes to its EEPROM, and told.
+/// What a life of the controller that was cut off has left in a module.
+struct Left {
+    module: ModuleId,
+    what: What,
+    /// What puts it right; it is written to the EEPROM of the module.
+    remedies: Vec<Command>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum What {
+    /// The host watchdog has tripped: the module stands at its safe outputs and has switched its watchdog off.
+    Tripped,
+    /// The converter still has the channel mask of the references.
+    Masked,
+}
+
+/// Asks everything, line by line in parallel; the first disagreement or silent module is the alarm. What the
+/// controller itself left behind when it was cut off is put right, and told.
 pub async fn verify(
     wiring: &Wiring,
     pace: &Pace,
     traffic: &mut Traffic,
 ) -> Result<Vec<Alarm>, Alarm> {
-    let tripped = ask(wiring, pace, traffic).await?;
-    if tripped.is_empty() {
+    let left = ask(wiring, pace, traffic).await?;
+    if left.is_empty() {
         traffic.start_scan();
         return Ok(Vec::new());
     }
-    for module in &tripped {
-        make_ready(wiring, pace, traffic, *module).await?;
+    for one in &left {
+        put_right(wiring, pace, traffic, one).await?;
     }
     let still = ask(wiring, pace, traffic).await?;
     traffic.start_scan();
-    let named = |module: &ModuleId| wiring.module(*module).name.clone();
-    match still.first() {
-        Some(module) => Err(Alarm::bus(&format!("{} stays tripped", named(module)))),
-        None => {
-            let names: Vec<String> = tripped.iter().map(named).collect();
-            Ok(vec![Alarm::watchdog_tripped(&names.join(", "))])
-        }
+    let name = |one: &Left| wiring.module(one.module).name.clone();
+    if let Some(one) = still.first() {
+        let what = match one.what {
+            What::Tripped => "tripped",
+            What::Masked => "masked",
+        };
+        return Err(Alarm::bus(&format!("{} stays {what}", name(one))));
     }
+    let names = |what: What| {
+        let those: Vec<String> = left.iter().filter(|it| it.what == what).map(name).collect();
+        (!those.is_empty()).then(|| those.join(", "))
+    };
+    let tripped = names(What::Tripped).map(|names| Alarm::watchdog_tripped(&names));
+    let masked = names(What::Masked).map(|names| Alarm::calibration_cut_off(&names));
+    Ok(tripped.into_iter().chain(masked).collect())
 }
 
-/// Clears the trip of one module and switches its watchdog on again.
-async fn make_ready(
+async fn put_right(
     wiring: &Wiring,
     pace: &Pace,
     traffic: &mut Traffic,
-    module: ModuleId,
+    left: &Left,
 ) -> Result<(), Alarm> {
-    let wired = wiring.module(module);
-    let enable = Common::WriteWatchdog {
-        enabled: wired.watchdog,
-        timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
-    };
-    for command in [Common::ClearWatchdogStatus, enable] {
-        traffic.queue(wired.line, command.to(wired.address), Purpose::Check);
+    for command in &left.remedies {
+        let line = wiring.module(left.module).line;
+        traffic.queue(line, *command, Purpose::Check);
         loop {
             traffic.dispatch(pace.now());
             traffic.answer().await;
@@ -66,9 +84,33 @@ async fn make_ready(
     Ok(())
 }
 
-/// Every question once; the modules whose host watchdog has tripped.
-async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<ModuleId>, Alarm> {
-    let mut tripped = Vec::new();
+/// A disagreement that the controller itself has left behind.
+fn left_behind(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option<Left> {
+    let wired = wiring.module(module);
+    let (what, remedies) = match mismatch.what {
+        "host watchdog" => {
+            let enable = Common::WriteWatchdog {
+                enabled: wired.watchdog,
+                timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
+            };
+            let both = [Common::ClearWatchdogStatus, enable];
+            (What::Tripped, both.map(|it| it.to(wired.address)).into())
+        }
+        "channel mask" if mismatch.found == format!("{:02X}", reference::MASK) => {
+            (What::Masked, mismatch.remedy.into_iter().collect())
+        }
+        _ => return None,
+    };
+    Some(Left {
+        module,
+        what,
+        remedies,
+    })
+}
+
+/// Every question once; what was left behind.
+async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<Left>, Alarm> {
+    let mut all: Vec<Left> = Vec::new();
     let checks = verification(wiring);
     let mut pending = BTreeMap::new();
     for (index, check) in checks.iter().enumerate() {
@@ -100,15 +142,15 @@ async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<
                 .map_err(|error| Alarm::bus(&format!("{error} ({} tries)", answer.tries_used)))?;
             let check = &checks[index];
             if let Some(mismatch) = judge(wiring, check, &reply) {
-                if mismatch.what == "host watchdog" {
-                    if !tripped.contains(&check.module) {
-                        tripped.push(check.module);
-                    }
-                    continue;
+                let Some(left) = left_behind(wiring, check.module, &mismatch) else {
+                    return Err(Alarm::bus(&mismatch.to_string()));
+                };
+                let known = |it: &Left| it.module == left.module && it.what == left.what;
+                if !all.iter().any(known) {
+                    all.push(left);
                 }
-                return Err(Alarm::bus(&mismatch.to_string()));
             }
         }
     }
-    Ok(tripped)
+    Ok(all)
 }

@@ -396,6 +396,24 @@ const MACHINE: &[Entry] = &[
         ),
     },
     Entry {
+        code: "calibration_cut_off",
+        stops: Stops::Nothing,
+        goes: Goes::AtOnce,
+        retries: 0,
+        cause: (
+            "The controller was killed, or the line stopped, while the references were measured.",
+            "测量标准器期间程序被终止或生产线停止。",
+        ),
+        consequence: (
+            "The converter had the channel mask of the references; that of the lots was written back.",
+            "转换模块曾处于标准器通道掩码；现已写回生产掩码。",
+        ),
+        action: (
+            "None; the calibration is made again when none is valid.",
+            "无需操作；若无有效校准将重新校准。",
+        ),
+    },
+    Entry {
         code: "part_lost",
         stops: Stops::Nothing,
         goes: Goes::AtOnce,

@@ -321,6 +321,7 @@ impl Station {
     /// A motion was cleared and driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         self.mechanism.driven(movement, now, image);
+        self.sort = self.sort.driven(movement, &mut self.ledger, now);
     }
 
     /// The motion as the guard knows it.

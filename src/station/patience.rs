@@ -124,6 +124,7 @@ fn of_sort(sort: Sort) -> (&'static str, Option<Span>) {
         Sort::Loaded => ("loaded", stroke),
         Sort::Carrying(_) => ("carrying", stroke),
         Sort::OverBin(..) => ("over the bin", Some(Span::ms(15_000))),
+        Sort::LettingGo(..) => ("letting go", stroke),
         Sort::Opening => ("fingers opening", stroke),
     }
 }

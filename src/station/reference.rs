@@ -18,7 +18,7 @@ use crate::station::test::Bench;
 use crate::units::{Span, Volt};
 
 /// Channels 1, 5, 6 and 7 of the coil converter.
-const MASK: u8 = 0b1110_0010;
+pub const MASK: u8 = 0b1110_0010;
 const CHANNELS: usize = 4;
 /// Scans per level: averages 2.8 mV of one reading to 0.8 mV.
 const SCANS: usize = 12;

@@ -2,13 +2,14 @@
 //!
 //! ```text
 //! returning -> over nest -> lowering -> at part -> (nest closes fingers, lifts) -> carrying
-//!           -> over bin -> opening -> returning
+//!           -> over bin -> letting go -> opening -> returning
 //! ```
 //! Open fingers that still show a part do not go back: it would be set down on the next one.
 //!
 //! A part is let go only when its rows are durable and the part before has passed its beam. z comes
 //! down early, during the test, once the pusher is back.
 
+use super::ledger::Ledger;
 use super::moves::Move;
 use super::trouble::Alarm;
 use super::turn::Turn;
@@ -44,6 +45,8 @@ pub enum Sort {
     Carrying(Bin),
     /// Over the bin since this instant.
     OverBin(Bin, RigTime),
+    /// The fingers are to open; the part is theirs until the motion is driven. With the count of the beam before.
+    LettingGo(Bin, u32),
     /// Fingers open.
     Opening,
 }
@@ -82,6 +85,10 @@ impl Sort {
             }
             Sort::Carrying(bin) => Sort::Carrying(bin),
             Sort::OverBin(bin, since) => over_bin(turn, table, bin, since),
+            Sort::LettingGo(bin, before) => {
+                turn.wants.beam = Some(table.beam(bin));
+                Sort::LettingGo(bin, before)
+            }
             Sort::Opening if turn.arrived(Move::GripperOpen) => opened(turn),
             Sort::Opening => Sort::Opening,
         }
@@ -90,6 +97,17 @@ impl Sort {
     /// True when the open fingers stand around the part.
     pub fn is_at_part(&self, turn: &Turn) -> bool {
         *self == Sort::AtPart && turn.arrived(Move::SortDown) && turn.arrived(Move::GripperOpen)
+    }
+
+    /// A motion was cleared and driven: fingers that open let their part go.
+    pub fn driven(self, movement: Move, ledger: &mut Ledger, now: RigTime) -> Sort {
+        match (self, movement) {
+            (Sort::LettingGo(bin, before), Move::GripperOpen) => {
+                ledger.drop_over(bin, now, before);
+                Sort::Opening
+            }
+            (other, _) => other,
+        }
     }
 
     /// The nest has handed its part over and z is up.
@@ -119,9 +137,9 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
     let (true, Some(before)) = (durable, before) else {
         return stay;
     };
-    turn.ledger.drop_over(bin, turn.now, before.count);
+    let before = before.count;
     turn.drive(Move::GripperOpen);
-    Sort::Opening
+    Sort::LettingGo(bin, before)
 }
 
 /// Open fingers go back empty only.

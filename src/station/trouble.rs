@@ -308,6 +308,17 @@ impl Alarm {
         )
     }
 
+    /// A calibration before this start was cut off and left a channel mask of its own.
+    pub fn calibration_cut_off(module: &str) -> Self {
+        Self::new(
+            "calibration_cut_off",
+            format!(
+                "{module} still had the channel mask of the references: a calibration was cut off. The mask of the lots is back."
+            ),
+            format!("{module} 仍为标准器测量的通道掩码：上次校准被中断。现已恢复生产掩码。"),
+        )
+    }
+
     /// Calibration did not come out.
     pub fn calibration(text: &str) -> Self {
         Self::new(

@@ -54,12 +54,18 @@ fn falling(bin: Bin, count: u16) -> (Sort, Shop) {
     let (sort, mut shop) = over(bin, count);
     shop.recorded = 1;
     let sort = step(sort, &mut shop, false);
-    assert_eq!(
-        (sort, &*shop.wants.motions),
-        (Sort::Opening, &[Move::GripperOpen][..])
-    );
+    assert_eq!(shop.wants.motions, [Move::GripperOpen]);
+    let sort = let_go(sort, &mut shop);
     shop.carried_out(Move::GripperOpen);
     (sort, shop)
+}
+
+/// The guard has cleared the opening of the fingers.
+fn let_go(sort: Sort, shop: &mut Shop) -> Sort {
+    assert!(matches!(sort, Sort::LettingGo(..)), "{sort:?}");
+    let sort = sort.driven(Move::GripperOpen, &mut shop.ledger, shop.now);
+    assert_eq!(sort, Sort::Opening);
+    sort
 }
 
 #[test]
@@ -124,9 +130,24 @@ fn a_part_is_let_go_only_when_its_record_is_durable() {
     for recorded in [0, 1] {
         shop.recorded = recorded;
         let next = step(sort, &mut shop, false);
-        assert_eq!(next == Sort::Opening, recorded == 1);
-        assert_eq!(shop.ledger.falling.is_some(), recorded == 1);
+        assert_eq!(next == Sort::LettingGo(Bin::Pass, 3), recorded == 1);
     }
+}
+
+#[test]
+fn a_part_is_in_the_fingers_until_their_opening_is_driven() {
+    let (sort, mut shop) = over(Bin::Pass, 3);
+    shop.recorded = 1;
+    let asked = step(sort, &mut shop, false);
+    let waiting = step(asked, &mut shop, false);
+    assert_eq!(waiting, asked, "a person releases it, or the guard refuses");
+    assert_eq!(
+        waiting.driven(Move::SortUp, &mut shop.ledger, shop.now),
+        waiting
+    );
+    assert!(shop.ledger.gripper.is_some() && shop.ledger.falling.is_none());
+    let_go(waiting, &mut shop);
+    assert!(shop.ledger.gripper.is_none() && shop.ledger.falling.is_some());
 }
 
 #[test]
@@ -140,7 +161,8 @@ fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
     assert_eq!(shop.wants.beam, Some(DigitalIn::BeamTime));
     shop.after(1);
     beam(&mut shop, Bin::Time, 5);
-    assert_eq!(step(sort, &mut shop, false), Sort::Opening);
+    let asked = step(sort, &mut shop, false);
+    let_go(asked, &mut shop);
     let falling = shop.ledger.falling.as_ref();
     assert_eq!(falling.map(|falling| falling.beam_before), Some(5));
 }
@@ -212,7 +234,8 @@ fn a_part_that_its_beam_does_not_see_is_lost_after_a_second_and_a_half() {
 fn a_count_read_before_the_fingers_opened_says_nothing() {
     let (sort, mut shop) = over(Bin::Pass, 10);
     shop.recorded = 1;
-    let sort = step(sort, &mut shop, false);
+    let asked = step(sort, &mut shop, false);
+    let sort = let_go(asked, &mut shop);
     beam(&mut shop, Bin::Pass, 11);
     step(sort, &mut shop, false);
     assert!(shop.wants.landed.is_empty());
