@@ -10,6 +10,7 @@ mod orders;
 mod recorder;
 mod rows;
 mod screen;
+mod stage;
 mod summary;
 mod table;
 mod traces;
@@ -26,6 +27,7 @@ use anyhow::{Context, bail};
 use orders::Desk;
 pub use orders::Orders;
 use recorder::{Recorder, Setup};
+pub use stage::Stage;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
@@ -89,6 +91,8 @@ pub struct Controls {
     pub quiet: bool,
     /// The run only calibrates, whatever is stored, and leaves what it found here instead of in the history.
     pub calibrates: Option<Arc<OnceLock<Calibration>>>,
+    /// A study stands in for the world outside.
+    pub stage: Option<Stage>,
 }
 
 impl Controls {
@@ -101,6 +105,7 @@ impl Controls {
             view: watch::channel(View::default()).0,
             quiet,
             calibrates: None,
+            stage: None,
         }
     }
 }
@@ -158,7 +163,8 @@ pub fn run_with(
     #[cfg(feature = "sim")]
     builder.start_paused(is_virtual(args));
     let runtime = builder.build().context("starting the runtime")?;
-    let status = runtime.block_on(run_lot(plant, recipe, config, db, args, controls, orders));
+    let bench = (&plant, &recipe);
+    let status = runtime.block_on(run_lot(bench, config, db, args, controls, orders));
     runtime.shutdown_timeout(std::time::Duration::from_secs(1));
     status
 }
@@ -167,9 +173,9 @@ fn is_virtual(args: &RunArgs) -> bool {
     args.rig.sim && args.rig.pace == PaceArg::Virtual
 }
 
-async fn run_lot(
-    plant: Plant,
-    recipe: Arc<Recipe>,
+/// The lot itself; what was checked in [`run_with`] is taken for granted.
+pub(super) async fn run_lot(
+    (plant, recipe): (&Plant, &Arc<Recipe>),
     config: &Path,
     db: &Path,
     args: &RunArgs,
@@ -181,19 +187,19 @@ async fn run_lot(
     } else {
         Pace::real()
     };
-    let epoch_us = jiff::Timestamp::now().as_microsecond();
+    let epoch_us = controls.epoch_us();
     if let Some(speed) = args.rig.speed {
         tokio::spawn(pace.hold_back(speed));
     }
-    let (mut lines, rig) = lines::open(&plant, config, args, &pace)?;
+    let (mut lines, rig) = lines::open(plant, config, args, controls, &pace)?;
     let setup = Setup {
-        plant: &plant,
-        recipe: &recipe,
+        plant,
+        recipe,
         args,
         epoch_us,
     };
     let desk = Desk::open(orders, &rig, pace, &controls.stop)?;
-    let traces = Traces::new(db, &plant, &lines.logs);
+    let traces = Traces::new(db, plant, &lines.logs);
     let (mut recorder, known) = Recorder::open(db, &setup, controls, rig.eeprom_count(), traces)?;
     let (events, received) = mpsc::unbounded_channel::<Event>();
     let recorded = Arc::new(AtomicU64::new(0));
@@ -216,15 +222,11 @@ async fn run_lot(
         outside,
         controls.stays,
     )?;
-    let (stop, abort) = (Arc::clone(&controls.stop), Arc::clone(&controls.abort));
-    let interrupt = tokio::spawn(async move {
-        // The first one finishes the parts inside, the second does not wait for them.
-        for flag in [stop, abort] {
-            if interrupted().await.is_ok() {
-                flag.store(true, Ordering::Release);
-            }
-        }
-    });
+    let flags = [Arc::clone(&controls.stop), Arc::clone(&controls.abort)];
+    let interrupt = controls
+        .stage
+        .is_none()
+        .then(|| tokio::spawn(interruptions(flags)));
     let running = tokio::spawn(cycle.run());
     let kept = recorder.keep(received, &recorded, desk.onlooker).await;
     if let Err(error) = &kept {
@@ -232,7 +234,9 @@ async fn run_lot(
         history_lost.store(true, Ordering::Release);
     }
     let ended = running.await;
-    interrupt.abort();
+    if let Some(interrupt) = interrupt {
+        interrupt.abort();
+    }
     let Ok((ending, profile)) = ended else {
         tracing::error!(
             "the control cycle ended by an assertion; the modules' watchdogs make the outputs safe"
@@ -253,6 +257,15 @@ async fn run_lot(
         Ending::Stopped => super::STOPPED,
         Ending::Alarm => super::RIG_TROUBLE,
     })
+}
+
+/// The first one finishes the parts inside, the second does not wait for them.
+async fn interruptions(flags: [Arc<AtomicBool>; 2]) {
+    for flag in flags {
+        if interrupted().await.is_ok() {
+            flag.store(true, Ordering::Release);
+        }
+    }
 }
 
 /// Ctrl-C, or the signal that a service manager ends a program with.

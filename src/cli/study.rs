@@ -39,6 +39,8 @@ mod parameters;
 mod scatter;
 mod sorting;
 mod stop;
+#[cfg(feature = "sim")]
+mod storm;
 #[cfg(test)]
 mod tests;
 mod threshold;
@@ -91,6 +93,8 @@ pub enum Study {
     Pace,
     /// Good parts rejected, defects by bin, over many lots
     Sorting,
+    /// Short lots under random faults, orders and kills: bodies, rows, motions and endings
+    Storm,
     /// Error of times and bounce: latched and raw gates, reference clock, gate delay
     Timing,
     /// The relay model of the simulated rig over the cases of a file
@@ -111,6 +115,7 @@ impl Study {
             Self::Kill => Some((300, 1)),
             Self::Pace => Some((3, 300)),
             Self::Sorting => Some((100, 110)),
+            Self::Storm => Some((200, 4)),
             Self::Threshold => Some((4, 40)),
             Self::Stop => Some((16, 25)),
             Self::Transient => None,
@@ -131,6 +136,7 @@ impl Study {
             Self::Kill => "kill",
             Self::Pace => "pace",
             Self::Sorting => "sorting",
+            Self::Storm => "storm",
             Self::Timing => "timing",
             Self::Stop => "stop",
             Self::Transient => "transient",
@@ -151,6 +157,7 @@ impl Study {
             Self::Kill => kill::study(order),
             Self::Pace => pace::study(order),
             Self::Sorting => sorting::study(order),
+            Self::Storm => storms(order),
             Self::Timing => timing::study(order),
             Self::Stop => stop::study(order),
             Self::Transient => bail!("study transient runs no lot"),
@@ -167,6 +174,8 @@ impl Study {
   relayrig study cycle --out figures
   relayrig study collision --out figures
   relayrig study accuracy --seeds 2 --parts 50 --recipe jzc-22f-009
+  relayrig study storm --seeds 10000
+  relayrig study storm --seed 17
   relayrig study transient --cases src/cli/study/transient/cases.json --rtol 1e-10 --json
 
 Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input.")]
@@ -183,6 +192,9 @@ pub struct StudyArgs {
     /// Lots, with seeds 1 to N; `pace` runs seed 1 N times
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: Option<u64>,
+    /// Only this seed of `storm`
+    #[arg(long, value_name = "S", conflicts_with = "seeds")]
+    pub seed: Option<u64>,
     /// Parts of each lot
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub parts: Option<u64>,
@@ -220,6 +232,9 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         (false, None, None) => {}
         (false, _, _) => bail!("--cases and --rtol belong to `study transient`"),
     }
+    if args.seed.is_some() && study != Study::Storm {
+        bail!("--seed belongs to `study storm`");
+    }
     if let Some(folder) = &args.out {
         made(folder)?;
     }
@@ -232,6 +247,7 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         world: args.world.clone(),
         faults: Vec::new(),
         lots: args.seeds.unwrap_or(lots),
+        seed: args.seed,
         parts: args.parts.unwrap_or(parts),
     };
     let report = study.report(&order)?;
@@ -287,6 +303,16 @@ fn transients(args: &StudyArgs) -> anyhow::Result<i32> {
     let rtol = args.rtol.unwrap_or(transient::USUAL_RTOL);
     print(&transient::study(cases, rtol, args.json)?)?;
     Ok(ALL_MET)
+}
+
+#[cfg(feature = "sim")]
+fn storms(order: &Order) -> anyhow::Result<Report> {
+    storm::study(order)
+}
+
+#[cfg(not(feature = "sim"))]
+fn storms(_: &Order) -> anyhow::Result<Report> {
+    bail!("study: this is a plant build without the simulated rig");
 }
 
 #[cfg(not(feature = "sim"))]

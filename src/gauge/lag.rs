@@ -110,8 +110,9 @@ fn solved(mut products: [[f64; TERMS]; TERMS], mut right: [f64; TERMS]) -> [f64;
     for pivot in 0..TERMS {
         for row in pivot + 1..TERMS {
             let share = products[row][pivot] / products[pivot][pivot];
-            for column in pivot..TERMS {
-                products[row][column] -= share * products[pivot][column];
+            let above = products[pivot];
+            for (it, above) in products[row].iter_mut().zip(above).skip(pivot) {
+                *it -= share * above;
             }
             right[row] -= share * right[pivot];
         }

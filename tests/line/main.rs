@@ -15,6 +15,7 @@
 //! - `screen`: the page in a real browser over `relayrig demo`.
 //! - `stories`: scripts of troubles and orders, and what happened, as a mechanic would tell it.
 //! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
+//! - `tempest`: the whole program under faults of world and line, orders and kills, judged by the simulated rig.
 //! - `unplugged`: a port that vanishes over pseudo-terminals.
 //! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
 
@@ -47,6 +48,8 @@ mod screen;
 mod stories;
 #[cfg(feature = "sim")]
 mod storm;
+#[cfg(feature = "sim")]
+mod tempest;
 #[cfg(feature = "sim")]
 mod troubles;
 #[cfg(all(feature = "sim", unix))]

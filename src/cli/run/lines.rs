@@ -1,6 +1,6 @@
 //! Opens the lines of a run: serial ports, pseudo-terminals of the simulated rig, or in-process streams.
 
-use super::RunArgs;
+use super::{Controls, RunArgs};
 use crate::bus::{self, LineLog, LineSettings, Pace, SerialPorts};
 use crate::config::Plant;
 use crate::cycle::LineEnds;
@@ -108,13 +108,18 @@ pub fn open(
     plant: &Plant,
     config: &Path,
     args: &RunArgs,
+    controls: &Controls,
     pace: &Pace,
 ) -> anyhow::Result<(Lines, Behind)> {
     #[cfg(feature = "sim")]
     if args.rig.sim {
-        return simulated::open(plant, config, args, pace);
+        let rig = match controls.staged_rig() {
+            Some(rig) => rig,
+            None => simulated::build(plant, config, args)?,
+        };
+        return simulated::open(plant, rig, args, pace);
     }
-    let _ = config;
+    let _ = (config, controls);
     let mut lines = Lines {
         ends: Vec::new(),
         logs: Vec::new(),
@@ -191,7 +196,7 @@ mod simulated {
     use super::super::PaceArg;
     use super::{Behind, Lines, Pace, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings};
     use crate::cli::plug::PlugPorts;
-    use rigsim::{Options, pty, wire};
+    use rigsim::{Options, SharedRig, pty, wire};
 
     /// The faults asked for; and the magazine is loaded as the golden checks of the lot want it, as a person would.
     fn faults(plant: &Plant, args: &RunArgs) -> Vec<String> {
@@ -202,14 +207,9 @@ mod simulated {
         faults
     }
 
-    /// The simulated rig behind its lines.
-    pub fn open(
-        plant: &Plant,
-        config: &Path,
-        args: &RunArgs,
-        pace: &Pace,
-    ) -> anyhow::Result<(Lines, Behind)> {
-        let rig = rigsim::build(&Options {
+    /// The rig that the arguments ask for.
+    pub fn build(plant: &Plant, config: &Path, args: &RunArgs) -> anyhow::Result<SharedRig> {
+        Ok(rigsim::build(&Options {
             config_dir: config.to_path_buf(),
             world: args.rig.world.clone(),
             seed: args.rig.seed,
@@ -217,7 +217,16 @@ mod simulated {
             parts: args.count,
             golden: true,
             faults: faults(plant, args),
-        })?;
+        })?)
+    }
+
+    /// The simulated rig behind its lines.
+    pub fn open(
+        plant: &Plant,
+        rig: SharedRig,
+        args: &RunArgs,
+        pace: &Pace,
+    ) -> anyhow::Result<(Lines, Behind)> {
         let mut lines = Lines {
             ends: Vec::new(),
             logs: Vec::new(),

@@ -95,7 +95,9 @@ impl<'a> Recorder<'a> {
         traces: Traces,
     ) -> anyhow::Result<(Self, Known)> {
         let mut store = Store::open(db, &Identity::of_this_program())?;
-        let calibration = if setup.args.rig.sim || controls.calibrates.is_some() {
+        let calibration = if let Some(stage) = &controls.stage {
+            stage.calibration.clone()
+        } else if setup.args.rig.sim || controls.calibrates.is_some() {
             None
         } else {
             valid_calibration(&store, setup)?

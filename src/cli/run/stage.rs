@@ -1,0 +1,32 @@
+//! A run on a stage: a study holds the simulated rig, which goes on living when the controller is gone.
+
+use super::Controls;
+use crate::gauge::Calibration;
+#[cfg(feature = "sim")]
+use rigsim::SharedRig;
+
+/// What a study brings to a run in place of what the run would find by itself.
+#[derive(Debug, Clone)]
+pub struct Stage {
+    /// The rig behind the lines; rig time of the run begins where the rig stands.
+    #[cfg(feature = "sim")]
+    pub rig: SharedRig,
+    /// Wall clock at rig time zero of the run, microseconds since 1970 UTC: the same rows for the same seed.
+    pub epoch_us: i64,
+    /// What the rig was calibrated with before; without it the run calibrates.
+    pub calibration: Option<Calibration>,
+}
+
+impl Controls {
+    /// Wall clock at rig time zero, microseconds since 1970 UTC.
+    pub(super) fn epoch_us(&self) -> i64 {
+        let now = || jiff::Timestamp::now().as_microsecond();
+        self.stage.as_ref().map_or_else(now, |stage| stage.epoch_us)
+    }
+
+    /// The rig of the stage.
+    #[cfg(feature = "sim")]
+    pub(super) fn staged_rig(&self) -> Option<SharedRig> {
+        self.stage.as_ref().map(|stage| stage.rig.clone())
+    }
+}

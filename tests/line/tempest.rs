@@ -1,0 +1,46 @@
+//! The storm over the whole program: short lots under faults, orders and kills, judged by the simulated rig.
+
+use crate::program::{Workshop, objects};
+use serde_json::Value;
+
+/// A figure of the study by its name.
+fn figure(all: &[Value], name: &str) -> f64 {
+    let own = all.iter().find(|it| it["figure"] == name).unwrap();
+    own["value"].as_f64().unwrap()
+}
+
+#[test]
+fn in_two_hundred_storms_no_rule_is_broken_and_every_weather_has_struck() {
+    let workshop = Workshop::new("tempest");
+    let said = workshop.run("study storm --seeds 200 --json");
+    assert_eq!(said.status, 0, "{}{}", said.stdout, said.stderr);
+    let figures = objects(&said.stdout);
+    assert_eq!(figure(&figures, "seeds that broke a rule"), 0.0);
+    for (name, at_least) in [
+        ("kills of the controller", 80.0),
+        ("lots completed", 200.0),
+        ("bodies", 800.0),
+        ("alarms", 300.0),
+        ("orders", 600.0),
+        ("motions", 10_000.0),
+    ] {
+        let found = figure(&figures, name);
+        assert!(found >= at_least, "{name}: {found}, too calm");
+    }
+}
+
+#[test]
+fn a_storm_comes_back_by_its_seed_bit_for_bit() {
+    let workshop = Workshop::new("tempest-again");
+    let digest = |seed: u64| {
+        let said = workshop.run(&format!("study storm --seed {seed}"));
+        let line = said
+            .stdout
+            .lines()
+            .find(|line| line.starts_with("digest"))
+            .map(str::to_owned);
+        line.unwrap_or_else(|| panic!("{}{}", said.stdout, said.stderr))
+    };
+    assert_eq!(digest(6), digest(6));
+    assert_ne!(digest(6), digest(7));
+}
