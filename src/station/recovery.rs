@@ -79,10 +79,7 @@ impl Recovery {
             Stage::Up if !turn.arrived(Move::SortUp) => self.ask(turn, Move::SortUp),
             Stage::Up => {
                 if let Some(seen) = Seen::of(turn) {
-                    if was_pushed(turn.ledger, &seen) {
-                        let golden = turn.next_golden();
-                        turn.ledger.enter_nest(golden);
-                    }
+                    pushed(turn, &seen);
                     reconcile(turn.ledger, &seen, releasing, &mut turn.wants.trouble);
                     self.leave_gripped(turn.ledger);
                     (self.stage, self.asked) = (Stage::Home, None);
@@ -169,6 +166,19 @@ impl Seen {
     }
 }
 
+/// The pusher had brought the part of the pocket when the sequence was cut off: it is the one in the nest, and not
+/// the one that the fingers have lost.
+fn pushed(turn: &mut Turn, seen: &Seen) {
+    let gone = turn.ledger.pocket && !seen.pocket;
+    if gone && turn.ledger.nest.is_none() && seen.nest {
+        let golden = match turn.ledger.pocket_found {
+            true => None,
+            false => turn.next_golden(),
+        };
+        turn.ledger.enter_nest(golden);
+    }
+}
+
 /// Brings the ledger to what is seen, z being up. Parts in nest and gripper are interrupted by this.
 pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, alarms: &mut Vec<Alarm>) {
     hand_over(ledger, seen);
@@ -206,12 +216,6 @@ pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, alarms: &mut
         }
         (true, true) | (false, false) => {}
     }
-}
-
-/// The part of the pocket had reached the nest when the sequence was cut off.
-fn was_pushed(ledger: &Ledger, seen: &Seen) -> bool {
-    let inside = ledger.pocket && ledger.nest.is_none() && !seen.pocket && seen.nest;
-    inside && ledger.gripper.is_some() == seen.gripper
 }
 
 /// Parts that had moved on when the sequence was cut off, or were set down again.

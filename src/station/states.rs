@@ -38,8 +38,9 @@ impl Station {
             (true, ..) if rests => {
                 self.make_safe("stopped", now, wants);
                 let aborted = packml::is_aborted(self.state);
+                let in_trouble = aborted && !self.annunciator.standing().is_empty();
                 self.end(
-                    if aborted {
+                    if in_trouble {
                         Ending::Alarm
                     } else {
                         Ending::Stopped

@@ -3,7 +3,7 @@
 use super::Shop;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::{DigitalIn, DigitalOut};
-use crate::station::ledger::Ledger;
+use crate::station::ledger::{Kind, Ledger};
 use crate::station::moves::Move;
 use crate::station::recovery::Recovery;
 
@@ -183,6 +183,18 @@ fn after_homing_the_ledger_says_what_the_sensors_say_whatever_it_said_before() {
             assert_eq!(known, came_in, "a part was counted twice");
         }
     }
+}
+
+#[test]
+fn a_part_that_had_been_pushed_is_not_taken_for_the_one_that_the_fingers_lost() {
+    let mut shop = Shop::at_rest();
+    shop.ledger = ledger(0b101);
+    shop.set(DigitalIn::NestPresent, true);
+    shop.scan();
+    carried_out(&mut shop);
+    let kind = shop.ledger.nest.as_ref().map(|part| part.kind.clone());
+    assert_eq!(kind, Some(Kind::Lot(2)), "the first one fell");
+    assert_eq!((shop.ledger.lost, shop.ledger.found), (1, 0));
 }
 
 fn ledger(places: u8) -> Ledger {
