@@ -57,7 +57,10 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
             (Some(code), Some(reason)) if !reason.is_empty() => {
                 Ok(Order::Shelve(code, orders::shelf_minutes(order.minutes)))
             }
-            (Some(_), _) => Err(expected("reason", vec!["why it is shelved"], None)),
+            (Some(_), _) => Err(Refused::new(
+                "reason: found nothing, expected why the alarm is shelved",
+                "reason：未填写，应说明搁置原因",
+            )),
             (None, _) => Err(expected("alarm", vec!["the code of an alarm"], None)),
         },
         other => Err(expected("order", view::ORDERS.to_vec(), Some(other))),
@@ -279,6 +282,20 @@ mod tests {
             };
             let why = read(&order).map(|_| ()).map_err(|why| why.en);
             assert!(why.is_err_and(|why| why.contains(expected)), "{word}");
+        }
+    }
+
+    #[test]
+    fn nothing_is_shelved_without_a_reason() {
+        for reason in [None, Some(" ".to_owned())] {
+            let order = Order {
+                order: "shelve".into(),
+                alarm: Some("door_open".into()),
+                reason,
+                ..Order::default()
+            };
+            let why = read(&order).map(|_| ()).map_err(|why| why.en);
+            assert!(why.is_err_and(|why| why.contains("why the alarm is shelved")));
         }
     }
 }
