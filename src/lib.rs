@@ -13,6 +13,7 @@
 //! - [`cycle`]: one turn of the rig, top to bottom.
 //! - [`history`]: SQLite; [`quality`]: statistics that stay right.
 //! - [`report`]: print, spreadsheet, process card, charts.
+//! - [`inquiry`]: what may be asked of the history, answered alike everywhere.
 //! - [`view`]: what a screen may know; [`hmi`]: the page, its events and orders.
 //! - [`config`]: files to settings, with the line of every mistake.
 //! - [`cli`]: one file per command; the only place that names the simulator.
@@ -26,6 +27,7 @@ pub mod gauge;
 pub mod guard;
 pub mod history;
 pub mod hmi;
+pub mod inquiry;
 pub mod lpm;
 pub mod quality;
 pub mod report;

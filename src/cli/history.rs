@@ -23,6 +23,7 @@ pub use generate::{GenerateArgs, Generated, generate, progress};
 pub use quality::{QualityArgs, run_quality};
 
 use crate::history::{Archive, Filter, Identity, Store};
+use crate::inquiry::InquiryError;
 use clap::{Args, Subcommand};
 use output::Output;
 use std::io;
@@ -107,7 +108,15 @@ enum Command {
 
 /// Runs the command on the history file `db`; gives the exit status. An error is bad input: status 2.
 pub fn run(config: &Path, db: &Path, args: HistoryArgs) -> anyhow::Result<i32> {
-    unless_reader_left(dispatch(config, db, *args.command))
+    unless_reader_left(dispatch(config, db, *args.command).map_err(by_option))
+}
+
+/// A member of the question that cannot be meant is an option here.
+fn by_option(error: anyhow::Error) -> anyhow::Error {
+    match error.downcast_ref::<InquiryError>() {
+        Some(InquiryError::Member { field, reason }) => anyhow::anyhow!("--{field}: {reason}"),
+        _ => error,
+    }
 }
 
 fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<i32> {

@@ -25,13 +25,11 @@ pub struct Alarm {
 }
 
 impl Archive {
-    /// Alarms of the runs that the filter leaves (lot, run, recipe), raised in its span, in order of time.
+    /// Alarms of the runs that the filter leaves (lot, run, recipe), raised in its span, in order of time;
+    /// the filter's page of them.
     pub fn alarms(&self, filter: &Filter) -> Result<Vec<Alarm>> {
         const DOING: &str = "reading alarms";
-        let mut select = filter.alarms();
-        select
-            .sql
-            .push_str(" ORDER BY alarm.raised_at_us, alarm.id");
+        let select = filter.alarms();
         let mut statement = self.connection.prepare(&select.sql).doing(DOING)?;
         let rows = statement.query_map(params_from_iter(&select.values), |row| {
             Ok(Alarm {

@@ -39,6 +39,8 @@ pub struct Filter {
     pub suspect: bool,
     /// At most so many parts, the first ones in order of judgement.
     pub limit: Option<u64>,
+    /// So many parts are passed over before the first one: the next page.
+    pub offset: Option<u64>,
 }
 
 /// A statement with its values.
@@ -62,6 +64,27 @@ const COLUMNS: &str = "part.id, part.run_id, part.kind, part.seq, part.serial, p
     part.landed_at_us";
 
 impl Filter {
+    /// Names of the members that restrict, in the order above.
+    pub fn members(&self) -> Vec<&'static str> {
+        let set = [
+            ("lot", self.lot.is_some()),
+            ("run", self.run.is_some()),
+            ("recipe", self.recipe.is_some()),
+            ("since", self.since.is_some()),
+            ("until", self.until.is_some()),
+            ("verdict", self.verdict.is_some()),
+            ("bin", self.bin.is_some()),
+            ("kind", self.kind.is_some()),
+            ("param", self.param.is_some()),
+            ("min", self.min.is_some()),
+            ("max", self.max.is_some()),
+            ("limit", self.limit.is_some()),
+            ("offset", self.offset.is_some()),
+        ];
+        let named = set.into_iter().filter(|(_, is_set)| *is_set);
+        named.map(|(name, _)| name).collect()
+    }
+
     /// Rows of `part` in order of judgement.
     pub(super) fn parts(&self) -> Select {
         let mut select = match &self.param {
@@ -82,10 +105,17 @@ impl Filter {
             }
         };
         select.sql.push_str(" ORDER BY part.id");
-        if let Some(limit) = self.limit {
-            select.add(" LIMIT ?", i64::try_from(limit).unwrap_or(i64::MAX));
-        }
+        self.page(&mut select);
         select
+    }
+
+    /// The page of an ordered answer.
+    fn page(&self, select: &mut Select) {
+        let signed = |it: u64| i64::try_from(it).unwrap_or(i64::MAX);
+        if self.limit.is_some() || self.offset.is_some() {
+            select.add(" LIMIT ?", self.limit.map_or(-1, signed));
+            select.add(" OFFSET ?", self.offset.map_or(0, signed));
+        }
     }
 
     /// Part row and value of one parameter, in no order. Reads the index alone unless the filter
@@ -119,7 +149,7 @@ impl Filter {
         select
     }
 
-    /// Alarms, with name of lot and number of run.
+    /// Alarms in order of time, with name of lot and number of run.
     pub(super) fn alarms(&self) -> Select {
         let mut select = Select::default();
         select.sql.push_str(
@@ -134,6 +164,10 @@ impl Filter {
         if let Some(until) = self.until {
             select.add(" AND alarm.raised_at_us < ?", until.0);
         }
+        select
+            .sql
+            .push_str(" ORDER BY alarm.raised_at_us, alarm.id");
+        self.page(&mut select);
         select
     }
 

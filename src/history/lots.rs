@@ -87,6 +87,15 @@ impl Archive {
         self.summaries(filter).doing("reading the lots")
     }
 
+    /// Whether the filter (lot, recipe, run) leaves any run.
+    pub fn has_runs(&self, filter: &Filter) -> Result<bool> {
+        let runs = filter.runs();
+        self.connection
+            .prepare(&runs.sql)
+            .and_then(|mut it| it.exists(params_from_iter(&runs.values)))
+            .doing("looking for a run")
+    }
+
     /// Counts of production parts judged from `since` up to, but not including, `until`.
     pub fn yield_between(&self, since: Moment, until: Moment) -> Result<Yield> {
         let mut counts = Yield::default();

@@ -18,6 +18,7 @@ mod alarm_states;
 mod alarms;
 mod archive;
 mod backup;
+pub mod columns;
 pub mod csv;
 mod error;
 mod filter;

@@ -33,7 +33,7 @@ pub enum LimitsSeen {
 impl Archive {
     /// Values of `param` on the parts that the filter leaves. Superseded attempts, values that
     /// could not be judged and (unless asked for) golden parts do not count. The filter's `limit`
-    /// keeps the first values.
+    /// and `offset` count values in order of judgement.
     pub fn values(&self, param: &str, filter: &Filter) -> Result<Values> {
         let values = self.series(param, filter).doing("reading values")?;
         let limits = self.limits(param, filter).doing("reading limits")?;
@@ -49,14 +49,11 @@ impl Archive {
             found.push((row.get(0)?, row.get(1)?));
         }
         found.sort_unstable_by_key(|&(part, _)| part);
-        let keep = filter.limit.map_or(found.len(), |limit| {
-            usize::try_from(limit)
-                .unwrap_or(usize::MAX)
-                .min(found.len())
-        });
+        let whole = |it: u64| usize::try_from(it).unwrap_or(usize::MAX);
         Ok(found
             .into_iter()
-            .take(keep)
+            .skip(filter.offset.map_or(0, whole))
+            .take(filter.limit.map_or(usize::MAX, whole))
             .map(|(_, value)| value)
             .collect())
     }

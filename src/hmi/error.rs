@@ -2,6 +2,7 @@
 
 use super::access::{AccessError, Role};
 use crate::history::HistoryError;
+use crate::inquiry::InquiryError;
 use axum::Json;
 use axum::extract::rejection::{JsonRejection, QueryRejection};
 use axum::http::{HeaderValue, Method, StatusCode, header};
@@ -83,26 +84,15 @@ pub(super) enum HmiError {
         /// The same in Chinese.
         reason_zh: String,
     },
-    /// 400: a filter that cannot be meant.
-    #[error("{field}: {reason}")]
-    Filter {
-        /// Name in the query string.
-        field: &'static str,
-        /// Found and expected.
-        reason: String,
-    },
     /// 400: a query string that is no filter.
     #[error("{reason}")]
     Query {
         /// Found and expected.
         reason: String,
     },
-    /// 404: the lot, recipe or part asked for never was.
-    #[error("{what}")]
-    NotInHistory {
-        /// What is not there.
-        what: String,
-    },
+    /// 400 for what cannot be meant, 404 for what never was, else as the history itself.
+    #[error(transparent)]
+    Inquiry(#[from] InquiryError),
     /// 404, 503 or 500.
     #[error(transparent)]
     History(#[from] HistoryError),
@@ -114,22 +104,31 @@ pub(super) enum HmiError {
 impl HmiError {
     fn status(&self) -> StatusCode {
         match self {
-            Self::NoSuchRoute { .. } | Self::NotInHistory { .. } => StatusCode::NOT_FOUND,
+            Self::NoSuchRoute { .. } => StatusCode::NOT_FOUND,
             Self::WrongMethod { .. } => StatusCode::METHOD_NOT_ALLOWED,
             Self::CrossSite { .. } | Self::NotAllowed { .. } => StatusCode::FORBIDDEN,
             Self::NotLoggedIn { .. } | Self::WrongPassword => StatusCode::UNAUTHORIZED,
             Self::TooManyTries { .. } => StatusCode::TOO_MANY_REQUESTS,
             Self::Body { status, .. } => *status,
-            Self::UnknownOrder { .. } | Self::Filter { .. } | Self::Query { .. } => {
-                StatusCode::BAD_REQUEST
-            }
+            Self::UnknownOrder { .. } | Self::Query { .. } => StatusCode::BAD_REQUEST,
             Self::NotNow { .. } => StatusCode::CONFLICT,
-            Self::History(HistoryError::Missing { .. }) => StatusCode::NOT_FOUND,
-            Self::History(HistoryError::Locked { .. }) => StatusCode::SERVICE_UNAVAILABLE,
-            Self::History(_) | Self::Access(_) | Self::ReaderLost => {
-                StatusCode::INTERNAL_SERVER_ERROR
+            Self::History(history) | Self::Inquiry(InquiryError::History(history)) => {
+                unread(history)
             }
+            Self::Inquiry(InquiryError::Member { .. }) => StatusCode::BAD_REQUEST,
+            Self::Inquiry(InquiryError::NotThere { .. }) => StatusCode::NOT_FOUND,
+            Self::Inquiry(InquiryError::Write(_) | InquiryError::Sheet(_))
+            | Self::Access(_)
+            | Self::ReaderLost => StatusCode::INTERNAL_SERVER_ERROR,
         }
+    }
+}
+
+fn unread(history: &HistoryError) -> StatusCode {
+    match history {
+        HistoryError::Missing { .. } => StatusCode::NOT_FOUND,
+        HistoryError::Locked { .. } => StatusCode::SERVICE_UNAVAILABLE,
+        _ => StatusCode::INTERNAL_SERVER_ERROR,
     }
 }
 

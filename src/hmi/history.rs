@@ -1,72 +1,61 @@
 //! `/api/history/...`: the command `history` over HTTP, with the same filter in the query string.
 //!
-//! | route | members of the filter | answer |
-//! |---|---|---|
-//! | `query` | all | array of parts, streamed: it may be long |
-//! | `list` | `lot`, `run`, `recipe` | array of runs with their counts |
-//! | `show` | `lot`, `seq`, `kind` | array with that part of every run, down to the raw replies |
-//! | `stats` | `param` and all but `min`, `max` | one object |
+//! The filter is [`Filter`]: `lot`, `run`, `recipe`, `since`, `until` (RFC 3339), `verdict`, `bin`, `kind`
+//! (`lot` when absent, `golden`, `all`), `param`, `min`, `max`, and of an ordered answer the page: `limit`,
+//! `offset`.
 //!
-//! A member that a route does not use is refused rather than ignored. Readers work beside the async
-//! threads, at most [`AT_ONCE`] of them, and hold up no writer.
+//! | route | members of the filter | others | answer |
+//! |---|---|---|---|
+//! | `list` | `lot`, `run`, `recipe` | | array of runs with their counts |
+//! | `show` | `lot`, `run`, `kind` | `seq` | array with that part of every run, down to the raw replies |
+//! | `query` | all | | array of parts, streamed: it may be long |
+//! | `count` | all but the page | | `{"parts": n}`: how long `query` would be |
+//! | `yield` | `since`, `until` | | counts of verdicts of all production parts in the span |
+//! | `stats` | `param` and all but `min`, `max` | | one object, as `history stats --json` |
+//! | `histogram` | the same | | `{"from", "width", "counts", "low", "high"}`, limits where all runs agree |
+//! | `spc` | the same; without `param` the share of every bin | `subgroup`, `rules`, `last` | array of control charts |
+//! | `alarms` | `lot`, `run`, `recipe`, `since`, `until`, page | | array of alarms in order of time |
+//! | `report/lot` | `lot`, `run`, `recipe` | `lang`, `ideal_cycle_s` | page for A4 |
+//! | `report/certificate` | the same | `lang`, `seq` | page for A4 |
+//! | `report/chart` | as `spc` | as `spc`, `lang` | page for A4 |
+//! | `report/alarms` | as `alarms` | `lang` | page for A4 |
+//! | `export.csv` | all | | CSV with byte order mark, streamed |
+//! | `export.xlsx` | all | `lang` | spreadsheet with charts, of a bounded number of parts |
+//!
+//! `lang` is `zh` (when absent) or `en`. A member that a route does not use is refused rather than ignored:
+//! 400 with the name. What never was is 404. Readers work beside the async threads, a few at a time, and
+//! hold up no writer.
+
+mod asked;
+pub(super) mod export;
+mod feed;
+pub(super) mod paper;
+mod readers;
 
 use super::error::HmiError;
-use super::history_feed;
 use super::router::Desk;
-use crate::history::{Archive, Filter, LimitsSeen, LotSummary, Part};
-use crate::quality::{Limits, Summary};
+use crate::history::{Alarm, Archive, Filter, LotSummary, Moment, Part, Yield};
+use crate::inquiry::charts::{Charted, charts};
+use crate::inquiry::figures::{Classes, figures, histogram};
+use crate::inquiry::{InquiryError, checks};
+use crate::quality::Summary;
+use crate::quality::rules::Rules;
+use asked::{Charting, asked};
 use axum::Json;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
-use axum::response::Response;
+use axum::http::Uri;
+use axum::http::header::CONTENT_TYPE;
+use axum::response::{IntoResponse, Response};
+pub(super) use readers::Readers;
 use serde::Deserialize;
-use std::path::PathBuf;
-use std::sync::Arc;
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use serde_json::{Value, json};
 use tokio::task::spawn_blocking;
-
-/// Readers at the same time; further ones wait.
-const AT_ONCE: usize = 4;
 
 type Filtered = Result<Query<Filter>, QueryRejection>;
 
-/// Who reads the history, and how many.
-#[derive(Debug, Clone)]
-pub(super) struct Readers {
-    db: PathBuf,
-    places: Arc<Semaphore>,
-}
-
-impl Readers {
-    pub fn new(db: PathBuf) -> Self {
-        let places = Arc::new(Semaphore::new(AT_ONCE));
-        Self { db, places }
-    }
-
-    /// An open archive and the place it takes, to be dropped together.
-    pub async fn open(&self) -> Result<(Archive, OwnedSemaphorePermit), HmiError> {
-        let place = Arc::clone(&self.places).acquire_owned().await;
-        let place = place.map_err(|_| HmiError::ReaderLost)?;
-        let db = self.db.clone();
-        let archive = spawn_blocking(move || Archive::open(&db)).await;
-        Ok((archive.map_err(|_| HmiError::ReaderLost)??, place))
-    }
-
-    async fn read<T: Send + 'static>(
-        &self,
-        read: impl FnOnce(&Archive) -> Result<T, HmiError> + Send + 'static,
-    ) -> Result<T, HmiError> {
-        let (archive, place) = self.open().await?;
-        let work = move || {
-            let found = read(&archive);
-            drop(place);
-            found
-        };
-        spawn_blocking(work)
-            .await
-            .map_err(|_| HmiError::ReaderLost)?
-    }
-}
+/// Members of the filter that alarms know.
+const OF_ALARMS: &[&str] = &["lot", "run", "recipe", "since", "until", "limit", "offset"];
 
 /// `GET /api/history/query`.
 pub(super) async fn query(
@@ -74,8 +63,33 @@ pub(super) async fn query(
     filter: Filtered,
 ) -> Result<Response, HmiError> {
     let Query(filter) = filter?;
-    sensible(&filter)?;
-    history_feed::parts(&desk.readers, filter).await
+    checks::sensible(&filter)?;
+    let (archive, place) = desk.readers.open().await?;
+    let param = filter.param.clone();
+    let known = move || checks::parameters(&archive, param.as_deref()).map(|_| archive);
+    let archive = spawn_blocking(known).await;
+    let archive = archive.map_err(|_| HmiError::ReaderLost)??;
+    let parts = feed::streamed((archive, place), move |archive, out| {
+        feed::parts(archive, &filter, out)
+    });
+    Ok(([(CONTENT_TYPE, "application/json")], parts).into_response())
+}
+
+/// `GET /api/history/count`.
+pub(super) async fn count(
+    State(desk): State<Desk>,
+    filter: Filtered,
+) -> Result<Json<Value>, HmiError> {
+    let Query(filter) = filter?;
+    checks::sensible(&filter)?;
+    if filter.limit.is_some() || filter.offset.is_some() {
+        return Err(InquiryError::member("limit, offset", "`count` is about all pages").into());
+    }
+    let read = move |archive: &Archive| {
+        checks::parameters(archive, filter.param.as_deref())?;
+        Ok(json!({"parts": archive.how_many(&filter)?}))
+    };
+    desk.readers.read(read).await.map(Json)
 }
 
 /// `GET /api/history/list`.
@@ -84,17 +98,21 @@ pub(super) async fn list(
     filter: Filtered,
 ) -> Result<Json<Vec<LotSummary>>, HmiError> {
     let Query(filter) = filter?;
-    let used = Filter {
-        lot: filter.lot.clone(),
-        run: filter.run,
-        recipe: filter.recipe.clone(),
-        ..Filter::default()
-    };
-    if used != filter {
-        let reason = "`list` takes lot, run and recipe only".to_owned();
-        return Err(HmiError::Query { reason });
-    }
+    checks::only(&filter, "list", &["lot", "run", "recipe"])?;
     let read = move |archive: &Archive| Ok(archive.lots(&filter)?);
+    desk.readers.read(read).await.map(Json)
+}
+
+/// `GET /api/history/yield`.
+pub(super) async fn yields(
+    State(desk): State<Desk>,
+    filter: Filtered,
+) -> Result<Json<Yield>, HmiError> {
+    let Query(filter) = filter?;
+    checks::only(&filter, "yield", &["since", "until"])?;
+    let since = filter.since.unwrap_or(Moment(i64::MIN));
+    let until = filter.until.unwrap_or(Moment(i64::MAX));
+    let read = move |archive: &Archive| Ok(archive.yield_between(since, until)?);
     desk.readers.read(read).await.map(Json)
 }
 
@@ -104,6 +122,8 @@ pub(super) async fn list(
 pub(super) struct Which {
     lot: String,
     seq: u64,
+    /// Only of this run.
+    run: Option<u32>,
     /// `lot` (when absent) or `golden`.
     kind: Option<String>,
 }
@@ -113,14 +133,20 @@ pub(super) async fn show(
     State(desk): State<Desk>,
     which: Result<Query<Which>, QueryRejection>,
 ) -> Result<Json<Vec<Part>>, HmiError> {
-    let Query(Which { lot, seq, kind }) = which?;
-    one_of("kind", kind.as_deref(), &["lot", "golden"])?;
+    let Query(Which {
+        lot,
+        seq,
+        run,
+        kind,
+    }) = which?;
+    checks::one_of("kind", kind.as_deref(), &["lot", "golden"])?;
     let read = move |archive: &Archive| {
         let kind = kind.as_deref().unwrap_or("lot");
-        let parts = archive.show(&lot, seq, kind)?;
+        let mut parts = archive.show(&lot, seq, kind)?;
+        parts.retain(|part| run.is_none_or(|run| part.run == run));
         if parts.is_empty() {
             let what = format!("lot {lot:?} has no {kind} part {seq}");
-            return Err(HmiError::NotInHistory { what });
+            return Err(InquiryError::not_there(what).into());
         }
         Ok(parts)
     };
@@ -132,78 +158,76 @@ pub(super) async fn stats(
     State(desk): State<Desk>,
     filter: Filtered,
 ) -> Result<Json<Summary>, HmiError> {
-    let Query(mut filter) = filter?;
-    sensible(&filter)?;
-    let Some(param) = filter.param.take() else {
-        return Err(refused("param", "missing: `stats` is about one parameter"));
-    };
-    if filter.min.is_some() || filter.max.is_some() {
-        return Err(refused(
-            "min, max",
-            "`stats` is about all values, not a range of them",
-        ));
+    let (param, filter) = of_one_parameter(filter?.0, "stats")?;
+    let read = move |archive: &Archive| Ok(figures(archive, &param, &filter, None)?.summary);
+    desk.readers.read(read).await.map(Json)
+}
+
+/// `GET /api/history/histogram`.
+pub(super) async fn classes(
+    State(desk): State<Desk>,
+    filter: Filtered,
+) -> Result<Json<Classes>, HmiError> {
+    let (param, filter) = of_one_parameter(filter?.0, "histogram")?;
+    let read = move |archive: &Archive| Ok(histogram(archive, &param, &filter)?);
+    desk.readers.read(read).await.map(Json)
+}
+
+/// `GET /api/history/spc`.
+pub(super) async fn spc(
+    State(desk): State<Desk>,
+    uri: Uri,
+) -> Result<Json<Vec<Charted>>, HmiError> {
+    let (filter, how) = asked::<Charting>(&uri)?;
+    checks::sensible(&filter)?;
+    if how.lang.is_some() {
+        return Err(InquiryError::member("lang", "`spc` has no words, `report/chart` has").into());
     }
+    let last = how.last()?;
     let read = move |archive: &Archive| {
-        known_parameter(archive, &param)?;
-        known_runs(archive, &filter)?;
-        let found = archive.values(&param, &filter)?;
-        let limits = match found.limits {
-            LimitsSeen::Same { low, high } => Limits { low, high },
-            LimitsSeen::None | LimitsSeen::Differ => Limits::default(),
-        };
-        Ok(Summary::of(&param, &found.values, limits))
+        let charts = charted(archive, filter, &how)?;
+        Ok(charts.into_iter().map(|it| it.last(last)).collect())
     };
     desk.readers.read(read).await.map(Json)
 }
 
-/// Refuses a filter that nothing can pass because of a slip.
-fn sensible(filter: &Filter) -> Result<(), HmiError> {
-    let verdicts = ["pass", "fail", "void", "unjudged"];
-    one_of("verdict", filter.verdict.as_deref(), &verdicts)?;
-    one_of("kind", filter.kind.as_deref(), &["lot", "golden", "all"])?;
-    for (field, value) in [("min", filter.min), ("max", filter.max)] {
-        if value.is_some_and(|it| !it.is_finite()) {
-            return Err(refused(field, "expected a finite number"));
-        }
-        if value.is_some() && filter.param.is_none() {
-            return Err(refused(field, "needs param"));
-        }
-    }
-    match (filter.min, filter.max) {
-        (Some(min), Some(max)) if min > max => Err(refused("min", "is above max")),
-        _ => Ok(()),
-    }
+/// `GET /api/history/alarms`.
+pub(super) async fn alarms(
+    State(desk): State<Desk>,
+    filter: Filtered,
+) -> Result<Json<Vec<Alarm>>, HmiError> {
+    let Query(filter) = filter?;
+    checks::only(&filter, "alarms", OF_ALARMS)?;
+    let read = move |archive: &Archive| Ok(archive.alarms(&filter)?);
+    desk.readers.read(read).await.map(Json)
 }
 
-fn one_of(field: &'static str, found: Option<&str>, known: &[&str]) -> Result<(), HmiError> {
-    match found {
-        Some(found) if !known.contains(&found) => {
-            let found: String = found.chars().take(40).collect();
-            let reason = format!("found {found:?}, expected one of {}", known.join(", "));
-            Err(HmiError::Filter { field, reason })
-        }
-        Some(_) | None => Ok(()),
+fn of_one_parameter(mut filter: Filter, route: &str) -> Result<(String, Filter), HmiError> {
+    checks::sensible(&filter)?;
+    if filter.min.is_some() || filter.max.is_some() {
+        let reason = format!("`{route}` is about all values, not a range of them");
+        return Err(InquiryError::member("min, max", reason).into());
     }
+    let Some(param) = filter.param.take() else {
+        let reason = format!("missing: `{route}` is about one parameter");
+        return Err(InquiryError::member("param", reason).into());
+    };
+    Ok((param, filter))
 }
 
-/// Refuses a parameter that the history has never seen.
-pub(super) fn known_parameter(archive: &Archive, param: &str) -> Result<(), HmiError> {
-    let known = archive.parameters()?;
-    let known: Vec<&str> = known.iter().map(String::as_str).collect();
-    one_of("param", Some(param), &known)
-}
-
-/// A lot or recipe that never was is a slip of the hand, not an empty answer.
-fn known_runs(archive: &Archive, filter: &Filter) -> Result<(), HmiError> {
-    let named = filter.lot.is_some() || filter.recipe.is_some() || filter.run.is_some();
-    if named && archive.lots(filter)?.is_empty() {
-        let what = "no run has this lot, run and recipe".to_owned();
-        return Err(HmiError::NotInHistory { what });
+fn charted(
+    archive: &Archive,
+    mut filter: Filter,
+    how: &Charting,
+) -> Result<Vec<Charted>, HmiError> {
+    let param = filter.param.take();
+    if filter.min.is_some() || filter.max.is_some() {
+        let reason = "a control chart is about all values, not a range of them";
+        return Err(InquiryError::member("min, max", reason).into());
     }
-    Ok(())
-}
-
-fn refused(field: &'static str, reason: &str) -> HmiError {
-    let reason = reason.to_owned();
-    HmiError::Filter { field, reason }
+    let by = (
+        how.subgroup.unwrap_or(1),
+        how.rules.unwrap_or(Rules::Nelson),
+    );
+    Ok(charts(archive, &filter, param.as_deref(), by)?)
 }

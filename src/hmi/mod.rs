@@ -17,7 +17,7 @@
 //! | `GET /api/events` | the view as server-sent events: at once, then on change; a beat each second |
 //! | `POST /api/login\|logout`, `GET /api/me` | who is asking |
 //! | `POST /api/orders` | `{"order":"stop"}` and the others of [`crate::view::ORDERS`] |
-//! | `GET /api/history/query\|list\|show\|stats` | JSON as the command `history` gives it |
+//! | `GET /api/history/...` | JSON, pages and files as the command `history` gives them; routes in `history.rs` |
 //! | `GET /mimic.svg` | the machine to scale, from above and from the front |
 //! | `GET /metrics` | Prometheus text |
 //!
@@ -28,7 +28,6 @@ mod error;
 mod events;
 mod gate;
 mod history;
-mod history_feed;
 mod login;
 mod metrics;
 mod mimic;

@@ -44,10 +44,7 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
         .route("/api/logout", post(login::log_out))
         .route("/api/me", get(login::me))
         .route("/api/orders", post(orders::order))
-        .route("/api/history/query", get(history::query))
-        .route("/api/history/list", get(history::list))
-        .route("/api/history/show", get(history::show))
-        .route("/api/history/stats", get(history::stats))
+        .nest("/api/history", of_history())
         .route("/mimic.svg", get(mimic::picture))
         .route("/metrics", get(metrics::metrics))
         .fallback(nothing_there)
@@ -55,6 +52,26 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
         .layer(DefaultBodyLimit::max(BODY_LIMIT))
         .layer(from_fn(plain_headers))
         .with_state(desk)
+}
+
+/// What [`history`] lists.
+fn of_history() -> Router<Desk> {
+    Router::new()
+        .route("/list", get(history::list))
+        .route("/show", get(history::show))
+        .route("/query", get(history::query))
+        .route("/count", get(history::count))
+        .route("/yield", get(history::yields))
+        .route("/stats", get(history::stats))
+        .route("/histogram", get(history::classes))
+        .route("/spc", get(history::spc))
+        .route("/alarms", get(history::alarms))
+        .route("/report/lot", get(history::paper::lot))
+        .route("/report/certificate", get(history::paper::certificate))
+        .route("/report/chart", get(history::paper::chart))
+        .route("/report/alarms", get(history::paper::alarms))
+        .route("/export.csv", get(history::export::csv))
+        .route("/export.xlsx", get(history::export::xlsx))
 }
 
 async fn view(State(desk): State<Desk>) -> Json<crate::view::View> {

@@ -14,10 +14,11 @@
 //! A rule speaks at the point that completes its pattern, and is told there once.
 
 use super::chart::Point;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Which set of rules.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Rules {
     /// L. S. Nelson, Journal of Quality Technology 16 (1984).
     Nelson,

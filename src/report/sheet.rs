@@ -6,6 +6,7 @@
 //! written as texts: what looks like a formula is none.
 
 use super::words::Language;
+use crate::history::columns::{self, Cell};
 use crate::history::{Moment, Part};
 use crate::quality::ordered::Histogram;
 use crate::quality::tally::Tally;
@@ -18,8 +19,6 @@ use std::collections::BTreeMap;
 const ROWS: u32 = 1_000_000;
 /// Days from the epoch of spreadsheets to 1970.
 const EPOCH_DAYS: f64 = 25_569.0;
-/// Columns before those of the parameters.
-const FIXED: u16 = 12;
 /// Rows of the summary that a chart takes.
 const CHART_ROWS: u32 = 16;
 
@@ -29,7 +28,8 @@ pub struct Sheet {
     language: Language,
     zone: TimeZone,
     time: Format,
-    parameters: Vec<(String, Tally)>,
+    keys: Vec<String>,
+    tallies: Vec<Tally>,
     bins: BTreeMap<String, u64>,
     sheets: usize,
     row: u32,
@@ -46,13 +46,13 @@ impl Sheet {
         workbook
             .add_worksheet()
             .set_name(language.of("Summary", "汇总"))?;
-        let tally = |key: &String| (key.clone(), Tally::default());
         let mut sheet = Self {
             workbook,
             language,
             zone,
             time: Format::new().set_num_format("yyyy-mm-dd hh:mm:ss"),
-            parameters: parameters.iter().map(tally).collect(),
+            keys: parameters.to_vec(),
+            tallies: vec![Tally::default(); parameters.len()],
             bins: BTreeMap::new(),
             sheets: 0,
             row: 0,
@@ -66,42 +66,15 @@ impl Sheet {
         if self.row > ROWS {
             self.next_sheet()?;
         }
-        let row = self.row;
-        let at = serial(part.time, &self.zone);
         let to = self.workbook.worksheet_from_index(self.sheets)?;
-        if let Some(at) = at {
-            to.write_number_with_format(row, 0, at, &self.time)?;
+        for (column, cell) in (0..).zip(columns::row(part, &self.keys)) {
+            written(to, (self.row, column), &cell, (&self.zone, &self.time))?;
+        }
+        for (key, tally) in self.keys.iter().zip(&mut self.tallies) {
+            let value = part.values.get(key).and_then(serde_json::Value::as_f64);
+            value.into_iter().for_each(|value| tally.add(value));
         }
         let bin = part.bin.as_deref().unwrap_or_default();
-        let texts = [
-            (1, part.lot.as_str()),
-            (3, &part.kind),
-            (5, &part.recipe),
-            (6, part.serial.as_deref().unwrap_or_default()),
-            (7, &part.verdict),
-            (8, bin),
-            (9, part.landed_bin.as_deref().unwrap_or_default()),
-        ];
-        for (column, text) in texts.into_iter().filter(|(_, text)| !text.is_empty()) {
-            to.write_string(row, column, text)?;
-        }
-        to.write_number(row, 2, part.run)?;
-        to.write_number(row, 4, part.seq as f64)?;
-        if !part.reasons.is_empty() {
-            to.write_string(row, 10, part.reasons.join("; "))?;
-        }
-        number(to, row, 11, part.cycle_s)?;
-        let columns = self.parameters.len() as u16;
-        for (column, (key, tally)) in (FIXED..).zip(&mut self.parameters) {
-            let value = part.values.get(key).and_then(serde_json::Value::as_f64);
-            number(to, row, column, value)?;
-            value.into_iter().for_each(|value| tally.add(value));
-            let doubt = part
-                .uncertainty
-                .get(key)
-                .and_then(serde_json::Value::as_f64);
-            number(to, row, column + columns, doubt)?;
-        }
         *self.bins.entry(bin.to_owned()).or_default() += 1;
         self.row += 1;
         Ok(())
@@ -126,16 +99,16 @@ impl Sheet {
         to.set_column_width(0, 28)?;
         let mut row = 1;
         let mut histograms = Vec::new();
-        for (key, tally) in self.parameters {
+        for (key, tally) in self.keys.iter().zip(self.tallies) {
             let (spread, histogram) = tally.finish();
-            to.write_string(row, 0, self.language.parameter(&key))?;
+            to.write_string(row, 0, self.language.parameter(key))?;
             to.write_number(row, 1, spread.n() as f64)?;
             let figures = [spread.mean(), spread.sd(), spread.min(), spread.max()];
             for (column, value) in (2..).zip(figures) {
                 number(to, row, column, value)?;
             }
             row += 1;
-            histograms.extend(histogram.map(|it| (self.language.parameter(&key), it)));
+            histograms.extend(histogram.map(|it| (self.language.parameter(key), it)));
         }
         row += 1;
         let bins: Vec<(String, u64)> = self
@@ -163,29 +136,8 @@ impl Sheet {
         to.set_name(name)?;
         to.set_freeze_panes(1, 0)?;
         to.set_column_width(0, 19)?;
-        let fixed = [
-            "time",
-            "lot",
-            "run",
-            "kind",
-            "seq",
-            "recipe",
-            "serial",
-            "verdict",
-            "bin",
-            "landed_bin",
-            "reasons",
-            "cycle_s",
-        ];
-        for (column, text) in (0..).zip(fixed) {
-            to.write_string_with_format(0, column, text, &bold)?;
-        }
-        let columns = self.parameters.len() as u16;
-        for (column, (key, _)) in (FIXED..).zip(&self.parameters) {
-            to.write_string_with_format(0, column, key, &bold)?;
-        }
-        for (column, (key, _)) in (FIXED + columns..).zip(&self.parameters) {
-            to.write_string_with_format(0, column, format!("uncertainty {key}"), &bold)?;
+        for (column, name) in (0..).zip(columns::header(&self.keys)) {
+            to.write_string_with_format(0, column, name, &bold)?;
         }
         self.row = 1;
         Ok(())
@@ -230,6 +182,34 @@ fn classes(it: &Histogram) -> Vec<(String, u64)> {
         .enumerate()
         .map(|(at, n)| (edge(at), *n))
         .collect()
+}
+
+/// A cell of a part; an instant beyond the calendar stays empty.
+fn written(
+    to: &mut Worksheet,
+    (row, column): (u32, u16),
+    cell: &Cell<'_>,
+    (zone, time): (&TimeZone, &Format),
+) -> Result<(), XlsxError> {
+    match cell {
+        Cell::Empty => {}
+        Cell::Text(text) if text.is_empty() => {}
+        Cell::Text(text) => {
+            to.write_string(row, column, text.as_ref())?;
+        }
+        Cell::Count(count) => {
+            to.write_number(row, column, *count as f64)?;
+        }
+        Cell::Number(number) => {
+            to.write_number(row, column, *number)?;
+        }
+        Cell::Time(at) => {
+            if let Some(at) = serial(*at, zone) {
+                to.write_number_with_format(row, column, at, time)?;
+            }
+        }
+    }
+    Ok(())
 }
 
 fn number(to: &mut Worksheet, row: u32, column: u16, value: Option<f64>) -> Result<(), XlsxError> {

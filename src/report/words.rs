@@ -1,9 +1,11 @@
 //! The words of the pages in both languages, in one place.
 
 use crate::gauge::Parameter;
+use serde::Deserialize;
 
 /// Language of a page.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Language {
     /// English.
     En,

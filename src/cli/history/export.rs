@@ -1,14 +1,12 @@
 //! `history export`: CSV that spreadsheets open right, Chinese included, or a spreadsheet with charts.
 
-use super::filter::{PartArgs, RangeArgs, known_parameter};
+use super::filter::{PartArgs, RangeArgs};
 use super::generate::progress;
 use super::paper::{Tongue, sink};
-use super::query;
 use crate::history::{Archive, Filter, csv::BYTE_ORDER_MARK};
-use crate::report::sheet::Sheet;
+use crate::inquiry::{checks, export};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use jiff::tz::TimeZone;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -40,10 +38,7 @@ pub(super) struct ExportArgs {
 pub(super) fn run(db: &Path, args: &ExportArgs) -> anyhow::Result<()> {
     let archive = &Archive::open(db)?;
     let filter = args.parts.within(&args.range)?;
-    let parameters = archive.parameters()?;
-    if let Some(param) = &filter.param {
-        known_parameter(&parameters, param)?;
-    }
+    let parameters = checks::parameters(archive, filter.param.as_deref())?;
     let named_so = args
         .file
         .extension()
@@ -53,7 +48,7 @@ pub(super) fn run(db: &Path, args: &ExportArgs) -> anyhow::Result<()> {
         Kind::Csv => {
             let mut out = sink(&args.file)?;
             out.write_all(BYTE_ORDER_MARK.as_bytes())?;
-            query::write_csv(archive, &filter, &parameters, &mut out)?;
+            export::csv_lines(archive, &filter, &parameters, &mut out)?;
             let name = args.file.display();
             out.flush().with_context(|| format!("writing {name}"))
         }
@@ -91,14 +86,10 @@ fn spreadsheet(
         "a spreadsheet needs a file, found -"
     );
     let name = file.display();
-    let mut sheet = Sheet::new(args.lang.language(), TimeZone::system(), parameters)?;
     let bar = progress(archive.how_many(filter)?);
-    archive.each(filter, |part| {
-        bar.inc(1);
-        sheet.part(&part)
-    })??;
+    let language = args.lang.language();
+    let mut workbook = export::spreadsheet(archive, filter, parameters, language, || bar.inc(1))?;
     bar.finish_and_clear();
-    let mut workbook = sheet.finish()?;
     workbook
         .save(file)
         .with_context(|| format!("writing {name}"))
@@ -107,10 +98,11 @@ fn spreadsheet(
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::*;
     use crate::history::Part;
     use crate::report::Language;
+    use crate::report::sheet::Sheet;
     use calamine::{Data, Reader, Xlsx};
+    use jiff::tz::TimeZone;
     use std::io::Cursor;
 
     const LOT: &str = "<b>批次\"1\"</b>";
@@ -140,7 +132,7 @@ mod tests {
         assert_eq!(parts.height(), 5);
         assert_eq!(parts[(1, 1)], Data::String(LOT.into()));
         assert_eq!(parts[(1, 6)], Data::String("=1+1".into()));
-        assert_eq!(parts[(1, 12)], Data::Float(7.704_22));
+        assert_eq!(parts[(1, 13)], Data::Float(7.704_22));
         assert!(book.worksheet_formula("Parts").unwrap().is_empty());
         let summary = book.worksheet_range("Summary").unwrap();
         assert_eq!(

@@ -1,7 +1,7 @@
 //! The filter as command line options.
 
-use crate::history::{Filter, LimitsSeen, Moment};
-use crate::quality::Limits;
+use crate::history::{Filter, Moment};
+use crate::inquiry::{self, checks};
 use clap::Args;
 
 /// Which runs.
@@ -30,13 +30,13 @@ pub(super) struct PartArgs {
     #[arg(long, value_name = "TIME")]
     pub until: Option<Moment>,
     /// Only this verdict
-    #[arg(long, value_parser = ["pass", "fail", "void", "unjudged"])]
+    #[arg(long, value_parser = checks::VERDICTS)]
     pub verdict: Option<String>,
     /// Only parts for this bin
     #[arg(long)]
     pub bin: Option<String>,
     /// Production parts, golden parts, or both
-    #[arg(long, value_parser = ["lot", "golden", "all"], default_value = "lot")]
+    #[arg(long, value_parser = checks::KINDS, default_value = "lot")]
     pub kind: String,
     /// Only parts between a good golden check and one that failed
     #[arg(long)]
@@ -44,6 +44,9 @@ pub(super) struct PartArgs {
     /// At most so many parts, the first ones in order of judgement
     #[arg(long, value_name = "N")]
     pub limit: Option<u64>,
+    /// Pass over so many parts first: the next page
+    #[arg(long, value_name = "N")]
+    pub offset: Option<u64>,
 }
 
 /// A range of values of one parameter.
@@ -81,47 +84,20 @@ impl PartArgs {
             kind: Some(self.kind.clone()),
             suspect: self.suspect,
             limit: self.limit,
+            offset: self.offset,
             ..self.runs.filter()
         }
     }
 
     /// With a range; refuses one that nothing can lie in.
-    pub fn within(&self, range: &RangeArgs) -> anyhow::Result<Filter> {
-        for (option, value) in [("--min", range.min), ("--max", range.max)] {
-            if let Some(value) = value.filter(|it| !it.is_finite()) {
-                anyhow::bail!("{option}: found {value}, expected a finite number");
-            }
-        }
-        if let (Some(min), Some(max)) = (range.min, range.max)
-            && min > max
-        {
-            anyhow::bail!("--min {min} is above --max {max}");
-        }
-        let param = range.param.clone();
-        Ok(Filter {
-            param,
+    pub fn within(&self, range: &RangeArgs) -> inquiry::Result<Filter> {
+        let filter = Filter {
+            param: range.param.clone(),
             min: range.min,
             max: range.max,
             ..self.filter()
-        })
+        };
+        checks::sensible(&filter)?;
+        Ok(filter)
     }
-}
-
-/// The limits that all runs agree on; none when they differ, for then a capability means nothing.
-pub(super) fn limits_seen(seen: LimitsSeen) -> Limits {
-    match seen {
-        LimitsSeen::Same { low, high } => Limits { low, high },
-        LimitsSeen::None | LimitsSeen::Differ => Limits::default(),
-    }
-}
-
-/// Refuses a parameter that the history has never seen.
-pub(super) fn known_parameter(known: &[String], param: &str) -> anyhow::Result<()> {
-    if known.iter().any(|it| it == param) {
-        return Ok(());
-    }
-    anyhow::bail!(
-        "--param: found {param:?}, expected one of {}",
-        known.join(", ")
-    )
 }

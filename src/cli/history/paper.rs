@@ -1,10 +1,10 @@
 //! Options of everything that is printed: language, file.
 
 use super::output::Output;
+use crate::inquiry;
 use crate::report::{Language, Paper};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use jiff::{Timestamp, tz::TimeZone};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -38,17 +38,9 @@ impl Tongue {
 }
 
 impl PaperArgs {
-    /// Zone of this computer, and a foot with time and version.
+    /// Paper of this language, made now.
     pub fn paper(&self) -> Paper {
-        let zone = TimeZone::system();
-        let now = Timestamp::now().to_zoned(zone.clone());
-        let program = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));
-        let made = format!("{} · {program}", now.strftime("%Y-%m-%d %H:%M %:z"));
-        Paper {
-            language: self.lang.language(),
-            zone,
-            made,
-        }
+        inquiry::paper::paper(self.lang.language())
     }
 
     pub fn write(&self, page: &str) -> anyhow::Result<()> {

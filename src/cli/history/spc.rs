@@ -1,14 +1,12 @@
 //! `history spc`: control charts of a parameter, or of the share of each bin from lot to lot.
 
-use super::filter::{PartArgs, known_parameter};
+use super::filter::PartArgs;
 use super::output::{Output, Table, figure};
 use super::paper::PaperArgs;
-use crate::history::{Archive, Filter, LotSummary};
-use crate::quality::chart::{Chart, individuals, shares, subgroups};
+use crate::history::Archive;
+use crate::inquiry::charts::{self, Charted, SUBGROUPS};
 use crate::quality::rules::Rules;
-use crate::report::spc::{Named, spc};
 use clap::{Args, ValueEnum};
-use std::collections::BTreeSet;
 use std::io::Write;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -28,7 +26,7 @@ pub(super) struct SpcArgs {
     parts: PartArgs,
     /// Parts of a subgroup: 1 is individuals and moving range, 2 to 10 means and ranges
     #[arg(long, value_name = "N", default_value_t = 1, requires = "param",
-        value_parser = clap::value_parser!(u8).range(1..=10))]
+        value_parser = clap::value_parser!(u8).range(i64::from(*SUBGROUPS.start())..=i64::from(*SUBGROUPS.end())))]
     subgroup: u8,
     /// Rules of runs
     #[arg(long, value_enum, default_value = "nelson")]
@@ -48,84 +46,37 @@ pub(super) struct SpcArgs {
 
 pub(super) fn run(archive: &Archive, args: &SpcArgs) -> anyhow::Result<()> {
     let filter = args.parts.filter();
-    let runs = archive.lots(&filter)?;
-    let charts = match &args.param {
-        Some(param) => of_parameter(archive, args, param, &filter)?,
-        None => of_bins(&runs),
-    };
-    anyhow::ensure!(!charts.is_empty(), "too few parts for a control chart");
-    let names = match &args.param {
-        Some(_) => Vec::new(),
-        None => runs
-            .iter()
-            .map(|run| format!("{}/{}", run.lot, run.run))
-            .collect(),
-    };
-    if args.page {
-        let named: Vec<Named<'_>> = charts
-            .iter()
-            .map(|(title, chart)| Named {
-                title: title.clone(),
-                chart,
-                names: &names,
-            })
-            .collect();
-        let about = filter.lot.clone().unwrap_or_default();
-        return args
-            .paper
-            .write(&spc(&args.paper.paper(), &about, &named, args.last));
-    }
-    told(&charts, args)
-}
-
-fn of_parameter(
-    archive: &Archive,
-    args: &SpcArgs,
-    param: &str,
-    filter: &Filter,
-) -> anyhow::Result<Vec<(String, Chart)>> {
-    known_parameter(&archive.parameters()?, param)?;
-    let values = archive.values(param, filter)?.values;
     let rules = match args.rules {
         RuleSet::Nelson => Rules::Nelson,
         RuleSet::WesternElectric => Rules::WesternElectric,
     };
-    let charts = match args.subgroup {
-        1 => individuals(&values, rules),
-        size => subgroups(&values, usize::from(size), rules),
-    };
-    let named = |chart| (param.to_owned(), chart);
-    Ok(charts.into_iter().flatten().map(named).collect())
+    let charts = charts::charts(
+        archive,
+        &filter,
+        args.param.as_deref(),
+        (args.subgroup, rules),
+    )?;
+    if args.page {
+        let about = filter.lot.clone().unwrap_or_default();
+        let paper = args.paper.paper();
+        return args
+            .paper
+            .write(&charts::page(&paper, &about, &charts, args.last));
+    }
+    told(&charts, args)
 }
 
-/// A chart for each bin that any of the runs has parts for.
-fn of_bins(runs: &[LotSummary]) -> Vec<(String, Chart)> {
-    let bins: BTreeSet<&String> = runs.iter().flat_map(|run| run.bins.keys()).collect();
-    let chart = |bin: &String| {
-        let groups: Vec<(u64, u64)> = runs
-            .iter()
-            .map(|run| (run.counts.parts, run.bins.get(bin).copied().unwrap_or(0)))
-            .collect();
-        shares(&groups).map(|chart| (bin.clone(), chart))
-    };
-    bins.into_iter().filter_map(chart).collect()
-}
-
-fn told(charts: &[(String, Chart)], args: &SpcArgs) -> anyhow::Result<()> {
+fn told(charts: &[Charted], args: &SpcArgs) -> anyhow::Result<()> {
     let mut out = Output::stdout();
     if args.json {
-        for (of, chart) in charts {
-            let mut object = serde_json::to_value(chart)?;
-            object["of"] = of.as_str().into();
-            out.json(&object)?;
-        }
+        charts.iter().try_for_each(|chart| out.json(chart))?;
         return Ok(out.flush()?);
     }
     let header = [
         "chart", "kind", "points", "centre", "low", "high", "signals",
     ];
     let mut table = Table::new(&header);
-    for (of, chart) in charts {
+    for Charted { of, chart, .. } in charts {
         let last = chart.points.last();
         let row = vec![
             of.clone(),
@@ -139,7 +90,7 @@ fn told(charts: &[(String, Chart)], args: &SpcArgs) -> anyhow::Result<()> {
         table.row(&mut out, row)?;
     }
     table.finish(&mut out)?;
-    for (of, chart) in charts {
+    for Charted { of, chart, .. } in charts {
         for signal in &chart.signals {
             let value = chart.points.get(signal.at).map(|it| it.value);
             writeln!(

@@ -1,8 +1,9 @@
 //! `history stats`.
 
-use super::filter::{PartArgs, known_parameter};
+use super::filter::PartArgs;
 use super::output::{Output, Table, figure};
-use crate::history::{Archive, Filter, LimitsSeen};
+use crate::history::Archive;
+use crate::inquiry::figures;
 use crate::quality::{Limits, Summary};
 use clap::Args;
 use std::io::Write;
@@ -26,49 +27,32 @@ pub(super) struct StatsArgs {
 }
 
 pub(super) fn run(archive: &Archive, args: &StatsArgs) -> anyhow::Result<()> {
-    known_parameter(&archive.parameters()?, &args.param)?;
     let filter = args.parts.filter();
-    something(archive, &filter)?;
-    let found = archive.values(&args.param, &filter)?;
-    let summary = Summary::of(&args.param, &found.values, limits(args, found.limits)?);
+    let found = figures::figures(archive, &args.param, &filter, limits(args)?)?;
+    if found.limits_differ {
+        eprintln!("the runs have different limits: no capability (choose a lot, or --low, --high)");
+    }
     let mut out = Output::stdout();
     if args.json {
-        out.json(&summary)?;
+        out.json(&found.summary)?;
     } else {
-        table(&summary, &mut out)?;
+        table(&found.summary, &mut out)?;
     }
     Ok(out.flush()?)
 }
 
-/// A lot or recipe that never was is a slip of the hand, not an empty answer.
-fn something(archive: &Archive, filter: &Filter) -> anyhow::Result<()> {
-    let named = filter.lot.is_some() || filter.recipe.is_some() || filter.run.is_some();
-    if named && archive.lots(filter)?.is_empty() {
-        anyhow::bail!("no run has this lot, run and recipe; `history list` shows those there are");
+/// Those of the command line, if there are any.
+fn limits(args: &StatsArgs) -> anyhow::Result<Option<Limits>> {
+    let (low, high) = (args.low, args.high);
+    if low.is_none() && high.is_none() {
+        return Ok(None);
     }
-    Ok(())
-}
-
-fn limits(args: &StatsArgs, seen: LimitsSeen) -> anyhow::Result<Limits> {
-    if args.low.is_some() || args.high.is_some() {
-        let (low, high) = (args.low, args.high);
-        let finite = [low, high].into_iter().flatten().all(f64::is_finite);
-        anyhow::ensure!(finite, "--low and --high must be finite");
-        if let (Some(low), Some(high)) = (low, high) {
-            anyhow::ensure!(low < high, "--low {low} is not below --high {high}");
-        }
-        return Ok(Limits { low, high });
+    let finite = [low, high].into_iter().flatten().all(f64::is_finite);
+    anyhow::ensure!(finite, "--low and --high must be finite");
+    if let (Some(low), Some(high)) = (low, high) {
+        anyhow::ensure!(low < high, "--low {low} is not below --high {high}");
     }
-    Ok(match seen {
-        LimitsSeen::None => Limits::default(),
-        LimitsSeen::Same { low, high } => Limits { low, high },
-        LimitsSeen::Differ => {
-            eprintln!(
-                "the runs have different limits: no capability (choose a lot, or --low, --high)"
-            );
-            Limits::default()
-        }
-    })
+    Ok(Some(Limits { low, high }))
 }
 
 fn table(it: &Summary, out: &mut Output) -> anyhow::Result<()> {

@@ -10,8 +10,9 @@ use super::fleet::{Folder, Order};
 use super::output::Report;
 use crate::cli::history::{GenerateArgs, generate};
 use crate::gauge::Parameter;
-use crate::history::{Archive, Filter, Identity, LimitsSeen, LotRecord, Moment, Row, Store};
-use crate::quality::{Limits, Ordered, Summary};
+use crate::history::{Archive, Filter, Identity, LotRecord, Moment, Row, Store};
+use crate::inquiry::figures::figures;
+use crate::quality::Ordered;
 use anyhow::Context;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -177,12 +178,8 @@ fn stats(archive: &Archive) -> anyhow::Result<Figure> {
     let mut parts = 0;
     for parameter in Parameter::ALL.iter().cycle().take(3 * Parameter::ALL.len()) {
         let from = Instant::now();
-        let found = archive.values(parameter.name(), &Filter::default())?;
-        let limits = match found.limits {
-            LimitsSeen::Same { low, high } => Limits { low, high },
-            LimitsSeen::None | LimitsSeen::Differ => Limits::default(),
-        };
-        parts = Summary::of(parameter.name(), &found.values, limits).n;
+        let found = figures(archive, parameter.name(), &Filter::default(), None)?;
+        parts = found.summary.n;
         spent.push(from.elapsed().as_secs_f64() * 1e3);
     }
     Ok(times("stats of one parameter, p95", &spent, 0.95)

@@ -1,17 +1,13 @@
-//! Parts from the file to the client, one at a time: memory does not grow with the answer.
+//! Answers from the file to the client, one part at a time: memory does not grow with the answer.
 //!
 //! The reader fills pieces of some 32 kB and hands them over; a client that takes none for
 //! [`PATIENCE`] is dropped, so that no reader stays in the file for ever. An error after the first
-//! piece cuts the answer off: the array is then not closed, which no JSON reader takes for whole.
+//! piece cuts the answer off: its last chunk never comes, which no client takes for whole.
 
-use super::error::HmiError;
-use super::history::{Readers, known_parameter};
 use crate::history::{Archive, Filter};
 use axum::body::{Body, Bytes};
-use axum::http::header::CONTENT_TYPE;
-use axum::response::{IntoResponse, Response};
 use futures_util::stream;
-use std::io;
+use std::io::{self, Write};
 use std::time::Duration;
 use tokio::runtime::Handle;
 use tokio::sync::mpsc::{self, Sender};
@@ -25,55 +21,41 @@ const PIECE: usize = 32 * 1024;
 
 type Piece = io::Result<Bytes>;
 
-/// The parts that `filter` leaves, as a JSON array.
-pub(super) async fn parts(readers: &Readers, filter: Filter) -> Result<Response, HmiError> {
-    let (archive, place) = readers.open().await?;
-    if let Some(param) = filter.param.clone() {
-        let check = spawn_blocking(move || known_parameter(&archive, &param).map(|()| archive));
-        let archive = check.await.map_err(|_| HmiError::ReaderLost)??;
-        return Ok(streamed(archive, place, filter));
-    }
-    Ok(streamed(archive, place, filter))
-}
-
-fn streamed(archive: Archive, place: impl Send + 'static, filter: Filter) -> Response {
+/// What `write` writes, from a thread of its own that keeps the archive and its place to the end.
+pub(super) fn streamed(
+    (archive, place): (Archive, impl Send + 'static),
+    write: impl FnOnce(&Archive, &mut Pieces) -> io::Result<()> + Send + 'static,
+) -> Body {
     let (sender, receiver) = mpsc::channel::<Piece>(2);
     let runtime = Handle::current();
     spawn_blocking(move || {
         let mut out = Pieces::new(runtime, sender);
-        if let Err(error) = write(&archive, &filter, &mut out) {
+        if let Err(error) = write(&archive, &mut out).and_then(|()| out.hand_over()) {
             // Nobody left to tell when the client has gone.
             let _ = out.send(Err(error));
         }
         drop(place);
     });
-    let pieces = stream::unfold(receiver, |mut receiver| async move {
+    Body::from_stream(stream::unfold(receiver, |mut receiver| async move {
         let piece = receiver.recv().await?;
         Some((piece, receiver))
-    });
-    (
-        [(CONTENT_TYPE, "application/json")],
-        Body::from_stream(pieces),
-    )
-        .into_response()
+    }))
 }
 
-fn write(archive: &Archive, filter: &Filter, out: &mut Pieces) -> io::Result<()> {
-    let mut lead = "[\n";
+/// The parts that `filter` leaves, as a JSON array.
+pub(super) fn parts(archive: &Archive, filter: &Filter, out: &mut Pieces) -> io::Result<()> {
+    let mut lead: &[u8] = b"[\n";
     let all = archive.each(filter, |part| {
-        out.text.extend_from_slice(lead.as_bytes());
-        lead = ",\n";
-        serde_json::to_writer(&mut out.text, &part)?;
-        out.full()
+        out.write_all(lead)?;
+        lead = b",\n";
+        serde_json::to_writer(&mut *out, &part).map_err(io::Error::from)
     });
     all.map_err(io::Error::other)??;
-    out.text
-        .extend_from_slice(if lead == "[\n" { b"[]\n" } else { b"\n]\n" });
-    out.hand_over()
+    out.write_all(if lead == b"[\n" { b"[]\n" } else { b"\n]\n" })
 }
 
 /// The reader's end.
-struct Pieces {
+pub(super) struct Pieces {
     text: Vec<u8>,
     runtime: Handle,
     sender: Sender<Piece>,
@@ -87,13 +69,6 @@ impl Pieces {
             runtime,
             sender,
         }
-    }
-
-    fn full(&mut self) -> io::Result<()> {
-        if self.text.len() < PIECE {
-            return Ok(());
-        }
-        self.hand_over()
     }
 
     fn hand_over(&mut self) -> io::Result<()> {
@@ -111,5 +86,19 @@ impl Pieces {
             Ok(Err(_)) => Err(io::ErrorKind::BrokenPipe.into()),
             Err(_) => Err(io::ErrorKind::TimedOut.into()),
         }
+    }
+}
+
+impl Write for Pieces {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.text.extend_from_slice(bytes);
+        if self.text.len() >= PIECE {
+            self.hand_over()?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 }
