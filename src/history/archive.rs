@@ -78,7 +78,7 @@ impl Archive {
             .doing("reading cycle times")
     }
 
-    /// One part of each run that has it, latest run last, with all attempts and raw replies.
+    /// One part of each run that has it, latest run last, with all attempts, raw replies and curves.
     pub fn show(&self, lot: &str, seq: u64, kind: &str) -> Result<Vec<Part>> {
         let filter = Filter {
             lot: Some(lot.to_owned()),
@@ -90,7 +90,11 @@ impl Archive {
         select.sql = select
             .sql
             .replace(" ORDER BY", &format!(" AND part.seq = {seq} ORDER BY"));
-        self.shown(&select).doing("reading a part")
+        let mut parts = self.shown(&select).doing("reading a part")?;
+        for part in &mut parts {
+            part.curves = self.curves(part)?;
+        }
+        Ok(parts)
     }
 
     fn shown(&self, select: &super::filter::Select) -> rusqlite::Result<Vec<Part>> {
@@ -137,6 +141,7 @@ impl Archive {
             values,
             uncertainty,
             measurements: Vec::new(),
+            curves: Vec::new(),
             row: id,
         })
     }

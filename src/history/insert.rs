@@ -1,5 +1,6 @@
 //! One record into its rows. Always inside a transaction of [`Store`](super::Store).
 
+use super::curve;
 use super::error::{Doing, HistoryError, Result};
 use super::store::Known;
 use super::{LotRecord, MeasurementRecord, PartRecord, SampleRecord};
@@ -53,7 +54,7 @@ pub(super) fn run(
     Ok(made)
 }
 
-/// A part with its measurements and samples, or nothing when it is already there.
+/// A part with its measurements, samples and curves, or nothing when it is already there.
 pub(super) fn part(tx: &Transaction<'_>, known: &mut Known, part: &PartRecord) -> Result<()> {
     const DOING: &str = "recording a part";
     let run = known.run(&part.lot)?;
@@ -87,7 +88,13 @@ pub(super) fn part(tx: &Transaction<'_>, known: &mut Known, part: &PartRecord) -
         .optional()
         .doing(DOING)?;
     match row {
-        Some(row) => measurements(tx, known, part, run, row),
+        Some(row) => {
+            measurements(tx, known, part, run, row)?;
+            let mut curves = part.curves.iter();
+            curves
+                .try_for_each(|it| curve::insert(tx, row, it))
+                .doing("recording a curve")
+        }
         None => same_part(tx, part, run, seq),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
-use rusqlite::{params, params_from_iter};
+use rusqlite::{OptionalExtension, params, params_from_iter};
 use serde::Serialize;
 
 /// One run of a lot with its counts of production parts.
@@ -85,6 +85,14 @@ impl Archive {
     /// Runs that the filter leaves (lot, recipe, run), in order of opening.
     pub fn lots(&self, filter: &Filter) -> Result<Vec<LotSummary>> {
         self.summaries(filter).doing("reading the lots")
+    }
+
+    /// Text of the recipe with this hash, as it was when a lot was judged by it.
+    pub fn recipe(&self, hash: &str) -> Result<Option<String>> {
+        self.connection
+            .prepare_cached("SELECT body FROM recipe WHERE hash = ?1")
+            .and_then(|mut it| it.query_row([hash], |row| row.get(0)).optional())
+            .doing("reading a recipe")
     }
 
     /// Whether the filter (lot, recipe, run) leaves any run.

@@ -9,8 +9,9 @@
 //!   from the run by their hashes.
 //! - What another recipe would say is told and not written ([`rejudged`]); what was copied whole may be
 //!   pruned ([`Store::prune`]), nothing else is ever deleted.
+//! - Of a part that did not pass everything that was seen of it stays, as small blobs ([`Curve`]).
 //! - The file may be opened by hand: the tables carry a remark per column, and the views `lots`,
-//!   `parts`, `measurements`, `samples` and `alarms` show local time and names instead of numbers.
+//!   `parts`, `measurements`, `samples`, `curves` and `alarms` show local time and names instead of numbers.
 //!
 //! Not here: deciding anything (gauge, station), statistics (quality), a clock.
 
@@ -20,7 +21,9 @@ mod archive;
 mod backup;
 pub mod columns;
 pub mod csv;
+mod curve;
 mod error;
+mod evidence;
 mod filter;
 mod gates;
 mod import;
@@ -42,6 +45,7 @@ mod wear;
 pub use alarm_states::{AlarmChange, AlarmChangeRecord, AlarmLeft};
 pub use alarms::Alarm;
 pub use archive::Archive;
+pub use curve::{Curve, CurveRecord};
 pub use error::{HistoryError, Result};
 pub use filter::Filter;
 pub use gates::{GoldenCheck, GoldenCheckRecord, LotStanding, LotState, LotStateRecord, LotYield};
@@ -55,7 +59,7 @@ pub use record::{
     AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord,
     PartRecord, Row, SampleRecord, snapshot_hash,
 };
-pub use rejudge::rejudged;
+pub use rejudge::{Basis, rejudged};
 pub use retention::Pruned;
 pub use store::{Identity, Store};
 pub use values::{LimitsSeen, Values};

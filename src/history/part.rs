@@ -1,6 +1,6 @@
 //! A part with what was measured on it, as it leaves the history: what screens, sheets and `--json` show.
 
-use super::Moment;
+use super::{Curve, Moment};
 use serde::Serialize;
 
 /// A part as screens, sheets and `--json` show it.
@@ -44,6 +44,9 @@ pub struct Part {
     /// Every attempt, with its samples; only on a single part.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measurements: Vec<Measurement>,
+    /// What was seen of it, when it did not pass; only on a single part.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub curves: Vec<Curve>,
     #[serde(skip)]
     pub(super) row: i64,
 }
@@ -111,6 +114,7 @@ impl Part {
             values: serde_json::Map::new(),
             uncertainty: serde_json::Map::new(),
             measurements: Vec::new(),
+            curves: Vec::new(),
             row: 0,
         }
     }

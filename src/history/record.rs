@@ -3,7 +3,9 @@
 //! They know nothing of the station or the gauge: texts, numbers and integer microseconds UTC. A
 //! number that is not finite is stored as no number at all.
 
-use super::{AlarmChangeRecord, GoldenCheckRecord, LotStateRecord, OrderRecord, WearRecord};
+use super::{
+    AlarmChangeRecord, CurveRecord, GoldenCheckRecord, LotStateRecord, OrderRecord, WearRecord,
+};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -59,6 +61,8 @@ pub struct PartRecord {
     pub kind: String,
     /// In the order they were made; a repeated one has a higher attempt.
     pub measurements: Vec<MeasurementRecord>,
+    /// What was seen of it; none of a part that passed.
+    pub curves: Vec<CurveRecord>,
 }
 
 /// One attempt to measure one parameter.

@@ -2,7 +2,7 @@
 //!
 //! - A run counts as copied when a backup holds it or an export wrote all of it; both tell
 //!   [`Store::copied`] after their file is on the disk. Only closed runs count: an open one still grows.
-//! - [`Store::prune`] deletes parts, measurements, raw replies and alarms of copied runs that ended before
+//! - [`Store::prune`] deletes parts, measurements, raw replies, curves and alarms of copied runs that ended before
 //!   an instant, one transaction a run. Lot, run, recipe and the note of the copy stay, so that numbers
 //!   of runs go on and anyone can see where the parts went.
 
@@ -94,6 +94,7 @@ impl Store {
 
 fn emptied(transaction: &Transaction<'_>, run: i64, now_us: i64) -> rusqlite::Result<()> {
     for sql in [
+        "DELETE FROM curve WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
         "DELETE FROM sample WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
         "DELETE FROM measurement WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
         "DELETE FROM part WHERE run_id = ?1",

@@ -32,6 +32,13 @@ CREATE VIEW samples AS
     strftime('%Y-%m-%d %H:%M:%f', s.at_us / 1e6, 'unixepoch', 'localtime') AS at
   FROM sample AS s JOIN part ON part.id = s.part_id JOIN run ON run.id = part.run_id
     JOIN lot ON lot.id = run.lot_id JOIN parameter ON parameter.id = s.parameter_id;
+DROP VIEW IF EXISTS curves;
+CREATE VIEW curves AS
+  SELECT lot.name AS lot, run.number AS run, part.kind, part.seq, curve.signal, curve.unit,
+    strftime('%Y-%m-%d %H:%M:%f', curve.begin_us / 1e6, 'unixepoch', 'localtime') AS begin,
+    curve.samples, length(curve.packed) AS bytes
+  FROM curve JOIN part ON part.id = curve.part_id JOIN run ON run.id = part.run_id
+    JOIN lot ON lot.id = run.lot_id;
 DROP VIEW IF EXISTS alarms;
 CREATE VIEW alarms AS
   SELECT lot.name AS lot, run.number AS run, alarm.code, alarm.line, alarm.text,

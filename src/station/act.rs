@@ -3,6 +3,7 @@
 //! A stage writes its acts down as a list before it begins; [`Runner`] carries them out and keeps what
 //! was read. So the order of a test can be read, printed and replayed, and no stage ever holds the bus.
 
+use super::trace::Trace;
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Temperature};
 use crate::rig::sample::{CountSample, Sample};
@@ -140,6 +141,8 @@ pub struct Readings {
     pub seen: Vec<bool>,
     /// Track temperatures.
     pub track: Vec<Sample>,
+    /// All of it sample by sample, and what was asked of the outputs.
+    pub trace: Trace,
 }
 
 /// What the runner asks of its surroundings.
@@ -329,17 +332,19 @@ impl Runner {
                 let active = image
                     .answered_input(point, now)
                     .ok_or("a board input is stale")?;
+                let inputs = BoardInputs::take(image, now).ok_or("a board input is stale")?;
+                self.readings.trace.board(&inputs, self.since);
                 if !active && self.since.since(self.began) < within {
                     return Ok(());
                 }
-                let inputs = BoardInputs::take(image, now).ok_or("a board input is stale")?;
                 self.readings.boards.push(inputs);
                 self.readings.seen.push(active);
             }
+            Some(act @ (Act::Board(_) | Act::Supply(_))) => {
+                self.readings.trace.asked(&act, self.since);
+            }
             Some(
-                Act::Board(_)
-                | Act::Supply(_)
-                | Act::CoilMask(_)
+                Act::CoilMask(_)
                 | Act::Mark
                 | Act::Wait(_)
                 | Act::WaitSinceMark(_)
@@ -354,29 +359,31 @@ impl Runner {
     fn take(&mut self, read: Read, image: &Image, now: RigTime) -> Result<(), String> {
         let missing = || format!("{read:?} was answered without a value");
         match read {
-            Read::Board => self
-                .readings
-                .boards
-                .push(BoardInputs::take(image, now).ok_or_else(missing)?),
-            Read::Coil => self.readings.coil.push(CoilScan {
-                voltage_fine: image.analog(AnalogIn::CoilVoltageFine).cloned(),
-                current_fine: image.analog(AnalogIn::CoilCurrentFine).cloned(),
-                current_wide: image.analog(AnalogIn::CoilCurrent).cloned(),
-                reference: image.analog(AnalogIn::ReferenceVoltage).cloned(),
-            }),
+            Read::Board => {
+                let inputs = BoardInputs::take(image, now).ok_or_else(missing)?;
+                self.readings.trace.board(&inputs, self.since);
+                self.readings.boards.push(inputs);
+            }
+            Read::Coil => {
+                let scan = CoilScan {
+                    voltage_fine: image.analog(AnalogIn::CoilVoltageFine).cloned(),
+                    current_fine: image.analog(AnalogIn::CoilCurrentFine).cloned(),
+                    current_wide: image.analog(AnalogIn::CoilCurrent).cloned(),
+                    reference: image.analog(AnalogIn::ReferenceVoltage).cloned(),
+                };
+                self.readings.trace.scan(&scan);
+                self.readings.coil.push(scan);
+            }
             Read::Drop => {
-                self.readings.drops.push(
-                    image
-                        .analog(AnalogIn::ContactDrop)
-                        .cloned()
-                        .ok_or_else(missing)?,
-                );
+                let drop = image.analog(AnalogIn::ContactDrop).ok_or_else(missing)?;
+                self.readings.trace.input(AnalogIn::ContactDrop, drop);
+                self.readings.drops.push(drop.clone());
             }
             Read::Gates | Read::Gate => {
                 let gate = |counter| image.counter(counter).cloned().ok_or_else(missing);
-                self.readings
-                    .gates
-                    .push([gate(Counter::Gate0)?, gate(Counter::Gate1)?]);
+                let gates = [gate(Counter::Gate0)?, gate(Counter::Gate1)?];
+                self.readings.trace.gates(&gates);
+                self.readings.gates.push(gates);
             }
             Read::Resets => {}
             Read::Track => {

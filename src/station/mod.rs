@@ -41,6 +41,7 @@ pub mod sort;
 mod states;
 pub mod supply;
 pub mod test;
+pub mod trace;
 pub mod trouble;
 pub mod turn;
 pub mod wants;

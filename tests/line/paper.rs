@@ -30,6 +30,27 @@ fn every_page_of_a_lot_is_written_in_both_languages() {
 }
 
 #[test]
+fn a_part_that_did_not_pass_keeps_what_was_seen_of_it_and_one_that_passed_does_not() {
+    let workshop = Workshop::new("curves");
+    workshop.run(LOT).with_status(0);
+    let passed_with =
+        "SELECT count(*) FROM part WHERE verdict = 'pass' AND id IN (SELECT part_id FROM curve)";
+    assert_eq!(workshop.count(passed_with), 0);
+    let others = "SELECT count(*) FROM part WHERE verdict <> 'pass'";
+    let with = "SELECT count(DISTINCT part_id) FROM curve";
+    assert!(workshop.count(others) > 0, "golden parts are never judged");
+    assert_eq!(workshop.count(with), workshop.count(others));
+    let most = "SELECT max(n) FROM (SELECT sum(length(packed)) AS n FROM curve GROUP BY part_id)";
+    let bytes = workshop.count(most);
+    assert!((100..12_000).contains(&bytes), "{bytes} bytes");
+    let shown = workshop.run("history show A 1 --golden").with_status(0);
+    for signal in ["board", "contact_drop", "gate_0", "supply_level"] {
+        let curve = format!("curve {signal}, ");
+        assert!(shown.stdout.contains(&curve), "{signal}: {shown}");
+    }
+}
+
+#[test]
 fn another_recipe_is_asked_without_touching_the_old_verdicts() {
     let workshop = Workshop::new("rejudge");
     workshop.run(LOT).with_status(0);

@@ -2,7 +2,8 @@
 
 use super::output::{Output, Table};
 use crate::config::load_recipe;
-use crate::history::{Archive, Filter, rejudged};
+use crate::gauge::Recipe;
+use crate::history::{Archive, Basis, Filter, rejudged};
 use clap::Args;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -37,11 +38,15 @@ pub(super) fn run(config: &Path, archive: &Archive, args: &RejudgeArgs) -> anyho
         "lot {:?} has no parts (or no such run); see `history list`",
         args.lot
     );
+    let same = Basis::of_recipe(&recipe);
+    let basis = bases(archive, &filter, &recipe)?;
     let mut out = Output::stdout();
     let mut table = Table::new(&["run", "seq", "verdict", "now", "bin", "reasons"]);
     let mut counts: BTreeMap<(String, &str), u64> = BTreeMap::new();
     archive.each(&filter, |part| {
-        let verdict = rejudged(&part, &recipe);
+        let basis = basis.get(&part.run).copied();
+        let curves = archive.curves(&part)?;
+        let verdict = rejudged(&part, &curves, basis.unwrap_or(same), &recipe);
         let now = verdict.name();
         *counts.entry((part.verdict.clone(), now)).or_default() += 1;
         let (bin, reasons) = (verdict.bin().name(), verdict.reasons());
@@ -78,4 +83,30 @@ pub(super) fn run(config: &Path, archive: &Archive, args: &RejudgeArgs) -> anyho
         writeln!(out, "{was} -> {now}: {n}")?;
     }
     Ok(out.flush()?)
+}
+
+/// What the values of each run refer to; an import without a recipe is taken to refer to the same.
+fn bases(
+    archive: &Archive,
+    filter: &Filter,
+    recipe: &Recipe,
+) -> anyhow::Result<BTreeMap<u32, Basis>> {
+    let mut bases = BTreeMap::new();
+    for run in archive.lots(filter)? {
+        let text = archive.recipe(&run.recipe_hash)?;
+        let Some(basis) = text.as_deref().and_then(Basis::of) else {
+            continue;
+        };
+        anyhow::ensure!(
+            basis.fits(recipe),
+            "--recipe {}: its coil has {} V, run {} of lot {:?} was measured at {} V",
+            recipe.name,
+            recipe.part.nominal_v,
+            run.run,
+            run.lot,
+            basis.nominal_v
+        );
+        bases.insert(run.run, basis);
+    }
+    Ok(bases)
 }

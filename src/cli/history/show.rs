@@ -2,7 +2,8 @@
 
 use super::output::{Format, FormatArgs, Output, Table, figure, text};
 use super::{lots, orders};
-use crate::history::{Archive, Filter, LotSummary, Part};
+use crate::history::{Archive, Curve, Filter, LotSummary, Part};
+use crate::station::trace::Signal;
 use clap::Args;
 use std::io::Write;
 
@@ -124,7 +125,47 @@ fn page(part: &Part, out: &mut Output) -> anyhow::Result<()> {
     writeln!(out)?;
     measurements(part, out)?;
     writeln!(out)?;
-    samples(part, out)
+    samples(part, out)?;
+    part.curves.iter().try_for_each(|it| curve(it, out))
+}
+
+/// Samples on a line: milliseconds since the first one, and the value.
+const ON_A_LINE: usize = 6;
+
+/// A sample that gave no number is a dash.
+fn curve(it: &Curve, out: &mut Output) -> anyhow::Result<()> {
+    let Curve {
+        signal,
+        unit,
+        begin,
+        ..
+    } = it;
+    let is_board = signal == Signal::Board.name();
+    let unit = match unit.as_str() {
+        "" if is_board => {
+            "Kelvin NC NO COM coil B A, probes up, no compliance, NC closed, NO closed"
+        }
+        "" => "counts",
+        unit => unit,
+    };
+    writeln!(out, "\ncurve {signal}, {unit}, from {begin}, ms: value")?;
+    let samples: Vec<String> = it
+        .t_us
+        .iter()
+        .zip(&it.values)
+        .map(|(&t_us, value)| {
+            let value = match value {
+                None => "-".to_owned(),
+                Some(bits) if is_board => format!("{:09b}", *bits as u64),
+                Some(value) => figure(Some(*value)),
+            };
+            format!("{:.3}: {value}", t_us as f64 / 1e3)
+        })
+        .collect();
+    for line in samples.chunks(ON_A_LINE) {
+        writeln!(out, "  {}", line.join("   "))?;
+    }
+    Ok(())
 }
 
 fn measurements(part: &Part, out: &mut Output) -> anyhow::Result<()> {

@@ -2,11 +2,13 @@
 
 use super::recorder::Setup;
 use crate::gauge::Parameter;
-use crate::gauge::verdict::Judgement;
-use crate::history::{MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
+use crate::gauge::verdict::{Judgement, Verdict};
+use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
 use crate::rig::point::{AnalogIn, Counter};
 use crate::station::ledger::Kind;
+use crate::station::trace::Trace;
 use crate::station::wants::Judged;
+use crate::units::RigTime;
 use serde_json::{Map, Value, json};
 
 /// Number of a part within its kind, and the kind's name.
@@ -20,8 +22,7 @@ pub fn number(kind: &Kind, golden: u64) -> (u64, &'static str) {
 /// Row of a part with its measurements and the replies behind them.
 pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
     let (seq, kind) = number(&judged.part.kind, golden);
-    let at =
-        |time: crate::units::RigTime| setup.epoch_us + i64::try_from(time.0).unwrap_or(i64::MAX);
+    let at = |time: RigTime| setup.epoch_us + i64::try_from(time.0).unwrap_or(i64::MAX);
     PartRecord {
         lot: setup.args.lot.clone(),
         seq,
@@ -45,7 +46,30 @@ pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
             .iter()
             .filter_map(|parameter| measurement(setup, judged, *parameter))
             .collect(),
+        curves: match judged.verdict {
+            Verdict::Pass => Vec::new(),
+            Verdict::Fail(_) | Verdict::Void(_) => curves(&judged.findings.trace, at),
+        },
     }
+}
+
+/// What the test saw, a curve per signal, in the order the signals were first looked at.
+fn curves(trace: &Trace, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
+    let mut curves: Vec<CurveRecord> = Vec::new();
+    for look in trace.looks() {
+        let sample = (at(look.at), Some(look.value).filter(|it| it.is_finite()));
+        let name = look.signal.name();
+        match curves.iter_mut().find(|curve| curve.signal == name) {
+            Some(curve) => curve.samples.push(sample),
+            None => curves.push(CurveRecord {
+                signal: name.to_owned(),
+                unit: look.signal.unit().to_owned(),
+                step: look.signal.step(),
+                samples: vec![sample],
+            }),
+        }
+    }
+    curves
 }
 
 fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<MeasurementRecord> {

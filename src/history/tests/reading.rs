@@ -279,8 +279,9 @@ fn the_other_views_can_be_read() {
     let file = File::new();
     let _store = filled(&file, 20);
     let by_hand = file.by_hand();
-    let rows = ["lots", "measurements", "samples", "alarms"].map(|view| count(&by_hand, view));
-    assert_eq!(rows, [1, 40, 40, 0]);
+    let rows =
+        ["lots", "measurements", "samples", "curves", "alarms"].map(|view| count(&by_hand, view));
+    assert_eq!(rows, [1, 40, 40, 0, 0]);
     let percent: f64 = by_hand
         .query_row("SELECT yield_percent FROM lots", [], |row| row.get(0))
         .unwrap();

@@ -31,19 +31,23 @@ fn part(operate_v: f64, verdict: &str, reasons: &[&str]) -> Part {
     part
 }
 
+fn by_values(part: &Part, recipe: &Recipe) -> Verdict {
+    rejudged(part, &[], Basis::of_recipe(recipe), recipe)
+}
+
 #[test]
 fn the_limits_of_the_other_recipe_decide_with_the_stored_uncertainty() {
     let recipe = recipe();
     assert_eq!(
-        rejudged(&part(8.9, "fail", &["operate_voltage_v high"]), &recipe),
+        by_values(&part(8.9, "fail", &["operate_voltage_v high"]), &recipe),
         Verdict::Pass
     );
-    let bad = rejudged(&part(9.1, "pass", &[]), &recipe);
+    let bad = by_values(&part(9.1, "pass", &[]), &recipe);
     assert_eq!(
         (bad.bin(), bad.reasons()),
         (Bin::Voltage, vec!["operate_voltage_v high".to_owned()])
     );
-    let doubtful = rejudged(&part(8.99, "pass", &[]), &recipe);
+    let doubtful = by_values(&part(8.99, "pass", &[]), &recipe);
     assert_eq!(doubtful.reasons(), ["operate_voltage_v high not proven"]);
 }
 
@@ -52,12 +56,12 @@ fn what_no_value_says_stays() {
     let recipe = recipe();
     let mut open = part(8.0, "fail", &["coil open"]);
     open.bin = Some("coil".into());
-    let again = rejudged(&open, &recipe);
+    let again = by_values(&open, &recipe);
     assert_eq!(
         (again.bin(), again.reasons()),
         (Bin::Coil, vec!["coil open".to_owned()])
     );
-    let void = rejudged(&part(8.0, "void", &["reply refused"]), &recipe);
+    let void = by_values(&part(8.0, "void", &["reply refused"]), &recipe);
     assert_eq!(void, Verdict::Void(vec!["reply refused".into()]));
 }
 
@@ -65,9 +69,90 @@ fn what_no_value_says_stays() {
 fn a_value_that_was_never_had_is_void_and_never_passes() {
     let mut part = part(8.0, "pass", &[]);
     part.values.remove("operate_time_ms");
-    let again = rejudged(&part, &recipe());
+    let again = by_values(&part, &recipe());
     assert_eq!(
         again,
         Verdict::Void(vec!["operate_time_ms not measured".into()])
     );
+}
+
+#[test]
+fn values_are_brought_to_the_reference_temperature_of_the_other_recipe() {
+    let mut recipe = recipe();
+    let stored = part(8.9, "pass", &[]);
+    let at_23_c = Basis::of_recipe(&recipe);
+    recipe.part.reference_temperature_c = 33.0;
+    let warmer = rejudged(&stored, &[], at_23_c, &recipe);
+    assert_eq!(
+        warmer.reasons(),
+        ["operate_voltage_v high"],
+        "9.25 V at 33 C"
+    );
+}
+
+#[test]
+fn a_recipe_of_another_coil_voltage_does_not_fit() {
+    let mut recipe = recipe();
+    let basis = Basis::of(&recipe.source_text).unwrap();
+    assert_eq!(basis, Basis::of_recipe(&recipe));
+    assert!(basis.fits(&recipe));
+    recipe.part.nominal_v = 24.0;
+    assert!(!basis.fits(&recipe));
+    assert_eq!(Basis::of("name = \"old\""), None);
+}
+
+/// With an operate voltage up to 11.5 V.
+fn generous() -> Recipe {
+    let folder = std::env::temp_dir().join(format!("relayrig-generous-{}", std::process::id()));
+    let text = recipe().source_text.replace(
+        "operate_voltage_v = { high = 9.0 }",
+        "operate_voltage_v = { high = 11.5 }",
+    );
+    std::fs::create_dir_all(folder.join("recipes")).unwrap();
+    std::fs::write(folder.join("recipes/jzc-22f-012.toml"), text).unwrap();
+    let loaded = load_recipe(&folder, "jzc-22f-012").unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    loaded
+}
+
+/// Driven from 5 V up to 11 V without a make.
+fn never_made() -> Vec<Curve> {
+    let curve = |signal: &str, samples: &[(i64, f64)]| Curve {
+        signal: signal.into(),
+        unit: String::new(),
+        begin: Moment(0),
+        t_us: samples.iter().map(|it| it.0).collect(),
+        values: samples.iter().map(|it| Some(it.1)).collect(),
+    };
+    vec![
+        curve("supply_level", &[(0, 5.0)]),
+        curve("supply_coarse", &[(20_000, 6.0)]),
+        curve("coil_drive", &[(5_000, 1.0)]),
+        curve("board", &[(10_000, 2.0), (190_000, 2.0)]),
+    ]
+}
+
+#[test]
+fn a_part_without_a_value_fails_where_its_curves_prove_it_and_is_void_where_they_do_not() {
+    let recipe = recipe();
+    let mut high = part(
+        8.0,
+        "fail",
+        &["operate_voltage_v high: above the coarse ramp"],
+    );
+    high.values.remove("operate_voltage_v");
+    high.bin = Some("voltage".into());
+    let basis = Basis::of_recipe(&recipe);
+    let strict = rejudged(&high, &never_made(), basis, &recipe);
+    assert_eq!(
+        (strict.bin(), strict.reasons()),
+        (Bin::Voltage, vec!["operate_voltage_v high".to_owned()])
+    );
+    let generous = rejudged(&high, &never_made(), basis, &generous());
+    assert_eq!(
+        generous,
+        Verdict::Void(vec!["operate_voltage_v not measured".into()])
+    );
+    let blind = rejudged(&high, &[], basis, &recipe);
+    assert_eq!(blind.name(), "fail", "nothing was kept of it, so it stays");
 }

@@ -41,6 +41,43 @@ fn a_part_is_kept_down_to_the_raw_reply() {
 }
 
 #[test]
+fn what_was_seen_of_a_part_comes_back_with_it_and_with_nothing_else() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    let curve = CurveRecord {
+        signal: "coil_voltage_fine".into(),
+        unit: "V".into(),
+        step: 1e-5,
+        samples: vec![(2_000_000, Some(5.000_01)), (2_003_500, None)],
+    };
+    let seen = PartRecord {
+        curves: vec![curve.clone(), CurveRecord::default()],
+        ..part("A", 2, "fail", 9.5)
+    };
+    store
+        .record(&[Row::Part(part("A", 1, "pass", 7.0)), Row::Part(seen)])
+        .unwrap();
+    let archive = file.archive();
+    assert!(archive.show("A", 1, "lot").unwrap()[0].curves.is_empty());
+    let shown = &archive.show("A", 2, "lot").unwrap()[0].curves;
+    let [only] = shown.as_slice() else {
+        panic!("one curve, found {}", shown.len())
+    };
+    assert_eq!(
+        (only.begin, &only.t_us),
+        (Moment(2_000_000), &vec![0, 3_500])
+    );
+    let first = only.values[0].unwrap();
+    assert!((first - 5.000_01).abs() < 1e-9 && only.values[1].is_none());
+    file.by_hand()
+        .execute_batch("UPDATE curve SET packed = x'00'")
+        .unwrap();
+    let damage = archive.show("A", 2, "lot").unwrap_err();
+    assert!(matches!(damage, HistoryError::Damaged { .. }), "{damage}");
+}
+
+#[test]
 fn a_lot_opened_again_gets_the_next_run_and_overwrites_nothing() {
     let file = File::new();
     let mut store = file.store();

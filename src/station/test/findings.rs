@@ -8,6 +8,7 @@ use crate::gauge::threshold::Direction;
 use crate::gauge::verdict::{Bin, Judgement, Reason};
 use crate::rig::sample::{CountSample, Origin, Sample};
 use crate::station::act::Spent;
+use crate::station::trace::Trace;
 use crate::units::{Celsius, Span, Volt};
 use std::collections::BTreeMap;
 
@@ -63,6 +64,8 @@ pub struct Findings {
     readings: Vec<(Parameter, Reading)>,
     evidence: Vec<(Parameter, Origin)>,
     stop: Option<Stop>,
+    /// What was seen, sample by sample.
+    pub trace: Trace,
     /// Where the time went.
     pub spent: Spent,
     /// Temperature of the magazine track when the test began.

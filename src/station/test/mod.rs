@@ -114,6 +114,8 @@ impl Test {
             match self.runner.step(now, done.take(), image) {
                 Doing::Done => {}
                 Doing::Trouble(why) => {
+                    let seen = std::mem::take(&mut self.runner.readings.trace);
+                    self.findings.trace.append(seen);
                     self.findings.stop(Stop::Void(why));
                     if self.stage == Stage::Off {
                         return Progress::Judged;
@@ -153,7 +155,9 @@ impl Test {
         self.findings
             .took(self.stage.measures(), now.since(self.began));
         self.began = now;
-        let readings = std::mem::take(&mut self.runner.readings);
+        let mut readings = std::mem::take(&mut self.runner.readings);
+        let seen = std::mem::take(&mut readings.trace);
+        self.findings.trace.append(seen);
         self.gates = readings.gates.last().cloned().or(self.gates.take());
         let (bench, findings) = (&self.bench, &mut self.findings);
         let again = match self.stage {

@@ -3,7 +3,9 @@
 use crate::gauge::recipe::Recipe;
 use crate::gauge::verdict::{judge, of_part};
 use crate::gauge::{Budget, Judgement, Parameter, Reading, Verdict};
-use crate::history::{MeasurementRecord, PartRecord, SampleRecord};
+use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
+use crate::rig::point::AnalogIn;
+use crate::station::trace::Signal;
 
 /// Share of parts with a defect, as in the default world.
 const DEFECTS: f64 = 0.04;
@@ -102,8 +104,30 @@ impl Line {
             landed_at_us: Some(at_us + 900_000),
             kind: "lot".to_owned(),
             measurements,
+            curves: evidence(&verdict, at_us),
         }
     }
+}
+
+/// As many looks as a test of the default recipe has: 30 polls of a contact, 120 samples of a voltage.
+fn evidence(verdict: &Verdict, at_us: i64) -> Vec<CurveRecord> {
+    if *verdict == Verdict::Pass {
+        return Vec::new();
+    }
+    let curve = |signal: Signal, samples: i64, value: fn(i64) -> f64| CurveRecord {
+        signal: signal.name().to_owned(),
+        unit: signal.unit().to_owned(),
+        step: signal.step(),
+        samples: (0..samples)
+            .map(|n| (at_us + 5_321 * n, Some(value(n))))
+            .collect(),
+    };
+    vec![
+        curve(Signal::Board, 30, |n| (500 + n % 2) as f64),
+        curve(Signal::Input(AnalogIn::CoilVoltageFine), 120, |n| {
+            5.0 + 0.031_7 * n as f64
+        }),
+    ]
 }
 
 impl Scatter {

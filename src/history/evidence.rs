@@ -1,0 +1,226 @@
+//! What curves prove of a parameter that has no value: the contact had not moved yet, so the threshold or
+//! the time is greater than what was seen.
+//!
+//! | parameter | is at least |
+//! |---|---|
+//! | operate voltage | the greatest sum asked of the supply at which the driven coil left NO open to the last look before the next change; stages wait for the end of a ramp before they go on |
+//! | operate time | from the drive at nominal voltage to the last look with NO open |
+//! | release time | from the last switch-off to the last look with NC open |
+//!
+//! A bound decides only with [`DOUBT`] to spare: it is neither corrected nor brought to the reference
+//! temperature.
+
+use super::Curve;
+use crate::gauge::Parameter;
+use crate::rig::point::AnalogOut;
+use crate::station::trace::Signal;
+
+/// Copper 5 K from the reference (2 %), tolerance of the supply and a poll of the board.
+const DOUBT: f64 = 0.03;
+/// The coil counts as driven at nominal voltage from this share of it on.
+const NOMINAL: f64 = 0.98;
+
+/// Whether the curves prove that the parameter lies above `high`, for a coil of `nominal_v`.
+pub(super) fn above(curves: &[Curve], parameter: Parameter, high: f64, nominal_v: f64) -> bool {
+    at_least(curves, parameter, nominal_v).is_some_and(|bound| bound * (1.0 - DOUBT) > high)
+}
+
+/// The bound, in the unit of the parameter.
+pub(super) fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Option<f64> {
+    let seen = Seen::of(curves, nominal_v);
+    let ms = |us: i64| us as f64 / 1e3;
+    match parameter {
+        Parameter::OperateVoltage => seen.unmoved_v,
+        Parameter::OperateTime => seen.unmade_us.map(ms),
+        Parameter::ReleaseTime => seen.unreleased_us.map(ms),
+        Parameter::CoilResistance
+        | Parameter::ReleaseVoltage
+        | Parameter::OperateBounce
+        | Parameter::ReleaseBounce
+        | Parameter::ContactResistanceNo
+        | Parameter::ContactResistanceNc => None,
+    }
+}
+
+/// What happened, in order of time.
+enum Event {
+    /// One output of the supply, by its place, was asked for so many volts.
+    Asked(usize, f64),
+    /// The drive went on or off, or stayed.
+    Drive(bool),
+    /// NO and NC closed or not.
+    Contacts { no: bool, nc: bool },
+}
+
+#[derive(Default)]
+struct Seen {
+    unmoved_v: Option<f64>,
+    unmade_us: Option<i64>,
+    unreleased_us: Option<i64>,
+}
+
+const SUPPLY: [AnalogOut; 3] = [
+    AnalogOut::SupplyLevel,
+    AnalogOut::SupplyCoarse,
+    AnalogOut::SupplyFine,
+];
+
+impl Seen {
+    fn of(curves: &[Curve], nominal_v: f64) -> Self {
+        let mut seen = Self::default();
+        let mut asked = [0.0; SUPPLY.len()];
+        let (mut driven, mut since_us) = (false, None);
+        let mut open = false;
+        for (at_us, event) in events(curves) {
+            let total: f64 = asked.iter().sum();
+            match event {
+                Event::Asked(output, volts) => {
+                    seen.unmoved(driven && open, total);
+                    open = false;
+                    asked[output] = volts;
+                }
+                Event::Drive(on) if on != driven => {
+                    seen.unmoved(driven && open, total);
+                    open = false;
+                    driven = on;
+                    since_us = (!on || total >= NOMINAL * nominal_v).then_some(at_us);
+                    if !on {
+                        seen.unreleased_us = None;
+                    }
+                }
+                Event::Drive(_) => {}
+                Event::Contacts { no, nc } => {
+                    open = !no;
+                    let waited = since_us.map(|since| at_us - since);
+                    match (driven, no, nc) {
+                        (true, false, _) => seen.unmade_us = waited.or(seen.unmade_us),
+                        (true, true, _) => since_us = None,
+                        (false, _, false) => seen.unreleased_us = waited,
+                        (false, _, true) => since_us = None,
+                    }
+                }
+            }
+        }
+        seen.unmoved(driven && open, asked.iter().sum());
+        seen
+    }
+
+    fn unmoved(&mut self, is_so: bool, volts: f64) {
+        if is_so {
+            self.unmoved_v = Some(self.unmoved_v.map_or(volts, |most| most.max(volts)));
+        }
+    }
+}
+
+fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
+    let mut events = Vec::new();
+    for curve in curves {
+        let supply = SUPPLY.iter().position(|it| it.name() == curve.signal);
+        let samples = curve.samples().filter_map(|(at, value)| Some((at, value?)));
+        for (at, value) in samples {
+            let bit = |n: u32| value as u64 >> n & 1 == 1;
+            if let Some(output) = supply {
+                events.push((at, Event::Asked(output, value)));
+            } else if curve.signal == Signal::Drive.name() {
+                events.push((at, Event::Drive(bit(0))));
+            } else if curve.signal == Signal::Board.name() {
+                let (no, nc) = (bit(0), bit(1));
+                events.push((at, Event::Contacts { no, nc }));
+            }
+        }
+    }
+    events.sort_by_key(|(at, _)| *at);
+    events
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Moment;
+    use super::*;
+
+    /// A signal from pairs of millisecond and value.
+    fn curve(signal: &str, samples: &[(i64, f64)]) -> Curve {
+        Curve {
+            signal: signal.into(),
+            unit: String::new(),
+            begin: Moment(1_000_000),
+            t_us: samples.iter().map(|(ms, _)| ms * 1_000).collect(),
+            values: samples.iter().map(|(_, value)| Some(*value)).collect(),
+        }
+    }
+
+    const RESTS: f64 = 2.0;
+    const MADE: f64 = 1.0;
+    const BETWEEN: f64 = 0.0;
+
+    #[test]
+    fn a_ramp_without_make_bounds_the_operate_voltage_by_its_top() {
+        let curves = [
+            curve("supply_level", &[(0, 5.0)]),
+            curve("supply_coarse", &[(20, 6.0), (200, 0.0)]),
+            curve("coil_drive", &[(5, 1.0), (210, 0.0)]),
+            curve("board", &[(10, RESTS), (100, RESTS), (190, RESTS)]),
+        ];
+        let bound = |parameter| at_least(&curves, parameter, 12.0);
+        assert_eq!(bound(Parameter::OperateVoltage), Some(11.0));
+        assert_eq!(
+            bound(Parameter::OperateTime),
+            None,
+            "never at nominal voltage"
+        );
+        assert!(above(&curves, Parameter::OperateVoltage, 10.6, 12.0));
+        assert!(!above(&curves, Parameter::OperateVoltage, 10.7, 12.0));
+    }
+
+    #[test]
+    fn a_contact_that_makes_bounds_by_what_came_before() {
+        let curves = [
+            curve("supply_level", &[(0, 5.0), (50, 7.0), (100, 9.0)]),
+            curve("coil_drive", &[(5, 1.0)]),
+            curve("board", &[(10, RESTS), (90, RESTS), (150, MADE)]),
+        ];
+        let bound = at_least(&curves, Parameter::OperateVoltage, 12.0);
+        assert_eq!(bound, Some(7.0));
+    }
+
+    #[test]
+    fn a_contact_that_does_not_come_bounds_its_time() {
+        let curves = [
+            curve("supply_level", &[(0, 12.0)]),
+            curve("coil_drive", &[(10, 1.0), (60, 0.0), (70, 0.0)]),
+            curve(
+                "board",
+                &[
+                    (5, RESTS),
+                    (20, BETWEEN),
+                    (55, BETWEEN),
+                    (65, BETWEEN),
+                    (90, BETWEEN),
+                ],
+            ),
+        ];
+        let bound = |parameter| at_least(&curves, parameter, 12.0);
+        assert_eq!(bound(Parameter::OperateTime), Some(45.0));
+        assert_eq!(bound(Parameter::ReleaseTime), Some(30.0));
+        assert_eq!(bound(Parameter::OperateVoltage), Some(12.0));
+    }
+
+    #[test]
+    fn a_part_that_moves_as_it_should_is_bound_by_no_time_beyond_its_own() {
+        let curves = [
+            curve("supply_level", &[(0, 12.0)]),
+            curve("coil_drive", &[(10, 1.0), (60, 0.0)]),
+            curve("board", &[(12, RESTS), (16, MADE), (61, MADE), (64, RESTS)]),
+        ];
+        let bound = |parameter| at_least(&curves, parameter, 12.0);
+        assert_eq!(bound(Parameter::OperateTime), Some(2.0));
+        assert_eq!(bound(Parameter::ReleaseTime), Some(1.0));
+    }
+
+    #[test]
+    fn without_curves_nothing_is_proven() {
+        for parameter in Parameter::ALL {
+            assert_eq!(at_least(&[], parameter, 12.0), None);
+        }
+    }
+}
