@@ -12,6 +12,19 @@ pub struct Archive {
     pub(super) path: PathBuf,
 }
 
+/// Values of one part.
+pub(super) const VALUES: &str = "SELECT parameter.key, m.value, m.uncertainty FROM measurement AS m
+    JOIN parameter ON parameter.id = m.parameter_id
+    WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt";
+/// All attempts of one part.
+pub(super) const MEASUREMENTS: &str = "SELECT parameter.key, m.attempt, m.value, m.uncertainty,
+      m.low, m.high, m.verdict, m.budget, m.parameter_id
+    FROM measurement AS m JOIN parameter ON parameter.id = m.parameter_id
+    WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt";
+/// Replies of one attempt.
+pub(super) const SAMPLES: &str = "SELECT line, module, channel, command, raw, at_us FROM sample
+    WHERE part_id = ?1 AND parameter_id = ?2 AND attempt = ?3 ORDER BY n";
+
 impl Archive {
     /// Opens an existing history. An older schema is migrated; a foreign or newer file is refused.
     pub fn open(path: &Path) -> Result<Self> {
@@ -157,11 +170,7 @@ impl Archive {
 
     /// A later attempt overwrites an earlier one in the map.
     fn values_of(&self, part: i64) -> rusqlite::Result<(Map, Map)> {
-        let mut statement = self.connection.prepare_cached(
-            "SELECT parameter.key, m.value, m.uncertainty FROM measurement AS m
-             JOIN parameter ON parameter.id = m.parameter_id
-             WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt",
-        )?;
+        let mut statement = self.connection.prepare_cached(VALUES)?;
         let mut rows = statement.query([part])?;
         let (mut values, mut uncertainty) = (Map::new(), Map::new());
         while let Some(row) = rows.next()? {
@@ -173,12 +182,7 @@ impl Archive {
     }
 
     fn measurements(&self, part: i64) -> rusqlite::Result<Vec<Measurement>> {
-        let mut statement = self.connection.prepare_cached(
-            "SELECT parameter.key, m.attempt, m.value, m.uncertainty, m.low, m.high, m.verdict,
-               m.budget, m.parameter_id
-             FROM measurement AS m JOIN parameter ON parameter.id = m.parameter_id
-             WHERE m.part_id = ?1 ORDER BY m.parameter_id, m.attempt",
-        )?;
+        let mut statement = self.connection.prepare_cached(MEASUREMENTS)?;
         let rows = statement.query_map([part], |row| {
             let attempt = row.get(1)?;
             Ok(Measurement {
@@ -197,10 +201,7 @@ impl Archive {
     }
 
     fn samples(&self, part: i64, parameter: i64, attempt: u32) -> rusqlite::Result<Vec<Sample>> {
-        let mut statement = self.connection.prepare_cached(
-            "SELECT line, module, channel, command, raw, at_us FROM sample
-             WHERE part_id = ?1 AND parameter_id = ?2 AND attempt = ?3 ORDER BY n",
-        )?;
+        let mut statement = self.connection.prepare_cached(SAMPLES)?;
         let rows = statement.query_map(params![part, parameter, attempt], |row| {
             Ok(Sample {
                 line: row.get(0)?,

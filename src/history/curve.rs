@@ -141,17 +141,15 @@ pub(super) fn insert(tx: &Transaction<'_>, part: i64, it: &CurveRecord) -> rusql
     Ok(())
 }
 
+/// Curves of one part.
+pub(super) const CURVES: &str = "SELECT signal, unit, begin_us, step, samples, packed FROM curve
+    WHERE part_id = ?1 ORDER BY signal";
+
 impl Archive {
     /// Evidence of a part that did not pass, by name of signal; empty for all others.
     pub fn curves(&self, part: &Part) -> Result<Vec<Curve>> {
         const DOING: &str = "reading the curves of a part";
-        let mut statement = self
-            .connection
-            .prepare_cached(
-                "SELECT signal, unit, begin_us, step, samples, packed FROM curve
-                 WHERE part_id = ?1 ORDER BY signal",
-            )
-            .doing(DOING)?;
+        let mut statement = self.connection.prepare_cached(CURVES).doing(DOING)?;
         let mut rows = statement.query([part.row]).doing(DOING)?;
         let mut curves = Vec::new();
         while let Some(row) = rows.next().doing(DOING)? {

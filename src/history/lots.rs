@@ -81,6 +81,13 @@ impl Yield {
     }
 }
 
+/// Verdicts of a span of time.
+pub(super) const YIELD: &str = "SELECT verdict, count(*) FROM part INDEXED BY part_time
+    WHERE judged_at_us >= ?1 AND judged_at_us < ?2 AND kind = 'lot' GROUP BY verdict";
+/// Counts of one run.
+pub(super) const COUNTS: &str =
+    "SELECT kind, verdict, bin, count(*) FROM part WHERE run_id = ?1 GROUP BY 1, 2, 3";
+
 impl Archive {
     /// Runs that the filter leaves (lot, recipe, run), in order of opening.
     pub fn lots(&self, filter: &Filter) -> Result<Vec<LotSummary>> {
@@ -108,10 +115,7 @@ impl Archive {
     pub fn yield_between(&self, since: Moment, until: Moment) -> Result<Yield> {
         let mut counts = Yield::default();
         self.connection
-            .prepare_cached(
-                "SELECT verdict, count(*) FROM part INDEXED BY part_time
-                 WHERE judged_at_us >= ?1 AND judged_at_us < ?2 AND kind = 'lot' GROUP BY verdict",
-            )
+            .prepare_cached(YIELD)
             .and_then(|mut statement| {
                 let mut rows = statement.query(params![since.0, until.0])?;
                 while let Some(row) = rows.next()? {
@@ -175,9 +179,7 @@ impl Archive {
     }
 
     fn count(&self, run: i64, summary: &mut LotSummary) -> rusqlite::Result<()> {
-        let mut statement = self.connection.prepare_cached(
-            "SELECT kind, verdict, bin, count(*) FROM part WHERE run_id = ?1 GROUP BY 1, 2, 3",
-        )?;
+        let mut statement = self.connection.prepare_cached(COUNTS)?;
         let mut rows = statement.query([run])?;
         while let Some(row) = rows.next()? {
             let parts = row.get::<_, i64>(3)?.unsigned_abs();

@@ -92,15 +92,18 @@ impl Store {
     }
 }
 
+/// What goes of a run, rows that point elsewhere first.
+pub(super) const EMPTYING: [&str; 6] = [
+    "DELETE FROM curve WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
+    "DELETE FROM sample WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
+    "DELETE FROM measurement WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
+    "DELETE FROM part WHERE run_id = ?1",
+    "DELETE FROM alarm_state WHERE alarm_id IN (SELECT id FROM alarm WHERE run_id = ?1)",
+    "DELETE FROM alarm WHERE run_id = ?1",
+];
+
 fn emptied(transaction: &Transaction<'_>, run: i64, now_us: i64) -> rusqlite::Result<()> {
-    for sql in [
-        "DELETE FROM curve WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
-        "DELETE FROM sample WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
-        "DELETE FROM measurement WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
-        "DELETE FROM part WHERE run_id = ?1",
-        "DELETE FROM alarm_state WHERE alarm_id IN (SELECT id FROM alarm WHERE run_id = ?1)",
-        "DELETE FROM alarm WHERE run_id = ?1",
-    ] {
+    for sql in EMPTYING {
         transaction.execute(sql, [run])?;
     }
     transaction.execute(

@@ -272,6 +272,12 @@ impl Store {
             .busy_timeout(std::time::Duration::ZERO)
             .expect("a time-out can be set");
     }
+    /// The file may not be written any more.
+    pub(super) fn read_only(&self) {
+        self.connection
+            .pragma_update(None, "query_only", true)
+            .expect("a file can be kept from being written");
+    }
     /// The file may not grow any more.
     pub(super) fn no_more_pages(&self) {
         let pages: i64 = self

@@ -30,6 +30,11 @@ pub enum LimitsSeen {
     Differ,
 }
 
+/// Limits of one run.
+pub(super) const LIMITS: &str = "SELECT low, high FROM measurement
+    WHERE parameter_id = (SELECT id FROM parameter WHERE key = ?1)
+      AND population = 'lot' AND run_id = ?2 LIMIT 1";
+
 impl Archive {
     /// Values of `param` on the parts that the filter leaves. Superseded attempts, values that
     /// could not be judged and (unless asked for) golden parts do not count. The filter's `limit`
@@ -48,13 +53,10 @@ impl Archive {
         while let Some(row) = rows.next()? {
             found.push((row.get(0)?, row.get(1)?));
         }
-        found.sort_unstable_by_key(|&(part, _)| part);
         let whole = |it: u64| usize::try_from(it).unwrap_or(usize::MAX);
-        Ok(found
-            .into_iter()
+        Ok(in_order(found)
             .skip(filter.offset.map_or(0, whole))
             .take(filter.limit.map_or(usize::MAX, whole))
-            .map(|(_, value)| value)
             .collect())
     }
 
@@ -65,11 +67,7 @@ impl Archive {
         let runs: Vec<i64> = statement
             .query_map(params_from_iter(&runs.values), |row| row.get(0))?
             .collect::<rusqlite::Result<_>>()?;
-        let mut one = self.connection.prepare_cached(
-            "SELECT low, high FROM measurement
-             WHERE parameter_id = (SELECT id FROM parameter WHERE key = ?1)
-               AND population = 'lot' AND run_id = ?2 LIMIT 1",
-        )?;
+        let mut one = self.connection.prepare_cached(LIMITS)?;
         let mut seen: Option<(Option<f64>, Option<f64>)> = None;
         for run in runs {
             let pair = one.query_row(params![param, run], |row| Ok((row.get(0)?, row.get(1)?)));
@@ -83,5 +81,44 @@ impl Archive {
             None | Some((None, None)) => LimitsSeen::None,
             Some((low, high)) => LimitsSeen::Same { low, high },
         })
+    }
+}
+
+/// So many places may stay empty for each value that is placed by its part.
+const EMPTY: usize = 3;
+
+/// Values by the row number of their part, which grows in order of judgement. Row numbers have few gaps, so
+/// that a value is put in its place at once; only where they are far apart they are sorted.
+fn in_order(mut found: Vec<(i64, f64)>) -> Box<dyn Iterator<Item = f64>> {
+    let parts = found.iter().map(|&(part, _)| part);
+    let (Some(first), Some(last)) = (parts.clone().min(), parts.max()) else {
+        return Box::new(std::iter::empty());
+    };
+    let places = usize::try_from(last.abs_diff(first)).unwrap_or(usize::MAX);
+    if places / (1 + EMPTY) >= found.len() {
+        found.sort_unstable_by_key(|&(part, _)| part);
+        return Box::new(found.into_iter().map(|(_, value)| value));
+    }
+    let mut placed = vec![f64::NAN; places + 1];
+    for (part, value) in found {
+        placed[part.abs_diff(first) as usize] = value;
+    }
+    // Only finite values have a place in the index.
+    Box::new(placed.into_iter().filter(|value| !value.is_nan()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_come_in_order_of_their_parts_whether_these_are_close_or_far_apart() {
+        let close = vec![(7, 3.0), (5, 1.0), (9, 4.0), (6, 2.0)];
+        let far = vec![(i64::MAX, 4.0), (5, 2.0), (i64::MIN, 1.0), (1 << 40, 3.0)];
+        for found in [close, far] {
+            assert_eq!(in_order(found).collect::<Vec<_>>(), [1.0, 2.0, 3.0, 4.0]);
+        }
+        assert_eq!(in_order(Vec::new()).count(), 0);
+        assert_eq!(in_order(vec![(3, 1.5)]).collect::<Vec<_>>(), [1.5]);
     }
 }

@@ -3,6 +3,7 @@
 
 mod gates;
 mod migrating;
+mod plans;
 mod reading;
 mod rejudging;
 mod safety;

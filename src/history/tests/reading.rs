@@ -1,4 +1,4 @@
-//! Filters, plans, views, import.
+//! Filters, views, import.
 
 use super::*;
 
@@ -11,7 +11,7 @@ fn seqs(archive: &Archive, filter: &Filter) -> Vec<u64> {
         .collect()
 }
 
-fn operate(min: f64, max: f64) -> Filter {
+pub(super) fn operate(min: f64, max: f64) -> Filter {
     Filter {
         param: Some("operate_voltage_v".into()),
         min: Some(min),
@@ -108,93 +108,6 @@ fn a_filter_from_text_refuses_what_it_does_not_know() {
         serde_json::from_str(r#"{"lot":"A","since":"1970-01-01T00:00:01Z"}"#).unwrap();
     assert_eq!(filter.since, Some(Moment(1_000_000)));
     assert!(serde_json::from_str::<Filter>(r#"{"lott":"A"}"#).is_err());
-}
-
-/// The plan of a statement, one line per step.
-fn plan(file: &File, select: &filter::Select) -> String {
-    let by_hand = file.by_hand();
-    let mut statement = by_hand
-        .prepare(&format!("EXPLAIN QUERY PLAN {}", select.sql))
-        .unwrap();
-    let rows = statement
-        .query_map(rusqlite::params_from_iter(&select.values), |row| {
-            row.get::<_, String>(3)
-        })
-        .unwrap();
-    rows.collect::<rusqlite::Result<Vec<_>>>()
-        .unwrap()
-        .join("\n")
-}
-
-#[test]
-fn a_value_range_enters_the_index_at_its_first_value() {
-    let file = File::new();
-    let _store = filled(&file, 10);
-    let lot = Filter {
-        lot: Some("A".into()),
-        verdict: Some("fail".into()),
-        ..operate(7.0, 8.0)
-    };
-    for filter in [operate(7.0, 8.0), lot] {
-        let plan = plan(&file, &filter.parts());
-        assert!(plan.contains("measurement_value (parameter_id=? AND population=? AND run_id=? AND part_verdict=? AND value>? AND value<?)"), "{plan}");
-        assert!(
-            plan.contains("SEARCH part USING INTEGER PRIMARY KEY"),
-            "{plan}"
-        );
-    }
-}
-
-#[test]
-fn statistics_read_the_index_alone() {
-    let file = File::new();
-    let _store = filled(&file, 10);
-    let plan = plan(&file, &Filter::default().series("operate_voltage_v"));
-    assert!(
-        plan.contains("SEARCH m USING COVERING INDEX measurement_value"),
-        "{plan}"
-    );
-}
-
-#[test]
-fn parts_are_found_by_an_index_of_their_own() {
-    let file = File::new();
-    let _store = filled(&file, 10);
-    let base = Filter::default;
-    let some = |text: &str| Some(text.to_owned());
-    let cases = [
-        (
-            Filter {
-                lot: some("A"),
-                verdict: some("fail"),
-                ..base()
-            },
-            "part_run_verdict",
-        ),
-        (
-            Filter {
-                lot: some("A"),
-                bin: some("coil"),
-                ..base()
-            },
-            "part_run_bin",
-        ),
-        (
-            Filter {
-                since: Some(Moment(5)),
-                until: Some(Moment(9)),
-                ..base()
-            },
-            "part_time",
-        ),
-    ];
-    for (filter, index) in cases {
-        let plan = plan(&file, &filter.parts());
-        assert!(
-            plan.contains(index) && !plan.contains("SCAN part"),
-            "{index}:\n{plan}"
-        );
-    }
 }
 
 #[test]

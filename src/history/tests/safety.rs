@@ -73,6 +73,18 @@ fn a_file_locked_by_another_process_is_an_error_that_says_so() {
 }
 
 #[test]
+fn a_file_that_may_not_be_written_is_an_error_that_says_so_and_can_still_be_read() {
+    let file = File::new();
+    let mut store = filled(&file, 10);
+    store.read_only();
+    let rows = [Row::Part(part("A", 11, "pass", 7.0))];
+    let refusal = store.record(&rows).unwrap_err();
+    assert_eq!(refusal.to_string(), "recording: the history is read-only");
+    assert!(store.begin_lot(&lot("B")).is_err());
+    assert_eq!(file.archive().how_many(&Filter::default()).unwrap(), 10);
+}
+
+#[test]
 fn a_full_disk_is_an_error_that_says_so_and_loses_nothing_written() {
     let file = File::new();
     let mut store = filled(&file, 10);

@@ -1,0 +1,205 @@
+//! Plans of the queries: each that may run on many rows finds them by an index.
+
+use super::super::{archive, curve, lots, retention, values};
+use super::reading::operate;
+use super::*;
+
+/// The plan of a statement, one line per step.
+fn plan(file: &File, select: &filter::Select) -> String {
+    explained(&file.by_hand(), &select.sql)
+}
+
+/// Parameters do not enter into a plan.
+fn explained(by_hand: &rusqlite::Connection, sql: &str) -> String {
+    let mut statement = by_hand
+        .prepare(&format!("EXPLAIN QUERY PLAN {sql}"))
+        .unwrap();
+    let read = |row: &rusqlite::Row<'_>| row.get::<_, String>(3);
+    let rows = statement.raw_query().mapped(read);
+    rows.collect::<rusqlite::Result<Vec<_>>>()
+        .unwrap()
+        .join("\n")
+}
+
+#[test]
+fn a_value_range_enters_the_index_at_its_first_value() {
+    let file = File::new();
+    let _store = filled(&file, 10);
+    let lot = Filter {
+        lot: Some("A".into()),
+        verdict: Some("fail".into()),
+        ..operate(7.0, 8.0)
+    };
+    for filter in [operate(7.0, 8.0), lot] {
+        let plan = plan(&file, &filter.parts());
+        assert!(plan.contains("measurement_value (parameter_id=? AND population=? AND run_id=? AND part_verdict=? AND value>? AND value<?)"), "{plan}");
+        assert!(
+            plan.contains("SEARCH part USING INTEGER PRIMARY KEY"),
+            "{plan}"
+        );
+    }
+}
+
+#[test]
+fn statistics_read_the_index_alone() {
+    let file = File::new();
+    let _store = filled(&file, 10);
+    let plan = plan(&file, &Filter::default().series("operate_voltage_v"));
+    assert!(
+        plan.contains("SEARCH m USING COVERING INDEX measurement_value"),
+        "{plan}"
+    );
+}
+
+#[test]
+fn parts_are_found_by_an_index_of_their_own() {
+    let file = File::new();
+    let _store = filled(&file, 10);
+    let base = Filter::default;
+    let some = |text: &str| Some(text.to_owned());
+    let cases = [
+        (
+            Filter {
+                lot: some("A"),
+                verdict: some("fail"),
+                ..base()
+            },
+            "part_run_verdict",
+        ),
+        (
+            Filter {
+                lot: some("A"),
+                bin: some("coil"),
+                ..base()
+            },
+            "part_run_bin",
+        ),
+        (
+            Filter {
+                since: Some(Moment(5)),
+                until: Some(Moment(9)),
+                ..base()
+            },
+            "part_time",
+        ),
+    ];
+    for (filter, index) in cases {
+        let plan = plan(&file, &filter.parts());
+        assert!(
+            plan.contains(index) && !plan.contains("SCAN part"),
+            "{index}:\n{plan}"
+        );
+    }
+}
+
+/// Tables that grow with the parts.
+const GROWING: [&str; 5] = ["part", "measurement", "sample", "curve", "m"];
+
+fn scans_a_growing_table(plan: &str) -> bool {
+    let scans = |table: &str| {
+        plan.lines().any(|line| {
+            line == format!("SCAN {table}") || line.starts_with(&format!("SCAN {table} "))
+        })
+    };
+    GROWING.into_iter().any(scans)
+}
+
+#[test]
+fn no_question_about_a_lot_a_span_or_a_value_reads_through_a_table_that_grows() {
+    let file = File::new();
+    let _store = filled(&file, 10);
+    let of_lot = Filter {
+        lot: Some("A".into()),
+        ..Filter::default()
+    };
+    let of_run = Filter {
+        run: Some(1),
+        recipe: Some("jzc-22f-012".into()),
+        ..of_lot.clone()
+    };
+    let of_span = Filter {
+        since: Some(Moment(5)),
+        until: Some(Moment(9)),
+        ..Filter::default()
+    };
+    let bin = Some("coil".to_owned());
+    let of_bin = Filter {
+        bin: bin.clone(),
+        ..of_lot.clone()
+    };
+    let page = Filter {
+        limit: Some(20),
+        offset: Some(40),
+        ..of_lot.clone()
+    };
+    let late_in_bin = Filter {
+        bin,
+        ..of_span.clone()
+    };
+    for filter in [of_lot, of_run, of_span, of_bin, page, late_in_bin] {
+        for select in [
+            filter.parts(),
+            filter.count(),
+            filter.cycles(),
+            filter.passed(),
+            filter.series("operate_voltage_v"),
+        ] {
+            let plan = plan(&file, &select);
+            assert!(!scans_a_growing_table(&plan), "{}\n{plan}", select.sql);
+        }
+    }
+    let valued = plan(&file, &operate(7.0, 8.0).count());
+    assert!(!scans_a_growing_table(&valued), "{valued}");
+}
+
+#[test]
+fn what_is_read_or_deleted_part_by_part_is_found_by_its_key() {
+    let file = File::new();
+    let _store = filled(&file, 10);
+    let by_hand = file.by_hand();
+    let fixed = [
+        archive::VALUES,
+        archive::MEASUREMENTS,
+        archive::SAMPLES,
+        curve::CURVES,
+        lots::YIELD,
+        lots::COUNTS,
+        values::LIMITS,
+    ];
+    for sql in fixed.into_iter().chain(retention::EMPTYING) {
+        let plan = explained(&by_hand, sql);
+        let is_alarm = sql.contains("FROM alarm");
+        assert!(plan.contains("SEARCH"), "{sql}\n{plan}");
+        assert!(is_alarm || !scans_a_growing_table(&plan), "{sql}\n{plan}");
+    }
+}
+
+#[test]
+fn alarms_of_a_lot_or_a_span_are_found_by_an_index() {
+    let file = File::new();
+    let _store = filled(&file, 10);
+    let of_lot = Filter {
+        lot: Some("A".into()),
+        ..Filter::default()
+    };
+    let of_span = Filter {
+        since: Some(Moment(5)),
+        ..Filter::default()
+    };
+    for (filter, index) in [(of_lot, "alarm_run"), (of_span, "alarm_once")] {
+        let plan = plan(&file, &filter.alarms());
+        let found = plan.contains(&format!("SEARCH alarm USING INDEX {index}"));
+        assert!(found, "{index}:\n{plan}");
+    }
+}
+
+#[test]
+fn a_scan_of_a_growing_table_is_seen() {
+    let file = File::new();
+    let _store = filled(&file, 10);
+    let plan = explained(
+        &file.by_hand(),
+        "SELECT count(*) FROM part WHERE reasons = ?1",
+    );
+    assert!(scans_a_growing_table(&plan), "{plan}");
+}
