@@ -5,6 +5,31 @@ use super::{Archive, Filter, Moment};
 use rusqlite::params_from_iter;
 use serde::Serialize;
 
+/// Where an alarm stands (ISA-18.2, states B to E; a shelved one keeps its state).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AlarmState {
+    /// It stands and nobody has seen it.
+    Unacknowledged,
+    /// It stands and was seen.
+    Acknowledged,
+    /// It has gone before anybody saw it.
+    ReturnedUnacknowledged,
+    /// It has gone and was seen: back to normal.
+    Normal,
+}
+
+/// Put out of sight for a while.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Shelf {
+    /// Until when.
+    pub until: Moment,
+    /// Who did it.
+    pub by: String,
+    /// Why.
+    pub reason: String,
+}
+
 /// One occurrence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Alarm {
@@ -22,6 +47,25 @@ pub struct Alarm {
     pub raised: Moment,
     /// When it went; none while it stands, and for one that ended its run.
     pub cleared: Option<Moment>,
+    /// When somebody had seen it.
+    pub acknowledged: Option<Moment>,
+    /// Who.
+    pub acknowledged_by: Option<String>,
+    /// How it was shelved last.
+    pub shelf: Option<Shelf>,
+    /// What follows from it.
+    pub state: AlarmState,
+}
+
+impl AlarmState {
+    fn of(cleared: Option<Moment>, acknowledged: Option<Moment>) -> Self {
+        match (cleared, acknowledged) {
+            (None, None) => Self::Unacknowledged,
+            (None, Some(_)) => Self::Acknowledged,
+            (Some(_), None) => Self::ReturnedUnacknowledged,
+            (Some(_), Some(_)) => Self::Normal,
+        }
+    }
 }
 
 impl Archive {
@@ -32,6 +76,11 @@ impl Archive {
         let select = filter.alarms();
         let mut statement = self.connection.prepare(&select.sql).doing(DOING)?;
         let rows = statement.query_map(params_from_iter(&select.values), |row| {
+            let moment = |column: usize| {
+                let at: rusqlite::Result<Option<i64>> = row.get(column);
+                at.map(|it| it.map(Moment))
+            };
+            let (cleared, acknowledged) = (moment(6)?, moment(7)?);
             Ok(Alarm {
                 lot: row.get(0)?,
                 run: row.get(1)?,
@@ -39,7 +88,18 @@ impl Archive {
                 line: row.get(3)?,
                 text: row.get(4)?,
                 raised: Moment(row.get(5)?),
-                cleared: row.get::<_, Option<i64>>(6)?.map(Moment),
+                cleared,
+                acknowledged,
+                acknowledged_by: row.get(8)?,
+                shelf: match moment(9)? {
+                    Some(until) => Some(Shelf {
+                        until,
+                        by: row.get::<_, Option<String>>(10)?.unwrap_or_default(),
+                        reason: row.get::<_, Option<String>>(11)?.unwrap_or_default(),
+                    }),
+                    None => None,
+                },
+                state: AlarmState::of(cleared, acknowledged),
             })
         });
         rows.and_then(Iterator::collect).doing(DOING)

@@ -43,7 +43,7 @@ mod views;
 mod wear;
 
 pub use alarm_states::{AlarmChange, AlarmChangeRecord, AlarmLeft};
-pub use alarms::Alarm;
+pub use alarms::{Alarm, AlarmState, Shelf};
 pub use archive::Archive;
 pub use curve::{Curve, CurveRecord};
 pub use error::{HistoryError, Result};

@@ -85,6 +85,31 @@ mod tests {
         assert!((all - 28_800.0).abs() < 1e-9);
     }
 
+    /// The worked shift of Vorne's text on OEE: 480 min less 60 min of breaks, 47 min down, ideal cycle 1.0 s,
+    /// 19,271 pieces, 423 rejected.
+    #[test]
+    fn a_published_shift_has_its_published_factors() {
+        let shift = Seen {
+            planned_s: 420.0 * 60.0,
+            stopped_s: 47.0 * 60.0,
+            ideal_cycle_s: 1.0,
+            parts: 19_271,
+            good: 19_271 - 423,
+        };
+        let it = effectiveness(shift).unwrap();
+        for (factor, percent) in [
+            (it.availability, 88.81),
+            (it.performance, 86.11),
+            (it.quality, 97.80),
+            (it.oee, 74.79),
+        ] {
+            assert!(
+                (100.0 * factor - percent).abs() < 0.0051,
+                "{factor}: {percent}"
+            );
+        }
+    }
+
     #[test]
     fn nothing_tested_has_no_effectiveness() {
         assert_eq!(effectiveness(Seen::default()), None);

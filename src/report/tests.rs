@@ -7,7 +7,7 @@ use super::lot::{LotReport, ParameterValues};
 use super::spc::{Named, spc};
 use super::*;
 use crate::config::load_recipe;
-use crate::history::{Alarm, LotSummary, Measurement, Part, Passed, Yield};
+use crate::history::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Shelf, Yield};
 use crate::quality::Limits;
 use crate::quality::chart::individuals;
 use crate::quality::rules::Rules;
@@ -78,6 +78,14 @@ fn lot_report(language: Language) -> String {
         text: EVIL.into(),
         raised: Moment(5_000_000),
         cleared: Some(Moment(65_000_000)),
+        acknowledged: Some(Moment(6_000_000)),
+        acknowledged_by: Some(EVIL.into()),
+        shelf: Some(Shelf {
+            until: Moment(7_000_000),
+            by: EVIL.into(),
+            reason: EVIL.into(),
+        }),
+        state: AlarmState::Normal,
     }];
     let values = ParameterValues {
         key: "operate_voltage_v".into(),
@@ -210,4 +218,37 @@ fn a_control_chart_draws_the_last_points_and_numbers_what_stands_out() {
     let svg = super::charts::control(&chart, 10, &[]);
     assert_eq!(svg.matches("<circle").count(), 10);
     assert!(svg.contains("r=\"3.6\"") && svg.contains(">1</text>"));
+}
+
+#[test]
+fn every_state_of_an_alarm_has_its_word_in_both_languages() {
+    let states = [
+        (AlarmState::Unacknowledged, "unacknowledged", "未确认"),
+        (AlarmState::Acknowledged, "acknowledged", "已确认"),
+        (
+            AlarmState::ReturnedUnacknowledged,
+            "returned, unacknowledged",
+            "已恢复，未确认",
+        ),
+        (AlarmState::Normal, "normal", "已恢复"),
+    ];
+    for (state, en, zh) in states {
+        let alarm = Alarm {
+            lot: None,
+            run: None,
+            code: "late".into(),
+            line: None,
+            text: "late".into(),
+            raised: Moment(0),
+            cleared: None,
+            acknowledged: None,
+            acknowledged_by: None,
+            shelf: None,
+            state,
+        };
+        for (language, word) in [(Language::En, en), (Language::Zh, zh)] {
+            let page = alarms::list(&paper(language), "", std::slice::from_ref(&alarm));
+            assert!(page.contains(&format!(">{word}<")), "{word}: {page}");
+        }
+    }
 }

@@ -131,6 +131,54 @@ fn the_yield_of_a_span_counts_verdicts() {
 }
 
 #[test]
+fn an_alarm_is_listed_with_what_became_of_it() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    let alarm = AlarmRecord {
+        lot: Some("A".into()),
+        code: "late".into(),
+        raised_at_us: 3,
+        ..AlarmRecord::default()
+    };
+    store.alarm(&alarm).unwrap();
+    let change = |change| {
+        Row::AlarmChange(AlarmChangeRecord {
+            simulated: true,
+            code: Some("late".into()),
+            at_us: 5,
+            change,
+        })
+    };
+    let listed = || file.archive().alarms(&Filter::default()).unwrap().remove(0);
+    assert_eq!(listed().state, AlarmState::Unacknowledged);
+    let shelved = AlarmChange::Shelved {
+        until_us: 9,
+        by: "wang".into(),
+        reason: "备件".into(),
+    };
+    store.record(&[change(shelved)]).unwrap();
+    let shelf = listed().shelf.unwrap();
+    assert_eq!(
+        (shelf.until, shelf.by.as_str(), shelf.reason.as_str()),
+        (Moment(9), "wang", "备件")
+    );
+    let seen = AlarmChange::Acknowledged { by: "li".into() };
+    store.record(&[change(seen)]).unwrap();
+    let alarm = listed();
+    assert_eq!(alarm.state, AlarmState::Acknowledged);
+    assert_eq!(
+        (alarm.acknowledged, alarm.acknowledged_by.as_deref()),
+        (Some(Moment(5)), Some("li"))
+    );
+    store.record(&[change(AlarmChange::Returned)]).unwrap();
+    assert_eq!(
+        (listed().state, listed().cleared),
+        (AlarmState::Normal, Some(Moment(5)))
+    );
+}
+
+#[test]
 fn limits_are_given_only_when_all_runs_agree() {
     let file = File::new();
     let mut store = filled(&file, 3);
