@@ -9,6 +9,7 @@
 
 mod commission;
 mod desk;
+mod foresight;
 pub mod mimic;
 mod patience;
 mod publish;
@@ -36,7 +37,7 @@ use crate::station::packml;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Checked, Ending, Inputs, Interrupted, Wants};
 use crate::units::{RigTime, Span};
-use crate::view::{Answered, View};
+use crate::view::{self, Answered, View};
 use patience::Patience;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -123,6 +124,8 @@ pub struct Cycle {
     told: packml::State,
     /// Longest time that the emergency-stop input was not known anew.
     worst_age: Span,
+    /// The motion that the guard refused last, until another one is driven.
+    refused: Option<view::MotionView>,
 }
 
 /// Wall time of the phases of all turns, seconds; what is left of a run is bus, history and, where there
@@ -178,6 +181,7 @@ impl Cycle {
             publish_at: RigTime(0),
             told: packml::State::Stopped,
             worst_age: Span(0),
+            refused: None,
         }
     }
 
@@ -343,8 +347,10 @@ impl Cycle {
                         return;
                     }
                     self.station.driven(movement, now, &self.image);
+                    self.refused = None;
                 }
                 Err(refusal) => {
+                    self.refused = Some(self.shown_refused(movement, &situation, &refusal));
                     self.station
                         .refused(movement, &refusal.to_string(), now, wants);
                     return;

@@ -2,11 +2,15 @@
 
 mod machine;
 mod mimic;
+mod motion;
 mod order;
+mod traffic;
 
 pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
 pub use mimic::{Mimic, MimicBody};
+pub use motion::{MotionView, RefusedView, StrokeView};
 pub use order::{Answered, By, NotTaken, ORDERS, Order};
+pub use traffic::{LineTraffic, Message};
 
 use serde::Serialize;
 use std::collections::BTreeMap;

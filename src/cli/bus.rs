@@ -1,5 +1,6 @@
 //! `relayrig bus`: find modules, send one command, watch a line. No rig file is needed.
 
+pub mod meaning;
 mod monitor;
 mod scan;
 mod send;

@@ -110,6 +110,7 @@ impl Page {
             gate,
             mimic: Arc::new(mimic),
             view: controls.view.subscribe(),
+            traffic: hmi::Traffic::new(controls.traffic()),
             db: db.to_path_buf(),
             orders,
         };

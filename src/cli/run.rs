@@ -22,7 +22,7 @@ use crate::config::{Plant, load_recipe};
 use crate::cycle::{Event, Outside};
 use crate::gauge::{Calibration, Recipe};
 use crate::station::wants::Ending;
-use crate::view::View;
+use crate::view::{LineTraffic, View};
 use anyhow::{Context, bail};
 use orders::Desk;
 pub use orders::Orders;
@@ -30,7 +30,7 @@ use recorder::{Recorder, Setup};
 pub use stage::Stage;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use tokio::sync::{mpsc, watch};
 use traces::Traces;
 
@@ -87,6 +87,8 @@ pub struct Controls {
     pub stays: bool,
     /// What screens see.
     pub view: watch::Sender<View>,
+    /// Traffic of the run under way; none before its lines are open.
+    pub traces: Arc<Mutex<Option<Traces>>>,
     /// No rows to stdout.
     pub quiet: bool,
     /// The run only calibrates, whatever is stored, and leaves what it found here instead of in the history.
@@ -103,9 +105,25 @@ impl Controls {
             abort: Arc::new(AtomicBool::new(false)),
             stays: false,
             view: watch::channel(View::default()).0,
+            traces: Arc::default(),
             quiet,
             calibrates: None,
             stage: None,
+        }
+    }
+
+    fn show_traffic(&self, traces: &Traces) {
+        let mut held = self.traces.lock().unwrap_or_else(PoisonError::into_inner);
+        *held = Some(traces.clone());
+    }
+
+    /// Gives the last so many messages of every line.
+    pub fn traffic(&self) -> impl Fn(usize) -> Vec<LineTraffic> + use<> {
+        let traces = Arc::clone(&self.traces);
+        move |last| {
+            let held = traces.lock().unwrap_or_else(PoisonError::into_inner);
+            let traces = held.as_ref();
+            traces.map_or_else(Vec::new, |traces| traces.messages(last))
         }
     }
 }
@@ -200,6 +218,7 @@ pub(super) async fn run_lot(
     };
     let desk = Desk::open(orders, &rig, pace, &controls.stop)?;
     let traces = Traces::new(db, plant, &lines.logs);
+    controls.show_traffic(&traces);
     let (mut recorder, known) = Recorder::open(db, &setup, controls, rig.eeprom_count(), traces)?;
     let (events, received) = mpsc::unbounded_channel::<Event>();
     let recorded = Arc::new(AtomicU64::new(0));

@@ -60,12 +60,16 @@ impl Cycle {
         let cleared = self
             .guard
             .clear(&self.station.motion(movement), &situation)
-            .map_err(|refusal| refused(refusal.to_string()))?;
+            .map_err(|refusal| {
+                self.refused = Some(self.shown_refused(movement, &situation, &refusal));
+                refused(refusal.to_string())
+            })?;
         self.outputs
             .apply(cleared)
             .map_err(|cannot| refused(cannot.to_string()))?;
         self.station.driven(movement, now, &self.image);
         self.station.jogged();
+        self.refused = None;
         Ok(())
     }
 }

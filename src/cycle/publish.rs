@@ -74,7 +74,8 @@ impl Cycle {
             return;
         }
         self.publish_at = now + PACE;
-        let machine = self.machine(now);
+        let mut machine = self.machine(now);
+        machine.jogs = self.foreseen(now);
         let (station, epoch_us) = (&self.station, self.outside.epoch_us);
         let alarms = lines(station, epoch_us);
         self.outside.view.send_modify(|view| {
@@ -113,6 +114,8 @@ impl Cycle {
                 accepted_ms: wiring.safety.estop_reaction_ms,
                 worst_age_ms: ms(self.worst_age),
             },
+            jogs: Vec::new(),
+            refused: self.refused.clone(),
             wear: station
                 .wear()
                 .into_iter()
@@ -250,8 +253,28 @@ fn line(one: &Standing, epoch_us: i64) -> AlarmLine {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::read;
+    use crate::guard::Actuator;
+    use crate::rig::point::{DigitalIn, DigitalOut};
+    use crate::station::orders::JOGS;
+    use crate::station::packml::Mode;
     use crate::view::{ORDERS, Order};
+
+    #[test]
+    fn every_signal_motion_actuator_and_mode_has_a_word_on_the_screen() {
+        let table = include_str!("../hmi/page/words.json");
+        let table: std::collections::BTreeMap<String, serde_json::Value> =
+            serde_json::from_str(table).unwrap();
+        let signals = DigitalIn::ALL.iter().map(|it| it.name());
+        let signals = signals.chain(DigitalOut::ALL.iter().map(|it| it.name()));
+        let keys = (signals.map(|it| format!("signal.{it}")))
+            .chain(JOGS.iter().map(|(name, _)| format!("jog.{name}")))
+            .chain(Actuator::names().map(|it| format!("actuator.{it}")))
+            .chain(Mode::ALL.iter().map(|it| format!("mode.{}", it.name())));
+        let missing: Vec<String> = keys.filter(|it| !table.contains_key(it)).collect();
+        assert!(missing.is_empty(), "{missing:?}");
+    }
 
     #[test]
     fn every_word_of_an_order_is_understood() {

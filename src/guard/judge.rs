@@ -66,7 +66,8 @@ fn ends(position: Position) -> [f64; 2] {
     }
 }
 
-fn with_others_under_way(
+/// The situation of one stroke of a group: every other member occupies its whole way.
+pub(super) fn with_others_under_way(
     scene: &Scene,
     motion: &Motion,
     situation: &Situation,

@@ -116,6 +116,24 @@ impl Guard {
         answer.map(|()| Cleared::new(*motion))
     }
 
+    /// Least distance in mm, up to `range_mm`, that `motion` leaves to whatever it must keep away from; nothing beyond,
+    /// and nothing for a motion that would be refused.
+    pub fn clearance_mm(
+        &mut self,
+        motion: &Motion,
+        situation: &Situation,
+        range_mm: f64,
+    ) -> Option<f64> {
+        self.clear(motion, situation).ok()?;
+        let (scene, space) = (&self.scene, &mut self.space);
+        let strokes = motion.strokes();
+        let least = strokes.filter_map(|stroke| {
+            let meanwhile = judge::with_others_under_way(scene, motion, situation, stroke.actuator);
+            sweep::least_mm(scene, space, &meanwhile, &stroke, range_mm).ok()?
+        });
+        least.min_by(f64::total_cmp)
+    }
+
     /// Low and high end of an actuator's stroke, mm.
     pub fn stroke_mm(&self, actuator: Actuator) -> (f64, f64) {
         self.scene.axis(actuator).stroke_mm

@@ -87,6 +87,41 @@ pub(super) fn sweep(
     Ok(first.map(|hit| finding(space, stroke, span.0 == span.1, way, &hit)))
 }
 
+/// Least distance of `stroke` to the bodies that it must keep apart from, mm; nothing beyond `range_mm`. Those that may
+/// touch do not count.
+pub(super) fn least_mm(
+    scene: &Scene,
+    space: &mut Space,
+    situation: &Situation,
+    stroke: &Stroke,
+    range_mm: f64,
+) -> Result<Option<f64>, Flaw> {
+    let company = company(scene, situation, stroke);
+    space.follow(scene, situation, &company.cast)?;
+    let way = way(scene.span_mm(stroke.actuator, situation), stroke.to_mm);
+    let travels = travels(scene, situation, stroke, &company, way);
+    let moving: Vec<usize> = travels.iter().map(|travel| travel.number).collect();
+    let all = travels.iter().filter_map(|travel| {
+        let kept = kept(scene, space, stroke, travel, &moving, &company);
+        let apart = |keep: &Keep| matches!(keep, Keep::Apart(_));
+        let ignore: Vec<ElementKey> = kept
+            .iter()
+            .filter(|(_, keep)| !apart(keep))
+            .map(|(key, _)| *key)
+            .collect();
+        let (shape, pose) = room(&travel.shape, &travel.pose, &travel.unsure);
+        let way = Move {
+            from: pose.moved_to(sum(pose.position, travel.from)),
+            to: pose.moved_to(sum(pose.position, travel.to)),
+            margin_mm: 0.0,
+            ignore: &ignore,
+        };
+        let least = space.model().clearance(&*shape, &way, range_mm)?;
+        Some(least.distance_mm)
+    });
+    Ok(all.min_by(f64::total_cmp))
+}
+
 /// From the far end of what is known to the target; both ends of the span when the target lies in it.
 fn way((low, high): (f64, f64), to_mm: f64) -> (f64, f64) {
     if to_mm >= high {
@@ -149,21 +184,7 @@ fn first_hit(
     moving: &[usize],
     company: &Company,
 ) -> Option<Hit> {
-    let left = company.left.map(|role| scene.number_of(role));
-    let kept: Vec<(ElementKey, Keep)> = space
-        .occupants()
-        .map(|(number, key)| {
-            let own = moving.contains(&number) || left == Some(number);
-            (
-                key,
-                if own {
-                    Keep::Nothing
-                } else {
-                    scene.rules.keep(travel.number, number, stroke.actuator)
-                },
-            )
-        })
-        .collect();
+    let kept = kept(scene, space, stroke, travel, moving, company);
     let mut groups: Vec<Keep> = Vec::new();
     for (_, keep) in &kept {
         if *keep != Keep::Nothing && !groups.contains(keep) {
@@ -174,6 +195,26 @@ fn first_hit(
         .iter()
         .filter_map(|keep| hit_in_group(space, travel, *keep, &kept));
     hits.min_by(|a, b| a.contact.t_stop.total_cmp(&b.contact.t_stop))
+}
+
+/// What `travel` must keep from every body in the space; nothing from those that move with it.
+fn kept(
+    scene: &Scene,
+    space: &Space,
+    stroke: &Stroke,
+    travel: &Travel<'_>,
+    moving: &[usize],
+    company: &Company,
+) -> Vec<(ElementKey, Keep)> {
+    let left = company.left.map(|role| scene.number_of(role));
+    let keep = |number: usize| {
+        if moving.contains(&number) || left == Some(number) {
+            return Keep::Nothing;
+        }
+        scene.rules.keep(travel.number, number, stroke.actuator)
+    };
+    let occupants = space.occupants();
+    occupants.map(|(number, key)| (key, keep(number))).collect()
 }
 
 fn hit_in_group(

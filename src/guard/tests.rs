@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod boxes;
+mod clearance;
 mod cycle;
 mod ledger;
 mod refused;

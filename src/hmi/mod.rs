@@ -19,6 +19,7 @@
 //! | `POST /api/orders` | `{"order":"stop"}` and the others of [`crate::view::ORDERS`] |
 //! | `GET /api/history/...` | JSON, pages and files as the command `history` gives them; routes in `history.rs` |
 //! | `GET /mimic.svg` | the machine to scale, from above and from the front |
+//! | `GET /api/trace` | the last traffic of every line, with its meaning |
 //! | `GET /metrics` | Prometheus text |
 //!
 //! Whoever reaches the address may look; who wants something done logs in (`gate.rs`).
@@ -35,10 +36,12 @@ mod orders;
 mod origin;
 mod page;
 mod router;
+mod trace;
 
 use crate::view::Mimic;
 pub use gate::Gate;
 pub use orders::{Asked, WAITING};
+pub use trace::Traffic;
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
@@ -61,6 +64,8 @@ pub struct Shared {
     pub mimic: Arc<Mimic>,
     /// Who may order what.
     pub gate: Gate,
+    /// The last traffic of the lines.
+    pub traffic: Traffic,
     /// To the cycle, which answers each order in its next turn.
     pub orders: mpsc::Sender<Asked>,
 }

@@ -1,6 +1,6 @@
 //! The page: one answer that holds everything, so that it shows even when nothing else is reachable.
 //!
-//! Text, look, words and script are four files that are put together once. The policy sent along lets
+//! Texts, looks, words and scripts are put together once from the files in `page/`. The policy sent along lets
 //! the browser run just that script, by its hash, and talk to this rig only.
 
 mod policy;
@@ -10,12 +10,37 @@ use axum::response::IntoResponse;
 use std::sync::LazyLock;
 
 const FRAME: &str = include_str!("page/page.html");
-const LOOK: &str = include_str!("page/look.css");
+const PAGES: &str = concat!(
+    include_str!("page/pages/alarms.html"),
+    include_str!("page/pages/history.html"),
+    include_str!("page/pages/quality.html"),
+    include_str!("page/pages/service.html"),
+);
+const LOOK: &str = concat!(
+    include_str!("page/look.css"),
+    include_str!("page/pages.css")
+);
 const WORDS: &str = include_str!("page/words.json");
-const SCRIPT: &str = include_str!("page/script.js");
+/// One script in the order of use: what is shared, a file per page, and the start of everything.
+const SCRIPT: &str = concat!(
+    include_str!("page/script/shared.js"),
+    include_str!("page/script/said.js"),
+    include_str!("page/script/link.js"),
+    include_str!("page/script/orders.js"),
+    include_str!("page/script/people.js"),
+    include_str!("page/script/mimic.js"),
+    include_str!("page/script/operator.js"),
+    include_str!("page/script/alarms.js"),
+    include_str!("page/script/history.js"),
+    include_str!("page/script/quality.js"),
+    include_str!("page/script/service.js"),
+    include_str!("page/script/trace.js"),
+    include_str!("page/script/start.js"),
+);
 
 static PAGE: LazyLock<String> = LazyLock::new(|| {
     FRAME
+        .replace("<!--pages-->", PAGES)
         .replace("/*look*/", LOOK)
         .replace("/*words*/", WORDS)
         .replace("/*script*/", SCRIPT)

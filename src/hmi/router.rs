@@ -2,7 +2,7 @@
 
 use super::error::HmiError;
 use super::history::Readers;
-use super::{Shared, events, history, login, metrics, mimic, orders, page};
+use super::{Shared, events, history, login, metrics, mimic, orders, page, trace};
 use axum::Json;
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, Request, State};
@@ -46,6 +46,7 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
         .route("/api/orders", post(orders::order))
         .nest("/api/history", of_history())
         .route("/mimic.svg", get(mimic::picture))
+        .route("/api/trace", get(trace::trace))
         .route("/metrics", get(metrics::metrics))
         .fallback(nothing_there)
         .method_not_allowed_fallback(wrong_method)

@@ -11,8 +11,8 @@ mod routes;
 mod shutdown;
 
 use super::access::{Register, Role};
-use super::{Asked, Gate, Shared, WAITING, router};
-use crate::view::{LastPart, Mimic, MimicBody, NotTaken, View};
+use super::{Asked, Gate, Shared, Traffic, WAITING, router};
+use crate::view::{LastPart, LineTraffic, Message, Mimic, MimicBody, NotTaken, View};
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
@@ -73,6 +73,7 @@ impl Bench {
             gate: gate.clone(),
             mimic: Arc::new(some_mimic()),
             view: looking,
+            traffic: some_traffic(),
             db: db.clone(),
             orders: orders.clone(),
         };
@@ -205,6 +206,20 @@ fn some_mimic() -> Mimic {
             body("part_nest", &[]),
         ],
     }
+}
+
+fn some_traffic() -> Traffic {
+    Traffic::new(|last| {
+        let message = Message {
+            way: ">".into(),
+            text: "@11A2\\r".into(),
+            ..Message::default()
+        };
+        vec![LineTraffic {
+            line: "motion".into(),
+            entries: vec![message; last.min(300)],
+        }]
+    })
 }
 
 fn some_view() -> View {

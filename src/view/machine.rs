@@ -1,5 +1,6 @@
 //! The machine as a screen shows it: outer state with its buttons, actuators, places, signals, stops, wear.
 
+use super::MotionView;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -22,6 +23,10 @@ pub struct Machine {
     pub outputs: BTreeMap<String, bool>,
     /// Reaction to the emergency-stop input.
     pub reaction: Reaction,
+    /// Motions that may be jogged now, each as the guard judges it; empty while none may.
+    pub jogs: Vec<MotionView>,
+    /// The motion that the guard refused last; null once another one was driven.
+    pub refused: Option<MotionView>,
     /// Strokes and touches since the start of the program, by name.
     pub wear: BTreeMap<String, u64>,
 }

@@ -51,6 +51,10 @@ export async function logIn(page, rig, role) {
   await page.waitForFunction((name) => document.getElementById("who").textContent.includes(name), rig.who(role));
 }
 
+/** Resolves once the first element of `selector` says `expected`. */
+export const shown = (page, selector, expected) => page.waitForFunction(
+  ([selector, expected]) => document.querySelector(selector)?.textContent.includes(expected), [selector, expected]);
+
 /** No error, nobody else asked; then the page is closed. */
 export async function leave(page) {
   assert.deepEqual(page.sins, []);
@@ -74,8 +78,8 @@ const tooLarge = (page) => page.evaluate(() => {
   const root = document.scrollingElement;
   const found = [];
   if (root.scrollHeight > innerHeight || root.scrollWidth > innerWidth) found.push(`page ${root.scrollWidth}x${root.scrollHeight}`);
-  for (const it of document.querySelectorAll("body > *, main > section, main > section > *, button")) {
-    if (it.closest("[hidden], dialog:not([open])") || it.closest("[data-scrolls]") || it.scrollHeight === 0) continue;
+  for (const it of document.querySelectorAll("body > *, main > section, main > section > *, main > section > * > *, button")) {
+    if (it.closest("[hidden], dialog:not([open])") || it.closest("[data-scrolls], main[hidden]") || it.scrollHeight === 0) continue;
     const over = [it.scrollWidth - it.clientWidth, it.scrollHeight - it.clientHeight];
     if (Math.max(...over) > 1 && getComputedStyle(it).overflow !== "visible") found.push(`${it.tagName} #${it.id} .${it.className} by ${over}`);
     const box = it.getBoundingClientRect();
@@ -97,7 +101,8 @@ export async function looks(page, name) {
     const which = `${name}-${language}-${theme}`;
     await picture(page, which);
     assert.deepEqual(await tooLarge(page), [], which);
-    assert.deepEqual(await faults(page), [], which);
+    // What can be read does not depend on the size.
+    if (page.viewportSize().width === SIZES[0].width) assert.deepEqual(await faults(page), [], which);
     await page.click(button);
   }
 }

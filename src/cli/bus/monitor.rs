@@ -1,6 +1,7 @@
 //! `relayrig bus monitor`: what passes on a line, from a port that is only listened to, or from the trace of an alarm.
 
 use super::PortArgs;
+use super::meaning::Meaning;
 use crate::bus::{Direction, Entry, Pace, Recorded, arrow, escaped, open_serial};
 use crate::dcon;
 use anyhow::{Context, bail};
@@ -117,19 +118,17 @@ fn print(text: &str) -> anyhow::Result<()> {
         .context("writing to stdout")
 }
 
-/// Puts entries into words; remembers the last question.
+/// Puts entries into words.
 struct Teller {
     level: Level,
-    checksum: bool,
-    asked: Vec<u8>,
+    meaning: Meaning,
 }
 
 impl Teller {
     fn new(level: Level, checksum: bool) -> Self {
         Self {
             level,
-            checksum,
-            asked: Vec::new(),
+            meaning: Meaning::new(checksum),
         }
     }
 
@@ -143,38 +142,12 @@ impl Teller {
                 .map(|byte| format!("{byte:02X} "))
                 .collect(),
             Level::Frames => escaped(entry.bytes()),
-            Level::Meaning => format!("{:<24} {}", escaped(entry.bytes()), self.meaning(entry)),
+            Level::Meaning => format!("{:<24} {}", escaped(entry.bytes()), self.meaning.of(entry)),
         };
         format!(
             "{seconds:>14.6} {} {}\n",
             arrow(entry.direction),
             said.trim_end()
         )
-    }
-
-    fn meaning(&mut self, entry: &Entry) -> String {
-        match entry.direction {
-            Direction::Sent => {
-                self.asked = entry.bytes().to_vec();
-                String::new()
-            }
-            Direction::Stray => "not asked for, thrown away".to_owned(),
-            Direction::Heard => {
-                let mut words: Vec<String> =
-                    dcon::understand(&self.asked, entry.bytes(), self.checksum)
-                        .into_iter()
-                        .map(|(command, reply)| match reply {
-                            Ok(reply) => format!("{command} = {reply}"),
-                            Err(reason) => format!("{command}: {reason}"),
-                        })
-                        .collect();
-                words.dedup();
-                match words.len() {
-                    0 => "no known command".to_owned(),
-                    1..=3 => words.join(" | "),
-                    more => format!("{} | and {} other readings", words[0], more - 1),
-                }
-            }
-        }
     }
 }

@@ -1,8 +1,9 @@
 //! What an alarm leaves beside the history: the last traffic of every line, and how the modules were doing.
 
-use crate::bus::{LineLog, Recorded};
+use crate::bus::{LineLog, Recorded, arrow, escaped};
+use crate::cli::bus::meaning::Meaning;
 use crate::config::Plant;
-use crate::view::{LineView, ModuleView};
+use crate::view::{LineTraffic, LineView, Message, ModuleView};
 use std::path::{Path, PathBuf};
 
 /// Traces of one run are at most so many per line: the first alarms are the ones that tell.
@@ -66,9 +67,32 @@ impl Traces {
         written
     }
 
+    /// The last `last` messages of every line, with their meaning.
+    pub fn messages(&self, last: usize) -> Vec<LineTraffic> {
+        let sources = self.sources.iter();
+        sources.map(|source| messages(source, last)).collect()
+    }
+
     /// How the lines and their modules are doing.
     pub fn health(&self) -> Vec<LineView> {
         self.sources.iter().map(health).collect()
+    }
+}
+
+fn messages(source: &Source, last: usize) -> LineTraffic {
+    let trace = source.log.trace();
+    let all: Vec<_> = trace.entries().collect();
+    let mut meaning = Meaning::new(source.checksum);
+    let from = all.len().saturating_sub(last);
+    let entries = all[from..].iter().map(|entry| Message {
+        at_us: entry.at.0,
+        way: arrow(entry.direction).to_string(),
+        text: escaped(entry.bytes()),
+        meaning: meaning.of(entry),
+    });
+    LineTraffic {
+        line: source.name.clone(),
+        entries: entries.collect(),
     }
 }
 

@@ -33,8 +33,13 @@ fn every_word_is_there_in_both_languages() {
 #[test]
 fn every_word_that_the_page_uses_is_in_the_table() {
     let table = table();
-    let mut used = quoted(FRAME, "data-word=\"");
-    used.extend(quoted(FRAME, "data-label=\""));
+    let mut used = BTreeSet::new();
+    for (text, before) in [FRAME, PAGES]
+        .iter()
+        .flat_map(|it| [(it, "data-word=\""), (it, "data-label=\"")])
+    {
+        used.extend(quoted(text, before));
+    }
     used.extend(quoted(SCRIPT, "word(\""));
     used.extend(quoted(SCRIPT, "{word: \""));
     // A key that ends in a dot is the begin of a family, completed by what the rig says.
@@ -54,10 +59,11 @@ fn every_word_that_the_page_uses_is_in_the_table() {
 fn every_word_in_the_table_is_used() {
     let families = [
         "link", "order", "state", "stage", "verdict", "bin", "key", "login", "reason", "text",
+        "actuator", "jog", "mode", "signal", "alarm", "q",
     ];
     for key in table().keys() {
         let family = key.split('.').next().unwrap();
-        let used = [FRAME, SCRIPT]
+        let used = [FRAME, PAGES, SCRIPT]
             .iter()
             .any(|it| it.contains(&format!("\"{key}\"")));
         assert!(
@@ -83,6 +89,8 @@ fn every_listed_quantity_bin_and_verdict_has_a_name() {
         ("KEYS", "key", 9),
         ("BINS", "bin", 6),
         ("VERDICTS", "verdict", 3),
+        ("JOGS", "jog", 15),
+        ("MODES", "mode", 3),
     ] {
         let names = list(name);
         assert_eq!(names.len(), count);
@@ -98,7 +106,7 @@ fn every_listed_quantity_bin_and_verdict_has_a_name() {
 #[test]
 fn the_page_is_whole_small_and_asks_nobody_else() {
     assert!(PAGE.len() < 150_000, "{}", PAGE.len());
-    for mark in ["/*look*/", "/*words*/", "/*script*/"] {
+    for mark in ["<!--pages-->", "/*look*/", "/*words*/", "/*script*/"] {
         assert_eq!(FRAME.matches(mark).count(), 1);
         assert!(!PAGE.contains(mark));
     }

@@ -85,3 +85,20 @@ async fn a_wrong_method_is_named_and_the_right_one_is_told() {
         bench.ask(request).await.refused(405);
     }
 }
+
+#[tokio::test]
+async fn the_last_traffic_is_given_in_the_number_asked_for() {
+    let bench = Bench::new();
+    let count = |answer: Answer| answer.json()[0]["entries"].as_array().unwrap().len();
+    assert_eq!(count(bench.get("/api/trace").await), 100);
+    assert_eq!(count(bench.get("/api/trace?last=7").await), 7);
+    for (query, reason) in [
+        ("last=0", "expected 1 to 1000"),
+        ("last=1001", "expected 1 to 1000"),
+        ("last=all", "invalid"),
+        ("first=1", "unknown field"),
+    ] {
+        let answer = bench.get(&format!("/api/trace?{query}")).await;
+        assert!(answer.refused(400).contains(reason), "{query}");
+    }
+}

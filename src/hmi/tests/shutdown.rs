@@ -14,6 +14,7 @@ async fn neither_an_open_stream_nor_half_a_request_holds_up_the_end() {
         mimic: Arc::new(Mimic::default()),
         gate: bench.gate.clone(),
         view: bench.view.subscribe(),
+        traffic: some_traffic(),
         db: bench.db.clone(),
         orders: bench.orders.clone(),
     };

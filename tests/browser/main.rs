@@ -2,6 +2,11 @@
 //!
 //! Pictures of every page are left in `target/tmp/browser/screenshots`. One test file alone, over any build:
 //! `tests/browser/run PROGRAM config FOLDER tests/browser/operator.test.mjs`.
+//!
+//! A test binary of its own, so that no browser runs beside the tests over pseudo-terminals, which are in real time.
+
+#![cfg(all(feature = "sim", unix))]
+#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 use std::process::Command;

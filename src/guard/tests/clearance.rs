@@ -1,0 +1,48 @@
+//! How much room a motion leaves, told before it is made.
+
+use super::*;
+
+const FAR_MM: f64 = 25.0;
+
+/// The same scene, asking for `margin_mm` between all bodies that no rule names.
+fn strict(margin_mm: f64) -> Result<Guard, GuardError> {
+    let mut settings = scene_settings();
+    settings.guard.default_margin_mm = margin_mm;
+    Guard::build(&settings)
+}
+
+#[test]
+fn the_room_that_is_told_is_the_margin_at_which_the_motion_is_refused() {
+    let extend = Motion::to(Actuator::Pusher, 60.0);
+    let nowhere = Situation::at_rest(jzc_22f());
+    let told = guard().clearance_mm(&extend, &nowhere, FAR_MM).unwrap();
+    assert!((told - 1.0).abs() < 1e-6, "the rail is 1 mm away: {told}");
+    assert!(strict(told - 0.01).is_ok());
+    // Building tries every stroke.
+    let refused = strict(told + 0.01).map(|_| ()).unwrap_err();
+    assert!(refused.to_string().contains("pusher"), "{refused}");
+}
+
+#[test]
+fn what_is_told_is_never_less_than_the_margin_and_a_refused_motion_is_told_nothing() {
+    let mut guard = guard();
+    for actuator in Actuator::ALL {
+        let (low, high) = guard.stroke_mm(actuator);
+        let situation = rest().with(actuator, at(low));
+        let told = guard.clearance_mm(&Motion::to(actuator, high), &situation, FAR_MM);
+        assert!(told.is_none_or(|it| it > 0.5), "{actuator}: {told:?}");
+    }
+    let raised = rest().with(Actuator::ProbeLift, at(12.0));
+    let pushed = raised.parts(|parts| parts.on_pusher = true);
+    let extend = Motion::to(Actuator::Pusher, 60.0);
+    assert!(guard.clear(&extend, &pushed).is_err());
+    assert_eq!(guard.clearance_mm(&extend, &pushed, FAR_MM), None);
+}
+
+#[test]
+fn beyond_the_range_nothing_is_told() {
+    let mut guard = guard();
+    let up = Motion::to(Actuator::SortZ, 0.0);
+    assert_eq!(guard.clearance_mm(&up, &rest(), 0.01), None);
+    assert!(guard.clearance_mm(&up, &rest(), FAR_MM).is_some());
+}

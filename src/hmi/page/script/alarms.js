@@ -1,0 +1,134 @@
+// Alarms: the bar on every page, the page with those that stand and those that were, and the sound.
+
+function showAlarmBar(alarms) {
+  const shown = alarms.filter((it) => !it.shelved);
+  const lines = shown.slice(0, 2).map((alarm, place) => {
+    const line = make("p");
+    line.append(make("b", "▲ " + alarm.code));
+    line.append(make("span", language === "zh" ? alarm.text_zh : alarm.text_en));
+    if (place === 0 && shown.length > 1) line.append(make("b", "(" + word("first_out") + ")"));
+    return line;
+  });
+  if (shown.length > 2) lines.push(make("p", "+ " + (shown.length - 2) + " " + word("more_alarms")));
+  at("alarms").className = shown.length ? "bad" : "";
+  at("alarms").replaceChildren(...(lines.length ? lines : [make("p", word("no_alarm"))]));
+}
+
+const said = (alarm, what) => alarm[what + (language === "zh" ? "_zh" : "_en")];
+const matches = (alarm) => {
+  const text = at("alarm_search").value.trim().toLowerCase();
+  return [alarm.code, alarm.text, alarm.text_en, alarm.text_zh].some((it) => it && it.toLowerCase().includes(text));
+};
+
+// One that stands, with why, what follows and what to do; the buttons stay while the text changes.
+function standing(alarm) {
+  const item = make("li", undefined, alarm.state);
+  item.dataset.code = alarm.code;
+  const head = make("div", undefined, "head"), help = make("dl");
+  head.append(make("b", (alarm.first_out ? "▲ " : "△ ") + alarm.code), make("span", said(alarm, "text")));
+  said(alarm, "help").forEach((text, place) => {
+    const pair = make("div");
+    pair.append(make("dt", word(["alarm.cause", "alarm.consequence", "alarm.action"][place])), make("dd", text || NONE));
+    help.append(pair);
+  });
+  const state = [known("alarm.state." + alarm.state, alarm.state), known("alarm.stops." + alarm.stops, alarm.stops),
+    alarm.count + " ×", clock(alarm.raised_at_us)];
+  if (alarm.shelved) state.push(word("alarm.shelved"));
+  if (alarm.first_out) state.push(word("first_out"));
+  const buttons = make("div", undefined, "row");
+  buttons.append(button(word("order.acknowledge"), () => tell({order: "acknowledge", alarm: alarm.code}), "acknowledge"),
+    button(word("order.shelve"), () => askShelve(alarm.code), "shelve"));
+  item.append(head, make("p", state.join(" · "), "about"), help, buttons);
+  return item;
+}
+
+async function tell(order) {
+  const why = me === null ? word("stop.login") : await give(order);
+  at("alarm_answer").textContent = why || word("order." + order.order) + ": " + word("order.taken");
+}
+
+function askShelve(code) {
+  at("shelve").dataset.code = code;
+  at("shelve_code").textContent = code;
+  at("shelve").showModal();
+}
+
+at("shelve_cancel").addEventListener("click", () => at("shelve").close());
+at("shelve").addEventListener("submit", (event) => {
+  event.preventDefault();
+  at("shelve").close();
+  const minutes = Number(at("shelve_minutes").value);
+  tell({order: "shelve", alarm: at("shelve").dataset.code, minutes, reason: at("shelve_reason").value});
+});
+at("acknowledge_all").addEventListener("click", () => tell({order: "acknowledge"}));
+at("alarm_search").addEventListener("input", () => { drawnAlarms = ""; showView(); showPast(); });
+
+// --- those that stand ---
+
+let drawnAlarms = "";
+
+function showStanding() {
+  const shown = view.alarms.filter(matches);
+  const now = JSON.stringify([shown, language]);
+  if (now === drawnAlarms) return;
+  drawnAlarms = now;
+  at("standing").replaceChildren(...(shown.length ? shown.map(standing) : [make("li", word("no_alarm"))]));
+}
+
+// --- those that were ---
+
+let past = [];
+
+async function readPast() {
+  const members = {since: moment(at("alarm_since").value), limit: 500};
+  at("alarm_print").href = "/api/history/report/alarms" + query({since: members.since, lang: language});
+  try {
+    past = (await (await ask("/api/history/alarms" + query(members))).json()).reverse();
+    at("alarm_trouble").textContent = "";
+  } catch (error) {
+    at("alarm_trouble").textContent = error.message;
+  }
+  showPast();
+}
+
+function showPast() {
+  at("past").replaceChildren(...past.filter(matches).map((it) =>
+    row(clock(it.raised), clock(it.cleared), it.lot || NONE, it.code, it.text)));
+}
+
+at("alarm_since").addEventListener("change", readPast);
+
+PAGES.alarms = {show: showStanding, enter() { drawnAlarms = ""; readPast(); }};
+
+// --- sound ---
+
+let muted = kept.get("muted") === "yes";
+let speaker = null;
+let soundedAt = 0;
+const SOUND_EVERY_MS = 2000;
+
+// Two tones as long as somebody has to look: an alarm that is neither acknowledged nor shelved.
+function sound(alarms) {
+  const wanted = alarms.some((it) => it.state === "unacknowledged" && !it.shelved);
+  at("mute").textContent = word(muted ? "sound.off" : "sound.on");
+  at("mute").setAttribute("aria-pressed", muted);
+  at("mute").dataset.sounding = wanted && !muted;
+  const now = performance.now();
+  if (!wanted || muted || now - soundedAt < SOUND_EVERY_MS) return;
+  soundedAt = now;
+  speaker = speaker || new AudioContext();
+  speaker.resume().then(() => [[880, 0], [660, .25]].forEach(([hertz, after]) => {
+    const tone = speaker.createOscillator(), volume = speaker.createGain();
+    tone.frequency.value = hertz;
+    volume.gain.value = .15;
+    tone.connect(volume).connect(speaker.destination);
+    tone.start(speaker.currentTime + after);
+    tone.stop(speaker.currentTime + after + .2);
+  }), () => { /* no speaker here: the colour must do */ });
+}
+
+at("mute").addEventListener("click", () => {
+  muted = !muted;
+  kept.set("muted", muted ? "yes" : "no");
+  showView();
+});

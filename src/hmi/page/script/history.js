@@ -1,0 +1,123 @@
+// The history: the filter of the command `history query`, pages of parts, and one part down to its replies.
+
+const PAGE = 100;
+const FIELDS = ["lot", "recipe", "verdict", "bin", "param", "min", "max"];
+let offset = 0;
+
+function filter() {
+  const members = {since: moment(at("h_since").value), until: moment(at("h_until").value)};
+  for (const field of FIELDS) members[field] = at("h_" + field).value.trim();
+  return members;
+}
+
+function makeFilter() {
+  const all = ["", word("any")];
+  fillSelect(at("h_verdict"), [all, ...[...VERDICTS, "unjudged"].map((it) => [it, word("verdict." + it)])]);
+  fillSelect(at("h_bin"), [all, ...BINS.map((it) => [it, word("bin." + it)])]);
+  fillSelect(at("h_param"), [all, ...KEYS.map((it) => [it, word("key." + it)])]);
+}
+
+async function readLots() {
+  const lots = await (await ask("/api/history/list")).json();
+  at("lots").replaceChildren(...[...new Set(lots.map((it) => it.lot))].map((lot) => {
+    const option = make("option");
+    option.value = lot;
+    return option;
+  }));
+  return lots;
+}
+
+async function readParts() {
+  const members = filter();
+  at("export_csv").href = "/api/history/export.csv" + query(members);
+  at("export_xlsx").href = "/api/history/export.xlsx" + query({...members, lang: language});
+  at("h_lot_report").hidden = !members.lot;
+  at("h_lot_report").href = "/api/history/report/lot" + query({lot: members.lot, lang: language});
+  try {
+    const [{parts: count}, parts] = await Promise.all([
+      ask("/api/history/count" + query(members)).then((it) => it.json()),
+      ask("/api/history/query" + query({...members, limit: PAGE, offset})).then((it) => it.json()), readLots()]);
+    showParts(parts, count);
+    at("h_trouble").textContent = "";
+  } catch (error) {
+    showParts([], 0);
+    at("h_trouble").textContent = error.message;
+  }
+}
+
+const verdictCell = (verdict) => {
+  const cell = make("td", undefined, verdict);
+  cell.append(make("span", known("verdict." + verdict, verdict), "verdict"));
+  return cell;
+};
+
+function partLink(part) {
+  const link = make("a", part.lot + " / " + part.run + " / " + part.seq);
+  link.href = "#part" + query({lot: part.lot, run: part.run, seq: part.seq, kind: part.kind});
+  return link;
+}
+
+function showParts(parts, count) {
+  const key = at("h_param").value;
+  at("h_value").textContent = key ? word("key." + key) + " / " + unitOf(key) : "";
+  at("h_count").textContent = count === 0 ? word("h.none")
+    : (offset + 1) + " – " + (offset + parts.length) + " " + word("judged_of") + " " + whole(count);
+  at("h_back").disabled = offset === 0;
+  at("h_next").disabled = offset + parts.length >= count;
+  at("parts").replaceChildren(...parts.map((part) => row(partLink(part), clock(part.time), part.recipe,
+    verdictCell(part.verdict), known("bin." + (part.landed_bin || part.bin), NONE),
+    part.reasons.map(reasonText).join("; "), key ? measured(part.values[key], part.uncertainty[key]).join(" ± ") : "")));
+}
+
+at("h_filter").addEventListener("submit", (event) => {
+  event.preventDefault();
+  offset = 0;
+  readParts();
+});
+at("h_back").addEventListener("click", () => { offset = Math.max(0, offset - PAGE); readParts(); });
+at("h_next").addEventListener("click", () => { offset += PAGE; readParts(); });
+
+PAGES.history = {enter() { makeFilter(); readParts(); }};
+
+// --- one part ---
+
+const unitOf = (key) => UNITS[key.slice(key.lastIndexOf("_") + 1)];
+const limitText = (it) => (it.low === null ? "" : "≥ " + it.low + " ") + (it.high === null ? "" : "≤ " + it.high);
+
+async function readPart() {
+  const which = Object.fromEntries(new URLSearchParams(location.hash.split("?")[1]));
+  at("part_title").textContent = which.lot + " / " + which.run + " / " + which.seq;
+  at("part_certificate").href = "/api/history/report/certificate" + query({lot: which.lot, run: which.run, seq: which.seq, lang: language});
+  at("part_certificate").hidden = which.kind !== "lot";
+  try {
+    const [part] = await (await ask("/api/history/show" + query(which))).json();
+    showPart(part);
+    at("part_trouble").textContent = "";
+  } catch (error) {
+    at("part_trouble").textContent = error.message;
+  }
+}
+
+function showPart(part) {
+  const facts = [["h.time", clock(part.time)], ["recipe", part.recipe],
+    ["verdict", known("verdict." + part.verdict, part.verdict)],
+    ["h.bin", known("bin." + (part.landed_bin || part.bin), NONE)],
+    ["h.test_s", part.test_s === null ? NONE : part.test_s.toFixed(2) + " s"],
+    ["h.cycle_s", part.cycle_s === null ? NONE : part.cycle_s.toFixed(2) + " s"],
+    ["h.reasons", part.reasons.map(reasonText).join("; ") || NONE]];
+  at("part_facts").replaceChildren(...facts.map(([key, text]) => {
+    const pair = make("div");
+    pair.append(make("dt", word(key)), make("dd", text));
+    return pair;
+  }));
+  at("part_values").replaceChildren(...part.measurements.map((it) => {
+    const [value, uncertainty] = measured(it.value, it.uncertainty);
+    return row(known("key." + it.parameter, it.parameter), String(it.attempt), value, uncertainty,
+      unitOf(it.parameter), limitText(it), verdictCell(it.verdict));
+  }));
+  at("part_replies").replaceChildren(...part.measurements.flatMap((it) => it.samples.map((sample) =>
+    row(known("key." + it.parameter, it.parameter), sample.line, sample.module, sample.channel,
+      sample.command, sample.raw, sample.at.slice(11)))));
+}
+
+PAGES.part = {enter: readPart};

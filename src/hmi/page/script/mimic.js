@@ -1,0 +1,98 @@
+// The machine to scale: the picture comes once, its groups follow the view.
+
+// What is drawn, with what carries it.
+let bodies = [];
+// Where each actuator stood last, mm.
+const was = {};
+const PLACES = {pocket: "part_pusher", nest: "part_nest", gripper: "part_gripper"};
+
+async function fetchMimic() {
+  try {
+    const text = await (await fetch("/mimic.svg")).text();
+    const svg = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+    svg.dataset.label = "mimic";
+    svg.setAttribute("aria-label", word("mimic"));
+    at("mimic").replaceChildren(document.importNode(svg, true));
+    bodies = Array.from(at("mimic").querySelectorAll("[data-rides]"),
+      (body) => ({body, rides: JSON.parse(body.dataset.rides)}));
+    showMimic();
+  } catch { /* the page works without its picture */ }
+}
+
+// A moving actuator is drawn on its way to the end that it left the other one for.
+function showMimic() {
+  if (!view || !view.machine) return;
+  const stands = {};
+  for (const it of view.machine.actuators) {
+    const from = was[it.name] ?? it.from_mm;
+    if (it.from_mm === it.to_mm) was[it.name] = it.from_mm;
+    const far = Math.abs(it.from_mm - from) > Math.abs(it.to_mm - from) ? it.from_mm : it.to_mm;
+    stands[it.name] = it.from_mm === it.to_mm ? it.from_mm : it.moving ? far : (it.from_mm + it.to_mm) / 2;
+  }
+  showRefused(view.machine.refused);
+  const held = {};
+  for (const [place, token] of Object.entries(view.machine.places)) held[PLACES[place]] = token;
+  for (const {body, rides} of bodies) {
+    let right = 0, down = 0;
+    for (const [name, x, y] of rides) {
+      right += x * (stands[name] || 0);
+      down += y * (stands[name] || 0);
+    }
+    body.style.transform = "translate(" + right + "px," + down + "px)";
+    if (!body.classList.contains("part")) continue;
+    const token = held[body.dataset.body];
+    body.classList.toggle("held", token !== undefined);
+    body.classList.toggle("pass", token !== undefined && token.bin === "pass");
+    body.classList.toggle("fail", token !== undefined && token.bin !== "" && token.bin !== "pass");
+  }
+}
+
+// --- a motion that the guard refused: mover, blocker, the room it would sweep ---
+
+const refusedText = ({mover, blocker, distance_mm: distance, margin_mm: margin, text}) => (mover === "" ? text
+  : (mover + " → " + blocker).replaceAll("_", " ") + ", " + word("collision.distance") + " " + distance.toFixed(2) + " mm, " +
+    word("collision.needed") + " > " + margin.toFixed(2) + " mm");
+
+// Corners around `points`, each [x, y]; Andrew's monotone chain.
+function hull(points) {
+  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  const half = (all) => all.reduce((chain, point) => {
+    const left = ([a, b]) => (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]) > 0;
+    while (chain.length > 1 && !left(chain.slice(-2))) chain.pop();
+    return [...chain, point];
+  }, []).slice(0, -1);
+  return [...half(sorted), ...half(sorted.reverse())];
+}
+
+// The room of one body between the ends of its ways: its silhouettes are convex, so is what they sweep.
+function swept(body, rides, strokes) {
+  const shifts = [0, 1, 2].map((which) => rides.reduce(([right, down], [name, x, y]) => {
+    const stroke = strokes.find((it) => it.actuator === name);
+    const stands = view.machine.actuators.find((it) => it.name === name);
+    const mm = !stroke ? (stands ? stands.from_mm : 0) : which === 2 ? stroke.to_mm : stroke.from_mm[which];
+    return [right + x * mm, down + y * mm];
+  }, [0, 0]));
+  return Array.from(body.querySelectorAll("polygon"), (polygon) => {
+    const corners = polygon.getAttribute("points").trim().split(" ").map((it) => it.split(",").map(Number));
+    const points = hull(shifts.flatMap(([right, down]) => corners.map(([x, y]) => [x + right, y + down])));
+    return drawn("polygon", {points: points.map((it) => it.join()).join(" "), class: "swept"});
+  });
+}
+
+let drawnRefused = "";
+
+function showRefused(refused) {
+  const now = JSON.stringify([refused, language]);
+  if (now === drawnRefused) return;
+  drawnRefused = now;
+  for (const old of at("mimic").querySelectorAll(".swept")) old.remove();
+  const {mover, blocker} = refused ? refused.refused : {};
+  for (const {body, rides} of bodies) {
+    body.classList.toggle("mover", body.dataset.body === mover);
+    body.classList.toggle("blocker", body.dataset.body === blocker);
+    if (body.dataset.body === mover) body.parentNode.append(...swept(body, rides, refused.strokes));
+  }
+  at("refused").hidden = !refused;
+  at("refused").replaceChildren(...(refused ? [make("b", "◆ " + word("collision") + ": " +
+    known("jog." + refused.motion, refused.motion)), make("span", refusedText(refused.refused))] : []));
+}

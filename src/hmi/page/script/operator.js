@@ -1,0 +1,103 @@
+// The operator's page.
+
+function showProgress() {
+  const {judged, count} = view;
+  const percent = count > 0 ? Math.min(100, 100 * judged / count) : 0;
+  at("judged").textContent = count === null ? whole(judged) + " " + word("judged")
+    : whole(judged) + " " + word("judged_of") + " " + whole(count) + " " + word("judged");
+  at("percent").textContent = count === null ? word("endless") : percent.toFixed(0) + "\u202f%";
+  at("bar").setAttribute("aria-valuenow", percent.toFixed(0));
+  at("bar").firstElementChild.style.width = percent + "%";
+}
+
+function showLast(last) {
+  at("seq").textContent = last ? whole(last.seq) : "";
+  const [, verdict, bin] = at("verdict").children;
+  at("verdict").className = last ? last.verdict : "";
+  verdict.textContent = last ? known("verdict." + last.verdict, last.verdict) : NONE;
+  bin.textContent = last ? word("to_bin") + " " + known("bin." + last.bin, last.bin) : word("no_part");
+  showRecent(view.recent);
+  const reasons = last ? last.reasons : [];
+  at("reasons").replaceChildren(...reasons.slice(0, 3).map((reason) => make("li", reasonText(reason))));
+  at("values").replaceChildren(...KEYS.map((key) => valueRow(key, last)));
+}
+
+function valueRow(key, last) {
+  const [value, uncertainty] = last ? measured(last.values[key], last.uncertainty[key]) : [NONE, NONE];
+  const row = make("tr");
+  const blamed = last && last.verdict === "fail" && last.reasons.some((it) => it.startsWith(key + " "));
+  if (blamed) row.className = "bad";
+  const unit = UNITS[key.slice(key.lastIndexOf("_") + 1)];
+  row.append(make("td", word("key." + key)), make("td", value), make("td", uncertainty), make("td", unit), bandCell(key, last));
+  return row;
+}
+
+// Where a value lies between its limits; one without a limit on that side ends where the band does.
+function bandCell(key, last) {
+  const cell = make("td"), limits = view.limits[key], value = last ? last.values[key] : undefined;
+  if (!limits || !Number.isFinite(value)) return cell;
+  const [low, high] = limits, all = [low, high, value].filter(Number.isFinite);
+  const from = low ?? Math.min(0, value), to = high ?? Math.max(value, ...all) * 1.5;
+  const place = (it) => 12 + 60 * Math.min(1.2, Math.max(-.2, (it - from) / (to - from || 1)));
+  const svg = drawn("svg", {class: "band", viewBox: "0 0 84 16", role: "img"});
+  const title = drawn("title", {});
+  title.textContent = (low ?? "–") + " … " + (high ?? "–");
+  svg.append(title, drawn("rect", {x: 12, y: 4, width: 60, height: 8}),
+    drawn("path", {d: "M" + place(value) + " 0V16"}));
+  cell.append(svg);
+  return cell;
+}
+
+function drawn(tag, attributes) {
+  const element = document.createElementNS(at("mimic").firstElementChild.namespaceURI, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  return element;
+}
+
+const SHORT = {pass: "✓", fail: "✗", void: "?"};
+
+function showRecent(recent) {
+  at("recent").replaceChildren(...recent.map((part) => {
+    const item = make("li", SHORT[part.verdict], part.verdict);
+    item.title = part.seq + " · " + known("verdict." + part.verdict, part.verdict) + " · " + known("bin." + part.bin, part.bin);
+    return item;
+  }));
+}
+
+// The usual names first, then whatever else there is.
+const ordered = (names, counts) => [...names, ...Object.keys(counts).filter((it) => !names.includes(it))];
+
+function showBins(bins) {
+  const most = Math.max(1, ...Object.values(bins));
+  at("bins").replaceChildren(...ordered(BINS, bins).map((name) => {
+    const item = make("li"), bar = make("div", undefined, "bar"), fill = make("i");
+    fill.style.width = 100 * (bins[name] || 0) / most + "%";
+    bar.append(fill);
+    item.append(make("span", known("bin." + name, name)), make("b", whole(bins[name] || 0)), bar);
+    return item;
+  }));
+}
+
+function showVerdicts(verdicts) {
+  at("verdicts").replaceChildren(...ordered(VERDICTS, verdicts).map((name) => {
+    const pair = make("div");
+    pair.append(make("dt", known("verdict." + name, name)), make("dd", whole(verdicts[name] || 0)));
+    return pair;
+  }));
+}
+
+function showOperator() {
+  at("state").textContent = stateText(view.state);
+  for (const id of ["came_in", "inside", "went_out"]) at(id).textContent = whole(view[id]);
+  at("rate").textContent = view.parts_per_hour === null ? NONE : whole(Math.round(view.parts_per_hour));
+  const judged = Object.values(view.verdicts).reduce((sum, it) => sum + it, 0);
+  at("yield").textContent = share(view.verdicts.pass || 0, judged);
+  showMimic();
+  showOrders();
+  showProgress();
+  showLast(view.last);
+  showBins(view.bins);
+  showVerdicts(view.verdicts);
+}
+
+PAGES.operator = {show: showOperator};

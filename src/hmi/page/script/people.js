@@ -1,0 +1,40 @@
+// Who is here.
+
+async function askWho() {
+  try { me = await (await fetch("/api/me")).json(); } catch { /* asked again when the link is back */ }
+  showWho();
+}
+
+function showWho() {
+  at("who").textContent = me ? me.name + " · " + word("logout") : word("login");
+  showView();
+}
+
+at("who").addEventListener("click", async () => {
+  if (me) {
+    try { await post("/api/logout", {}); } catch { return; }
+    me = null;
+    showWho();
+    return;
+  }
+  at("login_answer").textContent = "";
+  at("login").showModal();
+});
+at("login_cancel").addEventListener("click", () => at("login").close());
+at("login").addEventListener("submit", async (event) => {
+  event.preventDefault();
+  try {
+    const answer = await post("/api/login", {user: at("user").value, password: at("password").value});
+    const body = await answer.json();
+    if (answer.ok) {
+      me = body;
+      at("password").value = "";
+      at("login").close();
+    } else {
+      at("login_answer").textContent = known("login." + answer.status, body.reason);
+    }
+  } catch {
+    at("login_answer").textContent = word("stop.lost");
+  }
+  showWho();
+});

@@ -1,0 +1,86 @@
+// Quality: control charts and histograms as the paper has them, capability in figures, and the cycle as bars.
+
+let lotsSeen = [];
+
+async function enterQuality() {
+  fillSelect(at("q_param"), KEYS.map((it) => [it, word("key." + it)]));
+  try {
+    lotsSeen = await readLots();
+    fillSelect(at("q_lot"), [...new Set(lotsSeen.map((it) => it.lot))].reverse().map((it) => [it, it]));
+    await readQuality();
+  } catch (error) {
+    at("q_trouble").textContent = error.message;
+  }
+}
+
+// Figures of a page for paper; the same drawing here and there. The look of the paper stays there.
+async function figures(path, which) {
+  const text = (await (await ask(path)).text()).replace(/<style[^]*?<\/style>/g, "").replace(/ style="[^"]*"/g, "");
+  const page = new DOMParser().parseFromString(text, "text/html");
+  return Array.from(page.querySelectorAll(which), (it) => {
+    const figure = document.importNode(it, true);
+    figure.querySelector("svg").setAttribute("aria-label", figure.querySelector("figcaption").textContent);
+    return figure;
+  });
+}
+
+async function readQuality() {
+  const lot = at("q_lot").value, param = at("q_param").value;
+  at("q_print").href = "/api/history/report/chart" + query({lot, param, lang: language});
+  if (!lot) {
+    at("q_trouble").textContent = word("h.none");
+    return;
+  }
+  const read = [
+    figures("/api/history/report/chart" + query({lot, param, last: 100, lang: language}), "main figure"),
+    figures("/api/history/report/lot" + query({lot, lang: language}), ".figures figure"),
+    ask("/api/history/stats" + query({lot, param})).then((it) => it.json())];
+  const [charts, histograms, stats] = await Promise.allSettled(read);
+  at("q_charts").replaceChildren(...(charts.value || []));
+  at("q_histograms").replaceChildren(...(histograms.value || []));
+  showCapability(stats.value, unitOf(param));
+  const trouble = [charts, histograms, stats].find((it) => it.status === "rejected");
+  at("q_trouble").textContent = trouble ? trouble.reason.message : "";
+}
+
+function showCapability(stats, unit) {
+  const figure = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(5))) : NONE);
+  const rows = [["n", ""], ["mean", unit], ["sd", unit], ["min", unit], ["max", unit], ["median", unit],
+    ["cp", ""], ["cpk", ""], ["cpk_low95", ""], ["ppk", ""], ["lag1", ""]];
+  at("q_stats").replaceChildren(...(stats ? rows : []).map(([key, of]) => row(word("q." + key), figure(stats[key]), of)));
+}
+
+at("q_lot").addEventListener("change", readQuality);
+at("q_param").addEventListener("change", readQuality);
+
+// --- the cycle as bars: what moved and tested when, over the last seconds ---
+
+const SPAN_MS = 10000;
+let seen = [];
+
+function notice() {
+  const now = performance.now();
+  const busy = view.machine.actuators.filter((it) => it.moving).map((it) => it.name);
+  if (view.state.startsWith("testing")) busy.push("test");
+  seen = [...seen.filter((it) => now - it.at < SPAN_MS), {at: now, busy}];
+}
+
+function showCycle() {
+  const rows = [...view.machine.actuators.map((it) => it.name), "test"];
+  const now = performance.now(), high = 22, left = 150, wide = 1000 - left;
+  const x = (at) => left + wide * (1 - (now - at) / SPAN_MS);
+  const svg = drawn("svg", {viewBox: "0 0 1000 " + (rows.length * high + 4), role: "img", "aria-label": word("q.cycle")});
+  rows.forEach((name, place) => {
+    const label = drawn("text", {x: 0, y: place * high + 16, class: "label"});
+    label.textContent = known("actuator." + name, name);
+    svg.append(label, drawn("path", {d: "M" + left + " " + ((place + 1) * high) + "H1000", class: "rule"}));
+    seen.forEach((it, index) => {
+      if (!it.busy.includes(name)) return;
+      const from = Math.max(left, x(it.at)), to = index + 1 < seen.length ? x(seen[index + 1].at) : x(now);
+      svg.append(drawn("rect", {x: from, y: place * high + 4, width: Math.max(1, to - from), height: high - 8, class: "busy"}));
+    });
+  });
+  at("q_cycle").replaceChildren(svg);
+}
+
+PAGES.quality = {enter: enterQuality, show: showCycle};

@@ -1,0 +1,75 @@
+// For service: how the lines are doing, every signal, motions by hand.
+
+const shareText = (bad, all) => (all ? (100 * bad / all).toFixed(3) + "\u202f%" : NONE);
+
+function showBus() {
+  at("bus").replaceChildren(...view.lines.flatMap((line) => line.modules.map((it) => {
+    const bad = it.time_outs + it.checksum_errors + it.other_errors;
+    const element = row(line.name, it.address, whole(it.transactions), it.p50_ms === null ? NONE : it.p50_ms.toFixed(2),
+      it.p99_ms === null ? NONE : it.p99_ms.toFixed(2), whole(it.time_outs), whole(it.checksum_errors),
+      whole(it.other_errors), whole(it.refusals), whole(it.resets), shareText(bad, it.transactions));
+    if (bad * 1000 > it.transactions) element.className = "bad";
+    return element;
+  })));
+  const {bound_ms: bound, accepted_ms: accepted, worst_age_ms: age} = view.machine.reaction;
+  at("reaction").textContent = [word("bus.bound") + " " + bound.toFixed(0) + " ms", word("bus.accepted") + " " +
+    accepted.toFixed(0) + " ms", word("bus.age") + " " + age.toFixed(0) + " ms"].join(" · ");
+}
+
+PAGES.bus = {show: showBus};
+
+// --- signals and motions ---
+
+const JOGS = ["escapement_release", "escapement_hold", "pusher_extend", "pusher_retract", "clamp_close", "clamp_open",
+  "probes_up", "probes_down", "sort_down", "sort_up", "gripper_close", "gripper_open", "axis_nest", "axis_park", "axis_retest"];
+const MODES = ["production", "maintenance", "manual"];
+
+function makeJogs() {
+  const answer = (text) => { at("io_answer").textContent = text; };
+  at("modes").replaceChildren(...MODES.map((mode) => orderButton("mode", mode, {order: "mode", mode}, "", answer)),
+    orderButton("step", "", {order: "step"}, "", answer), orderButton("lamp_test", "", {order: "lamp_test"}, "", answer));
+  at("jogs").replaceChildren(...JOGS.map((motion) => {
+    const item = make("li");
+    item.append(orderButton("jog", motion, {order: "jog", motion}, "", answer), make("span", "", "clearance"));
+    item.dataset.motion = motion;
+    return item;
+  }));
+}
+
+// What the guard says before the motion is made.
+function showClearance(item, jog) {
+  const text = !jog ? "" : jog.refused ? refusedText(jog.refused)
+    : word("io.clearance") + " " + (jog.clearance_mm === null ? word("io.far") : jog.clearance_mm.toFixed(2) + " mm");
+  item.lastElementChild.textContent = text;
+  item.lastElementChild.title = jog && jog.refused ? jog.refused.text : text;
+  item.classList.toggle("blocked", Boolean(jog && jog.refused));
+}
+
+function signal(name, on) {
+  const item = make("li", undefined, on === null ? "unknown" : on ? "on" : "off");
+  item.append(make("i", undefined, "mark"), make("span", known("signal." + name, name)),
+    make("b", on === null ? "?" : on ? "1" : "0"));
+  item.title = name;
+  return item;
+}
+
+let drawnSignals = "";
+
+function showIo() {
+  const now = JSON.stringify([view.machine.inputs, view.machine.outputs, language]);
+  if (now !== drawnSignals) {
+    drawnSignals = now;
+    at("inputs").replaceChildren(...Object.entries(view.machine.inputs).map(([name, on]) => signal(name, on)));
+    at("outputs").replaceChildren(...Object.entries(view.machine.outputs).map(([name, on]) => signal(name, on)));
+  }
+  const labels = {mode: (it) => word("mode." + it), jog: (it) => word("jog." + it)};
+  const label = (order, withWhat) => (labels[order] ? labels[order](withWhat) : word("order." + order));
+  showButtons(at("modes"), label);
+  showButtons(at("jogs"), label);
+  for (const item of at("jogs").children) showClearance(item, view.machine.jogs.find((it) => it.motion === item.dataset.motion));
+  for (const element of at("modes").children) element.classList.toggle("now", element.dataset.with === view.machine.mode);
+  at("wear").replaceChildren(...Object.entries(view.machine.wear).map(([name, count]) =>
+    row(known("actuator." + name, name), whole(count))));
+}
+
+PAGES.io = {show: showIo};

@@ -1,0 +1,114 @@
+"use strict";
+// What all pages share. Every text comes through textContent, every word from the table.
+const WORDS = JSON.parse(document.getElementById("words").textContent);
+const KEYS = ["coil_resistance_ohm", "operate_voltage_v", "release_voltage_v", "operate_time_ms",
+  "release_time_ms", "operate_bounce_ms", "release_bounce_ms", "contact_resistance_no_mohm",
+  "contact_resistance_nc_mohm"];
+const UNITS = {ohm: "Ω", v: "V", ms: "ms", mohm: "mΩ"};
+const BINS = ["pass", "coil", "contact", "voltage", "time", "retest"];
+const VERDICTS = ["pass", "fail", "void"];
+const NONE = "–";
+
+const asked = new URLSearchParams(location.search);
+const kept = {
+  get(name) { try { return localStorage.getItem(name); } catch { return null; } },
+  set(name, value) { try { localStorage.setItem(name, value); } catch { /* private window: not kept */ } },
+};
+let language = asked.get("lang") || kept.get("lang") || (navigator.language.startsWith("zh") ? "zh" : "en");
+let theme = asked.get("theme") || kept.get("theme") ||
+  (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+if (language !== "zh") language = "en";
+let view = null;
+let me = null;
+// Pages by name: `enter` when it opens or the language changes, `show` at every view while it is open.
+const PAGES = {};
+
+const at = (id) => document.getElementById(id);
+const word = (key) => WORDS[key][language];
+const known = (key, text) => (Object.hasOwn(WORDS, key) ? word(key) : text);
+
+function make(tag, text, name) {
+  const element = document.createElement(tag);
+  if (text !== undefined) element.textContent = text;
+  if (name) element.className = name;
+  return element;
+}
+
+const row = (...cells) => {
+  const element = make("tr");
+  element.append(...cells.map((it) => {
+    if (it instanceof HTMLTableCellElement) return it;
+    const cell = make("td");
+    cell.append(it);
+    return cell;
+  }));
+  return element;
+};
+
+function button(text, press, name) {
+  const element = make("button", text, name);
+  element.type = "button";
+  element.addEventListener("click", press);
+  return element;
+}
+
+function fillSelect(element, options) {
+  const had = element.value;
+  element.replaceChildren(...options.map(([value, text]) => {
+    const option = make("option", text);
+    option.value = value;
+    return option;
+  }));
+  if (options.some(([value]) => value === had)) element.value = had;
+}
+
+// --- times ---
+
+const two = (number) => String(number).padStart(2, "0");
+
+// Local time to the second; of RFC 3339 or of microseconds since 1970.
+function clock(when) {
+  if (when === null || when === undefined) return NONE;
+  const date = new Date(typeof when === "number" ? when / 1000 : when);
+  return date.getFullYear() + "-" + two(date.getMonth() + 1) + "-" + two(date.getDate()) + " " +
+    two(date.getHours()) + ":" + two(date.getMinutes()) + ":" + two(date.getSeconds());
+}
+
+// What a field for local time holds, as RFC 3339; nothing when it is empty.
+const moment = (text) => (text ? new Date(text).toISOString() : "");
+
+// --- figures ---
+
+const whole = (value) => (Number.isFinite(value) ? value.toLocaleString("en").replaceAll(",", "\u202f") : NONE);
+
+// A value ends where its uncertainty ends, which has two significant digits.
+function measured(value, uncertainty) {
+  if (!Number.isFinite(value)) return [NONE, NONE];
+  if (!(uncertainty > 0)) return [String(Number(value.toPrecision(6))), NONE];
+  const digits = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(uncertainty))));
+  return [value.toFixed(digits), uncertainty.toFixed(digits)];
+}
+
+function share(part, all) {
+  return all > 0 ? (100 * part / all).toFixed(1) + "\u202f%" : NONE;
+}
+
+
+// A query string of what is not empty.
+function query(members) {
+  const named = Object.entries(members).filter(([, value]) => value !== "" && value !== null && value !== undefined);
+  return named.length ? "?" + new URLSearchParams(named) : "";
+}
+
+// What the rig says to a question; a refusal is thrown with its reason.
+async function ask(path) {
+  const reply = await fetch(path, {signal: AbortSignal.timeout(20000)});
+  if (reply.ok) return reply;
+  throw new Error((await reply.json()).reason);
+}
+
+async function post(path, body) {
+  const headers = {"Content-Type": "application/json"};
+  const signal = AbortSignal.timeout(5000);
+  return fetch(path, {method: "POST", headers, body: JSON.stringify(body), signal});
+}

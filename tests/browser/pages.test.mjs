@@ -1,0 +1,104 @@
+// History, quality, bus and trace over a lot that has some parts.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { SIZES, leave, looks, open, shown, visit } from "./browser.mjs";
+import { start } from "./rig.mjs";
+
+let rig, browser;
+before(async () => {
+  [rig, browser] = await Promise.all([start("pages", "--speed", "8"), open()]);
+  await rig.until("twelve parts are judged", (view) => view.judged >= 12);
+});
+after(async () => {
+  await browser?.close();
+  await rig?.kill();
+});
+
+const rows = (page, body) => page.$$eval(body + " tr", (all) => all.length);
+
+test("the history is asked with the filter of the command line, and a part leads down to its replies", async () => {
+  const page = await visit(browser, rig, { path: "/#history" });
+  await page.waitForSelector("#parts tr");
+  const all = await rows(page, "#parts");
+  await page.selectOption("#h_verdict", "void");
+  await page.click("#h_go");
+  await page.waitForFunction((all) => document.querySelectorAll("#parts tr").length < all, all);
+  await page.selectOption("#h_verdict", "pass");
+  await page.selectOption("#h_param", "operate_voltage_v");
+  await page.fill("#h_min", "9");
+  await page.fill("#h_max", "8");
+  await page.click("#h_go");
+  await shown(page, "#h_trouble", "min");
+  await page.fill("#h_max", "");
+  await page.fill("#h_min", "1");
+  await page.click("#h_go");
+  await page.waitForSelector("#parts tr");
+  assert.equal(await page.textContent("#h_trouble"), "");
+  await page.click("#parts tr a");
+  await page.waitForSelector("#part_replies tr");
+  assert.ok(await rows(page, "#part_replies") > 20);
+  assert.match(await page.textContent("#part_replies"), /!|>/);
+  await leave(page);
+});
+
+test("what the filter leaves is exported", async () => {
+  const page = await visit(browser, rig, { path: "/#history" });
+  await page.waitForSelector("#parts tr");
+  const [saved] = await Promise.all([page.waitForEvent("download"), page.click("#export_csv")]);
+  assert.equal(saved.suggestedFilename(), "relayrig-parts.csv");
+  await leave(page);
+});
+
+test("a report becomes paper", async () => {
+  const page = await visit(browser, rig, { path: "/#history" });
+  await page.waitForSelector("#parts tr");
+  await page.fill("#h_lot", (await rig.view()).lot);
+  await page.click("#h_go");
+  const [paper] = await Promise.all([page.context().waitForEvent("page"), page.click("#h_lot_report")]);
+  await paper.waitForLoadState();
+  const pdf = await paper.pdf({ format: "A4" });
+  assert.equal(pdf.subarray(0, 5).toString(), "%PDF-");
+  assert.ok(pdf.length > 10_000);
+  await leave(page);
+});
+
+test("charts and histograms are those of the paper, with capability beside them", async () => {
+  const page = await visit(browser, rig, { path: "/#quality" });
+  await page.waitForSelector("#q_charts svg");
+  await page.waitForSelector("#q_histograms svg");
+  await page.waitForSelector("#q_cycle rect");
+  assert.equal(await rows(page, "#q_stats"), 11);
+  await page.selectOption("#q_param", "release_time_ms");
+  await shown(page, "#q_charts", "elease time");
+  await leave(page);
+});
+
+test("every module of both lines is shown with its health, and its traffic with its meaning", async () => {
+  const page = await visit(browser, rig, { path: "/#bus" });
+  await page.waitForSelector("#bus tr");
+  assert.equal(await rows(page, "#bus"), 13);
+  await page.click('nav a[href="#trace"]');
+  await page.waitForSelector("#trace tr");
+  await page.selectOption("#trace_line", "motion");
+  await page.waitForFunction(() => Array.from(document.querySelectorAll("#trace tr"), (it) => it.children[1].textContent).every((it) => it === "motion"));
+  await page.click("#trace_freeze");
+  await leave(page);
+});
+
+for (const size of SIZES) {
+  test(`at ${size.width}x${size.height} every page fits and can be read`, async () => {
+    const page = await visit(browser, rig, { size, role: "engineer", path: "/#history" });
+    await page.waitForSelector("#parts tr a");
+    await looks(page, `history-${size.width}`);
+    await page.click("#parts tr a");
+    await page.waitForSelector("#part_replies tr");
+    await looks(page, `part-${size.width}`);
+    for (const [name, ready] of [["quality", "#q_histograms svg"], ["bus", "#bus tr"], ["trace", "#trace tr"], ["io", "#inputs li"]]) {
+      await page.click(`nav a[href="#${name}"]`);
+      await page.waitForSelector(ready);
+      await looks(page, `${name}-${size.width}`);
+    }
+    await leave(page);
+  });
+}
