@@ -20,11 +20,13 @@
 //! | `GET /api/history/...` | JSON, pages and files as the command `history` gives them; routes in `history.rs` |
 //! | `GET /mimic.svg` | the machine to scale, from above and from the front |
 //! | `GET /api/trace` | the last traffic of every line, with its meaning |
+//! | `GET /api/openapi.json` | this list for programs, made of `api.rs` like the router itself |
 //! | `GET /metrics` | Prometheus text |
 //!
 //! Whoever reaches the address may look; who wants something done logs in (`gate.rs`).
 
 pub mod access;
+mod api;
 mod error;
 mod events;
 mod gate;

@@ -1,15 +1,14 @@
-//! Which path leads where, and what holds for all of them.
+//! From the list of routes to a service, and what holds for all of them.
 
 use super::error::HmiError;
 use super::history::Readers;
-use super::{Shared, events, history, login, metrics, mimic, orders, page, trace};
+use super::{Shared, api};
 use axum::Json;
 use axum::Router;
 use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::{HeaderName, HeaderValue, Method, Uri, header};
 use axum::middleware::{Next, from_fn};
 use axum::response::Response;
-use axum::routing::{get, post};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 use tokio::sync::watch;
@@ -36,18 +35,11 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
         ended,
         screens: Arc::default(),
     };
-    Router::new()
-        .route("/", get(page::page))
-        .route("/api/view", get(view))
-        .route("/api/events", get(events::events))
-        .route("/api/login", post(login::log_in))
-        .route("/api/logout", post(login::log_out))
-        .route("/api/me", get(login::me))
-        .route("/api/orders", post(orders::order))
-        .nest("/api/history", of_history())
-        .route("/mimic.svg", get(mimic::picture))
-        .route("/api/trace", get(trace::trace))
-        .route("/metrics", get(metrics::metrics))
+    let offers = api::offers().into_iter();
+    offers
+        .fold(Router::new(), |router, offer| {
+            router.route(offer.path, offer.handler)
+        })
         .fallback(nothing_there)
         .method_not_allowed_fallback(wrong_method)
         .layer(DefaultBodyLimit::max(BODY_LIMIT))
@@ -55,27 +47,8 @@ pub(super) fn router(shared: Shared, ended: watch::Receiver<bool>) -> Router {
         .with_state(desk)
 }
 
-/// What [`history`] lists.
-fn of_history() -> Router<Desk> {
-    Router::new()
-        .route("/list", get(history::list))
-        .route("/show", get(history::show))
-        .route("/query", get(history::query))
-        .route("/count", get(history::count))
-        .route("/yield", get(history::yields))
-        .route("/stats", get(history::stats))
-        .route("/histogram", get(history::classes))
-        .route("/spc", get(history::spc))
-        .route("/alarms", get(history::alarms))
-        .route("/report/lot", get(history::paper::lot))
-        .route("/report/certificate", get(history::paper::certificate))
-        .route("/report/chart", get(history::paper::chart))
-        .route("/report/alarms", get(history::paper::alarms))
-        .route("/export.csv", get(history::export::csv))
-        .route("/export.xlsx", get(history::export::xlsx))
-}
-
-async fn view(State(desk): State<Desk>) -> Json<crate::view::View> {
+/// `GET /api/view`.
+pub(super) async fn view(State(desk): State<Desk>) -> Json<crate::view::View> {
     Json(desk.shared.view.borrow().clone())
 }
 

@@ -1,0 +1,126 @@
+//! The OpenAPI document of a list of routes.
+
+use super::{Member, Method, Offer};
+use utoipa::openapi::content::ContentBuilder;
+use utoipa::openapi::path::{
+    HttpMethod, OperationBuilder, ParameterBuilder, ParameterIn, PathItem,
+};
+use utoipa::openapi::request_body::RequestBodyBuilder;
+use utoipa::openapi::schema::{ObjectBuilder, SchemaType, Type};
+use utoipa::openapi::{Components, Info, OpenApiBuilder, Paths, Required, ResponseBuilder, Schema};
+
+/// What a refusal may be, for every route.
+const REFUSALS: [(&str, &str); 4] = [
+    (
+        "400",
+        "What was asked cannot be meant; the reason says why.",
+    ),
+    ("404", "It never was."),
+    ("413", "The body is larger than 16 kB."),
+    ("500", "The rig's own trouble; the reason says which."),
+];
+/// And of one that changes something.
+const OF_ORDERS: [(&str, &str); 4] = [
+    ("401", "Nobody is logged in, or the password is wrong."),
+    ("403", "The role does not suffice, or another site asked."),
+    (
+        "409",
+        "Not now; the reason stands in `reason` and `reason_zh`.",
+    ),
+    (
+        "429",
+        "Too many wrong passwords; `Retry-After` says how long.",
+    ),
+];
+
+/// As JSON; empty if it could not be written, which a test excludes.
+pub(super) fn of(offers: &[Offer]) -> serde_json::Value {
+    let mut paths = Paths::new();
+    for offer in offers {
+        let method = match offer.method {
+            Method::Get => HttpMethod::Get,
+            Method::Post => HttpMethod::Post,
+        };
+        let item = PathItem::new(method, operation(offer));
+        paths.paths.insert(offer.path.to_owned(), item);
+    }
+    let mut components = Components::new();
+    let refusal = object(&[
+        super::must("error", "The status in a word."),
+        super::must("reason", "A sentence for whoever asked."),
+        super::may("reason_zh", "The same in Chinese."),
+    ]);
+    components.schemas.insert("Refusal".into(), refusal.into());
+    let document = OpenApiBuilder::new()
+        .info(Info::new("relayrig", env!("CARGO_PKG_VERSION")))
+        .paths(paths)
+        .components(Some(components))
+        .build();
+    serde_json::to_value(document).unwrap_or_default()
+}
+
+fn operation(offer: &Offer) -> OperationBuilder {
+    let (words, answer) = (offer.about, ContentBuilder::new().build());
+    let done = ResponseBuilder::new()
+        .description("Done.")
+        .content(offer.gives, answer);
+    let mut operation = OperationBuilder::new()
+        .summary(Some(words))
+        .response("200", done);
+    if let Some(role) = offer.role {
+        operation = operation.description(Some(format!("Takes the role {role} at least.")));
+    }
+    let more: &[_] = match offer.method {
+        Method::Get => &[],
+        Method::Post => &OF_ORDERS,
+    };
+    for (status, meaning) in REFUSALS.iter().chain(more) {
+        operation = operation.response(*status, ResponseBuilder::new().description(*meaning));
+    }
+    match offer.method {
+        Method::Get => offer
+            .members
+            .iter()
+            .fold(operation, |it, member| it.parameter(in_query(member))),
+        Method::Post => {
+            let body = ContentBuilder::new().schema(Some(object(&offer.members)));
+            let body = RequestBodyBuilder::new().content(super::JSON, body.build());
+            operation.request_body(Some(body.build()))
+        }
+    }
+}
+
+fn in_query(member: &Member) -> ParameterBuilder {
+    ParameterBuilder::new()
+        .name(member.name)
+        .parameter_in(ParameterIn::Query)
+        .required(if member.required {
+            Required::True
+        } else {
+            Required::False
+        })
+        .description(Some(member.about))
+        .schema(Some(text(member)))
+}
+
+fn object(members: &[Member]) -> Schema {
+    let object = members.iter().fold(ObjectBuilder::new(), |object, member| {
+        let object = object.property(member.name, text(member));
+        if member.required {
+            object.required(member.name)
+        } else {
+            object
+        }
+    });
+    Schema::Object(object.build())
+}
+
+fn text(member: &Member) -> Schema {
+    let kind = match member.name {
+        "run" | "seq" | "limit" | "offset" | "last" | "subgroup" | "minutes" => Type::Integer,
+        "min" | "max" | "ideal_cycle_s" => Type::Number,
+        _other => Type::String,
+    };
+    let text = ObjectBuilder::new().schema_type(SchemaType::new(kind));
+    Schema::Object(text.description(Some(member.about)).build())
+}
