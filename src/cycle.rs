@@ -142,6 +142,8 @@ pub struct Profile {
     pub clear_s: f64,
     /// Outputs to commands.
     pub apply_s: f64,
+    /// The view for screens.
+    pub publish_s: f64,
 }
 
 /// Adds the time since `from` to `total` and begins anew.
@@ -210,7 +212,9 @@ impl Cycle {
             lap(&mut self.profile.apply_s, &mut clock);
             self.answer(&mut wants, now);
             self.record(now, &mut wants);
+            clock = Instant::now();
             self.publish(now, wants.ending.is_some());
+            lap(&mut self.profile.publish_s, &mut clock);
             if wants.verify {
                 self.verify().await;
             }

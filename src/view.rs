@@ -18,6 +18,8 @@ use std::collections::BTreeMap;
 /// The whole view.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct View {
+    /// When the turn that is shown was published, by the wall clock whatever the pace: microseconds since 1970 UTC.
+    pub at_us: i64,
     /// The rig is simulated.
     pub simulated: bool,
     /// Lot under way.

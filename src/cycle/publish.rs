@@ -78,7 +78,9 @@ impl Cycle {
         machine.jogs = self.foreseen(now);
         let (station, epoch_us) = (&self.station, self.outside.epoch_us);
         let alarms = lines(station, epoch_us);
+        let at_us = jiff::Timestamp::now().as_microsecond();
         self.outside.view.send_modify(|view| {
+            view.at_us = at_us;
             view.state = station.state();
             view.inside = station.ledger().inside();
             view.came_in = station.ledger().came_in;
@@ -114,6 +116,7 @@ impl Cycle {
                 accepted_ms: wiring.safety.estop_reaction_ms,
                 worst_age_ms: ms(self.worst_age),
             },
+            phases_s: self.phases_s(),
             jogs: Vec::new(),
             refused: self.refused.clone(),
             wear: station
@@ -122,6 +125,18 @@ impl Cycle {
                 .map(|(name, count)| (name.to_owned(), count))
                 .collect(),
         }
+    }
+
+    fn phases_s(&self) -> BTreeMap<String, f64> {
+        let profile = &self.profile;
+        let phases = [
+            ("scan", profile.scan_s),
+            ("step", profile.step_s),
+            ("clear", profile.clear_s),
+            ("apply", profile.apply_s),
+            ("publish", profile.publish_s),
+        ];
+        phases.map(|(name, s)| (name.to_owned(), s)).into()
     }
 
     fn actuator(&self, actuator: Actuator, now: RigTime) -> ActuatorView {

@@ -98,6 +98,12 @@ fn text(view: &View, alive: bool, screens: usize) -> String {
         "code",
         &alarms(view),
     );
+    out.each(
+        "relayrig_cycle_seconds",
+        "Wall time of the cycle in each phase of its turns.",
+        "phase",
+        &view.machine.phases_s,
+    );
     bus(&mut out, view);
     out.0
 }
@@ -190,12 +196,18 @@ impl Figures {
         self.named(name, help, &[(&[], value)]);
     }
 
-    fn each(&mut self, name: &str, help: &str, label: &'static str, by: &BTreeMap<String, u64>) {
+    fn each(
+        &mut self,
+        name: &str,
+        help: &str,
+        label: &'static str,
+        by: &BTreeMap<String, impl Display>,
+    ) {
         let labels: Vec<_> = by
             .iter()
             .map(|(key, value)| ([(label, key.as_str())], value))
             .collect();
-        let rows: Vec<(&[Label<'_>], &u64)> =
+        let rows: Vec<(&[Label<'_>], _)> =
             labels.iter().map(|(it, value)| (&it[..], *value)).collect();
         self.named(name, help, &rows);
     }

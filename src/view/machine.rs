@@ -27,6 +27,8 @@ pub struct Machine {
     pub jogs: Vec<MotionView>,
     /// The motion that the guard refused last; null once another one was driven.
     pub refused: Option<MotionView>,
+    /// Wall seconds that the cycle has spent in each phase of its turns since the start.
+    pub phases_s: BTreeMap<String, f64>,
     /// Strokes and touches since the start of the program, by name.
     pub wear: BTreeMap<String, u64>,
 }

@@ -1,0 +1,94 @@
+// How fast the page is, over `relayrig demo --speed 1`, each figure beside its bar; exit 1 when one is missed.
+//
+// - From the turn of the cycle that a view shows to the frame that shows it, in one browser.
+// - What the cycle spends on screens: its wall time in the phase `publish`, with one screen and with 50.
+// - The first page: bytes, and time until it is drawn, from a fresh browser context each time.
+
+import { request } from "node:http";
+import { open, visit } from "./browser.mjs";
+import { start } from "./rig.mjs";
+
+const VIEWS_S = 20;
+const SCREENS = 50;
+const COST_S = 15;
+const VISITS = 20;
+
+const at = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+let missed = false;
+
+function told(what, value, unit, bar) {
+  missed ||= value > bar;
+  const verdict = value > bar ? "  MISSED" : "";
+  console.log(`${what.padEnd(52)} ${value.toFixed(2).padStart(9)} ${unit.padEnd(3)} bar ${bar}${verdict}`);
+}
+
+const pause = (seconds) => new Promise((resolve) => setTimeout(resolve, seconds * 1000));
+
+// The cycle's wall time on screens since the start, s.
+async function publishing(rig) {
+  const text = await (await fetch(rig.url + "/metrics")).text();
+  return Number(/relayrig_cycle_seconds\{phase="publish"\} (\S+)/.exec(text)[1]);
+}
+
+async function share(rig) {
+  const [before, began] = [await publishing(rig), performance.now()];
+  await pause(COST_S);
+  return 100 * (await publishing(rig) - before) * 1000 / (performance.now() - began);
+}
+
+function listen(rig) {
+  return new Promise((resolve, reject) => {
+    const asked = request(rig.url + "/api/events", (answer) => { answer.resume(); resolve(asked); });
+    asked.on("error", () => {});
+    asked.once("error", reject);
+    asked.end();
+  });
+}
+
+const [rig, browser] = await Promise.all([start("bench", "--speed", "1"), open()]);
+await rig.until("the lot runs", (view) => view.judged > 0, 120);
+
+const page = await visit(browser, rig);
+await page.evaluate(() => {
+  window.lateness = [];
+  const show = showView;
+  // A function of the page, at the top of its script.
+  showView = () => {
+    show();
+    if (view.at_us === window.shownLast) return;
+    const shown = window.shownLast = view.at_us;
+    requestAnimationFrame(() => { window.lateness.push(performance.timeOrigin + performance.now() - shown / 1000); });
+  };
+});
+await pause(VIEWS_S);
+const lateness = (await page.evaluate(() => window.lateness)).sort((a, b) => a - b);
+console.log(`${lateness.length} views in ${VIEWS_S} s`);
+console.log(`${"from step to pixel, median".padEnd(52)} ${at(lateness, .5).toFixed(2).padStart(9)} ms`);
+told("from step to pixel, p95", at(lateness, .95), "ms", 100);
+console.log(`${"from step to pixel, p99".padEnd(52)} ${at(lateness, .99).toFixed(2).padStart(9)} ms`);
+
+const one = await share(rig);
+const screens = await Promise.all(Array.from({ length: SCREENS }, () => listen(rig)));
+const fifty = await share(rig);
+for (const screen of screens) screen.destroy();
+console.log(`${"the cycle's time on screens, one connected".padEnd(52)} ${one.toFixed(2).padStart(9)} %`);
+told(`the cycle's time on screens, ${SCREENS} more`, fifty, "%", 1);
+
+const drawn = [];
+const bytes = (await (await fetch(rig.url + "/")).arrayBuffer()).byteLength;
+for (let visit = 0; visit < VISITS; visit += 1) {
+  const context = await browser.newContext();
+  const fresh = await context.newPage();
+  await fresh.goto(rig.url + "/", { waitUntil: "commit" });
+  const paint = await fresh.waitForFunction(() => performance.getEntriesByName("first-contentful-paint")[0]?.startTime);
+  drawn.push(await paint.jsonValue());
+  await context.close();
+}
+drawn.sort((a, b) => a - b);
+told("first page, bytes", bytes / 1000, "kB", 150);
+told("first page, drawn, median", at(drawn, .5), "ms", 200);
+console.log(`${"first page, drawn, p99".padEnd(52)} ${at(drawn, .99).toFixed(2).padStart(9)} ms`);
+
+await browser.close();
+await rig.kill();
+process.exit(missed ? 1 : 0);
