@@ -75,6 +75,7 @@ pub fn run(config: &Path, db: &Path, args: &StoryArgs) -> anyhow::Result<i32> {
         lot: format!("story {}", lot.to_string_lossy()),
         recipe: args.recipe.clone(),
         count: Some(script.parts),
+        retest: None,
         truth: args.truth.clone(),
         json: false,
         study: None,

@@ -251,21 +251,6 @@ impl Mechanism {
         self.disturbed.contains(&fault)
     }
 
-    /// With every valve off (an abort, a module that fell to its safe outputs) only springs move.
-    fn any_valve_on(&self) -> bool {
-        let valves = [
-            Out::EscapementRelease,
-            Out::PusherExtend,
-            Out::ClampClose,
-            Out::ClampOpen,
-            Out::ProbeLift,
-            Out::SortZLower,
-            Out::GripperClose,
-            Out::GripperRelease,
-        ];
-        valves.iter().any(|valve| self.commands.is_on(*valve))
-    }
-
     fn has_air(&self) -> bool {
         !self.is_disturbed(Fault::Air) && !self.is_disturbed(Fault::Estop)
     }

@@ -9,7 +9,7 @@ use crate::hmi::Asked;
 use crate::station::ledger::Kind;
 use crate::station::packml::State;
 use crate::units::{RigTime, Span};
-use crate::view::Order;
+use crate::view::{By, Order};
 use rigsim::SharedRig;
 use rigsim::journal::Entry;
 use serde_json::json;
@@ -148,7 +148,16 @@ async fn ask(order: &Order, orders: &mpsc::Sender<Asked>) -> Result<(), String> 
     let order = order.clone();
     let gone = |_| "the run has ended".to_owned();
     orders
-        .send(Asked { order, answer })
+        .send(Asked {
+            order,
+            by: By {
+                who: "script".to_owned(),
+                role: "engineer".to_owned(),
+                origin: "story".to_owned(),
+            },
+            denied: None,
+            answer,
+        })
         .await
         .map_err(|_| "the run has ended".to_owned())?;
     answered.await.map_err(gone)?.map_err(|why| why.en)
@@ -170,7 +179,12 @@ impl Seen {
             }
             Event::Left(left) => self.left.extend(self.numbers.get(&left.ordinal)),
             Event::Landed(landed) => self.landed.extend(self.numbers.get(&landed.part.ordinal)),
-            Event::Interrupted(_) | Event::Standing(_) | Event::Calibrated(_) => {}
+            Event::Interrupted(_)
+            | Event::Standing(..)
+            | Event::Checked(..)
+            | Event::Ordered(..)
+            | Event::Uses(_)
+            | Event::Calibrated(_) => {}
         }
     }
 

@@ -72,8 +72,13 @@ impl Told {
                 }
             }
             Event::Landed(landed) => self.landed(landed),
-            Event::Standing(standing) => self.standing(standing, now),
-            Event::State(_) | Event::Left(_) | Event::Calibrated(_) => {}
+            Event::Standing(standing, _) => self.standing(standing, now),
+            Event::State(_)
+            | Event::Left(_)
+            | Event::Checked(..)
+            | Event::Ordered(..)
+            | Event::Uses(_)
+            | Event::Calibrated(_) => {}
         }
     }
 

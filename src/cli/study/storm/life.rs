@@ -5,7 +5,7 @@ use super::operator::{Operator, Said};
 use super::weather::Life;
 use crate::bus::Pace;
 use crate::cli::rig::{PaceArg, RigArgs};
-use crate::cli::run::{self, Controls, RunArgs, Stage};
+use crate::cli::run::{self, Controls, Orders, RunArgs, Stage};
 use crate::config::Plant;
 use crate::gauge::{Calibration, Recipe};
 use crate::units::RigTime;
@@ -77,6 +77,7 @@ impl Shop<'_> {
             lot: lot.to_owned(),
             recipe: self.recipe.name.clone(),
             count: Some(count),
+            retest: None,
             truth: None,
             json: false,
             study: None,
@@ -177,7 +178,14 @@ impl Shop<'_> {
                 tokio::spawn(operator.rage());
             }
             let bench = (self.plant, self.recipe);
-            let run = run::run_lot(bench, self.config, self.db, &args, controls, asked);
+            let run = run::run_lot(
+                bench,
+                self.config,
+                self.db,
+                &args,
+                controls,
+                Orders::Screens(asked),
+            );
             let until = RigTime(life.killed_after_us.unwrap_or(LONGEST_US));
             let end = tokio::select! {
                 biased;

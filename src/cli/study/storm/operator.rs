@@ -8,7 +8,7 @@ use crate::hmi::Asked;
 use crate::station::orders::JOGS;
 use crate::station::packml::State;
 use crate::units::{RigTime, Span};
-use crate::view::{ORDERS, Order, View};
+use crate::view::{By, ORDERS, Order, View};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::{mpsc, oneshot, watch};
@@ -102,6 +102,7 @@ impl Operator {
             motion: Some(self.dice.one(&JOGS).0.into()),
             alarm: None,
             minutes: None,
+            reason: Some("storm".into()),
         }
     }
 
@@ -109,7 +110,17 @@ impl Operator {
     async fn give(&self, state: String, order: Order) -> Option<()> {
         let (answer, answered) = oneshot::channel();
         let word = order.order.clone();
-        self.orders.send(Asked { order, answer }).await.ok()?;
+        let asked = Asked {
+            order,
+            by: By {
+                who: "storm".to_owned(),
+                role: "engineer".to_owned(),
+                origin: "study".to_owned(),
+            },
+            denied: None,
+            answer,
+        };
+        self.orders.send(asked).await.ok()?;
         let answer = answered.await.ok()?;
         let said = Said {
             at: self.pace.now(),

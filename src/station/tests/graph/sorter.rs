@@ -1,4 +1,4 @@
-//! The sorter: eight states, eleven inputs, and what falls.
+//! The sorter: nine states, eleven inputs, and what falls.
 
 use super::{Graph, SEEN, Seen, show, truths};
 use crate::gauge::verdict::Bin;
@@ -8,6 +8,7 @@ use crate::station::ledger::Ledger;
 use crate::station::moves::Move;
 use crate::station::sort::Sort;
 use crate::station::tests::Shop;
+use crate::station::wants::Wants;
 use crate::units::{RigTime, Span};
 
 fn name(sort: Sort) -> &'static str {
@@ -19,12 +20,13 @@ fn name(sort: Sort) -> &'static str {
         Sort::Loaded => "Loaded",
         Sort::Carrying(_) => "Carrying",
         Sort::OverBin(..) => "OverBin",
+        Sort::LettingGo(..) => "LettingGo",
         Sort::Opening => "Opening",
     }
 }
 
 /// Every state, and the point of the axis that it has to do with.
-fn states(shop: &Shop) -> [(Sort, AxisStation); 8] {
+fn states(shop: &Shop) -> [(Sort, AxisStation); 9] {
     let over = RigTime(shop.now.0 - 500);
     let bin = AxisStation::Bin(Bin::Pass);
     [
@@ -35,11 +37,12 @@ fn states(shop: &Shop) -> [(Sort, AxisStation); 8] {
         (Sort::Loaded, bin),
         (Sort::Carrying(Bin::Pass), bin),
         (Sort::OverBin(Bin::Pass, over), bin),
+        (Sort::LettingGo(Bin::Pass, 0), bin),
         (Sort::Opening, bin),
     ]
 }
 
-/// A part is in the gripper from `Loaded` to `OverBin`; one that was let go may fall, since long or not.
+/// A part is in the gripper from `Loaded` to `LettingGo`; one that was let go may fall, since long or not.
 fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
     let mut ledger = Ledger::default();
     let mut lift = || {
@@ -50,7 +53,10 @@ fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
     if falling {
         lift();
     }
-    let carries = matches!(sort, Sort::Loaded | Sort::Carrying(_) | Sort::OverBin(..));
+    let carries = matches!(
+        sort,
+        Sort::Loaded | Sort::Carrying(_) | Sort::OverBin(..) | Sort::LettingGo(..)
+    );
     if falling {
         ledger.drop_over(Bin::Pass, since, 0);
     }
@@ -70,7 +76,7 @@ fn the_sorter_is_the_drawing() {
     let mut graph = Graph::default();
     let mut shop = Shop::at_rest();
     let table = shop.wiring.axis.clone();
-    for number in 0..8 {
+    for number in 0..9 {
         let (_, station) = states(&shop)[number];
         shop.stands(Move::AxisTo(station));
         shop.carried_out(Move::AxisTo(station));
@@ -96,6 +102,11 @@ fn the_sorter_is_the_drawing() {
                     let next = sort.step(&mut turn, &table, testing);
                     graph.add(name(sort), name(next), &shop.wants);
                     assert!(shop.ledger.balances());
+                    if matches!(sort, Sort::LettingGo(..)) && !falling {
+                        let driven = sort.driven(Move::GripperOpen, &mut shop.ledger, shop.now);
+                        graph.add(name(sort), name(driven), &Wants::default());
+                        assert!(shop.ledger.balances());
+                    }
                 }
             }
         }
@@ -103,7 +114,7 @@ fn the_sorter_is_the_drawing() {
     graph.is(
         "sorter",
         include_str!("../golden/sorter.dot"),
-        8 * 9 * 16 * 64,
+        9 * 9 * 16 * 64 + 9 * 16 * 32,
     );
     graph.is_told_by(FACTS, include_str!("../sort.rs"));
 }
@@ -137,8 +148,13 @@ const FACTS: &[(&str, &str, &str)] = &[
     ),
     (
         "OverBin",
-        "Opening",
+        "LettingGo",
         "a_part_is_let_go_only_when_its_record_is_durable",
+    ),
+    (
+        "LettingGo",
+        "Opening",
+        "a_part_is_in_the_fingers_until_their_opening_is_driven",
     ),
     (
         "Opening",

@@ -5,7 +5,7 @@
 use super::Case;
 use crate::cli::study::storm::life::{EPOCH_US, End, Lived};
 use crate::cli::study::storm::operator::Said;
-use crate::history::{Alarm, Moment, Part};
+use crate::history::{Alarm, AlarmState, Moment, Part};
 use crate::units::{RigTime, Span};
 use rigsim::truth::{BodyTruth, PartTruth, Place};
 use serde_json::json;
@@ -89,6 +89,10 @@ fn alarm(lot: &str, code: &str, raised_s: u64) -> Alarm {
         text: code.into(),
         raised: at(raised_s),
         cleared: None,
+        acknowledged: None,
+        acknowledged_by: None,
+        shelf: None,
+        state: AlarmState::Unacknowledged,
     }
 }
 
