@@ -95,7 +95,12 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             };
         }
         match result {
-            Ok(first) if self.trust.on_probation(address) && command.repeatable() => {
+            // Terminals move: a reading in the middle of a ramp would never agree with the one after it.
+            Ok(first)
+                if self.trust.on_probation(address)
+                    && command.repeatable()
+                    && !command.is_analog_input() =>
+            {
                 let asked_at = times.asked_at;
                 self.repeated(command, address, request, frame, (first, asked_at))
                     .await
