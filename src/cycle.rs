@@ -12,6 +12,7 @@ mod desk;
 mod foresight;
 pub mod mimic;
 mod patience;
+mod profile;
 mod publish;
 mod rota;
 mod still;
@@ -39,6 +40,8 @@ use crate::station::wants::{Checked, Ending, Inputs, Interrupted, Wants};
 use crate::units::{RigTime, Span};
 use crate::view::{self, Answered, View};
 use patience::Patience;
+pub use profile::Profile;
+use profile::lap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
@@ -126,31 +129,6 @@ pub struct Cycle {
     worst_age: Span,
     /// The motion that the guard refused last, until another one is driven.
     refused: Option<view::MotionView>,
-}
-
-/// Wall time of the phases of all turns, seconds; what is left of a run is bus, history and, where there
-/// is one, the simulator.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Profile {
-    /// Turns.
-    pub turns: u64,
-    /// Answers into the image.
-    pub scan_s: f64,
-    /// The station.
-    pub step_s: f64,
-    /// The guard.
-    pub clear_s: f64,
-    /// Outputs to commands.
-    pub apply_s: f64,
-    /// The view for screens.
-    pub publish_s: f64,
-}
-
-/// Adds the time since `from` to `total` and begins anew.
-fn lap(total: &mut f64, from: &mut Instant) {
-    let now = Instant::now();
-    *total += now.duration_since(*from).as_secs_f64();
-    *from = now;
 }
 
 impl Cycle {

@@ -74,17 +74,12 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             return Err(Trouble::NeverSilent);
         }
         self.exchange.discard().await?;
-        times.asked_at = self.now();
         let Some(address) = command.address() else {
+            times.asked_at = self.now();
             return self.tell(request).await;
         };
-        let result = self.ask(command, request, frame, times).await;
-        self.weigh(address, frame, &result);
-        if let Err(Trouble::Broken(_)) = result {
-            return result;
-        }
+        let result = self.attempt(command, address, request, frame, times).await;
         if !is_answer(&result) {
-            self.find_step(command, address).await?;
             return result;
         }
         let checksum = self.settings.checksum;
@@ -95,18 +90,30 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             };
         }
         match result {
-            // Terminals move: a reading in the middle of a ramp would never agree with the one after it.
-            Ok(first)
-                if self.trust.on_probation(address)
-                    && command.repeatable()
-                    && !command.is_analog_input() =>
-            {
-                let asked_at = times.asked_at;
-                self.repeated(command, address, request, frame, (first, asked_at))
+            Ok(first) if self.trust.on_probation(address) && command.repeatable() => {
+                self.repeated(command, address, request, frame, times, first)
                     .await
             }
             result => result,
         }
+    }
+
+    /// Asked once, and led back into step if that was no answer.
+    async fn attempt(
+        &mut self,
+        command: &Command,
+        address: Address,
+        request: &[u8],
+        frame: &mut Frame,
+        times: &mut Times,
+    ) -> Result<Reply, Trouble> {
+        times.asked_at = self.now();
+        let result = self.ask(command, request, frame, times).await;
+        self.weigh(address, frame, &result);
+        if !is_answer(&result) && !matches!(result, Err(Trouble::Broken(_))) {
+            self.find_step(command, address).await?;
+        }
+        result
     }
 
     /// A whole answer speaks for its address, damage against it. Silence and an echo say nothing of a second
@@ -119,33 +126,40 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
         }
     }
 
-    /// The first answer and when it was asked, if the module says what agrees with it when asked again.
+    /// The first answer, if the module says what agrees with it when asked again. A terminal that moves does not: of
+    /// three answers the second is believed if it lies between the others.
     async fn repeated(
         &mut self,
         command: &Command,
         address: Address,
         request: &[u8],
         frame: &mut Frame,
-        (first, asked_at): (Reply, RigTime),
+        times: &mut Times,
+        first: Reply,
     ) -> Result<Reply, Trouble> {
-        let mut again = Frame::new();
+        let mut again = (Frame::new(), Times::default());
         let second = self
-            .ask(command, request, &mut again, &mut Times::default())
+            .attempt(command, address, request, &mut again.0, &mut again.1)
             .await;
-        self.weigh(address, &again, &second);
-        if let Ok(second) = second {
-            let apart_ms = self.now().since(asked_at).0.div_ceil(1_000);
-            if command.agree(&first, &second, apart_ms) {
+        if let Ok(second) = &second {
+            let apart_ms = self.now().since(times.asked_at).0.div_ceil(1_000);
+            if command.agree(&first, second, apart_ms) {
                 return Ok(first);
             }
-            self.trust.damaged(address);
-            return Err(Trouble::Contradicted);
         }
-        *frame = again;
-        if !is_answer(&second) && !matches!(second, Err(Trouble::Broken(_))) {
-            self.find_step(command, address).await?;
+        (*frame, *times) = again;
+        let second = second?;
+        if command.is_analog_input() {
+            let mut last = Frame::new();
+            let third = self
+                .attempt(command, address, request, &mut last, &mut Times::default())
+                .await?;
+            if command.between(&first, &second, &third) {
+                return Ok(second);
+            }
         }
-        second
+        self.trust.damaged(address);
+        Err(Trouble::Contradicted)
     }
 
     fn now(&self) -> RigTime {

@@ -4,12 +4,12 @@
 //! reply by its form and its checksum, and now and then one passes, for a checksum of eight bits catches 255 in 256.
 //! So the damage that is seen gives the rest away. An address whose reply was damaged is on probation: what it says
 //! is believed only when, asked again, it says what agrees ([`crate::dcon::Command::agree`]), until
-//! [`PROBATION`] answers in a row were whole. A line in order pays nothing. Analog inputs are left out: they may move
-//! between two answers.
+//! [`PROBATION`] answers in a row were whole. A line in order pays nothing. An analog input, which may
+//! move, is asked a third time and believed if it lies between.
 //!
 //! What is left: a share c of the replies of an address damaged such that a share p of them passes, and a share d of
 //! all damaged visibly, gives c p (1 - d)^100 readings falsely believed. With every fault of the storm at 1 % that is less
-//! than one in ten million, and n c p of the analog ones; `cargo bench --bench line_storm` prints it. For two modules that always answer
+//! than one in ten million; `cargo bench --bench line_storm` prints it. For two modules that always answer
 //! together c is 1 and d nearly: it ends with the first reply.
 
 use crate::dcon::Address;

@@ -87,19 +87,18 @@ async fn put_right(
 /// A disagreement that the controller itself has left behind.
 fn left_behind(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option<Left> {
     let wired = wiring.module(module);
-    let (what, remedies) = match mismatch.what {
-        "host watchdog" => {
-            let enable = Common::WriteWatchdog {
-                enabled: wired.watchdog,
-                timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
-            };
-            let both = [Common::ClearWatchdogStatus, enable];
-            (What::Tripped, both.map(|it| it.to(wired.address)).into())
-        }
-        "channel mask" if mismatch.found == format!("{:02X}", reference::MASK) => {
-            (What::Masked, mismatch.remedy.into_iter().collect())
-        }
-        _ => return None,
+    let masked = mismatch.found == format!("{:02X}", reference::MASK);
+    let (what, remedies) = if mismatch.what == "host watchdog" {
+        let enable = Common::WriteWatchdog {
+            enabled: wired.watchdog,
+            timeout_tenths: (wiring.bus.host_watchdog_ms / 100.0).round() as u8,
+        };
+        let both = [Common::ClearWatchdogStatus, enable];
+        (What::Tripped, both.map(|it| it.to(wired.address)).into())
+    } else if mismatch.what == "channel mask" && masked {
+        (What::Masked, mismatch.remedy.into_iter().collect())
+    } else {
+        return None;
     };
     Some(Left {
         module,

@@ -10,8 +10,8 @@
 //! | event counter | upwards, 100 Hz |
 //! | everything else | nothing |
 //!
-//! An input that was switched between the two does not agree with itself; nor does a frequency that fell. Whoever
-//! asks must ask once more.
+//! An input that was switched between the two does not agree with itself; nor does a frequency that fell, nor a terminal
+//! in the middle of a ramp or a step. Such a reading is true when it lies between the ones before and after it.
 
 use super::{Command, Reading, Reply, TypeCode};
 
@@ -39,6 +39,31 @@ impl Command {
                 .all(|(first, second)| self.at_rest(first, second)),
             (first, second) => first == second,
         }
+    }
+
+    /// Whether analog readings lie between those before and after them: of a terminal that moves one way.
+    pub fn between(&self, before: &Reply, middle: &Reply, after: &Reply) -> bool {
+        match (before, middle, after) {
+            (Reply::Reading(before), Reply::Reading(middle), Reply::Reading(after)) => {
+                self.on_the_way(before, middle, after)
+            }
+            (Reply::Readings(before), Reply::Readings(middle), Reply::Readings(after)) => before
+                .iter()
+                .zip(middle.iter())
+                .zip(after.iter())
+                .all(|((before, middle), after)| self.on_the_way(before, middle, after)),
+            (_, _, _) => false,
+        }
+    }
+
+    /// No farther from either end than the ends are from each other, but for noise.
+    fn on_the_way(&self, before: &Reading, middle: &Reading, after: &Reading) -> bool {
+        let whole = self.distance(before, after).unwrap_or(0.0) + READING_SHARE;
+        let near = |end| match self.distance(end, middle) {
+            Some(share) => share <= whole,
+            None => false,
+        };
+        self.at_rest(before, middle) || self.at_rest(middle, after) || near(before) && near(after)
     }
 
     fn at_rest(&self, first: &Reading, second: &Reading) -> bool {
@@ -99,6 +124,24 @@ mod tests {
         assert!(!agree(hex, &all("4000"), &all("4050"), 3));
         assert!(agree(hex, &all("    "), &all("    "), 3));
         assert!(!agree(hex, &all("    "), &all("0000"), 3));
+    }
+
+    #[test]
+    fn a_terminal_that_moves_is_believed_between_its_neighbours() {
+        let form = InputForm::eight(DataFormat::Engineering, TypeCode(0x08));
+        let channel = Channel::new(0).unwrap();
+        let volts = AnalogIn::ReadOne { channel, form }.to(Address(1));
+        let between = |texts: [&str; 3]| {
+            let said = |text: &str| volts.decode(text.as_bytes(), false).unwrap();
+            let [before, middle, after] = texts.map(said);
+            volts.between(&before, &middle, &after)
+        };
+        assert!(between([">+01.000\r", ">+02.000\r", ">+03.000\r"]), "ramp");
+        assert!(between([">+01.000\r", ">+05.000\r", ">+05.000\r"]), "step");
+        assert!(between([">+09.000\r", ">+02.000\r", ">+02.010\r"]));
+        assert!(!between([">+01.000\r", ">+05.000\r", ">+01.000\r"]));
+        assert!(!between([">+01.000\r", ">-03.000\r", ">+02.000\r"]));
+        assert!(!between([">+01.000\r", ">+9999.9\r", ">+02.000\r"]));
     }
 
     #[test]

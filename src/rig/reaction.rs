@@ -5,8 +5,9 @@
 //!
 //! - the rest of that poll: answered at the last moment, said again and confirmed by the name of its module, each at
 //!   the last moment, as after a module that was silent: its late reply could be taken for the contact's,
-//! - one other transaction, the longest of that line, failing: request, time-out, the question to the silent module
-//!   who is there, not answered either, and a wait for silence, broken once by a late reply,
+//! - one other transaction, the longest of that line, failing: request (of analog inputs on probation the third),
+//!   time-out, the question to the silent module who is there, not answered either, and a wait for silence, broken
+//!   once by a late reply,
 //! - the poll that sees the contact open, as long as the one before,
 //! - one write to each module of the line that has outputs, answered at the last moment,
 //!
@@ -97,7 +98,9 @@ impl Wiring {
             self.digital_allowance()
         };
         let silence = self.wire(line, longest) + allowance;
-        self.answered(line, longest, allowance) + self.question(line) + silence
+        let asked = self.answered(line, longest, allowance);
+        let again = if analog { asked + asked } else { Span(0) };
+        asked + again + self.question(line) + silence
     }
 
     /// A transaction of this line that is answered at the last moment, with the rest after it.

@@ -1,6 +1,7 @@
 //! Damage seen at an address gives away the damage that passes for a reply.
 
 use super::*;
+use crate::dcon::{AnalogIn, Channel, DataFormat, InputForm, TypeCode};
 
 /// A count whose last checksum digit is wrong.
 const DAMAGED: &[u8] = b">0000001ED5\r";
@@ -62,6 +63,32 @@ fn the_probation_ends_with_a_hundred_whole_answers() {
     assert!(got[1..].iter().all(|answer| answer.outcome.is_ok()));
     // Fifty are heard twice, ten once.
     assert_eq!(asked, 1 + usize::from(PROBATION) + 10);
+}
+
+#[test]
+fn an_input_that_moves_is_believed_between_two_others() {
+    let form = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
+    let channel = Channel::new(0).unwrap();
+    let volts = AnalogIn::ReadOne { channel, form }.to(Address(1));
+    let ramp = |last| {
+        let script = vec![
+            say(b">1000FE\r"),
+            say(b">1000FF\r"),
+            say(b">200000\r"),
+            last,
+        ];
+        asked_of(script, &[(volts, 1), (volts, 1)])
+    };
+    let (got, asked) = ramp(say(b">300001\r"));
+    assert!(matches!(got[0].outcome, Err(LineError::Reply { .. })));
+    assert_eq!((&*got[1].raw, asked), (">200000", 4));
+    assert!(got[1].outcome.is_ok(), "{got:?}");
+    assert!(got[1].answered_at.since(got[1].asked_at) < Span(3_000));
+    let (got, _) = ramp(say(b">1000FF\r"));
+    assert!(matches!(
+        got[1].outcome,
+        Err(LineError::Contradicted { .. })
+    ));
 }
 
 #[test]
