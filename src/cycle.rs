@@ -9,6 +9,7 @@
 
 mod commission;
 mod desk;
+mod event;
 mod foresight;
 pub mod mimic;
 mod patience;
@@ -32,13 +33,12 @@ use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
 use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
 use crate::station::act::{Job, JobDone, Read};
-use crate::station::annunciator::Standing;
-use crate::station::gates::Uses;
 use crate::station::packml;
 use crate::station::trouble::Alarm;
-use crate::station::wants::{Checked, Ending, Inputs, Interrupted, Wants};
+use crate::station::wants::{Ending, Inputs, Wants};
 use crate::units::{RigTime, Span};
-use crate::view::{self, Answered, View};
+use crate::view::{self, View};
+pub use event::Event;
 use patience::Patience;
 pub use profile::Profile;
 use profile::lap;
@@ -50,35 +50,6 @@ use traffic::{Purpose, Traffic};
 
 /// With nothing to wait for, a turn begins after this long all the same.
 const IDLE: Span = Span::ms(50);
-
-/// What a run leaves for the history, in the order it happened.
-#[derive(Debug, Clone)]
-pub enum Event {
-    /// The outer machine has entered a state.
-    State(packml::State),
-    /// A part was judged.
-    Judged(Box<crate::station::wants::Judged>),
-    /// Its beam saw it.
-    Landed(crate::station::wants::Landed),
-    /// It left the nest.
-    Left(crate::station::wants::Left),
-    /// A judged part goes to retest all the same.
-    Interrupted(Interrupted),
-    /// An alarm was raised.
-    Alarm(Alarm, RigTime),
-    /// The list of alarms that stand has changed.
-    Standing(Vec<Standing>, RigTime),
-    /// Calibration and golden parts are complete.
-    Calibrated(Box<crate::gauge::Calibration>),
-    /// A golden check has come out.
-    Checked(Checked, RigTime),
-    /// An order was answered.
-    Ordered(Box<Answered>, RigTime),
-    /// Uses of what wears, since the start.
-    Uses(Uses),
-    /// The lot itself began.
-    LotBegan(RigTime),
-}
 
 /// What the cycle shares with the outside.
 #[derive(Debug)]

@@ -147,6 +147,11 @@ impl Mechanism {
         self.axis_at = None;
     }
 
+    /// The drive of the axis has been reset, and is watched from then on.
+    pub fn drive_reset(&mut self, at: RigTime) {
+        self.watch.drive_reset(at);
+    }
+
     /// A new part: its strokes may be tried again.
     pub fn new_part(&mut self) {
         self.tried.clear();

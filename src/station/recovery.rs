@@ -90,6 +90,11 @@ impl Recovery {
         false
     }
 
+    /// The reset of the drive ends in this turn.
+    pub fn drive_reset(&self, now: RigTime) -> bool {
+        matches!(self.stage, Stage::Drive(since) if now.since(since) >= DRIVE_RESET)
+    }
+
     /// The guard refused what was asked for; false when there is nothing else to try first.
     pub fn refused(&mut self, movement: Move) -> bool {
         if self.asked != Some(movement) || self.stage != Stage::Home {

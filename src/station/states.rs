@@ -162,6 +162,9 @@ impl Station {
             return self.finish(now, inputs, wants, false);
         }
         let (mut recovery, releasing) = (self.recovery.clone(), self.releasing);
+        if recovery.drive_reset(now) {
+            self.mechanism.drive_reset(now);
+        }
         let home = recovery.step(&mut self.turn(now, &inputs, wants), releasing);
         self.recovery = recovery;
         if home {

@@ -1,8 +1,8 @@
 //! Actuators that stand: each must go on showing the end where it stopped, and never both ends at once.
 //!
 //! A look that differs for less than [`DEBOUNCE`] is a bounce: counted, not believed; while it is not known which, no
-//! motion begins. A sensor that was
-//! not read says nothing here; that is trouble of its line.
+//! motion begins. A sensor that was not read says nothing here; that is trouble of its line. The drive of the axis is
+//! watched from its reset on.
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
 use super::moves::Move;
@@ -24,8 +24,8 @@ struct Stand {
 pub struct Watch {
     stands: Vec<Stand>,
     bounces: u64,
-    /// The drive's alarm was told; it stays on until a reset of the drive.
-    drive_told: bool,
+    /// When the drive of the axis was reset; an alarm that it showed before that is being dealt with.
+    drive_reset: Option<RigTime>,
 }
 
 impl Watch {
@@ -48,6 +48,12 @@ impl Watch {
     /// Nothing stands.
     pub fn forget(&mut self) {
         self.stands.clear();
+        self.drive_reset = None;
+    }
+
+    /// The drive of the axis has been reset, and is watched from then on.
+    pub fn drive_reset(&mut self, at: RigTime) {
+        self.drive_reset = Some(at);
     }
 
     /// An end sensor differs from where its actuator stands, and it is not known yet whether that is a bounce.
@@ -65,13 +71,11 @@ impl Watch {
     pub fn look(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let seen = |point: DigitalIn| image.input(point, now, SENSOR_AGE);
         let mut alarms = Vec::new();
-        match seen(DigitalIn::AxisAlarm) {
-            Some(true) if !self.drive_told => {
-                self.drive_told = true;
-                alarms.push(Alarm::axis_drive());
-            }
-            Some(false) => self.drive_told = false,
-            Some(true) | None => {}
+        let since = self.drive_reset.zip(image.input_at(DigitalIn::AxisAlarm));
+        let watched = since.is_some_and(|(reset, read)| read >= reset);
+        if watched && seen(DigitalIn::AxisAlarm) == Some(true) {
+            self.drive_reset = None;
+            alarms.push(Alarm::axis_drive());
         }
         let bounces = &mut self.bounces;
         self.stands.retain_mut(|stand| {

@@ -1,0 +1,39 @@
+//! What a run leaves for the history.
+
+use crate::gauge::Calibration;
+use crate::station::annunciator::Standing;
+use crate::station::gates::Uses;
+use crate::station::packml;
+use crate::station::trouble::Alarm;
+use crate::station::wants::{Checked, Interrupted, Judged, Landed, Left};
+use crate::units::RigTime;
+use crate::view::Answered;
+
+/// What a run leaves for the history, in the order it happened.
+#[derive(Debug, Clone)]
+pub enum Event {
+    /// The outer machine has entered a state.
+    State(packml::State),
+    /// A part was judged.
+    Judged(Box<Judged>),
+    /// Its beam saw it.
+    Landed(Landed),
+    /// It left the nest.
+    Left(Left),
+    /// A judged part goes to retest all the same.
+    Interrupted(Interrupted),
+    /// An alarm was raised.
+    Alarm(Alarm, RigTime),
+    /// The list of alarms that stand has changed.
+    Standing(Vec<Standing>, RigTime),
+    /// Calibration and golden parts are complete.
+    Calibrated(Box<Calibration>),
+    /// A golden check has come out.
+    Checked(Checked, RigTime),
+    /// An order was answered.
+    Ordered(Box<Answered>, RigTime),
+    /// Uses of what wears, since the start.
+    Uses(Uses),
+    /// The lot itself began.
+    LotBegan(RigTime),
+}
