@@ -273,11 +273,11 @@ mod tests {
     use crate::guard::Actuator;
     use crate::rig::point::{DigitalIn, DigitalOut};
     use crate::station::orders::JOGS;
-    use crate::station::packml::Mode;
+    use crate::station::packml::{Mode, State};
     use crate::view::{ORDERS, Order};
 
     #[test]
-    fn every_signal_motion_actuator_and_mode_has_a_word_on_the_screen() {
+    fn every_signal_motion_actuator_mode_and_state_has_a_word_on_the_screen() {
         let table = include_str!("../hmi/page/words.json");
         let table: std::collections::BTreeMap<String, serde_json::Value> =
             serde_json::from_str(table).unwrap();
@@ -286,7 +286,12 @@ mod tests {
         let keys = (signals.map(|it| format!("signal.{it}")))
             .chain(JOGS.iter().map(|(name, _)| format!("jog.{name}")))
             .chain(Actuator::names().map(|it| format!("actuator.{it}")))
-            .chain(Mode::ALL.iter().map(|it| format!("mode.{}", it.name())));
+            .chain(Mode::ALL.iter().map(|it| format!("mode.{}", it.name())))
+            .chain(
+                State::ALL
+                    .iter()
+                    .map(|it| format!("state.{}", it.name().to_lowercase())),
+            );
         let missing: Vec<String> = keys.filter(|it| !table.contains_key(it)).collect();
         assert!(missing.is_empty(), "{missing:?}");
     }
