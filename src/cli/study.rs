@@ -29,13 +29,16 @@ mod error;
 mod exception;
 mod figure;
 mod fleet;
+mod gantt;
 mod history;
+mod journal;
 mod kill;
 mod lot;
 mod method;
 mod output;
 mod pace;
 mod parameters;
+mod path;
 mod scatter;
 mod sorting;
 mod stop;
@@ -186,7 +189,7 @@ pub struct StudyArgs {
     /// One JSON object per figure, then a summary
     #[arg(long)]
     pub json: bool,
-    /// Also writes NAME.csv and NAME.svg into this directory
+    /// Also writes NAME.csv and NAME.svg into this directory; `cycle` adds cycle-gantt.svg, one part through all stations
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Lots, with seeds 1 to N; `pace` runs seed 1 N times
@@ -251,6 +254,9 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         parts: args.parts.unwrap_or(parts),
     };
     let report = study.report(&order)?;
+    if let (Study::Cycle, Some(folder)) = (study, &args.out) {
+        written(&folder.join("cycle-gantt.svg"), &gantt::svg(&order)?)?;
+    }
     published(&report, args)
 }
 

@@ -12,6 +12,7 @@ use super::figure::{Bar, Figure};
 use super::fleet::Order;
 use super::lot::{Lot, Part};
 use super::output::Report;
+use super::path;
 use crate::quality::Spread;
 use crate::quality::spread::median;
 
@@ -55,6 +56,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let groups = vec![
         times(&lots),
         bound(&lots, mean_bar),
+        path::path(order, &lots)?,
         pieces,
         bins::machine(&lots),
     ];

@@ -9,16 +9,14 @@
 use super::chart::Chart;
 use super::figure::{Bar, Figure};
 use super::fleet::{Folder, Order};
+use super::journal::{self, Entry};
 use super::output::Report;
 use crate::config::Plant;
 use crate::quality::Ordered;
 use crate::rig::point::DigitalOut;
 use crate::rig::wiring::Wiring;
-use anyhow::{Context, bail};
-use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 /// Seconds after a part has left the nest over which the stops are spread: a little more than a cycle.
 const CYCLE_S: f64 = 2.0;
@@ -46,22 +44,6 @@ struct Told {
     stops: Vec<Stop>,
     touched: u64,
     unfinished: u64,
-}
-
-/// An entry of the journal; others are passed over.
-#[derive(Debug, Deserialize)]
-#[serde(tag = "type", rename_all = "snake_case")]
-enum Entry {
-    Output {
-        t_us: u64,
-        module: String,
-        bits: u16,
-    },
-    Struck {
-        t_us: u64,
-        fault: String,
-    },
-    Expired {},
 }
 
 /// Plays the lots and draws the report up.
@@ -187,39 +169,9 @@ fn played(
     lot: u64,
     slow: bool,
 ) -> anyhow::Result<Told> {
-    let told = || format!("the story of lot {lot}");
-    let (file, journal) = (folder.join("story.txt"), folder.join("journal.jsonl"));
     let instants = instants(order, lot);
-    std::fs::write(&file, script(&instants, slow)).with_context(told)?;
-    let output = Command::new(&order.program)
-        .arg("--config")
-        .arg(&order.config)
-        .arg("--db")
-        .arg(folder.join("history.db"))
-        .args(["--log", "off", "story"])
-        .arg(&file)
-        .args(["--recipe", &order.recipe, "--seed", &(lot + 1).to_string()])
-        .arg("--journal")
-        .arg(&journal)
-        .stdin(Stdio::null())
-        .output()
-        .with_context(told)?;
-    let status = output.status.code();
-    if !matches!(status, Some(0 | 1)) {
-        bail!(
-            "{}: {}",
-            told(),
-            String::from_utf8_lossy(&output.stderr).trim()
-        );
-    }
-    let entries = std::fs::read_to_string(&journal).with_context(told)?;
-    let entries: Vec<Entry> = entries
-        .lines()
-        .map(serde_json::from_str)
-        .collect::<Result<_, _>>()
-        .with_context(told)?;
-    let text = String::from_utf8_lossy(&output.stdout);
-    let reactions = reactions(&entries, &moving(wiring));
+    let played = journal::play(order, folder, &script(&instants, slow), lot + 1)?;
+    let reactions = reactions(&played.entries, &moving(wiring));
     let stops = instants.iter().zip(reactions);
     Ok(Told {
         stops: stops
@@ -228,8 +180,8 @@ fn played(
                 reaction_ms,
             })
             .collect(),
-        touched: text.matches("BODIES TOUCHED").count() as u64,
-        unfinished: u64::from(status != Some(0)),
+        touched: played.text.matches("BODIES TOUCHED").count() as u64,
+        unfinished: u64::from(!played.whole),
     })
 }
 

@@ -1,0 +1,174 @@
+//! One part through all stations, and its neighbours beside it: which output was on when, as SVG.
+//!
+//! Read from the journal of the simulated rig: what an actuator felt. The part that is followed is dark.
+
+use super::fleet::{Folder, Order};
+use super::journal::{self, Entry};
+use crate::config::Plant;
+use crate::rig::point::DigitalOut;
+use crate::rig::wiring::Wiring;
+use anyhow::Context;
+use std::fmt::Write;
+
+/// Parts of the lot; the one that is followed has one before it and one behind.
+const SCRIPT: &str = "# A chart of one part\nparts 8\n";
+/// Parts behind the one that is followed.
+const BEHIND: usize = 3;
+
+/// Rows from top to bottom: label, and outputs of which one at least is on.
+const ROWS: [(&str, &[DigitalOut]); 8] = [
+    ("escapement open", &[DigitalOut::EscapementRelease]),
+    ("pusher at the nest", &[DigitalOut::PusherExtend]),
+    ("jaws closed", &[DigitalOut::ClampClose]),
+    ("probes up", &[DigitalOut::ProbeLift]),
+    ("coil driven", &[DigitalOut::CoilDrive]),
+    ("z down", &[DigitalOut::SortZLower]),
+    ("fingers closed", &[DigitalOut::GripperClose]),
+    (
+        "axis away",
+        &[
+            DigitalOut::AxisPoint0,
+            DigitalOut::AxisPoint1,
+            DigitalOut::AxisPoint2,
+        ],
+    ),
+];
+/// Place of the coil, which is driven several times for a part.
+const COIL: usize = 4;
+/// Place of the probes.
+const PROBES: usize = 3;
+
+const LABEL: f64 = 150.0;
+const PLOT: f64 = 760.0;
+const TOP: f64 = 44.0;
+const ROW: f64 = 26.0;
+
+/// From when to when something was on, seconds.
+type Interval = (f64, f64);
+
+/// Plays a lot and draws it.
+///
+/// # Errors
+/// A lot that could not be played, or one that was too short to follow a part.
+pub fn svg(order: &Order) -> anyhow::Result<String> {
+    let plant = Plant::load(&order.config)?;
+    let folder = Folder::new()?;
+    let played = journal::play(order, &folder.0, SCRIPT, 1)?;
+    let rows = ROWS.map(|(_, outputs)| intervals(&played.entries, &plant.wiring, outputs));
+    let followed = followed(&rows).context("the chart: no part went through all stations")?;
+    Ok(drawn(&rows, &followed))
+}
+
+/// When one of these outputs was on.
+fn intervals(entries: &[Entry], wiring: &Wiring, outputs: &[DigitalOut]) -> Vec<Interval> {
+    let terminals: Vec<_> = outputs
+        .iter()
+        .map(|output| wiring.digital_out(*output))
+        .collect();
+    let (mut since, mut intervals) = (None, Vec::new());
+    for entry in entries {
+        let Entry::Output { t_us, module, bits } = entry else {
+            continue;
+        };
+        let mut own = terminals
+            .iter()
+            .filter(|it| wiring.module(it.module).name == *module)
+            .peekable();
+        if own.peek().is_none() {
+            continue;
+        }
+        let (now, is_on) = (*t_us as f64 * 1e-6, own.any(|it| bits & it.bit() != 0));
+        match (since, is_on) {
+            (None, true) => since = Some(now),
+            (Some(from), false) => {
+                intervals.push((from, now));
+                since = None;
+            }
+            (None, false) | (Some(_), true) => {}
+        }
+    }
+    intervals
+}
+
+/// The interval of each row that belongs to the part: its test, and what came before and after.
+fn followed(rows: &[Vec<Interval>; 8]) -> Option<[Interval; 8]> {
+    let before = |row: usize, at: f64| rows[row].iter().rev().find(|it| it.0 < at).copied();
+    let after = |row: usize, at: f64| rows[row].iter().find(|it| it.0 >= at).copied();
+    let probes = *rows[PROBES].iter().rev().nth(BEHIND)?;
+    let jaws = before(2, probes.0)?;
+    let pusher = before(1, jaws.0)?;
+    let escapement = before(0, pusher.0)?;
+    let z = after(5, pusher.0)?;
+    let fingers = after(6, z.0)?;
+    let axis = after(7, fingers.0)?;
+    Some([escapement, pusher, jaws, probes, probes, z, fingers, axis])
+}
+
+fn drawn(rows: &[Vec<Interval>; 8], followed: &[Interval; 8]) -> String {
+    let (from, to) = (followed[0].0 - 0.2, followed[7].1 + 0.2);
+    let x = |at: f64| LABEL + PLOT * (at.clamp(from, to) - from) / (to - from);
+    let height = TOP + ROW * rows.len() as f64 + 30.0;
+    let mut svg = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:.0}\" height=\"{height:.0}\" font-family=\"sans-serif\" \
+         font-size=\"13\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
+         <text x=\"10\" y=\"22\">one part through all stations, seconds; its neighbours are light</text>\n",
+        LABEL + PLOT + 20.0
+    );
+    let mut second = 0.0;
+    while from + second <= to {
+        let _ = writeln!(
+            svg,
+            "<line x1=\"{0:.1}\" x2=\"{0:.1}\" y1=\"{TOP}\" y2=\"{1:.0}\" stroke=\"#ccc\"/><text x=\"{0:.1}\" y=\"{2:.0}\">{second:.1}</text>",
+            x(from + second),
+            height - 26.0,
+            height - 10.0
+        );
+        second += 0.5;
+    }
+    for (place, ((label, _), intervals)) in ROWS.iter().zip(rows).enumerate() {
+        let y = TOP + ROW * place as f64;
+        let _ = writeln!(svg, "<text x=\"10\" y=\"{:.0}\">{label}</text>", y + 16.0);
+        for it in intervals.iter().filter(|it| it.1 > from && it.0 < to) {
+            let own = match place {
+                COIL => it.0 >= followed[COIL].0 && it.1 <= followed[COIL].1,
+                _ => *it == followed[place],
+            };
+            let fill = if own { "#1f4e79" } else { "#b8cce4" };
+            let _ = writeln!(
+                svg,
+                "<rect x=\"{:.1}\" y=\"{:.0}\" width=\"{:.1}\" height=\"18\" fill=\"{fill}\"/>",
+                x(it.0),
+                y + 3.0,
+                (x(it.1) - x(it.0)).max(1.0)
+            );
+        }
+    }
+    svg + "</svg>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn the_part_is_followed_from_its_escapement_to_its_bin() {
+        let cycle = |n: f64| [0.0, 1.8, 2.1, 2.4, 2.5, 2.6, 3.3, 3.9].map(|at| at + 2.0 * n);
+        let rows: [Vec<Interval>; 8] = std::array::from_fn(|row| {
+            (0..6)
+                .map(|n| (cycle(f64::from(n))[row], cycle(f64::from(n))[row] + 0.1))
+                .collect()
+        });
+        let part = followed(&rows).unwrap();
+        let starts = part.map(|it| it.0);
+        let expected = cycle(2.0);
+        for row in (0..8).filter(|row| *row != COIL) {
+            assert!((starts[row] - expected[row]).abs() < 1e-9, "{starts:?}");
+        }
+        let picture = drawn(&rows, &part);
+        assert!(
+            picture.contains("jaws closed") && picture.matches("#1f4e79").count() >= 8,
+            "{picture}"
+        );
+    }
+}
