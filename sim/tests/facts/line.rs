@@ -68,11 +68,11 @@ async fn a_partial_request_is_forgotten_after_silence() {
 
 #[tokio::test(start_paused = true)]
 async fn a_lost_port_ends_the_stream_and_is_there_again_when_it_is_back() {
-    let file = std::env::temp_dir().join(format!("rigsim-plug-{}.toml", std::process::id()));
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("bench.toml");
     std::fs::write(&file, BENCH).expect("a file");
     let faults = ["port_lost=bench@1..3".to_owned()];
     let rig = rigsim::build_bench(&file, &faults).expect("a bench");
-    std::fs::remove_file(&file).expect("the file");
     let (_, plug) = wire::plugs(&rig).remove(0);
     let mut port = plug.open().expect("a stream");
     port.write_all(b"#010\r").await.expect("a stream");

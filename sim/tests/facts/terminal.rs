@@ -42,7 +42,8 @@ fn links_point_at_the_ports_and_go_with_them() {
     let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
     let ptys = pty::serve(&rig).expect("a pseudo-terminal");
-    let dir = std::env::temp_dir().join(format!("rigsim-links-{}", std::process::id()));
+    let folder = tempfile::tempdir().expect("a folder");
+    let dir = folder.path().join("links");
     ptys.link(&dir).expect("a link");
     assert_eq!(
         ask(&mut client(&dir.join("bench")), b"$01M\r"),
@@ -55,14 +56,13 @@ fn links_point_at_the_ports_and_go_with_them() {
 
 #[test]
 fn a_lost_port_is_an_end_for_its_client_and_comes_back_under_its_link() {
-    let dir = std::env::temp_dir().join(format!("rigsim-lost-{}", std::process::id()));
-    std::fs::create_dir_all(&dir).expect("a folder");
-    let file = dir.join("bench.toml");
+    let dir = tempfile::tempdir().expect("a folder");
+    let file = dir.path().join("bench.toml");
     std::fs::write(&file, "[[module]]\naddress = 1\nmodel = \"I-7017\"").expect("a file");
     let rig = rigsim::build_bench(&file, &["port_lost=1/100@0..0.5".to_owned()]).expect("a bench");
     let ptys = pty::serve(&rig).expect("a pseudo-terminal");
-    ptys.link(&dir).expect("a link");
-    let link = dir.join("bench");
+    ptys.link(dir.path()).expect("a link");
+    let link = dir.path().join("bench");
     let mut port = client(&link);
     // The request costs the port: an error or an end, never a wait for ever.
     port.write_all(b"$01M\r").expect("a port");
@@ -82,5 +82,4 @@ fn a_lost_port_is_an_end_for_its_client_and_comes_back_under_its_link() {
     });
     assert_eq!(back.flatten().next(), Some(b'!'));
     ptys.stop();
-    std::fs::remove_dir_all(&dir).expect("the folder");
 }

@@ -10,37 +10,31 @@ mod safety;
 mod writing;
 
 use super::*;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::path::PathBuf;
 
-/// A file of its own, removed with its log when the test ends.
-struct File(PathBuf);
+/// A file in a folder of its own, which goes with it.
+struct File {
+    path: PathBuf,
+    _folder: tempfile::TempDir,
+}
 
 impl File {
     fn new() -> Self {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        let (process, next) = (std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
-        Self(std::env::temp_dir().join(format!("relayrig-history-{process}-{next}.db")))
+        let folder = tempfile::tempdir().unwrap();
+        Self {
+            path: folder.path().join("history.db"),
+            _folder: folder,
+        }
     }
     fn store(&self) -> Store {
-        Store::open(&self.0, &identity()).unwrap()
+        Store::open(&self.path, &identity()).unwrap()
     }
     fn archive(&self) -> Archive {
-        Archive::open(&self.0).unwrap()
+        Archive::open(&self.path).unwrap()
     }
     /// The file as any other program sees it.
     fn by_hand(&self) -> rusqlite::Connection {
-        rusqlite::Connection::open(&self.0).unwrap()
-    }
-}
-
-impl Drop for File {
-    fn drop(&mut self) {
-        for ending in ["", "-wal", "-shm"] {
-            let mut name = self.0.clone().into_os_string();
-            name.push(ending);
-            let _ = std::fs::remove_file(Path::new(&name));
-        }
+        rusqlite::Connection::open(&self.path).unwrap()
     }
 }
 

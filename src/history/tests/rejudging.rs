@@ -103,16 +103,14 @@ fn a_recipe_of_another_coil_voltage_does_not_fit() {
 
 /// With an operate voltage up to 11.5 V.
 fn generous() -> Recipe {
-    let folder = std::env::temp_dir().join(format!("relayrig-generous-{}", std::process::id()));
+    let folder = tempfile::tempdir().unwrap();
     let text = recipe().source_text.replace(
         "operate_voltage_v = { high = 9.0 }",
         "operate_voltage_v = { high = 11.5 }",
     );
-    std::fs::create_dir_all(folder.join("recipes")).unwrap();
-    std::fs::write(folder.join("recipes/jzc-22f-012.toml"), text).unwrap();
-    let loaded = load_recipe(&folder, "jzc-22f-012").unwrap();
-    std::fs::remove_dir_all(&folder).unwrap();
-    loaded
+    std::fs::create_dir(folder.path().join("recipes")).unwrap();
+    std::fs::write(folder.path().join("recipes/jzc-22f-012.toml"), text).unwrap();
+    load_recipe(folder.path(), "jzc-22f-012").unwrap()
 }
 
 /// Driven from 5 V up to 11 V without a make.

@@ -8,27 +8,27 @@ fn a_file_of_another_program_is_refused_and_left_untouched() {
     file.by_hand()
         .execute_batch("CREATE TABLE invoices (id INTEGER)")
         .unwrap();
-    let before = std::fs::read(&file.0).unwrap();
-    let refusal = Store::open(&file.0, &identity()).unwrap_err();
+    let before = std::fs::read(&file.path).unwrap();
+    let refusal = Store::open(&file.path, &identity()).unwrap_err();
     assert!(matches!(refusal, HistoryError::Foreign { .. }), "{refusal}");
     assert!(matches!(
-        Archive::open(&file.0),
+        Archive::open(&file.path),
         Err(HistoryError::Foreign { .. })
     ));
-    assert_eq!(std::fs::read(&file.0).unwrap(), before);
+    assert_eq!(std::fs::read(&file.path).unwrap(), before);
 }
 
 #[test]
 fn a_file_that_is_no_database_is_refused_and_left_untouched() {
     let file = File::new();
     let text = "this is a letter, not a database\n".repeat(100);
-    std::fs::write(&file.0, &text).unwrap();
-    let refusal = Store::open(&file.0, &identity()).unwrap_err();
+    std::fs::write(&file.path, &text).unwrap();
+    let refusal = Store::open(&file.path, &identity()).unwrap_err();
     assert!(
         refusal.to_string().contains("no SQLite database"),
         "{refusal}"
     );
-    assert_eq!(std::fs::read_to_string(&file.0).unwrap(), text);
+    assert_eq!(std::fs::read_to_string(&file.path).unwrap(), text);
 }
 
 #[test]
@@ -38,10 +38,10 @@ fn a_newer_schema_is_refused_with_both_numbers() {
     file.by_hand()
         .pragma_update(None, "user_version", SCHEMA + 1)
         .unwrap();
-    let refusal = Store::open(&file.0, &identity()).unwrap_err();
+    let refusal = Store::open(&file.path, &identity()).unwrap_err();
     assert!(matches!(refusal, HistoryError::Newer { found, known, .. } if found == known + 1));
     assert!(matches!(
-        Archive::open(&file.0),
+        Archive::open(&file.path),
         Err(HistoryError::Newer { .. })
     ));
 }
@@ -50,10 +50,10 @@ fn a_newer_schema_is_refused_with_both_numbers() {
 fn reading_what_was_never_written_makes_no_file() {
     let file = File::new();
     assert!(matches!(
-        Archive::open(&file.0),
+        Archive::open(&file.path),
         Err(HistoryError::Missing { .. })
     ));
-    assert!(!file.0.exists());
+    assert!(!file.path.exists());
 }
 
 #[test]
@@ -149,7 +149,7 @@ fn a_backup_of_a_file_in_use_is_whole_and_never_overwrites() {
     let (file, copy) = (File::new(), File::new());
     let mut store = filled(&file, 25);
     let archive = file.archive();
-    assert!(archive.backup(&copy.0).unwrap() > 0);
+    assert!(archive.backup(&copy.path).unwrap() > 0);
     store
         .record(&[Row::Part(part("A", 26, "pass", 7.0))])
         .unwrap();
@@ -159,7 +159,7 @@ fn a_backup_of_a_file_in_use_is_whole_and_never_overwrites() {
         APPLICATION_ID.to_string()
     );
     assert!(matches!(
-        archive.backup(&copy.0),
+        archive.backup(&copy.path),
         Err(HistoryError::Exists { .. })
     ));
 }

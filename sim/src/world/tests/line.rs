@@ -310,14 +310,14 @@ fn the_same_seed_and_stimuli_give_the_same_world() {
 
 #[test]
 fn an_unknown_key_of_a_world_file_is_named_with_file_and_line() {
-    let path = std::env::temp_dir().join(format!("rigsim-world-{}.toml", std::process::id()));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("world.toml");
     std::fs::write(&path, "[lot]\noperate_v_mean = 7.7\noperate_v_men = 7.8\n").unwrap();
     let error = read_world(&config_dir(), Some(&path))
         .unwrap_err()
         .to_string();
     std::fs::write(&path, "[lot]\noperate_v_mean = 7.7\n").unwrap();
     let world = read_world(&config_dir(), Some(&path)).unwrap();
-    std::fs::remove_file(&path).unwrap();
     assert!(
         error.contains(".toml:3: unknown field `operate_v_men`"),
         "{error}"
@@ -376,13 +376,13 @@ fn a_falling_ramp_latches_on_the_break_of_no() {
 
 #[test]
 fn an_emf_that_drifts_moves_the_drop_of_a_closed_contact_and_not_that_of_the_reference() {
-    let path = std::env::temp_dir().join(format!("rigsim-drift-{}.toml", std::process::id()));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("world.toml");
     std::fs::write(&path, "[board]\nemf_drift_uv_per_s = 5000.0\n").unwrap();
     let mut hand = Hand::new(WorldOptions {
         world_file: Some(path.clone()),
         ..options(false)
     });
-    std::fs::remove_file(&path).unwrap();
     hand.feed();
     let first = hand.reads("contact_drop");
     hand.wait(100.0);

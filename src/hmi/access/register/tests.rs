@@ -4,23 +4,21 @@ use super::*;
 
 const HOUR_US: i64 = 3_600_000_000;
 
-fn fresh(name: &str) -> (Register, PathBuf) {
-    let folder =
-        std::env::temp_dir().join(format!("relayrig-access-{}-{name}", std::process::id()));
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("people.db");
-    (Register::open(&path).unwrap(), path)
+/// A register in a folder that goes with it.
+fn fresh() -> (Register, tempfile::TempDir) {
+    let folder = tempfile::tempdir().unwrap();
+    let register = Register::open(&folder.path().join("people.db")).unwrap();
+    (register, folder)
 }
 
 #[test]
 fn the_first_start_makes_one_engineer_whose_password_is_told_once() {
-    let (mut register, path) = fresh("first");
+    let (mut register, folder) = fresh();
     let (name, password) = register.first_engineer(0).unwrap().unwrap();
     assert!(register.first_engineer(0).unwrap().is_none());
     let (person, _) = register.log_in(&name, &password, 0).unwrap().unwrap();
     assert_eq!(person.role, Role::Engineer);
-    let bytes = std::fs::read(path).unwrap();
+    let bytes = std::fs::read(folder.path().join("people.db")).unwrap();
     let told = bytes
         .windows(password.len())
         .any(|it| it == password.as_bytes());
@@ -29,7 +27,7 @@ fn the_first_start_makes_one_engineer_whose_password_is_told_once() {
 
 #[test]
 fn wrong_name_and_wrong_password_get_the_same_answer() {
-    let (mut register, _) = fresh("wrong");
+    let (mut register, _folder) = fresh();
     register.add("li", Role::Operator, "secret-12", 0).unwrap();
     assert_eq!(register.log_in("li", "secret-13", 0).unwrap(), None);
     assert_eq!(register.log_in("nobody", "secret-12", 0).unwrap(), None);
@@ -38,7 +36,7 @@ fn wrong_name_and_wrong_password_get_the_same_answer() {
 
 #[test]
 fn a_session_ends_after_its_shift_at_log_out_and_with_a_new_password() {
-    let (mut register, _) = fresh("session");
+    let (mut register, _folder) = fresh();
     register.add("li", Role::Operator, "secret-12", 0).unwrap();
     let enter = |register: &mut Register| register.log_in("li", "secret-12", 0).unwrap().unwrap().1;
     let first = enter(&mut register);
@@ -57,7 +55,7 @@ fn a_session_ends_after_its_shift_at_log_out_and_with_a_new_password() {
 
 #[test]
 fn a_removed_person_has_no_session_left_and_the_last_engineer_stays() {
-    let (mut register, _) = fresh("removed");
+    let (mut register, _folder) = fresh();
     register.first_engineer(0).unwrap();
     register
         .add("zhao", Role::Maintainer, "secret-12", 0)
@@ -77,7 +75,7 @@ fn a_removed_person_has_no_session_left_and_the_last_engineer_stays() {
 
 #[test]
 fn names_that_cannot_be_typed_or_are_taken_are_refused() {
-    let (mut register, _) = fresh("names");
+    let (mut register, _folder) = fresh();
     for name in ["", "a b", "a\"", "a\n", &"x".repeat(41)] {
         let refused = register.add(name, Role::Operator, "secret-12", 0);
         assert!(matches!(refused, Err(AccessError::Name { .. })), "{name:?}");
@@ -91,7 +89,8 @@ fn names_that_cannot_be_typed_or_are_taken_are_refused() {
 
 #[test]
 fn a_file_of_another_program_is_refused_and_left_as_it_is() {
-    let (register, path) = fresh("foreign");
+    let (register, folder) = fresh();
+    let path = folder.path().join("people.db");
     drop(register);
     std::fs::remove_file(&path).unwrap();
     Connection::open(&path)
