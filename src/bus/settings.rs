@@ -109,19 +109,14 @@ impl LineSettings {
 }
 
 /// The longest that one try of any of `commands` can hold the line, given up or believed only after it was said
-/// twice (analog inputs, which may move: three times): the questions, then the way back into step and a silence that is
+/// again: two answers at the last moment (or three that are prompt), then the way back into step and a silence that is
 /// broken once. A request that allows several tries may take as many times this. Zero for no commands.
 pub fn longest_transaction(settings: &LineSettings, commands: &[Command]) -> Span {
     let longest = |command: &Command| match command.address() {
         Some(address) => {
             let asked = settings.time_out(command) + settings.turnaround();
             let step = settings.step_limit(command, address) + settings.turnaround();
-            let third = if command.is_analog_input() {
-                asked
-            } else {
-                Span(0)
-            };
-            asked + asked + third + step + settings.silence(command)
+            asked + asked + step + settings.silence(command)
         }
         None => settings.request_time(command) + settings.turnaround(),
     };

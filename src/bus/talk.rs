@@ -126,8 +126,8 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
         }
     }
 
-    /// The first answer, if the module says what agrees with it when asked again. A terminal that moves does not: of
-    /// three answers the second is believed if it lies between the others.
+    /// The newest answer that the one after it confirms. What has changed between two of them does not agree; then
+    /// there is a third, if the module is prompt enough to be asked thrice in the time that two late answers take.
     async fn repeated(
         &mut self,
         command: &Command,
@@ -137,29 +137,30 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
         times: &mut Times,
         first: Reply,
     ) -> Result<Reply, Trouble> {
-        let mut again = (Frame::new(), Times::default());
-        let second = self
-            .attempt(command, address, request, &mut again.0, &mut again.1)
-            .await;
-        if let Ok(second) = &second {
-            let apart_ms = self.now().since(times.asked_at).0.div_ceil(1_000);
-            if command.agree(&first, second, apart_ms) {
-                return Ok(first);
+        let one = self.settings.time_out(command) + self.settings.turnaround();
+        let third_until = times.asked_at + one;
+        let (mut before, mut last) = (None, first);
+        loop {
+            let mut again = (Frame::new(), Times::default());
+            let next = self
+                .attempt(command, address, request, &mut again.0, &mut again.1)
+                .await;
+            let confirmed = next.as_ref().is_ok_and(|next| {
+                let apart_ms = self.now().since(times.asked_at).0.div_ceil(1_000);
+                command.agree(&last, next, apart_ms)
+                    || before.is_some_and(|before| command.between(&before, &last, next))
+            });
+            if confirmed {
+                return Ok(last);
             }
-        }
-        (*frame, *times) = again;
-        let second = second?;
-        if command.is_analog_input() {
-            let mut last = Frame::new();
-            let third = self
-                .attempt(command, address, request, &mut last, &mut Times::default())
-                .await?;
-            if command.between(&first, &second, &third) {
-                return Ok(second);
+            (*frame, *times) = again;
+            let next = next?;
+            if before.is_some() || self.now() > third_until {
+                self.trust.damaged(address);
+                return Err(Trouble::Contradicted);
             }
+            before = Some(std::mem::replace(&mut last, next));
         }
-        self.trust.damaged(address);
-        Err(Trouble::Contradicted)
     }
 
     fn now(&self) -> RigTime {

@@ -4,8 +4,10 @@
 //! reply by its form and its checksum, and now and then one passes, for a checksum of eight bits catches 255 in 256.
 //! So the damage that is seen gives the rest away. An address whose reply was damaged is on probation: what it says
 //! is believed only when, asked again, it says what agrees ([`crate::dcon::Command::agree`]), until
-//! [`PROBATION`] answers in a row were whole. A line in order pays nothing. An analog input, which may
-//! move, is asked a third time and believed if it lies between.
+//! [`PROBATION`] answers in a row were whole. A line in order pays nothing. What has changed between the two answers is
+//! asked a third time: an input, a frequency, a count after a reset is believed when the third says what the second said,
+//! a terminal that moves when the second lies between the others. What changes faster is not believed, and may be tried
+//! again as often as the request allows.
 //!
 //! What is left: a share c of the replies of an address damaged such that a share p of them passes, and a share d of
 //! all damaged visibly, gives c p (1 - d)^100 readings falsely believed. With every fault of the storm at 1 % that is less

@@ -272,10 +272,10 @@ fn two_bins_at_one_point_of_the_axis_are_refused() {
 #[test]
 fn a_plant_that_cannot_stop_in_time_is_refused() {
     refused(
-        "estop_reaction_ms = 360",
+        "estop_reaction_ms = 420",
         "estop_reaction_ms = 100",
         "estop_reaction_ms",
-        "[safety].estop_reaction_ms: found 100, expected at least 354.5, the worst reaction on line motion",
+        "[safety].estop_reaction_ms: found 100, expected at least 417.9, the worst reaction on line motion",
     );
 }
 

@@ -10,8 +10,9 @@
 //! | event counter | upwards, 100 Hz |
 //! | everything else | nothing |
 //!
-//! An input that was switched between the two does not agree with itself; nor does a frequency that fell, nor a terminal
-//! in the middle of a ramp or a step. Such a reading is true when it lies between the ones before and after it.
+//! What was switched, cleared or measured anew between the two does not agree: an input, a count after a reset, a
+//! frequency. Asked once more it does, unless it changes faster than it can be asked. A terminal in the middle of a ramp or
+//! a step agrees with nothing; its reading is true when it lies between the ones before and after it.
 
 use super::{Command, Reading, Reply, TypeCode};
 

@@ -68,8 +68,10 @@ pub struct AlarmState {
 /// Commands of the 7080. Counts are read without address: lead, length and hex digits are all there is to check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Counter {
-    /// `#AAN`: the count, or in frequency mode Hz.
+    /// `#AAN` of a module of type 50: the count.
     Read(UpTo<1>),
+    /// `#AAN` of a module of type 51, Hz: new once per gate time, 0.1 or 1 s.
+    ReadFrequency(UpTo<1>),
     /// `$AA6N`: back to the preset, overflow cleared.
     Reset(UpTo<1>),
     /// `$AA7N`: true when the counter has passed its maximum.
@@ -137,7 +139,7 @@ pub enum Counter {
 impl Counter {
     pub(super) fn encode(self, to: Address, request: &mut Request<'_>) {
         match self {
-            Self::Read(n) => request.to(b'#', to).digit(n),
+            Self::Read(n) | Self::ReadFrequency(n) => request.to(b'#', to).digit(n),
             Self::Reset(n) => request.to(b'$', to).text(b"6").digit(n),
             Self::ReadOverflow(n) => request.to(b'$', to).text(b"7").digit(n),
             Self::ReadRunning(n) => request.to(b'$', to).text(b"5").digit(n),
@@ -192,6 +194,7 @@ impl Counter {
     pub(super) fn table(&self) -> (Nature, Shape) {
         match *self {
             Self::Read(_) => (Read, Shape::Count),
+            Self::ReadFrequency(_) => (Read, Shape::Frequency),
             Self::ReadOverflow(_) | Self::ReadRunning(_) | Self::ReadFilter => (Read, Shape::Flag),
             Self::ReadPreset(_) | Self::ReadMaximum(_) | Self::ReadLimit(_) => {
                 (Read, Shape::Setting32)

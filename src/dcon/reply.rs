@@ -46,8 +46,10 @@ pub enum Reply {
     },
     /// Events on a digital input, modulo 65536.
     Events(u16),
-    /// A 32-bit count, preset or maximum; Hz in frequency mode.
+    /// A 32-bit count, preset or maximum.
     Count(u32),
+    /// Hz.
+    Frequency(u32),
     /// Gate of the counters.
     Gate(GateMode),
     /// Inputs of the counters.

@@ -45,6 +45,8 @@ pub(super) enum Shape {
     Events,
     /// `>hhhhhhhh`
     Count,
+    /// `>hhhhhhhh`, Hz
+    Frequency,
     /// `!AAhhhhhhhh`
     Setting32,
     /// `!AAG`
@@ -84,9 +86,12 @@ pub(super) fn declined(text: &[u8], asked: Address, nature: Nature) -> Result<()
 impl Shape {
     fn lead(self) -> u8 {
         match self {
-            Self::Output | Self::PortBits | Self::Count | Self::Reading(_) | Self::Readings(_) => {
-                b'>'
-            }
+            Self::Output
+            | Self::PortBits
+            | Self::Count
+            | Self::Frequency
+            | Self::Reading(_)
+            | Self::Readings(_) => b'>',
             Self::Accepted
             | Self::AcceptedAs(_)
             | Self::Config
@@ -120,7 +125,7 @@ impl Shape {
             Self::Watchdog => 6,
             Self::Bits | Self::StoredBits => 7,
             Self::Sampled | Self::Events | Self::Alarm | Self::ChannelRange(_) => 8,
-            Self::Config | Self::Latched | Self::Count => 9,
+            Self::Config | Self::Latched | Self::Count | Self::Frequency => 9,
             Self::Setting32 => 11,
             Self::Text => 3 + Text::LONGEST,
             Self::Decimal { digits, .. } => 3 + usize::from(digits),
@@ -159,6 +164,7 @@ impl Shape {
                 self.bits(&mut fields, asked)
             }
             Self::Count => fields.hex(8).map(Reply::Count),
+            Self::Frequency => fields.hex(8).map(Reply::Frequency),
             Self::Reading(form) => {
                 let width = fields.length() - 1;
                 Reading::decode(form, width, &mut fields).map(Reply::Reading)
@@ -215,6 +221,7 @@ impl Shape {
             | Self::Sampled
             | Self::Latched
             | Self::Count
+            | Self::Frequency
             | Self::Reading(_)
             | Self::Readings(_) => Ok(Reply::Accepted),
         }

@@ -42,6 +42,7 @@ impl fmt::Display for Reply {
             Self::Byte(byte) => write!(f, "{byte:02X} ({byte:08b})"),
             Self::Decimal(value) => value.fmt(f),
             Self::Count(count) => write!(f, "count {count}"),
+            Self::Frequency(hertz) => write!(f, "{hertz} Hz"),
             Self::Events(count) => write!(f, "{count} events"),
             Self::Bits(bits) => write!(f, "first {:08b} second {:08b}", bits.first, bits.second),
             Self::Reading(reading) => reading.value.fmt(f),

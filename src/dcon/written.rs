@@ -295,6 +295,7 @@ fn counter(rest: &[u8]) -> Vec<Counter> {
 fn of_one(n: UpTo<1>, rest: &[u8]) -> Vec<Counter> {
     let mut found = vec![
         Counter::Read(n),
+        Counter::ReadFrequency(n),
         Counter::Reset(n),
         Counter::ReadOverflow(n),
         Counter::ReadRunning(n),

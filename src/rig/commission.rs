@@ -115,6 +115,7 @@ pub fn judge(wiring: &Wiring, check: &Check, reply: &Reply) -> Option<Mismatch> 
         | Reply::Sampled { .. }
         | Reply::Events(_)
         | Reply::Count(_)
+        | Reply::Frequency(_)
         | Reply::Gate(_)
         | Reply::Inputs(_)
         | Reply::Alarm(_)

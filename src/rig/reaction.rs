@@ -5,16 +5,17 @@
 //!
 //! - the rest of that poll: answered at the last moment, said again and confirmed by the name of its module, each at
 //!   the last moment, as after a module that was silent: its late reply could be taken for the contact's,
-//! - one other transaction, the longest of that line, failing: request (of analog inputs on probation the third),
-//!   time-out, the question to the silent module who is there, not answered either, and a wait for silence, broken
-//!   once by a late reply,
-//! - the poll that sees the contact open, as long as the one before,
+//! - one other transaction, the longest of that line, failing: a first answer at the last moment, damage seen before,
+//!   so that it is asked again, time-out, the question to the silent module who is there, not answered either, and a
+//!   wait for silence, broken once by a late reply,
+//! - the poll that sees the contact open, as long as the one before. One that is not answered either holds the line
+//!   longer, and ends the same way: a contact not known for [`Wiring::emergency_stop_max_age`] counts as open, and
+//!   what is left of that poll passes before the first write,
 //! - one write to each module of the line that has outputs, answered at the last moment,
 //!
 //! and a rest of two characters after each. A line without the contact begins its writes after the longest that one
 //! transaction of its own may take. A late reply is taken to begin at most one allowance after the
-//! time-out. A poll that is not answered needs no bound of its own: a contact not known for
-//! [`Wiring::emergency_stop_max_age`] counts as open. Commands on this line have one try ([`Wiring::tries_on`]).
+//! time-out. Commands on this line have one try ([`Wiring::tries_on`]).
 //! Wire times are those of 8N1, ten bits a character; reads, host OK and event counters of a running lot are no
 //! longer than the frames assumed here.
 
@@ -49,7 +50,7 @@ impl Wiring {
     /// From the decision until every output of a line has been written.
     fn longest_writing(&self, line: LineId) -> Span {
         let busy = match line == self.emergency_stop_line() {
-            true => Span(0),
+            true => Span(self.longest_failure(line).0 - self.confirmed(line).0),
             false => self.longest_failure(line),
         };
         let write = self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance());
@@ -99,8 +100,7 @@ impl Wiring {
         };
         let silence = self.wire(line, longest) + allowance;
         let asked = self.answered(line, longest, allowance);
-        let again = if analog { asked + asked } else { Span(0) };
-        asked + again + self.question(line) + silence
+        asked + asked + self.question(line) + silence
     }
 
     /// A transaction of this line that is answered at the last moment, with the rest after it.
@@ -154,20 +154,20 @@ mod tests {
 
     #[test]
     fn the_bound_is_poll_failure_poll_and_a_write_to_each_module() {
-        // Frames of 13 + 12 + 2 characters with 30 ms, ten times (poll, poll again, who is there, given up, who is
-        // there, poll, poll again, who is there, two writes), and 12 characters with 30 ms; each wire time rounded up
-        // to the microsecond.
+        // Frames of 13 + 12 + 2 characters with 30 ms, eleven times (poll, poll again, who is there, asked, given up,
+        // who is there, poll, given up, who is there, two writes), and 12 characters with 30 ms twice, for silence; each
+        // wire time rounded up to the microsecond.
         let bound = Wiring::resolve(&settings()).unwrap().longest_reaction();
-        assert_eq!(bound, Span(10 * (2_344 + 30_000) + (1_042 + 30_000)));
+        assert_eq!(bound, Span(11 * (2_344 + 30_000) + 2 * (1_042 + 30_000)));
     }
 
     #[test]
     fn a_slower_line_or_an_analog_module_beside_the_contact_lengthens_it() {
         let mut slow = settings();
         slow.line.get_mut("motion").unwrap().baud = 9600;
-        slow.safety.estop_reaction_ms = 700.0;
+        slow.safety.estop_reaction_ms = 800.0;
         let bound = Wiring::resolve(&slow).unwrap().longest_reaction();
-        assert_eq!(bound, Span(10 * (28_125 + 30_000) + (12_500 + 30_000)));
+        assert_eq!(bound, Span(11 * (28_125 + 30_000) + 2 * (12_500 + 30_000)));
         let mut shared = settings();
         let contact = shared.digital_in.get_mut("emergency_stop_ok").unwrap();
         (contact.module, contact.channel) = ("board_di".to_owned(), 11);

@@ -28,11 +28,12 @@ fn after_a_damaged_reply_an_address_is_heard_twice() {
 }
 
 #[test]
-fn what_does_not_agree_with_itself_is_not_believed() {
+fn what_says_three_things_to_one_question_is_not_believed() {
     let script = vec![
         say(DAMAGED),
         say(ELSEWHERE),
         say(THIRTY),
+        say(NINE),
         say(THIRTY),
         say(SOON),
     ];
@@ -42,7 +43,69 @@ fn what_does_not_agree_with_itself_is_not_believed() {
         text.starts_with("line measure, 03: ") && text.contains("another value when asked again"),
         "{text}"
     );
-    assert_eq!((got[2].outcome.clone(), asked), (Ok(Reply::Count(30)), 5));
+    assert_eq!((got[2].outcome.clone(), asked), (Ok(Reply::Count(30)), 6));
+}
+
+#[test]
+fn an_input_that_was_switched_between_two_answers_is_believed_when_the_third_says_so_too() {
+    let port = Digital::ReadPort.to(Address(3));
+    let told = |third| {
+        let script = vec![
+            say(DAMAGED),
+            say(b">3B3F2C\r"),
+            say(b">3B7F30\r"),
+            say(third),
+        ];
+        asked_of(script, &[(count(), 1), (port, 1)])
+    };
+    let (got, asked) = told(b">3B7F30\r");
+    let bits = Bits {
+        first: 0x3B,
+        second: 0x7F,
+    };
+    assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Bits(bits)), 4));
+    // Its time is that of the second answer, when the input was first seen so.
+    assert!(got[1].asked_at >= got[0].answered_at + Span(2_000));
+    assert!(got[1].answered_at.since(got[1].asked_at) < Span(3_000));
+    let (got, _) = told(b">3B3F2C\r");
+    assert!(matches!(
+        got[1].outcome,
+        Err(LineError::Contradicted { .. })
+    ));
+}
+
+#[test]
+fn a_count_after_a_reset_and_a_frequency_that_fell_are_believed_at_the_third_answer() {
+    let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
+    for (command, nine) in [(count(), Reply::Count(9)), (frequency, Reply::Frequency(9))] {
+        let script = vec![say(DAMAGED), say(THIRTY), say(NINE), say(NINE)];
+        let (got, asked) = asked_of(script, &[(count(), 1), (command, 1)]);
+        assert_eq!((got[1].outcome.clone(), asked), (Ok(nine), 4));
+        assert_eq!(got[1].raw, ">00000009C7");
+    }
+}
+
+#[test]
+fn a_frequency_that_rose_is_no_count_that_went_on() {
+    let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
+    let script = vec![say(DAMAGED), say(THIRTY), say(SOON), say(SOON)];
+    let (got, asked) = asked_of(script, &[(count(), 1), (frequency, 1)]);
+    assert_eq!(
+        (got[1].outcome.clone(), asked),
+        (Ok(Reply::Frequency(31)), 4)
+    );
+}
+
+#[test]
+fn a_module_that_takes_its_time_is_not_asked_a_third_time() {
+    let late = |bytes| vec![(30_000, bytes)];
+    let script = vec![say(DAMAGED), late(THIRTY), late(NINE), late(NINE)];
+    let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1)]);
+    assert!(matches!(
+        got[1].outcome,
+        Err(LineError::Contradicted { .. })
+    ));
+    assert_eq!(asked, 3);
 }
 
 #[test]

@@ -87,6 +87,12 @@ pub(super) fn counter_rows() -> Vec<(Command, &'static str, &'static str, Reply)
             ">FFFFFFFF",
             Reply::Count(u32::MAX),
         ),
+        (
+            Counter::ReadFrequency(n(1)).to(Address(2)),
+            "#021",
+            ">0000001E",
+            Reply::Frequency(30),
+        ),
         (Counter::Reset(n(1)).to(A1), "$0161", "!01", done),
         (
             Counter::ReadOverflow(n(0)).to(A1),
