@@ -7,9 +7,11 @@
 //! air and takes the servo's power.
 
 mod parts;
+mod posture;
 mod sensors;
 
 use super::axis::Axis;
+use super::bodies::Bodies;
 use super::cylinder::Cylinder;
 use super::draw::Draw;
 use super::fault::{Fault, Faults};
@@ -19,6 +21,7 @@ use super::signal::{Commands, In, Out};
 use super::table::MechanismTable;
 use crate::config::Bin;
 use crate::truth::{BodyTruth, Place};
+use posture::Lookout;
 use std::collections::VecDeque;
 
 /// A cylinder of the line.
@@ -73,9 +76,6 @@ enum Later {
     Calm(Fault),
 }
 
-/// A pin block up or a gripper down within this distance of the nest is in the pusher's way, mm.
-const NEAR_NEST_MM: f64 = 40.0;
-
 /// So many motions are remembered: a quarter of an hour of production.
 const DRIVEN: usize = 8_192;
 
@@ -86,6 +86,7 @@ pub struct Mechanism {
     cylinders: [Cylinder; 7],
     axis: Axis,
     bins: Vec<Bin>,
+    lookout: Lookout,
     magazine: Magazine,
     /// Where the parts are.
     pub places: Places,
@@ -105,7 +106,7 @@ impl Mechanism {
     pub fn new(
         table: &MechanismTable,
         axis: Axis,
-        bins: Vec<Bin>,
+        (bins, bodies): (Vec<Bin>, Bodies),
         magazine: Magazine,
         faults: Faults,
         draw: Draw,
@@ -129,6 +130,7 @@ impl Mechanism {
             cylinders: means.map(Cylinder::new),
             axis,
             bins,
+            lookout: Lookout::over(bodies),
             magazine,
             places: Places::default(),
             faults,
@@ -199,6 +201,7 @@ impl Mechanism {
 
     /// All commands of the controller as they now stand.
     pub fn command(&mut self, commands: Commands, now_us: u64) {
+        self.watch(now_us);
         let before = std::mem::replace(&mut self.commands, commands);
         self.move_cylinders(now_us);
         self.axis.servo(
@@ -216,6 +219,7 @@ impl Mechanism {
 
     /// Lets happen what is due at [`Mechanism::next_us`].
     pub fn process(&mut self, now_us: u64) {
+        self.watch(now_us);
         for stroke in Stroke::ALL {
             if self.at(stroke).due_us().is_some_and(|due| due <= now_us) {
                 self.cylinders[stroke as usize].arrive();
@@ -345,9 +349,6 @@ impl Mechanism {
             return;
         }
         self.note_driven(now_us, "sort_axis");
-        if !self.at(Stroke::SortZ).at_rest(now_us) {
-            self.crash(now_us, "the sort axis moved while sort z was not up");
-        }
         let number = self.places.carried.as_ref().and_then(|p| p.number);
         let whole = self.axis.due_us().map_or(0, |due| due - now_us);
         if self.faults.strikes(Fault::Fall, number) {

@@ -12,6 +12,7 @@
 
 pub mod axis;
 pub mod board;
+pub mod bodies;
 pub mod cylinder;
 pub mod defect;
 pub mod draw;
@@ -40,6 +41,7 @@ use crate::terminal::Plant;
 use crate::truth::BodyTruth;
 use axis::Axis;
 use board::Board;
+use bodies::Bodies;
 use draw::{Draw, Subject};
 use edges::Edges;
 use environment::Environment;
@@ -110,7 +112,15 @@ impl World {
             rig.reference.counter_clock_hz * (1.0 + draw.half(table.devices.clock_ppm * 1e-6));
         let strokes = Draw::new(options.seed, Subject::Mechanism, 0);
         let axis = sort_axis(&rig, &table);
-        let mechanism = Mechanism::new(&table.mechanism, axis, rig.bins, magazine, faults, strokes);
+        let bodies = Bodies::read(&options.config_dir, &options.recipe)?;
+        let mechanism = Mechanism::new(
+            &table.mechanism,
+            axis,
+            (rig.bins, bodies),
+            magazine,
+            faults,
+            strokes,
+        );
         let commands = Commands::default();
         let edges = Vec::new();
         let mut world = Self {

@@ -240,14 +240,99 @@ fn a_ramp_starts_the_window_when_the_supply_has_moved_fifty_millivolts() {
     assert!(hand.sees("window"));
 }
 
+/// Crashes so far, each a pair of bodies.
+fn touched(hand: &Hand, one: &str, other: &str) -> bool {
+    let crashes = hand.world.crashes();
+    let of = |crash: &String| crash.contains(one) && crash.contains(other);
+    assert!(crashes.iter().any(of), "{one} and {other}: {crashes:?}");
+    true
+}
+
 #[test]
 fn the_pusher_against_raised_probes_is_a_crash() {
     let mut hand = Hand::new(options(false));
     hand.set("probe_lift", true);
     hand.wait(300.0);
     hand.set("pusher_extend", true);
-    hand.wait(10.0);
-    assert_eq!(hand.world.crashes().len(), 1);
+    hand.wait(500.0);
+    assert!(touched(&hand, "pusher_keel", "probe_housing"));
+}
+
+#[test]
+fn fingers_that_come_down_on_an_extended_pusher_crash() {
+    let mut hand = Hand::new(options(false));
+    hand.set("axis_servo_on", true);
+    hand.axis(0);
+    hand.set("pusher_extend", true);
+    hand.wait(500.0);
+    hand.set("sort_z_lower", true);
+    hand.wait(500.0);
+    assert!(touched(&hand, "pusher_head", "finger_rear"));
+}
+
+#[test]
+fn an_axis_that_leaves_the_nest_with_z_down_crashes_into_a_bracket() {
+    let mut hand = Hand::new(options(false));
+    hand.set("axis_servo_on", true);
+    hand.axis(0);
+    assert_eq!(hand.world.crashes(), Vec::<String>::new());
+    hand.set("sort_z_lower", true);
+    hand.wait(500.0);
+    assert_eq!(
+        hand.world.crashes(),
+        Vec::<String>::new(),
+        "z alone is free"
+    );
+    hand.axis(1);
+    assert!(touched(&hand, "gripper_palm", "nest_sensor_bracket_left"));
+}
+
+/// A part in closed jaws that the closed fingers hold too.
+fn gripped_in_jaws() -> Hand {
+    let mut hand = Hand::new(options(false));
+    hand.feed();
+    hand.set("clamp_close", true);
+    hand.set("axis_servo_on", true);
+    hand.axis(0);
+    hand.set("sort_z_lower", true);
+    hand.wait(400.0);
+    hand.set("gripper_close", true);
+    hand.wait(300.0);
+    hand.set("probe_lift", false);
+    hand.wait(300.0);
+    assert_eq!(hand.world.crashes(), Vec::<String>::new());
+    hand
+}
+
+#[test]
+fn z_that_is_raised_while_jaws_and_fingers_hold_the_part_crashes() {
+    let mut hand = gripped_in_jaws();
+    hand.set("sort_z_lower", false);
+    hand.wait(400.0);
+    assert!(touched(&hand, "part_nest", "finger_"));
+}
+
+#[test]
+fn when_every_valve_falls_off_fingers_slide_off_the_part_and_the_jaws_keep_it() {
+    let mut hand = gripped_in_jaws();
+    for point in ["clamp_close", "gripper_close", "sort_z_lower"] {
+        hand.set(point, false);
+    }
+    hand.wait(500.0);
+    assert_eq!(hand.world.crashes(), Vec::<String>::new());
+    assert!(hand.sees("nest_present") && hand.sees("sort_z_up") && !hand.sees("gripper_part"));
+}
+
+#[test]
+fn a_part_that_is_pushed_into_an_occupied_nest_crashes_into_the_one_there() {
+    let mut hand = Hand::new(options(false));
+    for _ in 0..2 {
+        hand.pulse("escapement_release", 300.0);
+        hand.wait(300.0);
+        hand.pulse("pusher_extend", 600.0);
+        hand.wait(600.0);
+    }
+    assert!(touched(&hand, "part_pusher", "part_nest"));
 }
 
 #[test]
@@ -290,6 +375,27 @@ fn a_jammed_pusher_goes_through_at_the_second_stroke() {
     hand.wait(800.0);
     hand.pulse("pusher_extend", 800.0);
     assert!(hand.sees("nest_present"));
+    assert_eq!(hand.world.crashes(), Vec::<String>::new());
+}
+
+#[test]
+fn fingers_that_leave_their_part_in_the_nest_slide_off_without_a_crash() {
+    let mut o = options(false);
+    o.faults = vec![("part_stays".into(), 1.0)];
+    let mut hand = Hand::new(o);
+    hand.feed();
+    hand.set("probe_lift", false);
+    hand.wait(250.0);
+    hand.set("axis_servo_on", true);
+    hand.axis(0);
+    hand.set("sort_z_lower", true);
+    hand.wait(400.0);
+    hand.pulse("gripper_close", 200.0);
+    hand.pulse("clamp_open", 200.0);
+    hand.set("sort_z_lower", false);
+    hand.wait(400.0);
+    assert!(hand.sees("nest_present") && hand.sees("sort_z_up"));
+    assert_eq!(hand.world.crashes(), Vec::<String>::new());
 }
 
 #[test]
