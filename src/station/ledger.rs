@@ -1,6 +1,9 @@
 //! The part ledger: every part is in exactly one place, from the pocket to a bin.
 //!
 //! A place hands its part over; it never copies one. `in = out + inside` at every instant.
+//!
+//! An opening of the fingers that was driven may still not come: the module that should open them has tripped. So a
+//! part that was let go is lost only when the fingers were seen empty; one that they still show is theirs again.
 
 use crate::gauge::verdict::Bin;
 use crate::units::{RigTime, Second};
@@ -34,15 +37,17 @@ pub struct Part {
     pub interrupted: Option<String>,
 }
 
-/// A part on its way down a chute.
+/// A part that was let go, on its way down a chute once it [has left](Self::has_left) the fingers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Falling {
     /// Which part.
     pub part: Part,
     /// Bin it was let go over.
     pub bin: Bin,
-    /// When the gripper opened.
+    /// When the opening of the fingers was driven.
     pub since: RigTime,
+    /// The fingers were seen empty since: until then they may hold it still.
+    pub has_left: bool,
     /// Count of the bin's beam before.
     pub beam_before: u32,
     /// When the beam had first counted it.
@@ -194,13 +199,14 @@ impl Ledger {
                 part,
                 bin,
                 since,
+                has_left: false,
                 beam_before,
                 seen: None,
             });
         }
     }
 
-    /// The part that was let go sticks to the fingers.
+    /// The part that was to fall is still in the fingers: it sticks to them, or they never opened.
     pub fn keep_hold(&mut self) {
         assert!(self.gripper.is_none(), "kept hold of a second part");
         self.gripper = self.falling.take().map(|falling| falling.part);

@@ -223,8 +223,12 @@ pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, alarms: &mut
     }
 }
 
-/// Parts that had moved on when the sequence was cut off, or were set down again.
+/// Parts that had moved on when the sequence was cut off, were set down again, or never let go.
 fn hand_over(ledger: &mut Ledger, seen: &Seen) {
+    let may_be_held = ledger.falling.as_ref().is_some_and(|it| !it.has_left);
+    if may_be_held && seen.gripper {
+        ledger.keep_hold();
+    }
     let (nest, gripper) = (ledger.nest.is_some(), ledger.gripper.is_some());
     if nest && !gripper && !seen.nest && seen.gripper {
         ledger.lift();

@@ -160,9 +160,11 @@ fn opened(turn: &mut Turn) -> Sort {
 /// Watches the beam of the part that is falling; goes on whatever else has stopped.
 pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     let now = turn.now;
+    let seen_empty = turn.seen(DigitalIn::GripperPart, false);
     let Some(falling) = &mut turn.ledger.falling else {
         return;
     };
+    falling.has_left |= seen_empty;
     let (bin, since, before) = (falling.bin, falling.since, falling.beam_before);
     let beam = table.beam(bin);
     turn.wants.beam = Some(beam);
@@ -180,11 +182,22 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
             turn.alarm(Alarm::beam(bin.name(), several));
             landed(turn, bin);
         }
-        Some(_) | None if now.since(since) > FALL => {
-            turn.ledger.lose_falling();
-            turn.alarm(Alarm::beam(bin.name(), 0));
-        }
+        Some(_) | None if now.since(since) > FALL => overdue(turn, bin),
         Some(_) | None => {}
+    }
+}
+
+/// The beam has seen nothing: what has left the fingers is lost, what they still show was never let go. Who cannot
+/// see them waits until they can be seen.
+fn overdue(turn: &mut Turn, bin: Bin) {
+    let falling = turn.ledger.falling.as_ref();
+    if falling.is_some_and(|it| it.has_left) {
+        turn.ledger.lose_falling();
+        turn.alarm(Alarm::beam(bin.name(), 0));
+    } else if turn.seen(DigitalIn::GripperPart, true)
+        && !turn.mechanism.is_moving(Move::GripperOpen)
+    {
+        turn.ledger.keep_hold();
     }
 }
 

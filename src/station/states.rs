@@ -7,13 +7,15 @@ use super::packml::{self, Command, On, State};
 use super::recovery::Recovery;
 use super::sort::Sort;
 use super::trouble::Alarm;
-use super::wants::{Ending, Inputs, Judged, Wants};
+use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
 use super::{Start, Station, reference};
 use crate::gauge::verdict::Bin;
 use crate::units::{RigTime, Span};
 
 /// Outputs that did not confirm their safe value in this time are told, and the abort goes on without.
 const SAFE_WITHIN: Span = Span::ms(2000);
+/// Why a part is not tested that nothing had interrupted before.
+const BY_A_RESET: &str = "by a reset";
 /// Nobody is there to fill a magazine or empty a bin: after so long the run ends.
 const ALONE: Span = Span::ms(60_000);
 
@@ -184,19 +186,31 @@ impl Station {
             self.begin_check();
         }
         self.end_golden_run(wants);
-        let ledger = &mut self.ledger;
-        for part in ledger.nest.iter_mut().chain(&mut ledger.gripper) {
-            part.interrupted.get_or_insert_with(|| "by a reset".into());
-        }
-        if let Some(part) = &mut ledger.gripper {
-            self.sort = Sort::Loaded;
-            let why = part.interrupted.clone().unwrap_or_default();
-            if part.bin.replace(Bin::Retest).is_none() {
-                let judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
-                wants.judged.push(judged);
-            }
+        self.take_up_gripped(now, wants);
+        for part in self.ledger.nest.iter_mut() {
+            part.interrupted.get_or_insert_with(|| BY_A_RESET.into());
         }
         wants.wake_at = Some(now);
+    }
+
+    /// What the fingers hold goes to retest, and its row says why; one that they never let go had a row for its bin.
+    fn take_up_gripped(&mut self, now: RigTime, wants: &mut Wants) {
+        let Some(part) = &mut self.ledger.gripper else {
+            return;
+        };
+        self.sort = Sort::Loaded;
+        let told = part.interrupted.is_some();
+        let why = part
+            .interrupted
+            .get_or_insert_with(|| BY_A_RESET.into())
+            .clone();
+        if part.bin.replace(Bin::Retest).is_none() {
+            let judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
+            wants.judged.push(judged);
+        } else if !told {
+            let ordinal = part.ordinal;
+            wants.interrupted.push(Interrupted { ordinal, why });
+        }
     }
 
     fn begin(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {

@@ -1,6 +1,7 @@
 //! Orders at a screen: what is taken, what is refused and why, and what a person can bring about.
 
 use super::machine::{Machine, Specimen};
+use crate::gauge::verdict::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, Mode, State};
@@ -97,6 +98,32 @@ fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() 
     give(&mut machine, Command::Start);
     until(&mut machine, State::Complete);
     assert_eq!(machine.landed.len(), 3);
+}
+
+#[test]
+fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so() {
+    let mut machine = Machine::attended(Some(1), vec![Specimen::StuckNo]);
+    while machine.station.ledger().falling.is_none() {
+        machine.turn();
+    }
+    // The module that drives the fingers has tripped: they never open.
+    machine.bus = Some(Alarm::bus("the module ignored the output"));
+    machine.turn();
+    until(&mut machine, State::Aborted);
+    give(&mut machine, Command::Clear);
+    until(&mut machine, State::Stopped);
+    give(&mut machine, Command::Reset);
+    until(&mut machine, State::Idle);
+    assert_eq!(machine.landed, [(1, Bin::Retest)]);
+    let told = |what: &str| {
+        machine
+            .told
+            .iter()
+            .filter(|it| it.wants.contains(what))
+            .count()
+    };
+    assert_eq!(told("Interrupted { ordinal: 1"), 1, "its row is corrected");
+    assert_eq!(told("judged: [Judged"), 1, "it was judged once");
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Homing in an order that can be proved clear; parts are where they are seen.
 
 use super::Shop;
+use crate::gauge::verdict::Bin;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::ledger::{Kind, Ledger};
@@ -195,6 +196,22 @@ fn a_part_that_had_been_pushed_is_not_taken_for_the_one_that_the_fingers_lost() 
     let kind = shop.ledger.nest.as_ref().map(|part| part.kind.clone());
     assert_eq!(kind, Some(Kind::Lot(2)), "the first one fell");
     assert_eq!((shop.ledger.lost, shop.ledger.found), (1, 0));
+}
+
+#[test]
+fn a_part_that_was_to_fall_and_is_seen_in_the_fingers_is_neither_found_nor_lost() {
+    for in_the_fingers in [true, false] {
+        let mut shop = Shop::at_rest();
+        shop.ledger = ledger(0b100);
+        shop.ledger.drop_over(Bin::Pass, shop.now, 0);
+        shop.set(DigitalIn::GripperPart, in_the_fingers);
+        shop.set(DigitalIn::GripperOpen, !in_the_fingers);
+        shop.scan();
+        carried_out(&mut shop);
+        let ledger = &shop.ledger;
+        assert_eq!((ledger.lost, ledger.found, ledger.inside()), (0, 0, 1));
+        assert_eq!(ledger.gripper.is_some(), in_the_fingers);
+    }
 }
 
 fn ledger(places: u8) -> Ledger {

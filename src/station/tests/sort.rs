@@ -266,3 +266,56 @@ fn a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told() {
     assert!(shop.ledger.falling.is_none() && shop.ledger.gripper.is_some());
     assert!(shop.ledger.balances());
 }
+
+/// The fingers were to open, and then everything went safe: their sensor goes on showing the part.
+fn never_opened() -> Shop {
+    let (sort, mut shop) = over(Bin::Pass, 3);
+    shop.recorded = 1;
+    let asked = step(sort, &mut shop, false);
+    let_go(asked, &mut shop);
+    shop.mechanism.forget();
+    shop
+}
+
+/// Nothing came by the beam in time.
+fn time_is_over(shop: &mut Shop) {
+    let since = shop.ledger.falling.as_ref().map(|it| it.since).unwrap();
+    shop.now = RigTime(since.0 + 1_500_001);
+}
+
+#[test]
+fn a_part_whose_fingers_never_opened_is_theirs_and_not_lost() {
+    let mut shop = never_opened();
+    time_is_over(&mut shop);
+    shop.scan();
+    beam(&mut shop, Bin::Pass, 3);
+    step(Sort::Returning, &mut shop, false);
+    assert!(shop.alarms().is_empty(), "{:?}", shop.alarms());
+    assert!(shop.ledger.falling.is_none() && shop.ledger.lost == 0);
+    let part = shop.ledger.gripper.as_ref().unwrap();
+    assert_eq!((part.ordinal, part.bin), (1, Some(Bin::Pass)));
+}
+
+#[test]
+fn nobody_declares_a_part_lost_who_cannot_see_the_fingers() {
+    let mut shop = never_opened();
+    time_is_over(&mut shop);
+    step(Sort::Returning, &mut shop, false);
+    assert!(shop.alarms().is_empty());
+    assert!(shop.ledger.falling.is_some() && shop.ledger.lost == 0);
+    shop.set(DigitalIn::GripperPart, false);
+    shop.scan();
+    step(Sort::Returning, &mut shop, false);
+    assert_eq!((shop.alarms(), shop.ledger.lost), (vec!["bin_beam"], 1));
+}
+
+#[test]
+fn fingers_that_take_the_next_part_do_not_bring_the_fallen_one_back() {
+    let (sort, mut shop) = falling(Bin::Pass, 10);
+    step(sort, &mut shop, false);
+    shop.set(DigitalIn::GripperPart, true);
+    time_is_over(&mut shop);
+    shop.scan();
+    step(Sort::AtPart, &mut shop, true);
+    assert_eq!((shop.alarms(), shop.ledger.lost), (vec!["bin_beam"], 1));
+}
