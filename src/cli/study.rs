@@ -178,6 +178,7 @@ impl Study {
   relayrig study collision --out figures
   relayrig study accuracy --seeds 2 --parts 50 --recipe jzc-22f-009
   relayrig study storm --seeds 10000
+  relayrig study storm --seeds 1000 --from 10001
   relayrig study storm --seed 17
   relayrig study transient --cases src/cli/study/transient/cases.json --rtol 1e-10 --json
 
@@ -195,6 +196,9 @@ pub struct StudyArgs {
     /// Lots, with seeds 1 to N; `pace` runs seed 1 N times
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub seeds: Option<u64>,
+    /// First seed of `storm` [default: 1]
+    #[arg(long, value_name = "S", conflicts_with = "seed")]
+    pub from: Option<u64>,
     /// Only this seed of `storm`
     #[arg(long, value_name = "S", conflicts_with = "seeds")]
     pub seed: Option<u64>,
@@ -235,8 +239,8 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         (false, None, None) => {}
         (false, _, _) => bail!("--cases and --rtol belong to `study transient`"),
     }
-    if args.seed.is_some() && study != Study::Storm {
-        bail!("--seed belongs to `study storm`");
+    if (args.seed.is_some() || args.from.is_some()) && study != Study::Storm {
+        bail!("--seed and --from belong to `study storm`");
     }
     if let Some(folder) = &args.out {
         made(folder)?;
@@ -250,6 +254,7 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         world: args.world.clone(),
         faults: Vec::new(),
         lots: args.seeds.unwrap_or(lots),
+        from: args.from.unwrap_or(1),
         seed: args.seed,
         parts: args.parts.unwrap_or(parts),
     };

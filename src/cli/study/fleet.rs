@@ -29,6 +29,8 @@ pub struct Order {
     pub faults: Vec<String>,
     /// How many lots.
     pub lots: u64,
+    /// First seed, where a study takes it.
+    pub from: u64,
     /// One seed alone, where a study takes it.
     pub seed: Option<u64>,
     /// Parts of each.

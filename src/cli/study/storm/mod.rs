@@ -101,7 +101,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let sea = Sea::new(order)?;
     let seeds: Vec<u64> = match order.seed {
         Some(seed) => vec![seed],
-        None => (1..=order.lots).collect(),
+        None => (order.from..).take(order.lots as usize).collect(),
     };
     let outcomes = sea.all(&seeds)?;
     let minutes = began.elapsed().as_secs_f64() / 60.0;

@@ -12,9 +12,6 @@ use serde_json::Value;
 /// A value further from its truth than so many expanded uncertainties (k = 2) is somebody else's. Over 10^6 values
 /// a true one is this far off less than once in 10^9 times.
 const SOMEBODY_ELSES: f64 = 4.0;
-/// The uncertainty is that of sound parts. A defect may add so much of the value: a weak spring operates in the
-/// middle of its ramp's settling, some 50 mV early.
-const OF_A_DEFECT: f64 = 0.02;
 /// A true value is beyond a limit, or clear of it, by so many expanded uncertainties.
 const CLEARLY: f64 = 2.0;
 
@@ -62,8 +59,7 @@ fn strange(readings: &[Reading], part: &PartTruth) -> Option<String> {
     let unstable = part.defect == Some("unstable_contact");
     let far = |it: &&Reading| {
         let defined = !(unstable && it.key.starts_with("contact"));
-        let more = part.defect.map_or(0.0, |_| OF_A_DEFECT * it.truth.abs());
-        defined && (it.value - it.truth).abs() > SOMEBODY_ELSES * it.expanded + more
+        defined && (it.value - it.truth).abs() > SOMEBODY_ELSES * it.expanded
     };
     let it = readings.iter().find(far)?;
     let (key, value, truth, u) = (it.key, it.value, it.truth, it.expanded);
