@@ -14,6 +14,7 @@ pub mod lot;
 mod plug;
 pub mod rig;
 pub mod run;
+pub mod serve;
 #[cfg(feature = "sim")]
 pub mod sim;
 #[cfg(feature = "sim")]
@@ -42,6 +43,7 @@ pub const STOPPED: i32 = 4;
     version,
     after_help = "Examples:
   relayrig demo
+  relayrig serve --line measure=/dev/ttyUSB0 --line motion=/dev/ttyUSB1
   relayrig run --sim --pace virtual --lot A --recipe jzc-22f-012 --count 20
   relayrig history list
   relayrig config check
@@ -74,6 +76,8 @@ pub enum Command {
     /// The main job with nothing to prepare: simulated rig, a lot running, a page on 127.0.0.1:8080
     #[cfg(feature = "sim")]
     Demo(demo::DemoArgs),
+    /// The rig under one program for the whole day: page and API, lots are started there
+    Serve(serve::ServeArgs),
     /// Run a lot, on a rig or on the simulated one
     Run(Box<run::RunArgs>),
     /// Factors of the rig from its references and golden parts, or their verification
@@ -116,6 +120,7 @@ impl Cli {
         match self.command {
             #[cfg(feature = "sim")]
             Command::Demo(args) => demo::run(&self.config, &self.db, &args),
+            Command::Serve(args) => serve::run(&self.config, &self.db, &args),
             Command::Run(args) => run::run(&self.config, &self.db, &args),
             Command::Calibrate(args) => calibrate::run(&self.config, &self.db, &args),
             #[cfg(feature = "sim")]

@@ -9,7 +9,7 @@ mod traffic;
 pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
 pub use mimic::{Mimic, MimicBody};
 pub use motion::{MotionView, RefusedView, StrokeView};
-pub use order::{Answered, By, NotTaken, ORDERS, Order};
+pub use order::{Answered, By, LOT_ORDERS, NotTaken, ORDERS, Order};
 pub use traffic::{LineTraffic, Message};
 
 use serde::Serialize;
@@ -22,8 +22,10 @@ pub struct View {
     pub at_us: i64,
     /// The rig is simulated.
     pub simulated: bool,
-    /// Lot under way.
+    /// Lot under way, or the last one; empty before the first.
     pub lot: String,
+    /// A lot is under way: what is stopped goes on with it.
+    pub under_way: bool,
     /// Recipe of the lot.
     pub recipe: String,
     /// What the station is doing, in words.

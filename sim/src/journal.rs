@@ -12,6 +12,7 @@ use crate::error::SimError;
 use crate::rig::{Record, Scene};
 use crate::terminal::Plant;
 use crate::truth::BodyTruth;
+use crate::world::WorldOptions;
 
 /// One thing that happened.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -172,6 +173,10 @@ impl Record for Watched {
 
     fn bodies(&mut self) -> Vec<BodyTruth> {
         self.scene.bodies()
+    }
+
+    fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        self.scene.fill(options)
     }
 
     fn calm(&mut self) {

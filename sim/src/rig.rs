@@ -20,6 +20,7 @@ use crate::shared;
 use crate::terminal::Plant;
 use crate::truth::BodyTruth;
 use crate::uart;
+use crate::world::WorldOptions;
 
 /// What the world knows and no module ever tells.
 pub trait Record {
@@ -36,6 +37,15 @@ pub trait Record {
     fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
         let _ = value;
         Err(SimError::UnknownFault { name: fault.into() })
+    }
+
+    /// Other parts are put into the magazine; nothing where there is none.
+    ///
+    /// # Errors
+    /// A file of the configuration is missing or wrong.
+    fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        let _ = options;
+        Ok(())
     }
 
     /// Every body that has left the magazine, in order of leaving; none where there is no magazine.
@@ -253,6 +263,14 @@ impl Rig {
     /// See [`Record::bodies`].
     pub fn bodies(&mut self) -> Vec<BodyTruth> {
         self.scene.bodies()
+    }
+
+    /// See [`Record::fill`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        self.scene.fill(options)
     }
 
     /// See [`Record::calm`]; faults of lines and modules end by their windows.

@@ -44,6 +44,20 @@ impl std::fmt::Debug for SharedRig {
     }
 }
 
+impl Options {
+    fn of_world(&self, faults: Vec<(String, f64)>) -> WorldOptions {
+        WorldOptions {
+            config_dir: self.config_dir.clone(),
+            world_file: self.world.clone(),
+            seed: self.seed,
+            recipe: self.recipe.clone(),
+            parts: self.parts,
+            golden: self.golden,
+            faults,
+        }
+    }
+}
+
 /// Builds the rig of `config_dir` with the errors and parts that the seed draws.
 ///
 /// # Errors
@@ -63,15 +77,7 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
         file.modules.iter().any(|module| module.id == target)
             || file.lines.iter().any(|line| line.name == target)
     })?;
-    let world = World::build(&WorldOptions {
-        config_dir: options.config_dir.clone(),
-        world_file: options.world.clone(),
-        seed: options.seed,
-        recipe: options.recipe.clone(),
-        parts: options.parts,
-        golden: options.golden,
-        faults: world_faults,
-    })?;
+    let world = World::build(&options.of_world(world_faults))?;
     let modules = modules(&file, &table, options.seed)?;
     let rig = Rig::new(Box::new(world), modules, file.lines, faults);
     Ok(SharedRig::new(rig))
@@ -191,6 +197,10 @@ impl Record for World {
     fn calm(&mut self) {
         World::calm(self);
     }
+
+    fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        Ok(World::fill(self, options)?)
+    }
 }
 
 impl SharedRig {
@@ -261,6 +271,15 @@ impl SharedRig {
     /// Every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
         self.rig().bodies()
+    }
+
+    /// A person empties the magazine and fills it for another lot; of the options recipe, number of parts and golden
+    /// parts matter.
+    ///
+    /// # Errors
+    /// A file of the configuration is missing or wrong; then the magazine is as it was.
+    pub fn fill(&self, options: &Options) -> Result<(), SimError> {
+        self.rig().fill(&options.of_world(Vec::new()))
     }
 
     /// Faults of the world that still wait for their part or their instant are called off.

@@ -4,8 +4,9 @@
 
 use super::DONE;
 use crate::history::{
-    Archive, Filter, Identity, LotState, LotStateRecord, OrderRecord, Row, Store,
+    Archive, Decision, Filter, Identity, LotStateRecord, OrderRecord, Row, Store,
 };
+use crate::view::{By, Order};
 use anyhow::{Context, ensure};
 use serde_json::json;
 use std::io::Write;
@@ -38,22 +39,22 @@ enum Action {
     },
     /// No run of the lot before it is released
     #[command(after_help = "Example: relayrig lot hold A --by li --reason 'wrong label'")]
-    Hold(Decision),
+    Hold(Decided),
     /// The lot may be run again
     #[command(
         after_help = "Example: relayrig lot release A --by li --reason 'golden part cleaned'"
     )]
-    Release(Decision),
+    Release(Decided),
     /// The lot is complete as it is
     #[command(
         after_help = "Example: relayrig lot close A --by li --reason 'rest of the reel returned'"
     )]
-    Close(Decision),
+    Close(Decided),
 }
 
 /// Who decides, and why.
 #[derive(Debug, clap::Args)]
-struct Decision {
+struct Decided {
     /// Name of the lot
     lot: String,
     /// Who decides
@@ -68,44 +69,60 @@ struct Decision {
 pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<i32> {
     match &args.action {
         Action::Show { lot, json } => show(&Archive::open(db)?, lot, *json)?,
-        Action::Hold(it) => decide(db, it, "hold_lot", LotState::Held)?,
-        Action::Release(it) => decide(db, it, "release_lot", LotState::Open)?,
-        Action::Close(it) => decide(db, it, "close_lot", LotState::Complete)?,
+        Action::Hold(it) => decide(db, it, Decision::Hold)?,
+        Action::Release(it) => decide(db, it, Decision::Release)?,
+        Action::Close(it) => decide(db, it, Decision::Close)?,
     }
     Ok(DONE)
 }
 
-fn decide(db: &Path, it: &Decision, order: &str, state: LotState) -> anyhow::Result<()> {
+fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
     ensure!(
         !it.by.trim().is_empty(),
         "--by: found nothing, expected a name"
     );
-    let held = state == LotState::Held;
     ensure!(
-        !held || !it.reason.is_empty(),
+        decision != Decision::Hold || !it.reason.is_empty(),
         "--reason: found nothing, expected why the lot is held"
     );
     known(&Archive::open(db)?, &it.lot)?;
-    let at_us = jiff::Timestamp::now().as_microsecond();
-    let what = json!({"order": order, "lot": it.lot, "reason": it.reason});
-    let rows = [
-        Row::Order(OrderRecord {
-            lot: None,
-            at_us,
-            who: it.by.clone(),
-            role: String::new(),
-            origin: "command line".into(),
-            what: what.to_string(),
-            refused: None,
-        }),
-        Row::LotState(LotStateRecord {
-            lot: it.lot.clone(),
-            state,
-            why: held.then(|| format!("{} ({})", it.reason, it.by)),
-            at_us,
-        }),
-    ];
+    let order = Order {
+        order: decision.order().into(),
+        lot: Some(it.lot.clone()),
+        reason: Some(it.reason.clone()),
+        ..Order::default()
+    };
+    let by = By {
+        who: it.by.clone(),
+        role: String::new(),
+        origin: "command line".into(),
+    };
+    let rows = [audit(&order, &by), state(&order, &by, decision)];
     Ok(Store::open(db, &Identity::of_this_program())?.record(&rows)?)
+}
+
+/// The row of the audit of an order that was taken outside of a run.
+pub(super) fn audit(order: &Order, by: &By) -> Row {
+    Row::Order(OrderRecord {
+        lot: None,
+        at_us: jiff::Timestamp::now().as_microsecond(),
+        who: by.who.clone(),
+        role: by.role.clone(),
+        origin: by.origin.clone(),
+        what: json!(order).to_string(),
+        refused: None,
+    })
+}
+
+/// The row that puts the lot of an order into its new state.
+pub(super) fn state(order: &Order, by: &By, decision: Decision) -> Row {
+    let reason = order.reason.as_deref().unwrap_or_default();
+    Row::LotState(LotStateRecord {
+        lot: order.lot.clone().unwrap_or_default(),
+        state: decision.becomes(),
+        why: (decision == Decision::Hold).then(|| format!("{reason} ({})", by.who)),
+        at_us: jiff::Timestamp::now().as_microsecond(),
+    })
 }
 
 fn known(archive: &Archive, lot: &str) -> anyhow::Result<crate::history::LotStanding> {

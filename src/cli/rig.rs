@@ -1,5 +1,6 @@
 //! Which rig a command works on: the one at serial ports, or the simulated one.
 
+use anyhow::bail;
 use std::path::PathBuf;
 
 /// How rig time passes on the simulated rig.
@@ -35,6 +36,24 @@ pub struct RigArgs {
     /// Port of a line instead of the one in rig.toml
     #[arg(long, value_name = "NAME=PORT", conflicts_with = "sim")]
     pub line: Vec<String>,
+}
+
+impl RigArgs {
+    /// Refuses what does not go together.
+    pub fn check(&self) -> anyhow::Result<()> {
+        if self.speed.is_some() && !self.is_virtual() {
+            bail!("--speed: found with --pace real, expected --pace virtual");
+        }
+        if self.sim && !cfg!(feature = "sim") {
+            bail!("--sim: this is a plant build without the simulated rig");
+        }
+        Ok(())
+    }
+
+    /// The simulated rig in virtual time.
+    pub fn is_virtual(&self) -> bool {
+        self.sim && self.pace == PaceArg::Virtual
+    }
 }
 
 /// How often the wall clock; what a person can still follow, and a machine keep up with.

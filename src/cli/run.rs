@@ -3,11 +3,11 @@
 pub(super) mod assemble;
 mod counts;
 mod diary;
-mod gate;
+pub(super) mod gate;
 mod grr;
-mod lines;
+pub(super) mod lines;
 mod orders;
-mod recorder;
+pub(super) mod recorder;
 mod rows;
 mod screen;
 mod stage;
@@ -15,15 +15,14 @@ mod summary;
 mod table;
 mod traces;
 
-use super::calibrate;
-use super::rig::{PaceArg, RigArgs};
+use super::rig::RigArgs;
 use crate::bus::Pace;
-use crate::config::{Plant, load_recipe};
+use crate::config::Plant;
 use crate::cycle::{Event, Outside};
 use crate::gauge::{Calibration, Recipe};
 use crate::station::wants::Ending;
 use crate::view::{LineTraffic, View};
-use anyhow::{Context, bail};
+use anyhow::Context;
 use orders::Desk;
 pub use orders::Orders;
 use recorder::{Recorder, Setup};
@@ -91,6 +90,8 @@ pub struct Controls {
     pub traces: Arc<Mutex<Option<Traces>>>,
     /// No rows to stdout.
     pub quiet: bool,
+    /// Between lots: the rig is connected and nothing is begun; the run's lot is that of parts found inside.
+    pub no_lot: bool,
     /// The run only calibrates, whatever is stored, and leaves what it found here instead of in the history.
     pub calibrates: Option<Arc<OnceLock<Calibration>>>,
     /// A study stands in for the world outside.
@@ -107,9 +108,16 @@ impl Controls {
             view: watch::channel(View::default()).0,
             traces: Arc::default(),
             quiet,
+            no_lot: false,
             calibrates: None,
             stage: None,
         }
+    }
+
+    /// From now on Ctrl-C stops, and once more aborts. Inside of a runtime.
+    pub fn heed_signals(&self) {
+        let flags = [Arc::clone(&self.stop), Arc::clone(&self.abort)];
+        tokio::spawn(interruptions(flags));
     }
 
     fn show_traffic(&self, traces: &Traces) {
@@ -144,51 +152,36 @@ pub fn run_with(
     controls: &Controls,
     orders: Orders,
 ) -> anyhow::Result<i32> {
-    if args.lot.is_empty() || args.lot.len() > 200 {
-        bail!(
-            "--lot: found {} characters, expected 1 to 200",
-            args.lot.len()
-        );
-    }
-    if args.count == Some(0) && controls.calibrates.is_none() {
-        bail!("--count: found 0, expected at least 1");
-    }
-    if args.rig.speed.is_some() && !is_virtual(args) {
-        bail!("--speed: found with --pace real, expected --pace virtual");
-    }
-    if args.rig.sim && !cfg!(feature = "sim") {
-        bail!("--sim: this is a plant build without the simulated rig");
-    }
+    args.rig.check()?;
     if let Some(path) = &args.truth {
         std::fs::File::create(path).with_context(|| format!("--truth {}", path.display()))?;
     }
     let plant = Plant::load(config)?;
-    let recipe = Arc::new(load_recipe(config, &args.recipe)?);
-    plant.admit(&recipe)?;
-    if controls.calibrates.is_none() {
-        gate::admit(db, &plant, &recipe, args)?;
-    }
-    if !args.rig.sim
-        && controls.calibrates.is_none()
-        && let Some(why) = calibrate::why_not(db, recipe.part.nominal_v)?
-    {
+    let calibrates = controls.calibrates.is_some();
+    let recipe = gate::admit(db, &plant, args, calibrates)?;
+    if !calibrates && let Some(why) = gate::uncalibrated(db, &recipe, args)? {
         tracing::error!(code = gate::INVALID, "{why}");
         gate::refuse(db, &recipe, args, &why)?;
         return Ok(super::RIG_TROUBLE);
     }
-    let mut builder = tokio::runtime::Builder::new_current_thread();
-    builder.enable_all();
-    #[cfg(feature = "sim")]
-    builder.start_paused(is_virtual(args));
-    let runtime = builder.build().context("starting the runtime")?;
+    let runtime = runtime(&args.rig)?;
     let bench = (&plant, &recipe);
-    let status = runtime.block_on(run_lot(bench, config, db, args, controls, orders));
+    let status = runtime.block_on(async {
+        controls.heed_signals();
+        run_lot(bench, config, db, args, controls, orders).await
+    });
     runtime.shutdown_timeout(std::time::Duration::from_secs(1));
     status
 }
 
-fn is_virtual(args: &RunArgs) -> bool {
-    args.rig.sim && args.rig.pace == PaceArg::Virtual
+/// One thread, whose clock is the rig's in virtual time.
+pub(super) fn runtime(rig: &RigArgs) -> anyhow::Result<tokio::runtime::Runtime> {
+    let mut builder = tokio::runtime::Builder::new_current_thread();
+    builder.enable_all();
+    #[cfg(feature = "sim")]
+    builder.start_paused(rig.is_virtual());
+    let _ = rig;
+    builder.build().context("starting the runtime")
 }
 
 /// The lot itself; what was checked in [`run_with`] is taken for granted.
@@ -200,15 +193,16 @@ pub(super) async fn run_lot(
     controls: &Controls,
     orders: Orders,
 ) -> anyhow::Result<i32> {
-    let pace = if is_virtual(args) {
+    let pace = if args.rig.is_virtual() {
         Pace::virtual_time()
     } else {
         Pace::real()
     };
     let epoch_us = controls.epoch_us();
-    if let Some(speed) = args.rig.speed {
-        tokio::spawn(pace.hold_back(speed));
-    }
+    let held_back = args
+        .rig
+        .speed
+        .map(|speed| tokio::spawn(pace.hold_back(speed)));
     let (mut lines, rig) = lines::open(plant, config, args, controls, &pace)?;
     let setup = Setup {
         plant,
@@ -239,13 +233,8 @@ pub(super) async fn run_lot(
         pace,
         std::mem::take(&mut lines.ends),
         outside,
-        controls.stays,
+        controls,
     )?;
-    let flags = [Arc::clone(&controls.stop), Arc::clone(&controls.abort)];
-    let interrupt = controls
-        .stage
-        .is_none()
-        .then(|| tokio::spawn(interruptions(flags)));
     let running = tokio::spawn(cycle.run());
     let kept = recorder.keep(received, &recorded, desk.onlooker).await;
     if let Err(error) = &kept {
@@ -253,8 +242,8 @@ pub(super) async fn run_lot(
         history_lost.store(true, Ordering::Release);
     }
     let ended = running.await;
-    if let Some(interrupt) = interrupt {
-        interrupt.abort();
+    if let Some(held_back) = held_back {
+        held_back.abort();
     }
     let Ok((ending, profile)) = ended else {
         tracing::error!(

@@ -27,11 +27,11 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
             format!("{what}：收到 {found}，应为 {known} 之一"),
         )
     };
-    if let Some(command) = Command::from_name(&order.order) {
-        return Ok(Order::Command(command));
-    }
     let named = order.alarm.clone();
     match order.order.as_str() {
+        "start" if order.lot.is_some() => Ok(Order::Leave),
+        "hold_lot" => Ok(Order::Leave),
+        "close_lot" => Ok(Order::Close),
         "mode" => order
             .mode
             .as_deref()
@@ -63,7 +63,9 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
             )),
             (None, _) => Err(expected("alarm", vec!["the code of an alarm"], None)),
         },
-        other => Err(expected("order", view::ORDERS.to_vec(), Some(other))),
+        other => Command::from_name(other)
+            .map(Order::Command)
+            .ok_or_else(|| expected("order", view::ORDERS.to_vec(), Some(other))),
     }
 }
 
@@ -183,6 +185,8 @@ fn buttons(station: &Station) -> Vec<Button> {
         .chain([
             button("step", "", station.may_step()),
             button("lamp_test", "", Ok(())),
+            button("start", "lot", station.may_leave()),
+            button("close_lot", "", station.may_close()),
         ])
         .collect()
 }
@@ -304,8 +308,8 @@ mod tests {
                 mode: Some("manual".into()),
                 motion: Some("pusher_extend".into()),
                 alarm: Some("door_open".into()),
-                minutes: None,
                 reason: Some("sensor is on its way".into()),
+                ..Order::default()
             };
             assert!(read(&order).is_ok(), "{word}");
         }

@@ -125,8 +125,8 @@ pub(super) fn offers() -> Vec<Offer> {
         Offer::get("/api/me", JSON, "Name and role, or null for a stranger.", login::me),
         Offer::post(
             "/api/orders",
-            "An order to the station: taken, or 409 with the reason in English and Chinese. `mode`, `jog`, `step` and \
-             `shelve` take a maintainer.",
+            "An order to the station: taken, or 409 with the reason in English and Chinese. `mode`, `jog`, `step`, \
+             `shelve`, `release_lot` and `replaced` take a maintainer.",
             orders::order,
         )
         .with(&ORDER)
@@ -152,7 +152,7 @@ pub(super) fn offers() -> Vec<Offer> {
 }
 
 /// Body of an order.
-const ORDER: [Member; 6] = [
+const ORDER: [Member; 11] = [
     must(
         "order",
         "`start`, `stop`, `hold` and the others that a refusal lists.",
@@ -167,7 +167,24 @@ const ORDER: [Member; 6] = [
         "Of `acknowledge` (all without it) and `shelve`: code of the alarm.",
     ),
     may("minutes", "Of `shelve`: 1 to 480; 30 without it."),
-    may("reason", "Of `shelve`: why."),
+    may("reason", "Of `shelve` and `hold_lot`: why."),
+    may(
+        "lot",
+        "Of `start` (without it the lot under way goes on), `hold_lot`, `release_lot`, `close_lot`: its name.",
+    ),
+    may("recipe", "Of `start` with a lot: name of its recipe."),
+    may(
+        "count",
+        "Of `start` with a lot: parts wanted; without it the lot goes on until it is ended.",
+    ),
+    may(
+        "retest",
+        "Of `start` with a lot: its parts are tested again, to which this person has agreed.",
+    ),
+    may(
+        "counter",
+        "Of `replaced`: `probe_touches` or `jaw_closings`, which begins anew.",
+    ),
 ];
 
 static DOCUMENT: LazyLock<serde_json::Value> = LazyLock::new(|| document::of(&offers()));

@@ -9,7 +9,7 @@ use super::access::{Person, Role};
 use super::error::HmiError;
 use super::router::Desk;
 use super::{gate, origin};
-use crate::view::{By, NotTaken, ORDERS, Order};
+use crate::view::{By, LOT_ORDERS, NotTaken, ORDERS, Order};
 use axum::Json;
 use axum::extract::rejection::{ExtensionRejection, JsonRejection};
 use axum::extract::{ConnectInfo, State};
@@ -84,10 +84,10 @@ pub(super) async fn order(
     }
 }
 
-/// Whoever moves single actuators or hides alarms must know the machine.
+/// Whoever moves single actuators, hides alarms or releases what was held must know the machine.
 fn needs(order: &Order) -> Role {
     match order.order.as_str() {
-        "mode" | "jog" | "step" | "shelve" => Role::Maintainer,
+        "mode" | "jog" | "step" | "shelve" | "release_lot" | "replaced" => Role::Maintainer,
         _other => Role::Operator,
     }
 }
@@ -95,12 +95,12 @@ fn needs(order: &Order) -> Role {
 /// The word of an order that is known and that the person may give.
 fn allowed(person: &Person, order: &Order) -> Result<&'static str, HmiError> {
     gate::trusted(person, needs(order))?;
-    let mut known = ORDERS.into_iter();
-    known
+    let known = || ORDERS.into_iter().chain(LOT_ORDERS);
+    known()
         .find(|known| *known == order.order)
         .ok_or_else(|| HmiError::UnknownOrder {
             found: order.order.chars().take(40).collect(),
-            known: ORDERS.join(", "),
+            known: known().collect::<Vec<_>>().join(", "),
         })
 }
 

@@ -4,7 +4,7 @@ use super::Station;
 use super::annunciator::Standing;
 use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
-use super::wants::{Jog, Wants};
+use super::wants::{Ending, Jog, Wants};
 use crate::units::{RigTime, Span};
 
 impl Station {
@@ -34,6 +34,18 @@ impl Station {
                 wants.motions.extend(self.stepwise.pop_front());
             }
             Order::LampTest => self.lamps.test(now),
+            Order::Leave => {
+                self.may_leave()?;
+                self.leave(Ending::Stopped, now, wants);
+            }
+            Order::Close => {
+                self.may_close()?;
+                if self.may(Command::Complete).is_ok() {
+                    self.command(Command::Complete, now, wants);
+                } else {
+                    self.leave(Ending::Complete, now, wants);
+                }
+            }
             Order::Acknowledge(code) => {
                 if !self.annunciator.acknowledge(code.as_deref()) && code.is_some() {
                     return Err(no_alarm());
@@ -88,13 +100,56 @@ impl Station {
                 "复位后执行机构被手动移动过；请先停止并复位",
             ));
         }
-        if !self.wants_more() && !self.plan.stays {
+        if self.plan.no_lot {
             return Err(Refused::new(
-                "every part of the lot has been made",
-                "本批次已全部完成",
+                "no lot is under way; choose one on the page of lots",
+                "当前没有批次；请在“批次”页选择",
             ));
         }
         Ok(())
+    }
+
+    /// Whether the lot may be left where it is, so that another one can begin.
+    ///
+    /// # Errors
+    /// The reason why not.
+    pub fn may_leave(&self) -> Result<(), Refused> {
+        if self.mode != Mode::Production {
+            return Err(Refused::wrong_mode("start", self.mode, Mode::Production));
+        }
+        if matches!(self.state, State::Stopped | State::Idle) {
+            return Ok(());
+        }
+        let state = self.state.name();
+        Err(Refused::new(
+            format!(
+                "another lot can be begun in Stopped and Idle; the machine is in {state}{}",
+                self.way_out().0
+            ),
+            format!(
+                "只能在 Stopped、Idle 状态开始其他批次；当前状态为 {state}{}",
+                self.way_out().1
+            ),
+        ))
+    }
+
+    /// What a person does first, in both languages.
+    fn way_out(&self) -> (&'static str, &'static str) {
+        if packml::is_aborted(self.state) {
+            ("; clear it first", "；请先清除")
+        } else if packml::next(self.state, On::Command(Command::Stop)).is_some() {
+            ("; stop it first", "；请先停止")
+        } else {
+            ("", "")
+        }
+    }
+
+    /// Whether the lot may be ended although its count is not reached.
+    ///
+    /// # Errors
+    /// The reason why not.
+    pub fn may_close(&self) -> Result<(), Refused> {
+        self.may(Command::Complete).or_else(|_| self.may_leave())
     }
 
     /// Whether the mode may be changed now.
@@ -160,6 +215,11 @@ impl Station {
         self.homed = false;
     }
 
+    fn leave(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
+        self.make_safe("stopped", now, wants);
+        self.end(ending, wants);
+    }
+
     fn command(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
         self.fresh = false;
         match command {
@@ -171,11 +231,6 @@ impl Station {
             | Command::Hold
             | Command::Unsuspend
             | Command::Complete => {}
-        }
-        let complete = !self.wants_more() && self.ledger.inside() == 0;
-        if command == Command::Start && complete {
-            // A person who starts a complete lot wants as many parts again.
-            self.plan.count = self.plan.count.map(|count| count + self.plan_count);
         }
         self.enter(command, now, wants);
     }

@@ -14,8 +14,9 @@
 //! cause is gone and somebody has seen it. After `clear` and `reset` the station goes on from where it is. A
 //! part inside is void, "interrupted". A stale sensor is trouble, never a guess.
 //!
-//! Without a person at a screen ([`Plan::stays`] is false) the station resets and starts by itself, and an alarm
-//! that would need a person ends the run.
+//! A run ends with its lot, or when a person leaves the lot for another one. Without a person at a screen
+//! ([`Plan::stays`] is false) an alarm that would need one ends the run, too. The station resets and starts a lot by
+//! itself; between lots ([`Plan::no_lot`]) it does nothing unless it is asked.
 
 pub mod act;
 pub mod annunciator;
@@ -88,8 +89,10 @@ pub struct Plan {
     pub simulated: bool,
     /// Volts at the terminal per volt of the coil, fine channel.
     pub voltage_gain: f64,
-    /// A person is at a screen: alarms, stops and the end of the lot do not end the run.
+    /// A person is at a screen: alarms and stops do not end the run.
     pub stays: bool,
+    /// Between lots: nothing begins by itself, no part is wanted; what is found inside is discharged.
+    pub no_lot: bool,
     /// Gates of the lot.
     pub lot: LotSettings,
     /// Uses of what wears before this run.
@@ -154,8 +157,6 @@ pub struct Station {
     lot_began: bool,
     /// Nobody has started anything yet: the first start is the program's own.
     fresh: bool,
-    /// Parts of one start.
-    plan_count: u64,
     stopping: bool,
     ended: bool,
 }
@@ -170,7 +171,6 @@ impl Station {
         };
         let mut station = Self {
             fresh: true,
-            plan_count: plan.count.unwrap_or(0),
             plan,
             bench,
             table,

@@ -19,6 +19,10 @@ pub enum Order {
     Step,
     /// All lamps and the buzzer for a moment.
     LampTest,
+    /// The lot is left as it is, so that another one can begin: the run ends.
+    Leave,
+    /// The lot ends after the parts inside, whatever its count.
+    Close,
     /// A person has seen the alarm of this code; `None`: every alarm.
     Acknowledge(Option<String>),
     /// The alarm of this code is not to be shown for so many minutes, see [`shelf_minutes`].

@@ -22,6 +22,9 @@ const ALONE: Span = Span::ms(60_000);
 impl Station {
     /// Orders that nobody has to give when nobody is there, and the end of the program.
     pub(super) fn by_itself(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        if self.ended {
+            return;
+        }
         if inputs.stop && !self.stopping {
             self.stopping = true;
             if packml::next(self.state, On::Command(Command::Stop)).is_some() {
@@ -50,6 +53,7 @@ impl Station {
                     wants,
                 );
             }
+            (false, ..) if self.plan.no_lot => {}
             (false, _, State::Stopped) if self.entered == RigTime(0) => {
                 self.enter(Command::Reset, now, wants)
             }
@@ -111,7 +115,7 @@ impl Station {
             | State::Aborting
             | State::Aborted => {}
         }
-        if to == State::Complete && !self.plan.stays {
+        if to == State::Complete {
             let ending = if self.stopping {
                 Ending::Stopped
             } else {

@@ -22,10 +22,13 @@ pub const ORDERS: [&str; 16] = [
     "shelve",
 ];
 
+/// Words of orders about lots and what wears, which do not move the rig by themselves.
+pub const LOT_ORDERS: [&str; 4] = ["hold_lot", "release_lot", "close_lot", "replaced"];
+
 /// An order; members that its word does not need are let pass.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Order {
-    /// One of [`ORDERS`].
+    /// One of [`ORDERS`] or [`LOT_ORDERS`].
     pub order: String,
     /// Of `mode`: `production`, `maintenance`, `manual`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -39,9 +42,24 @@ pub struct Order {
     /// Of `shelve`, 1 to 480; 30 without it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minutes: Option<u32>,
-    /// Of `shelve`: why.
+    /// Of `shelve` and `hold_lot`: why.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// Of `start` (without it: the lot under way goes on), `hold_lot`, `release_lot`, `close_lot`: name of the lot.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lot: Option<String>,
+    /// Of `start` with a lot: name of the recipe.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recipe: Option<String>,
+    /// Of `start` with a lot: parts wanted; without it the lot goes on until it is ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<u64>,
+    /// Of `start` with a lot: parts are tested again, to which this person has agreed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub retest: Option<String>,
+    /// Of `replaced`: name of the counter that begins anew.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub counter: Option<String>,
 }
 
 /// Who orders, and from where.

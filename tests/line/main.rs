@@ -16,6 +16,7 @@
 //! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
 //! - `tempest`: the whole program under faults of world and line, orders and kills, judged by the simulated rig.
 //! - `unplugged`: a port that vanishes over pseudo-terminals.
+//! - `serve`: lots started, refused and continued at the page.
 //! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
 
 #![allow(clippy::unwrap_used)]
@@ -41,6 +42,8 @@ mod lots;
 mod paper;
 mod picture;
 mod program;
+#[cfg(all(feature = "sim", unix))]
+mod serve;
 #[cfg(feature = "sim")]
 mod stories;
 #[cfg(feature = "sim")]

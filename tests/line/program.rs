@@ -72,6 +72,17 @@ impl Workshop {
             .unwrap()
     }
 
+    /// The same, whose standard error can be read.
+    #[cfg(all(feature = "sim", unix))]
+    pub fn start_telling(&self, line: &str) -> Child {
+        let mut command = self.command(line);
+        command
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+    }
+
     /// The same, ended by force after so many seconds.
     #[cfg(all(feature = "sim", unix))]
     pub fn start_for(&self, seconds: &str, line: &str) -> Child {

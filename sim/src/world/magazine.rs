@@ -1,4 +1,4 @@
-//! The magazine track and every part that has left it.
+//! The magazine track and every part that has left it. It may be emptied and filled anew while the rig runs.
 
 use std::path::Path;
 
@@ -80,6 +80,8 @@ pub struct Magazine {
     golden_every: Option<u64>,
     /// Golden and lot parts that have left.
     out: (u64, u64),
+    /// How many of each had left when the magazine was filled.
+    filled_at: (u64, u64),
     track_c: f64,
     ambient_c: f64,
 }
@@ -114,26 +116,40 @@ impl Magazine {
                 .next()
                 .map(|it| it.max(1.0) as u64),
             out: (0, 0),
+            filled_at: (0, 0),
             track_c,
             ambient_c,
         })
     }
 
+    /// The same after another one was emptied: parts are counted on, so that none of them comes twice.
+    pub fn in_place_of(mut self, before: &Self) -> Self {
+        (self.out, self.filled_at) = (before.out, before.out);
+        self
+    }
+
+    /// Golden and lot parts that have left since it was filled.
+    fn since_filled(&self) -> (u64, u64) {
+        (self.out.0 - self.filled_at.0, self.out.1 - self.filled_at.1)
+    }
+
     /// Parts that still wait, `u64::MAX` for an endless lot.
     pub fn waiting(&self) -> u64 {
-        let ahead = (self.golden.len() as u64).saturating_sub(self.out.0);
-        let lot = |lot: u64| ahead + lot.saturating_sub(self.out.1);
+        let out = self.since_filled();
+        let ahead = (self.golden.len() as u64).saturating_sub(out.0);
+        let lot = |lot: u64| ahead + lot.saturating_sub(out.1);
         self.lot.map_or(u64::MAX, lot)
     }
 
     /// Place in the lot (from 1) of the part that leaves next; none when it is a golden one.
     pub fn next_number(&self) -> Option<u64> {
-        (self.out.0 >= self.golden_due()).then_some(self.out.1 + 1)
+        (self.since_filled().0 >= self.golden_due()).then_some(self.out.1 + 1)
     }
 
     /// Golden parts that belong before the next lot part.
     fn golden_due(&self) -> u64 {
-        let again = self.golden_every.map_or(0, |every| self.out.1 / every);
+        let lot = self.since_filled().1;
+        let again = self.golden_every.map_or(0, |every| lot / every);
         match self.golden.len() as u64 {
             0 => 0,
             first => first + again,
@@ -186,8 +202,9 @@ impl Magazine {
     }
 
     fn golden_part(&self, index: u64) -> (Specimen, Draw) {
-        let body = if index < self.golden.len() as u64 {
-            index
+        let place = index - self.filled_at.0;
+        let body = if place < self.golden.len() as u64 {
+            place
         } else {
             0
         };

@@ -157,6 +157,12 @@ impl Mechanism {
         &self.crashes
     }
 
+    /// The magazine is emptied and filled with what `load` makes of the faults that still wait.
+    pub fn fill<E>(&mut self, load: impl FnOnce(&Faults) -> Result<Magazine, E>) -> Result<(), E> {
+        self.magazine = load(&self.faults)?.in_place_of(&self.magazine);
+        Ok(())
+    }
+
     /// Every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
         let falling = self.later.iter().filter_map(|(_, what)| match what {

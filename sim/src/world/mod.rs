@@ -190,6 +190,19 @@ impl World {
         Ok(())
     }
 
+    /// A person empties the magazine and fills it with other parts; of the options only those about parts matter.
+    ///
+    /// # Errors
+    /// A file of the configuration is missing or wrong; then nothing has changed.
+    pub fn fill(&mut self, options: &WorldOptions) -> Result<(), ConfigError> {
+        let table = read_world(&options.config_dir, options.world_file.as_deref())?;
+        let (track, ambient) = (self.environment.track_c, self.environment.ambient_c);
+        self.mechanism
+            .fill(|faults| Magazine::load(options, &table, faults, track, ambient))?;
+        self.mechanism_changed();
+        Ok(())
+    }
+
     fn relay(&self) -> Option<&Relay> {
         self.mechanism
             .places

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod line;
+mod magazine;
 mod specimen;
 
 use std::path::PathBuf;

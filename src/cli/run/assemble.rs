@@ -1,12 +1,10 @@
 //! Puts a cycle together from configuration, recipe and calibration.
 
+use super::Controls;
 use super::recorder::{Known, Setup};
 use crate::bus::Pace;
-#[cfg(feature = "sim")]
 use crate::config::Plant;
-#[cfg(feature = "sim")]
-use crate::cycle::mimic;
-use crate::cycle::{Cycle, LineEnds, Outside};
+use crate::cycle::{Cycle, LineEnds, Outside, mimic};
 use crate::gauge::calibration::{Factor, InputLine, OutputLine};
 use crate::gauge::feasible::nominal_v_per_s;
 use crate::gauge::{Calibration, Recipe};
@@ -22,7 +20,6 @@ use crate::station::test::Bench;
 use crate::station::trouble::Alarm;
 use crate::station::{Plan, Station};
 use crate::units::{RigTime, Span};
-#[cfg(feature = "sim")]
 use crate::view::Mimic;
 use anyhow::Context;
 use std::sync::Arc;
@@ -34,7 +31,7 @@ pub fn cycle(
     pace: Pace,
     lines: Vec<LineEnds>,
     outside: Outside,
-    stays: bool,
+    controls: &Controls,
 ) -> anyhow::Result<Cycle> {
     let Known {
         calibration,
@@ -53,14 +50,12 @@ pub fn cycle(
             .map(|at| (at, wiring.axis.point(at).x_mm))
             .collect::<Vec<(AxisStation, f64)>>(),
     };
+    let golden = plant.golden.of_nominal(recipe.part.nominal_v);
     let plan = Plan {
-        stays,
+        stays: controls.stays,
+        no_lot: controls.no_lot,
         count: setup.args.count,
-        golden: plant
-            .golden
-            .of_nominal(recipe.part.nominal_v)
-            .cloned()
-            .collect(),
+        golden: golden.filter(|_| !controls.no_lot).cloned().collect(),
         calibrated: calibration.is_some(),
         valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
         epoch_us: setup.epoch_us,
@@ -81,14 +76,13 @@ pub fn cycle(
     let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), size_of(setup.recipe));
     let mut station = Station::new(plan, bench, wiring.axis.clone(), mechanism);
     // Without a person nobody could see them.
-    for left in alarms.into_iter().filter(|_| stays) {
+    for left in alarms.into_iter().filter(|_| controls.stays) {
         inherit(&mut station, left, setup.epoch_us);
     }
     Ok(Cycle::new(wiring, pace, station, guard, lines, outside))
 }
 
 /// The machine as a screen draws it, with parts of the size that `recipe` gives.
-#[cfg(feature = "sim")]
 pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     Ok(mimic::mimic(guard.drawing(&size_of(recipe))))

@@ -19,7 +19,8 @@ const NOT_CALIBRATED: &str = "calibration_failed";
 /// What was told of a run so far.
 #[derive(Debug)]
 pub struct Diary {
-    lot: String,
+    /// None between lots.
+    lot: Option<String>,
     simulated: bool,
     /// Codes of alarms whose cause is there.
     active: Vec<String>,
@@ -29,10 +30,10 @@ pub struct Diary {
 }
 
 impl Diary {
-    /// Of a run of `lot`.
-    pub fn new(lot: &str, simulated: bool) -> Self {
+    /// Of nothing but the rig.
+    pub fn new(simulated: bool) -> Self {
         Self {
-            lot: lot.to_owned(),
+            lot: None,
             simulated,
             active: Vec::new(),
             held: None,
@@ -40,20 +41,34 @@ impl Diary {
         }
     }
 
+    /// A run of `lot` begins.
+    pub fn begin(&mut self, lot: &str, at_us: i64) -> Option<Row> {
+        self.lot = Some(lot.to_owned());
+        self.lot(LotState::Running, None, at_us)
+    }
+
+    /// No run has begun.
+    pub fn is_of_no_lot(&self) -> bool {
+        self.lot.is_none()
+    }
+
     /// The lot is in this state from now on.
-    pub fn lot(&self, state: LotState, why: Option<String>, at_us: i64) -> Row {
-        Row::LotState(LotStateRecord {
-            lot: self.lot.clone(),
-            state,
-            why,
-            at_us,
-        })
+    fn lot(&self, state: LotState, why: Option<String>, at_us: i64) -> Option<Row> {
+        let row = |lot: &String| {
+            Row::LotState(LotStateRecord {
+                lot: lot.clone(),
+                state,
+                why,
+                at_us,
+            })
+        };
+        self.lot.as_ref().map(row)
     }
 
     /// An alarm came.
     pub fn alarm(&mut self, alarm: &Alarm, at_us: i64) -> Vec<Row> {
         let mut rows = vec![Row::Alarm(AlarmRecord {
-            lot: Some(self.lot.clone()),
+            lot: self.lot.clone(),
             code: alarm.code.clone(),
             line: None,
             text: alarm.text_en.clone(),
@@ -61,11 +76,11 @@ impl Diary {
             cleared_at_us: None,
         })];
         if alarm.code == NOT_CALIBRATED {
-            rows.push(self.check(false, &alarm.text_en, at_us));
+            rows.extend(self.check(false, &alarm.text_en, at_us));
         }
         if HOLDS.contains(&alarm.code.as_str()) {
             self.held = Some(alarm.code.clone());
-            rows.push(self.lot(LotState::Held, Some(alarm.text_en.clone()), at_us));
+            rows.extend(self.lot(LotState::Held, Some(alarm.text_en.clone()), at_us));
         }
         rows
     }
@@ -80,7 +95,7 @@ impl Diary {
         let gone = self.active.iter().filter(|code| !active.contains(code));
         let mut rows: Vec<Row> = gone.map(|code| self.returned(code, at_us)).collect();
         if self.held.take_if(|held| !active.contains(held)).is_some() {
-            rows.push(self.lot(LotState::Running, None, at_us));
+            rows.extend(self.lot(LotState::Running, None, at_us));
         }
         self.active = active;
         rows
@@ -99,7 +114,7 @@ impl Diary {
     pub fn ordered(&self, it: &Answered, at_us: i64) -> Vec<Row> {
         let by = &it.by;
         let mut rows = vec![Row::Order(OrderRecord {
-            lot: Some(self.lot.clone()),
+            lot: self.lot.clone(),
             at_us,
             who: by.who.clone(),
             role: by.role.clone(),
@@ -130,22 +145,25 @@ impl Diary {
     }
 
     /// A golden check has come out.
-    pub fn checked(&self, checked: &Checked, at_us: i64) -> Row {
+    pub fn checked(&self, checked: &Checked, at_us: i64) -> Option<Row> {
         self.check(checked.passed, &checked.text, at_us)
     }
 
     /// A calibration is complete, which is a check by itself.
-    pub fn calibrated(&self, at_us: i64) -> Row {
+    pub fn calibrated(&self, at_us: i64) -> Option<Row> {
         self.check(true, "calibration", at_us)
     }
 
-    fn check(&self, passed: bool, text: &str, at_us: i64) -> Row {
-        Row::GoldenCheck(GoldenCheckRecord {
-            lot: self.lot.clone(),
-            at_us,
-            passed,
-            text: text.to_owned(),
-        })
+    fn check(&self, passed: bool, text: &str, at_us: i64) -> Option<Row> {
+        let row = |lot: &String| {
+            Row::GoldenCheck(GoldenCheckRecord {
+                lot: lot.clone(),
+                at_us,
+                passed,
+                text: text.to_owned(),
+            })
+        };
+        self.lot.as_ref().map(row)
     }
 
     /// Uses since the last time.
@@ -170,7 +188,7 @@ impl Diary {
             (Ending::Complete, None) => LotState::Complete,
             (Ending::Stopped | Ending::Alarm, None) => LotState::Open,
         };
-        Some(self.lot(state, None, at_us))
+        self.lot(state, None, at_us)
     }
 }
 
@@ -181,7 +199,9 @@ mod tests {
     use crate::units::RigTime;
 
     fn diary() -> Diary {
-        Diary::new("A", false)
+        let mut diary = Diary::new(false);
+        diary.begin("A", 0);
+        diary
     }
 
     fn states(rows: &[Row]) -> Vec<LotState> {
@@ -222,6 +242,14 @@ mod tests {
             states(&row.into_iter().collect::<Vec<_>>()),
             [LotState::Open]
         );
+    }
+
+    #[test]
+    fn between_lots_an_alarm_belongs_to_the_rig_and_no_lot_changes() {
+        let mut diary = Diary::new(false);
+        let rows = diary.alarm(&Alarm::golden_check_failed("G-12-1 reads high"), 1);
+        assert!(matches!(&rows[..], [Row::Alarm(it)] if it.lot.is_none()));
+        assert_eq!(diary.ended(&Ending::Stopped, 2), None);
     }
 
     #[test]

@@ -192,8 +192,7 @@ fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId, Str
 }
 
 #[cfg(feature = "sim")]
-mod simulated {
-    use super::super::PaceArg;
+pub(in crate::cli) mod simulated {
     use super::{Behind, Lines, Pace, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings};
     use crate::cli::plug::PlugPorts;
     use rigsim::{Options, SharedRig, pty, wire};
@@ -207,9 +206,9 @@ mod simulated {
         faults
     }
 
-    /// The rig that the arguments ask for.
-    pub fn build(plant: &Plant, config: &Path, args: &RunArgs) -> anyhow::Result<SharedRig> {
-        Ok(rigsim::build(&Options {
+    /// The rig that the arguments ask for, golden parts and the lot in its magazine.
+    fn loaded(plant: &Plant, config: &Path, args: &RunArgs) -> Options {
+        Options {
             config_dir: config.to_path_buf(),
             world: args.rig.world.clone(),
             seed: args.rig.seed,
@@ -217,7 +216,31 @@ mod simulated {
             parts: args.count,
             golden: true,
             faults: faults(plant, args),
+        }
+    }
+
+    /// The rig that the arguments ask for.
+    pub fn build(plant: &Plant, config: &Path, args: &RunArgs) -> anyhow::Result<SharedRig> {
+        Ok(rigsim::build(&loaded(plant, config, args))?)
+    }
+
+    /// The same with an empty magazine.
+    pub fn build_empty(plant: &Plant, config: &Path, args: &RunArgs) -> anyhow::Result<SharedRig> {
+        Ok(rigsim::build(&Options {
+            parts: Some(0),
+            golden: false,
+            ..loaded(plant, config, args)
         })?)
+    }
+
+    /// What a person does before a lot: empties the magazine and loads it.
+    pub fn load(
+        rig: &SharedRig,
+        plant: &Plant,
+        config: &Path,
+        args: &RunArgs,
+    ) -> anyhow::Result<()> {
+        Ok(rig.fill(&loaded(plant, config, args))?)
     }
 
     /// The simulated rig behind its lines.
@@ -231,7 +254,7 @@ mod simulated {
             ends: Vec::new(),
             logs: Vec::new(),
         };
-        if args.rig.pace == PaceArg::Real {
+        if !args.rig.is_virtual() {
             let ptys = pty::serve(&rig)?;
             for (name, path) in ptys.paths() {
                 let line = plant

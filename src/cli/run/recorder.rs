@@ -1,5 +1,7 @@
 //! Takes the events of a run to the history, the screen and stdout.
 //!
+//! Between lots there is no run in the history, until a part that was found inside needs a row: then the lot
+//! [`FOUND`] gets one.
 //! Everything that has come in goes into one transaction; then the ordinal of the last judged part is
 //! published, which is what lets the sorter open its gripper. The database works on a blocking thread,
 //! one short task per transaction.
@@ -15,8 +17,8 @@ use crate::cycle::{Event, Profile};
 use crate::gauge::verdict::{Bin, Verdict};
 use crate::gauge::{Calibration, Recipe};
 use crate::history::{
-    AlarmLeft, CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, LotState,
-    Row, Store, snapshot_hash,
+    AlarmLeft, CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row,
+    Store, snapshot_hash,
 };
 use crate::station::gates::Uses;
 use crate::station::ledger::Kind;
@@ -32,6 +34,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
+
+/// Lot of parts that were found inside of the rig between lots.
+pub const FOUND: &str = "found in the rig";
 
 /// What a run was started with.
 pub struct Setup<'a> {
@@ -102,22 +107,15 @@ impl<'a> Recorder<'a> {
         } else {
             valid_calibration(&store, setup)?
         };
-        store.begin_lot(&LotRecord {
-            lot: setup.args.lot.clone(),
-            recipe: setup.recipe.name.clone(),
-            recipe_snapshot: setup.recipe.source_text.clone(),
-            recipe_hash: rows::recipe_hash(setup),
-            calibration_hash: calibration.as_ref().map(hash),
-            opened_at_us: setup.epoch_us,
-            simulated: setup.args.rig.sim,
-            seed: setup.args.rig.sim.then_some(setup.args.rig.seed),
-            retest: setup.args.retest.clone(),
-        })?;
-        let diary = Diary::new(&setup.args.lot, setup.args.rig.sim);
-        store.record(&[diary.lot(LotState::Running, None, setup.epoch_us)])?;
+        let mut diary = Diary::new(setup.args.rig.sim);
+        if controls.no_lot {
+            controls.view.send_modify(screen::between);
+        } else {
+            begin(&mut store, &mut diary, setup, calibration.as_ref())?;
+            controls.view.send_modify(|view| screen::begun(view, setup));
+        }
         let worn = worn(&store, setup.args.rig.sim)?;
         let alarms = store.alarms_left(setup.args.rig.sim)?;
-        controls.view.send_modify(|view| screen::begun(view, setup));
         let recorder = Self {
             setup,
             controls,
@@ -129,7 +127,7 @@ impl<'a> Recorder<'a> {
             golden: 0,
             counts: Counts::default(),
             table: Table::default(),
-            bar: bar(setup.args.count),
+            bar: bar(setup.args.count, controls.no_lot),
             eeprom,
             traces,
             eeprom_at_start: None,
@@ -190,7 +188,13 @@ impl<'a> Recorder<'a> {
     /// Turns one event into rows; the ordinal of a judged part once its rows are in the batch.
     fn take(&mut self, event: Event, rows: &mut Vec<Row>) -> anyhow::Result<Option<u64>> {
         match event {
-            Event::Judged(judged) => return Ok(Some(self.judged(judged, rows))),
+            Event::Judged(judged) => {
+                if self.diary.is_of_no_lot() {
+                    let store = self.store.as_mut().context("the history is closed")?;
+                    begin(store, &mut self.diary, self.setup, None)?;
+                }
+                return Ok(Some(self.judged(judged, rows)));
+            }
             Event::Left(left) => {
                 if let Some(part) = self.underway.get_mut(&left.ordinal) {
                     part.cycle_s = left.cycle.map(|cycle| cycle.0);
@@ -215,14 +219,14 @@ impl<'a> Recorder<'a> {
                 rows.extend(self.diary.standing(&standing, self.wall_us(at)));
             }
             Event::Checked(checked, at) => {
-                rows.push(self.diary.checked(&checked, self.wall_us(at)));
+                rows.extend(self.diary.checked(&checked, self.wall_us(at)));
             }
             Event::Ordered(answered, at) => {
                 rows.extend(self.diary.ordered(&answered, self.wall_us(at)));
             }
             Event::Uses(uses) => rows.extend(self.diary.uses(uses)),
             Event::Calibrated(calibration) => {
-                rows.push(self.diary.calibrated(calibration.made_at_us));
+                rows.extend(self.diary.calibrated(calibration.made_at_us));
                 self.calibrated(&calibration)?;
             }
             Event::LotBegan(at) => {
@@ -286,7 +290,9 @@ impl<'a> Recorder<'a> {
                 .entry(judged.verdict.name())
                 .or_insert(0) += 1;
             self.table.add(&judged);
-            self.show(&judged);
+            if !self.controls.no_lot {
+                self.show(&judged);
+            }
         }
         rows.push(Row::Part(rows::part(self.setup, &judged, self.golden)));
         self.underway.insert(
@@ -384,13 +390,40 @@ impl<'a> Recorder<'a> {
             std::io::stdout().write_all(text.as_bytes()).ok();
         }
         let end_us = self.wall_us(end);
-        if let Some(store) = &mut self.store {
+        if let Some(store) = &mut self.store
+            && !self.diary.is_of_no_lot()
+        {
             let ended: Vec<Row> = self.diary.ended(ending, end_us).into_iter().collect();
             store.record(&ended)?;
             store.close_lot(&self.setup.args.lot, end_us)?;
         }
         Ok(())
     }
+}
+
+/// The run begins in the history.
+fn begin(
+    store: &mut Store,
+    diary: &mut Diary,
+    setup: &Setup,
+    calibration: Option<&Calibration>,
+) -> anyhow::Result<()> {
+    store.begin_lot(&LotRecord {
+        lot: setup.args.lot.clone(),
+        recipe: setup.recipe.name.clone(),
+        recipe_snapshot: setup.recipe.source_text.clone(),
+        recipe_hash: rows::recipe_hash(setup),
+        calibration_hash: calibration.map(hash),
+        opened_at_us: setup.epoch_us,
+        simulated: setup.args.rig.sim,
+        seed: setup.args.rig.sim.then_some(setup.args.rig.seed),
+        retest: setup.args.retest.clone(),
+    })?;
+    let begun: Vec<Row> = diary
+        .begin(&setup.args.lot, setup.epoch_us)
+        .into_iter()
+        .collect();
+    Ok(store.record(&begun)?)
 }
 
 fn hash(calibration: &Calibration) -> String {
@@ -423,8 +456,8 @@ fn valid_calibration(store: &Store, setup: &Setup) -> anyhow::Result<Option<Cali
     Ok((record.verified && fits && record.due_at_us > setup.epoch_us).then_some(calibration))
 }
 
-fn bar(count: Option<u64>) -> ProgressBar {
-    let target = if std::io::stderr().is_terminal() {
+fn bar(count: Option<u64>, hidden: bool) -> ProgressBar {
+    let target = if std::io::stderr().is_terminal() && !hidden {
         ProgressDrawTarget::stderr()
     } else {
         ProgressDrawTarget::hidden()

@@ -1,4 +1,5 @@
-//! What screens are told of a run: the lot when it begins, then every judged part.
+//! What screens are told of a run: the lot when it begins, then every judged part. What a lot has come to stays on
+//! the screen until the next one begins.
 
 use super::counts::Counts;
 use super::recorder::Setup;
@@ -12,14 +13,26 @@ const RECENT: usize = 20;
 
 /// The lot and the limits it is judged by.
 pub fn begun(view: &mut View, setup: &Setup) {
-    view.simulated = setup.args.rig.sim;
-    view.lot.clone_from(&setup.args.lot);
-    view.recipe.clone_from(&setup.recipe.name);
-    view.count = setup.args.count;
     let limits = setup.recipe.limits.iter();
-    view.limits = limits
-        .map(|(parameter, limit)| (parameter.name().to_owned(), [limit.low, limit.high]))
-        .collect();
+    *view = View {
+        simulated: setup.args.rig.sim,
+        lot: setup.args.lot.clone(),
+        under_way: true,
+        recipe: setup.recipe.name.clone(),
+        count: setup.args.count,
+        limits: limits
+            .map(|(parameter, limit)| (parameter.name().to_owned(), [limit.low, limit.high]))
+            .collect(),
+        at_us: view.at_us,
+        alarms: std::mem::take(&mut view.alarms),
+        machine: std::mem::take(&mut view.machine),
+        ..View::default()
+    };
+}
+
+/// No lot is under way any more.
+pub fn between(view: &mut View) {
+    view.under_way = false;
 }
 
 /// The part judged last, and the counts with it.

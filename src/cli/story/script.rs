@@ -68,7 +68,7 @@ pub enum Deed {
     /// A fault strikes the rig.
     Fault(String),
     /// A person at the screen orders something; as written, and as the cycle takes it.
-    Order(String, Order),
+    Order(String, Box<Order>),
 }
 
 /// Reads a script.
@@ -123,7 +123,7 @@ fn line(words: &[&str]) -> anyhow::Result<Line> {
     let deed = match *rest {
         ["fault", fault] => Deed::Fault(fault.to_owned()),
         ["order", ref words @ ..] if !words.is_empty() => {
-            Deed::Order(words.join(" "), order(words)?)
+            Deed::Order(words.join(" "), Box::new(order(words)?))
         }
         _ => bail!(
             "found {:?}, expected fault NAME[=VALUE] or order WORD",

@@ -12,7 +12,7 @@ use crate::station::gates::{LotSettings, Uses};
 use crate::station::moves::Move;
 use crate::station::orders::{Order, Refused};
 use crate::station::trouble::Alarm;
-use crate::station::wants::{Inputs, Wants};
+use crate::station::wants::{Ending, Inputs, Wants};
 use crate::station::{Plan, Station};
 use crate::units::{RigTime, Span};
 use std::collections::{BTreeMap, VecDeque};
@@ -78,6 +78,8 @@ pub struct Machine {
     pub landed: Vec<(u64, Bin)>,
     /// Parts that left the nest.
     pub left: usize,
+    /// How the run ended.
+    pub ending: Option<Ending>,
 }
 
 /// Nothing ordered, nothing to answer, every output confirmed.
@@ -103,6 +105,7 @@ pub fn station(count: Option<u64>, shop: &Shop) -> Station {
 fn plan(count: Option<u64>) -> Plan {
     Plan {
         stays: false,
+        no_lot: false,
         simulated: true,
         count,
         golden: Vec::new(),
@@ -145,6 +148,7 @@ impl Machine {
             told: Vec::new(),
             landed: Vec::new(),
             left: 0,
+            ending: None,
         }
     }
 
@@ -154,6 +158,18 @@ impl Machine {
         let plan = Plan {
             stays: true,
             ..plan(count)
+        };
+        machine.station = of_plan(plan, &machine.shop);
+        machine
+    }
+
+    /// Between lots, with a person at a screen.
+    pub fn between_lots() -> Self {
+        let mut machine = Self::new(Some(0), Vec::new());
+        let plan = Plan {
+            stays: true,
+            no_lot: true,
+            ..plan(Some(0))
         };
         machine.station = of_plan(plan, &machine.shop);
         machine
@@ -242,6 +258,7 @@ impl Machine {
         let mut wants = self.station.step(now, inputs);
         self.answers.append(&mut wants.answers);
         self.verify = wants.verify;
+        self.ending = wants.ending.clone().or(self.ending.take());
         self.last_outputs.clone_from(&wants.outputs);
         if wants.safe {
             self.make_safe();

@@ -6,6 +6,7 @@ use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, Mode, State};
 use crate::station::trouble::Alarm;
+use crate::station::wants::Ending;
 
 fn attended(parts: usize) -> Machine {
     Machine::attended(Some(parts as u64), vec![Specimen::MissingPin; parts])
@@ -198,8 +199,7 @@ fn in_maintenance_every_motion_waits_for_a_step() {
 
 #[test]
 fn a_lamp_test_lights_everything_and_ends() {
-    let mut machine = attended(1);
-    until(&mut machine, State::Complete);
+    let mut machine = Machine::between_lots();
     let answer = machine.order(Order::LampTest);
     assert_eq!(answer, Ok(()));
     let lit: Vec<_> = machine.last_outputs.iter().filter(|(_, on)| *on).collect();
@@ -234,4 +234,67 @@ fn an_empty_magazine_suspends_the_line_until_there_are_parts_again() {
     machine.fill(Specimen::OpenCoil);
     until(&mut machine, State::Complete);
     assert_eq!(machine.landed.len(), 2);
+}
+
+#[test]
+fn between_lots_nothing_begins_by_itself_and_there_is_nothing_to_start() {
+    let mut machine = Machine::between_lots();
+    for _ in 0..500 {
+        assert!(machine.turn().motions.is_empty(), "nobody asked for it");
+    }
+    assert_eq!(machine.station.outer(), State::Stopped);
+    give(&mut machine, Command::Reset);
+    until(&mut machine, State::Idle);
+    for _ in 0..500 {
+        machine.turn();
+    }
+    let why = machine.order(Order::Command(Command::Start)).unwrap_err();
+    assert!(why.en.contains("no lot is under way"), "{}", why.en);
+    assert_eq!(machine.order(Order::Leave), Ok(()));
+    assert_eq!(machine.ending, Some(Ending::Stopped));
+}
+
+#[test]
+fn a_lot_is_left_while_the_machine_rests_and_at_no_other_time() {
+    let mut machine = attended(3);
+    testing(&mut machine);
+    let why = machine.order(Order::Leave).unwrap_err();
+    assert!(why.en.contains("stop it first"), "{}", why.en);
+    machine.shop.set(DigitalIn::DoorClosed, false);
+    until(&mut machine, State::Aborted);
+    machine.shop.set(DigitalIn::DoorClosed, true);
+    let why = machine.order(Order::Leave).unwrap_err();
+    assert!(why.en.contains("clear it first"), "{}", why.en);
+    give(&mut machine, Command::Clear);
+    until(&mut machine, State::Stopped);
+    assert_eq!(machine.order(Order::Mode(Mode::Manual)), Ok(()));
+    let why = machine.order(Order::Leave).unwrap_err();
+    assert!(why.en.contains("production"), "{}", why.en);
+    assert_eq!(machine.order(Order::Mode(Mode::Production)), Ok(()));
+    assert_eq!(machine.ending, None);
+    assert_eq!(machine.order(Order::Leave), Ok(()));
+    assert_eq!(machine.ending, Some(Ending::Stopped));
+}
+
+#[test]
+fn a_lot_that_is_closed_finishes_the_parts_inside_and_is_complete() {
+    let mut machine = attended(9);
+    testing(&mut machine);
+    assert_eq!(machine.order(Order::Close), Ok(()));
+    until(&mut machine, State::Complete);
+    assert_eq!(machine.ending, Some(Ending::Complete));
+    let landed = machine.landed.len() as u64;
+    assert!(landed < 9 && landed == machine.station.ledger().own());
+    assert_eq!(machine.station.ledger().inside(), 0);
+}
+
+#[test]
+fn a_lot_that_is_closed_at_rest_is_complete_at_once() {
+    let mut machine = attended(9);
+    testing(&mut machine);
+    give(&mut machine, Command::Stop);
+    assert!(machine.order(Order::Close).is_err(), "parts are inside");
+    until(&mut machine, State::Stopped);
+    assert_eq!(machine.order(Order::Close), Ok(()));
+    assert_eq!(machine.ending, Some(Ending::Complete));
 }

@@ -100,9 +100,8 @@ impl Operator {
             order: word.unwrap_or(any).into(),
             mode: Some(mode.into()),
             motion: Some(self.dice.one(&JOGS).0.into()),
-            alarm: None,
-            minutes: None,
             reason: Some("storm".into()),
+            ..Order::default()
         }
     }
 

@@ -1,0 +1,45 @@
+//! The magazine that a person empties and loads for another lot.
+
+use super::*;
+use crate::config::read_world;
+use crate::world::fault::Faults;
+use crate::world::magazine::Magazine;
+
+fn loaded(parts: u64) -> Magazine {
+    let options = WorldOptions {
+        config_dir: config_dir(),
+        seed: 1,
+        recipe: "jzc-22f-012".into(),
+        parts: Some(parts),
+        golden: true,
+        ..WorldOptions::default()
+    };
+    let world = read_world(&config_dir(), None).unwrap();
+    Magazine::load(&options, &world, &Faults::default(), 23.0, 23.0).unwrap()
+}
+
+/// Place in the lot of every part that comes out, none of golden ones, and its coil.
+fn emptied(magazine: &mut Magazine) -> Vec<(Option<u64>, f64)> {
+    let mut faults = Faults::default();
+    let parts = std::iter::from_fn(|| magazine.take(0, &mut faults));
+    let told = parts.map(|part| (part.number, part.truth().coil_resistance_ohm.unwrap()));
+    told.collect()
+}
+
+#[test]
+fn a_magazine_that_is_filled_anew_gives_the_golden_parts_again_and_other_parts_of_the_lot() {
+    let mut first = loaded(2);
+    let one = emptied(&mut first);
+    let mut second = loaded(3).in_place_of(&first);
+    assert!(second.waiting() > 3);
+    let two = emptied(&mut second);
+    let golden = |parts: &[(Option<u64>, f64)]| -> Vec<f64> {
+        let golden = parts.iter().filter(|(number, _)| number.is_none());
+        golden.map(|(_, coil)| *coil).collect()
+    };
+    assert_eq!(golden(&one), golden(&two));
+    assert_eq!(golden(&one).len() + 2, one.len());
+    let numbers: Vec<u64> = two.iter().filter_map(|(number, _)| *number).collect();
+    assert_eq!(numbers, [3, 4, 5], "none of them comes twice");
+    assert_eq!(second.waiting(), 0);
+}

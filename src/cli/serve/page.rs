@@ -1,0 +1,69 @@
+//! The page on a thread of its own, so that the line never waits for a screen.
+
+use super::Controls;
+use crate::hmi::{self, access};
+use crate::view::Mimic;
+use anyhow::Context;
+use std::path::Path;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use tokio::sync::{mpsc, watch};
+
+/// The page, being served.
+pub struct Page {
+    ended: watch::Sender<bool>,
+    thread: JoinHandle<()>,
+}
+
+impl Page {
+    /// From now on; of the first engineer of a first start the password is told.
+    pub fn start(
+        listener: std::net::TcpListener,
+        controls: &Controls,
+        orders: mpsc::Sender<hmi::Asked>,
+        db: &Path,
+        mimic: Mimic,
+    ) -> anyhow::Result<Self> {
+        listener
+            .set_nonblocking(true)
+            .context("the page's socket")?;
+        let people = access::beside(db);
+        let (gate, first) = hmi::Gate::open(&people)?;
+        if let Some((name, password)) = first {
+            eprintln!(
+                "relayrig: log in as {name} with {password} (told this once; people are in {})",
+                people.display()
+            );
+        }
+        let shared = hmi::Shared {
+            gate,
+            mimic: Arc::new(mimic),
+            view: controls.view.subscribe(),
+            traffic: hmi::Traffic::new(controls.traffic()),
+            db: db.to_path_buf(),
+            orders,
+        };
+        let (ended, seen) = watch::channel(false);
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_all()
+            .build()?;
+        let thread = std::thread::spawn(move || {
+            let served = runtime.block_on(async {
+                let listener = tokio::net::TcpListener::from_std(listener)?;
+                hmi::serve(listener, shared, seen).await
+            });
+            if let Err(error) = served {
+                tracing::error!("the page ended: {error}");
+            }
+        });
+        Ok(Self { ended, thread })
+    }
+
+    /// Ends it, with every stream.
+    pub fn end(self) {
+        self.ended.send_replace(true);
+        if self.thread.join().is_err() {
+            tracing::error!("the page ended by an assertion");
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! `serve`: lots started, refused and continued at the page, on a rig that stays under one program.
+
+use crate::killed::Rig;
+use crate::program::Workshop;
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Command};
+use std::time::{Duration, Instant};
+
+const RECIPE: &str = "jzc-22f-012";
+/// No state is waited for longer; far beyond what a busy machine takes.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The program with its page, and somebody who may order anything.
+struct Served {
+    process: Child,
+    address: String,
+    token: String,
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+impl Served {
+    fn start(workshop: &Workshop, words: &str) -> Self {
+        let line = format!("serve --listen 127.0.0.1:0 {words}");
+        let mut process = workshop.start_telling(&line);
+        let mut told = BufReader::new(process.stderr.take().unwrap());
+        let mut text = String::new();
+        let after = |text: &str, before: &str, end: char| {
+            let (_, rest) = text.split_once(before)?;
+            Some(rest.split(end).next()?.to_owned())
+        };
+        let address = loop {
+            assert!(told.read_line(&mut text).unwrap() > 0, "{text}");
+            if let Some(address) = after(&text, "page at http://", '/') {
+                break address;
+            }
+        };
+        std::thread::spawn(move || std::io::copy(&mut told, &mut std::io::sink()));
+        let password = after(&text, "log in as engineer with ", ' ').unwrap();
+        let mut served = Self {
+            process,
+            address,
+            token: String::new(),
+        };
+        let login = json!({"user": "engineer", "password": password});
+        let (status, session) = served.post("/api/login", &login);
+        assert_eq!(status, 200, "{session}");
+        served.token = session["token"].as_str().unwrap().to_owned();
+        served
+    }
+
+    fn ask(&self, head: &str, body: &str) -> (u16, Value) {
+        let mut stream = TcpStream::connect(&self.address).unwrap();
+        let length = body.len();
+        write!(
+            stream,
+            "{head} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Type: application/json\r\n\
+             Authorization: Bearer {}\r\nContent-Length: {length}\r\n\r\n{body}",
+            self.address, self.token
+        )
+        .unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        let (head, body) = answer.split_once("\r\n\r\n").unwrap();
+        let status = head.split(' ').nth(1).unwrap().parse().unwrap();
+        (status, serde_json::from_str(body).unwrap())
+    }
+
+    fn get(&self, path: &str) -> Value {
+        let (status, body) = self.ask(&format!("GET {path}"), "");
+        assert_eq!(status, 200, "{body}");
+        body
+    }
+
+    fn post(&self, path: &str, body: &Value) -> (u16, Value) {
+        self.ask(&format!("POST {path}"), &body.to_string())
+    }
+
+    /// An order that is taken.
+    fn order(&self, order: &Value) {
+        let (status, body) = self.post("/api/orders", order);
+        assert_eq!(status, 200, "{order}: {body}");
+    }
+
+    /// The reason why an order is not.
+    fn refused(&self, order: &Value) -> String {
+        let (status, body) = self.post("/api/orders", order);
+        assert_eq!(status, 409, "{order}: {body}");
+        assert!(body["reason_zh"].is_string(), "{body}");
+        body["reason"].as_str().unwrap().to_owned()
+    }
+
+    fn start_lot(&self, lot: &str, count: u64) {
+        self.order(&json!({"order": "start", "lot": lot, "recipe": RECIPE, "count": count}));
+    }
+
+    /// The first view of which `test` is true.
+    fn until(&self, what: &str, test: impl Fn(&Value) -> bool) -> Value {
+        let began = Instant::now();
+        loop {
+            let view = self.get("/api/view");
+            if test(&view) {
+                return view;
+            }
+            assert!(began.elapsed() < PATIENCE, "never {what}: {view}");
+            std::thread::yield_now();
+        }
+    }
+
+    fn until_state(&self, state: &str) -> Value {
+        self.until(state, |view| view["machine"]["state"] == state)
+    }
+
+    /// The lot is over, and so many parts of it are judged.
+    fn until_complete(&self, lot: &str, parts: u64) {
+        let over = |view: &Value| view["lot"] == lot && view["under_way"] == false;
+        let view = self.until("over", over);
+        assert_eq!(view["judged"], parts, "{view}");
+    }
+
+    /// Ctrl-C; the exit status.
+    fn interrupted(mut self) -> i32 {
+        let id = self.process.id().to_string();
+        Command::new("kill").args(["-INT", &id]).status().unwrap();
+        self.process.wait().unwrap().code().unwrap()
+    }
+}
+
+#[test]
+fn lots_are_started_at_the_page_one_after_the_other() {
+    let workshop = Workshop::new("serve-lots");
+    let served = Served::start(&workshop, "--sim --speed 100");
+    let view = served.until_state("Stopped");
+    assert_eq!(view["under_way"], false);
+    let why = served.refused(&json!({"order": "start"}));
+    assert!(why.contains("start is possible in Idle"), "{why}");
+    served.order(&json!({"order": "reset"}));
+    served.until_state("Idle");
+    let why = served.refused(&json!({"order": "start"}));
+    assert!(why.contains("no lot is under way"), "{why}");
+
+    served.start_lot("A", 2);
+    served.until("under way", |view| {
+        view["lot"] == "A" && view["under_way"] == true
+    });
+    served.until_state("Execute");
+    let why = served.refused(&json!({"order": "start", "lot": "B", "recipe": RECIPE}));
+    assert!(why.contains("stop it first"), "{why}");
+    served.until_complete("A", 2);
+    served.start_lot("B", 1);
+    served.until_complete("B", 1);
+    assert_eq!(served.interrupted(), 0, "nothing was stopped");
+
+    let states =
+        "SELECT name || ' ' || state FROM lot JOIN lot_state ON lot_id = lot.id ORDER BY name";
+    assert_eq!(workshop.texts(states), ["A complete", "B complete"]);
+    let bodies = "SELECT count(*) FROM part WHERE kind = 'lot' AND landed_bin IS NOT NULL";
+    assert_eq!(workshop.count(bodies), 3);
+    let orders = workshop.run("history orders --json").with_status(0);
+    let orders = orders.objects();
+    let starts = |refused: bool| {
+        let starts = orders.iter().filter(|it| it["what"]["order"] == "start");
+        starts
+            .filter(|it| it["refused"].is_null() != refused)
+            .count()
+    };
+    assert_eq!((starts(false), starts(true)), (2, 3), "{orders:?}");
+    assert!(orders.iter().all(|it| it["who"] == "engineer"));
+}
+
+#[test]
+fn a_start_that_the_gates_refuse_says_why_and_a_lot_that_was_left_goes_on() {
+    let workshop = Workshop::new("serve-gates");
+    let served = Served::start(&workshop, "--sim --speed 100");
+    served.until_state("Stopped");
+    let start = |lot: &str, recipe: &str| json!({"order": "start", "lot": lot, "recipe": recipe, "count": 40});
+    let why = served.refused(&start("A", "jzc-99"));
+    assert!(why.contains("jzc-99") && why.contains(RECIPE), "{why}");
+    let why = served.refused(&json!({"order": "start", "lot": "", "recipe": RECIPE}));
+    assert!(why.contains("1 to 200"), "{why}");
+    let why = served.refused(
+        &json!({"order": "start", "lot": "A", "recipe": RECIPE, "count": 1, "retest": "Li Na"}),
+    );
+    assert!(why.contains("tested again"), "{why}");
+    let why = served.refused(&json!({"order": "hold_lot", "lot": "A", "reason": "label"}));
+    assert!(why.contains("there is no lot"), "{why}");
+
+    served.order(&start("A", RECIPE));
+    served.until("judged", |view| view["judged"].as_u64() >= Some(1));
+    served.order(&json!({"order": "stop"}));
+    served.until_state("Stopped");
+    let why = served.refused(&json!({"order": "hold_lot", "lot": "A", "reason": " "}));
+    assert!(why.contains("expected why"), "{why}");
+    served.order(&json!({"order": "hold_lot", "lot": "A", "reason": "wrong label"}));
+    served.until("left", |view| view["under_way"] == false);
+    let held = |served: &Served| served.refused(&start("A", RECIPE));
+    let why = held(&served);
+    assert!(why.contains("held: wrong label (engineer)"), "{why}");
+    served.order(&json!({"order": "release_lot", "lot": "A"}));
+    let why = served.refused(&start("A", "jzc-22f-009"));
+    assert!(why.contains("goes on with nothing else"), "{why}");
+
+    served.order(&start("A", RECIPE));
+    served.until("goes on", |view| view["under_way"] == true);
+    served.until("judged", |view| view["judged"].as_u64() >= Some(1));
+    assert_eq!(served.interrupted(), 4, "a lot was stopped");
+    assert_eq!(workshop.count("SELECT count(*) FROM run"), 2);
+    let open = "SELECT state FROM lot_state";
+    assert_eq!(workshop.texts(open), ["open"]);
+}
+
+#[test]
+fn after_an_alarm_the_lot_goes_on_and_is_closed_and_the_next_one_begins() {
+    let workshop = Workshop::new("serve-alarm");
+    let served = Served::start(&workshop, "--sim --speed 100 --fault fall=2");
+    served.until_state("Stopped");
+    served.start_lot("A", 500);
+    let view = served.until_state("Aborted");
+    assert_eq!(view["alarms"][0]["code"], "part_dropped", "{view}");
+    let other = json!({"order": "start", "lot": "B", "recipe": RECIPE, "count": 1});
+    let why = served.refused(&other);
+    assert!(why.contains("clear it first"), "{why}");
+    served.order(&json!({"order": "clear"}));
+    served.until_state("Stopped");
+    served.order(&json!({"order": "reset"}));
+    served.until_state("Idle");
+    served.order(&json!({"order": "start"}));
+    served.until("goes on", |view| view["judged"].as_u64() >= Some(3));
+    served.order(&json!({"order": "close_lot", "lot": "A"}));
+    served.until("over", |view| view["under_way"] == false);
+    served.order(&other);
+    served.until_complete("B", 1);
+    assert_eq!(served.interrupted(), 0);
+    let states =
+        "SELECT name || ' ' || state FROM lot JOIN lot_state ON lot_id = lot.id ORDER BY name";
+    assert_eq!(workshop.texts(states), ["A complete", "B complete"]);
+}
+
+#[test]
+fn a_line_that_is_missing_at_the_start_is_named_and_used_once_it_is_there() {
+    let workshop = Workshop::new("serve-unplugged");
+    let served = Served::start(
+        &workshop,
+        "--line measure=ports/measure --line motion=ports/motion",
+    );
+    let view = served.until_state("Aborted");
+    let text = view["alarms"][0]["text_en"].as_str().unwrap();
+    assert!(
+        text.contains("line m") && text.contains("ports/m"),
+        "{text}"
+    );
+    let _rig = Rig::start(&workshop, "");
+    let began = Instant::now();
+    while served.get("/api/view")["machine"]["state"] != "Stopped" {
+        assert!(began.elapsed() < PATIENCE, "it never came back");
+        // On a machine that is busy a module may be late once more.
+        let _ = served.post("/api/orders", &json!({"order": "clear"}));
+    }
+    assert_eq!(served.interrupted(), 0);
+}
