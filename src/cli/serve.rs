@@ -104,7 +104,7 @@ pub(super) fn day(
         between: (between, recipe),
         controls,
     };
-    let page = Page::start(listener, &house.controls, orders, db, mimic)?;
+    let page = Page::start(listener, config, &house.controls, orders, db, mimic)?;
     eprintln!(
         "relayrig: {}page at http://{address}/, history in {}, Ctrl-C stops",
         if rig.sim {

@@ -60,6 +60,61 @@ pub enum ConfigError {
         /// The recipes that exist.
         known: Vec<String>,
     },
+    /// A revision that never was.
+    #[error("recipe \"{name}\": found revision {number}, expected 1 to {newest}")]
+    UnknownRevision {
+        /// Name of the recipe.
+        name: String,
+        /// The number asked for.
+        number: u32,
+        /// The greatest there is.
+        newest: u32,
+    },
+    /// A change of a text that another revision has replaced.
+    #[error(
+        "recipe \"{name}\": the revision that this change begins from is no longer the newest, which is {newest}; nothing was \
+         saved"
+    )]
+    NotNewest {
+        /// Name of the recipe.
+        name: String,
+        /// Number of the newest revision.
+        newest: u32,
+    },
+    /// A change after which every value is what it was.
+    #[error("{}: found no value that differs, expected a change", file.display())]
+    NothingChanged {
+        /// Path of the file.
+        file: PathBuf,
+    },
+    /// A revision that could not be put in place.
+    #[error("{}: the new revision could not be written; the old one stays", file.display())]
+    Unwritten {
+        /// Path of the file.
+        file: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+}
+
+impl ConfigError {
+    /// Path of the key that is wrong, `limits.operate_voltage_v.high`, where a single one is.
+    pub fn key(&self) -> Option<String> {
+        match self {
+            Self::Value { key, .. } => {
+                let path = key.strip_prefix('[').unwrap_or(key);
+                Some(path.replace('[', ".").replace(']', ""))
+            }
+            Self::Unreadable { .. }
+            | Self::Syntax { .. }
+            | Self::Rule { .. }
+            | Self::UnknownRecipe { .. }
+            | Self::UnknownRevision { .. }
+            | Self::NotNewest { .. }
+            | Self::NothingChanged { .. }
+            | Self::Unwritten { .. } => None,
+        }
+    }
 }
 
 fn list(names: &[String]) -> String {

@@ -8,6 +8,7 @@
 //! | `card.toml` | what the process card says of the plant | `CardSettings` |
 //! | `lot.toml`, which may be missing | gates of a lot | `LotSettings` |
 //! | `recipes/NAME.toml` | one kind of part | `Recipe` |
+//! | `recipes/revisions/NAME/N.toml` | what it was before | [`Revision`] |
 //!
 //! Three steps, each with its own kind of message, all of one form
 //! `file:line: key: found ..., expected ...`: the text must be TOML; every key must be known, present, of its
@@ -17,6 +18,7 @@
 
 mod card;
 pub mod check;
+mod edit;
 pub mod error;
 pub mod form;
 pub mod keys;
@@ -26,7 +28,9 @@ pub mod plant;
 #[cfg(test)]
 pub(crate) mod readme;
 pub mod recipes;
+mod revision;
 pub mod schema;
+mod sheet;
 pub mod tree;
 
 #[cfg(test)]
@@ -36,3 +40,4 @@ pub use card::load_card;
 pub use error::ConfigError;
 pub use plant::Plant;
 pub use recipes::{load_recipe, recipe_names};
+pub use revision::{Change, Revision, revise, revision};

@@ -6,13 +6,19 @@ use super::keys;
 use crate::gauge::recipe::Recipe;
 use crate::rig::fault::Fault;
 use sha2::{Digest, Sha256};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads and checks the recipe `name` of the configuration in `dir`.
 ///
 /// # Errors
 /// An unknown name lists the known ones; else as [`super::Plant::load`].
 pub fn load_recipe(dir: &Path, name: &str) -> Result<Recipe, ConfigError> {
+    let file = File::read(recipe_path(dir, name)?, "a recipe")?;
+    parse_recipe(file, name)
+}
+
+/// The file of a recipe that there is: nothing that is no name of one, `../rig` for example, becomes a path.
+pub(super) fn recipe_path(dir: &Path, name: &str) -> Result<PathBuf, ConfigError> {
     let folder = dir.join("recipes");
     let known = recipe_names(dir);
     if !known.iter().any(|known| known == name) {
@@ -22,8 +28,7 @@ pub fn load_recipe(dir: &Path, name: &str) -> Result<Recipe, ConfigError> {
             known,
         });
     }
-    let file = File::read(folder.join(format!("{name}.toml")), "a recipe")?;
-    parse_recipe(file, name)
+    Ok(folder.join(format!("{name}.toml")))
 }
 
 /// The names of all recipes, sorted; none when the folder cannot be read.
@@ -55,7 +60,7 @@ pub(super) fn parse_recipe(file: File, name: &str) -> Result<Recipe, ConfigError
     Ok(recipe)
 }
 
-fn sha256_hex(bytes: &[u8]) -> String {
+pub(super) fn sha256_hex(bytes: &[u8]) -> String {
     Sha256::digest(bytes)
         .iter()
         .map(|byte| format!("{byte:02x}"))

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod plant;
+mod revision;
 
 use super::check::File;
 use super::error::ConfigError;

@@ -4,6 +4,7 @@
 
 mod document;
 mod history;
+mod recipes;
 
 use super::access::Role;
 use super::router::Desk;
@@ -148,6 +149,7 @@ pub(super) fn offers() -> Vec<Offer> {
         Offer::get("/api/openapi.json", JSON, "This document.", openapi),
     ];
     offers.extend(history::offers());
+    offers.extend(recipes::offers());
     offers
 }
 

@@ -1,12 +1,14 @@
 //! Every refusal of the screen's interface, with its status and a sentence for the one who asked.
 
 use super::access::{AccessError, Role};
+use crate::config::ConfigError;
 use crate::history::HistoryError;
 use crate::inquiry::InquiryError;
 use axum::Json;
 use axum::extract::rejection::{JsonRejection, QueryRejection};
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::response::{IntoResponse, Response};
+use serde_json::json;
 use std::time::Duration;
 
 /// Why a request was not fulfilled.
@@ -96,6 +98,21 @@ pub(super) enum HmiError {
     /// 404, 503 or 500.
     #[error(transparent)]
     History(#[from] HistoryError),
+    /// 404 for a recipe or revision that never was, else 500: the files of the plant are not as they should be.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// 400 with the key for a value, 404 for a recipe that never was, 409 for a change that came second.
+    #[error("{refused}")]
+    Revision {
+        /// Why it was not saved.
+        refused: ConfigError,
+    },
+    /// 500: done, but nobody will find it in the audit.
+    #[error("the revision was saved, but not noted in the audit of orders: {source}")]
+    Unnoted {
+        /// Why not.
+        source: HistoryError,
+    },
     /// 500: a reader ended without an answer.
     #[error("the reader of the history ended without an answer")]
     ReaderLost,
@@ -119,8 +136,52 @@ impl HmiError {
             Self::Inquiry(InquiryError::NotThere { .. }) => StatusCode::NOT_FOUND,
             Self::Inquiry(InquiryError::Write(_) | InquiryError::Sheet(_))
             | Self::Access(_)
+            | Self::Unnoted { .. }
             | Self::ReaderLost => StatusCode::INTERNAL_SERVER_ERROR,
+            Self::Config(found) => of_config(found, StatusCode::INTERNAL_SERVER_ERROR),
+            Self::Revision { refused } => of_config(refused, StatusCode::BAD_REQUEST),
         }
+    }
+
+    /// What stands beside status and reason.
+    fn more(&self) -> serde_json::Value {
+        match self {
+            Self::NotNow { reason_zh, .. } => json!({ "reason_zh": reason_zh }),
+            Self::Revision { refused } => of_revision(refused),
+            _ => json!({}),
+        }
+    }
+}
+
+fn of_revision(refused: &ConfigError) -> serde_json::Value {
+    match refused {
+        ConfigError::NotNewest { newest, .. } => {
+            let zh = format!(
+                "这份修改所依据的版本已不是最新版本（最新为第 {newest} 版），未保存任何内容"
+            );
+            json!({ "reason_zh": zh })
+        }
+        ConfigError::Value {
+            found, expected, ..
+        } => json!({ "key": refused.key(), "found": found, "expected": expected }),
+        _ => json!({}),
+    }
+}
+
+/// `wrong` is the status of a file whose text is refused.
+fn of_config(found: &ConfigError, wrong: StatusCode) -> StatusCode {
+    match found {
+        ConfigError::UnknownRecipe { .. } | ConfigError::UnknownRevision { .. } => {
+            StatusCode::NOT_FOUND
+        }
+        ConfigError::NotNewest { .. } => StatusCode::CONFLICT,
+        ConfigError::Unreadable { .. } | ConfigError::Unwritten { .. } => {
+            StatusCode::INTERNAL_SERVER_ERROR
+        }
+        ConfigError::Syntax { .. }
+        | ConfigError::Value { .. }
+        | ConfigError::Rule { .. }
+        | ConfigError::NothingChanged { .. } => wrong,
     }
 }
 
@@ -136,13 +197,9 @@ impl IntoResponse for HmiError {
     fn into_response(self) -> Response {
         let status = self.status();
         let word = status.canonical_reason().unwrap_or("refused");
-        let mut body = serde_json::json!({
-            "error": word.to_ascii_lowercase(),
-            "reason": self.to_string(),
-        });
-        if let Self::NotNow { reason_zh, .. } = &self {
-            body["reason_zh"] = reason_zh.as_str().into();
-        }
+        let mut body = self.more();
+        body["error"] = word.to_ascii_lowercase().into();
+        body["reason"] = self.to_string().into();
         let mut response = (status, Json(body)).into_response();
         if let Self::TooManyTries { wait } = self {
             let seconds = HeaderValue::from(wait.as_secs() + 1);

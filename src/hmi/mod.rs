@@ -18,6 +18,7 @@
 //! | `POST /api/login\|logout`, `GET /api/me` | who is asking |
 //! | `POST /api/orders` | `{"order":"stop"}` and the others of [`crate::view::ORDERS`] |
 //! | `GET /api/history/...` | JSON, pages and files as the command `history` gives them; routes in `history.rs` |
+//! | `GET /api/recipes...`, `POST /api/recipes/revise` | what recipes say, and their next revisions (`recipes.rs`) |
 //! | `GET /mimic.svg` | the machine to scale, from above and from the front |
 //! | `GET /api/trace` | the last traffic of every line, with its meaning |
 //! | `GET /api/openapi.json` | this list for programs, made of `api.rs` like the router itself |
@@ -37,6 +38,7 @@ mod mimic;
 mod orders;
 mod origin;
 mod page;
+mod recipes;
 mod router;
 mod trace;
 
@@ -62,6 +64,8 @@ pub struct Shared {
     pub view: watch::Receiver<crate::view::View>,
     /// The history file; it need not exist yet.
     pub db: PathBuf,
+    /// The folder of the configuration, whose recipes are shown and revised.
+    pub config: PathBuf,
     /// The machine to scale.
     pub mimic: Arc<Mimic>,
     /// Who may order what.

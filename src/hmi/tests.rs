@@ -8,6 +8,7 @@ mod history;
 mod login;
 mod mimic;
 mod orders;
+mod recipes;
 mod routes;
 mod shutdown;
 
@@ -17,7 +18,7 @@ use crate::view::{LastPart, LineTraffic, Message, Mimic, MimicBody, NotTaken, Vi
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 use tokio::sync::{mpsc, watch};
@@ -76,6 +77,7 @@ impl Bench {
             view: looking,
             traffic: some_traffic(),
             db: db.clone(),
+            config: some_config(&db),
             orders: orders.clone(),
         };
         let router = router::router(shared, over);
@@ -186,6 +188,24 @@ impl Answer {
         assert!(json["error"].is_string());
         json["reason"].as_str().unwrap().to_owned()
     }
+}
+
+/// A copy of the configuration beside the history.
+fn some_config(db: &Path) -> PathBuf {
+    let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("config");
+    let copy = db.with_file_name("config");
+    std::fs::create_dir_all(copy.join("recipes")).unwrap();
+    for file in [
+        "rig.toml",
+        "scene.toml",
+        "golden.toml",
+        "card.toml",
+        "recipes/jzc-22f-006.toml",
+        "recipes/jzc-22f-012.toml",
+    ] {
+        std::fs::copy(original.join(file), copy.join(file)).unwrap();
+    }
+    copy
 }
 
 fn some_mimic() -> Mimic {

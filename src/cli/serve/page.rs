@@ -19,6 +19,7 @@ impl Page {
     /// From now on; of the first engineer of a first start the password is told.
     pub fn start(
         listener: std::net::TcpListener,
+        config: &Path,
         controls: &Controls,
         orders: mpsc::Sender<hmi::Asked>,
         db: &Path,
@@ -41,6 +42,7 @@ impl Page {
             view: controls.view.subscribe(),
             traffic: hmi::Traffic::new(controls.traffic()),
             db: db.to_path_buf(),
+            config: config.to_path_buf(),
             orders,
         };
         let (ended, seen) = watch::channel(false);

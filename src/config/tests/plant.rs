@@ -5,10 +5,10 @@ use crate::config::{Plant, load_recipe, recipe_names};
 use std::path::Path;
 
 /// A copy of `config/` with one file changed, removed when dropped.
-struct Copy(tempfile::TempDir);
+pub(super) struct Copy(pub tempfile::TempDir);
 
 impl Copy {
-    fn with(file: &str, change: impl Fn(&str) -> String) -> Self {
+    pub fn with(file: &str, change: impl Fn(&str) -> String) -> Self {
         let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("config");
         let copy = tempfile::tempdir().unwrap();
         std::fs::create_dir(copy.path().join("recipes")).unwrap();

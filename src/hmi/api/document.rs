@@ -117,7 +117,10 @@ fn object(members: &[Member]) -> Schema {
 
 fn text(member: &Member) -> Schema {
     let kind = match member.name {
-        "run" | "seq" | "limit" | "offset" | "last" | "subgroup" | "minutes" => Type::Integer,
+        "run" | "seq" | "limit" | "offset" | "last" | "subgroup" | "minutes" | "revision" => {
+            Type::Integer
+        }
+        "values" => Type::Object,
         "min" | "max" | "ideal_cycle_s" => Type::Number,
         _other => Type::String,
     };

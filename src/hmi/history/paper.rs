@@ -14,7 +14,13 @@ use axum::response::Html;
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; \
     form-action 'none'; frame-ancestors 'none'";
 
-type Page = ([(HeaderName, &'static str); 1], Html<String>);
+/// A page for A4.
+pub(in super::super) type Page = ([(HeaderName, &'static str); 1], Html<String>);
+
+/// `page` with its policy.
+pub(in super::super) fn on_paper(page: String) -> Page {
+    ([(CONTENT_SECURITY_POLICY, POLICY)], Html(page))
+}
 
 /// `GET /api/history/report/lot`.
 pub(in super::super) async fn lot(State(desk): State<Desk>, uri: Uri) -> Result<Page, HmiError> {
@@ -74,8 +80,7 @@ async fn page(
     desk: Desk,
     made: impl FnOnce(&Archive) -> Result<String, HmiError> + Send + 'static,
 ) -> Result<Page, HmiError> {
-    let page = desk.readers.read(made).await?;
-    Ok(([(CONTENT_SECURITY_POLICY, POLICY)], Html(page)))
+    desk.readers.read(made).await.map(on_paper)
 }
 
 fn printed(uri: &Uri, route: &str, used: &[&str]) -> Result<(Filter, Printed), HmiError> {

@@ -16,6 +16,7 @@ async fn neither_an_open_stream_nor_half_a_request_holds_up_the_end() {
         view: bench.view.subscribe(),
         traffic: some_traffic(),
         db: bench.db.clone(),
+        config: PathBuf::from("config"),
         orders: bench.orders.clone(),
     };
     let served = tokio::spawn(serve(listener, shared, bench.ended.subscribe()));

@@ -1,0 +1,175 @@
+//! Revisions of a recipe: the newest is `recipes/NAME.toml`, the earlier ones stay in `recipes/revisions/NAME/`, numbered
+//! from 1.
+//!
+//! - A revision is the newest one with some values changed; comments and order of the file stay.
+//! - It is checked by what loads recipes, and as a run would, by what the modules of the plant can measure. What is refused
+//!   leaves every file as it was.
+//! - Whoever revises names the text that was changed, by hash. When another revision came meanwhile nothing is written: the
+//!   second of two people is told.
+//! - The old text is kept first; then the new one takes its place, whole or not at all. A crash in between leaves the newest
+//!   among the kept ones as well; it keeps its number.
+//! - The folder is locked while files change: two programs wait for each other.
+//!
+//! A run reads its recipe once, before it begins, so that a revision never reaches a lot under way.
+
+use super::check::File;
+use super::edit::edited;
+use super::error::ConfigError;
+use super::plant::Plant;
+use super::recipes::{parse_recipe, recipe_path, sha256_hex};
+use super::sheet::{Field, fields};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+/// A revision as screens see it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Revision {
+    /// Name of the recipe.
+    pub name: String,
+    /// From 1; the newest has the greatest.
+    pub number: u32,
+    /// Number of the newest.
+    pub newest: u32,
+    /// SHA-256 of the text, as runs store it.
+    pub hash: String,
+    /// When the file was written, microseconds since 1970 UTC; none when the file system does not know.
+    pub saved_at_us: Option<i64>,
+    /// Its keys with their values.
+    pub fields: Vec<Field>,
+}
+
+/// What is to be changed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Change {
+    /// Name of the recipe.
+    pub name: String,
+    /// Hash of the text that the change begins from.
+    pub from: String,
+    /// New values by path of their key; null leaves the key out.
+    pub values: BTreeMap<String, serde_json::Value>,
+}
+
+/// The revision `number` of the recipe `name`, the newest without a number.
+///
+/// # Errors
+/// As [`super::load_recipe`]; a number that never was.
+pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision, ConfigError> {
+    let newest_path = recipe_path(dir, name)?;
+    let text = File::read(newest_path.clone(), "a recipe")?.text;
+    let kept = kept(dir, name);
+    let newest = number_of(dir, name, &kept, &text);
+    let number = number.unwrap_or(newest);
+    let path = if number == newest {
+        newest_path
+    } else {
+        kept_path(dir, name, number)
+    };
+    if number != newest && !kept.contains(&number) {
+        let name = name.to_owned();
+        return Err(ConfigError::UnknownRevision {
+            name,
+            number,
+            newest,
+        });
+    }
+    let file = File::read(path.clone(), "a recipe")?;
+    let fields = fields(&file.root);
+    Ok(Revision {
+        name: name.to_owned(),
+        number,
+        newest,
+        hash: parse_recipe(file, name)?.hash,
+        saved_at_us: saved_at_us(&path),
+        fields,
+    })
+}
+
+/// Makes the next revision of a recipe of `plant`.
+///
+/// # Errors
+/// The first value that loading or the plant refuses; a change of another text than the newest; files that cannot be written.
+pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
+    let (dir, name) = (&plant.dir, &change.name);
+    let path = recipe_path(dir, name)?;
+    let unwritten = |source| ConfigError::Unwritten {
+        file: path.clone(),
+        source,
+    };
+    let folder = std::fs::File::open(dir.join("recipes")).map_err(unwritten)?;
+    folder.lock().map_err(unwritten)?;
+    let old = File::read(path.clone(), "a recipe")?;
+    let kept = kept(dir, name);
+    let number = number_of(dir, name, &kept, &old.text);
+    if sha256_hex(old.text.as_bytes()) != change.from {
+        let name = name.clone();
+        return Err(ConfigError::NotNewest {
+            name,
+            newest: number,
+        });
+    }
+    let text = edited(&old, &change.values)?;
+    if text == old.text {
+        return Err(ConfigError::NothingChanged { file: path });
+    }
+    let recipe = parse_recipe(File::parse(path.clone(), text.clone())?, name)?;
+    plant.admit(&recipe)?;
+    if kept.last() != Some(&number) {
+        put(&kept_path(dir, name, number), &old.text).map_err(unwritten)?;
+    }
+    put(&path, &text).map_err(unwritten)?;
+    revision(dir, name, None)
+}
+
+/// Numbers of the earlier revisions, ascending.
+fn kept(dir: &Path, name: &str) -> Vec<u32> {
+    let files = std::fs::read_dir(kept_folder(dir, name));
+    let number = |file: std::fs::DirEntry| {
+        let file = file.file_name();
+        file.to_str()?.strip_suffix(".toml")?.parse().ok()
+    };
+    let files = files.into_iter().flatten().flatten();
+    let mut numbers: Vec<u32> = files.filter_map(number).collect();
+    numbers.sort_unstable();
+    numbers
+}
+
+/// Number of the newest text.
+fn number_of(dir: &Path, name: &str, kept: &[u32], text: &str) -> u32 {
+    let Some(last) = kept.last() else {
+        return 1;
+    };
+    match std::fs::read_to_string(kept_path(dir, name, *last)) {
+        Ok(kept) if kept == text => *last,
+        Ok(_) | Err(_) => last + 1,
+    }
+}
+
+fn kept_folder(dir: &Path, name: &str) -> PathBuf {
+    dir.join("recipes").join("revisions").join(name)
+}
+
+fn kept_path(dir: &Path, name: &str, number: u32) -> PathBuf {
+    kept_folder(dir, name).join(format!("{number}.toml"))
+}
+
+/// The file holds `text` or what it held before, whatever happens meanwhile.
+fn put(path: &Path, text: &str) -> std::io::Result<()> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)?;
+    let beside = path.with_extension("toml.new");
+    let mut file = std::fs::File::create(&beside)?;
+    file.write_all(text.as_bytes())?;
+    file.sync_all()?;
+    std::fs::rename(&beside, path)?;
+    std::fs::File::open(folder)?.sync_all()
+}
+
+fn saved_at_us(path: &Path) -> Option<i64> {
+    let written = std::fs::metadata(path).and_then(|it| it.modified()).ok()?;
+    let since = written.duration_since(UNIX_EPOCH).ok()?;
+    i64::try_from(since.as_micros()).ok()
+}
