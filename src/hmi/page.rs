@@ -14,6 +14,7 @@ const PAGES: &str = concat!(
     include_str!("page/pages/alarms.html"),
     include_str!("page/pages/history.html"),
     include_str!("page/pages/quality.html"),
+    include_str!("page/pages/recipes.html"),
     include_str!("page/pages/service.html"),
 );
 const LOOK: &str = concat!(
@@ -33,6 +34,8 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/alarms.js"),
     include_str!("page/script/history.js"),
     include_str!("page/script/quality.js"),
+    include_str!("page/script/recipe_sheet.js"),
+    include_str!("page/script/recipes.js"),
     include_str!("page/script/service.js"),
     include_str!("page/script/trace.js"),
     include_str!("page/script/start.js"),

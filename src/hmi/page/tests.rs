@@ -59,7 +59,7 @@ fn every_word_that_the_page_uses_is_in_the_table() {
 fn every_word_in_the_table_is_used() {
     let families = [
         "link", "order", "state", "stage", "verdict", "bin", "key", "login", "reason", "text",
-        "actuator", "jog", "mode", "signal", "alarm", "q",
+        "actuator", "jog", "mode", "signal", "alarm", "q", "r", "field", "choice",
     ];
     for key in table().keys() {
         let family = key.split('.').next().unwrap();
@@ -100,6 +100,27 @@ fn every_listed_quantity_bin_and_verdict_has_a_name() {
                 .all(|it| table.contains_key(&format!("{family}.{it}"))),
             "{name}"
         );
+    }
+}
+
+#[test]
+fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_words() {
+    let table = table();
+    let recipe = crate::config::revision("config".as_ref(), "jzc-22f-012", None).unwrap();
+    for field in serde_json::to_value(recipe).unwrap()["fields"]
+        .as_array()
+        .unwrap()
+    {
+        let path = field["path"].as_str().unwrap();
+        let name = match path.strip_prefix("limits.") {
+            Some(limit) => format!("key.{}", limit.split('.').next().unwrap()),
+            None => format!("field.{path}"),
+        };
+        assert!(table.contains_key(&name), "{name}");
+        for word in field["words"].as_array().into_iter().flatten() {
+            let name = format!("choice.{}", word.as_str().unwrap());
+            assert!(table.contains_key(&name), "{name}");
+        }
     }
 }
 

@@ -1,0 +1,133 @@
+// A revision of a recipe as a sheet: every key in words with unit and range, and inputs for whoever may change it.
+
+const RECIPE_UNITS = {ohm: "Ω", mOhm: "mΩ", C: "°C"};
+// Three columns.
+const RECIPE_SECTIONS = [["about", "part", "decision"], ["limits"], ["test", "strategy"]];
+let recipe = null, drawnRecipe = "";
+// What was typed into the newest revision, by path; the answer that refused a value; and what was said last, in either language.
+const typed = new Map();
+let refusedField = null, saidOfRecipe = () => ["", false];
+
+const mayRevise = () => me !== null && me.role === "engineer" && recipe !== null && recipe.number === recipe.newest;
+const recipeUnit = (unit) => RECIPE_UNITS[unit] || unit || "";
+const recipeSection = (path) => (path.startsWith("test.strategy.") ? "strategy" : path.includes(".") ? path.split(".")[0] : "about");
+const rangeText = (it) => (it.low === undefined ? "" : (it.low_allowed ? it.low + " … " : "> " + it.low + " … ") + it.high);
+
+// What a field shows of a value; a list one text for each number.
+const asTyped = (value) => (Array.isArray(value) ? value.map(String) : value === null ? "" : String(value));
+
+// What was typed as the rig takes it; what is no number goes as text, to be refused with its name.
+function asValue(field, text) {
+  if (Array.isArray(text)) return text.map((it) => asValue({form: "number"}, it));
+  if (text === "" && field.optional) return null;
+  if (field.form === "flag") return text === "true";
+  const number = Number(text.replace(",", "."));
+  return ["number", "whole"].includes(field.form) && text.trim() !== "" && Number.isFinite(number) ? number : text;
+}
+
+function changedValues() {
+  const values = {};
+  for (const field of recipe.fields) {
+    if (!typed.has(field.path)) continue;
+    const value = asValue(field, typed.get(field.path));
+    if (JSON.stringify(value) !== JSON.stringify(field.value)) values[field.path] = value;
+  }
+  return values;
+}
+
+// --- fields ---
+
+const choiceText = (value) => (value === true || value === "true" ? word("r.yes") : value === false || value === "false" ? word("r.no")
+  : known("choice." + value, value));
+
+function shownText(field) {
+  const {value} = field;
+  if (value === null) return NONE;
+  if (Array.isArray(value)) return value.join(" × ");
+  return ["choice", "flag"].includes(field.form) ? choiceText(value) : String(value);
+}
+
+function typedInto(field, element, text, take) {
+  element.value = text;
+  element.setAttribute("aria-label", fieldName(field.path) + (recipeUnit(field.unit) ? " / " + recipeUnit(field.unit) : ""));
+  element.dataset.path = field.path;
+  element.addEventListener("input", () => {
+    typed.set(field.path, take(element.value));
+    element.classList.toggle("changed", field.path in changedValues());
+  });
+  element.classList.toggle("changed", field.path in changedValues());
+  return element;
+}
+
+function fieldInputs(field) {
+  const text = typed.get(field.path) ?? asTyped(field.value);
+  if (["choice", "flag"].includes(field.form)) {
+    const words = field.form === "flag" ? ["true", "false"] : field.words;
+    const options = words.map((it) => [it, choiceText(it)]), element = make("select");
+    fillSelect(element, field.optional ? [["", NONE], ...options] : options);
+    return [typedInto(field, element, text, (it) => it)];
+  }
+  if (field.form === "numbers") {
+    return text.map((it, place) => typedInto(field, make("input", undefined, "number"), it,
+      (now) => (typed.get(field.path) ?? text).map((had, which) => (which === place ? now : had))));
+  }
+  return [typedInto(field, make("input", undefined, field.form === "text" ? "" : "number"), text, (it) => it)];
+}
+
+const fieldName = (path) => {
+  const [section, key, side] = path.split(".");
+  return section === "limits" ? word("key." + key) + " " + word("r." + side) : word("field." + path);
+};
+
+const isFixed = (field) => field.path === "name" || Boolean(field.words) && field.words.length === 1;
+
+// The value, or its inputs.
+function fieldCell(field) {
+  const cell = make("td");
+  cell.append(...(mayRevise() && !isFixed(field) ? fieldInputs(field) : [make("span", shownText(field))]));
+  return cell;
+}
+
+// The unit; for whoever may change the value also where it must lie.
+function unitCell(field) {
+  const cell = make("td", recipeUnit(field.unit));
+  if (mayRevise()) cell.append(make("small", rangeText(field)));
+  return cell;
+}
+
+// Below a row why its value was refused.
+function withRefusal(element, path) {
+  if (!refusedField || !(refusedField.key + ".").startsWith(path + ".")) return [element];
+  const cell = make("td", refusedValue(refusedField), "trouble");
+  cell.colSpan = 4;
+  return [element, row(cell)];
+}
+
+function fieldRow(field) {
+  const value = fieldCell(field);
+  if (field.unit !== undefined) return withRefusal(row(fieldName(field.path), value, unitCell(field)), field.path);
+  value.colSpan = 2;
+  return withRefusal(row(fieldName(field.path), value), field.path);
+}
+
+// Least and greatest good value side by side.
+function limitRow(key, [low, high]) {
+  return withRefusal(row(word("key." + key), fieldCell(low), fieldCell(high), unitCell(low)), "limits." + key);
+}
+
+function fieldTable(section) {
+  const table = make("table", undefined, "list sheet " + section), body = make("tbody");
+  table.append(make("caption", word("r." + section)), body);
+  const fields = recipe.fields.filter((it) => recipeSection(it.path) === section);
+  if (section !== "limits") {
+    body.append(...fields.flatMap(fieldRow));
+    return table;
+  }
+  body.append(...KEYS.flatMap((key) => limitRow(key, fields.filter((it) => it.path.startsWith("limits." + key + ".")))));
+  const head = make("thead"), heads = ["quantity", "r.low", "r.high", "unit"].map((it) => make("th", word(it)));
+  heads.forEach((it) => { it.scope = "col"; });
+  head.append(make("tr"));
+  head.firstElementChild.append(...heads);
+  body.before(head);
+  return table;
+}
