@@ -15,6 +15,7 @@
 //! | `histogram` | the same | | `{"from", "width", "counts", "low", "high"}`, limits where all runs agree |
 //! | `spc` | the same; without `param` the share of every bin | `subgroup`, `rules`, `last` | array of control charts |
 //! | `alarms` | `lot`, `run`, `recipe`, `since`, `until`, page | | array of alarms in order of time |
+//! | `rejudge` | `lot`, `run`, `recipe` | `changed` | array of parts with the verdict of that recipe, then a summary, streamed |
 //! | `report/lot` | `lot`, `run`, `recipe` | `lang`, `ideal_cycle_s` | page for A4 |
 //! | `report/certificate` | the same | `lang`, `seq` | page for A4 |
 //! | `report/chart` | as `spc` | as `spc`, `lang` | page for A4 |
@@ -31,6 +32,7 @@ pub(super) mod export;
 mod feed;
 pub(super) mod paper;
 mod readers;
+pub(super) mod rejudge;
 
 use super::error::HmiError;
 use super::router::Desk;

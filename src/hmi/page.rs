@@ -15,6 +15,7 @@ const PAGES: &str = concat!(
     include_str!("page/pages/history.html"),
     include_str!("page/pages/quality.html"),
     include_str!("page/pages/recipes.html"),
+    include_str!("page/pages/rejudge.html"),
     include_str!("page/pages/service.html"),
 );
 const LOOK: &str = concat!(
@@ -36,6 +37,7 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/quality.js"),
     include_str!("page/script/recipe_sheet.js"),
     include_str!("page/script/recipes.js"),
+    include_str!("page/script/rejudge.js"),
     include_str!("page/script/service.js"),
     include_str!("page/script/trace.js"),
     include_str!("page/script/start.js"),

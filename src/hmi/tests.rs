@@ -9,6 +9,7 @@ mod login;
 mod mimic;
 mod orders;
 mod recipes;
+mod rejudge;
 mod routes;
 mod shutdown;
 

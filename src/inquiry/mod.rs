@@ -7,6 +7,7 @@
 //! | control charts of a parameter, or of the share of every bin | [`charts`] |
 //! | lot report, certificate, list of alarms | [`paper`] |
 //! | how the time of a lot was used | [`use_of_time`] |
+//! | what another recipe would have said of a lot | [`rejudge`] |
 //! | all parts of a filter as CSV or spreadsheet | [`export`] |
 //!
 //! Between the history (rows), quality (arithmetic) and report (pages): each answer is put together here
@@ -18,6 +19,7 @@ mod error;
 pub mod export;
 pub mod figures;
 pub mod paper;
+pub mod rejudge;
 mod use_of_time;
 
 pub use error::{InquiryError, Result};

@@ -42,6 +42,24 @@ test("the history is asked with the filter of the command line, and a part leads
   await leave(page);
 });
 
+test("a lot is held against another recipe: what would change is listed, and nothing has changed", async () => {
+  const { lot } = await rig.view();
+  const page = await visit(browser, rig, { path: "/#history" });
+  await page.waitForSelector("#parts tr");
+  await page.fill("#h_lot", lot);
+  await page.click("#h_go");
+  await page.click("#h_rejudge");
+  await page.waitForSelector("#j_recipe option", { state: "attached" });
+  assert.equal(await page.inputValue("#j_lot"), lot);
+  await page.selectOption("#j_recipe", "jzc-22f-012-adaptive");
+  await page.click("#j_go");
+  await shown(page, "#j_changes", "PASS → PASS");
+  await page.selectOption("#j_recipe", "jzc-22f-006");
+  await page.click("#j_go");
+  await shown(page, "#j_trouble", "was measured at 12 V");
+  await leave(page);
+});
+
 test("what the filter leaves is exported", async () => {
   const page = await visit(browser, rig, { path: "/#history" });
   await page.waitForSelector("#parts tr");
@@ -94,6 +112,11 @@ for (const size of SIZES) {
     await page.click("#parts tr a");
     await page.waitForSelector("#part_replies tr");
     await looks(page, `part-${size.width}`);
+    await page.goto(rig.url + "/#rejudge");
+    await page.waitForSelector("#j_recipe option", { state: "attached" });
+    await page.click("#j_go");
+    await page.waitForSelector("#j_changes dd");
+    await looks(page, `rejudge-${size.width}`);
     for (const [name, ready] of [["quality", "#q_histograms svg"], ["bus", "#bus tr"], ["trace", "#trace tr"], ["io", "#inputs li"]]) {
       await page.click(`nav a[href="#${name}"]`);
       await page.waitForSelector(ready);

@@ -2,11 +2,9 @@
 
 use super::output::{Output, Table};
 use crate::config::load_recipe;
-use crate::gauge::Recipe;
-use crate::history::{Archive, Basis, Filter, rejudged};
+use crate::history::Archive;
+use crate::inquiry::rejudge::{Again, Rejudging};
 use clap::Args;
-use serde_json::json;
-use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
@@ -28,85 +26,35 @@ pub(super) struct RejudgeArgs {
 
 pub(super) fn run(config: &Path, archive: &Archive, args: &RejudgeArgs) -> anyhow::Result<()> {
     let recipe = load_recipe(config, &args.recipe)?;
-    let filter = Filter {
-        lot: Some(args.lot.clone()),
-        run: args.run,
-        ..Filter::default()
-    };
-    anyhow::ensure!(
-        archive.how_many(&filter)? > 0,
-        "lot {:?} has no parts (or no such run); see `history list`",
-        args.lot
-    );
-    let same = Basis::of_recipe(&recipe);
-    let basis = bases(archive, &filter, &recipe)?;
+    let question = Rejudging::of(archive, args.lot.clone(), args.run, recipe)?;
     let mut out = Output::stdout();
     let mut table = Table::new(&["run", "seq", "verdict", "now", "bin", "reasons"]);
-    let mut counts: BTreeMap<(String, &str), u64> = BTreeMap::new();
-    archive.each(&filter, |part| {
-        let basis = basis.get(&part.run).copied();
-        let curves = archive.curves(&part)?;
-        let verdict = rejudged(&part, &curves, basis.unwrap_or(same), &recipe);
-        let now = verdict.name();
-        *counts.entry((part.verdict.clone(), now)).or_default() += 1;
-        let (bin, reasons) = (verdict.bin().name(), verdict.reasons());
-        if args.json {
-            return out.json(&json!({
-                "type": "part", "lot": part.lot, "run": part.run, "seq": part.seq,
-                "recipe": recipe.name, "verdict_was": part.verdict, "verdict": now, "bin": bin,
-                "reasons": reasons,
-            }));
-        }
-        if part.verdict != now {
-            let (run, seq) = (part.run.to_string(), part.seq.to_string());
-            let row = vec![
-                run,
-                seq,
-                part.verdict,
-                now.into(),
-                bin.into(),
-                reasons.join("; "),
-            ];
-            table.row(&mut out, row)?;
+    let changes = question.each::<anyhow::Error>(archive, |part| {
+        match args.json {
+            true => out.json(&part)?,
+            false if part.changes() => table.row(&mut out, cells(part))?,
+            false => {}
         }
         Ok(())
     })??;
     if args.json {
-        let change =
-            |((was, now), n): (&(String, &str), &u64)| json!({"was": was, "now": now, "parts": n});
-        let changes: Vec<_> = counts.iter().map(change).collect();
-        out.json(&json!({"type": "summary", "recipe": recipe.name, "recipe_hash": recipe.hash, "changes": changes}))?;
+        out.json(&changes)?;
         return Ok(out.flush()?);
     }
     table.finish(&mut out)?;
-    for ((was, now), n) in &counts {
-        writeln!(out, "{was} -> {now}: {n}")?;
+    for it in &changes.changes {
+        writeln!(out, "{} -> {}: {}", it.was, it.now, it.parts)?;
     }
     Ok(out.flush()?)
 }
 
-/// What the values of each run refer to; an import without a recipe is taken to refer to the same.
-fn bases(
-    archive: &Archive,
-    filter: &Filter,
-    recipe: &Recipe,
-) -> anyhow::Result<BTreeMap<u32, Basis>> {
-    let mut bases = BTreeMap::new();
-    for run in archive.lots(filter)? {
-        let text = archive.recipe(&run.recipe_hash)?;
-        let Some(basis) = text.as_deref().and_then(Basis::of) else {
-            continue;
-        };
-        anyhow::ensure!(
-            basis.fits(recipe),
-            "--recipe {}: its coil has {} V, run {} of lot {:?} was measured at {} V",
-            recipe.name,
-            recipe.part.nominal_v,
-            run.run,
-            run.lot,
-            basis.nominal_v
-        );
-        bases.insert(run.run, basis);
-    }
-    Ok(bases)
+fn cells(part: Again) -> Vec<String> {
+    vec![
+        part.run.to_string(),
+        part.seq.to_string(),
+        part.verdict_was,
+        part.verdict.into(),
+        part.bin.into(),
+        part.reasons.join("; "),
+    ]
 }

@@ -121,6 +121,7 @@ fn text(member: &Member) -> Schema {
             Type::Integer
         }
         "values" => Type::Object,
+        "changed" => Type::Boolean,
         "min" | "max" | "ideal_cycle_s" => Type::Number,
         _other => Type::String,
     };

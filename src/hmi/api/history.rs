@@ -1,7 +1,7 @@
 //! The routes of the history; what their members mean stands in [`crate::hmi`]'s file about them, too.
 
 use super::{HTML, JSON, Member, Offer, may, must};
-use crate::hmi::history::{self, export, paper};
+use crate::hmi::history::{self, export, paper, rejudge};
 
 const LOT: Member = may("lot", "Name of the lot.");
 const RUN: Member = may("run", "Number of the run within its lot.");
@@ -111,6 +111,18 @@ fn read() -> Vec<Offer> {
         .with(&RUNS)
         .with(&[SINCE, UNTIL])
         .with(&PAGE),
+        Offer::get(
+            "/api/history/rejudge",
+            JSON,
+            "What that recipe would have said of every part of the lot; the summary comes last. Nothing is written.",
+            rejudge::rejudge,
+        )
+        .with(&[
+            must("lot", LOT.about),
+            must("recipe", "Name of a recipe of the plant."),
+            RUN,
+            may("changed", "`true`: only parts whose verdict changes."),
+        ]),
     ]
 }
 

@@ -31,7 +31,7 @@ const TABLE: &[(&str, &[&str])] = &[
             "units", "rig", "gauge", "station", "quality", "plan", "history",
         ],
     ),
-    ("inquiry", &["history", "report", "quality"]),
+    ("inquiry", &["gauge", "history", "report", "quality"]),
     (
         "hmi",
         &["view", "history", "inquiry", "report", "config", "quality"],

@@ -31,6 +31,7 @@ async function readParts() {
   const members = filter();
   at("export_csv").href = "/api/history/export.csv" + query(members);
   at("export_xlsx").href = "/api/history/export.xlsx" + query({...members, lang: language});
+  at("h_rejudge").href = "#rejudge" + query({lot: members.lot});
   at("h_lot_report").hidden = !members.lot;
   at("h_lot_report").href = "/api/history/report/lot" + query({lot: members.lot, lang: language});
   try {

@@ -7,7 +7,7 @@ function openPage() {
   current = Object.hasOwn(PAGES, name) ? name : "operator";
   for (const page of document.querySelectorAll("main")) page.hidden = page.dataset.page !== current;
   for (const tab of document.querySelectorAll("nav a")) {
-    const open = tab.hash === "#" + (current === "part" ? "history" : current);
+    const open = tab.hash === "#" + (["part", "rejudge"].includes(current) ? "history" : current);
     tab.toggleAttribute("aria-current", open);
     if (open) tab.setAttribute("aria-current", "page");
   }
