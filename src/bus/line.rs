@@ -95,7 +95,34 @@ struct Try {
 }
 
 impl<O: Ports> Line<O> {
+    /// A setting that stands already is not written again: the EEPROM of a module wears. Where the module does not
+    /// know the question, it is written.
     async fn serve(&mut self, asked: Request) -> Answer {
+        let Some(setting) = asked.command.setting() else {
+            return self.asked(asked).await;
+        };
+        let found = self
+            .asked(Request {
+                command: setting,
+                ..asked
+            })
+            .await;
+        let outcome = match found.outcome {
+            Ok(reply) if asked.command.stands(&reply) => Ok(Reply::Accepted),
+            Ok(_) => return self.asked(asked).await,
+            Err(LineError::Reply { reason, .. }) if reason.is_answer() => {
+                return self.asked(asked).await;
+            }
+            Err(error) => Err(error),
+        };
+        Answer {
+            command: asked.command,
+            outcome,
+            ..found
+        }
+    }
+
+    async fn asked(&mut self, asked: Request) -> Answer {
         let command = asked.command;
         self.request.clear();
         command.encode(self.settings.checksum, &mut self.request);

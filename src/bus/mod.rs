@@ -12,6 +12,7 @@
 //!    replies carry no address, and a late one must not be taken for the next.
 //! 5. An address whose reply was damaged is heard twice for a while (`trust.rs`): where checksums fail, one in 256 passes.
 //! 6. Only commands that change nothing are repeated, and at most as often as the request allows.
+//! 7. What writes a setting to the EEPROM asks for it first, and is not sent when it stands already.
 //!
 //! Troubles: a line that never falls silent answers [`LineError::NeverSilent`]; a lost port answers
 //! [`LineError::PortLost`] at the pace of a silent module, and is reopened with back-off.

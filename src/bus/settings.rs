@@ -110,15 +110,20 @@ impl LineSettings {
 
 /// The longest that one try of any of `commands` can hold the line, given up or believed only after it was said
 /// again: two answers at the last moment (or three that are prompt), then the way back into step and a silence that is
-/// broken once. A request that allows several tries may take as many times this. Zero for no commands.
+/// broken once. What writes a setting asks for it first. A request that allows several tries may take as many times this.
+/// Zero for no commands.
 pub fn longest_transaction(settings: &LineSettings, commands: &[Command]) -> Span {
-    let longest = |command: &Command| match command.address() {
+    let one = |command: &Command| match command.address() {
         Some(address) => {
             let asked = settings.time_out(command) + settings.turnaround();
             let step = settings.step_limit(command, address) + settings.turnaround();
             asked + asked + step + settings.silence(command)
         }
         None => settings.request_time(command) + settings.turnaround(),
+    };
+    let longest = |command: &Command| {
+        let setting = command.setting().as_ref().map(one);
+        one(command) + setting.unwrap_or_default()
     };
     commands.iter().map(longest).max().unwrap_or_default()
 }

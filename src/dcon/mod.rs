@@ -18,6 +18,8 @@
 //!
 //! Each family has one table: what a command does to the module ([`Nature`]) and what its reply looks like.
 //!
+//! Writing wears an EEPROM: whether a setting stands already is told by `standing.rs`.
+//!
 //! Absent by design: factory calibration and trim (`$AA0`, `$AA1`, `$AA3` of outputs, `~AAE`) cannot be written
 //! down with these types, so no slip of the rig can spoil a module.
 
@@ -39,6 +41,7 @@ mod reading;
 mod reply;
 mod request;
 mod shape;
+mod standing;
 mod type_code;
 mod understand;
 mod words;

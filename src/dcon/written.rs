@@ -34,6 +34,8 @@ const OUTPUT_FORMS: [OutputForm; 5] = [
 
 /// Every command that is written as `request`, lead to last character, checksum and CR left off.
 pub fn readings(request: &[u8]) -> Vec<Command> {
+    let usual = usual(request);
+    let request = usual.as_deref().unwrap_or(request);
     let rest = match request {
         b"~**" => return vec![Command::HostOk],
         b"#**" => return vec![Command::SampleAll],
@@ -58,6 +60,18 @@ pub fn readings(request: &[u8]) -> Vec<Command> {
         written.strip_suffix(b"\r") == Some(request)
     });
     found
+}
+
+/// `#AABBDD` has two spellings: 0A for the first group is 00, Ac for one of its outputs is 1c.
+fn usual(request: &[u8]) -> Option<Vec<u8>> {
+    let (place, digit) = match request {
+        [b'#', _, _, b'0', b'A', _, _] => (4, b'0'),
+        [b'#', _, _, b'A', b'0'..=b'7', _, _] => (3, b'1'),
+        _ => return None,
+    };
+    let mut usual = request.to_vec();
+    usual[place] = digit;
+    Some(usual)
 }
 
 fn number(text: &[u8]) -> Option<u32> {
@@ -225,7 +239,7 @@ fn digital(rest: &[u8]) -> Vec<Digital> {
     match rest {
         [n] => found.extend(digit(*n).map(|channel| Digital::ReadEvents { channel })),
         [b'C', n] => found.extend(digit(*n).map(|channel| Digital::ClearEvents { channel })),
-        [group @ (b'0' | b'1' | b'A' | b'B'), n, data @ ..] if data.len() == 2 => {
+        [group @ (b'0' | b'1' | b'B'), n, data @ ..] if data.len() == 2 => {
             found.extend(
                 byte(data)
                     .and_then(|data| group_write(*group, *n, data))

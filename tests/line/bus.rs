@@ -90,6 +90,8 @@ fn send_puts_a_reply_into_words_and_never_sends_what_only_the_factory_may() {
     );
     let (status, out, _) = bench.bus("send --checksum @12BEEF");
     assert!(status == 0 && out.contains("accepted"), "{out}");
+    let (status, out, _) = bench.bus("send --checksum $015FF --model 7017");
+    assert!(status == 0 && out.contains("not written again"), "{out}");
     let (status, out, _) = bench.bus("send --checksum $552");
     assert!(status == 1 && out.contains("no reply"), "{out}");
     for factory in ["$010", "~01E1"] {

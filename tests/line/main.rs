@@ -12,6 +12,7 @@
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
 //! - `paper`: pages, sheets, another recipe, retention, parts fed again.
 //! - [`picture`]: the picture in README.md is that of `config/scene.toml`.
+//! - `protocol`: every command of every module, written, answered and read; settings, INIT*.
 //! - `stories`: scripts of troubles and orders, and what happened, as a mechanic would tell it.
 //! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
 //! - `tempest`: the whole program under faults of world and line, orders and kills, judged by the simulated rig.
@@ -44,6 +45,8 @@ mod picture;
 mod program;
 #[cfg(all(feature = "sim", unix))]
 mod serve;
+#[cfg(feature = "sim")]
+mod protocol;
 #[cfg(feature = "sim")]
 mod stories;
 #[cfg(feature = "sim")]

@@ -7,6 +7,10 @@
 //! | `$AAA` | `>` and 4 hexadecimal digits per channel, whatever the format |
 //! | `$AA5VV`, `$AA6` | enable mask, written to the EEPROM; read back |
 //! | `$AA3` | `>` and the temperature of the cold junction (7018), which is that of a room |
+//! | `$AA7CiRrr`, `$AA8Ci` | newer modules: range of one channel, written to the EEPROM; read back as `CiRrr` |
+//! | `$AAB` | newer modules: `!AANN`, the enabled channels that have left their range, bit n = channel n |
+//!
+//! A new type code in the configuration word is that of every channel.
 //!
 //! A reading is the last finished conversion of its channel (see [`super::converter`]), with this
 //! module's gain, offset and noise, quantised to 16 bit, 12 bit in fast mode, 24 bit for RTD.
@@ -42,6 +46,10 @@ struct AnalogIn {
     converter: Converter,
     /// Fractions of full scale.
     readings: [f64; 8],
+    /// Type code of the configuration word when it was last looked at.
+    type_code: u8,
+    /// Type code of each channel.
+    ranges: [u8; 8],
     habit: Habit,
     rng: ChaCha8Rng,
 }
@@ -106,6 +114,8 @@ pub(super) fn build(
         kind,
         converter: Converter::new(kind.channels(), mask as u8 & all as u8, per_s),
         readings: [0.0; 8],
+        type_code,
+        ranges: [type_code; 8],
         habit: habit.clone(),
         rng,
     };
@@ -150,7 +160,7 @@ fn pace(kind: Kind, habit: &Habit, format: u8) -> f64 {
 
 impl AnalogIn {
     fn convert(&mut self, plate: &Plate, channel: u8, terminal: f64) {
-        let Some(range) = self.kind.range(plate.type_code) else {
+        let Some(range) = self.range(channel) else {
             return;
         };
         let reading = if terminal.is_nan() {
@@ -159,6 +169,10 @@ impl AnalogIn {
             self.digitise(range, plate.format, terminal)
         };
         self.readings[usize::from(channel)] = reading;
+    }
+
+    fn range(&self, channel: u8) -> Option<Range> {
+        self.kind.range(self.ranges[usize::from(channel)])
     }
 
     /// Nothing connected: an open sensor reads over range, open voltage terminals read zero.
@@ -184,23 +198,23 @@ impl AnalogIn {
         (range.fraction(noisy) * steps).round() / steps
     }
 
-    fn field(&self, plate: &Plate, channel: u8, format: Format, text: &mut String) {
+    fn field(&self, channel: u8, format: Format, text: &mut String) {
         if self.converter.mask() & (1 << channel) == 0 {
             text.push_str(if format == Format::Hex {
                 "    "
             } else {
                 "       "
             });
-        } else if let Some(range) = self.kind.range(plate.type_code) {
+        } else if let Some(range) = self.range(channel) {
             range.spell(self.readings[usize::from(channel)], format, text);
         }
     }
 
-    fn fields(&self, plate: &Plate, format: Format) -> Answer {
+    fn fields(&self, format: Format) -> Answer {
         let mut text = String::with_capacity(dcon::LONGEST);
         text.push('>');
         for channel in 0..self.kind.channels() {
-            self.field(plate, channel, format, &mut text);
+            self.field(channel, format, &mut text);
         }
         Answer::Reply(text)
     }
@@ -210,7 +224,7 @@ impl AnalogIn {
             Some(channel) if channel < self.kind.channels() => {
                 let mut text = String::with_capacity(dcon::LONGEST);
                 text.push('>');
-                self.field(plate, channel, format, &mut text);
+                self.field(channel, format, &mut text);
                 Answer::Reply(text)
             }
             Some(_) => dcon::refused(plate.address),
@@ -226,6 +240,41 @@ impl AnalogIn {
         self.converter.enable(mask, at);
         plate.eeprom_writes += 1;
         dcon::done(plate.address)
+    }
+
+    /// What only newer modules know.
+    fn newer(&mut self, plate: &mut Plate, body: &[u8]) -> Answer {
+        let known = |digit: u8| dcon::hex_digit(digit).filter(|n| *n < self.kind.channels());
+        match *body {
+            [b'B'] => {
+                let beyond = |n: &u8| {
+                    self.converter.mask() & 1 << n != 0
+                        && self.readings[usize::from(*n)].is_infinite()
+                };
+                let channels = (0..self.kind.channels()).filter(beyond);
+                let word = channels.fold(0, |word, n| word | 1u64 << n);
+                dcon::done_hex(plate.address, word, 2)
+            }
+            [b'8', b'C', digit] => match known(digit) {
+                Some(n) => {
+                    let range = self.ranges[usize::from(n)];
+                    dcon::done_with(plate.address, &format!("C{n}R{range:02X}"))
+                }
+                None => dcon::refused(plate.address),
+            },
+            [b'7', b'C', digit, b'R', high, low] => match dcon::hex_byte(&[high, low]) {
+                Some(range) => match known(digit) {
+                    Some(n) if self.kind.range(range).is_some() => {
+                        self.ranges[usize::from(n)] = range;
+                        plate.eeprom_writes += 1;
+                        dcon::done(plate.address)
+                    }
+                    Some(_) | None => dcon::refused(plate.address),
+                },
+                None => Answer::Unknown,
+            },
+            _ => Answer::Unknown,
+        }
     }
 }
 
@@ -244,9 +293,9 @@ impl Family for AnalogIn {
     ) -> Answer {
         let format = Format::of(plate.format).unwrap_or(Format::Engineering);
         match (request.lead, request.body) {
-            (b'#', []) => self.fields(plate, format),
+            (b'#', []) => self.fields(format),
             (b'#', [digit]) => self.one_field(plate, *digit, format),
-            (b'$', b"A") => self.fields(plate, Format::Hex),
+            (b'$', b"A") => self.fields(Format::Hex),
             (b'$', b"3") if self.kind == Kind::Thermocouple => {
                 Answer::Reply(format!(">{COLD_JUNCTION_C:+07.1}"))
             }
@@ -255,11 +304,16 @@ impl Family for AnalogIn {
                 Some(mask) => self.enable(plate, mask, at),
                 None => Answer::Unknown,
             },
+            (b'$', body) if plate.is_newer() => self.newer(plate, body),
             (_, _) => Answer::Unknown,
         }
     }
 
     fn configured(&mut self, plate: &Plate, _at: &mut Terminals<'_>) {
+        if plate.type_code != self.type_code {
+            self.type_code = plate.type_code;
+            self.ranges = [plate.type_code; 8];
+        }
         self.converter
             .set_pace(pace(self.kind, &self.habit, plate.format));
     }

@@ -108,6 +108,11 @@ impl Plate {
         self.checksum_running && !self.init_grounded
     }
 
+    /// Its firmware knows the commands of newer modules.
+    pub fn is_newer(&self) -> bool {
+        self.newer
+    }
+
     /// Added to every reply time, microseconds.
     pub fn response_delay_us(&self) -> u64 {
         u64::from(self.response_delay_ms) * 1_000

@@ -1,10 +1,11 @@
 //! `relayrig bus send`: one command as typed, and what the reply means.
 
 use super::PortArgs;
-use crate::bus::{Pace, escaped, send_raw};
-use crate::dcon::{self, Family};
+use crate::bus::{LineSettings, Pace, escaped, send_raw};
+use crate::dcon::{self, Command, Family};
 use anyhow::bail;
 use serde_json::json;
+use tokio_serial::SerialStream;
 
 /// One command.
 #[derive(Debug, clap::Args)]
@@ -13,7 +14,8 @@ use serde_json::json;
   relayrig bus send --port /dev/ttyUSB0 --checksum '#01' --model 7017F
 
 Exit status: 0 a reply that can be read, 1 refused, silent or garbled, 2 bad input. Factory calibration and trim are
-never sent.")]
+never sent. A setting that stands already is not written again; --model says which setting it is where the same characters
+mean several.")]
 pub struct SendArgs {
     #[command(flatten)]
     port: PortArgs,
@@ -46,6 +48,11 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<i32> {
     request.push(b'\r');
     let mut port = args.port.open(args.baud)?;
     let settings = args.port.settings(args.baud, args.checksum);
+    if let Some(command) = lone_reading(text, family)
+        && let Some(found) = stands(&mut port, &settings, &command).await?
+    {
+        return Ok(told_standing(args, &found));
+    }
     let reply = send_raw(&mut port, &settings, Pace::real(), &request).await?;
     let mut meanings = dcon::understand(&request, &reply.bytes, args.checksum);
     meanings.retain(|(command, _)| family.is_none_or(|family| family.knows(command)));
@@ -88,6 +95,44 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<i32> {
     } else {
         NO
     })
+}
+
+/// What the text means, if that is one thing only.
+fn lone_reading(text: &[u8], family: Option<Family>) -> Option<Command> {
+    let mut readings = dcon::readings(text);
+    readings.retain(|command| family.is_none_or(|family| family.knows(command)));
+    match readings[..] {
+        [command] => Some(command),
+        _ => None,
+    }
+}
+
+/// What the module says when `command` writes a setting that stands already; none where it has to be written.
+async fn stands(
+    port: &mut SerialStream,
+    settings: &LineSettings,
+    command: &Command,
+) -> anyhow::Result<Option<String>> {
+    let Some(setting) = command.setting() else {
+        return Ok(None);
+    };
+    let mut question = Vec::new();
+    setting.encode(settings.checksum, &mut question);
+    let said = send_raw(port, settings, Pace::real(), &question).await?;
+    let found = setting.decode(&said.bytes, settings.checksum);
+    Ok(found
+        .is_ok_and(|found| command.stands(&found))
+        .then(|| escaped(&said.bytes)))
+}
+
+fn told_standing(args: &SendArgs, found: &str) -> i32 {
+    if args.json {
+        let object = json!({ "request": args.command, "written": false, "found": found });
+        println!("{object}");
+    } else {
+        println!("  stands already, {found}: not written again, an EEPROM wears");
+    }
+    super::super::DONE
 }
 
 /// A command that can be a request of the protocol and is none that spoils a module.

@@ -172,7 +172,10 @@ proptest! {
         for command in readings(request.as_bytes()) {
             let mut written = Vec::new();
             command.encode(false, &mut written);
-            prop_assert_eq!(written.strip_suffix(b"\r"), Some(request.as_bytes()));
+            let written = written.strip_suffix(b"\r").unwrap_or_default();
+            // `#AABBDD` has two spellings.
+            prop_assert!(written == request.as_bytes() || request.len() == 7);
+            prop_assert!(readings(written).contains(&command));
         }
         let _ = understand(request.as_bytes(), reply.as_bytes(), sum);
     }

@@ -306,7 +306,9 @@ fn kind(error: &LineError) -> &'static str {
 
 fn names_itself(error: &LineError, command: &Command) -> bool {
     let text = error.to_string();
-    text.contains(fingerprint::LINE) && text.contains(&command.to_string())
+    // What writes a setting asks for it first: then that is what failed.
+    let mut asked = [Some(*command), command.setting()].into_iter().flatten();
+    text.contains(fingerprint::LINE) && asked.any(|it| text.contains(&it.to_string()))
 }
 
 enum Found {

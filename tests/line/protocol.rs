@@ -1,0 +1,283 @@
+//! The protocol on both sides: what the controller writes and reads, and what the simulated modules understand, were
+//! written apart from each other from the same manuals. Here they meet, command by command.
+
+use relayrig::bus::{self, Answer, LineSettings, Pace, PortError, Ports, Request};
+use relayrig::dcon::{
+    Address, AnalogIn, BaudCode, Command, Common, Config, Family, FormatByte, ModuleName, Reply,
+    ReplyError, TypeCode, factory, readings,
+};
+use rigsim::{SharedRig, bench, wire};
+use std::collections::BTreeSet;
+use tokio::io::DuplexStream;
+use tokio::sync::mpsc;
+
+const TABLE: &str = include_str!("protocol.txt");
+
+/// Stands in the place of a model where no rig may send the command.
+const NEVER: &str = "never";
+
+/// Request and models of every row.
+fn table() -> impl Iterator<Item = (&'static str, Vec<&'static str>)> {
+    let rows = TABLE
+        .lines()
+        .filter(|row| !row.starts_with("# ") && !row.is_empty());
+    rows.map(|row| {
+        let mut words = row.split_whitespace();
+        (words.next().unwrap(), words.collect())
+    })
+}
+
+fn models() -> BTreeSet<&'static str> {
+    let all = table().flat_map(|(_, models)| models);
+    all.filter(|model| *model != NEVER).collect()
+}
+
+/// What the controller could mean by `request` to this model.
+fn meant(model: &str, request: &str) -> Vec<Command> {
+    let family = Family::of_name(model).unwrap();
+    let mut meant = readings(request.as_bytes());
+    meant.retain(|command| family.knows(command));
+    meant
+}
+
+#[test]
+fn every_command_of_every_module_is_written_answered_and_read() {
+    let mut broken = Vec::new();
+    for model in models() {
+        // With INIT* grounded the newer ones take every command.
+        let init = model.starts_with("M-");
+        let text =
+            format!("baud = 9600\n[[module]]\naddress = 1\nmodel = \"{model}\"\ninit = {init}");
+        let mut rig = bench::build_text(&text).unwrap();
+        for (at_us, (request, models)) in (0..).zip(table()) {
+            if !models.contains(&model) {
+                continue;
+            }
+            let meant = meant(model, request);
+            let reply = rig.exchange(0, request.as_bytes(), at_us);
+            let read = |reply: &[u8]| meant.iter().any(|it| it.decode(reply, false).is_ok());
+            let whole = match &reply {
+                Some(reply) => read(&reply.bytes),
+                None => matches!(meant[..], [Command::HostOk | Command::SampleAll]),
+            };
+            if !whole {
+                broken.push(format!("{model} {request}: {reply:?} to {meant:?}"));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn every_command_that_can_be_written_down_stands_in_the_table() {
+    let mut named = BTreeSet::new();
+    for command in table().flat_map(|(request, _)| readings(request.as_bytes())) {
+        let (family, ask) = match command {
+            Command::HostOk | Command::SampleAll => continue,
+            Command::Common(_, ask) => ("Common", format!("{ask:?}")),
+            Command::AnalogIn(_, ask) => ("AnalogIn", format!("{ask:?}")),
+            Command::AnalogOut(_, ask) => ("AnalogOut", format!("{ask:?}")),
+            Command::Digital(_, ask) => ("Digital", format!("{ask:?}")),
+            Command::Counter(_, ask) => ("Counter", format!("{ask:?}")),
+        };
+        let name = ask.split(|letter: char| !letter.is_alphanumeric()).next();
+        named.insert(format!("{family} {}", name.unwrap()));
+    }
+    for (family, source) in [
+        ("Common", include_str!("../../src/dcon/every_module.rs")),
+        ("AnalogIn", include_str!("../../src/dcon/analog_in.rs")),
+        ("AnalogOut", include_str!("../../src/dcon/analog_out.rs")),
+        ("Digital", include_str!("../../src/dcon/digital.rs")),
+        ("Counter", include_str!("../../src/dcon/counter.rs")),
+    ] {
+        let (_, body) = source
+            .split_once(&format!("pub enum {family} {{\n"))
+            .unwrap();
+        let body = body.split("\n}\n").next().unwrap();
+        let names = body.lines().filter_map(|line| line.strip_prefix("    "));
+        let names = names.filter(|line| line.starts_with(char::is_uppercase));
+        let names = names.filter_map(|line| line.split(|c: char| !c.is_alphanumeric()).next());
+        let mut count = 0;
+        for name in names {
+            count += 1;
+            let known = named.contains(&format!("{family} {name}"));
+            assert!(known, "{family}::{name} has no row in protocol.txt");
+        }
+        assert!(count > 8, "{family}: only {count} commands found");
+    }
+}
+
+#[test]
+fn what_only_the_factory_may_do_cannot_be_written_down() {
+    for (request, models) in table() {
+        let never = models == [NEVER];
+        assert_eq!(factory(request.as_bytes()).is_some(), never, "{request}");
+        assert!(
+            !never || readings(request.as_bytes()).is_empty(),
+            "{request}"
+        );
+    }
+}
+
+// ---- the line task of the controller over a simulated bench ---------------------------------------------------------
+
+struct BenchPort(wire::Plug);
+
+impl Ports for BenchPort {
+    type Port = DuplexStream;
+
+    async fn open(&mut self) -> Result<DuplexStream, PortError> {
+        self.0.open().ok_or(PortError::Gone)
+    }
+}
+
+/// What came of the commands one after the other, and after each how many times an EEPROM has been written.
+fn told(modules: &str, checksum: bool, commands: &[Command]) -> Vec<(Answer, u64)> {
+    let talk = async {
+        let rig = SharedRig::new(bench::build_text(&format!("baud = 9600\n{modules}")).unwrap());
+        let (_, plug) = wire::plugs(&rig).remove(0);
+        let (ask, asked) = mpsc::channel(1);
+        let (answer, mut answers) = mpsc::channel(1);
+        let mut settings = LineSettings::new("bench", 9_600);
+        settings.checksum = checksum;
+        let pace = Pace::virtual_time();
+        tokio::spawn(bus::run_reopening(
+            BenchPort(plug),
+            settings,
+            pace,
+            asked,
+            answer,
+        ));
+        let mut told = Vec::new();
+        for command in commands {
+            let request = Request {
+                ticket: 0,
+                command: *command,
+                tries: 1,
+            };
+            ask.send(request).await.unwrap();
+            let answer = answers.recv().await.unwrap();
+            told.push((answer, rig.eeprom_writes()));
+        }
+        told
+    };
+    tokio::runtime::Builder::new_current_thread()
+        .enable_time()
+        .start_paused(true)
+        .build()
+        .unwrap()
+        .block_on(talk)
+}
+
+#[test]
+fn a_setting_that_stands_is_not_written_to_the_eeprom_again() {
+    let mut counted = 0;
+    for model in models() {
+        let module = format!("[[module]]\naddress = 1\nmodel = \"{model}\"");
+        let rows = table().filter(|(_, models)| models.contains(&model));
+        for (request, _) in rows {
+            let mut settings = meant(model, request);
+            settings.retain(|command| command.setting().is_some());
+            let [command] = settings[..] else {
+                continue;
+            };
+            let told = told(&module, false, &[command, command]);
+            let [(first, once), (second, twice)] = &told[..] else {
+                panic!("{told:?}")
+            };
+            let name = format!("{model} {request}");
+            assert_eq!(first.outcome, Ok(Reply::Accepted), "{name}");
+            assert_eq!(second.outcome, Ok(Reply::Accepted), "{name}");
+            assert_eq!(once, twice, "{name}: written though it stood");
+            counted += once;
+        }
+    }
+    assert!(
+        counted > 40,
+        "only {counted} settings differed and were written"
+    );
+}
+
+#[test]
+fn what_a_silent_module_is_set_to_is_not_guessed_and_not_written() {
+    let mask = AnalogIn::WriteMask(0x0F).to(Address(1));
+    let told = told(
+        "[[module]]\naddress = 2\nmodel = \"I-7017\"",
+        false,
+        &[mask],
+    );
+    let (answer, writes) = &told[0];
+    let text = answer.outcome.as_ref().unwrap_err().to_string();
+    assert!(text.contains("ReadMask"), "{text}");
+    assert_eq!((*writes, answer.command), (0, mask));
+}
+
+fn word(type_code: u8, baud: u32, format: u8) -> Config {
+    Config {
+        type_code: TypeCode(type_code),
+        baud: BaudCode::of(baud).unwrap(),
+        format: FormatByte(format),
+    }
+}
+
+fn set(at: u8, address: u8, config: Config) -> Command {
+    let address = Address(address);
+    Common::WriteConfig { address, config }.to(Address(at))
+}
+
+/// Stored: address 04, 115200 baud, checksum. On the line: address 00, 9600 baud, none.
+const GROUNDED: &str =
+    "[[module]]\naddress = 4\nmodel = \"I-7017\"\nbaud = 115200\nchecksum = true\ninit = true";
+
+#[test]
+fn with_init_grounded_a_module_is_found_at_00_without_checksum_and_tells_what_it_has_stored() {
+    let name = Common::WriteName(ModuleName::new("NEST").unwrap()).to(Address(0));
+    let asked = [
+        Common::ReadInitPin.to(Address(4)),
+        Common::ReadConfig.to(Address(0)),
+        set(0, 4, word(0x08, 115_200, 0x40)),
+        set(0, 4, word(0x08, 9_600, 0x00)),
+        Common::ReadConfig.to(Address(0)),
+        name,
+    ];
+    let told = told(GROUNDED, false, &asked);
+    let stored = |config| {
+        Ok(Reply::Config {
+            address: Address(4),
+            config,
+        })
+    };
+    assert_eq!(told[0].0.outcome, Ok(Reply::Flag(false)));
+    assert_eq!(told[1].0.outcome, stored(word(0x08, 115_200, 0x40)));
+    assert_eq!(
+        (told[2].0.outcome.clone(), told[2].1),
+        (Ok(Reply::Accepted), 0)
+    );
+    assert_eq!(
+        (told[3].0.outcome.clone(), told[3].1),
+        (Ok(Reply::Accepted), 1)
+    );
+    assert_eq!(told[4].0.outcome, stored(word(0x08, 9_600, 0x00)));
+    // The reply carries the stored address: nobody at 00 has said so.
+    assert!(told[5].0.outcome.is_err(), "{:?}", told[5].0);
+}
+
+#[test]
+fn rate_and_checksum_change_with_init_grounded_only() {
+    let open = "[[module]]\naddress = 4\nmodel = \"I-7017\"";
+    let changes = [
+        set(4, 4, word(0x08, 115_200, 0x00)),
+        set(4, 4, word(0x08, 9_600, 0x40)),
+        set(4, 4, word(0x09, 9_600, 0x02)),
+    ];
+    let told = told(open, false, &changes);
+    for (answer, writes) in &told[..2] {
+        let text = answer.outcome.as_ref().unwrap_err().to_string();
+        assert!(text.contains(&ReplyError::Refused.to_string()), "{text}");
+        assert_eq!(*writes, 0);
+    }
+    assert_eq!(
+        (told[2].0.outcome.clone(), told[2].1),
+        (Ok(Reply::Accepted), 1)
+    );
+}
