@@ -86,7 +86,7 @@ pub enum Study {
     History,
     /// False accepts and rejects, counted and as the decision rule predicts them
     Decision,
-    /// The emergency stop at every instant of a cycle, and how long outputs stay on
+    /// The emergency stop at every instant of a cycle and of homing, and how long outputs stay on
     Stop,
     /// Seconds against error of every strategy for the thresholds
     Threshold,
