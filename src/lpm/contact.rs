@@ -47,6 +47,16 @@ enum How {
 }
 
 impl Found {
+    /// Two upright pieces that share a point where the way begins.
+    #[inline]
+    pub(crate) fn at_start(element: u32, local: u32) -> Found {
+        Found {
+            t: 0.0,
+            element,
+            how: How::Closed(local),
+        }
+    }
+
     /// Where and when.
     pub(crate) fn hit(&self, passage: &Passage) -> Hit {
         let gap = match (&self.how, &passage.element(self.element).form) {
@@ -66,7 +76,7 @@ impl Found {
 
 impl Passage<'_> {
     /// A contact within the margin; `None` is proof that there is none.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn contact(&self, wanted: Wanted) -> Option<Found> {
         let mut found = Findings {
             wanted,
@@ -74,28 +84,35 @@ impl Passage<'_> {
             pending: Vec::new(),
             run: None,
         };
+        if self.path.is_at_rest() {
+            self.rest(&mut found);
+        } else {
+            self.pass(&mut found);
+        }
+        found.best
+    }
+
+    /// On a way that goes somewhere.
+    fn pass(&self, found: &mut Findings) {
         for group in &self.body.groups {
             let hull = group.hull(self.path, self.way.margin_mm);
             let sweep = Sweep::new(hull, self.path.displacement);
             let until = found.until();
-            let mut search = Search::new(self, group, &mut found, &sweep);
+            let mut search = Search::new(self, group, found, &sweep);
             self.model.space.walk(&sweep, until, &mut search);
             if found.until() < 0.0 {
-                return found.best;
+                return;
             }
         }
-        if !found.pending.is_empty() {
-            self.searches(&mut found);
-        }
-        found.best
+        self.searches(found);
     }
 }
 
 /// What is found so far.
-struct Findings {
+pub(crate) struct Findings {
     wanted: Wanted,
-    best: Option<Found>,
-    pending: Vec<Pending>,
+    pub(crate) best: Option<Found>,
+    pub(crate) pending: Vec<Pending>,
     /// When it was wanted before.
     run: Option<Run>,
 }
@@ -139,7 +156,7 @@ impl Visit for Search<'_, '_> {
     /// For any contact every one is as good, so pieces are judged at once; for the first one they wait.
     #[inline]
     fn in_order(&self) -> bool {
-        self.found.wanted == Wanted::First && self.passage.path.displacement != [0.0; 3]
+        self.found.wanted == Wanted::First
     }
 
     #[inline]
@@ -266,7 +283,11 @@ impl Passage<'_> {
         Some((hit.t, Some(hit.gap)))
     }
 
-    fn searches(&self, found: &mut Findings) {
+    /// What waits on the list.
+    pub(crate) fn searches(&self, found: &mut Findings) {
+        if found.pending.is_empty() {
+            return;
+        }
         let mut pending = std::mem::take(&mut found.pending);
         once_in_order(&mut pending);
         for pair in pending {

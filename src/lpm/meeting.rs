@@ -18,7 +18,7 @@ use super::grazing::{self, Twofold};
 use super::path::Path;
 use super::piece::NOISE;
 use super::prism::Prism;
-use super::vector::{Vec3, reach};
+use super::vector::{Vec3, reach, sub};
 
 /// Relative error allowed for what is computed here from the difference of two places and the run:
 /// fewer than 16 roundings of 2^-53 each lie between them and a fraction of the way, twice that is paid.
@@ -84,9 +84,8 @@ impl<'a> Meeting<'a> {
         run: &'a Run,
         margin: f64,
     ) -> Meeting<'a> {
-        let apart = [0, 1, 2].map(|axis: usize| mover.centre[axis] - element.centre[axis]);
-        let slack =
-            NOISE * (element.span + mover.span) + ROUNDING * (reach(apart) + reach(run.way));
+        let apart = sub(mover.centre, element.centre);
+        let slack = slack(element, mover, apart) + ROUNDING * reach(run.way);
         Meeting {
             element,
             mover,
@@ -119,7 +118,7 @@ impl<'a> Meeting<'a> {
     #[inline]
     fn rounded(&self, window: Window, framed: &Prism) -> Option<f64> {
         let radius = self.element.radius + self.mover.radius;
-        let half = [0, 1].map(|axis: usize| self.element.half[axis] + self.mover.half[axis]);
+        let half = self.halves();
         let p = framed.along(self.apart);
         let rates = self.rates(framed);
         let reach = radius + self.grown;
@@ -128,7 +127,7 @@ impl<'a> Meeting<'a> {
         if radius == 0.0 && self.grown == self.slack {
             return Some(window.0);
         }
-        let v = rates.map(|(rate, _)| rate);
+        let v = [rates[0].0, rates[1].0];
         let t = corner(window, p, v, half, reach + self.slack)?;
         Some(self.grazed(framed, t).unwrap_or(t))
     }
@@ -137,13 +136,17 @@ impl<'a> Meeting<'a> {
     /// the way to the places; not before `t`, where the grown figures meet.
     fn grazed(&self, framed: &Prism, t: f64) -> Option<f64> {
         let at = [0, 1].map(|axis: usize| self.apart[axis] + t * self.run.way[axis]);
-        let half = [0, 1].map(|axis: usize| self.element.half[axis] + self.mover.half[axis]);
+        let half = self.halves();
         let w = [0, 1].map(|axis: usize| at[axis] - half[axis].copysign(at[axis]));
         let [u, v, _] = self.run.way;
-        let (radius, speed) = (self.element.radius + self.mover.radius, u.hypot(v));
+        let (radius, speed) = (
+            self.element.radius + self.mover.radius,
+            (u * u + v * v).sqrt(),
+        );
         let closing = (w[0] * u + w[1] * v).abs();
-        // The contact moves by the slack divided by the sine of the angle of the graze.
-        if closing * GRAZED_MM > self.slack * radius * speed {
+        // The contact moves by the slack divided by the sine of the angle of the graze; at rest by nothing.
+        let is_graze = closing * GRAZED_MM < self.slack * radius * speed;
+        if !is_graze {
             return None;
         }
         // On a way along an axis no side comes before the end of its corner.
@@ -169,6 +172,13 @@ impl<'a> Meeting<'a> {
         Some(grazing::first(from, [u, v], radius)?.max(t))
     }
 
+    /// Half extents of both footprints together, which have common axes.
+    #[inline]
+    fn halves(&self) -> [f64; 2] {
+        let half = |axis: usize| self.element.half[axis] + self.mover.half[axis];
+        [half(0), half(1)]
+    }
+
     /// The run along the axes of a footprint, with the reciprocals.
     #[inline]
     fn rates(&self, framed: &Prism) -> [(f64, f64); 2] {
@@ -176,7 +186,8 @@ impl<'a> Meeting<'a> {
         if framed.is_straight() {
             return [(way[0], pace_of[0]), (way[1], pace_of[1])];
         }
-        framed.along(*way).map(|rate| (rate, pace(rate)))
+        let [x, y] = framed.along(*way);
+        [(x, pace(x)), (y, pace(y))]
     }
 
     fn octagon(&self, window: Window) -> Option<f64> {
@@ -208,6 +219,13 @@ impl<'a> Meeting<'a> {
     }
 }
 
+/// What rounding may have done to two pieces whose centres lie `apart`, and does to what is computed from
+/// it at rest, mm.
+#[inline]
+pub(crate) fn slack(element: &Prism, mover: &Prism, apart: Vec3) -> f64 {
+    NOISE * (element.span + mover.span) + ROUNDING * reach(apart)
+}
+
 /// The part of `window` in which `|start + t rate| <= half`; of the rate, its reciprocal, too.
 #[inline]
 fn slab((low, high): Window, start: f64, (rate, pace): (f64, f64), half: f64) -> Option<Window> {
@@ -236,12 +254,13 @@ fn corner(
     radius: f64,
 ) -> Option<f64> {
     let at = [p[0] + low * v[0], p[1] + low * v[1]];
-    let over = [0, 1].map(|axis: usize| (at[axis].abs() - half[axis]).max(0.0));
-    if !(over[0] * over[0] + over[1] * over[1] > radius * radius) {
+    let over = |axis: usize| (at[axis].abs() - half[axis]).max(0.0);
+    if !(over(0) * over(0) + over(1) * over(1) > radius * radius) {
         return Some(low);
     }
     // Outside, so before the disc of a corner: the way in leads through it.
-    let w = [0, 1].map(|axis: usize| at[axis] - half[axis].copysign(at[axis]));
+    let w = |axis: usize| at[axis] - half[axis].copysign(at[axis]);
+    let w = [w(0), w(1)];
     let speed = v[0] * v[0] + v[1] * v[1];
     let nearing = -(w[0] * v[0] + w[1] * v[1]);
     let across = w[0] * v[1] - w[1] * v[0];

@@ -92,6 +92,7 @@ mod piece;
 mod pose;
 mod prism;
 mod question;
+mod rest;
 pub mod scene;
 mod shape;
 mod solid;

@@ -2,12 +2,12 @@
 
 use super::path::Path;
 use super::piece::{Piece, pieces_of};
+use super::pose::Frame;
 use super::prism::Prism;
 use super::shape::{Flaw, Shape};
 use super::solid::Interior;
 use super::space::{Boxes, Cover, SLOWEST_MM};
 use super::vector::{add, length, reach};
-use std::borrow::Cow;
 
 /// Pieces of a group: as many as are placed at once without asking for memory.
 pub(crate) const MOST_OF_A_GROUP: usize = 4;
@@ -36,8 +36,8 @@ pub(crate) struct Group {
     half: [f32; 3],
     /// Largest distance of a point from the origin of the body, rounded outward, mm.
     ball: f64,
-    /// The scale of rounding errors, mm.
-    span: f64,
+    /// How far the boxes of the group are widened wherever it stands, mm.
+    wider: f64,
 }
 
 /// Relative error allowed for the boxes of a group at their place: fewer than ten roundings to
@@ -99,8 +99,9 @@ impl Group {
             centre: [0.0; 3],
             half: [0.0; 3],
             ball: 0.0,
-            span: 0.0,
+            wider: 0.0,
         };
+        let mut span = 0.0_f64;
         let (mut least, mut most) = pieces[0].bounds();
         for place in 0..MOST_OF_A_GROUP {
             let piece = pieces.get(place).unwrap_or(&pieces[0]);
@@ -112,10 +113,9 @@ impl Group {
                 most[axis] = most[axis].max(high[axis]);
             }
             group.ball = group.ball.max(reach_of(piece));
-            group.span = group
-                .span
-                .max(2.0 * (piece.span + reach(piece.centre) + piece.radius()));
+            span = span.max(2.0 * (piece.span + reach(piece.centre) + piece.radius()));
         }
+        group.wider = SINGLE * span + SLOWEST_MM;
         for axis in 0..3 {
             group.centre[axis] = (0.5 * (least[axis] + most[axis])) as f32;
             group.half[axis] = (0.5 * (most[axis] - least[axis])) as f32;
@@ -129,74 +129,83 @@ impl Group {
         (1 << self.count) - 1
     }
 
-    /// How far beyond its size a box is widened for `margin` and all rounding to single precision, mm.
+    /// How far beyond its size a box is widened along each axis for `margin` and all rounding to single
+    /// precision, mm. What is rounded along an axis is of the magnitude of places along it, and of the group.
     #[inline]
-    fn wider(&self, path: &Path, margin: f64) -> f32 {
-        let wider = margin + SINGLE * (margin + self.span + path.span()) + SLOWEST_MM;
-        (wider * (1.0 + SINGLE)) as f32
+    fn wider(&self, path: &Path, margin: f64) -> [f32; 3] {
+        let always = (self.wider + margin * (1.0 + SINGLE)) as f32;
+        let on = |axis: usize| {
+            let way = (path.from[axis] as f32).abs() + (path.displacement[axis] as f32).abs();
+            always + SINGLE as f32 * way
+        };
+        [on(0), on(1), on(2)]
     }
 
     /// The boxes of the pieces where the way begins, rounded outward and widened by `margin` (mm).
     ///
     /// Of a turning group: the box of the ball it stays in, whatever the turn.
+    #[inline]
     pub(crate) fn boxes(&self, path: &Path, margin: f64) -> Boxes<MOST_OF_A_GROUP> {
+        self.placed(path, margin, &self.centres, &self.halves)
+    }
+
+    /// The box around all of them, likewise.
+    #[inline(always)]
+    pub(crate) fn hull(&self, path: &Path, margin: f64) -> Cover {
+        let (centre, half) = (self.centre.map(|it| [it]), self.half.map(|it| [it]));
+        self.placed(path, margin, &centre, &half).cover(0)
+    }
+
+    #[inline(always)]
+    fn placed<const N: usize>(
+        &self,
+        path: &Path,
+        margin: f64,
+        centres: &[[f32; N]; 3],
+        halves: &[[f32; N]; 3],
+    ) -> Boxes<N> {
+        let oriented;
+        let (centres, halves) = if path.is_unturned() && path.turn.is_none() {
+            (centres, halves)
+        } else {
+            oriented = match path.turn {
+                Some(_) => ([[0.0; N]; 3], [[self.ball as f32; N]; 3]),
+                None => turned(path.start(), centres, halves),
+            };
+            (&oriented.0, &oriented.1)
+        };
         let wider = self.wider(path, margin);
-        let origin = path.origin(0.0);
         let mut boxes = Boxes::NOWHERE;
         for axis in 0..3 {
-            let origin = origin[axis] as f32;
-            let turned = self.turned(axis, path, &self.centres, &self.halves);
-            for place in 0..MOST_OF_A_GROUP {
-                let (centre, half) = (turned.0[place] + origin, turned.1[place] + wider);
+            let (origin, wider) = (path.from[axis] as f32, wider[axis]);
+            for place in 0..N {
+                let (centre, half) = (centres[axis][place] + origin, halves[axis][place] + wider);
                 boxes.low[axis][place] = centre - half;
                 boxes.high[axis][place] = centre + half;
             }
         }
         boxes
     }
+}
 
-    /// The box around all of them, likewise.
-    #[inline]
-    pub(crate) fn hull(&self, path: &Path, margin: f64) -> Cover {
-        let wider = self.wider(path, margin);
-        let origin = path.origin(0.0);
-        let (centre, half) = (self.centre.map(|it| [it]), self.half.map(|it| [it]));
-        let side = |axis: usize, sign: f32| {
-            let ([centre], [half]) = self.turned(axis, path, &centre, &half);
-            centre + origin[axis] as f32 + sign * (half + wider)
-        };
-        Cover {
-            low: [side(0, -1.0), side(1, -1.0), side(2, -1.0)],
-            high: [side(0, 1.0), side(1, 1.0), side(2, 1.0)],
-        }
-    }
-
-    /// Centres, as seen from the origin, and half extents along an axis of the parent frame.
-    #[inline]
-    fn turned<const N: usize>(
-        &self,
-        axis: usize,
-        path: &Path,
-        centres: &[[f32; N]; 3],
-        halves: &[[f32; N]; 3],
-    ) -> ([f32; N], [f32; N]) {
-        if path.turn.is_some() {
-            return ([0.0; N], [self.ball as f32; N]);
-        }
-        if path.is_unturned() {
-            return (centres[axis], halves[axis]);
-        }
-        let frame = path.start();
+/// Centres, as seen from the origin, and half extents along the axes of the parent frame.
+#[inline]
+fn turned<const N: usize>(
+    frame: &Frame,
+    centres: &[[f32; N]; 3],
+    halves: &[[f32; N]; 3],
+) -> ([[f32; N]; 3], [[f32; N]; 3]) {
+    let mut turned = ([[0.0; N]; 3], [[0.0; N]; 3]);
+    for axis in 0..3 {
         let images = [frame.x, frame.y, frame.z].map(|image| image[axis] as f32);
-        let mut turned = ([0.0; N], [0.0; N]);
         for (own, image) in images.into_iter().enumerate() {
             for place in 0..N {
-                turned.0[place] += image * centres[own][place];
-                turned.1[place] += image.abs() * halves[own][place];
+                turned.0[axis][place] += image * centres[own][place];
+                turned.1[axis][place] += image.abs() * halves[own][place];
             }
         }
-        turned
     }
+    turned
 }
 
 /// Largest distance of a point of the piece from the origin of its body, mm, rounded outward.
@@ -206,18 +215,19 @@ pub(crate) fn reach_of(piece: &Piece) -> f64 {
 
 /// What the model can be asked about: a [`Mover`], or a [`Shape`] that is taken apart for this one question.
 pub trait Moving {
-    /// The body taken apart; `None` when the shape is flawed, which is answered with blocked.
-    fn mover(&self) -> Option<Cow<'_, Mover>>;
+    /// Asks about the body taken apart; `None` when the shape is flawed, which is answered with blocked.
+    fn asked<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A>;
 }
 
 impl Moving for Mover {
-    fn mover(&self) -> Option<Cow<'_, Mover>> {
-        Some(Cow::Borrowed(self))
+    #[inline(always)]
+    fn asked<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
+        Some(ask(self))
     }
 }
 
 impl Moving for Shape {
-    fn mover(&self) -> Option<Cow<'_, Mover>> {
-        Mover::new(self).ok().map(Cow::Owned)
+    fn asked<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
+        Mover::new(self).ok().map(|mover| ask(&mover))
     }
 }

@@ -69,6 +69,7 @@ impl<'a> Passage<'a> {
     }
 
     /// A piece of the mover at `t` of a level way, if it is upright.
+    #[inline(always)]
     pub(crate) fn prism_at(&self, index: u32, t: f64) -> Option<Prism> {
         let own = self.body.prisms[index as usize].as_ref()?;
         Some(own.carried(self.path.start(), self.path.origin(t)))

@@ -7,12 +7,14 @@ use super::vector::{Vec3, along, negate, reach, sub};
 /// A move between two checked poses; `t` runs from 0 to 1.
 #[derive(Debug, Clone)]
 pub(crate) struct Path {
-    from: Vec3,
+    /// Origin where the way begins, mm.
+    pub(crate) from: Vec3,
     to: Vec3,
     /// Whole displacement of the origin, mm.
     pub(crate) displacement: Vec3,
     start: Frame,
     is_unturned: bool,
+    is_at_rest: bool,
     /// `None`: the move is a translation. (Apart: most are.)
     pub(crate) turn: Option<Box<Turn>>,
 }
@@ -21,23 +23,37 @@ impl Path {
     /// `None` when a number is not finite: nothing can be said about such a move.
     #[inline(always)]
     pub(crate) fn between(from: &Pose, to: &Pose) -> Option<Path> {
-        if !(from.is_sound() && to.is_sound()) {
+        let is_turned = !same(&from.rotation, &to.rotation);
+        if !(from.is_sound() && to.is_placed() && (!is_turned || to.is_sound())) {
             return None;
         }
-        let turn = if from.rotation == to.rotation {
-            None
-        } else {
+        let turn = if is_turned {
             Turn::between(from.rotation, to.rotation).map(Box::new)
+        } else {
+            None
         };
+        let [_, x, y, z] = from.rotation;
+        let is_unturned = x == 0.0 && y == 0.0 && z == 0.0;
         let path = Path {
             from: from.position,
             to: to.position,
             displacement: sub(to.position, from.position),
-            start: Frame::of(from.rotation),
-            is_unturned: from.rotation[1..] == [0.0; 3],
+            is_at_rest: same(&from.position, &to.position) && turn.is_none(),
+            start: if is_unturned {
+                Frame::IDENTITY
+            } else {
+                Frame::of(from.rotation)
+            },
+            is_unturned,
             turn,
         };
         Some(path)
+    }
+
+    /// Whether the move goes nowhere.
+    #[inline]
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.is_at_rest
     }
 
     /// Origin of the mover at `t`.
@@ -55,7 +71,6 @@ impl Path {
     }
 
     /// The sum of magnitudes of everything that enters a position on the way, mm.
-    #[inline]
     pub(crate) fn span(&self) -> f64 {
         reach(self.from) + reach(self.displacement)
     }
@@ -77,4 +92,10 @@ impl Path {
     pub(crate) fn start(&self) -> &Frame {
         &self.start
     }
+}
+
+/// Equality of all members at once, which here is sooner than one after the other.
+#[inline]
+fn same<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
+    a.iter().zip(b).fold(true, |same, (a, b)| same & (a == b))
 }

@@ -64,7 +64,7 @@ impl Prism {
     }
 
     /// The same carried along by its parent, which stands turned by the upright `frame` at `position`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn carried(&self, frame: &Frame, position: Vec3) -> Prism {
         let mut placed = *self;
         if !frame.is_identity() {

@@ -7,34 +7,33 @@ use super::mover::{Mover, Moving};
 use super::passage::Passage;
 use super::path::Path;
 use super::straight::Hit;
-use std::borrow::Cow;
 
 impl Model {
     /// When and where the mover first comes within the margin of an element.
     pub fn first_contact(&self, mover: &impl Moving, way: &Move) -> Answer {
-        let Some((body, path)) = readied(mover, way) else {
-            return undecidable();
-        };
-        if let Some((slot, hit)) = self.enclosed(&body, &path, way) {
-            return blocked(self.key(slot), &hit);
-        }
-        let passage = Passage::new(self, &body, &path, way);
-        match passage.contact(Wanted::First) {
-            None => Answer::Clear,
-            Some(found) => blocked(self.owner(&found), &found.hit(&passage)),
-        }
+        let answer = asked(mover, way, |body, path| {
+            if let Some((slot, hit)) = self.enclosed(body, path, way) {
+                return blocked(self.key(slot), &hit);
+            }
+            let passage = Passage::new(self, body, path, way);
+            match passage.contact(Wanted::First) {
+                None => Answer::Clear,
+                Some(found) => blocked(self.owner(&found), &found.hit(&passage)),
+            }
+        });
+        answer.unwrap_or_else(undecidable)
     }
 
     /// Some element within the margin at some time of the move; `None` is proof that there is none.
     pub fn any_hit(&self, mover: &impl Moving, way: &Move) -> Option<ElementKey> {
-        let Some((body, path)) = readied(mover, way) else {
-            return Some(ElementKey::UNDECIDABLE);
-        };
-        if let Some((slot, _)) = self.enclosed(&body, &path, way) {
-            return Some(self.key(slot));
-        }
-        let found = Passage::new(self, &body, &path, way).contact(Wanted::Any)?;
-        Some(self.owner(&found))
+        let answer = asked(mover, way, |body, path| {
+            if let Some((slot, _)) = self.enclosed(body, path, way) {
+                return Some(self.key(slot));
+            }
+            let found = Passage::new(self, body, path, way).contact(Wanted::Any)?;
+            Some(self.owner(&found))
+        });
+        answer.unwrap_or(Some(ElementKey::UNDECIDABLE))
     }
 
     /// Least distance over the move up to `range_mm`; `None` when it is larger.
@@ -46,19 +45,21 @@ impl Model {
             nearest,
             t: 0.0,
         };
-        let judged = readied(mover, way).filter(|_| range_mm >= 0.0 && range_mm.is_finite());
-        let Some((body, path)) = judged else {
+        if !(range_mm >= 0.0 && range_mm.is_finite()) {
             return Some(nothing(ElementKey::UNDECIDABLE));
-        };
-        if let Some((slot, _)) = self.enclosed(&body, &path, way) {
-            return Some(nothing(self.key(slot)));
         }
-        let nearest = Passage::new(self, &body, &path, way).least(range_mm)?;
-        Some(Clearance {
-            distance_mm: nearest.distance_mm,
-            nearest: self.key(self.pieces.at(nearest.element).owner),
-            t: nearest.t,
-        })
+        let answer = asked(mover, way, |body, path| {
+            if let Some((slot, _)) = self.enclosed(body, path, way) {
+                return Some(nothing(self.key(slot)));
+            }
+            let nearest = Passage::new(self, body, path, way).least(range_mm)?;
+            Some(Clearance {
+                distance_mm: nearest.distance_mm,
+                nearest: self.key(self.pieces.at(nearest.element).owner),
+                t: nearest.t,
+            })
+        });
+        answer.unwrap_or(Some(nothing(ElementKey::UNDECIDABLE)))
     }
 
     fn owner(&self, found: &Found) -> ElementKey {
@@ -66,10 +67,16 @@ impl Model {
     }
 
     /// An element that holds the mover, or is held by it, without touching.
+    #[inline]
     fn enclosed(&self, body: &Mover, path: &Path, way: &Move) -> Option<(u32, Hit)> {
         if self.hollow.is_empty() && !body.is_hollow() {
             return None;
         }
+        self.holding(body, path, way)
+    }
+
+    #[cold]
+    fn holding(&self, body: &Mover, path: &Path, way: &Move) -> Option<(u32, Hit)> {
         let inside = body.interior_at_start(path);
         let asked: Vec<u32> = if body.is_hollow() {
             self.standing_slots().collect()
@@ -89,10 +96,12 @@ impl Model {
 
 /// `None` when the move or the mover is not valid.
 #[inline(always)]
-fn readied<'a>(mover: &'a impl Moving, way: &Move) -> Option<(Cow<'a, Mover>, Path)> {
-    let margin_valid = way.margin_mm >= 0.0 && way.margin_mm.is_finite();
-    let path = Path::between(&way.from, &way.to).filter(|_| margin_valid)?;
-    Some((mover.mover()?, path))
+fn asked<A>(mover: &impl Moving, way: &Move, ask: impl FnOnce(&Mover, &Path) -> A) -> Option<A> {
+    if !(way.margin_mm >= 0.0 && way.margin_mm <= f64::MAX) {
+        return None;
+    }
+    let path = Path::between(&way.from, &way.to)?;
+    mover.asked(|body| ask(body, &path))
 }
 
 fn undecidable() -> Answer {

@@ -19,6 +19,12 @@ struct Side {
     at: [f64; 2],
 }
 
+/// How far apart the footprints are, mm; at most 0 when they share a point.
+#[inline]
+pub(crate) fn beside(element: &Prism, mover: &Prism, apart: Vec3) -> f64 {
+    side(element, mover, apart).beyond
+}
+
 /// The contact of two pieces whose centres lie `apart`, from the element to the mover.
 pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
     let side = side(element, mover, apart);
@@ -37,6 +43,7 @@ pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
     }
 }
 
+#[inline]
 fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     match (element.radius > 0.0, mover.radius > 0.0) {
         (false, false) if element.axis != mover.axis => askew(element, mover, apart),
@@ -46,27 +53,29 @@ fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
 }
 
 /// Rectangles with common axes, discs, or one of each; `framed` gives the axes.
+#[inline]
 fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side {
     let p = framed.along(apart);
     let radius = element.radius + mover.radius;
-    let over = [0, 1].map(|axis: usize| p[axis].abs() - element.half[axis] - mover.half[axis]);
+    let over = |axis: usize| p[axis].abs() - element.half[axis] - mover.half[axis];
+    let over = [over(0), over(1)];
     let (beyond, normal) = if over[0] > 0.0 && over[1] > 0.0 {
         let size = (over[0] * over[0] + over[1] * over[1]).sqrt();
-        let normal = [0, 1].map(|axis: usize| (over[axis] / size).copysign(p[axis]));
-        (size - radius, normal)
+        let normal = |axis: usize| (over[axis] / size).copysign(p[axis]);
+        (size - radius, [normal(0), normal(1)])
     } else if over[0] >= over[1] {
         (over[0] - radius, [1.0f64.copysign(p[0]), 0.0])
     } else {
         (over[1] - radius, [0.0, 1.0f64.copysign(p[1])])
     };
-    let at = [0, 1].map(|axis: usize| {
+    let at = |axis: usize| {
         let middle = shared(element.half[axis], mover.half[axis], p[axis]);
         middle + element.radius * normal[axis]
-    });
+    };
     Side {
         beyond,
         normal: out_of(framed, normal),
-        at: out_of(framed, at),
+        at: out_of(framed, [at(0), at(1)]),
     }
 }
 
@@ -120,6 +129,7 @@ fn support(of: &Prism, n: [f64; 2]) -> [f64; 2] {
 
 /// The middle of what two intervals about 0 and about `apart` share, or the end of the first next to
 /// the second.
+#[inline]
 fn shared(half: f64, other: f64, apart: f64) -> f64 {
     let low = (-half).max(apart - other);
     let high = half.min(apart + other);
@@ -127,6 +137,7 @@ fn shared(half: f64, other: f64, apart: f64) -> f64 {
 }
 
 /// From the axes of a footprint into the common frame.
+#[inline]
 fn out_of(framed: &Prism, local: [f64; 2]) -> [f64; 2] {
     let [x, y] = framed.axis;
     [local[0] * x - local[1] * y, local[0] * y + local[1] * x]

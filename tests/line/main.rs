@@ -43,10 +43,10 @@ mod lots;
 mod paper;
 mod picture;
 mod program;
-#[cfg(all(feature = "sim", unix))]
-mod serve;
 #[cfg(feature = "sim")]
 mod protocol;
+#[cfg(all(feature = "sim", unix))]
+mod serve;
 #[cfg(feature = "sim")]
 mod stories;
 #[cfg(feature = "sim")]

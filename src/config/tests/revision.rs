@@ -53,7 +53,10 @@ fn a_revision_is_what_loads_next_and_the_old_text_is_kept_to_the_letter() {
     );
     let kept = copy.0.path().join("recipes/revisions/jzc-22f-012/1.toml");
     assert_eq!(std::fs::read_to_string(kept).unwrap(), old.source_text);
-    assert_eq!(revision(copy.0.path(), NAME, Some(1)).unwrap().hash, old.hash);
+    assert_eq!(
+        revision(copy.0.path(), NAME, Some(1)).unwrap().hash,
+        old.hash
+    );
     let third = revise(&plant, &change(&plant, path, json!(9.0))).unwrap();
     assert_eq!(
         (third.number, &third.hash),
@@ -160,7 +163,10 @@ fn a_revision_that_was_cut_off_after_the_old_text_was_kept_is_made_again_under_i
     assert_eq!(revision(copy.0.path(), NAME, None).unwrap().number, 1);
     let wanted = change(&plant, "decision.slow_repeats", json!(4));
     assert_eq!(revise(&plant, &wanted).unwrap().number, 2);
-    assert_eq!(revision(copy.0.path(), NAME, Some(1)).unwrap().hash, wanted.from);
+    assert_eq!(
+        revision(copy.0.path(), NAME, Some(1)).unwrap().hash,
+        wanted.from
+    );
 }
 
 #[test]

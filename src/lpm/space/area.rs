@@ -1,10 +1,13 @@
 //! Which squares of the baseplate something covers.
 
-use super::cover::Cover;
+use super::cover::{Cover, larger, smaller, whole};
 
 /// Edge of a cell, mm: about the pitch at which fixture elements stand; a power of two, so that
 /// dividing by it is exact.
 pub(crate) const PITCH_MM: f64 = 64.0;
+
+/// Columns and rows beyond this, 100 km out, are one: no grid reaches there.
+const FARTHEST: f32 = (1 << 21) as f32;
 
 /// Cells added around a piece that stands outside.
 pub(super) const GROWTH: i32 = 4;
@@ -29,8 +32,7 @@ impl Area {
         // Rounding is monotone, so covering areas stay covering.
         let cell = |coordinate: f32| {
             let scaled = coordinate * (1.0 / PITCH_MM as f32);
-            let whole = scaled as i32;
-            whole.saturating_sub(i32::from(whole as f32 > scaled))
+            whole(smaller(larger(scaled, -FARTHEST), FARTHEST))
         };
         Area {
             low: [cell(cover.low[0]), cell(cover.low[1])],

@@ -46,7 +46,7 @@ impl<const N: usize> Boxes<N> {
     /// One of them.
     #[inline]
     pub(crate) fn cover(&self, lane: usize) -> Cover {
-        let member = |bounds: &[[f32; N]; 3]| [0, 1, 2].map(|axis: usize| bounds[axis][lane]);
+        let member = |[x, y, z]: &[[f32; N]; 3]| [x[lane], y[lane], z[lane]];
         Cover {
             low: member(&self.low),
             high: member(&self.high),
@@ -65,7 +65,7 @@ impl<const N: usize> Boxes<N> {
 
     /// The boxes that a box, starting as `cover`, meets on its way up to the fraction `until`. The
     /// same holds when the boxes go the other way and `cover` stands.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn crossing(&self, cover: &Cover, pace: &Pace, until: f32) -> Crossing<N> {
         let (mut entry, mut exit) = ([0.0; N], [until; N]);
         for axis in 0..3 {
@@ -77,9 +77,12 @@ impl<const N: usize> Boxes<N> {
                 exit[lane] = smaller(larger(near, far), exit[lane]);
             }
         }
-        let entry = entry.map(|fraction| fraction * EARLIER);
+        for lane in 0..N {
+            entry[lane] *= EARLIER;
+            exit[lane] *= LATER;
+        }
         Crossing {
-            lanes: at_most(&entry, &exit.map(|fraction| fraction * LATER)),
+            lanes: at_most(&entry, &exit),
             entry,
         }
     }
@@ -99,12 +102,12 @@ fn at_most<const N: usize>(a: &[f32; N], b: &[f32; N]) -> u32 {
 #[target_feature(enable = "sse")]
 #[inline]
 fn at_most_by_four<const N: usize>(a: &[f32; N], b: &[f32; N]) -> u32 {
-    use std::arch::x86_64::{__m128, _mm_cmple_ps, _mm_movemask_ps, _mm_setr_ps};
-    let four = |from: &[f32; N], at: usize| -> __m128 {
-        _mm_setr_ps(from[at], from[at + 1], from[at + 2], from[at + 3])
-    };
-    (0..N).step_by(4).fold(0, |word, at| {
-        word | (_mm_movemask_ps(_mm_cmple_ps(four(a, at), four(b, at))) as u32) << at
+    use std::arch::x86_64::{_mm_cmple_ps, _mm_loadu_ps, _mm_movemask_ps};
+    let fours = a.as_chunks::<4>().0.iter().zip(b.as_chunks::<4>().0);
+    fours.enumerate().fold(0, |word, (at, (a, b))| {
+        // SAFETY: each chunk is four numbers that may be read, wherever they stand.
+        let (a, b) = unsafe { (_mm_loadu_ps(a.as_ptr()), _mm_loadu_ps(b.as_ptr())) };
+        word | (_mm_movemask_ps(_mm_cmple_ps(a, b)) as u32) << (4 * at)
     })
 }
 

@@ -35,6 +35,23 @@ pub(crate) fn larger(a: f32, b: f32) -> f32 {
 const SINGLE: f32 = 4.0 * f32::EPSILON;
 const TINY: f32 = f32::MIN_POSITIVE;
 
+/// Adding it leaves an f32 no digits behind the point.
+const NO_FRACTION: f32 = 12_582_912.0;
+
+/// A number of at most 2^21 rounded to the nearest whole one, without the care that a cast takes of all
+/// others. Monotone.
+#[inline]
+pub(crate) fn nearest(x: f32) -> i32 {
+    (x + NO_FRACTION).to_bits() as i32 - NO_FRACTION.to_bits() as i32
+}
+
+/// The same rounded down.
+#[inline]
+pub(crate) fn whole(x: f32) -> i32 {
+    let rounded = (x + NO_FRACTION) - NO_FRACTION;
+    nearest(x) - i32::from(rounded > x)
+}
+
 /// A box of single precision that holds a box of double precision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cover {
@@ -96,6 +113,20 @@ mod tests {
             }
         }
         assert!(f64::from(below(0.0)) < 0.0 && f64::from(above(-0.0)) > 0.0);
+    }
+
+    #[test]
+    fn a_number_is_rounded_down_as_its_floor_says_and_to_the_nearest_without_stepping_back() {
+        let mut dice = Dice(12);
+        for exponent in -30..21 {
+            for _ in 0..200 {
+                let x = (dice.signed() * 2f64.powi(exponent)) as f32;
+                for x in [x, x.round(), x.round().next_down(), x.round().next_up()] {
+                    assert_eq!(whole(x), x.floor() as i32, "{x:e}");
+                    assert!(nearest(x) <= nearest(x.next_up()), "{x:e}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -8,6 +8,8 @@
 //!
 //! The checking space Omega reaches from the lowest `h1` to the highest `h2` and follows them.
 
+use super::cover::{larger, nearest, smaller};
+
 /// Layers fit the bits of one word.
 const LAYERS: usize = 64;
 
@@ -15,16 +17,16 @@ const LAYERS: usize = 64;
 /// over them shares no layer with them.
 const STEP_MM: f32 = 8.0;
 
-/// Layers below the top of the baseplate; whatever lies lower belongs to the lowest layer, what
-/// lies above all steps (440 mm) to the highest.
-const STEPS_BELOW: f32 = 8.0;
+/// Layers below the top of the baseplate, less the half that rounding to the nearest adds; whatever lies
+/// lower belongs to the lowest layer, what lies above all steps (440 mm) to the highest.
+const STEPS_BELOW: f32 = 7.5;
 
 /// The layer of a height. Monotone, which is all that safety needs.
 #[inline]
 fn step(height_mm: f32) -> usize {
-    // A cast from float to integer saturates, NaN is 0.
-    let steps = (height_mm * (1.0 / STEP_MM) + STEPS_BELOW) as i32;
-    steps.clamp(0, LAYERS as i32 - 1) as usize
+    let steps = height_mm * (1.0 / STEP_MM) + STEPS_BELOW;
+    // NaN is the lowest.
+    nearest(smaller(larger(steps, 0.0), LAYERS as f32 - 1.0)) as usize
 }
 
 /// The layers that a piece reaches into: the lowest and the highest.
@@ -127,23 +129,29 @@ impl Layers {
         }
     }
 
-    /// One bit for each layer in which something may reach into the heights `low..=high` (mm); none
-    /// outside Omega.
+    /// One bit for each layer of the heights `low..=high` (mm); none outside Omega.
     #[inline]
-    pub(crate) fn meeting(&self, low: f32, high: f32) -> u64 {
+    pub(crate) fn between(&self, low: f32, high: f32) -> u64 {
         if high < self.bottom || low > self.top {
             return 0;
         }
-        let (first, last) = (step(low), step(high));
-        let outermost =
-            [first, last].map(|layer| u64::from(self.is_void(layer, low, high)) << layer);
-        (u64::MAX << first & u64::MAX >> (LAYERS - 1 - last)) & !(outermost[0] | outermost[1])
+        u64::MAX << step(low) & u64::MAX >> (LAYERS - 1 - step(high))
     }
 
-    /// Whether `low..=high` lies between the real tops and the real bottoms of a layer.
+    /// The same without those in which nothing reaches into these heights: what a way over many squares
+    /// is worth.
     #[inline]
-    fn is_void(&self, layer: usize, low: f32, high: f32) -> bool {
-        self.passing[layer] == 0 && self.h2[layer] < low && self.h1[layer] > high
+    pub(crate) fn meeting(&self, low: f32, high: f32) -> u64 {
+        let outermost = self.void(step(low), low, high) | self.void(step(high), low, high);
+        self.between(low, high) & !outermost
+    }
+
+    /// The bit of a layer where `low..=high` lies between its real tops and real bottoms.
+    #[inline]
+    fn void(&self, layer: usize, low: f32, high: f32) -> u64 {
+        let layer = layer % LAYERS;
+        let is_void = (self.passing[layer] == 0) & (self.h2[layer] < low) & (self.h1[layer] > high);
+        u64::from(is_void) << layer
     }
 }
 

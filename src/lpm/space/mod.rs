@@ -52,6 +52,16 @@ impl Space {
         self.grid.heap_bytes()
     }
 
+    /// Shows whatever a box at rest may meet, bundle by bundle: bit k: lane k. A piece may be shown more
+    /// than once. True: nothing else matters.
+    #[inline]
+    pub(crate) fn around(&self, cover: &Cover, show: impl FnMut(&Bundle, u32) -> bool) {
+        let layers = self.layers.between(cover.low[2], cover.high[2]);
+        if layers != 0 {
+            self.grid.around(cover, layers, show);
+        }
+    }
+
     /// Shows whatever a box on its way may meet up to the fraction `until`, bundle by bundle.
     #[inline]
     pub(crate) fn walk(&self, sweep: &Sweep, until: f64, visit: &mut impl Visit) {

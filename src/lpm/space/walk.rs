@@ -67,7 +67,7 @@ impl<'a, V: Visit> Walk<'a, V> {
             self.visit.pause();
             return;
         };
-        let [wide, high] = [0, 1].map(|axis: usize| area.high[axis] - area.low[axis]);
+        let (wide, high) = (area.high[0] - area.low[0], area.high[1] - area.low[1]);
         let [x, y] = [self.sweep.run[0].abs(), self.sweep.run[1].abs()];
         if wide <= 1 && high <= 1 || x.max(y) < SLOWEST_MM {
             self.every_square(&area);

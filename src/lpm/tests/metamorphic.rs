@@ -194,3 +194,48 @@ fn the_stop_is_where_the_clearance_runs_out() {
         assert!(there < 1e-6, "seed {seed}: {there} mm left at the stop");
     }
 }
+
+#[test]
+fn a_body_at_rest_is_judged_like_the_beginning_of_its_way() {
+    let mut dice = Dice(41);
+    let (mut met, mut clear) = (0, 0);
+    for round in 0..60 {
+        let mut model = Model::new();
+        for _ in 0..30 {
+            let Drawn { element, at, .. } = drawn(&mut dice);
+            let upright = Pose::yawed(at.position.map(|it| 8.0 * it), f64::from(round % 3));
+            let tilted = at.moved_to(upright.position);
+            let pose = if dice.pick(4) == 0 { tilted } else { upright };
+            model.insert("element", &element, &pose).unwrap();
+        }
+        let parts = [(); 6].map(|()| {
+            let part = drawn(&mut dice);
+            (Pose::at(part.at.position.map(|it| 2.0 * it)), part.mover)
+        });
+        let hand = Mover::new(&Shape::Compound(parts.into())).unwrap();
+        for _ in 0..20 {
+            let from = Pose {
+                position: dice.vector().map(|it| 110.0 * it),
+                rotation: [[1.0, 0.0, 0.0, 0.0], [0.8, 0.0, 0.0, -0.6], dice.rotation()]
+                    [dice.pick(3) as usize],
+            };
+            let margin_mm = [0.0, 0.0, 2.5][dice.pick(3) as usize];
+            let asked = |to| Move {
+                margin_mm,
+                ..way(from, to)
+            };
+            let there = from.moved_to(dice.vector().map(|it| 200.0 * it));
+            let begins = match model.first_contact(&hand, &asked(there)) {
+                Answer::Blocked(contact) => contact.t_stop == 0.0,
+                Answer::Clear => false,
+            };
+            let rests = model.any_hit(&hand, &asked(from)).is_some();
+            assert_eq!(rests, begins, "{from:?} {margin_mm}");
+            let first = model.first_contact(&hand, &asked(from));
+            assert_eq!(first != Answer::Clear, begins, "{from:?} {margin_mm}");
+            met += u32::from(rests);
+            clear += u32::from(!rests);
+        }
+    }
+    assert!(met > 200 && clear > 200, "{met} {clear}");
+}
