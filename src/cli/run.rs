@@ -20,6 +20,7 @@ use crate::bus::Pace;
 use crate::config::Plant;
 use crate::cycle::{Event, Outside};
 use crate::gauge::{Calibration, Recipe};
+use crate::station::packml::State;
 use crate::station::wants::Ending;
 use crate::view::{LineTraffic, View};
 use anyhow::Context;
@@ -90,8 +91,8 @@ pub struct Controls {
     pub traces: Arc<Mutex<Option<Traces>>>,
     /// No rows to stdout.
     pub quiet: bool,
-    /// Between lots: the rig is connected and nothing is begun; the run's lot is that of parts found inside.
-    pub no_lot: bool,
+    /// Between lots: the rig is connected and rests in this state; the run's lot is that of parts found inside.
+    pub between_lots: Option<State>,
     /// The run only calibrates, whatever is stored, and leaves what it found here instead of in the history.
     pub calibrates: Option<Arc<OnceLock<Calibration>>>,
     /// A study stands in for the world outside.
@@ -108,7 +109,7 @@ impl Controls {
             view: watch::channel(View::default()).0,
             traces: Arc::default(),
             quiet,
-            no_lot: false,
+            between_lots: None,
             calibrates: None,
             stage: None,
         }

@@ -31,6 +31,7 @@ use crate::config::{Plant, load_recipe, recipe_names};
 use crate::gauge::Recipe;
 use crate::history::{Decision, Identity, Store};
 use crate::hmi;
+use crate::station::packml::State;
 use anyhow::{Context, bail};
 use office::{Next, Office};
 use page::Page;
@@ -64,7 +65,7 @@ pub fn run(config: &Path, db: &Path, args: &ServeArgs) -> anyhow::Result<i32> {
     day(config, db, args, None)
 }
 
-/// A day at the rig, which begins with `first`, if there is one.
+/// A day at the rig, which begins with `first` on that rig, if there is one.
 pub(super) fn day(
     config: &Path,
     db: &Path,
@@ -86,6 +87,10 @@ pub(super) fn day(
     let plant = Arc::new(Plant::load(config)?);
     let between = between(config, &rig)?;
     let recipe = Arc::new(load_recipe(config, &between.recipe)?);
+    let first = first.map(|args| RunArgs {
+        rig: rig.clone(),
+        ..args
+    });
     let next = first.map(|args| admitted(db, &plant, args)).transpose()?;
     let controls = Controls {
         stays: true,
@@ -167,9 +172,15 @@ struct House<'a> {
 impl House<'_> {
     /// Lot after lot, until somebody ends the program.
     async fn work(&self, mut next: Option<Lot>) -> anyhow::Result<i32> {
+        let mut rests = State::Stopped;
         loop {
             let lot = next.take();
-            let status = self.one_run(lot.as_ref()).await?;
+            let status = self.one_run(lot.as_ref(), rests).await?;
+            rests = if status == DONE {
+                State::Complete
+            } else {
+                State::Stopped
+            };
             let flags = [&self.controls.stop, &self.controls.abort];
             if flags.iter().any(|flag| flag.load(Ordering::Acquire)) {
                 return Ok(if lot.is_some() { status } else { DONE });
@@ -189,10 +200,10 @@ impl House<'_> {
         }
     }
 
-    /// The run of a lot, or the one between lots.
-    async fn one_run(&self, lot: Option<&Lot>) -> anyhow::Result<i32> {
+    /// The run of a lot, or the one between lots, in which the machine `rests`.
+    async fn one_run(&self, lot: Option<&Lot>, rests: State) -> anyhow::Result<i32> {
         let controls = Controls {
-            no_lot: lot.is_none(),
+            between_lots: lot.is_none().then_some(rests),
             quiet: lot.is_none(),
             #[cfg(feature = "sim")]
             stage: self.simulated.as_ref().map(SimulatedRig::stage),

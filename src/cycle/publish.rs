@@ -85,8 +85,11 @@ impl Cycle {
             view.at_us = at_us;
             view.state = station.state();
             view.inside = station.ledger().inside();
-            view.came_in = station.ledger().came_in;
-            view.went_out = station.ledger().went_out;
+            // Between lots what the last one has come to stays on the screen.
+            if !station.is_between_lots() {
+                view.came_in = station.ledger().came_in;
+                view.went_out = station.ledger().went_out;
+            }
             view.alarms = alarms;
             view.machine = machine;
         });

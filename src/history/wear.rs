@@ -1,8 +1,8 @@
 //! How often what wears was used since it was replaced.
 
 use super::error::{Doing, Result};
-use super::{Moment, Store};
-use rusqlite::{Transaction, params};
+use super::{Archive, Moment, Store};
+use rusqlite::{Connection, Transaction, params};
 use serde::Serialize;
 
 /// So many uses more.
@@ -47,24 +47,35 @@ pub(super) fn add(tx: &Transaction<'_>, it: &WearRecord) -> Result<()> {
     Ok(())
 }
 
+fn read(connection: &Connection, simulated: bool) -> Result<Vec<Wear>> {
+    let read = |row: &rusqlite::Row<'_>| {
+        Ok(Wear {
+            name: row.get(0)?,
+            count: row.get::<_, i64>(1)?.unsigned_abs(),
+            replaced: row.get::<_, Option<i64>>(2)?.map(Moment),
+            replaced_by: row.get(3)?,
+        })
+    };
+    connection
+        .prepare(
+            "SELECT name, count, replaced_at_us, replaced_by FROM wear WHERE source = ?1
+             ORDER BY name",
+        )
+        .and_then(|mut it| it.query_map([source(simulated)], read)?.collect())
+        .doing("reading wear")
+}
+
+impl Archive {
+    /// Every counter of the rig or of the simulated one.
+    pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
+        read(&self.connection, simulated)
+    }
+}
+
 impl Store {
     /// Every counter of the rig or of the simulated one.
     pub fn wear(&self, simulated: bool) -> Result<Vec<Wear>> {
-        let read = |row: &rusqlite::Row<'_>| {
-            Ok(Wear {
-                name: row.get(0)?,
-                count: row.get::<_, i64>(1)?.unsigned_abs(),
-                replaced: row.get::<_, Option<i64>>(2)?.map(Moment),
-                replaced_by: row.get(3)?,
-            })
-        };
-        self.connection()
-            .prepare(
-                "SELECT name, count, replaced_at_us, replaced_by FROM wear WHERE source = ?1
-                 ORDER BY name",
-            )
-            .and_then(|mut it| it.query_map([source(simulated)], read)?.collect())
-            .doing("reading wear")
+        read(self.connection(), simulated)
     }
 
     /// `name` was replaced: its counter begins anew. False when it has none.

@@ -8,7 +8,7 @@ mod recipes;
 
 use super::access::Role;
 use super::router::Desk;
-use super::{events, login, metrics, mimic, orders, page, trace};
+use super::{events, login, lots, metrics, mimic, orders, page, trace};
 use axum::Json;
 use axum::handler::Handler;
 use axum::routing::{MethodRouter, get, post};
@@ -145,6 +145,17 @@ pub(super) fn offers() -> Vec<Offer> {
             trace::trace,
         )
         .with(&[may("last", "Messages of each line, 1 to 1000; 100 without it.")]),
+        Offer::get(
+            "/api/lots",
+            JSON,
+            "Lots over all their runs, the one run last first, each with what may be ordered of it.",
+            lots::lots,
+        )
+        .with(&[
+            may("limit", "So many at most, 1 to 200; 20 without it."),
+            may("offset", "So many left out in front."),
+        ]),
+        Offer::get("/api/wear", JSON, "Uses of what wears since it was replaced.", lots::wear),
         Offer::get("/metrics", "text/plain", "Figures as Prometheus text.", metrics::metrics),
         Offer::get("/api/openapi.json", JSON, "This document.", openapi),
     ];

@@ -16,6 +16,7 @@
 //! | `spc` | the same; without `param` the share of every bin | `subgroup`, `rules`, `last` | array of control charts |
 //! | `alarms` | `lot`, `run`, `recipe`, `since`, `until`, page | | array of alarms in order of time |
 //! | `rejudge` | `lot`, `run`, `recipe` | `changed` | array of parts with the verdict of that recipe, then a summary, streamed |
+//! | `orders` | `lot`, `run`, `recipe`, `since`, `until`, page | `who` | array of orders with their answers in order of time |
 //! | `report/lot` | `lot`, `run`, `recipe` | `lang`, `ideal_cycle_s` | page for A4 |
 //! | `report/certificate` | the same | `lang`, `seq` | page for A4 |
 //! | `report/chart` | as `spc` | as `spc`, `lang` | page for A4 |
@@ -36,13 +37,13 @@ pub(super) mod rejudge;
 
 use super::error::HmiError;
 use super::router::Desk;
-use crate::history::{Alarm, Archive, Filter, LotSummary, Moment, Part, Yield};
+use crate::history::{Alarm, Archive, Filter, LotSummary, Moment, Ordered, Part, Yield};
 use crate::inquiry::charts::{Charted, charts};
 use crate::inquiry::figures::{Classes, figures, histogram};
 use crate::inquiry::{InquiryError, checks};
 use crate::quality::Summary;
 use crate::quality::rules::Rules;
-use asked::{Charting, asked};
+use asked::{Audited, Charting, asked};
 use axum::Json;
 use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
@@ -56,7 +57,7 @@ use tokio::task::spawn_blocking;
 
 type Filtered = Result<Query<Filter>, QueryRejection>;
 
-/// Members of the filter that alarms know.
+/// Members of the filter that alarms and orders know.
 const OF_ALARMS: &[&str] = &["lot", "run", "recipe", "since", "until", "limit", "offset"];
 
 /// `GET /api/history/query`.
@@ -201,6 +202,17 @@ pub(super) async fn alarms(
     let Query(filter) = filter?;
     checks::only(&filter, "alarms", OF_ALARMS)?;
     let read = move |archive: &Archive| Ok(archive.alarms(&filter)?);
+    desk.readers.read(read).await.map(Json)
+}
+
+/// `GET /api/history/orders`.
+pub(super) async fn orders(
+    State(desk): State<Desk>,
+    uri: Uri,
+) -> Result<Json<Vec<Ordered>>, HmiError> {
+    let (filter, Audited { who }) = asked(&uri)?;
+    checks::only(&filter, "orders", OF_ALARMS)?;
+    let read = move |archive: &Archive| Ok(archive.orders(&filter, who.as_deref())?);
     desk.readers.read(read).await.map(Json)
 }
 

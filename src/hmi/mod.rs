@@ -16,9 +16,10 @@
 //! | `GET /api/view` | the view |
 //! | `GET /api/events` | the view as server-sent events: at once, then on change; a beat each second |
 //! | `POST /api/login\|logout`, `GET /api/me` | who is asking |
-//! | `POST /api/orders` | `{"order":"stop"}` and the others of [`crate::view::ORDERS`] |
+//! | `POST /api/orders` | `{"order":"stop"}` and the others of [`crate::view::ORDERS`] and [`crate::view::LOT_ORDERS`] |
 //! | `GET /api/history/...` | JSON, pages and files as the command `history` gives them; routes in `history.rs` |
 //! | `GET /api/recipes...`, `POST /api/recipes/revise` | what recipes say, and their next revisions (`recipes.rs`) |
+//! | `GET /api/lots`, `GET /api/wear` | lots with what may be ordered of them; counters of what wears (`lots.rs`) |
 //! | `GET /mimic.svg` | the machine to scale, from above and from the front |
 //! | `GET /api/trace` | the last traffic of every line, with its meaning |
 //! | `GET /api/openapi.json` | this list for programs, made of `api.rs` like the router itself |
@@ -33,6 +34,7 @@ mod events;
 mod gate;
 mod history;
 mod login;
+mod lots;
 mod metrics;
 mod mimic;
 mod orders;

@@ -13,6 +13,7 @@ const FRAME: &str = include_str!("page/page.html");
 const PAGES: &str = concat!(
     include_str!("page/pages/alarms.html"),
     include_str!("page/pages/history.html"),
+    include_str!("page/pages/lots.html"),
     include_str!("page/pages/quality.html"),
     include_str!("page/pages/recipes.html"),
     include_str!("page/pages/rejudge.html"),
@@ -34,6 +35,7 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/operator.js"),
     include_str!("page/script/alarms.js"),
     include_str!("page/script/history.js"),
+    include_str!("page/script/lots.js"),
     include_str!("page/script/quality.js"),
     include_str!("page/script/recipe_sheet.js"),
     include_str!("page/script/recipes.js"),

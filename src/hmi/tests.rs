@@ -6,6 +6,7 @@ mod api;
 mod events;
 mod history;
 mod login;
+mod lots;
 mod mimic;
 mod orders;
 mod recipes;
@@ -149,7 +150,8 @@ async fn controller(mut asked: mpsc::Receiver<Asked>, stop: Arc<AtomicBool>, den
                 stop.store(true, Ordering::SeqCst);
                 Ok(())
             }
-            "jog" | "mode" | "step" | "shelve" => Ok(()),
+            "jog" | "mode" | "step" | "shelve" | "hold_lot" | "release_lot" | "close_lot"
+            | "replaced" => Ok(()),
             _other => Err(NotTaken {
                 en: "not in this state".into(),
                 zh: "当前状态不允许".into(),

@@ -100,7 +100,7 @@ impl Station {
                 "复位后执行机构被手动移动过；请先停止并复位",
             ));
         }
-        if self.plan.no_lot {
+        if self.is_between_lots() {
             return Err(Refused::new(
                 "no lot is under way; choose one on the page of lots",
                 "当前没有批次；请在“批次”页选择",
@@ -117,17 +117,17 @@ impl Station {
         if self.mode != Mode::Production {
             return Err(Refused::wrong_mode("start", self.mode, Mode::Production));
         }
-        if matches!(self.state, State::Stopped | State::Idle) {
+        if matches!(self.state, State::Stopped | State::Idle | State::Complete) {
             return Ok(());
         }
         let state = self.state.name();
         Err(Refused::new(
             format!(
-                "another lot can be begun in Stopped and Idle; the machine is in {state}{}",
+                "another lot can be begun in Stopped, Idle and Complete; the machine is in {state}{}",
                 self.way_out().0
             ),
             format!(
-                "只能在 Stopped、Idle 状态开始其他批次；当前状态为 {state}{}",
+                "只能在 Stopped、Idle、Complete 状态开始其他批次；当前状态为 {state}{}",
                 self.way_out().1
             ),
         ))

@@ -16,7 +16,7 @@
 //!
 //! A run ends with its lot, or when a person leaves the lot for another one. Without a person at a screen
 //! ([`Plan::stays`] is false) an alarm that would need one ends the run, too. The station resets and starts a lot by
-//! itself; between lots ([`Plan::no_lot`]) it does nothing unless it is asked.
+//! itself; between lots ([`Plan::between_lots`]) it does nothing unless it is asked.
 
 pub mod act;
 pub mod annunciator;
@@ -91,8 +91,9 @@ pub struct Plan {
     pub voltage_gain: f64,
     /// A person is at a screen: alarms and stops do not end the run.
     pub stays: bool,
-    /// Between lots: nothing begins by itself, no part is wanted; what is found inside is discharged.
-    pub no_lot: bool,
+    /// Between lots nothing begins by itself and no part is wanted; what is found inside is discharged. The machine
+    /// rests in this state, as the lot before has left it. None: there is a lot.
+    pub between_lots: Option<State>,
     /// Gates of the lot.
     pub lot: LotSettings,
     /// Uses of what wears before this run.
@@ -171,10 +172,10 @@ impl Station {
         };
         let mut station = Self {
             fresh: true,
+            state: plan.between_lots.unwrap_or(State::Stopped),
             plan,
             bench,
             table,
-            state: State::Stopped,
             entered: RigTime(0),
             mode: Mode::Production,
             recovery: Recovery::default(),
@@ -236,6 +237,11 @@ impl Station {
     /// A person is at a screen.
     pub fn stays(&self) -> bool {
         self.plan.stays
+    }
+
+    /// There is no lot.
+    pub fn is_between_lots(&self) -> bool {
+        self.plan.between_lots.is_some()
     }
 
     /// Strokes, touches and bounces since the start, by name.

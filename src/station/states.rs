@@ -53,7 +53,7 @@ impl Station {
                     wants,
                 );
             }
-            (false, ..) if self.plan.no_lot => {}
+            (false, ..) if self.is_between_lots() => {}
             (false, _, State::Stopped) if self.entered == RigTime(0) => {
                 self.enter(Command::Reset, now, wants)
             }

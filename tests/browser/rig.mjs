@@ -1,4 +1,4 @@
-// The program under test: `relayrig demo` on a free port, with a history and people of its own.
+// The program under test: `relayrig demo` or `serve --sim` on a free port, with a history and people of its own.
 //
 // It runs in virtual time held to some times the wall clock: a busy machine makes the rig slow, never wrong.
 // RELAYRIG is the program; the working folder holds `config/`.
@@ -11,14 +11,19 @@ const PEOPLE = { operator: "li", maintainer: "wang", engineer: "zhao" };
 const PROGRAM = process.env.RELAYRIG;
 
 /** Starts `relayrig demo` with `words`; `name` is used once only. Resolves once the page can be asked for. */
-export async function start(name, ...words) {
+export const start = (name, ...words) => begin(name, ["demo", ...words]);
+
+/** The same with `relayrig serve --sim`: nothing runs yet. */
+export const serve = (name, ...words) => begin(name, ["serve", "--sim", ...words]);
+
+async function begin(name, words) {
   const db = name + ".db";
   for (const end of [".db", ".db-wal", ".db-shm", "-access.db"]) rmSync(name + end, { force: true });
   for (const [role, user] of Object.entries(PEOPLE)) {
     const added = spawnSync(PROGRAM, ["--db", db, "user", "add", user, "--role", role, "--stdin"], { input: PASSWORD + "\n" });
     if (added.status !== 0) throw new Error(String(added.stderr));
   }
-  const rig = new Rig(["--config", "config", "--log", "warn", "--db", db, "demo", "--listen", "127.0.0.1:0", ...words]);
+  const rig = new Rig(["--config", "config", "--log", "warn", "--db", db, ...words, "--listen", "127.0.0.1:0"]);
   await rig.listening;
   return rig;
 }

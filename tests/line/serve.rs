@@ -123,6 +123,9 @@ impl Served {
         let over = |view: &Value| view["lot"] == lot && view["under_way"] == false;
         let view = self.until("over", over);
         assert_eq!(view["judged"], parts, "{view}");
+        let landed = view["bins"].as_object().unwrap().values();
+        let landed: u64 = landed.filter_map(Value::as_u64).sum();
+        assert_eq!(landed, parts, "{view}");
     }
 
     /// Ctrl-C; the exit status.
@@ -138,7 +141,10 @@ fn lots_are_started_at_the_page_one_after_the_other() {
     let workshop = Workshop::new("serve-lots");
     let served = Served::start(&workshop, "--sim --speed 100");
     let view = served.until_state("Stopped");
-    assert_eq!(view["under_way"], false);
+    assert_eq!(
+        (&view["under_way"], &view["simulated"]),
+        (&json!(false), &json!(true))
+    );
     let why = served.refused(&json!({"order": "start"}));
     assert!(why.contains("start is possible in Idle"), "{why}");
     served.order(&json!({"order": "reset"}));
@@ -154,6 +160,7 @@ fn lots_are_started_at_the_page_one_after_the_other() {
     let why = served.refused(&json!({"order": "start", "lot": "B", "recipe": RECIPE}));
     assert!(why.contains("stop it first"), "{why}");
     served.until_complete("A", 2);
+    served.until_state("Complete");
     served.start_lot("B", 1);
     served.until_complete("B", 1);
     assert_eq!(served.interrupted(), 0, "nothing was stopped");

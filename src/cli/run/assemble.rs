@@ -53,9 +53,12 @@ pub fn cycle(
     let golden = plant.golden.of_nominal(recipe.part.nominal_v);
     let plan = Plan {
         stays: controls.stays,
-        no_lot: controls.no_lot,
+        between_lots: controls.between_lots,
         count: setup.args.count,
-        golden: golden.filter(|_| !controls.no_lot).cloned().collect(),
+        golden: match controls.between_lots {
+            Some(_) => Vec::new(),
+            None => golden.cloned().collect(),
+        },
         calibrated: calibration.is_some(),
         valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
         epoch_us: setup.epoch_us,

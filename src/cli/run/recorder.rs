@@ -24,6 +24,7 @@ use crate::station::gates::Uses;
 use crate::station::ledger::Kind;
 use crate::station::wants::{Ending, Interrupted, Judged, Landed};
 use crate::units::RigTime;
+use crate::view::View;
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
@@ -108,8 +109,10 @@ impl<'a> Recorder<'a> {
             valid_calibration(&store, setup)?
         };
         let mut diary = Diary::new(setup.args.rig.sim);
-        if controls.no_lot {
-            controls.view.send_modify(screen::between);
+        if controls.between_lots.is_some() {
+            controls
+                .view
+                .send_modify(|view| screen::between(view, setup));
         } else {
             begin(&mut store, &mut diary, setup, calibration.as_ref())?;
             controls.view.send_modify(|view| screen::begun(view, setup));
@@ -127,7 +130,7 @@ impl<'a> Recorder<'a> {
             golden: 0,
             counts: Counts::default(),
             table: Table::default(),
-            bar: bar(setup.args.count, controls.no_lot),
+            bar: bar(setup.args.count, controls.between_lots.is_some()),
             eeprom,
             traces,
             eeprom_at_start: None,
@@ -290,7 +293,7 @@ impl<'a> Recorder<'a> {
                 .entry(judged.verdict.name())
                 .or_insert(0) += 1;
             self.table.add(&judged);
-            if !self.controls.no_lot {
+            if self.controls.between_lots.is_none() {
                 self.show(&judged);
             }
         }
@@ -324,6 +327,10 @@ impl<'a> Recorder<'a> {
         }
         self.last_landed = Some(landed.at);
         *self.counts.bins.entry(landed.bin.name()).or_insert(0) += 1;
+        if self.controls.between_lots.is_none() {
+            let show = |view: &mut View| screen::landed(view, &self.counts);
+            self.controls.view.send_modify(show);
+        }
         self.print(&rows::json(
             self.setup,
             &part.judged,

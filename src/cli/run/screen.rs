@@ -30,9 +30,15 @@ pub fn begun(view: &mut View, setup: &Setup) {
     };
 }
 
-/// No lot is under way any more.
-pub fn between(view: &mut View) {
+/// No lot is under way, or not any more.
+pub fn between(view: &mut View, setup: &Setup) {
+    view.simulated = setup.args.rig.sim;
     view.under_way = false;
+}
+
+/// A beam has confirmed a part of the lot.
+pub fn landed(view: &mut View, counts: &Counts) {
+    view.bins = named(&counts.bins);
 }
 
 /// The part judged last, and the counts with it.
@@ -47,7 +53,6 @@ pub fn judged(
     view.lines = lines;
     view.judged = counts.parts();
     view.verdicts = named(&counts.verdicts);
-    view.bins = named(&counts.bins);
     view.parts_per_hour = per_hour;
     let json = rows::json(setup, judged, None, "");
     let numbers = |key: &str| serde_json::from_value(json[key].clone()).unwrap_or_default();

@@ -270,3 +270,38 @@ fn wear_adds_up_over_runs_and_begins_anew_when_it_was_replaced() {
         (0, Some(Moment(60)), Some("li"))
     );
 }
+
+#[test]
+fn the_book_of_lots_counts_over_runs_and_leaves_out_what_was_imported() {
+    let file = File::new();
+    let mut store = file.store();
+    for (name, opened_at_us) in [("A", 1), ("B", 2), ("A", 3)] {
+        let run = LotRecord {
+            opened_at_us,
+            ..lot(name)
+        };
+        store.begin_lot(&run).unwrap();
+        store.record(&parts(name, 2)).unwrap();
+        store.close_lot(name, opened_at_us).unwrap();
+    }
+    store
+        .import(&lot("C"), vec![part("C", 1, "pass", 7.0)])
+        .unwrap();
+    let book = file.archive().lot_book(10, 0).unwrap();
+    let told: Vec<_> = book
+        .iter()
+        .map(|it| (it.lot.as_str(), it.runs, it.counts.parts, it.opened.0))
+        .collect();
+    assert_eq!(told, [("A", 2, 4, 3), ("B", 1, 2, 2)]);
+    assert_eq!(file.archive().lot_book(1, 1).unwrap()[0].lot, "B");
+}
+
+#[test]
+fn what_a_decision_makes_of_a_lot_it_does_not_make_twice() {
+    for decision in Decision::ALL {
+        assert_eq!(Decision::ordered(decision.order()), Some(decision));
+        let again = decision.why_not(decision.becomes());
+        assert!(again.is_some_and(|(en, zh)| !en.is_empty() && !zh.is_empty()));
+    }
+    assert_eq!(Decision::ordered("start"), None);
+}

@@ -123,6 +123,15 @@ fn read() -> Vec<Offer> {
             RUN,
             may("changed", "`true`: only parts whose verdict changes."),
         ]),
+        Offer::get(
+            "/api/history/orders",
+            JSON,
+            "The audit: who ordered what, and whether it was taken.",
+            history::orders,
+        )
+        .with(&RUNS)
+        .with(&[SINCE, UNTIL, may("who", "Name at login.")])
+        .with(&PAGE),
     ]
 }
 

@@ -64,6 +64,17 @@ impl Own for Printed {
     const MEMBERS: &'static [&'static str] = &["lang", "seq", "ideal_cycle_s"];
 }
 
+/// Of the audit of orders.
+#[derive(Debug, Deserialize)]
+pub(super) struct Audited {
+    /// Orders of this person only.
+    pub who: Option<String>,
+}
+
+impl Own for Audited {
+    const MEMBERS: &'static [&'static str] = &["who"];
+}
+
 /// Language of what is printed when nobody names one.
 pub(super) fn language(asked: Option<Language>) -> Language {
     asked.unwrap_or(Language::Zh)

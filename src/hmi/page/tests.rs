@@ -58,8 +58,29 @@ fn every_word_that_the_page_uses_is_in_the_table() {
 #[test]
 fn every_word_in_the_table_is_used() {
     let families = [
-        "link", "order", "state", "stage", "verdict", "bin", "key", "login", "reason", "text",
-        "actuator", "jog", "mode", "signal", "alarm", "q", "r", "field", "choice",
+        "link",
+        "order",
+        "state",
+        "stage",
+        "verdict",
+        "bin",
+        "key",
+        "login",
+        "reason",
+        "text",
+        "actuator",
+        "jog",
+        "mode",
+        "signal",
+        "alarm",
+        "q",
+        "r",
+        "field",
+        "choice",
+        "lots",
+        "lot_state",
+        "counter",
+        "role",
     ];
     for key in table().keys() {
         let family = key.split('.').next().unwrap();

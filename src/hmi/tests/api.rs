@@ -96,6 +96,29 @@ async fn an_order_takes_a_role_and_each_role_may_what_the_weaker_ones_may() {
             [401, 403, 200, 200],
         ),
         (r#"{"order":"mode","mode":"manual"}"#, [401, 403, 200, 200]),
+        (
+            r#"{"order":"start","lot":"A","recipe":"jzc-22f-012","count":5}"#,
+            [401, 409, 409, 409],
+        ),
+        (
+            r#"{"order":"hold_lot","lot":"A","reason":"label"}"#,
+            [401, 200, 200, 200],
+        ),
+        (r#"{"order":"close_lot","lot":"A"}"#, [401, 200, 200, 200]),
+        (r#"{"order":"release_lot","lot":"A"}"#, [401, 403, 200, 200]),
+        (
+            r#"{"order":"replaced","counter":"probe_touches"}"#,
+            [401, 403, 200, 200],
+        ),
+        (r#"{"order":"start","lot":7}"#, [401, 400, 400, 400]),
+        (
+            r#"{"order":"start","lot":"A","count":-1}"#,
+            [401, 400, 400, 400],
+        ),
+        (
+            r#"{"order":"start","lot":"A","count":1.5}"#,
+            [401, 400, 400, 400],
+        ),
         (r#"{"order":"fly"}"#, [401, 400, 400, 400]),
     ] {
         for (token, expected) in askers.iter().zip(expected) {

@@ -1,7 +1,9 @@
 //! The history over HTTP.
 
 use super::*;
-use crate::history::{AlarmRecord, Identity, LotRecord, MeasurementRecord, PartRecord, Row, Store};
+use crate::history::{
+    AlarmRecord, Identity, LotRecord, MeasurementRecord, OrderRecord, PartRecord, Row, Store,
+};
 
 const KEY: &str = "operate_voltage_v";
 
@@ -362,4 +364,34 @@ async fn a_file_of_another_program_is_an_error_and_stays_as_it_is() {
             .contains("not a relayrig history")
     );
     assert_eq!(std::fs::read(&bench.db).unwrap(), b"no database");
+}
+
+#[tokio::test]
+async fn the_audit_says_who_ordered_what() {
+    let bench = with_parts(1);
+    let mut store = Store::open(&bench.db, &Identity::of_this_program()).unwrap();
+    for (at_us, who, refused) in [(1, "li", None), (2, "wang", Some("not now".to_owned()))] {
+        let row = OrderRecord {
+            at_us,
+            who: who.into(),
+            what: r#"{"order":"start","lot":"A"}"#.into(),
+            refused,
+            ..OrderRecord::default()
+        };
+        store.record(&[Row::Order(row)]).unwrap();
+    }
+    let all = bench.get("/api/history/orders").await.json();
+    assert_eq!(all.as_array().unwrap().len(), 2, "{all}");
+    assert_eq!(all[0]["what"]["lot"], "A");
+    let one = bench
+        .get("/api/history/orders?who=wang&limit=5")
+        .await
+        .json();
+    assert_eq!(one.as_array().unwrap().len(), 1);
+    assert_eq!(one[0]["refused"], "not now");
+    let why = bench
+        .get("/api/history/orders?verdict=pass")
+        .await
+        .refused(400);
+    assert!(why.contains("verdict"), "{why}");
 }

@@ -105,7 +105,7 @@ pub fn station(count: Option<u64>, shop: &Shop) -> Station {
 fn plan(count: Option<u64>) -> Plan {
     Plan {
         stays: false,
-        no_lot: false,
+        between_lots: None,
         simulated: true,
         count,
         golden: Vec::new(),
@@ -168,7 +168,7 @@ impl Machine {
         let mut machine = Self::new(Some(0), Vec::new());
         let plan = Plan {
             stays: true,
-            no_lot: true,
+            between_lots: Some(crate::station::packml::State::Stopped),
             ..plan(Some(0))
         };
         machine.station = of_plan(plan, &machine.shop);

@@ -1,0 +1,176 @@
+// Lots: begun, held, released and closed here; counters of what wears, and who ordered what.
+
+const DECISIONS = ["hold_lot", "release_lot", "close_lot"];
+const BOOK = 20;
+const AUDIT = 50;
+let book = [];
+let skipped = 0;
+// What the page was read for; read again when another lot or state is on.
+let readFor = "";
+
+const underWay = (lot) => view && view.under_way && view.lot === lot;
+
+function lotAnswer(text) {
+  at("l_answer").textContent = text;
+}
+
+async function orderLot(order) {
+  const why = me === null ? word("stop.login") : await give(order);
+  lotAnswer(why || word("order." + order.order) + ": " + word("order.taken"));
+  if (!why) readLots();
+}
+
+// Why an order about a lot would not be taken now: the machine's reason, or the lot's own.
+function whyNotLot(order, line) {
+  if (order === "release_lot" && underWay(line.lot)) return word("lots.clear_alarm");
+  if (underWay(line.lot)) return order === "close_lot" ? whyNot("close_lot") : whyNot("start", "lot");
+  if (me === null) return word("stop.login");
+  const why = line.why_not[order];
+  return why ? why[language] : order === "start" ? whyNot("start", "lot") : "";
+}
+
+// --- the form ---
+
+async function readRecipes() {
+  try {
+    const recipes = await (await ask("/api/recipes")).json();
+    const usable = recipes.filter((it) => !it.trouble).map((it) => [it.name, it.name]);
+    fillSelect(at("l_recipe"), [["", NONE], ...usable]);
+  } catch (error) {
+    lotAnswer(error.message);
+  }
+}
+
+// A lot that was begun goes on with its own recipe.
+function choose(line) {
+  at("l_lot").value = line.lot;
+  at("l_recipe").value = line.recipe;
+  at("l_count").focus();
+}
+
+at("l_form").addEventListener("submit", (event) => {
+  event.preventDefault();
+  const count = at("l_count").value, retest = at("l_retest").value.trim();
+  const why = me === null ? word("stop.login") : whyNot("start", "lot");
+  if (why) { lotAnswer(why); return; }
+  const order = {order: "start", lot: at("l_lot").value.trim(), recipe: at("l_recipe").value};
+  if (count) order.count = Number(count);
+  if (retest) order.retest = retest;
+  orderLot(order);
+});
+
+// --- the book ---
+
+function lotRow(line) {
+  const state = make("span", word("lot_state." + line.state), "lot_state " + line.state);
+  if (line.why) state.append(make("small", line.why));
+  const orders = make("div", undefined, "row");
+  orders.append(lotButton("start", line, () => choose(line)),
+    ...DECISIONS.map((order) => lotButton(order, line, () => askDecision(order, line.lot))));
+  const final = line.first_pass + line.retest_pass;
+  const passed = share(line.first_pass, line.parts) + (line.retest_pass ? " (" + share(final, line.parts) + ")" : "");
+  return row(make("b", line.lot), state, line.recipe, clock(line.opened), whole(line.runs), whole(line.parts), passed,
+    whole(line.suspect), orders);
+}
+
+function lotButton(order, line, press) {
+  const element = button("", () => { element.title ? lotAnswer(element.title) : press(); });
+  element.dataset.lotOrder = order;
+  element.textContent = word(order === "start" ? "lots.choose" : "order." + order);
+  element.line = line;
+  return element;
+}
+
+function showLotButtons() {
+  for (const element of document.querySelectorAll("[data-lot-order]")) {
+    const why = whyNotLot(element.dataset.lotOrder, element.line);
+    element.setAttribute("aria-disabled", why !== "");
+    element.title = why;
+  }
+  const why = whyNot("start", "lot");
+  at("l_start").setAttribute("aria-disabled", why !== "");
+  at("l_start").title = why;
+}
+
+function showBook() {
+  at("l_book").replaceChildren(...book.map(lotRow));
+  if (!book.length) at("l_book").append(row(word("lots.none")));
+  at("l_newer").hidden = skipped === 0;
+  at("l_older").hidden = book.length < BOOK;
+  showLotButtons();
+}
+
+async function readLots() {
+  try {
+    book = await (await ask("/api/lots" + query({limit: BOOK, offset: skipped}))).json();
+    showBook();
+    showWear(await (await ask("/api/wear")).json());
+    showAudit(await (await ask("/api/history/orders" + query({since: lately()}))).json());
+  } catch (error) {
+    lotAnswer(error.message);
+  }
+}
+
+at("l_newer").addEventListener("click", () => { skipped = Math.max(0, skipped - BOOK); readLots(); });
+at("l_older").addEventListener("click", () => { skipped += BOOK; readLots(); });
+
+// --- decisions ---
+
+function askDecision(order, lot) {
+  at("decide").dataset.order = order;
+  at("decide").dataset.lot = lot;
+  at("decide_order").textContent = word("order." + order);
+  at("decide_lot").textContent = lot;
+  at("decide_about").textContent = word("lots.about." + order);
+  at("decide_go").textContent = word("order." + order);
+  at("decide_reason").value = "";
+  at("decide_reason").required = order === "hold_lot";
+  at("decide").showModal();
+}
+
+at("decide_cancel").addEventListener("click", () => at("decide").close());
+at("decide").addEventListener("submit", (event) => {
+  event.preventDefault();
+  at("decide").close();
+  const {order, lot} = at("decide").dataset;
+  orderLot({order, lot, reason: at("decide_reason").value.trim()});
+});
+
+// --- what wears, and the audit ---
+
+function showWear(counters) {
+  at("l_wear").replaceChildren(...counters.map((it) => {
+    const item = make("li"), replaced = it.replaced ? clock(it.replaced) + " · " + it.replaced_by : NONE;
+    item.append(make("span", known("counter." + it.name, it.name)), make("b", whole(it.count)),
+      make("span", word("lots.replaced_at") + ": " + replaced),
+      button(word("order.replaced"), () => orderLot({order: "replaced", counter: it.name})));
+    return item;
+  }));
+}
+
+// The audit of a day: what was ordered in this shift and the one before.
+const lately = () => new Date(Date.now() - 24 * 3600 * 1000).toISOString();
+
+// What is known of an order first, whatever else it has after that.
+function orderedText(what) {
+  const {order, lot, recipe, count, ...others} = what;
+  const members = [lot, recipe, count, ...Object.values(others)].filter((it) => ["string", "number"].includes(typeof it));
+  return [known("order." + order, order), ...members.filter((it) => it !== "")].join(" · ");
+}
+
+function showAudit(orders) {
+  const last = orders.slice(-AUDIT).reverse();
+  at("l_audit").replaceChildren(...last.map((it) => row(clock(it.at), it.lot || NONE,
+    it.who + (it.role ? " (" + known("role." + it.role, it.role) + ")" : ""), orderedText(it.what), it.refused || word("order.taken"))));
+}
+
+function showLots() {
+  const now = JSON.stringify([view.lot, view.under_way, view.machine.state]);
+  if (now !== readFor) {
+    readFor = now;
+    readLots();
+  }
+  showLotButtons();
+}
+
+PAGES.lots = {show: showLots, enter() { readFor = ""; at("l_count").placeholder = word("endless"); readRecipes(); }};

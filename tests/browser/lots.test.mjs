@@ -1,0 +1,107 @@
+// Lots at the page, on a rig that stays under one program: started, held, closed, and the next one.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { SIZES, leave, looks, open, picture, shown, visit } from "./browser.mjs";
+import { WORDS, serve } from "./rig.mjs";
+
+let rig, browser;
+before(async () => {
+  [rig, browser] = await Promise.all([serve("lots", "--speed", "20"), open()]);
+});
+after(async () => {
+  await browser?.close();
+  await rig?.kill();
+});
+
+const lotRow = (page, lot) => page.locator("#l_book tr", { has: page.locator("b", { hasText: new RegExp(`^${lot}$`) }) });
+
+async function startLot(page, lot, count) {
+  await page.waitForSelector('#l_start[aria-disabled="false"]');
+  await page.fill("#l_lot", lot);
+  await page.selectOption("#l_recipe", "jzc-22f-012");
+  await page.fill("#l_count", String(count));
+  await page.click("#l_start");
+}
+
+async function decide(page, lot, order, reason) {
+  await lotRow(page, lot).locator(`[data-lot-order="${order}"][aria-disabled="false"]`).click();
+  await page.fill("#decide_reason", reason);
+  await page.click("#decide_go");
+}
+
+test("without a lot nothing runs, and start says where to choose one", async () => {
+  const page = await visit(browser, rig, { role: "operator" });
+  await rig.until("stopped", (view) => view.machine.state === "Stopped");
+  await page.click('#orders [data-order="reset"]');
+  await rig.until("idle", (view) => view.machine.state === "Idle");
+  await page.click('#orders [data-order="start"]', { force: true });
+  await shown(page, "#order_answer", "choose one on the page of lots");
+  await looks(page, "operator-no-lot");
+  await leave(page);
+});
+
+test("a lot is started, watched, held and closed at the page, and the next one begins", async () => {
+  const page = await visit(browser, rig, { role: "operator", path: "/#lots" });
+  await startLot(page, "A", 500);
+  await rig.until("a part is judged", (view) => view.lot === "A" && view.judged >= 2);
+  await page.click('nav a[href="#operator"]');
+  await shown(page, "#lot", "A");
+  await page.waitForSelector("#mimic .part.held", { state: "attached" });
+  await page.click('#orders [data-order="hold"]');
+  await rig.until("held", (view) => view.machine.state === "Held");
+  await page.click('nav a[href="#lots"]');
+  await lotRow(page, "A").waitFor();
+  await page.click("#l_start", { force: true });
+  assert.match(await page.textContent("#l_answer"), /stop it first/);
+  await decide(page, "A", "close_lot", "rest of the reel returned");
+  await rig.until("closed", (view) => !view.under_way);
+  await lotRow(page, "A").getByText(WORDS["lot_state.complete"].en).waitFor();
+  await startLot(page, "B", 2);
+  await rig.until("complete", (view) => view.lot === "B" && !view.under_way && view.judged === 2);
+  await lotRow(page, "B").getByText(WORDS["lot_state.complete"].en).waitFor();
+  await page.click('nav a[href="#operator"]');
+  await shown(page, "#state", WORDS["state.complete"].en);
+  await picture(page, "operator-complete");
+  await page.click('nav a[href="#lots"]');
+  await shown(page, "#l_audit", "li (operator)");
+  await leave(page);
+});
+
+test("a lot that is held takes no run until somebody who may releases it", async () => {
+  const operator = await visit(browser, rig, { role: "operator", path: "/#lots" });
+  await lotRow(operator, "A").waitFor();
+  await decide(operator, "A", "hold_lot", "wrong label");
+  await lotRow(operator, "A").getByText("wrong label (li)").waitFor();
+  await lotRow(operator, "A").locator('[data-lot-order="start"]').click({ force: true });
+  await shown(operator, "#l_answer", "release it first");
+  await startLot(operator, "A", 1);
+  await shown(operator, "#l_answer", "lot A is held: wrong label (li)");
+  await decide(operator, "A", "release_lot", "");
+  await shown(operator, "#l_answer", "takes the role maintainer");
+  await leave(operator);
+  const maintainer = await visit(browser, rig, { role: "maintainer", path: "/#lots" });
+  await lotRow(maintainer, "A").waitFor();
+  await decide(maintainer, "A", "release_lot", "label was corrected");
+  await lotRow(maintainer, "A").getByText(WORDS["lot_state.open"].en).waitFor();
+  await leave(maintainer);
+});
+
+test("what was replaced is counted anew", async () => {
+  const page = await visit(browser, rig, { role: "maintainer", path: "/#lots" });
+  const probes = page.locator("#l_wear li", { hasText: WORDS["counter.probe_touches"].en });
+  await probes.getByRole("button").click();
+  await page.waitForFunction(() => document.querySelector("#l_wear li:last-child b").textContent === "0");
+  await leave(page);
+});
+
+for (const size of SIZES) {
+  test(`at ${size.width}x${size.height} the page of lots fits and can be read`, async () => {
+    const page = await visit(browser, rig, { size, role: "maintainer", path: "/#lots" });
+    await lotRow(page, "A").waitFor();
+    await looks(page, `lots-${size.width}`);
+    await lotRow(page, "B").locator('[data-lot-order="hold_lot"]').click();
+    await picture(page, `lots-decide-${size.width}`);
+    await leave(page);
+  });
+}
