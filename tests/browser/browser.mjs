@@ -24,7 +24,7 @@ export const open = () => chromium.launch({ executablePath: process.env.CHROMIUM
 export async function visit(browser, rig, { path = "/", role, language = "en", theme = "light", size = SIZES[0] } = {}) {
   const context = await browser.newContext({ viewport: size, locale: language === "zh" ? "zh-CN" : "en-GB", colorScheme: theme, acceptDownloads: true });
   const page = await context.newPage();
-  page.setDefaultTimeout(20_000);
+  page.setDefaultTimeout(60_000);
   page.sins = [];
   page.on("pageerror", (error) => page.sins.push("error: " + error));
   page.on("console", (line) => {

@@ -60,7 +60,7 @@ class Rig {
   }
 
   /** The first view of which `test` is true. */
-  async until(what, test, seconds = 40) {
+  async until(what, test, seconds = 180) {
     const end = Date.now() + seconds * 1000;
     for (;;) {
       const view = await this.view();
