@@ -46,7 +46,7 @@ pub use log::LineLog;
 pub use pace::Pace;
 pub use port::{PortError, SerialPorts, open_serial};
 pub use raw::{RawReply, send_raw};
-pub use recorded::{Recorded, RecordedError, arrow, escaped};
+pub use recorded::{Recorded, RecordedError, arrow, escaped, unescaped};
 pub use settings::{LineSettings, longest_transaction};
 pub use trace::{Direction, Entry, Trace};
 pub use trust::PROBATION;

@@ -140,7 +140,8 @@ pub fn escaped(bytes: &[u8]) -> String {
     out
 }
 
-fn unescaped(text: &str) -> Option<Vec<u8>> {
+/// Back from [`escaped`]; none where it is not written so.
+pub fn unescaped(text: &str) -> Option<Vec<u8>> {
     let mut bytes = text.bytes();
     let mut out = Vec::with_capacity(text.len());
     while let Some(byte) = bytes.next() {

@@ -1,5 +1,6 @@
 //! `relayrig bus`: find modules, send one command, watch a line. No rig file is needed.
 
+mod follow;
 pub mod meaning;
 mod monitor;
 mod scan;
@@ -17,6 +18,7 @@ use tokio_serial::SerialStream;
   relayrig bus scan --port /tmp/rig/bench --baud 115200 --addresses 01-20 --json
   relayrig bus send --port /dev/ttyUSB0 --baud 9600 --checksum '$012'
   relayrig bus monitor --port /dev/ttyUSB0 --baud 115200
+  relayrig bus monitor --from http://127.0.0.1:8080
   relayrig bus monitor --trace relayrig.alarm-1-motion.trace --level bytes")]
 pub struct BusArgs {
     #[command(subcommand)]

@@ -124,3 +124,38 @@ fn an_alarm_leaves_a_trace_that_monitor_reads_and_names_it_in_the_log() {
     let missing = shop.run("bus monitor --trace nothing.trace");
     assert!(missing.status == 2 && missing.stderr.contains("nothing.trace"));
 }
+
+/// Ended when dropped.
+struct Running(Child);
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+#[test]
+fn the_traffic_of_a_running_controller_is_told_in_another_shell() {
+    let shop = Workshop::new("bus_follow");
+    let mut demo = Running(shop.start_logging("demo --listen 127.0.0.1:0 --speed 1"));
+    // Held open to the end: the program must not find its log closed.
+    let mut log = BufReader::new(demo.0.stderr.take().unwrap()).lines();
+    let page = log.by_ref().map_while(Result::ok).find_map(|row| {
+        let (_, rest) = row.split_once("page at ")?;
+        Some(rest.split_once("/,")?.0.to_owned())
+    });
+    let page = page.unwrap();
+    let mut monitor = Running(shop.start(&format!("bus monitor --from {page} --seconds 100")));
+    let mut rows = BufReader::new(monitor.0.stdout.take().unwrap()).lines();
+    let mut told = |line: &str, what: &str| {
+        rows.any(|row| row.is_ok_and(|row| row.contains(line) && row.contains(what)))
+    };
+    assert!(told(" measure > ", "$"));
+    assert!(told(" motion < ", "ReadPort = "));
+    let wrong = shop.run("bus monitor --from http://127.0.0.1:1 --seconds 5");
+    assert!(
+        wrong.status == 2 && wrong.stderr.contains("127.0.0.1:1"),
+        "{wrong:?}"
+    );
+}

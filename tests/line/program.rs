@@ -72,9 +72,9 @@ impl Workshop {
             .unwrap()
     }
 
-    /// The same, whose standard error can be read.
+    /// The same; what it logs can be read, its data is thrown away.
     #[cfg(all(feature = "sim", unix))]
-    pub fn start_telling(&self, line: &str) -> Child {
+    pub fn start_logging(&self, line: &str) -> Child {
         let mut command = self.command(line);
         command
             .stdout(Stdio::null())
@@ -83,7 +83,7 @@ impl Workshop {
             .unwrap()
     }
 
-    /// The same, ended by force after so many seconds.
+    /// As [`Self::start`], ended by force after so many seconds.
     #[cfg(all(feature = "sim", unix))]
     pub fn start_for(&self, seconds: &str, line: &str) -> Child {
         let mut command = Command::new("timeout");

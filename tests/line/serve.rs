@@ -29,7 +29,7 @@ impl Drop for Served {
 impl Served {
     fn start(workshop: &Workshop, words: &str) -> Self {
         let line = format!("serve --listen 127.0.0.1:0 {words}");
-        let mut process = workshop.start_telling(&line);
+        let mut process = workshop.start_logging(&line);
         let mut told = BufReader::new(process.stderr.take().unwrap());
         let mut text = String::new();
         let after = |text: &str, before: &str, end: char| {

@@ -1,27 +1,37 @@
-//! `relayrig bus monitor`: what passes on a line, from a port that is only listened to, or from the trace of an alarm.
+//! `relayrig bus monitor`: what passes on a line, from a port that is only listened to, from a running controller, or from
+//! the trace of an alarm.
 
-use super::PortArgs;
 use super::meaning::Meaning;
+use super::{PortArgs, follow};
 use crate::bus::{Direction, Entry, Pace, Recorded, arrow, escaped, open_serial};
 use crate::dcon;
 use anyhow::{Context, bail};
 use std::io::Write;
 use std::path::PathBuf;
+use std::time::Duration;
 use tokio::io::AsyncReadExt;
 
 /// Watch a line.
 #[derive(Debug, clap::Args)]
 #[command(after_help = "Examples:
   relayrig bus monitor --port /dev/ttyUSB0 --baud 115200 --checksum
+  relayrig bus monitor --from http://127.0.0.1:8080 --line motion
   relayrig bus monitor --trace relayrig.alarm-1-motion.trace
   relayrig bus monitor --trace relayrig.alarm-1-motion.trace --level bytes
 
 On a port both directions are heard as one: a frame with # $ % @ ~ counts as a question, one with ! > ? as the reply to
-the question before it. Nothing is ever sent. Ctrl-C ends it.")]
+the question before it. Nothing is ever sent. A running controller has its ports for itself; it is asked over the address
+of its page, and tells what it kept of every line. Ctrl-C ends it.")]
 pub struct MonitorArgs {
     /// Serial port to listen to
-    #[arg(long, value_name = "PATH", required_unless_present = "trace")]
+    #[arg(long, value_name = "PATH", required_unless_present_any = ["trace", "from"])]
     port: Option<PathBuf>,
+    /// Address of the page of a running controller
+    #[arg(long, value_name = "URL", value_parser = follow::page, conflicts_with_all = ["port", "trace"])]
+    from: Option<follow::Page>,
+    /// Only this line of the controller
+    #[arg(long, value_name = "NAME", requires = "from")]
+    line: Option<String>,
     /// Trace that an alarm has left, - for stdin
     #[arg(long, value_name = "FILE", conflicts_with = "port")]
     trace: Option<PathBuf>,
@@ -40,7 +50,7 @@ pub struct MonitorArgs {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Level {
+pub(super) enum Level {
     /// Every piece in hexadecimal
     Bytes,
     /// Frames as text
@@ -64,29 +74,44 @@ pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<i32> {
         }
         return Ok(super::super::DONE);
     }
+    let seconds = Duration::from_secs(args.seconds.unwrap_or(u64::from(u32::MAX)));
+    tokio::select! {
+        ended = watch(args) => ended?,
+        _ = tokio::signal::ctrl_c() => {}
+        () = tokio::time::sleep(seconds) => {}
+    }
+    Ok(super::super::DONE)
+}
+
+/// For as long as there is something to watch.
+async fn watch(args: &MonitorArgs) -> anyhow::Result<()> {
+    if let Some(page) = &args.from {
+        return follow::follow(page, |news| {
+            let wanted = args.line.as_ref().is_none_or(|line| news.is_of(line));
+            if wanted {
+                print(&format!("{}\n", news.row(args.level)))?;
+            }
+            Ok(())
+        })
+        .await;
+    }
     let Some(path) = &args.port else {
-        bail!("--port or --trace is needed");
+        bail!("--port, --from or --trace is needed");
     };
     listen(args, &PortArgs { port: path.clone() }).await
 }
 
-/// Until Ctrl-C, or the time is up.
-async fn listen(args: &MonitorArgs, port: &PortArgs) -> anyhow::Result<i32> {
+/// Until the port goes away.
+async fn listen(args: &MonitorArgs, port: &PortArgs) -> anyhow::Result<()> {
     let path = port.port.to_string_lossy();
     let mut stream = open_serial(&path, args.baud).with_context(|| format!("--port {path}"))?;
     let pace = Pace::real();
     let mut teller = Teller::new(args.level, args.checksum);
-    let seconds = std::time::Duration::from_secs(args.seconds.unwrap_or(u64::MAX / 4));
-    let end = tokio::time::sleep(seconds.min(std::time::Duration::from_secs(1 << 30)));
-    tokio::pin!(end);
     let mut frame: Vec<u8> = Vec::new();
     let mut piece = [0; 256];
     loop {
-        let count = tokio::select! {
-            count = stream.read(&mut piece) => count.with_context(|| format!("--port {path}"))?,
-            _ = tokio::signal::ctrl_c() => return Ok(super::super::DONE),
-            () = &mut end => return Ok(super::super::DONE),
-        };
+        let read = stream.read(&mut piece).await;
+        let count = read.with_context(|| format!("--port {path}"))?;
         if count == 0 {
             bail!("--port {path}: the port went away");
         }
