@@ -1,62 +1,76 @@
-//! Standing pieces whose boxes the mover meets, the earliest first.
+//! Standing pieces whose boxes the mover meets, the earliest first. A piece of several cells comes for each.
+
+use super::space::LANES;
 
 /// Pieces that are kept at a time; with more, some are judged out of turn, which costs time and
 /// nothing else.
-const MOST: usize = 16;
+const MOST: usize = 32;
 
 /// A few candidates.
 #[derive(Debug, Clone)]
 pub(crate) struct Candidates {
     /// Fraction of the way before which it is not met, whose bits are in order because it is not
-    /// below zero, and then the number of the piece.
+    /// below zero, and then its [`Place`].
     keys: [u64; MOST],
     count: usize,
-    /// The one that came last: a piece may have been added for several cells.
-    last: u64,
+}
+
+/// Where a candidate is found: a lane of a bundle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Place(u32);
+
+impl Place {
+    pub(crate) fn bundle(self) -> u32 {
+        self.0 / LANES as u32
+    }
+
+    pub(crate) fn lane(self) -> usize {
+        self.0 as usize % LANES
+    }
 }
 
 impl Candidates {
     pub(crate) const NONE: Candidates = Candidates {
         keys: [0; MOST],
         count: 0,
-        last: u64::MAX,
     };
 
+    /// Whether there is no room for a whole bundle.
     #[inline]
     pub(crate) fn is_full(&self) -> bool {
-        self.count == MOST
+        self.count > MOST - LANES
     }
 
-    /// Adds a piece, where there is room.
+    /// Adds the lanes of a bundle whose bits are set, where there is room. Every lane is written and most
+    /// are overwritten: a branch for each would be guessed wrong too often.
     #[inline]
-    pub(crate) fn push(&mut self, entry: f32, piece: u32) {
-        self.keys[self.count] = u64::from(entry.to_bits()) << 32 | u64::from(piece);
-        self.count += 1;
+    pub(crate) fn push(&mut self, bundle: u32, lanes: u32, entry: &[f32; LANES]) {
+        let place = u64::from(bundle * LANES as u32);
+        for (lane, entry) in entry.iter().enumerate() {
+            let key = u64::from(entry.to_bits()) << 32 | (place + lane as u64);
+            self.keys[self.count % MOST] = key;
+            self.count += (lanes >> lane & 1) as usize;
+        }
     }
 
-    /// Takes the earliest one out, each once; of those after `until` none is left.
+    /// Takes the earliest one out; of those after `until` none is left.
     #[inline]
-    pub(crate) fn earliest(&mut self, until: f64) -> Option<u32> {
-        while self.count > 0 {
-            let mut first = 0;
-            for at in 1..self.count {
-                if self.keys[at] < self.keys[first] {
-                    first = at;
-                }
-            }
-            let key = self.keys[first];
-            if f64::from(f32::from_bits((key >> 32) as u32)) > until {
-                self.count = 0;
-                return None;
-            }
-            self.count -= 1;
-            self.keys[first] = self.keys[self.count];
-            if key != self.last {
-                self.last = key;
-                return Some(key as u32);
+    pub(crate) fn earliest(&mut self, until: f64) -> Option<Place> {
+        let known = &mut self.keys[..self.count.min(MOST)];
+        let mut first = 0;
+        let mut least = *known.first()?;
+        for (at, key) in known.iter().enumerate() {
+            if *key < least {
+                (first, least) = (at, *key);
             }
         }
-        None
+        if f64::from(f32::from_bits((least >> 32) as u32)) > until {
+            self.count = 0;
+            return None;
+        }
+        known[first] = *known.last()?;
+        self.count -= 1;
+        Some(Place(least as u32))
     }
 }
 
@@ -67,12 +81,15 @@ mod tests {
     #[test]
     fn candidates_come_in_the_order_of_their_entries_as_long_as_they_matter() {
         let mut candidates = Candidates::NONE;
-        for (element, entry) in [0.5, 0.0, 1e-30, 0.75, 0.25].into_iter().enumerate() {
-            candidates.push(entry, element as u32);
-            candidates.push(entry, element as u32);
-        }
-        let pieces = std::iter::from_fn(|| candidates.earliest(0.5));
-        assert_eq!(pieces.collect::<Vec<_>>(), [1, 2, 4, 0]);
+        candidates.push(
+            3,
+            0b0101_1111,
+            &[0.5, 0.0, 1e-30, 0.75, 0.25, 0.0, 0.3, 0.0],
+        );
+        candidates.push(9, 0b1000_0000, &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.4]);
+        let places = std::iter::from_fn(|| candidates.earliest(0.5));
+        let places: Vec<_> = places.map(|place| (place.bundle(), place.lane())).collect();
+        assert_eq!(places, [(3, 1), (3, 2), (3, 4), (3, 6), (9, 7), (3, 0)]);
         assert_eq!(candidates.earliest(1.0), None);
     }
 }

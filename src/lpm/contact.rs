@@ -10,13 +10,12 @@ use super::candidates::Candidates;
 use super::distance::Gap;
 use super::meeting::{Meeting, Run};
 use super::mover::{Group, MOST_OF_A_GROUP};
-use super::passage::{Passage, Pending, once_in_order};
+use super::passage::{Passage, Pending};
 use super::prism::Prism;
 use super::space::{Boxes, Bundle, Cover, LANES, Sweep, Visit, above};
 use super::standing::Stands;
 use super::straight::{self, Hit};
 use super::touch::touch;
-use super::turning::Turning;
 use super::vector::sub;
 
 /// What a contact is wanted for.
@@ -57,7 +56,16 @@ impl Found {
         }
     }
 
+    pub(crate) fn searched(element: u32, hit: Hit) -> Found {
+        Found {
+            t: hit.t,
+            element,
+            how: How::Searched(Box::new(hit.gap)),
+        }
+    }
+
     /// Where and when.
+    #[inline]
     pub(crate) fn hit(&self, passage: &Passage) -> Hit {
         let gap = match (&self.how, &passage.element(self.element).form) {
             (How::Closed(local), Stands::Upright(element)) => {
@@ -93,7 +101,7 @@ impl Passage<'_> {
     }
 
     /// On a way that goes somewhere.
-    fn pass(&self, found: &mut Findings) {
+    fn pass<'a>(&'a self, found: &mut Findings<'a>) {
         for group in &self.body.groups {
             let hull = group.hull(self.path, self.way.margin_mm);
             let sweep = Sweep::new(hull, self.path.displacement);
@@ -109,18 +117,18 @@ impl Passage<'_> {
 }
 
 /// What is found so far.
-pub(crate) struct Findings {
+pub(crate) struct Findings<'a> {
     wanted: Wanted,
     pub(crate) best: Option<Found>,
     pub(crate) pending: Vec<Pending>,
     /// When it was wanted before.
-    run: Option<Run>,
+    run: Option<Run<'a>>,
 }
 
-impl Findings {
+impl Findings<'_> {
     /// The part of the way that still matters; below 0: nothing does.
     #[inline]
-    fn until(&self) -> f64 {
+    pub(crate) fn until(&self) -> f64 {
         match (&self.best, self.wanted) {
             (None, _) => 1.0,
             (Some(_), Wanted::Any) => -1.0,
@@ -130,7 +138,7 @@ impl Findings {
     }
 
     #[inline]
-    fn offer(&mut self, found: Option<Found>) {
+    pub(crate) fn offer(&mut self, found: Option<Found>) {
         if let Some(found) = found
             && self.best.as_ref().is_none_or(|known| found.t < known.t)
         {
@@ -143,8 +151,8 @@ impl Findings {
 struct Search<'a, 'b> {
     passage: &'a Passage<'a>,
     group: &'a Group,
-    found: &'b mut Findings,
-    sweep: &'a Sweep,
+    found: &'b mut Findings<'a>,
+    sweep: &'b Sweep,
     /// The boxes of the pieces, when they were wanted before.
     boxes: Option<Boxes<MOST_OF_A_GROUP>>,
     /// The pieces where the way begins, as far as they were looked at.
@@ -160,31 +168,42 @@ impl Visit for Search<'_, '_> {
     }
 
     #[inline]
-    fn bundle(&mut self, bundle: &Bundle, lanes: u32, entry: &[f32; LANES]) -> bool {
+    fn bundle(
+        &mut self,
+        (number, bundle): (u32, &Bundle),
+        lanes: u32,
+        entry: &[f32; LANES],
+    ) -> bool {
+        if self.in_order() {
+            if self.candidates.is_full() && self.pause() < 0.0 {
+                return true;
+            }
+            self.candidates.push(number, lanes, entry);
+            return false;
+        }
         let mut left = lanes;
         while left != 0 {
             let lane = left.trailing_zeros() as usize % LANES;
             left &= left - 1;
-            if !self.in_order() {
-                self.piece(bundle.piece(lane), &bundle.boxes.cover(lane));
-                if self.found.until() < 0.0 {
-                    return true;
-                }
-                continue;
-            }
-            if self.candidates.is_full() && self.pause() < 0.0 {
+            self.piece(bundle.piece(lane), &bundle.boxes.cover(lane));
+            if self.found.until() < 0.0 {
                 return true;
             }
-            self.candidates.push(entry[lane], bundle.piece(lane));
         }
         false
     }
 
     #[inline]
     fn pause(&mut self) -> f64 {
-        while let Some(piece) = self.candidates.earliest(self.found.until()) {
-            let cover = self.passage.model.pieces.cover(piece);
-            self.piece(piece, &cover);
+        let mut last = None;
+        while let Some(place) = self.candidates.earliest(self.found.until()) {
+            let bundle = self.passage.model.space.bundle(place.bundle());
+            let piece = bundle.piece(place.lane());
+            // Equally early, so next to each other: the same for another cell.
+            if last != Some(piece) {
+                last = Some(piece);
+                self.piece(piece, &bundle.boxes.cover(place.lane()));
+            }
         }
         self.found.until()
     }
@@ -195,8 +214,8 @@ impl<'a, 'b> Search<'a, 'b> {
     fn new(
         passage: &'a Passage<'a>,
         group: &'a Group,
-        found: &'b mut Findings,
-        sweep: &'a Sweep,
+        found: &'b mut Findings<'a>,
+        sweep: &'b Sweep,
     ) -> Search<'a, 'b> {
         Search {
             passage,
@@ -281,46 +300,5 @@ impl Passage<'_> {
         let (element, mover) = (element.piece(), mover.piece());
         let hit = straight::first_within(&element, &mover, run.way, margin, t, until)?;
         Some((hit.t, Some(hit.gap)))
-    }
-
-    /// What waits on the list.
-    pub(crate) fn searches(&self, found: &mut Findings) {
-        if found.pending.is_empty() {
-            return;
-        }
-        let mut pending = std::mem::take(&mut found.pending);
-        once_in_order(&mut pending);
-        for pair in pending {
-            if pair.order > found.until() {
-                return;
-            }
-            let searched = self.searched(&pair, found.until());
-            found.offer(searched);
-        }
-    }
-
-    fn searched(&self, pair: &Pending, until: f64) -> Option<Found> {
-        let path = self.path;
-        let element = &self.piece(pair.element);
-        let local = self.local(pair.local);
-        let margin = self.way.margin_mm;
-        let hit = match &path.turn {
-            None => {
-                let at_start = path.piece_at(local, 0.0);
-                straight::first_within(element, &at_start, path.displacement, margin, 0.0, until)
-            }
-            Some(turn) => Turning {
-                element,
-                local,
-                path,
-                turn,
-            }
-            .first_within(margin, until),
-        }?;
-        Some(Found {
-            t: hit.t,
-            element: pair.element,
-            how: How::Searched(Box::new(hit.gap)),
-        })
     }
 }

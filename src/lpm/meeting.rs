@@ -34,23 +34,22 @@ const ROUND_MM: f64 = 1e-3;
 
 /// A straight way, and how long it takes for a millimetre.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Run {
+pub(crate) struct Run<'a> {
     pub(crate) way: Vec3,
     /// Reciprocals; 0 of an axis on which nothing moves.
     pace: Vec3,
-    /// Nothing was rounded between both ends and the way.
-    is_exact: bool,
+    path: &'a Path,
 }
 
-impl Run {
+impl<'a> Run<'a> {
     /// Of a straight path.
     #[inline]
-    pub(crate) fn of(path: &Path) -> Run {
+    pub(crate) fn of(path: &'a Path) -> Run<'a> {
         let way = path.displacement;
         Run {
             way,
             pace: [pace(way[0]), pace(way[1]), pace(way[2])],
-            is_exact: path.is_exact(),
+            path,
         }
     }
 }
@@ -67,7 +66,7 @@ pub(crate) struct Meeting<'a> {
     mover: &'a Prism,
     /// From the element to the mover at the start.
     apart: Vec3,
-    run: &'a Run,
+    run: &'a Run<'a>,
     /// Growth of every figure, mm: margin and slack.
     grown: f64,
     slack: f64,
@@ -81,7 +80,7 @@ impl<'a> Meeting<'a> {
     pub(crate) fn new(
         element: &'a Prism,
         mover: &'a Prism,
-        run: &'a Run,
+        run: &'a Run<'a>,
         margin: f64,
     ) -> Meeting<'a> {
         let apart = sub(mover.centre, element.centre);
@@ -154,7 +153,8 @@ impl<'a> Meeting<'a> {
             let beyond = at[axis].abs() - half[axis];
             half[axis] == 0.0 || self.run.way[1 - axis] == 0.0 || beyond > ROUND_MM
         };
-        let unrounded = self.run.is_exact && self.element.is_exact() && self.mover.is_exact();
+        let unrounded =
+            self.run.path.is_exact() && self.element.is_exact() && self.mover.is_exact();
         let alone = self.grown == self.slack && framed.is_straight();
         if !(unrounded && alone && on_corner(0) && on_corner(1)) {
             return None;

@@ -12,12 +12,12 @@
 //! `space` is the broad phase: `layers` holds Omega and `{h1, h2}`, `grid` `V`, `silhouettes` `B`.
 //!
 //! # Beyond it: continuous and exact
-//! The paper checks poses, this module checks ways. Upright blocks and cylinders on a straight way
+//! The paper checks poses (`rest`), this module checks ways. Upright blocks and cylinders on a straight way
 //! meet in closed form: `meeting`. Along a straight move the distance of any two convex pieces is
 //! convex, so first contact and least distance follow from a few separating planes, for the true
 //! shapes (cylinders stay round, in any orientation): `straight`. Turning moves advance
 //! conservatively with a second-order bound: `turning`.
-//! The gate asks for no distance (`contact`), a clearance for no more than the nearest (`nearest`).
+//! The gate asks for no distance (`contact`, `search`), a clearance for no more than the nearest (`nearest`).
 //!
 //! # Never a false clear
 //! Bodies are closed sets: touching is contact. *Blocked* means that the distance comes within the
@@ -94,6 +94,7 @@ mod prism;
 mod question;
 mod rest;
 pub mod scene;
+mod search;
 mod shape;
 mod solid;
 mod space;

@@ -31,7 +31,7 @@ impl Visit for Near<'_> {
         false
     }
 
-    fn bundle(&mut self, bundle: &Bundle, lanes: u32, _entry: &[f32; LANES]) -> bool {
+    fn bundle(&mut self, (_, bundle): (u32, &Bundle), lanes: u32, _: &[f32; LANES]) -> bool {
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
             let (element, cover) = (bundle.piece(lane), bundle.boxes.cover(lane));
             if !self.passage.counts(self.passage.element(element)) {

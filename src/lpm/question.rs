@@ -114,6 +114,7 @@ fn undecidable() -> Answer {
     })
 }
 
+#[inline]
 fn blocked(blocker: ElementKey, hit: &Hit) -> Answer {
     Answer::Blocked(Contact {
         t_stop: (hit.t * (1.0 - 4.0 * f64::EPSILON)).clamp(0.0, 1.0),

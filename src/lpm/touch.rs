@@ -26,6 +26,7 @@ pub(crate) fn beside(element: &Prism, mover: &Prism, apart: Vec3) -> f64 {
 }
 
 /// The contact of two pieces whose centres lie `apart`, from the element to the mover.
+#[inline]
 pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
     let side = side(element, mover, apart);
     let height = shared(element.half[2], mover.half[2], apart[2]);

@@ -63,6 +63,17 @@ impl<const N: usize> Boxes<N> {
         beside(0) & beside(1) & beside(2)
     }
 
+    /// Before which fraction of the way each box is not met, on a way along one axis.
+    #[inline]
+    pub(crate) fn entry(&self, cover: &Cover, pace: &Pace, axis: usize) -> [f32; N] {
+        let (low, high, pace) = (cover.low[axis], cover.high[axis], pace.0[axis]);
+        std::array::from_fn(|lane| {
+            let near = (self.low[axis][lane] - high) * pace;
+            let far = (self.high[axis][lane] - low) * pace;
+            larger(smaller(near, far), 0.0) * EARLIER
+        })
+    }
+
     /// The boxes that a box, starting as `cover`, meets on its way up to the fraction `until`. The
     /// same holds when the boxes go the other way and `cover` stands.
     #[inline(always)]
@@ -169,10 +180,13 @@ mod tests {
     #[test]
     fn a_crossing_begins_no_later_than_the_boxes_meet() {
         let mut dice = Dice(10);
-        let (mut met, mut missed) = (0, 0);
+        let (mut met, mut missed, mut alone) = (0, 0, 0);
         for _ in 0..2_000 {
             let (element, mover) = (drawn(&mut dice), drawn(&mut dice));
-            let run = dice.vector().map(|member| (4.0 * member).round());
+            let mut run = dice.vector().map(|member| (4.0 * member).round());
+            if dice.pick(3) == 0 {
+                (run[0], run[1]) = (0.0, 0.0);
+            }
             let mut boxes = Boxes::<4>::NOWHERE;
             // A hair larger, as rounding outward leaves them.
             boxes.set(
@@ -194,11 +208,18 @@ mod tests {
             if let Some(first) = first {
                 assert_eq!(crossing.lanes, 2, "{element:?} {mover:?} {run:?}");
                 assert!(f64::from(crossing.entry[1]) <= first);
+                let moving: Vec<usize> = (0..3).filter(|axis| run[*axis] != 0.0).collect();
+                if let [axis] = moving[..] {
+                    let entry = boxes.entry(&mover, &Pace::of(run), axis);
+                    assert_eq!(entry[1], crossing.entry[1]);
+                    alone += 1;
+                }
                 met += 1;
             } else {
                 missed += u32::from(crossing.lanes == 0);
             }
         }
         assert!(met > 300 && missed > 300, "{met} {missed}");
+        assert!(alone > 50, "{alone}");
     }
 }

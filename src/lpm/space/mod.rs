@@ -12,6 +12,7 @@
 //! where the first contact is. Pieces are put in and taken out one by one; nothing is ever rebuilt.
 
 mod area;
+mod around;
 mod boxes;
 mod cover;
 mod grid;
@@ -60,6 +61,12 @@ impl Space {
         if layers != 0 {
             self.grid.around(cover, layers, show);
         }
+    }
+
+    /// A bundle that was shown, by its number.
+    #[inline]
+    pub(crate) fn bundle(&self, number: u32) -> &Bundle {
+        self.grid.bundle(number)
     }
 
     /// Shows whatever a box on its way may meet up to the fraction `until`, bundle by bundle.

@@ -84,7 +84,7 @@ impl Pool {
         }
         *cell.layers = self
             .chain(*cell.head)
-            .fold(0, |word, bundle| word | bundle.word());
+            .fold(0, |word, (_, bundle)| word | bundle.word());
         true
     }
 
@@ -107,6 +107,12 @@ impl Pool {
         }
     }
 
+    /// A bundle by its number.
+    #[inline]
+    pub(super) fn bundle(&self, number: u32) -> &Bundle {
+        &self.bundles[number as usize]
+    }
+
     /// The bundles of a cell, by its newest.
     #[inline]
     pub(super) fn chain(&self, head: u32) -> Chain<'_> {
@@ -122,19 +128,20 @@ impl Pool {
     }
 }
 
-/// The bundles of one cell, newest first.
+/// The bundles of one cell with their numbers, newest first.
 pub(crate) struct Chain<'a> {
     bundles: &'a [Bundle],
     next: u32,
 }
 
 impl<'a> Iterator for Chain<'a> {
-    type Item = &'a Bundle;
+    type Item = (u32, &'a Bundle);
 
     #[inline]
-    fn next(&mut self) -> Option<&'a Bundle> {
-        let bundle = self.bundles.get(self.next as usize)?;
+    fn next(&mut self) -> Option<(u32, &'a Bundle)> {
+        let number = self.next;
+        let bundle = self.bundles.get(number as usize)?;
         self.next = bundle.next;
-        Some(bundle)
+        Some((number, bundle))
     }
 }

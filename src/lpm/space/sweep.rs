@@ -62,6 +62,17 @@ impl Sweep {
         self.start.swept([x * until, y * until, z * until])
     }
 
+    /// The axis along which the way is longest.
+    #[inline]
+    pub(crate) fn axis(&self) -> usize {
+        let [x, y, z] = [self.run[0].abs(), self.run[1].abs(), self.run[2].abs()];
+        if z >= x && z >= y {
+            2
+        } else {
+            usize::from(y > x)
+        }
+    }
+
     /// Whether the way runs along more than one axis: then its box holds much that is not on the way.
     #[inline]
     pub(crate) fn is_slanted(&self) -> bool {

@@ -12,9 +12,9 @@ pub(crate) trait Visit {
     /// Whether it matters when a piece is met.
     fn in_order(&self) -> bool;
 
-    /// Bit k of `lanes`: the box may meet lane k, in order not before `entry[k]` of the way. A piece may
-    /// be shown more than once. True: nothing else matters.
-    fn bundle(&mut self, bundle: &Bundle, lanes: u32, entry: &[f32; LANES]) -> bool;
+    /// Bit k of `lanes`: the box may meet lane k of the bundle of this number, in order not before
+    /// `entry[k]` of the way. A piece may be shown more than once. True: nothing else matters.
+    fn bundle(&mut self, shown: (u32, &Bundle), lanes: u32, entry: &[f32; LANES]) -> bool;
 
     /// Whatever is not shown yet is met later on the way, or as late as what was shown since the last
     /// pause. Answers with the fraction of the way that still matters; below 0: nothing does.
@@ -32,6 +32,8 @@ pub(super) struct Walk<'a, V> {
     /// The fraction of the way that matters.
     until: f64,
     is_slanted: bool,
+    /// Along which the way is longest.
+    axis: usize,
     visit: &'a mut V,
 }
 
@@ -51,6 +53,7 @@ impl<'a, V: Visit> Walk<'a, V> {
             cover,
             until: 1.0,
             is_slanted: sweep.is_slanted(),
+            axis: sweep.axis(),
             visit,
         }
     }
@@ -81,16 +84,22 @@ impl<'a, V: Visit> Walk<'a, V> {
     /// True when the rest does not matter.
     fn bundles(&mut self, chain: Chain<'_>) -> bool {
         let (sweep, until) = (self.sweep, above(self.until));
-        // What only shares the box around the way is met by no time at all.
-        let timed = self.is_slanted || self.visit.in_order();
-        for bundle in chain {
-            let (lanes, entry) = if timed {
+        let in_order = self.visit.in_order();
+        for (number, bundle) in chain {
+            // What only shares the box around a slanted way may be met by no time at all.
+            let (lanes, entry) = if self.is_slanted {
                 let crossing = bundle.boxes.crossing(&sweep.start, &sweep.pace, until);
                 (crossing.lanes, crossing.entry)
             } else {
-                (bundle.boxes.meeting(&self.cover), [0.0; LANES])
+                let lanes = bundle.boxes.meeting(&self.cover);
+                let entry = if in_order && lanes != 0 {
+                    bundle.boxes.entry(&sweep.start, &sweep.pace, self.axis)
+                } else {
+                    [0.0; LANES]
+                };
+                (lanes, entry)
             };
-            if lanes != 0 && self.visit.bundle(bundle, lanes, &entry) {
+            if lanes != 0 && self.visit.bundle((number, bundle), lanes, &entry) {
                 return true;
             }
         }
