@@ -226,3 +226,31 @@ fn an_alarm_that_ended_a_run_is_left_over_until_somebody_has_seen_it() {
     assert_eq!(orders.len(), 2);
     assert_eq!(orders[0]["what"]["reason"], "hinge");
 }
+
+#[cfg(unix)]
+#[test]
+fn a_recipe_that_is_revised_while_a_lot_runs_reaches_the_next_lot_only() {
+    use std::io::BufRead;
+    let workshop = Workshop::new("revised");
+    let lot = |name: &str, count: u32| {
+        format!(
+            "run --sim --pace virtual --lot {name} --recipe jzc-22f-012 --seed 1 --json --count {count}"
+        )
+    };
+    let mut running = workshop.start(&lot("A", 12));
+    let mut out = std::io::BufReader::new(running.stdout.take().unwrap());
+    let mut told = String::new();
+    assert!(out.read_line(&mut told).unwrap() > 0);
+    workshop.change(
+        "config/recipes/jzc-22f-012.toml",
+        "operate_voltage_v = { high = 9.0 }",
+        "operate_voltage_v = { high = 8.9 }",
+    );
+    while out.read_line(&mut told).unwrap() > 0 {}
+    assert_eq!(running.wait().unwrap().code(), Some(0));
+    workshop.run(&lot("B", 1)).with_status(0);
+    let limits = "SELECT DISTINCT lot.name || ' ' || measurement.high FROM measurement
+        JOIN parameter ON parameter.id = parameter_id JOIN run ON run.id = run_id JOIN lot ON lot.id = lot_id
+        WHERE key = 'operate_voltage_v' AND population = 'lot' ORDER BY 1";
+    assert_eq!(workshop.texts(limits), ["A 9.0", "B 8.9"]);
+}

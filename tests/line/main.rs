@@ -7,6 +7,7 @@
 //! - [`commands`]: the built program given wrong files and simple orders.
 //! - `full_disk`: a history that may not grow any more while a lot runs.
 //! - `gates`: golden checks, suspect parts, discard limit, first articles, retests, wear.
+//! - `history_taken`: files of other programs, of a newer one, and one that another process locks while a lot runs.
 //! - `interruptions`: lots that are stopped or killed, and what is left of them.
 //! - `killed`: the controller killed over pseudo-terminals, and outputs safe in time.
 //! - [`lots`]: whole lots on the simulated rig in virtual time, held against the truth of the world.
@@ -32,6 +33,8 @@ mod commands;
 mod full_disk;
 #[cfg(feature = "sim")]
 mod gates;
+#[cfg(all(feature = "sim", unix))]
+mod history_taken;
 #[cfg(all(feature = "sim", unix))]
 mod interruptions;
 #[cfg(all(feature = "sim", unix))]

@@ -64,23 +64,25 @@ impl Workshop {
     /// Starts `relayrig` and lets it run; what it logs is thrown away.
     #[cfg(all(feature = "sim", unix))]
     pub fn start(&self, line: &str) -> Child {
-        let mut command = self.command(line);
-        command
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap()
+        self.started(line, Stdio::piped(), Stdio::null())
     }
 
     /// The same; what it logs can be read, its data is thrown away.
     #[cfg(all(feature = "sim", unix))]
     pub fn start_logging(&self, line: &str) -> Child {
+        self.started(line, Stdio::null(), Stdio::piped())
+    }
+
+    /// The same; data and what it logs can be read.
+    #[cfg(all(feature = "sim", unix))]
+    pub fn start_heard(&self, line: &str) -> Child {
+        self.started(line, Stdio::piped(), Stdio::piped())
+    }
+
+    #[cfg(all(feature = "sim", unix))]
+    fn started(&self, line: &str, data: Stdio, logs: Stdio) -> Child {
         let mut command = self.command(line);
-        command
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap()
+        command.stdout(data).stderr(logs).spawn().unwrap()
     }
 
     /// As [`Self::start`], ended by force after so many seconds.

@@ -1,0 +1,100 @@
+//! Histories that may not be written: of another program, of a newer one, locked by another process while a lot runs.
+
+use crate::program::{Workshop, objects};
+use rusqlite::Connection;
+use std::io::{BufRead, BufReader, Read};
+use std::time::Duration;
+
+const LOT: &str = "run --sim --pace virtual --lot A --recipe jzc-22f-012 --seed 1 --json";
+
+#[test]
+fn a_lot_does_not_begin_on_a_file_that_is_no_history_of_this_program_and_leaves_it_as_it_was() {
+    let workshop = Workshop::new("no-history");
+    let file = workshop.folder.join("relayrig.db");
+    let foreign = || {
+        let other = Connection::open(&file).unwrap();
+        other
+            .execute_batch("CREATE TABLE invoices (id INTEGER)")
+            .unwrap();
+    };
+    let letter =
+        || std::fs::write(&file, "this is a letter, not a database\n".repeat(100)).unwrap();
+    let cases: [(&dyn Fn(), &str); 2] = [
+        (&foreign, "is not a relayrig history (application id 0x0"),
+        (&letter, "is not a relayrig history (no SQLite database)"),
+    ];
+    for (make, reason) in cases {
+        let _ = std::fs::remove_file(&file);
+        make();
+        let before = std::fs::read(&file).unwrap();
+        let said = workshop.run(&format!("{LOT} --count 2")).with_status(2);
+        assert!(said.stderr.contains(reason), "{said}");
+        assert_eq!(said.stdout, "", "no part was judged");
+        assert_eq!(std::fs::read(&file).unwrap(), before);
+    }
+}
+
+#[test]
+fn a_lot_does_not_begin_on_the_history_of_a_newer_program() {
+    let workshop = Workshop::new("newer");
+    workshop
+        .run("history generate --parts 3 --until 2026-01-01T00:00:00Z")
+        .with_status(0);
+    let by_hand = Connection::open(workshop.folder.join("relayrig.db")).unwrap();
+    by_hand.pragma_update(None, "user_version", 99).unwrap();
+    drop(by_hand);
+    let said = workshop.run(&format!("{LOT} --count 2")).with_status(2);
+    assert!(said.stderr.contains("has schema 99"), "{said}");
+    assert!(said.stderr.contains("use a newer program"), "{said}");
+    assert_eq!(
+        (
+            said.stdout.as_str(),
+            workshop.count("SELECT count(*) FROM part")
+        ),
+        ("", 3)
+    );
+}
+
+#[test]
+fn a_history_that_another_process_locks_stops_feeding_and_loses_no_part_that_fell() {
+    let workshop = Workshop::new("locked");
+    let mut lot = workshop.start_heard(LOT);
+    let mut out = BufReader::new(lot.stdout.take().unwrap());
+    let mut told = String::new();
+    for _ in 0..3 {
+        assert!(
+            out.read_line(&mut told).unwrap() > 0,
+            "the lot ended by itself"
+        );
+    }
+    let other = Connection::open(workshop.folder.join("relayrig.db")).unwrap();
+    other.busy_timeout(Duration::from_secs(60)).unwrap();
+    other.execute_batch("BEGIN IMMEDIATE").unwrap();
+    out.read_to_string(&mut told).unwrap();
+    let mut said = String::new();
+    lot.stderr
+        .take()
+        .unwrap()
+        .read_to_string(&mut said)
+        .unwrap();
+    assert_eq!(lot.wait().unwrap().code(), Some(3), "{said}");
+    assert!(
+        said.contains("the history is locked by another process"),
+        "{said}"
+    );
+    other.execute_batch("ROLLBACK").unwrap();
+    let landed: Vec<_> = objects(&told)
+        .into_iter()
+        .filter(|it| it["type"] == "part" && it["bin"] != "")
+        .collect();
+    assert!(landed.len() >= 3, "{told}");
+    for part in landed {
+        let (seq, bin) = (&part["seq"], part["bin"].as_str().unwrap());
+        let rows = format!(
+            "SELECT count(*) FROM part WHERE kind = 'lot' AND seq = {seq} AND bin = '{bin}'"
+        );
+        assert_eq!(workshop.count(&rows), 1, "{part}");
+    }
+    workshop.run("history check").with_status(0);
+    workshop.run(&format!("{LOT} --count 2")).with_status(0);
+}
