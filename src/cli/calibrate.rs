@@ -130,7 +130,7 @@ fn keep(db: &Path, args: &CalibrateArgs, found: &Calibration) -> anyhow::Result<
         verified: true,
     })?;
     let mut out = std::io::stdout().lock();
-    for it in compare::factors(found) {
+    for it in found.factors() {
         let (value, u) = (it.factor.value, K * it.factor.u);
         if args.json {
             let it = json!({"type": "factor", "factor": it.name, "unit": it.unit, "value": value, "expanded_u": u});

@@ -58,33 +58,28 @@ pub struct Change {
 /// # Errors
 /// As [`super::load_recipe`]; a number that never was.
 pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision, ConfigError> {
-    let newest_path = recipe_path(dir, name)?;
-    let text = File::read(newest_path.clone(), "a recipe")?.text;
+    let file = File::read(recipe_path(dir, name)?, "a recipe")?;
     let kept = kept(dir, name);
-    let newest = number_of(dir, name, &kept, &text);
+    let newest = number_of(dir, name, &kept, &file.text);
     let number = number.unwrap_or(newest);
-    let path = if number == newest {
-        newest_path
+    let file = if number == newest {
+        file
+    } else if kept.contains(&number) {
+        File::read(kept_path(dir, name, number), "a recipe")?
     } else {
-        kept_path(dir, name, number)
-    };
-    if number != newest && !kept.contains(&number) {
-        let name = name.to_owned();
         return Err(ConfigError::UnknownRevision {
-            name,
+            name: name.to_owned(),
             number,
             newest,
         });
-    }
-    let file = File::read(path.clone(), "a recipe")?;
-    let fields = fields(&file.root);
+    };
     Ok(Revision {
         name: name.to_owned(),
         number,
         newest,
+        saved_at_us: saved_at_us(&file.path),
+        fields: fields(&file.root),
         hash: parse_recipe(file, name)?.hash,
-        saved_at_us: saved_at_us(&path),
-        fields,
     })
 }
 
@@ -104,24 +99,36 @@ pub fn revise(plant: &Plant, change: &Change) -> Result<Revision, ConfigError> {
     let old = File::read(path.clone(), "a recipe")?;
     let kept = kept(dir, name);
     let number = number_of(dir, name, &kept, &old.text);
-    if sha256_hex(old.text.as_bytes()) != change.from {
-        let name = name.clone();
-        return Err(ConfigError::NotNewest {
-            name,
-            newest: number,
-        });
-    }
-    let text = edited(&old, &change.values)?;
-    if text == old.text {
-        return Err(ConfigError::NothingChanged { file: path });
-    }
-    let recipe = parse_recipe(File::parse(path.clone(), text.clone())?, name)?;
-    plant.admit(&recipe)?;
+    let text = next_text(plant, change, &old, number)?;
     if kept.last() != Some(&number) {
         put(&kept_path(dir, name, number), &old.text).map_err(unwritten)?;
     }
     put(&path, &text).map_err(unwritten)?;
     revision(dir, name, None)
+}
+
+/// The text after `change` of the newest, `old`, if it is one that a run would take.
+fn next_text(
+    plant: &Plant,
+    change: &Change,
+    old: &File,
+    newest: u32,
+) -> Result<String, ConfigError> {
+    let name = &change.name;
+    if sha256_hex(old.text.as_bytes()) != change.from {
+        return Err(ConfigError::NotNewest {
+            name: name.clone(),
+            newest,
+        });
+    }
+    let text = edited(old, &change.values)?;
+    if text == old.text {
+        let file = old.path.clone();
+        return Err(ConfigError::NothingChanged { file });
+    }
+    let recipe = parse_recipe(File::parse(old.path.clone(), text.clone())?, name)?;
+    plant.admit(&recipe)?;
+    Ok(text)
 }
 
 /// Numbers of the earlier revisions, ascending.

@@ -143,6 +143,43 @@ pub struct Calibration {
     pub lags: Option<Lags>,
 }
 
+/// A factor with its name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Named {
+    /// Name in tables.
+    pub name: &'static str,
+    /// Unit of value and uncertainty, `1` for a ratio.
+    pub unit: &'static str,
+    /// Value and standard uncertainty.
+    pub factor: Factor,
+}
+
+impl Calibration {
+    /// Every factor that was measured. The slope of the coarse ramp is the maker's and not among them.
+    pub fn factors(&self) -> Vec<Named> {
+        let named = |name, unit, factor| Named { name, unit, factor };
+        let mut all = vec![
+            named("coil_input_gain", "1", self.coil_input.gain),
+            named("coil_input_offset", "V", self.coil_input.offset_v),
+            named("coil_fine", "ohm", self.ohm_fine),
+            named("coil_wide", "ohm", self.ohm_wide),
+            named("contact", "mohm/V", self.contact_mohm_per_v),
+            named("gate_delay_0", "us", self.gate_delay_us[0]),
+            named("gate_delay_1", "us", self.gate_delay_us[1]),
+            named("level_gain", "1", self.level.gain),
+            named("level_offset", "V", self.level.offset_v),
+            named("coarse_gain", "1", self.coarse.gain),
+            named("fine_gain", "1", self.fine.gain),
+            named("fine_slope", "V/s", self.fine_v_per_s),
+        ];
+        if let Some(lags) = &self.lags {
+            all.push(named("operate_lag", "V", lags.operate.fine_v));
+            all.push(named("release_lag", "V", lags.release.fine_v));
+        }
+        all
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

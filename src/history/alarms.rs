@@ -2,6 +2,7 @@
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
+use crate::station::catalogue;
 use rusqlite::params_from_iter;
 use serde::Serialize;
 
@@ -43,6 +44,8 @@ pub struct Alarm {
     pub line: Option<String>,
     /// The message as shown.
     pub text: String,
+    /// The cause that the catalogue has for the code, Chinese; none for a code of another program.
+    pub cause_zh: Option<&'static str>,
     /// When it came.
     pub raised: Moment,
     /// When it went; none while it stands, and for one that ended its run.
@@ -81,10 +84,12 @@ impl Archive {
                 at.map(|it| it.map(Moment))
             };
             let (cleared, acknowledged) = (moment(6)?, moment(7)?);
+            let code: String = row.get(2)?;
             Ok(Alarm {
                 lot: row.get(0)?,
                 run: row.get(1)?,
-                code: row.get(2)?,
+                cause_zh: catalogue::entry(&code).map(|it| it.cause.1),
+                code,
                 line: row.get(3)?,
                 text: row.get(4)?,
                 raised: Moment(row.get(5)?),

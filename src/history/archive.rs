@@ -1,7 +1,7 @@
 //! The reader: parts that a filter leaves, one part with everything down to the raw replies.
 
 use super::error::{Doing, Result};
-use super::{Filter, Measurement, Moment, Part, Sample, open};
+use super::{CalibrationRecord, Filter, Measurement, Moment, Part, Sample, filter, open, store};
 use rusqlite::{Connection, Row, params, params_from_iter};
 use std::path::{Path, PathBuf};
 
@@ -120,6 +120,29 @@ impl Archive {
             parts.push(part);
         }
         Ok(parts)
+    }
+
+    /// The latest test of the golden part with this serial number.
+    pub fn golden_part(&self, serial: &str) -> Result<Option<Part>> {
+        const DOING: &str = "reading a golden part";
+        let mut statement = self
+            .connection
+            .prepare(&filter::golden_part())
+            .doing(DOING)?;
+        let mut rows = statement.query([serial]).doing(DOING)?;
+        let row = rows.next().doing(DOING)?;
+        row.map(|row| self.part(row)).transpose().doing(DOING)
+    }
+
+    /// The calibrations made last, one for each coil voltage, of the simulated rig or of the rig.
+    pub fn calibrations(&self, simulated: bool) -> Result<Vec<CalibrationRecord>> {
+        self.connection
+            .prepare(
+                "SELECT max(made_at_us), due_at_us, hash, body, verified FROM calibration
+                 WHERE body ->> 'simulated' = ?1 GROUP BY body ->> 'nominal_v'",
+            )
+            .and_then(|mut it| it.query_map([simulated], store::calibration)?.collect())
+            .doing("reading the latest calibrations")
     }
 
     /// Parameter keys in the order of columns.

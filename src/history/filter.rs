@@ -63,6 +63,14 @@ const COLUMNS: &str = "part.id, part.run_id, part.kind, part.seq, part.serial, p
     part.bin, part.reasons, part.judged_at_us, part.test_s, part.cycle_s, part.landed_bin, \
     part.landed_at_us";
 
+/// The latest test of one golden part.
+pub(super) fn golden_part() -> String {
+    format!(
+        "SELECT {COLUMNS} FROM part WHERE part.serial = ?1 AND part.kind = 'golden'
+         ORDER BY part.judged_at_us DESC LIMIT 1"
+    )
+}
+
 impl Filter {
     /// Names of the members that restrict, in the order above.
     pub fn members(&self) -> Vec<&'static str> {

@@ -219,21 +219,37 @@ impl Archive {
              WHERE run.id IN ({}) ORDER BY golden_check.at_us, golden_check.id",
             runs.sql
         );
-        let read = |row: &rusqlite::Row<'_>| {
-            Ok(GoldenCheck {
-                run: row.get(0)?,
-                at: Moment(row.get(1)?),
-                passed: row.get(2)?,
-                text: row.get(3)?,
-                suspect_since: row.get::<_, Option<i64>>(4)?.map(Moment),
-            })
-        };
         self.connection
             .prepare(&sql)
             .and_then(|mut it| {
-                it.query_map(params_from_iter(&runs.values), read)?
+                it.query_map(params_from_iter(&runs.values), golden_check_of)?
                     .collect()
             })
             .doing("reading golden checks")
     }
+
+    /// The golden check made last, on the simulated rig or on the rig.
+    pub fn last_golden_check(&self, simulated: bool) -> Result<Option<GoldenCheck>> {
+        let source = if simulated { "simulated" } else { "rig" };
+        self.connection
+            .query_row(
+                "SELECT run.number, golden_check.at_us, passed, text, suspect_since_us
+                 FROM golden_check JOIN run ON run.id = golden_check.run_id
+                 WHERE run.source = ?1 ORDER BY golden_check.at_us DESC, golden_check.id DESC LIMIT 1",
+                [source],
+                golden_check_of,
+            )
+            .optional()
+            .doing("reading the last golden check")
+    }
+}
+
+fn golden_check_of(row: &rusqlite::Row<'_>) -> rusqlite::Result<GoldenCheck> {
+    Ok(GoldenCheck {
+        run: row.get(0)?,
+        at: Moment(row.get(1)?),
+        passed: row.get(2)?,
+        text: row.get(3)?,
+        suspect_since: row.get::<_, Option<i64>>(4)?.map(Moment),
+    })
 }

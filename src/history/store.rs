@@ -254,7 +254,7 @@ fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Resu
     })
 }
 
-fn calibration(row: &rusqlite::Row<'_>) -> rusqlite::Result<CalibrationRecord> {
+pub(super) fn calibration(row: &rusqlite::Row<'_>) -> rusqlite::Result<CalibrationRecord> {
     Ok(CalibrationRecord {
         made_at_us: row.get(0)?,
         due_at_us: row.get(1)?,

@@ -8,7 +8,7 @@ mod recipes;
 
 use super::access::Role;
 use super::router::Desk;
-use super::{events, login, lots, metrics, mimic, orders, page, trace};
+use super::{calibration, events, login, lots, metrics, mimic, orders, page, trace};
 use axum::Json;
 use axum::handler::Handler;
 use axum::routing::{MethodRouter, get, post};
@@ -156,6 +156,12 @@ pub(super) fn offers() -> Vec<Offer> {
             may("offset", "So many left out in front."),
         ]),
         Offer::get("/api/wear", JSON, "Uses of what wears since it was replaced.", lots::wear),
+        Offer::get(
+            "/api/calibration",
+            JSON,
+            "Factors with date, uncertainty and due date; golden parts with what was read last.",
+            calibration::calibration,
+        ),
         Offer::get("/metrics", "text/plain", "Figures as Prometheus text.", metrics::metrics),
         Offer::get("/api/openapi.json", JSON, "This document.", openapi),
     ];

@@ -20,6 +20,7 @@
 //! | `GET /api/history/...` | JSON, pages and files as the command `history` gives them; routes in `history.rs` |
 //! | `GET /api/recipes...`, `POST /api/recipes/revise` | what recipes say, and their next revisions (`recipes.rs`) |
 //! | `GET /api/lots`, `GET /api/wear` | lots with what may be ordered of them; counters of what wears (`lots.rs`) |
+//! | `GET /api/calibration` | factors with date, uncertainty and due date; golden parts with what was read last |
 //! | `GET /mimic.svg` | the machine to scale, from above and from the front |
 //! | `GET /api/trace` | the last traffic of every line, with its meaning |
 //! | `GET /api/openapi.json` | this list for programs, made of `api.rs` like the router itself |
@@ -29,6 +30,7 @@
 
 pub mod access;
 mod api;
+mod calibration;
 mod error;
 mod events;
 mod gate;

@@ -12,6 +12,7 @@ use std::sync::LazyLock;
 const FRAME: &str = include_str!("page/page.html");
 const PAGES: &str = concat!(
     include_str!("page/pages/alarms.html"),
+    include_str!("page/pages/calibration.html"),
     include_str!("page/pages/history.html"),
     include_str!("page/pages/lots.html"),
     include_str!("page/pages/quality.html"),
@@ -36,7 +37,9 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/alarms.js"),
     include_str!("page/script/history.js"),
     include_str!("page/script/lots.js"),
+    include_str!("page/script/calibration.js"),
     include_str!("page/script/quality.js"),
+    include_str!("page/script/cycles.js"),
     include_str!("page/script/recipe_sheet.js"),
     include_str!("page/script/recipes.js"),
     include_str!("page/script/rejudge.js"),

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod api;
+mod calibration;
 mod events;
 mod history;
 mod login;

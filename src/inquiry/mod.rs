@@ -7,6 +7,7 @@
 //! | control charts of a parameter, or of the share of every bin | [`charts`] |
 //! | lot report, certificate, list of alarms | [`paper`] |
 //! | how the time of a lot was used | [`use_of_time`] |
+//! | calibrations with their due dates, golden parts | [`instruments`] |
 //! | what another recipe would have said of a lot | [`rejudge`] |
 //! | all parts of a filter as CSV or spreadsheet | [`export`] |
 //!
@@ -18,6 +19,7 @@ pub mod checks;
 mod error;
 pub mod export;
 pub mod figures;
+pub mod instruments;
 pub mod paper;
 pub mod rejudge;
 mod use_of_time;

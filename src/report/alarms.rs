@@ -2,7 +2,7 @@
 
 use super::Paper;
 use super::page::{Format, head, page};
-use super::words::span;
+use super::words::{Language, span};
 use crate::history::{Alarm, AlarmState};
 use maud::{Markup, html};
 
@@ -36,7 +36,8 @@ pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
                     td.text { (state(paper, it)) }
                     td.text { (it.lot.as_deref().unwrap_or("–")) @if let Some(run) = it.run { " / " (run) } }
                     td { (it.code) }
-                    td.text { (it.text) @if let Some(line) = &it.line { " (" (line) ")" } }
+                    td.text { @if let (Language::Zh, Some(cause)) = (paper.language, it.cause_zh) { (cause) br; }
+                        (it.text) @if let Some(line) = &it.line { " (" (line) ")" } }
                 } } }
             }
         }

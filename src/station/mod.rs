@@ -22,6 +22,7 @@ pub mod act;
 pub mod annunciator;
 mod asked;
 pub mod catalogue;
+mod chinese;
 pub mod clamp;
 pub mod feed;
 pub mod gates;

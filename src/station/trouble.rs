@@ -1,5 +1,6 @@
 //! Alarms: trouble of the rig, each with what happened and what to do, in English and Chinese.
 
+use super::chinese;
 use super::moves::Move;
 use crate::rig::point::DigitalIn;
 use crate::units::Span;
@@ -46,7 +47,8 @@ impl Alarm {
                 wanted.join(", ")
             ),
             format!(
-                "{key} 动作 {movement:?} 在 {ms} 毫秒内未到位（应为 {}）。请检查气源、传感器和障碍物。",
+                "{}在 {ms} 毫秒内未到位（应为 {}）。请检查气源、传感器和障碍物。",
+                chinese::motion(movement),
                 wanted.join("，")
             ),
         )
@@ -57,7 +59,7 @@ impl Alarm {
         Self::new(
             "motion_refused",
             format!("{movement:?} refused: {refusal}"),
-            format!("动作 {movement:?} 被防碰撞检查拒绝：{refusal}"),
+            format!("{}被防碰撞检查拒绝：{refusal}", chinese::motion(movement)),
         )
     }
 
@@ -133,7 +135,10 @@ impl Alarm {
             format!(
                 "The beam of bin {bin} counted {seen} parts where one was let go. Check the bin and the chute."
             ),
-            format!("料箱 {bin} 的光电传感器计到 {seen} 个工件，应为 1 个。请检查料箱和滑道。"),
+            format!(
+                "{}箱的光电传感器计到 {seen} 个工件，应为 1 个。请检查料箱和滑道。",
+                chinese::bin(bin)
+            ),
         )
     }
 
@@ -149,7 +154,10 @@ impl Alarm {
             format!(
                 "A part lies in the {place} that does not belong to this run. It goes to retest."
             ),
-            format!("{place} 内有不属于本次运行的工件，将送入复测箱。"),
+            format!(
+                "{}内有不属于本次运行的工件，将送入复测箱。",
+                chinese::name(place)
+            ),
         )
     }
 
@@ -158,7 +166,7 @@ impl Alarm {
         Self::new(
             "part_lost",
             format!("The part of the {place} is not there any more. Find it and scrap it."),
-            format!("{place} 的工件已不在原位。请找到并报废。"),
+            format!("{}的工件已不在原位。请找到并报废。", chinese::name(place)),
         )
     }
 
@@ -194,7 +202,10 @@ impl Alarm {
         Self::new(
             "bin_full",
             format!("The beam of bin {bin} stays dark. Empty the bin; the line goes on by itself."),
-            format!("料箱 {bin} 的光电长时间被遮挡。请清空料箱；生产线自动继续。"),
+            format!(
+                "{}箱的光电长时间被遮挡。请清空料箱；生产线自动继续。",
+                chinese::bin(bin)
+            ),
         )
     }
 
@@ -205,7 +216,10 @@ impl Alarm {
         Self::new(
             format!("{key}_retried"),
             format!("{movement:?} not finished within {ms} ms; it goes back and tries once more."),
-            format!("{key} 动作 {movement:?} 在 {ms} 毫秒内未到位；退回后重试一次。"),
+            format!(
+                "{}在 {ms} 毫秒内未到位；退回后重试一次。",
+                chinese::motion(movement)
+            ),
         )
     }
 
@@ -217,7 +231,11 @@ impl Alarm {
             format!(
                 "The {key} left the end of {movement:?} although nothing moves it. Check air, hoses and sensor."
             ),
-            format!("{key} 在未动作时离开 {movement:?} 的端位。请检查气源、气管和传感器。"),
+            format!(
+                "{}在未动作时离开“{}”的端位。请检查气源、气管和传感器。",
+                chinese::name(key),
+                chinese::motion(movement)
+            ),
         )
     }
 
@@ -227,7 +245,11 @@ impl Alarm {
         Self::new(
             format!("{key}_both_ends"),
             format!("The {key} shows both ends at once (after {movement:?}). One sensor is stuck."),
-            format!("{key} 两端传感器同时有信号（动作 {movement:?} 之后）。其中一个传感器卡住。"),
+            format!(
+                "{}两端传感器同时有信号（“{}”之后）。其中一个传感器卡住。",
+                chinese::name(key),
+                chinese::motion(movement)
+            ),
         )
     }
 

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { SIZES, leave, looks, open, shown, visit } from "./browser.mjs";
-import { start } from "./rig.mjs";
+import { WORDS, start } from "./rig.mjs";
 
 let rig, browser;
 before(async () => {
@@ -37,6 +37,8 @@ test("the history is asked with the filter of the command line, and a part leads
   assert.equal(await page.textContent("#h_trouble"), "");
   await page.click("#parts tr a");
   await page.waitForSelector("#part_replies tr");
+  await page.waitForSelector("#part_bars rect");
+  assert.ok(await page.$$eval("#part_bars rect", (all) => all.length) >= 8, "a bar for every quantity");
   assert.ok(await rows(page, "#part_replies") > 20);
   assert.match(await page.textContent("#part_replies"), /!|>/);
   await leave(page);
@@ -86,9 +88,21 @@ test("charts and histograms are those of the paper, with capability beside them"
   await page.waitForSelector("#q_charts svg");
   await page.waitForSelector("#q_histograms svg");
   await page.waitForSelector("#q_cycle rect");
+  await page.waitForSelector("#q_stored rect");
+  assert.ok(await page.$$eval("#q_stored rect", (all) => all.length) >= 12, "test and way of the last parts");
   assert.equal(await rows(page, "#q_stats"), 11);
   await page.selectOption("#q_param", "release_time_ms");
   await shown(page, "#q_charts", "elease time");
+  await leave(page);
+});
+
+test("factors are told with uncertainty and due date, and golden parts with what they read last", async () => {
+  const page = await visit(browser, rig, { path: "/#calibration" });
+  await page.waitForSelector("#c_factors .due");
+  assert.equal(await page.$$eval("#c_factors .due.bad", (all) => all.length), 0);
+  await shown(page, "#c_factors", WORDS["factor.operate_lag"].en);
+  await shown(page, "#c_golden", "G-12-1");
+  await shown(page, "#c_check", WORDS["c.agreed"].en);
   await leave(page);
 });
 
@@ -117,7 +131,7 @@ for (const size of SIZES) {
     await page.click("#j_go");
     await page.waitForSelector("#j_changes dd");
     await looks(page, `rejudge-${size.width}`);
-    for (const [name, ready] of [["quality", "#q_histograms svg"], ["bus", "#bus tr"], ["trace", "#trace tr"], ["io", "#inputs li"]]) {
+    for (const [name, ready] of [["quality", "#q_histograms svg"], ["calibration", "#c_golden td"], ["bus", "#bus tr"], ["trace", "#trace tr"], ["io", "#inputs li"]]) {
       await page.click(`nav a[href="#${name}"]`);
       await page.waitForSelector(ready);
       await looks(page, `${name}-${size.width}`);

@@ -166,7 +166,9 @@ fn what_is_read_or_deleted_part_by_part_is_found_by_its_key() {
         lots::COUNTS,
         values::LIMITS,
     ];
-    for sql in fixed.into_iter().chain(retention::EMPTYING) {
+    let golden = filter::golden_part();
+    let all = fixed.into_iter().chain([golden.as_str()]);
+    for sql in all.chain(retention::EMPTYING) {
         let plan = explained(&by_hand, sql);
         let is_alarm = sql.contains("FROM alarm");
         assert!(plan.contains("SEARCH"), "{sql}\n{plan}");

@@ -81,6 +81,8 @@ fn every_word_in_the_table_is_used() {
         "lot_state",
         "counter",
         "role",
+        "factor",
+        "body",
     ];
     for key in table().keys() {
         let family = key.split('.').next().unwrap();
@@ -142,6 +144,28 @@ fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_wor
             let name = format!("choice.{}", word.as_str().unwrap());
             assert!(table.contains_key(&name), "{name}");
         }
+    }
+}
+
+#[test]
+fn every_body_of_the_scene_has_a_word_on_the_screen() {
+    let table = table();
+    let scene = std::fs::read_to_string("config/scene.toml").unwrap();
+    let scene: toml::Table = scene.parse().unwrap();
+    let bodies = scene["elements"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|it| it["id"].as_str().unwrap());
+    let parts = [
+        "part_feed",
+        "part_pocket",
+        "part_pusher",
+        "part_nest",
+        "part_gripper",
+    ];
+    for body in bodies.chain(parts) {
+        assert!(table.contains_key(&format!("body.{body}")), "{body}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! The catalogue knows every alarm, in both languages, once.
 
+use crate::gauge::Bin;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
 use crate::station::catalogue::{entry, every};
@@ -92,4 +93,41 @@ fn cause_consequence_and_action_are_told_in_both_languages() {
             assert!(zh.ends_with('。') && chinese(zh), "{}: {zh}", entry.code);
         }
     }
+}
+
+#[test]
+fn what_a_chinese_text_is_about_is_named_in_chinese() {
+    let begins_chinese = |text: &str| text.starts_with(|c| ('\u{4e00}'..='\u{9fff}').contains(&c));
+    let places = ["pocket", "nest", "gripper"]
+        .map(|place| [Alarm::part_found(place), Alarm::part_lost(place)]);
+    let bins = Bin::ALL
+        .iter()
+        .map(|bin| [Alarm::beam(bin.name(), 2), Alarm::bin_full(bin.name())]);
+    let after = Span::ms(900);
+    let moves = MOVES.into_iter().chain(
+        Bin::ALL
+            .iter()
+            .map(|bin| Move::AxisTo(AxisStation::Bin(*bin))),
+    );
+    let moved = moves.map(|it| {
+        [
+            Alarm::not_reached(it, after),
+            Alarm::retried(it, after),
+            Alarm::refused(it, ""),
+        ]
+    });
+    let ended = MOVES.map(|it| [Alarm::left_end(it), Alarm::both_ends(it)]);
+    let of_two = places.into_iter().chain(bins).chain(ended).flatten();
+    for alarm in of_two.chain(moved.flatten()) {
+        assert!(
+            begins_chinese(&alarm.text_zh),
+            "{}: {}",
+            alarm.code,
+            alarm.text_zh
+        );
+    }
+    assert_eq!(
+        Alarm::part_lost("gripper").text_zh,
+        "夹爪的工件已不在原位。请找到并报废。"
+    );
 }

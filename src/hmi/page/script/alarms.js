@@ -17,7 +17,7 @@ function showAlarmBar(alarms) {
 const said = (alarm, what) => alarm[what + (language === "zh" ? "_zh" : "_en")];
 const matches = (alarm) => {
   const text = at("alarm_search").value.trim().toLowerCase();
-  return [alarm.code, alarm.text, alarm.text_en, alarm.text_zh].some((it) => it && it.toLowerCase().includes(text));
+  return [alarm.code, alarm.text, alarm.text_en, alarm.text_zh, alarm.cause_zh].some((it) => it && it.toLowerCase().includes(text));
 };
 
 // One that stands, with why, what follows and what to do; the buttons stay while the text changes.
@@ -91,9 +91,16 @@ async function readPast() {
   showPast();
 }
 
+// The very words are kept in English; beside them the cause that the catalogue has for the code.
+function pastText(it) {
+  const text = make("span", language === "zh" && it.cause_zh ? it.cause_zh : it.text);
+  text.title = it.text;
+  return text;
+}
+
 function showPast() {
   at("past").replaceChildren(...past.filter(matches).map((it) =>
-    row(clock(it.raised), clock(it.cleared), it.lot || NONE, it.code, it.text)));
+    row(clock(it.raised), clock(it.cleared), it.lot || NONE, it.code, pastText(it))));
 }
 
 at("alarm_since").addEventListener("change", readPast);

@@ -116,6 +116,7 @@ function showPart(part) {
     return row(known("key." + it.parameter, it.parameter), String(it.attempt), value, uncertainty,
       unitOf(it.parameter), limitText(it), verdictCell(it.verdict));
   }));
+  showTestBars(part);
   at("part_replies").replaceChildren(...part.measurements.flatMap((it) => it.samples.map((sample) =>
     row(known("key." + it.parameter, it.parameter), sample.line, sample.module, sample.channel,
       sample.command, sample.raw, sample.at.slice(11)))));

@@ -49,8 +49,11 @@ function showMimic() {
 
 // --- a motion that the guard refused: mover, blocker, the room it would sweep ---
 
+// A plant with a scene of its own has bodies without a word here.
+const bodyText = (id) => known("body." + id, id.replaceAll("_", " "));
+
 const refusedText = ({mover, blocker, distance_mm: distance, margin_mm: margin, text}) => (mover === "" ? text
-  : (mover + " → " + blocker).replaceAll("_", " ") + ", " + word("collision.distance") + " " + distance.toFixed(2) + " mm, " +
+  : bodyText(mover) + " → " + bodyText(blocker) + ", " + word("collision.distance") + " " + distance.toFixed(2) + " mm, " +
     word("collision.needed") + " > " + margin.toFixed(2) + " mm");
 
 // Corners around `points`, each [x, y]; Andrew's monotone chain.

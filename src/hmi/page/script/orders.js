@@ -8,10 +8,16 @@ async function give(order) {
   try {
     const reply = await post("/api/orders", order);
     const body = await reply.json();
-    return reply.ok ? "" : (language === "zh" && body.reason_zh) || body.reason;
+    return reply.ok ? "" : (language === "zh" && (refusedJog(order) || body.reason_zh)) || body.reason;
   } catch {
     return word("stop.lost");
   }
+}
+
+// Of a motion that the guard refuses: with the words of the page for both bodies.
+function refusedJog({order, motion}) {
+  const jog = order === "jog" && view.machine.jogs.find((it) => it.motion === motion);
+  return jog && jog.refused && jog.refused.mover ? word("collision") + ": " + refusedText(jog.refused) : "";
 }
 
 function whyNot(order, withWhat = "") {

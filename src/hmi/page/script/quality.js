@@ -34,12 +34,12 @@ async function readQuality() {
   const read = [
     figures("/api/history/report/chart" + query({lot, param, last: 100, lang: language}), "main figure"),
     figures("/api/history/report/lot" + query({lot, lang: language}), ".figures figure"),
-    ask("/api/history/stats" + query({lot, param})).then((it) => it.json())];
-  const [charts, histograms, stats] = await Promise.allSettled(read);
+    ask("/api/history/stats" + query({lot, param})).then((it) => it.json()), showStoredCycles(lot)];
+  const [charts, histograms, stats, cycles] = await Promise.allSettled(read);
   at("q_charts").replaceChildren(...(charts.value || []));
   at("q_histograms").replaceChildren(...(histograms.value || []));
   showCapability(stats.value, unitOf(param));
-  const trouble = [charts, histograms, stats].find((it) => it.status === "rejected");
+  const trouble = [charts, histograms, stats, cycles].find((it) => it.status === "rejected");
   at("q_trouble").textContent = trouble ? trouble.reason.message : "";
 }
 

@@ -87,6 +87,7 @@ fn alarm(lot: &str, code: &str, raised_s: u64) -> Alarm {
         code: code.into(),
         line: None,
         text: code.into(),
+        cause_zh: None,
         raised: at(raised_s),
         cleared: None,
         acknowledged: None,

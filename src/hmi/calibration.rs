@@ -1,0 +1,19 @@
+//! `GET /api/calibration`: what measurements lean on, of the rig that the view shows.
+
+use super::error::HmiError;
+use super::router::Desk;
+use crate::config::Plant;
+use crate::inquiry::instruments::{Instruments, instruments};
+use axum::Json;
+use axum::extract::State;
+
+/// `GET /api/calibration`.
+pub(super) async fn calibration(State(desk): State<Desk>) -> Result<Json<Instruments>, HmiError> {
+    let simulated = desk.shared.view.borrow().simulated;
+    let dir = desk.shared.config.clone();
+    let read = move |archive: &crate::history::Archive| {
+        let plant = Plant::load(&dir)?;
+        Ok(instruments(archive, simulated, &plant.golden.parts)?)
+    };
+    desk.readers.read(read).await.map(Json)
+}

@@ -1,0 +1,71 @@
+// Stored times as bars: one test by the replies that its values were made of, and the last parts of a lot through the machine.
+
+const seconds = (when) => Date.parse(when) / 1000;
+
+// Rows of [label, bars], a bar {from, to, name, kind} in seconds; ticks on round seconds.
+function timeBars(rows, label) {
+  const all = rows.flatMap(([, bars]) => bars), high = 24, left = 190, wide = 1000 - left;
+  const begin = Math.min(...all.map((it) => it.from)), span = Math.max(...all.map((it) => it.to)) - begin || 1;
+  const x = (at) => left + wide * (at - begin) / span;
+  const svg = drawn("svg", {viewBox: "0 0 1000 " + (rows.length * high + 26), role: "img", "aria-label": label, class: "bars"});
+  const say = (text, at, y) => {
+    const element = drawn("text", {x: at, y, class: "label"});
+    element.textContent = text;
+    svg.append(element);
+  };
+  const step = [.1, .2, .5, 1, 2, 5, 10, 20, 60].find((it) => span / it < 9) || 300;
+  for (let at = 0; at <= span; at += step) {
+    svg.append(drawn("path", {d: "M" + x(begin + at) + " 0V" + rows.length * high, class: "rule"}));
+    say(Number(at.toFixed(1)) + " s", x(begin + at) - 4, rows.length * high + 18);
+  }
+  rows.forEach(([name, bars], place) => {
+    say(name, 0, place * high + 17);
+    for (const it of bars) {
+      const bar = drawn("rect", {x: x(it.from), y: place * high + 4, width: Math.max(2, x(it.to) - x(it.from)), height: high - 8,
+        class: "busy " + (it.kind || "")});
+      const title = drawn("title", {});
+      title.textContent = it.name + ": " + ((it.to - it.from) * 1000).toFixed(0) + " ms";
+      bar.append(title);
+      svg.append(bar);
+    }
+  });
+  return svg;
+}
+
+// Probes up to verdict, and from there to the beam of the bin.
+function partBars(part) {
+  const judged = seconds(part.time), bars = [];
+  if (part.test_s !== null) bars.push({from: judged - part.test_s, to: judged, name: word("h.test_s")});
+  if (part.landed_at) bars.push({from: judged, to: seconds(part.landed_at), name: word("g.travels"), kind: "soft"});
+  return bars;
+}
+
+// Times that follow on each other within a twentieth of a second belong together: NC is looked at before and after.
+function together(times, name) {
+  const bars = [];
+  for (const at of times.sort((a, b) => a - b)) {
+    const last = bars.at(-1);
+    if (last && at - last.to < .05) last.to = at;
+    else bars.push({from: at, to: at, name});
+  }
+  return bars;
+}
+
+function showTestBars(part) {
+  const rows = part.measurements.filter((it) => it.samples.length).map((it) => {
+    const name = known("key." + it.parameter, it.parameter);
+    return [name + (it.attempt > 1 ? " " + it.attempt : ""), together(it.samples.map((sample) => seconds(sample.at)), name)];
+  }).sort((a, b) => a[1][0].from - b[1][0].from);
+  const test = partBars(part).slice(0, 1);
+  at("part_bars").replaceChildren(...(rows.length ? [timeBars(test.length ? [[word("h.test_s"), test], ...rows] : rows, word("g.test"))] : []));
+}
+
+const LAST_PARTS = 12;
+
+// How the last parts of a lot overlap: one is tested while the one before it travels.
+async function showStoredCycles(lot) {
+  const {parts: count} = await (await ask("/api/history/count" + query({lot}))).json();
+  const members = {lot, limit: LAST_PARTS, offset: Math.max(0, count - LAST_PARTS)};
+  const parts = (await (await ask("/api/history/query" + query(members))).json()).filter((it) => partBars(it).length);
+  at("q_stored").replaceChildren(...(parts.length ? [timeBars(parts.map((it) => [word("h.part") + " " + it.seq, partBars(it)]), word("g.stored"))] : []));
+}
