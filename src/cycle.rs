@@ -38,6 +38,7 @@ use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Inputs, Wants};
 use crate::units::{RigTime, Span};
 use crate::view::{self, View};
+pub use desk::PANEL;
 pub use event::Event;
 use patience::Patience;
 pub use profile::Profile;
@@ -160,6 +161,7 @@ impl Cycle {
             self.apply(now, &mut wants);
             lap(&mut self.profile.apply_s, &mut clock);
             self.answer(&mut wants, now);
+            self.pressed(&mut wants, now);
             self.record(now, &mut wants);
             clock = Instant::now();
             self.publish(now, wants.ending.is_some());

@@ -6,7 +6,10 @@ use crate::station::moves::Move;
 use crate::station::orders::{Order, Refused};
 use crate::station::wants::Wants;
 use crate::units::RigTime;
-use crate::view::{Answered, NotTaken};
+use crate::view::{self, Answered, By, NotTaken};
+
+/// Origin of what is ordered with a button at the machine.
+pub const PANEL: &str = "panel";
 
 fn not_taken(why: Refused) -> NotTaken {
     NotTaken {
@@ -39,6 +42,24 @@ impl Cycle {
         let asked: Vec<_> = self.asked.drain(..).collect();
         for (asked, answer) in asked.into_iter().zip(wants.answers.drain(..)) {
             self.say(asked, answer, now);
+        }
+    }
+
+    /// Buttons at the machine have no screen to answer to: the audit hears of them.
+    pub(super) fn pressed(&self, wants: &mut Wants, now: RigTime) {
+        for (command, answer) in wants.pressed.drain(..) {
+            let answered = Answered {
+                order: view::Order {
+                    order: command.name().to_owned(),
+                    ..view::Order::default()
+                },
+                by: By {
+                    origin: PANEL.to_owned(),
+                    ..By::default()
+                },
+                refused: answer.err().map(|why| why.en),
+            };
+            self.tell(Event::Ordered(Box::new(answered), now));
         }
     }
 

@@ -4,7 +4,9 @@ use super::Station;
 use super::annunciator::Standing;
 use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
+use super::trouble::Alarm;
 use super::wants::{Ending, Jog, Wants};
+use crate::rig::image::Image;
 use crate::units::{RigTime, Span};
 
 impl Station {
@@ -60,6 +62,18 @@ impl Station {
             }
         }
         Ok(())
+    }
+
+    /// Buttons at the machine: their orders are answered here; what is stuck is given back.
+    pub(super) fn pressed(&mut self, now: RigTime, image: &Image, wants: &mut Wants) -> Vec<Alarm> {
+        let (commands, stuck) = self.panel.look(now, image, self.state);
+        for command in commands {
+            let answer = self.order(Order::Command(command), now, wants);
+            // Nobody is there to start again.
+            self.stopping |= command == Command::Stop && !self.plan.stays;
+            wants.pressed.push((command, answer));
+        }
+        stuck
     }
 
     /// Whether a command would be taken now; the reason stands beside its button.

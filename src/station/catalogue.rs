@@ -378,6 +378,21 @@ const MACHINE: &[Entry] = &[
         ),
     },
     Entry {
+        code: "button_stuck",
+        stops: Stops::Nothing,
+        goes: Goes::BySensor,
+        retries: 0,
+        cause: (
+            "A push button is held, jammed, or its contact is welded.",
+            "按钮被按住、卡滞或触点熔焊。",
+        ),
+        consequence: GOES_ON,
+        action: (
+            "Free the button or replace its contact.",
+            "松开按钮或更换触点。",
+        ),
+    },
+    Entry {
         code: "watchdog_tripped",
         stops: Stops::Nothing,
         goes: Goes::AtOnce,

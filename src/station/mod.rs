@@ -34,6 +34,7 @@ pub mod mechanism;
 pub mod moves;
 pub mod orders;
 pub mod packml;
+mod panel;
 mod patience;
 mod produce;
 pub mod recovery;
@@ -65,6 +66,7 @@ use ledger::Ledger;
 use mechanism::Mechanism;
 use moves::Move;
 use packml::{Mode, State};
+use panel::Panel;
 use patience::Patience;
 use recovery::Recovery;
 use sort::Sort;
@@ -140,6 +142,9 @@ pub struct Station {
     mechanism: Mechanism,
     annunciator: Annunciator,
     patience: Patience,
+    panel: Panel,
+    /// When the emergency-stop chain was last seen open.
+    chain_open: Option<RigTime>,
     lamps: Lamps,
     dark: Vec<(crate::rig::point::DigitalIn, RigTime)>,
     /// Motions that wait for a step in maintenance.
@@ -193,6 +198,8 @@ impl Station {
             mechanism,
             annunciator: Annunciator::default(),
             patience: Patience::default(),
+            panel: Panel::default(),
+            chain_open: None,
             lamps: Lamps::default(),
             dark: Vec::new(),
             stepwise: VecDeque::new(),
@@ -305,11 +312,12 @@ impl Station {
             let answer = self.order(order, now, &mut wants);
             wants.answers.push(answer);
         }
+        let stuck = self.pressed(now, inputs.image, &mut wants);
         self.by_itself(now, &inputs, &mut wants);
         if self.ended {
             return wants;
         }
-        self.look(now, &inputs, &mut wants);
+        self.look(now, &inputs, stuck, &mut wants);
         self.raise_all(now, &mut wants);
         if !wants.safe && !self.ended {
             self.act(now, inputs, &mut wants);

@@ -21,13 +21,23 @@ const FIRST_SCAN: Span = Span::ms(3000);
 /// A beam that is dark for so long has a part standing in it; a falling one darkens it for 11 ms.
 const FULL: Span = Span::ms(500);
 
+/// Pressure is back so long after the emergency-stop chain has closed, or something is wrong with the supply.
+const PRESSURE_RETURNS: Span = Span::ms(2000);
+
 impl Station {
     /// Sensors, motions, lines, and the part that is falling.
-    pub(super) fn look(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+    pub(super) fn look(
+        &mut self,
+        now: RigTime,
+        inputs: &Inputs,
+        stuck: Vec<Alarm>,
+        wants: &mut Wants,
+    ) {
         let mut found = self.mechanism.update(now, inputs.image);
         wants.motions.extend(found.motions);
         self.still_in_nest(now, inputs.image, &mut found.alarms);
         let mut there = self.safety(now, inputs.image);
+        there.extend(stuck);
         there.extend(self.full_bins(now, inputs.image));
         there.extend(self.still_starved(now, inputs.image));
         self.annunciator.sensed(&there);
@@ -95,8 +105,12 @@ impl Station {
                 DigitalIn::EmergencyStopOk => image.emergency_stop_ok(now),
                 other => image.input(other, now, SENSOR_AGE),
             };
+            if point == DigitalIn::EmergencyStopOk && seen == Some(false) {
+                self.chain_open = Some(now);
+            }
             match seen {
                 Some(true) => {}
+                Some(false) if point == DigitalIn::AirOk && self.is_vented(now) => {}
                 Some(false) => alarms.push(Alarm::safety(code, en, zh)),
                 None => unread.push(point),
             }
@@ -117,6 +131,15 @@ impl Station {
         }
         self.sensed |= all;
         alarms
+    }
+
+    /// The emergency stop vents the air, and after its release the pressure needs a while: no trouble of its own, as
+    /// long as nothing is to move.
+    fn is_vented(&self, now: RigTime) -> bool {
+        let rests = packml::is_aborted(self.state)
+            || matches!(self.state, State::Stopped | State::Complete);
+        let since = self.chain_open.map(|at| now.since(at));
+        since == Some(Span(0)) || rests && since.is_some_and(|since| since <= PRESSURE_RETURNS)
     }
 
     fn full_bins(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {

@@ -197,6 +197,16 @@ impl Alarm {
         )
     }
 
+    /// A push button stays down.
+    pub fn button_stuck(button: DigitalIn) -> Self {
+        let name = button.name();
+        Self::new(
+            "button_stuck",
+            format!("{name} stays down. Let it go, or free it; it orders nothing until then."),
+            format!("按钮 {name} 一直处于按下状态。请松开或检修；松开前该按钮无效。"),
+        )
+    }
+
     /// The beam of a bin stays dark.
     pub fn bin_full(bin: &str) -> Self {
         Self::new(

@@ -4,6 +4,7 @@ use super::act::{Job, JobDone};
 use super::ledger::Part;
 use super::moves::Move;
 use super::orders::{Order, Refused};
+use super::packml::Command;
 use super::test::{Bench, Findings};
 use super::trouble::Alarm;
 use crate::gauge::verdict::{Bin, Judgement, Verdict};
@@ -135,6 +136,8 @@ pub struct Wants {
     pub job: Option<Job>,
     /// Beam whose event counter is to be read with every scan.
     pub beam: Option<DigitalIn>,
+    /// Orders of the buttons at the machine, each with its answer.
+    pub pressed: Vec<(Command, Result<(), Refused>)>,
     /// Trouble seen in this turn, before it was compared with what stands.
     pub trouble: Vec<Alarm>,
     /// Alarms that came anew in this turn.

@@ -48,6 +48,7 @@ faults! {
     }
     Timed {
         Door = "door", Estop = "estop", Air = "air", StopButton = "stop_button",
+        StartButton = "start_button", ResetButton = "reset_button",
         BinFull = "bin_full", Starved = "starved", SensorStuck = "sensor_stuck",
         SensorLost = "sensor_lost", SensorBounce = "sensor_bounce",
     }

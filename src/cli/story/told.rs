@@ -4,7 +4,7 @@
 //! course of a lot has none. The first alarm of a code comes with why it happens, what follows and what to do.
 
 use super::script::{Awaited, Line, Script};
-use crate::cycle::Event;
+use crate::cycle::{Event, PANEL};
 use crate::station::annunciator::Standing;
 use crate::station::catalogue;
 use crate::station::ledger::{Kind, Part};
@@ -73,6 +73,11 @@ impl Told {
             }
             Event::Landed(landed) => self.landed(landed),
             Event::Standing(standing, _) => self.standing(standing, now),
+            Event::Ordered(answered, _) if answered.by.origin == PANEL => {
+                let refused = answered.refused.as_ref();
+                let why = refused.map_or_else(String::new, |why| format!(": refused, {why}"));
+                self.stamped(now, &format!("panel     {}{why}", answered.order.order));
+            }
             Event::State(_)
             | Event::Left(_)
             | Event::Checked(..)

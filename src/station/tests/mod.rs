@@ -14,6 +14,7 @@ mod machine;
 mod mechanism;
 mod orders;
 mod packml;
+mod panel;
 mod recovery;
 mod run;
 mod safety;

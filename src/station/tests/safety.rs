@@ -140,3 +140,37 @@ fn an_empty_magazine_that_nobody_fills_ends_the_run_after_a_minute() {
     );
     assert_eq!(machine.station.ledger().came_in, 1);
 }
+
+/// Codes of what came anew while `machine` runs for so long.
+fn told(machine: &mut Machine, ms: u64) -> Vec<String> {
+    let end = machine.shop.now + Span::ms(ms);
+    let mut told = Vec::new();
+    while machine.shop.now < end {
+        told.extend(machine.turn().alarms.into_iter().map(|alarm| alarm.code));
+    }
+    told
+}
+
+#[test]
+fn an_emergency_stop_that_vents_the_air_is_one_alarm() {
+    let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
+    told(&mut machine, 2_000);
+    machine.shop.set(DigitalIn::EmergencyStopOk, false);
+    machine.shop.set(DigitalIn::AirOk, false);
+    assert_eq!(told(&mut machine, 5_000), ["emergency_stop"]);
+    machine.shop.set(DigitalIn::EmergencyStopOk, true);
+    assert!(told(&mut machine, 1_500).is_empty(), "pressure comes back");
+    machine.shop.set(DigitalIn::AirOk, true);
+    assert!(told(&mut machine, 5_000).is_empty());
+}
+
+#[test]
+fn air_that_stays_away_after_an_emergency_stop_is_told() {
+    let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
+    told(&mut machine, 2_000);
+    machine.shop.set(DigitalIn::EmergencyStopOk, false);
+    machine.shop.set(DigitalIn::AirOk, false);
+    told(&mut machine, 1_000);
+    machine.shop.set(DigitalIn::EmergencyStopOk, true);
+    assert_eq!(told(&mut machine, 3_000), ["air_lost"]);
+}

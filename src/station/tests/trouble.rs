@@ -45,6 +45,7 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::nest_empty(),
         Alarm::beam("pass", 0),
         Alarm::bin_full("pass"),
+        Alarm::button_stuck(DigitalIn::ButtonStop),
         Alarm::part_found("nest"),
         Alarm::part_lost("nest"),
         Alarm::part_dropped(),

@@ -41,7 +41,8 @@ impl Mechanism {
             In::SortZDown => far(Stroke::SortZ),
             In::GripperOpen => rest(Stroke::Gripper),
             In::GripperPart => Some(self.places.gripped || self.places.carried.is_some()),
-            In::ButtonStart | In::ButtonReset => Some(false),
+            In::ButtonStart => Some(self.is_disturbed(Fault::StartButton)),
+            In::ButtonReset => Some(self.is_disturbed(Fault::ResetButton)),
             In::ButtonStop => Some(self.is_disturbed(Fault::StopButton)),
             In::BeamPass if self.is_disturbed(Fault::BinFull) => Some(true),
             In::BeamPass
