@@ -55,6 +55,8 @@ pub enum Place {
 pub struct BodyTruth {
     /// A golden part.
     pub golden: bool,
+    /// It clung to the body before it, went wherever that went, and was never tested.
+    pub clung: bool,
     /// Where it came to and when, rig time in microseconds, in order of time.
     pub path: Vec<(u64, Place)>,
     /// What it was.

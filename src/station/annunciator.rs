@@ -103,7 +103,7 @@ impl Annunciator {
         });
     }
 
-    /// An alarm is there; true when its cause was not there before.
+    /// An alarm is there; true when its cause was not there before, or when it is about a body of its own.
     pub fn raise(&mut self, alarm: &Alarm, now: RigTime) -> bool {
         let quiet = !self.standing.iter().any(Standing::is_active);
         let at_once = catalogue::entry(&alarm.code).is_some_and(|entry| entry.goes == Goes::AtOnce);
@@ -144,7 +144,7 @@ impl Annunciator {
             known.first_out = quiet && !at_once;
             known.inherited = false;
         }
-        again
+        again || catalogue::ABOUT_A_BODY.contains(&known.alarm.code.as_str())
     }
 
     /// Alarms that go by their sensor and whose cause is not among `there` any more have gone.

@@ -468,6 +468,9 @@ pub fn every() -> impl Iterator<Item = &'static Entry> {
 /// Alarms after which nothing is measured before a new calibration.
 pub const NEEDS_CALIBRATION: [&str; 2] = ["calibration_failed", "calibration_overdue"];
 
+/// Alarms of which each is about another body: told anew even while the one before it stands.
+pub const ABOUT_A_BODY: [&str; 1] = ["bin_beam"];
+
 /// The entry of a code; codes that name an actuator are found by their ending.
 pub fn entry(code: &str) -> Option<&'static Entry> {
     every().find(|entry| match entry.code.strip_prefix('_') {

@@ -326,7 +326,7 @@ impl Station {
         self.postpone(now, &mut wants);
         debug_assert!(self.ledger.balances(), "a part is in two places or in none");
         self.annunciator.unshelve(now);
-        wants.alarms_changed = self.annunciator.take_changed();
+        wants.alarms_changed |= self.annunciator.take_changed();
         let stack = self
             .lamps
             .show(now, self.state, self.annunciator.standing(), wants.safe);

@@ -234,7 +234,7 @@ impl Station {
         self.make_safe(why, now, wants);
         self.enter(Command::Abort, now, wants);
         if !self.plan.stays {
-            self.end(Ending::Alarm, wants);
+            self.end(Ending::Alarm, now, wants);
         }
     }
 

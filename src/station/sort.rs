@@ -172,13 +172,14 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
         .image
         .events(beam)
         .filter(|count| count.origin.at > since)
-        .map(|count| count.count);
-    match count.map(|count| count.wrapping_sub(before) & 0xFFFF) {
-        Some(1) if now.since(*falling.seen.get_or_insert(now)) >= SECOND_BODY => {
+        .map(|count| (count.origin.at, count.count));
+    match count.map(|(at, count)| (at, count.wrapping_sub(before) & 0xFFFF)) {
+        // An older count knows nothing of what came after it.
+        Some((at, 1)) if at.since(*falling.seen.get_or_insert(at)) >= SECOND_BODY => {
             landed(turn, bin);
         }
-        Some(1) => {}
-        Some(several) if several > 1 => {
+        Some((_, 1)) => {}
+        Some((_, several)) if several > 1 => {
             turn.alarm(Alarm::beam(bin.name(), several));
             landed(turn, bin);
         }

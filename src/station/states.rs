@@ -33,7 +33,7 @@ impl Station {
         }
         if inputs.abort && !packml::is_aborted(self.state) {
             self.make_safe("stopped by the operator", now, wants);
-            self.end(Ending::Stopped, wants);
+            self.end(Ending::Stopped, now, wants);
         }
         let rests = matches!(
             self.state,
@@ -50,6 +50,7 @@ impl Station {
                     } else {
                         Ending::Stopped
                     },
+                    now,
                     wants,
                 );
             }
@@ -60,13 +61,21 @@ impl Station {
             (false, _, State::Idle) if self.fresh => self.enter(Command::Start, now, wants),
             (false, false, State::Suspended) if now.since(self.entered) > ALONE => {
                 self.make_safe("suspended for too long", now, wants);
-                self.end(Ending::Alarm, wants);
+                self.end(Ending::Alarm, now, wants);
             }
             (..) => {}
         }
     }
 
-    pub(super) fn end(&mut self, ending: Ending, wants: &mut Wants) {
+    /// The run is over. Nobody will look for a part that is on its way to its bin: it is told.
+    pub(super) fn end(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
+        if let Some(falling) = self.ledger.lose_falling() {
+            let alarm = Alarm::beam_unread(falling.bin.name());
+            if self.annunciator.raise(&alarm, now) {
+                wants.alarms.push(alarm);
+                wants.alarms_changed |= self.annunciator.take_changed();
+            }
+        }
         wants.safe = true;
         wants.ending = Some(ending);
         self.ended = true;
@@ -121,7 +130,7 @@ impl Station {
             } else {
                 Ending::Complete
             };
-            self.end(ending, wants);
+            self.end(ending, now, wants);
         }
     }
 

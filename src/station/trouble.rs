@@ -130,13 +130,35 @@ impl Alarm {
 
     /// The beam of a bin saw no part, or more than one.
     pub fn beam(bin: &str, seen: u32) -> Self {
+        let (more_en, more_zh) = if seen > 1 {
+            (
+                " What came with it was never tested: take it out.",
+                "随之落下的工件未经测试，请取出。",
+            )
+        } else {
+            ("", "")
+        };
         Self::new(
             "bin_beam",
             format!(
-                "The beam of bin {bin} counted {seen} parts where one was let go. Check the bin and the chute."
+                "The beam of bin {bin} counted {seen} parts where one was let go.{more_en} Check the bin and the chute."
             ),
             format!(
-                "{}箱的光电传感器计到 {seen} 个工件，应为 1 个。请检查料箱和滑道。",
+                "{}箱的光电传感器计到 {seen} 个工件，应为 1 个。{more_zh}请检查料箱和滑道。",
+                chinese::bin(bin)
+            ),
+        )
+    }
+
+    /// The run ended before the beam of a bin had seen the part that was let go over it.
+    pub fn beam_unread(bin: &str) -> Self {
+        Self::new(
+            "bin_beam",
+            format!(
+                "The run ended before the beam of bin {bin} had confirmed the part let go over it. Look whether it is there."
+            ),
+            format!(
+                "运行结束时，{}箱的光电传感器尚未确认放下的工件。请检查工件是否在料箱内。",
                 chinese::bin(bin)
             ),
         )

@@ -53,13 +53,23 @@ impl Part {
         }
     }
 
-    /// The same with its way.
-    pub fn body(&self) -> BodyTruth {
-        BodyTruth {
+    /// The same with its way, and the body that clings to it.
+    pub fn bodies(&self) -> impl Iterator<Item = BodyTruth> {
+        let own = BodyTruth {
             golden: self.number.is_none(),
+            clung: false,
             path: self.path.clone(),
             part: self.truth(),
-        }
+        };
+        let second = self.double.then(|| BodyTruth {
+            clung: true,
+            part: PartTruth {
+                landed_in: own.part.landed_in.clone(),
+                ..PartTruth::default()
+            },
+            ..own.clone()
+        });
+        std::iter::once(own).chain(second)
     }
 
     /// It comes to a place.

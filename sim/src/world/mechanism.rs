@@ -166,10 +166,10 @@ impl Mechanism {
     /// Every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
         let falling = self.later.iter().filter_map(|(_, what)| match what {
-            Later::Land(_, part) => Some(part.body()),
+            Later::Land(_, part) => Some(part.bodies()),
             _ => None,
         });
-        let mut all: Vec<BodyTruth> = self.places.bodies().chain(falling).collect();
+        let mut all: Vec<BodyTruth> = self.places.bodies().chain(falling.flatten()).collect();
         all.sort_by_key(|body| body.path.first().map(|(at, _)| *at));
         all
     }

@@ -39,7 +39,7 @@ impl Places {
 
     /// A part has left the line.
     pub fn finish(&mut self, part: &Part) {
-        self.done.push(part.body());
+        self.done.extend(part.bodies());
     }
 
     /// Number in the lot of the part that the fingers hold.
@@ -61,7 +61,7 @@ impl Places {
     /// Every body that has left the magazine and is not in the air, in no order.
     pub fn bodies(&self) -> impl Iterator<Item = BodyTruth> + '_ {
         let inside = [&self.pocket, &self.pushed, &self.nest, &self.carried];
-        let inside = inside.into_iter().flatten().map(|part| part.body());
+        let inside = inside.into_iter().flatten().flat_map(|part| part.bodies());
         self.done.iter().cloned().chain(inside)
     }
 }

@@ -109,3 +109,13 @@ fn what_nobody_had_seen_before_a_restart_is_still_unseen_after_it() {
     assert!(list.standing()[0].shelved_until.is_none());
     assert_eq!(list.standing()[0].count, 3);
 }
+
+#[test]
+fn a_second_body_that_no_beam_saw_is_told_although_the_first_alarm_stands() {
+    let mut list = Annunciator::default();
+    assert!(list.raise(&Alarm::beam("retest", 2), RigTime(1)));
+    assert!(list.raise(&Alarm::beam("pass", 0), RigTime(2)));
+    let standing = list.standing();
+    assert_eq!((standing.len(), standing[0].count), (1, 2));
+    assert!(standing[0].alarm.text_en.contains("pass"));
+}

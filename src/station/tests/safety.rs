@@ -71,6 +71,22 @@ fn trouble_of_a_line_ends_the_run_like_an_emergency_stop() {
 }
 
 #[test]
+fn a_part_that_is_on_its_way_to_its_bin_when_the_run_ends_is_told() {
+    let mut machine = Machine::new(Some(2), vec![Specimen::StuckNo; 2]);
+    while machine.station.ledger().falling.is_none() {
+        machine.turn();
+    }
+    machine.bus = Some(Alarm::bus("line motion is silent"));
+    let wants = machine.turn();
+    let codes: Vec<&str> = wants.alarms.iter().map(|it| it.code.as_str()).collect();
+    assert_eq!(codes, ["bus_trouble", "bin_beam"]);
+    assert!(wants.alarms[1].text_en.contains("contact"), "{wants:?}");
+    assert!(wants.alarms_changed && wants.ending == Some(Ending::Alarm));
+    let ledger = machine.station.ledger();
+    assert!(ledger.balances() && ledger.lost == 1);
+}
+
+#[test]
 fn a_refused_motion_makes_everything_safe() {
     let mut machine = under_test();
     let mut wants = Wants::default();

@@ -190,9 +190,13 @@ fn one_count_of_the_beam_lands_the_part_even_across_the_wrap() {
         assert_eq!((sort, &*shop.wants.motions), (Sort::Returning, &[HOME][..]));
         assert!(shop.wants.landed.is_empty(), "a second body may follow");
         shop.after(79);
+        beam(&mut shop, Bin::Voltage, after);
         step(sort, &mut shop, false);
         assert!(shop.wants.landed.is_empty());
         shop.after(1);
+        step(sort, &mut shop, false);
+        assert!(shop.wants.landed.is_empty(), "that count is too old");
+        beam(&mut shop, Bin::Voltage, after);
         step(sort, &mut shop, false);
         let landed = &shop.wants.landed[0];
         assert_eq!((landed.bin, landed.part.ordinal), (Bin::Voltage, 1));

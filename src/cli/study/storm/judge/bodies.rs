@@ -1,10 +1,11 @@
 //! Every body lies in the one bin that its row names, or an alarm declared it lost; no row without a body, none
 //! twice. Which row is whose is found by the rig's truth: who stood in the nest when it was judged, who came to
-//! rest in the bin when it was seen.
+//! rest in the bin when it was seen. A body that clung to another one was never judged: it has no row, and the alarm of
+//! the beam that counted it says which bin it lies in.
 
 use super::{Case, rig_us, seconds};
 use crate::cli::study::storm::life::End;
-use crate::history::Part;
+use crate::history::{Alarm, Part};
 use rigsim::truth::{BodyTruth, Place};
 
 /// From a body at rest to its confirmation by the beam: fall, second body, polls and repeated polls, microseconds.
@@ -59,8 +60,9 @@ pub fn owners(case: &Case) -> (Vec<(&Part, usize)>, Vec<String>) {
 fn who_landed(case: &Case, row: &Part) -> Option<usize> {
     let (bin, seen_us) = (row.landed_bin.as_deref()?, rig_us(row.landed_at?));
     let judged_us = rig_us(row.time);
-    let inside =
-        |body: &BodyTruth| matches!(body.at(judged_us), Some(Place::Nest | Place::Gripper));
+    let inside = |body: &BodyTruth| {
+        matches!(body.at(judged_us), Some(Place::Nest | Place::Gripper)) && !body.clung
+    };
     let fell = |body: &BodyTruth| match body.path.last() {
         Some((at_us, Place::Bin(own))) => {
             own == bin && (*at_us..at_us + CONFIRMED_US).contains(&seen_us)
@@ -78,7 +80,7 @@ fn who_was_judged(case: &Case, row: &Part, known: &[(&Part, usize)]) -> Option<u
     let judged_us = rig_us(row.time);
     let at = |place: &Place| {
         let mut all = case.bodies.iter();
-        all.position(|body| body.at(judged_us) == Some(place))
+        all.position(|body| body.at(judged_us) == Some(place) && !body.clung)
     };
     let free = |number: &usize| {
         let own = |(other, owner): &(&Part, usize)| owner == number && other.lot == row.lot;
@@ -110,6 +112,12 @@ fn fate(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     let (at_us, place) = body.path.last()?;
     let landed = rows.iter().find_map(|row| row.landed_bin.as_deref());
     match place {
+        Place::Bin(bin) if body.clung => (!is_counted(case, *at_us, bin)).then(|| {
+            format!(
+                "came into {bin} with another one at {} and no alarm says so",
+                seconds(*at_us)
+            )
+        }),
         Place::Bin(bin) => in_a_bin(case, *at_us, bin, rows),
         Place::Floor if landed.is_some() => Some(format!(
             "lies on the floor since {}, its row says {landed:?}",
@@ -155,19 +163,32 @@ fn in_a_bin(case: &Case, at_us: u64, bin: &str, rows: &[&Part]) -> Option<String
 
 /// The life in which it happened was cut off before it could be told, or an alarm tells it.
 fn is_declared(case: &Case, at_us: u64) -> bool {
+    is_told(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
+}
+
+/// The same of a body that fell into a bin beside the one that was let go: the alarm names the bin.
+fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
+    is_told(case, at_us, |alarm| {
+        alarm.code == "bin_beam" && alarm.text.contains(bin)
+    })
+}
+
+fn is_told(case: &Case, at_us: u64, tells: impl Fn(&Alarm) -> bool) -> bool {
     let Some(life) = case.life_at(at_us) else {
         return true;
     };
     let cut_off = life.ended_us < at_us + CONFIRMED_US && life.end != End::Hung;
     let noticed = at_us..=at_us + NOTICED_US;
-    let told = case.alarms_of(life).any(|(raised_us, alarm)| {
-        noticed.contains(&raised_us) && DECLARED.contains(&alarm.code.as_str())
-    });
-    cut_off || told
+    let mut alarms = case.alarms_of(life);
+    cut_off || alarms.any(|(raised_us, alarm)| noticed.contains(&raised_us) && tells(alarm))
 }
 
 fn name(body: &BodyTruth) -> String {
-    let kind = if body.golden { "golden part" } else { "part" };
+    let kind = match (body.clung, body.golden) {
+        (true, _) => "second body",
+        (false, true) => "golden part",
+        (false, false) => "part",
+    };
     let since = body.path.first().map_or(0, |(at, _)| *at);
     format!("the {kind} that left the magazine at {}", seconds(since))
 }

@@ -40,6 +40,7 @@ fn row(
 fn body(path: &[(u64, Place)], defect: Option<&'static str>) -> BodyTruth {
     BodyTruth {
         golden: false,
+        clung: false,
         path: path
             .iter()
             .map(|(s, place)| (s * S, place.clone()))
@@ -214,6 +215,28 @@ fn a_part_on_the_floor_whose_row_says_it_landed_is_found() {
         |case| case.rows[1].landed_bin = Some("voltage".into()),
         "its row says Some(\"voltage\")",
     );
+}
+
+#[test]
+fn a_second_body_in_a_bin_that_no_beam_told_of_is_found() {
+    let mut case = sound();
+    let mut second = body(&way(1, Place::Bin("pass".into())), None);
+    second.clung = true;
+    case.bodies.insert(1, second);
+    let broken = case.broken();
+    assert_eq!(broken.len(), 1, "{broken:?}");
+    assert!(broken[0].contains("second body") && broken[0].contains("came into pass"));
+    for (code, text, told) in [
+        ("bin_beam", "the beam of pass counted 2", true),
+        ("bin_beam", "the beam of coil counted 2", false),
+        ("part_dropped", "between nest and pass", false),
+    ] {
+        let mut case = case.clone();
+        let mut one = alarm("one", code, 7);
+        one.text = text.to_owned();
+        case.alarms.insert(0, one);
+        assert_eq!(case.broken().is_empty(), told, "{text}");
+    }
 }
 
 #[test]
