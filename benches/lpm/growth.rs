@@ -2,13 +2,11 @@
 
 use super::timing::{rounds, warm};
 use super::world::{KINDS, gripper, moves, world};
-use super::{QUERIES, RANGE_MM, SIZES, built, stop};
-use relayrig::lpm::{Mover, Shape};
+use super::{QUERIES, RANGE_MM, SIZES, built, mover, stop};
 
 /// Prints means, ns, for every size, and how many times the smallest world's the largest one's are.
 pub fn report(clock: f64) {
-    let parts = gripper().into_iter().map(|(shape, pose)| (pose, shape));
-    let mover = Mover::new(&Shape::Compound(parts.collect())).expect("the gripper");
+    let mover = mover(gripper());
     let mut table: Vec<(String, Vec<f64>)> = Vec::new();
     let mut note = |name: String, figure: f64| match table.iter_mut().find(|row| row.0 == name) {
         Some((_, figures)) => figures.push(figure),

@@ -118,6 +118,20 @@ pub fn gripper() -> Vec<(Shape, Pose)> {
     ]
 }
 
+/// Four specks in corners of the gripper's box: all that is asked of boxes, and next to nothing met.
+pub fn specks() -> Vec<(Shape, Pose)> {
+    let speck = Shape::Block { half: [0.01; 3] };
+    let corners = [
+        [-28.0, -18.0, 0.0],
+        [28.0, 18.0, 0.0],
+        [28.0, -18.0, 140.0],
+        [-28.0, 18.0, 140.0],
+    ];
+    corners
+        .map(|corner| (speck.clone(), Pose::at(corner)))
+        .into()
+}
+
 /// Kinds of moves, in the order of the tables.
 pub const KINDS: [&str; 6] = [
     "disc_yaw0",

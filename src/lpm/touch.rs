@@ -44,7 +44,7 @@ pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     match (element.radius > 0.0, mover.radius > 0.0) {
         (false, false) if element.axis != mover.axis => askew(element, mover, apart),
@@ -54,7 +54,7 @@ fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
 }
 
 /// Rectangles with common axes, discs, or one of each; `framed` gives the axes.
-#[inline]
+#[inline(always)]
 fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side {
     let p = framed.along(apart);
     let radius = element.radius + mover.radius;
