@@ -41,7 +41,7 @@ pub(crate) struct Group {
 }
 
 /// Relative error allowed for the boxes of a group at their place: fewer than ten roundings to
-/// single precision, of magnitudes that sum up to the span of group and way.
+/// single precision, of magnitudes that sum up to those of group and way along the axis.
 const SINGLE: f64 = 1e-6;
 
 impl Mover {
