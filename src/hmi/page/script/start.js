@@ -41,7 +41,7 @@ function showAll() {
 at("language").addEventListener("click", () => {
   language = language === "zh" ? "en" : "zh";
   // What was said in the other language is over.
-  for (const id of ["order_answer", "io_answer", "alarm_answer", "login_answer"]) at(id).textContent = "";
+  for (const id of ["order_answer", "io_answer", "alarm_answer", "l_answer", "login_answer"]) at(id).textContent = "";
   kept.set("lang", language);
   showAll();
 });
