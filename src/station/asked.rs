@@ -231,7 +231,7 @@ impl Station {
 
     fn leave(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
         self.make_safe("stopped", now, wants);
-        self.end(ending, wants);
+        self.end(ending, now, wants);
     }
 
     fn command(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
