@@ -112,13 +112,13 @@ fn fate(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     let (at_us, place) = body.path.last()?;
     let landed = rows.iter().find_map(|row| row.landed_bin.as_deref());
     match place {
-        Place::Bin(bin) if body.clung => (!is_counted(case, *at_us, bin)).then(|| {
+        Place::Bin(bin) if body.clung => (!is_counted(case, let_go_us(body), bin)).then(|| {
             format!(
                 "came into {bin} with another one at {} and no alarm says so",
                 seconds(*at_us)
             )
         }),
-        Place::Bin(bin) => in_a_bin(case, *at_us, bin, rows),
+        Place::Bin(bin) => in_a_bin(case, (let_go_us(body), *at_us), bin, rows),
         Place::Floor if landed.is_some() => Some(format!(
             "lies on the floor since {}, its row says {landed:?}",
             seconds(*at_us)
@@ -135,7 +135,20 @@ fn fate(case: &Case, body: &BodyTruth, rows: &[&Part]) -> Option<String> {
     }
 }
 
-fn in_a_bin(case: &Case, at_us: u64, bin: &str, rows: &[&Part]) -> Option<String> {
+/// When it began to fall: whoever let it go has to tell what became of it, not who came while it fell.
+fn let_go_us(body: &BodyTruth) -> u64 {
+    let mut falls = body.path.iter().rev();
+    let fell = falls.find(|(_, place)| *place == Place::Air);
+    fell.or(body.path.last())
+        .map_or(0, |(since_us, _)| *since_us)
+}
+
+fn in_a_bin(
+    case: &Case,
+    (let_go_us, at_us): (u64, u64),
+    bin: &str,
+    rows: &[&Part],
+) -> Option<String> {
     let mut earlier = rows.iter().filter(|row| rig_us(row.time) <= at_us);
     let Some(row) = earlier.next_back() else {
         return Some(format!(
@@ -153,7 +166,7 @@ fn in_a_bin(case: &Case, at_us: u64, bin: &str, rows: &[&Part]) -> Option<String
     match row.landed_bin.as_deref() {
         Some(seen) if seen == bin => None,
         Some(seen) => Some(format!("lies in {bin}, was seen in {seen}")),
-        None if is_declared(case, at_us) => None,
+        None if is_declared(case, let_go_us) => None,
         None => Some(format!(
             "lies in {bin} since {}, its row does not know it",
             seconds(at_us)

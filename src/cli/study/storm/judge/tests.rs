@@ -202,6 +202,23 @@ fn a_landing_that_the_row_does_not_know_is_found() {
 }
 
 #[test]
+fn who_came_while_a_part_fell_need_not_tell_of_it() {
+    let mut case = sound();
+    case.lives[0].ended_us = 6 * S - 1;
+    case.lives[0].end = End::Killed;
+    case.lives[1].began_us = 6 * S;
+    case.lives[0].said.clear();
+    case.bodies = vec![body(&way(1, Place::Bin("pass".into())), None)];
+    case.bodies[0].path.insert(3, (6 * S - 2, Place::Air));
+    case.rows.truncate(1);
+    (case.rows[0].landed_bin, case.rows[0].landed_at) = (None, None);
+    (case.alarms, case.driven, case.disturbed_us) = (Vec::new(), Vec::new(), Vec::new());
+    assert_eq!(case.broken(), Vec::<String>::new());
+    case.bodies[0].path.remove(3);
+    assert!(case.broken()[0].contains("its row does not know it"));
+}
+
+#[test]
 fn a_part_on_the_floor_that_no_alarm_declares_is_found() {
     found(
         |case| case.alarms[0].code = "door_open".into(),
