@@ -131,11 +131,21 @@ impl Station {
         if self.mode != Mode::Production {
             return Err(Refused::wrong_mode("start", self.mode, Mode::Production));
         }
-        if matches!(self.state, State::Stopped | State::Idle | State::Complete) {
-            return Ok(());
+        if !matches!(self.state, State::Stopped | State::Idle | State::Complete) {
+            return Err(self.not_at_rest());
         }
+        if self.ledger.nest.is_some() || self.ledger.gripper.is_some() {
+            return Err(Refused::new(
+                "a part of this lot is inside; reset first, so that it gets into its bin",
+                "机内还有本批次的零件；请先复位，使其进入料仓",
+            ));
+        }
+        Ok(())
+    }
+
+    fn not_at_rest(&self) -> Refused {
         let state = self.state.name();
-        Err(Refused::new(
+        Refused::new(
             format!(
                 "another lot can be begun in Stopped, Idle and Complete; the machine is in {state}{}",
                 self.way_out().0
@@ -144,7 +154,7 @@ impl Station {
                 "只能在 Stopped、Idle、Complete 状态开始其他批次；当前状态为 {state}{}",
                 self.way_out().1
             ),
-        ))
+        )
     }
 
     /// What a person does first, in both languages.

@@ -109,16 +109,22 @@ impl Office {
             )),
             _not_under_way => return self.write(asked).await,
         };
-        match wanted {
-            Err(why) => self.refuse(asked, why),
-            Ok(next) => {
-                // Before the station hears of it: a run that is left ends at once.
-                self.desk().next = next;
-                if !self.pass_on(asked).await {
-                    self.desk().next = None;
-                }
-            }
+        if let Err(why) = wanted.and_then(|next| self.expect(next)) {
+            self.refuse(asked, why);
+        } else if !self.pass_on(asked).await {
+            self.desk().next = None;
         }
+    }
+
+    /// Noted before the station hears of it, for a run that is left ends at once. Refused while what was taken before
+    /// has not begun yet.
+    fn expect(&self, next: Option<Next>) -> Result<(), NotTaken> {
+        let mut desk = self.desk();
+        if desk.next.is_some() {
+            return Err(not_now());
+        }
+        desk.next = next;
+        Ok(())
     }
 
     /// The lot of a `start`, once the gates have been asked.

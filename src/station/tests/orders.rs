@@ -267,6 +267,14 @@ fn a_lot_is_left_while_the_machine_rests_and_at_no_other_time() {
     assert!(why.en.contains("clear it first"), "{}", why.en);
     give(&mut machine, Command::Clear);
     until(&mut machine, State::Stopped);
+    let why = machine.order(Order::Leave).unwrap_err();
+    assert!(
+        why.en.contains("a part of this lot is inside"),
+        "{}",
+        why.en
+    );
+    give(&mut machine, Command::Reset);
+    until(&mut machine, State::Idle);
     assert_eq!(machine.order(Order::Mode(Mode::Manual)), Ok(()));
     let why = machine.order(Order::Leave).unwrap_err();
     assert!(why.en.contains("production"), "{}", why.en);
