@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::world::relay::Levels;
+
 /// True values of one lot part; absent where the part never showed the quantity.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PartTruth {
@@ -29,6 +31,8 @@ pub struct PartTruth {
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.
     pub landed_in: Option<String>,
+    /// How its motion was computed: rig time held in equilibrium, and with all five states.
+    pub levels: Levels,
 }
 
 /// Somewhere between magazine and bin.

@@ -5,7 +5,8 @@
 //! and from golden parts, never from the specimens they are later used on. A calibration without
 //! golden parts has no lag corrections and measures no threshold ([`Calibration::lags`] is `None`).
 
-use super::lag::LagLine;
+use super::lag::LagLaw;
+use super::threshold::Direction;
 use crate::units::Volt;
 use serde::{Deserialize, Serialize};
 
@@ -77,26 +78,34 @@ pub struct Lag {
     /// and only away from it is left over.
     #[serde(default)]
     pub at_v: f64,
-    /// Coarse minus fine indication, volts: places the fine ramp.
-    pub coarse_v: f64,
-    /// Scatter of [`Lag::coarse_v`] from part to part, volts (1 sd), never believed to be small.
-    pub coarse_sd_v: f64,
-    /// Standard uncertainty of a threshold from the coarse ramp alone, for the parts seen so far, volts.
-    #[serde(default = "Lag::unknown")]
-    pub coarse_u_v: f64,
-    /// Parts that have taught the coarse lag.
+    /// Mean of coarse minus fine indication of those parts, volts.
     #[serde(default)]
-    pub coarse_n: u32,
-    /// The lag of a part whose operate time is known; none for release, whose event has no flight before it.
-    #[serde(default)]
-    pub line: Option<LagLine>,
+    pub at_coarse_v: f64,
+    /// Coarse minus fine indication: places the fine ramp, and gives results where a recipe trusts it.
+    #[serde(default = "untaught")]
+    pub coarse: LagLaw,
 }
 
 impl Lag {
-    /// Of a calibration that was stored before the coarse ramp gave results.
-    fn unknown() -> f64 {
-        f64::INFINITY
+    /// How much further than on the golden parts the fine ramp overshoots on a part, volts, and how sure that is (1 sd).
+    ///
+    /// A rising ramp waits for the armature at both rates: of a part that overshoots more on the coarse one the fine one
+    /// overshoots more in proportion. Of sound parts that leaves a fifth of the difference, of a dragging hinge as much
+    /// again. A falling ramp waits for the flux, which does not tell the fine lag of a sound part, only of an odd one.
+    /// A part that has shown no coarse ramp may be late by any share of what the golden parts were.
+    pub fn own_v(&self, coarse_minus_fine_v: f64, direction: Direction) -> Factor {
+        let further = self.fine_v.value * (coarse_minus_fine_v / self.at_coarse_v - 1.0);
+        match direction {
+            _ if !further.is_finite() => Factor::new(0.0, self.fine_v.value.abs()),
+            Direction::Rising => Factor::new(further, further.abs()),
+            Direction::Falling => Factor::new(0.0, further.abs()),
+        }
     }
+}
+
+/// Of a calibration that was stored before the lag was a law.
+fn untaught() -> LagLaw {
+    LagLaw::guess(0.0)
 }
 
 /// Lag of both directions.
@@ -192,5 +201,27 @@ mod tests {
         };
         let asked = line.ask_for(Volt(7.9));
         assert!((line.delivers(asked).0 - 7.9).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_fine_lag_of_a_part_is_its_own_as_far_as_the_coarse_ramp_tells() {
+        let lag = Lag {
+            fine_v: Factor::new(0.028, 0.0),
+            at_v: 7.88,
+            at_coarse_v: 0.84,
+            coarse: LagLaw::guess(0.84),
+        };
+        let rising = |coarse_v| lag.own_v(coarse_v, Direction::Rising);
+        assert_eq!(rising(0.84), Factor::new(0.0, 0.0));
+        let late = rising(0.90);
+        assert!((late.value - 0.002).abs() < 1e-12 && late.u == late.value);
+        assert_eq!(rising(f64::NAN), Factor::new(0.0, 0.028));
+        let falling = lag.own_v(0.90, Direction::Falling);
+        assert_eq!((falling.value, falling.u), (0.0, late.u));
+        let untaught = Lag {
+            at_coarse_v: 0.0,
+            ..lag
+        };
+        assert_eq!(untaught.own_v(0.90, Direction::Rising).u, 0.028);
     }
 }

@@ -1,82 +1,135 @@
-//! The lag of a coarse ramp as a line of what the same part shows elsewhere: its operate time and its indication.
+//! The lag of a coarse ramp as a law of what the same part has shown before.
 //!
-//! A ramp overshoots by `rate x (delay of the mode + flight of the armature)`, and the flight is in the operate time
-//! at nominal voltage as well: of two parts with one threshold the one that is a millisecond slower shows up to
-//! `rate x 1 ms` more. How much of the operate time is flight, and how the mode's delay follows the threshold,
-//! golden parts and the first parts of a lot tell, which have both ramps.
+//! A ramp overshoots by its rate times a delay, and the delay is made of what makes other results: an armature that
+//! is late on a step is late on a ramp, eddy currents that hold the flux after switch-off hold it back while it rises,
+//! a winding of more ohms has another time constant, and a higher threshold is crossed later. Beside its own indication a
+//! release follows that of the operate ramp: springs and travel carry both. So the lag is a line in
+//! the logarithms of five results ([`Shown`]), each against that of the first part seen.
 //!
-//! `lag = a + b time + c indication` by Bayesian regression with a conjugate prior: with few parts the prior keeps
-//! the slopes from following the noise, with many it is forgotten. The prediction is Student's; its standard
-//! uncertainty is widened so that k = 2 covers as usual.
+//! Golden parts and the first parts of a lot teach the line: they have both ramps. It is a regression with a conjugate
+//! prior (normal with inverse gamma), so it says from the first part on how sure it is: what has hardly varied yet
+//! widens the answer. The prior is forgotten with the parts.
+//!
+//! A line holds where it was learnt. A part that lies far outside ([`Predicted::alike`]) may be placed by it, not judged.
 
+use crate::units::Volt;
 use serde::{Deserialize, Serialize};
 
-/// Coefficients of the line: constant, operate time, indication.
-const TERMS: usize = 3;
-/// Scatter about the line that is believed before any part was seen, volts (1 sd): that of one operation. The prior
-/// is worth the more the less parts scatter; believed too large, it would hold the slopes where they began.
-const SCATTER_V: f64 = 0.002;
+/// Scatter about the line that is believed before any part was seen, volts (1 sd): that of one operation.
+const SCATTER_V: f64 = 0.003;
 /// How many parts that belief is worth.
-const WORTH: f64 = 1.0;
-/// Half of the operate time is flight, give or take the other half.
-const FLIGHT_SHARE: f64 = 0.5;
-/// The constant may be anything: volts (1 sd).
-const CONSTANT_SD_V: f64 = 10.0;
-/// The lag follows the threshold by no more than a tenth of it (1 sd).
-const FOLLOWS_SD: f64 = 0.1;
+const WORTH: f64 = 4.0;
+/// How far the guess of the lag may be off for the first part, volts (1 sd).
+const GUESS_SD_V: f64 = 0.05;
+/// A result that is greater by a hundredth of itself changes the lag by so many hundredths of the lag, or less (1 sd).
+const ELASTICITY: f64 = 0.5;
+/// Greatest squared distance from the parts seen, in standard deviations along every direction in which they vary, and
+/// how it widens while few parts tell those: of parts like them one in two thousand is further away (Hotelling's T2 of
+/// five variates, to a tenth from ten parts on).
+const FURTHEST2: f64 = 20.0;
+const WIDER: f64 = 20.0;
+/// Results that the line follows.
+const RESULTS: usize = 5;
+/// A constant, and a slope for each.
+const TERMS: usize = RESULTS + 1;
 
-/// What a part shows besides its lag.
+/// What a part has shown when the event of its coarse ramp is read; NaN where it has shown nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shown {
+    /// Indication of the coarse ramp.
+    pub indicated: Volt,
+    /// Indication of the coarse operate ramp: the same, or that of the ramp before a release.
+    pub operate: Volt,
     /// Operate time at nominal voltage, ms.
     pub operate_ms: f64,
-    /// Indication of the coarse ramp, volts.
-    pub seen_v: f64,
+    /// Release time into the clamp of the recipe, ms.
+    pub release_ms: f64,
+    /// Coil resistance at the reference temperature, ohm.
+    pub coil_ohm: f64,
 }
 
 impl Shown {
-    fn terms(self) -> [f64; TERMS] {
-        [1.0, self.operate_ms, self.seen_v]
+    /// Of a part that has not shown a ramp.
+    pub const NOTHING: Self = Self {
+        indicated: Volt(f64::NAN),
+        operate: Volt(f64::NAN),
+        operate_ms: f64::NAN,
+        release_ms: f64::NAN,
+        coil_ohm: f64::NAN,
+    };
+
+    /// Logarithms of all, none when one is no number above zero.
+    fn logarithms(&self) -> Option<[f64; RESULTS]> {
+        let results = [
+            self.indicated.0,
+            self.operate.0,
+            self.operate_ms,
+            self.release_ms,
+            self.coil_ohm,
+        ];
+        let known = results.iter().all(|it| it.is_finite() && *it > 0.0);
+        known.then(|| results.map(f64::ln))
     }
 }
 
-/// The line as far as it is known.
+/// The lag to expect of a part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Predicted {
+    /// Coarse minus fine indication, volts.
+    pub volts: f64,
+    /// Standard uncertainty, volts.
+    pub u_v: f64,
+    /// The part lies among those that taught the law.
+    pub alike: bool,
+}
+
+/// The law as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct LagLine {
-    /// Prior and seen parts: sums of products of the terms, and of terms and lag, over the variance of the prior.
+pub struct LagLaw {
+    guess_v: f64,
+    parts: u32,
+    /// Logarithms of the first part.
+    first: [f64; RESULTS],
+    /// Prior and parts: sums of products of the terms, and of terms and lag less guess.
     products: [[f64; TERMS]; TERMS],
     with_lag: [f64; TERMS],
     squares: f64,
-    parts: f64,
 }
 
-impl LagLine {
-    /// Before any part was seen, for a ramp of so many volts per second.
-    pub fn before(rate_v_per_s: f64) -> Self {
-        let per_ms = rate_v_per_s * 1e-3 * FLIGHT_SHARE;
-        let means = [0.0, per_ms, 0.0];
-        let sds = [CONSTANT_SD_V, per_ms, FOLLOWS_SD];
-        let mut line = Self {
-            products: [[0.0; TERMS]; TERMS],
-            with_lag: [0.0; TERMS],
-            squares: 0.0,
-            parts: 0.0,
-        };
-        for (term, (mean, sd)) in means.into_iter().zip(sds).enumerate() {
-            let weight = (SCATTER_V / sd).powi(2);
-            line.products[term][term] = weight;
-            line.with_lag[term] = weight * mean;
-            line.squares += weight * mean * mean;
+impl LagLaw {
+    /// Before any part was seen: a guess of the lag in volts.
+    pub fn guess(guess_v: f64) -> Self {
+        let slope_sd_v = ELASTICITY * guess_v.abs().max(GUESS_SD_V);
+        let mut products = [[0.0; TERMS]; TERMS];
+        for (term, row) in products.iter_mut().enumerate() {
+            let sd = if term == 0 { GUESS_SD_V } else { slope_sd_v };
+            row[term] = (SCATTER_V / sd).powi(2);
         }
-        line
+        Self {
+            guess_v,
+            parts: 0,
+            first: [0.0; RESULTS],
+            products,
+            with_lag: [0.0; TERMS],
+            squares: WORTH * SCATTER_V.powi(2),
+        }
+    }
+
+    /// Parts that have taught it.
+    pub fn parts(&self) -> u32 {
+        self.parts
     }
 
     /// Takes in a part with both indications; one that is not a number is passed over.
-    pub fn learn(&mut self, shown: Shown, lag_v: f64) {
-        let terms = shown.terms();
-        if !lag_v.is_finite() || terms.iter().any(|term| !term.is_finite()) {
+    pub fn learn(&mut self, shown: &Shown, fine: Volt) {
+        let lag_v = (shown.indicated - fine).0 - self.guess_v;
+        let Some(logarithms) = shown.logarithms().filter(|_| lag_v.is_finite()) else {
             return;
+        };
+        if self.parts == 0 {
+            self.first = logarithms;
         }
+        let terms = self.terms(logarithms);
         for (row, one) in terms.iter().enumerate() {
             for (column, other) in terms.iter().enumerate() {
                 self.products[row][column] += one * other;
@@ -84,20 +137,40 @@ impl LagLine {
             self.with_lag[row] += one * lag_v;
         }
         self.squares += lag_v * lag_v;
-        self.parts += 1.0;
+        self.parts += 1;
     }
 
-    /// The lag to expect of a part, and its standard uncertainty, volts.
-    pub fn lag_v(&self, shown: Shown) -> (f64, f64) {
-        let terms = shown.terms();
+    /// The lag to expect of a part. One that has not shown everything is taken for the first, and for unlike.
+    pub fn of(&self, shown: &Shown) -> Predicted {
+        let logarithms = shown.logarithms().filter(|_| self.parts > 0);
+        let terms = self.terms(logarithms.unwrap_or(self.first));
         let line = solved(self.products, self.with_lag);
         let spread = dot(terms, solved(self.products, terms));
         let left = (self.squares - dot(line, self.with_lag)).max(0.0);
-        let freedom = (self.parts + WORTH - TERMS as f64).max(WORTH);
-        let scatter = (left + WORTH * SCATTER_V.powi(2)) / freedom;
-        let student = 1.0 + 1.5 / freedom;
-        let u = (scatter * (1.0 + spread)).sqrt() * student;
-        (dot(line, terms), u)
+        let freedom = WORTH + f64::from(self.parts);
+        // Student's t of so many degrees of freedom is wider than a normal distribution by this.
+        let student = freedom / (freedom - 2.0);
+        Predicted {
+            volts: self.guess_v + dot(line, terms),
+            u_v: (left / freedom * (1.0 + spread) * student).sqrt(),
+            alike: logarithms.is_some() && self.is_near(spread),
+        }
+    }
+
+    fn is_near(&self, spread: f64) -> bool {
+        let more = f64::from(self.parts) - RESULTS as f64;
+        more > 0.0 && f64::from(self.parts) * spread - 1.0 < FURTHEST2 * (1.0 + WIDER / more)
+    }
+
+    fn terms(&self, logarithms: [f64; RESULTS]) -> [f64; TERMS] {
+        let mut terms = [1.0; TERMS];
+        for (term, (now, first)) in terms[1..]
+            .iter_mut()
+            .zip(logarithms.iter().zip(&self.first))
+        {
+            *term = now - first;
+        }
+        terms
     }
 }
 
@@ -128,72 +201,4 @@ fn solved(mut products: [[f64; TERMS]; TERMS], mut right: [f64; TERMS]) -> [f64;
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn shown(operate_ms: f64, seen_v: f64) -> Shown {
-        Shown { operate_ms, seen_v }
-    }
-
-    /// A part of a rig whose lag is 0.6 V and 96 mV/ms of time less 50 mV/V of indication.
-    fn lag(part: Shown) -> f64 {
-        0.6 + 0.096 * part.operate_ms - 0.05 * part.seen_v
-    }
-
-    /// Parts over the ranges of a lot; no two with the same ratio of time and volts.
-    fn parts(n: u32) -> impl Iterator<Item = Shown> {
-        let turn = |at: u32, by: f64| (f64::from(at) * by).fract() - 0.5;
-        (1..=n).map(move |at| shown(4.7 + 0.8 * turn(at, 0.618), 8.7 + 0.9 * turn(at, 0.382_7)))
-    }
-
-    fn taught(n: u32, noise_v: f64) -> LagLine {
-        let mut line = LagLine::before(96.0);
-        for (at, part) in parts(n).enumerate() {
-            let off = if at % 2 == 0 { noise_v } else { -noise_v };
-            line.learn(part, lag(part) + off);
-        }
-        line
-    }
-
-    #[test]
-    fn a_rig_that_keeps_to_a_line_is_known_after_a_few_parts() {
-        let line = taught(8, 0.0);
-        for part in parts(30) {
-            let (found, u) = line.lag_v(part);
-            assert!((found - lag(part)).abs() < 0.002, "{part:?}: {found}");
-            assert!(u < 0.005, "{u}");
-        }
-    }
-
-    #[test]
-    fn scatter_about_the_line_stays_in_the_uncertainty_however_many_parts_teach() {
-        let part = shown(4.7, 8.7);
-        let (_, few) = taught(5, 0.006).lag_v(part);
-        let (_, many) = taught(500, 0.006).lag_v(part);
-        assert!(few > many, "{few} {many}");
-        assert!((many - 0.006).abs() < 0.0002, "{many}");
-    }
-
-    #[test]
-    fn far_from_what_was_seen_the_lag_is_in_doubt() {
-        let line = taught(10, 0.003);
-        let (_, near) = line.lag_v(shown(4.7, 8.7));
-        let (_, far) = line.lag_v(shown(12.0, 8.7));
-        assert!(far > 3.0 * near, "{near} {far}");
-    }
-
-    #[test]
-    fn before_any_part_nothing_is_known() {
-        let (_, u) = LagLine::before(96.0).lag_v(shown(4.7, 8.7));
-        assert!(u > CONSTANT_SD_V, "{u}");
-    }
-
-    #[test]
-    fn what_is_not_a_number_teaches_nothing() {
-        let mut line = taught(5, 0.0);
-        let before = line;
-        line.learn(shown(f64::NAN, 8.7), 0.8);
-        line.learn(shown(4.7, 8.7), f64::INFINITY);
-        assert_eq!(line, before);
-    }
-}
+mod tests;

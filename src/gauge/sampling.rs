@@ -90,10 +90,11 @@ pub struct CoilSampling {
 }
 
 impl Default for CoilSampling {
-    /// 13 ms: the current of an open armature (L/R 1.7 ms) has settled to 0.05 % after 7.6 L/R.
+    /// 32 ms: the current settles to 0.05 % within 13 ms (7.6 L/R of an open armature), but an armature that the
+    /// pre-bias has just lifted from its stop swings, and moves the current by up to 0.4 % until the swing has died out.
     fn default() -> Self {
         Self {
-            settles_ms: 13,
+            settles_ms: 32,
             scans: 1,
         }
     }

@@ -56,19 +56,21 @@ pub struct RampDoubt {
     pub temperature_k: f64,
 }
 
-/// Quasi-static threshold at the reference temperature from one fine ramp.
+/// Quasi-static threshold at the reference temperature from one fine ramp, which on this part overshoots by `own`
+/// volts more than on the golden parts.
 pub fn quasi_static(
-    seen: Volt,
+    (seen, own): (Volt, Factor),
     gate: Second,
     lag: Lag,
     part: Celsius,
     reference: Celsius,
     doubt: RampDoubt,
 ) -> Reading {
-    let at_part = seen.0 - lag.fine_v.value;
+    let at_part = seen.0 - lag.fine_v.value - own.value;
     let value = at_part * to_reference(part, reference);
     let budget = Budget::default()
         .with("golden parts", lag.fine_v.u)
+        .with("lag of the part", own.u)
         .with(
             "coil temperature",
             value * doubt.temperature_k * relative_per_kelvin(part),
@@ -93,6 +95,7 @@ pub fn quasi_static(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gauge::lag::LagLaw;
 
     #[test]
     fn a_rising_ramp_indicates_start_plus_window_plus_slope_times_gate() {
@@ -107,11 +110,8 @@ mod tests {
         let lag = Lag {
             fine_v: Factor::new(0.0, 0.0),
             at_v: 7.88,
-            coarse_v: 0.0,
-            coarse_sd_v: 0.0,
-            coarse_u_v: 0.01,
-            coarse_n: 5,
-            line: None,
+            at_coarse_v: 0.85,
+            coarse: LagLaw::guess(0.85),
         };
         let doubt = RampDoubt {
             slope: Factor::new(1.5, 0.0),
@@ -122,7 +122,7 @@ mod tests {
             temperature_k: 1.0,
         };
         let reading = quasi_static(
-            Volt(7.88),
+            (Volt(7.88), Factor::new(0.0, 0.0)),
             Second(0.04),
             lag,
             Celsius(23.0),

@@ -1,91 +1,18 @@
 //! Golden parts: what the ramps indicate on relays with a certificate tells the lag of the ramps.
 //!
-//! The coarse lag goes on learning from every part of the lot, because it only places the fine ramp;
-//! the fine lag, which enters results, comes from the certificates alone.
+//! The coarse lag goes on learning from every good part of the lot that has shown both ramps;
+//! the fine lag, which enters every result, comes from the certificates alone.
 
 use super::test::{Findings, Ramp};
 use crate::gauge::calibration::{Factor, Lag, Lags};
 use crate::gauge::coil::{relative_per_kelvin, to_reference};
-use crate::gauge::lag::{LagLine, Shown};
+use crate::gauge::lag::LagLaw;
 use crate::gauge::settings::{AccuracySettings, Certified, GoldenPart};
 use crate::gauge::{Parameter, Reading};
 use crate::units::Celsius;
 
-/// The scatter of the coarse lag is never believed to be smaller, volts: one refresh of the ramp in ten.
-const LEAST_SCATTER_V: f64 = 0.010;
-/// Before any part was seen, volts (1 sd).
-const FIRST_SCATTER_V: f64 = 0.050;
 /// A golden part whose fine indication lies further from the others' lag is out of its band, volts.
 const BAND_V: f64 = 0.060;
-
-/// Running mean and scatter of coarse minus fine (Welford).
-#[derive(Debug, Clone, Copy, Default)]
-pub struct CoarseLag {
-    n: f64,
-    mean: f64,
-    squares: f64,
-    line: Option<LagLine>,
-}
-
-impl CoarseLag {
-    /// Takes in one part that has both indications.
-    pub fn learn(&mut self, ramp: Ramp) {
-        let Some(fine) = ramp.fine else { return };
-        let lag = (ramp.coarse - fine).0;
-        if !lag.is_finite() {
-            return;
-        }
-        self.n += 1.0;
-        let step = lag - self.mean;
-        self.mean += step / self.n;
-        self.squares += step * (lag - self.mean);
-    }
-
-    /// The same of an operate ramp, whose lag follows the operate time; `rate_v_per_s` is that of the ramp.
-    pub fn learn_with_time(&mut self, ramp: Ramp, operate_ms: Option<f64>, rate_v_per_s: f64) {
-        self.learn(ramp);
-        if let (Some(fine), Some(operate_ms)) = (ramp.fine, operate_ms) {
-            let shown = Shown {
-                operate_ms,
-                seen_v: ramp.coarse.0,
-            };
-            self.line
-                .get_or_insert_with(|| LagLine::before(rate_v_per_s))
-                .learn(shown, (ramp.coarse - fine).0);
-        }
-    }
-
-    /// Mean and standard deviation for the next part; a guess wins while nothing was seen.
-    fn place(&self, guess: f64) -> (f64, f64) {
-        if self.n < 1.0 {
-            return (guess, FIRST_SCATTER_V);
-        }
-        (self.mean, self.uncertainty_v().max(LEAST_SCATTER_V))
-    }
-
-    /// Scatter, widened as few parts know it only badly.
-    fn uncertainty_v(&self) -> f64 {
-        let few = 1.0 + 2.0 / self.n;
-        if self.n < 2.0 {
-            return FIRST_SCATTER_V * few;
-        }
-        (self.squares / (self.n - 1.0)).sqrt() * few
-    }
-
-    /// Lag with the coarse part as learned so far.
-    fn lag(self, fine_v: Factor, at_v: f64, guess: f64) -> Lag {
-        let (coarse_v, coarse_sd_v) = self.place(guess);
-        Lag {
-            fine_v,
-            at_v,
-            coarse_v,
-            coarse_sd_v,
-            coarse_u_v: self.uncertainty_v(),
-            coarse_n: self.n as u32,
-            line: self.line,
-        }
-    }
-}
 
 /// Indications of one golden part in both directions, minus certificate, at the part's temperature.
 #[derive(Debug, Clone)]
@@ -93,6 +20,8 @@ struct Shift {
     serial: String,
     operate: f64,
     release: f64,
+    /// Coarse minus fine indications, operate and release; NaN where no coarse ramp was seen.
+    coarse: [f64; 2],
 }
 
 /// What the golden parts of a run have shown so far.
@@ -113,6 +42,10 @@ impl GoldenRun {
         let why = |what: &str| format!("golden part {serial}: {what}");
         let track = findings.track.ok_or_else(|| why("no temperature"))?;
         let fine = |ramp: Option<Ramp>| ramp.and_then(|ramp| ramp.fine);
+        let over = |ramp: Option<Ramp>| {
+            ramp.and_then(|it| Some((it.coarse.indicated - it.fine?).0))
+                .unwrap_or(f64::NAN)
+        };
         let operate = fine(findings.operate).ok_or_else(|| why("no operate voltage"))?;
         let release = fine(findings.release).ok_or_else(|| why("no release voltage"))?;
         check_coil(part, findings)?;
@@ -121,6 +54,7 @@ impl GoldenRun {
             serial: serial.clone(),
             operate: operate.0 - at_part(part.operate_voltage_v),
             release: release.0 - at_part(part.release_voltage_v),
+            coarse: [over(findings.operate), over(findings.release)],
         });
         Ok(())
     }
@@ -130,7 +64,7 @@ impl GoldenRun {
         &self,
         sets: &[GoldenPart],
         accuracy: &AccuracySettings,
-        coarse: (CoarseLag, CoarseLag),
+        coarse: (LagLaw, LagLaw),
     ) -> Result<Lags, String> {
         let operate = self.fine(
             |shift| shift.operate,
@@ -145,9 +79,28 @@ impl GoldenRun {
             accuracy,
         )?;
         Ok(Lags {
-            operate: place(operate, mean(sets, |part| part.operate_voltage_v), coarse.0),
-            release: place(release, mean(sets, |part| part.release_voltage_v), coarse.1),
+            operate: Lag {
+                fine_v: operate,
+                at_v: mean(sets, |part| part.operate_voltage_v),
+                at_coarse_v: self.over(0),
+                coarse: coarse.0,
+            },
+            release: Lag {
+                fine_v: release,
+                at_v: mean(sets, |part| part.release_voltage_v),
+                at_coarse_v: self.over(1),
+                coarse: coarse.1,
+            },
         })
+    }
+
+    /// Mean of coarse minus fine indication where both were seen, 0 if nowhere.
+    fn over(&self, direction: usize) -> f64 {
+        let both = || {
+            let each = self.shifts.iter().map(|shift| shift.coarse[direction]);
+            each.filter(|it| it.is_finite())
+        };
+        both().sum::<f64>() / both().count().max(1) as f64
     }
 
     fn fine(
@@ -238,12 +191,12 @@ pub fn check(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
     Ok(())
 }
 
-/// Lag with the coarse part as learned so far.
-pub fn place(fine: Factor, at_v: f64, coarse: CoarseLag) -> Lag {
-    coarse.lag(fine, at_v, 0.0)
-}
-
-/// Lag while golden parts are being run: no fine correction yet, the coarse one as far as learned.
-pub fn interim(guess: Lag, coarse: CoarseLag) -> Lag {
-    coarse.lag(Factor::new(0.0, f64::INFINITY), 0.0, guess.coarse_v)
+/// Lag before the golden parts are complete: no fine correction yet, the coarse one as far as learned.
+pub fn interim(coarse: LagLaw) -> Lag {
+    Lag {
+        fine_v: Factor::new(0.0, f64::INFINITY),
+        at_v: 0.0,
+        at_coarse_v: 0.0,
+        coarse,
+    }
 }

@@ -8,8 +8,7 @@ use super::trouble::Alarm;
 use super::wants::{Judged, Wants};
 use super::{Station, golden, reference};
 use crate::gauge::Calibration;
-use crate::gauge::Parameter;
-use crate::gauge::calibration::Lags;
+use crate::gauge::calibration::{Lag, Lags};
 use crate::gauge::verdict::Verdict;
 use crate::units::RigTime;
 use std::collections::VecDeque;
@@ -76,15 +75,15 @@ impl Station {
         let findings = &judged.findings;
         // A slow or sticking part would spoil the place of the ramp for all that follow.
         if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
-            let time = findings.result(Parameter::OperateTime).map(|it| it.value);
-            let rate = self.bench.calibration.coarse_v_per_s.value;
-            if let Some(ramp) = findings.operate {
-                self.coarse.0.learn_with_time(ramp, time, rate);
+            let both = [
+                (findings.operate, &mut self.coarse.0),
+                (findings.release, &mut self.coarse.1),
+            ];
+            for (ramp, law) in both {
+                if let Some((coarse, fine)) = ramp.and_then(|it| Some((it.coarse, it.fine?))) {
+                    law.learn(&coarse, fine);
+                }
             }
-            findings
-                .release
-                .into_iter()
-                .for_each(|ramp| self.coarse.1.learn(ramp));
         }
         if let Kind::Golden(serial) = &judged.part.kind {
             let known = self.plan.golden.iter().find(|part| part.serial == *serial);
@@ -133,8 +132,14 @@ impl Station {
         if !golden {
             let known = (bench.operate_lag(), bench.release_lag());
             let lags = Lags {
-                operate: golden::place(known.0.fine_v, known.0.at_v, self.coarse.0),
-                release: golden::place(known.1.fine_v, known.1.at_v, self.coarse.1),
+                operate: Lag {
+                    coarse: self.coarse.0,
+                    ..known.0
+                },
+                release: Lag {
+                    coarse: self.coarse.1,
+                    ..known.1
+                },
             };
             return Ok((lags, false));
         }
@@ -145,8 +150,8 @@ impl Station {
             return Ok((lags, true));
         }
         let lags = Lags {
-            operate: golden::interim(bench.operate_lag(), self.coarse.0),
-            release: golden::interim(bench.release_lag(), self.coarse.1),
+            operate: golden::interim(self.coarse.0),
+            release: golden::interim(self.coarse.1),
         };
         Ok((lags, false))
     }

@@ -50,6 +50,7 @@ pub mod turn;
 pub mod wants;
 mod watch;
 
+use crate::gauge::lag::LagLaw;
 use crate::gauge::settings::GoldenPart;
 use crate::guard::{PartPlaces, Situation};
 use crate::rig::axis::AxisTable;
@@ -60,7 +61,7 @@ use annunciator::Annunciator;
 use clamp::Clamp;
 use feed::Feed;
 use gates::{Gates, LotSettings, Uses};
-use golden::{CoarseLag, GoldenRun};
+use golden::GoldenRun;
 use lamps::Lamps;
 use ledger::Ledger;
 use mechanism::Mechanism;
@@ -72,6 +73,7 @@ use recovery::Recovery;
 use sort::Sort;
 use std::collections::VecDeque;
 use test::Bench;
+use test::bench::untaught;
 use turn::Turn;
 use wants::{Inputs, Wants};
 
@@ -159,7 +161,7 @@ pub struct Station {
     golden_planned: u64,
     gates: Gates,
     golden_run: GoldenRun,
-    coarse: (CoarseLag, CoarseLag),
+    coarse: (LagLaw, LagLaw),
     last_left: Option<RigTime>,
     lot_began: bool,
     /// Nobody has started anything yet: the first start is the program's own.
@@ -210,7 +212,7 @@ impl Station {
             golden_left,
             gates: Gates::default(),
             golden_run: GoldenRun::default(),
-            coarse: (CoarseLag::default(), CoarseLag::default()),
+            coarse: untaught(),
             last_left: None,
             lot_began: false,
             stopping: false,

@@ -73,21 +73,6 @@ impl Supply {
         (Act::Supply(vec![(AnalogOut::SupplyCoarse, asked)]), takes)
     }
 
-    /// Act that steps the level by `jump` and starts the fine ramp over `way`, both with their signs, and
-    /// how long the ramp takes. The level is written first: modules are written in the order of their address.
-    pub fn jump_and_ramp(&mut self, jump: Volt, way: Volt) -> (Act, Span) {
-        let total = self.total() + jump;
-        let mut outputs = Vec::new();
-        if let Act::Supply(step) = self.step_to(total) {
-            outputs.extend(step);
-        }
-        let (ramp, takes) = self.ramp_fine(self.fine_at + way);
-        if let Act::Supply(ramp) = ramp {
-            outputs.extend(ramp);
-        }
-        (Act::Supply(outputs), takes)
-    }
-
     /// Act that starts the fine ramp towards `volts`, and how long the ramp takes.
     pub fn ramp_fine(&mut self, volts: Volt) -> (Act, Span) {
         let asked = Volt(self.fine.ask_for(volts).0.max(0.0));

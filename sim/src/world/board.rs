@@ -317,12 +317,11 @@ impl Board {
         if self.driving && meets && !self.commands.is_on(Out::ReferenceCoil) {
             return Supply::Volts(self.limited_v(relay.coil_ohm()));
         }
-        let slow = self.clamp_diode && meets;
-        let clamp_v = if slow {
+        let clamp_v = if self.clamp_diode && meets {
             self.table.diode_v
         } else {
             self.table.zener_v
         };
-        Supply::Off { clamp_v, slow }
+        Supply::Off { clamp_v }
     }
 }

@@ -50,6 +50,7 @@ impl Part {
                 Some((_, Place::Bin(bin))) => Some(bin.clone()),
                 _ => None,
             },
+            levels: self.relay.levels(),
         }
     }
 

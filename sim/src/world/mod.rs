@@ -3,7 +3,7 @@
 //! ```text
 //! terminals -> wiring -> signals -> board      (coil supply, gates, contact source, monitors)
 //!                                -> mechanism  (cylinders, axis, sensors; places and parts)
-//!                 board <-> relay of the part in the nest (specimen, mode, thermal, record)
+//!                 board <-> relay of the part in the nest (specimen, lumped model, thermal, record)
 //! ```
 //!
 //! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the
@@ -23,7 +23,6 @@ pub mod gates;
 pub mod golden;
 pub mod magazine;
 pub mod mechanism;
-pub mod mode;
 pub mod places;
 pub mod record;
 pub mod relay;

@@ -1,24 +1,29 @@
 //! A relay on the probes: coil, armature and two contacts, moved from event to event.
 //!
-//! The armature rests, grows away from its stop while the mode of [`super::mode`] builds up, flies
-//! to the other side and is seated; the way back is the same. NC opens as the mode starts (the
-//! pickup fold is NC lift-off), NO makes after the flight and bounces; NO opens as the release
-//! mode is complete, NC makes after the fall and bounces. A pulse that ends too early lets the
-//! armature fall back on its stop and NC close again. Thresholds follow the copper's temperature
-//! and scatter from operation to operation.
+//! Flux, armature and leaf move by the five-state model of [`lumped`], with the parameters that
+//! [`fit`] finds for the specimen; [`motion`] holds the equilibrium while nothing moves. So lag of a
+//! ramp, slowing near the threshold, flutter of a pulse that ends too early and the time of a clamp
+//! are those of the equations. Two things are laid over them, because they scatter from closure to
+//! closure in a way no lumped model tells: the bounce list of a first make, and the resistance of a
+//! closure. Thresholds follow the copper's temperature and scatter from operation to operation: the
+//! remanence differs, and a volt of remanence is a volt less at the coil.
 
-mod armature;
+mod contacts;
+pub mod fit;
 pub mod lumped;
+mod motion;
 
 use std::collections::VecDeque;
 
 use super::draw::Draw;
-use super::mode::{Lagged, Laws, Stretch};
 use super::record::Record;
 use super::specimen::Specimen;
-use super::table::{RelayTable, WorldTable};
+use super::table::WorldTable;
 use super::thermal::Thermal;
 use crate::world::defect::Defect;
+use lumped::{Drive, Model};
+pub use motion::Levels;
+use motion::Motion;
 
 /// Temperature at which thresholds and coil resistance are stated, degrees Celsius.
 pub const REFERENCE_C: f64 = 23.0;
@@ -52,8 +57,6 @@ pub enum Supply {
     Off {
         /// Forward voltage of the clamp.
         clamp_v: f64,
-        /// The slow clamp, a plain diode.
-        slow: bool,
     },
 }
 
@@ -67,54 +70,41 @@ impl Supply {
     }
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Phase {
-    Rest,
-    Growing,
-    Flying { until_us: f64 },
-    Seated,
-    Leaving,
-    Falling { until_us: f64 },
-}
-
 /// A relay whose coil and contacts somebody can touch.
 #[derive(Debug, Clone)]
 pub struct Relay {
     specimen: Specimen,
-    operate: Laws,
-    release: Laws,
-    zener_lag: f64,
-    diode_lag: f64,
+    motion: Motion,
     copper_zero_c: f64,
-    inductance: [f64; 2],
-    flight_us: [f64; 2],
     scatter_v: f64,
     bounce_ln_sd: f64,
     ambient_c: f64,
     thermal: Thermal,
     draw: Draw,
-    phase: Phase,
     supply: Supply,
-    stretch: Stretch,
-    z0: f64,
     since_us: f64,
-    checked_us: f64,
-    threshold_v: f64,
     operation_v: f64,
-    current_a: f64,
     closed: [bool; 2],
+    /// The contact that made last: the armature is on its side, or was.
+    side: Contact,
+    /// Until then the bounce list speaks for the contact that has made.
+    settled_us: f64,
     bounce: VecDeque<Change>,
     /// What this relay has shown so far.
     pub record: Record,
 }
 
-/// Longest stretch over which resistance and thresholds are held still, microseconds.
+/// Longest stretch over which the resistance is held still, microseconds.
 const STILL_US: f64 = 50_000.0;
+/// The bounce of a closure is over after so long, microseconds.
+const SETTLING_US: f64 = 8_000.0;
+/// A change of the supply by so much of nominal begins a new operation and ends any settling.
+const NEW_OPERATION: f64 = 0.1;
 
 impl Relay {
     /// Puts a specimen into the world at an instant; `draw` is the chance of its operations.
     pub fn new(
-        specimen: Specimen,
+        mut specimen: Specimen,
         world: &WorldTable,
         mut draw: Draw,
         t_us: f64,
@@ -122,7 +112,6 @@ impl Relay {
         ambient_c: f64,
     ) -> Self {
         let table = &world.relay;
-        let (operate, release) = laws(table);
         let welded = specimen.defect == Some(Defect::StuckNo);
         let above = track_c + specimen.offset_k - ambient_c;
         let film = if welded {
@@ -130,58 +119,51 @@ impl Relay {
         } else {
             specimen.film_nc
         };
+        let side = if welded { Contact::No } else { Contact::Nc };
         let mut record = Record::new(&specimen);
-        record.close(
-            if welded { Contact::No } else { Contact::Nc },
-            film.close(&mut draw),
-        );
-        let flight_us = [specimen.operate_flight_ms(operate), {
-            let zener = Laws {
-                coil_lag: table.release_zener_lag_ms,
-                ..release
-            };
-            specimen.release_flight_ms(zener)
-        }]
-        .map(|ms| ms * 1000.0);
+        record.close(side, film.close(&mut draw));
+        let model = Model::new(&specimen.wanted(world).fit(&table.lumped));
+        specimen.operate_v = model.pickup().volts;
+        specimen.release_v = model.release().volts;
+        let supply = Supply::Off {
+            clamp_v: world.board.zener_v,
+        };
+        let stuck = specimen.coil_ohm.is_infinite()
+            || matches!(specimen.defect, Some(Defect::StuckNo | Defect::StuckNc));
+        let drive = Drive::Clamp {
+            volts: world.board.zener_v,
+        };
+        let scatter_v = world.lot.threshold_scatter_sd_mv * 1e-3 * specimen.volt_scale;
         let mut relay = Self {
-            operate,
-            release,
-            zener_lag: table.release_zener_lag_ms,
-            diode_lag: table.release_diode_lag_ms,
+            motion: Motion::new(model, t_us * 1e-6, drive, stuck, welded),
             copper_zero_c: table.copper_zero_c,
-            inductance: [table.inductance_open_h, table.inductance_sealed_h]
-                .map(|l| l * specimen.ohm_scale),
-            flight_us,
-            scatter_v: world.lot.threshold_scatter_sd_mv * 1e-3 * specimen.volt_scale,
+            scatter_v,
             bounce_ln_sd: world.lot.bounce_ln_sd,
             ambient_c,
             thermal: Thermal::new(table, above),
+            operation_v: draw.normal(0.0, scatter_v),
             draw,
-            phase: if welded { Phase::Seated } else { Phase::Rest },
-            supply: Supply::Off {
-                clamp_v: world.board.zener_v,
-                slow: false,
-            },
-            stretch: Stretch::new(operate, Lagged::default(), 0.0),
-            z0: 0.0,
+            supply,
             since_us: t_us,
-            checked_us: t_us,
-            threshold_v: 1.0,
-            operation_v: 0.0,
-            current_a: 0.0,
             closed: [welded, !welded],
+            side,
+            settled_us: t_us,
             bounce: VecDeque::new(),
             record,
             specimen,
         };
-        relay.operation_v = relay.draw.normal(0.0, relay.scatter_v);
-        relay.restart(t_us, Lagged::default(), 0.0);
+        relay.restart();
         relay
     }
 
     /// The specimen behind it.
     pub fn specimen(&self) -> &Specimen {
         &self.specimen
+    }
+
+    /// Rig time that its armature was held, and moved.
+    pub fn levels(&self) -> Levels {
+        self.motion.levels()
     }
 
     /// Whether a contact is closed now.
@@ -194,22 +176,11 @@ impl Relay {
         self.specimen.coil_ohm * self.copper_ratio()
     }
 
-    /// Coil current at an instant not before the last event, ampere.
-    pub fn coil_current_a(&self, t_us: f64) -> f64 {
-        let ohm = self.coil_ohm();
-        if ohm.is_infinite() {
-            return 0.0;
-        }
-        let still = match self.supply {
-            Supply::Volts(v) => v / ohm,
-            Supply::Off { clamp_v, .. } => -clamp_v / ohm,
-        };
-        let henry = self.inductance[usize::from(self.is_seated())];
-        let decay = (-(t_us - self.since_us) * 1e-6 * ohm / henry).exp();
-        let current = still + (self.current_a - still) * decay;
-        match self.supply {
-            Supply::Volts(_) => current,
-            Supply::Off { .. } => current.max(0.0),
+    /// Coil current now, ampere.
+    pub fn coil_current_a(&self) -> f64 {
+        match self.specimen.coil_ohm.is_infinite() {
+            true => 0.0,
+            false => self.motion.current(self.supply.volts()),
         }
     }
 
@@ -218,42 +189,30 @@ impl Relay {
         if supply == self.supply {
             return;
         }
-        let old = self.supply.volts();
+        let (old, new) = (self.supply.volts(), supply.volts());
         self.settle(t_us);
         self.supply = supply;
-        let (state, z) = (self.arrived(t_us), self.mode_at(t_us));
-        self.restart(t_us, state, z);
-        let still = matches!(self.phase, Phase::Rest | Phase::Seated);
-        self.record.supply_step(t_us, old, supply.volts(), still);
+        self.restart();
+        if (new - old).abs() > NEW_OPERATION * self.specimen.nominal_v {
+            self.settled_us = self.settled_us.min(t_us);
+        }
+        self.record
+            .supply_step(t_us, old, new, self.motion.at_a_stop());
     }
 
     /// Goes on to `t_us`, or to the first change of a contact before it.
     pub fn advance(&mut self, t_us: f64) -> Option<Change> {
         loop {
-            let until = t_us.min(self.since_us + STILL_US);
-            let own = self.next_turn(until);
-            let bounce = self
-                .bounce
-                .front()
-                .filter(|c| c.t_us <= own.unwrap_or(until))
-                .copied();
-            let change = match (bounce, own) {
-                (Some(change), _) => {
-                    self.bounce.pop_front();
-                    self.record
-                        .bounce(change.contact, change.t_us, change.closed);
-                    self.set(change)
-                }
-                (None, Some(at)) => self.turn(at),
-                (None, None) if until < t_us => {
-                    self.settle(until);
-                    let (state, z) = (self.arrived(until), self.mode_at(until));
-                    self.restart(until, state, z);
+            let due = self.bounce.front().map_or(f64::INFINITY, |c| c.t_us);
+            let goal = t_us.min(due).min(self.since_us + STILL_US);
+            let change = match self.motion.advance(goal * 1e-6) {
+                Some(event) => self.touched(&event),
+                None if due <= goal => self.bounced(),
+                None if goal >= t_us => return self.synchronised(t_us),
+                None => {
+                    self.settle(goal);
+                    self.restart();
                     None
-                }
-                (None, None) => {
-                    self.checked_us = t_us;
-                    return None;
                 }
             };
             if change.is_some() {
@@ -262,67 +221,28 @@ impl Relay {
         }
     }
 
-    fn is_seated(&self) -> bool {
-        matches!(self.phase, Phase::Seated | Phase::Leaving)
-    }
-
     fn copper_ratio(&self) -> f64 {
         let above_zero = self.ambient_c + self.thermal.coil_k() - self.copper_zero_c;
         above_zero / (REFERENCE_C - self.copper_zero_c)
     }
 
-    /// Heat and current up to `t_us`; the supply has been still since the last call.
+    /// Heat up to `t_us`; the supply has been still since the last call.
     fn settle(&mut self, t_us: f64) {
         let volts = self.supply.volts();
-        self.current_a = self.coil_current_a(t_us);
-        self.thermal.advance(
-            (t_us - self.since_us) * 1e-6,
-            volts * volts / self.coil_ohm(),
-        );
-    }
-
-    /// A new stretch from `t_us`.
-    fn restart(&mut self, t_us: f64, state: Lagged, z: f64) {
-        let dead = self.specimen.coil_ohm.is_infinite();
-        let volts = if dead { 0.0 } else { self.supply.volts() };
-        let base = match self.phase {
-            Phase::Rest | Phase::Growing | Phase::Flying { .. } => self.operate,
-            Phase::Seated | Phase::Leaving | Phase::Falling { .. } => self.release,
-        };
-        let coil_lag = match self.supply {
-            Supply::Volts(_) => base.coil_lag,
-            Supply::Off { slow: true, .. } => self.diode_lag.min(base.coil_lag),
-            Supply::Off { slow: false, .. } => self.zener_lag,
-        };
-        self.stretch = Stretch::new(Laws { coil_lag, ..base }, state, volts);
-        self.threshold_v = self.threshold_now();
-        self.z0 = z;
+        let seconds = (t_us - self.since_us) * 1e-6;
+        self.thermal
+            .advance(seconds, volts * volts / self.coil_ohm());
         self.since_us = t_us;
-        self.checked_us = t_us;
     }
 
-    fn threshold_now(&self) -> f64 {
-        let at_reference = match self.phase {
-            Phase::Rest | Phase::Growing | Phase::Flying { .. } => self.specimen.operate_v,
-            Phase::Seated | Phase::Leaving | Phase::Falling { .. } => self.specimen.release_v,
+    /// Supply and copper as they now are reach the motion.
+    fn restart(&mut self) {
+        let drive = match self.supply {
+            Supply::Volts(_) if self.specimen.coil_ohm.is_infinite() => Drive::still(0.0),
+            Supply::Volts(volts) => Drive::still(volts - self.operation_v),
+            Supply::Off { clamp_v } => Drive::Clamp { volts: clamp_v },
         };
-        at_reference * self.copper_ratio() + self.operation_v
+        let ohm = self.copper_ratio() * self.motion.reference_ohm();
+        self.motion.set(drive, ohm);
     }
-}
-
-/// Laws of operating and of releasing.
-pub fn laws(table: &RelayTable) -> (Laws, Laws) {
-    let operate = Laws {
-        coil_lag: table.operate_coil_lag_ms,
-        armature_lag: table.operate_armature_lag_ms,
-        growth: table.operate_growth_ms,
-        gain: table.operate_gain_per_ms,
-    };
-    let release = Laws {
-        coil_lag: table.release_coil_lag_ms,
-        armature_lag: table.release_armature_lag_ms,
-        growth: table.release_growth_ms,
-        gain: -table.release_gain_per_ms,
-    };
-    (operate, release)
 }

@@ -3,7 +3,7 @@
 use super::defect::{self, Defect};
 use super::draw::{Draw, Subject};
 use super::golden::Certificate;
-use super::mode::{Laws, step_time};
+use super::relay::fit::{Pace, Wanted};
 use super::table::{LotTable, WorldTable};
 
 /// Resistance of one contact, milliohm.
@@ -72,6 +72,10 @@ pub struct Specimen {
     pub volt_scale: f64,
     /// Ohms of this coil's design per ohm of the 12 V part.
     pub ohm_scale: f64,
+    /// Turns of this coil per turn of the 12 V part.
+    pub turns: f64,
+    /// Where its times come from.
+    pub pace: Pace,
     /// Winding, infinite when open.
     pub coil_ohm: f64,
     /// Quasi-static operate threshold.
@@ -155,6 +159,8 @@ impl Specimen {
             nominal_v: scale.nominal_v,
             volt_scale,
             ohm_scale,
+            turns: ohm_scale / volt_scale,
+            pace: Pace::Drawn,
             coil_ohm: ohm_scale * draw.normal(lot.coil_ohm_mean, lot.coil_ohm_sd),
             operate_v: volt_scale * (lot.operate_v_mean + lot.operate_v_sd * operate),
             release_v: volt_scale * draw.normal(lot.release_v_mean, lot.release_v_sd),
@@ -183,8 +189,10 @@ impl Specimen {
         match defect {
             Defect::OpenCoil => self.coil_ohm = f64::INFINITY,
             Defect::ShortedTurns => {
-                self.coil_ohm =
-                    self.nominal_ohm(world) * draw.between(table.shorted_turns_coil_factor);
+                let left = draw.between(table.shorted_turns_coil_factor);
+                self.coil_ohm = self.nominal_ohm(world) * left;
+                self.turns *= left;
+                self.pace = Pace::Follows;
             }
             Defect::WrongCoil => self.rewind(draw.between(table.wrong_coil_factor), world),
             Defect::WeakSpring => {
@@ -196,9 +204,13 @@ impl Specimen {
                 self.release_v = volts(draw, table.stiff_spring_release_v, self.volt_scale);
             }
             Defect::Slow if draw.uniform() < 0.5 => {
-                self.operate_ms = draw.between(table.slow_operate_ms)
+                self.operate_ms = draw.between(table.slow_operate_ms);
+                self.pace = Pace::Hinge;
             }
-            Defect::Slow => self.release_ms = draw.between(table.slow_release_ms),
+            Defect::Slow => {
+                self.release_ms = draw.between(table.slow_release_ms);
+                self.pace = Pace::Iron;
+            }
             Defect::Bouncing if draw.uniform() < 0.5 => {
                 self.bounce_no_us =
                     bounce(&world.relay.bounce_no_us, draw.between(table.bouncing_ms));
@@ -247,6 +259,8 @@ impl Specimen {
     /// Another winding of the same power: volts go with the root of the ohms.
     fn rewind(&mut self, factor: f64, world: &WorldTable) {
         self.coil_ohm = self.nominal_ohm(world) * factor;
+        self.turns *= factor.sqrt();
+        self.pace = Pace::Follows;
         self.operate_v *= factor.sqrt();
         self.release_v *= factor.sqrt();
     }
@@ -258,16 +272,22 @@ impl Specimen {
         }
     }
 
-    /// Flight from the completed mode to the first make of NO that gives the drawn operate time.
-    pub fn operate_flight_ms(&self, laws: Laws) -> f64 {
-        let mode = step_time(laws, 0.0, self.nominal_v, self.operate_v);
-        mode.map_or(0.5, |t| (self.operate_ms - t).max(0.05))
-    }
-
-    /// The same from NO open to the first make of NC, from nominal into the zener.
-    pub fn release_flight_ms(&self, laws: Laws) -> f64 {
-        let mode = step_time(laws, self.nominal_v, 0.0, self.release_v);
-        mode.map_or(0.9, |t| (self.release_ms - t).max(0.2))
+    /// What a relay has to show to be this specimen; a coil without a way through is as wound.
+    pub fn wanted(&self, world: &WorldTable) -> Wanted {
+        let wound = self.nominal_ohm(world);
+        Wanted {
+            coil_ohm: if self.coil_ohm.is_finite() {
+                self.coil_ohm
+            } else {
+                wound
+            },
+            turns: self.turns,
+            volts: [self.operate_v, self.release_v],
+            seconds: [self.operate_ms * 1e-3, self.release_ms * 1e-3],
+            nominal_v: self.nominal_v,
+            zener_v: world.board.zener_v,
+            pace: self.pace,
+        }
     }
 }
 

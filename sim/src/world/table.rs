@@ -8,6 +8,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+use super::relay::lumped::Parameters;
 use crate::config::{ConfigError, content, read_text};
 
 macro_rules! table {
@@ -64,13 +65,9 @@ table!(
     }
 );
 table!(
-    /// Laws of the reduced relay model.
+    /// The relay that every specimen is bent from, its heat, its bounce lists.
     RelayTable {
-        operate_coil_lag_ms: f64, operate_armature_lag_ms: f64, operate_growth_ms: f64,
-        operate_gain_per_ms: f64,
-        release_coil_lag_ms: f64, release_armature_lag_ms: f64, release_growth_ms: f64,
-        release_gain_per_ms: f64, release_zener_lag_ms: f64, release_diode_lag_ms: f64,
-        inductance_open_h: f64, inductance_sealed_h: f64,
+        lumped: Parameters,
         copper_zero_c: f64, coil_heat_j_per_k: f64, body_heat_j_per_k: f64,
         coil_to_body_k_per_w: f64, body_to_air_k_per_w: f64,
         bounce_no_us: Vec<f64>, bounce_nc_us: Vec<f64>,
@@ -112,8 +109,23 @@ table!(
 /// Reads `sim.toml` of the configuration folder, or another world on top of it.
 ///
 /// # Errors
-/// A file cannot be read, is no TOML, or has an unknown key or a value of the wrong kind.
+/// A file cannot be read, is no TOML, has an unknown key or a value of the wrong kind, or a relay
+/// that cannot be.
 pub fn read_world(dir: &Path, other: Option<&Path>) -> Result<WorldTable, ConfigError> {
+    let world = parsed(dir, other)?;
+    let Some((name, expected)) = world.relay.lumped.fault() else {
+        return Ok(world);
+    };
+    let path = other.map_or_else(|| dir.join("sim.toml"), Path::to_path_buf);
+    let found = world.relay.lumped.get(name).unwrap_or(f64::NAN);
+    Err(ConfigError::Content {
+        line: line_of_key(&read_text(&path)?, &format!("`{name} =`")),
+        path,
+        message: format!("relay.lumped.{name}: found {found}, expected {expected}"),
+    })
+}
+
+fn parsed(dir: &Path, other: Option<&Path>) -> Result<WorldTable, ConfigError> {
     let base_path = dir.join("sim.toml");
     let Some(path) = other else {
         let text = read_text(&base_path)?;

@@ -2,10 +2,12 @@
 
 use crate::gauge::calibration::{Calibration, Lag};
 use crate::gauge::coil::ScanDoubt;
+use crate::gauge::lag::LagLaw;
 use crate::gauge::recipe::{CoilChannels, Recipe};
 use crate::gauge::settings::{AccuracySettings, ReferenceSettings};
 use crate::gauge::timing::Clock;
 use crate::gauge::{Parameter, Strategy};
+use crate::station::golden::interim;
 use crate::units::{Celsius, Span};
 use std::sync::Arc;
 
@@ -15,8 +17,6 @@ const LSB_V: f64 = 20.0 / 4096.0;
 /// Lag of a 96 V/s ramp before any golden part was run, in volts: only places the first fine ramp.
 const UNTAUGHT_OPERATE_V: f64 = 0.85;
 const UNTAUGHT_RELEASE_V: f64 = -1.05;
-/// How far that may be off (1 sd), volts.
-const UNTAUGHT_SD_V: f64 = 0.05;
 
 /// Golden parts and first parts of a lot that teach the coarse lag before it gives results.
 const FIRST_PARTS: u32 = 15;
@@ -102,7 +102,9 @@ impl Bench {
         let mut each = self.recipe.test.strategy.each().into_iter();
         match each.find(|(known, _)| *known == parameter) {
             Some(_) if self.thorough => Strategy::CoarseFine,
-            Some((_, Strategy::Adaptive)) if lag.coarse_n < FIRST_PARTS => Strategy::CoarseFine,
+            Some((_, Strategy::Adaptive)) if lag.coarse.parts() < FIRST_PARTS => {
+                Strategy::CoarseFine
+            }
             Some((_, strategy)) if lag.fine_v.u.is_finite() => strategy,
             Some(_) | None => Strategy::CoarseFine,
         }
@@ -112,26 +114,21 @@ impl Bench {
     pub fn operate_lag(&self) -> Lag {
         self.calibration
             .lags
-            .map_or(untaught(UNTAUGHT_OPERATE_V), |lags| lags.operate)
+            .map_or(interim(untaught().0), |lags| lags.operate)
     }
 
     /// Lag of the release ramps.
     pub fn release_lag(&self) -> Lag {
         self.calibration
             .lags
-            .map_or(untaught(UNTAUGHT_RELEASE_V), |lags| lags.release)
+            .map_or(interim(untaught().1), |lags| lags.release)
     }
 }
 
-fn untaught(coarse_v: f64) -> Lag {
-    use crate::gauge::calibration::Factor;
-    Lag {
-        fine_v: Factor::new(0.0, f64::INFINITY),
-        at_v: 0.0,
-        coarse_v,
-        coarse_sd_v: UNTAUGHT_SD_V,
-        coarse_u_v: f64::INFINITY,
-        coarse_n: 0,
-        line: None,
-    }
+/// Laws of both coarse ramps before any part was run, operate and release.
+pub fn untaught() -> (LagLaw, LagLaw) {
+    (
+        LagLaw::guess(UNTAUGHT_OPERATE_V),
+        LagLaw::guess(UNTAUGHT_RELEASE_V),
+    )
 }

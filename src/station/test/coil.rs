@@ -22,6 +22,8 @@ const LEAST_PREBIAS: f64 = 0.5;
 const NO_CURRENT: Volt = Volt(0.15);
 /// Below this coil current the clamp may be switched and the probes may leave, ampere.
 const OFF_CURRENT_A: f64 = 0.001;
+/// The word that takes the drive off is written, and the current gone, so long after the mark before it.
+const FREED: Span = Span::ms(6);
 /// Nothing driven, nothing selected; the pins of the next part will be looked at first.
 const IDLE: [(DigitalOut, bool); 8] = [
     (SourceOn, false),
@@ -48,8 +50,8 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
         let down = OFF.max(coarse_takes).max(fine_takes);
         acts.extend([coarse, fine, Act::Board(IDLE.to_vec()), Act::Wait(down)]);
     }
+    acts.extend((supply.total() != prebias).then(|| supply.step_to(prebias)));
     acts.extend([
-        supply.step_to(prebias),
         board(&[
             (SourceOn, false),
             (SourceReverse, false),
@@ -76,16 +78,16 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
     acts
 }
 
-/// Everything off, and the supply where the next part begins. After a timed release the coil has been
-/// free for longer than a conversion takes, so its current is read at once.
+/// Everything off, and the supply where the next part begins. After a release the coil is free since its mark,
+/// or since the word that followed it.
 pub(super) fn acts_off(bench: &Bench, supply: &mut Supply, findings: &Findings) -> Vec<Act> {
     let mut acts = vec![Act::Board(IDLE.to_vec())];
     if !findings.rested {
-        acts.push(Act::Mark);
+        acts.extend((!findings.released).then_some(Act::Mark));
         acts.extend(rest(bench, supply));
     }
     acts.extend([
-        Act::ConvertSinceMark(INTERLOCK + bench.fresh(CHANNELS)),
+        Act::ConvertSinceMark(FREED + bench.fresh(CHANNELS)),
         Act::Read(Read::Coil),
     ]);
     acts
@@ -161,6 +163,9 @@ pub(super) fn conclude(
     ) {
         Some(reading) => findings.found(Parameter::CoilResistance, reading, &samples),
         None => findings.fail("coil open", Bin::Coil),
+    }
+    if let Some(unmoved) = findings.unmoved.take() {
+        findings.fail(unmoved, Bin::Contact);
     }
     None
 }

@@ -6,9 +6,10 @@ use crate::gauge::Parameter;
 use crate::gauge::contact::{Closure, resistance, u_with_later_v};
 use crate::gauge::sampling::Polarities;
 use crate::gauge::verdict::Bin;
-use crate::rig::point::DigitalOut::{KelvinTest, SourceOn, SourceReverse};
+use crate::rig::point::DigitalOut::{Arm, KelvinTest, SourceOn, SourceReverse};
 use crate::rig::sample::{Quality, Sample};
 use crate::station::act::{Act, Read, Readings};
+use crate::station::supply::Supply;
 use crate::units::{Celsius, Span, Volt};
 
 /// No contact of 10 A class is below this, milliohms; a source that is off reads about 0.
@@ -45,13 +46,17 @@ pub(super) fn reversed(bench: &Bench) -> Vec<Act> {
     acts
 }
 
-/// Both polarities at rest. The temperature of the part is read while the first one is converted.
-pub(super) fn acts_nc(bench: &Bench) -> Vec<Act> {
+/// Both polarities at rest. While the first one is converted the temperature of the part is read, and the timed
+/// operation prepared: counters behind an ARM that nothing can answer, supply at nominal with the drive off.
+pub(super) fn acts_nc(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+    findings.counted = true;
     let mut acts = vec![
-        board(&[(KelvinTest, false), (SourceOn, true)]),
+        board(&[(KelvinTest, false), (SourceOn, true), (Arm, true)]),
         Act::Mark,
         Act::Read(Read::Track),
         Act::Read(Read::Board),
+        Act::Read(Read::Gates),
+        supply.step_to(Volt(bench.recipe.part.nominal_v)),
         Act::ConvertSinceMark(SOURCE_SETTLES + bench.fresh(1)),
         Act::Read(Read::Drop),
     ];
@@ -122,6 +127,7 @@ pub(super) fn conclude_nc(
     match closure(bench, readings) {
         Ok(closure) => {
             findings.drop_zero = Some(closure.zero);
+            findings.released = true;
             add_nc(bench, closure.drop, &readings.drops, findings);
         }
         Err(unread) => unread.tell("NC contact", findings),

@@ -4,6 +4,7 @@ use super::ramp::Expected;
 use super::search::Search;
 use crate::gauge::Parameter;
 use crate::gauge::budget::{self, Reading};
+use crate::gauge::lag::Shown;
 use crate::gauge::threshold::Direction;
 use crate::gauge::verdict::{Bin, Judgement, Reason};
 use crate::rig::sample::{CountSample, Origin, Sample};
@@ -42,8 +43,8 @@ pub enum Stop {
 /// A ramp as it was seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ramp {
-    /// Indicated voltage of the coarse ramp.
-    pub coarse: Volt,
+    /// What the part had shown when the coarse ramp was read, its indication among it.
+    pub coarse: Shown,
     /// Indicated voltage of the fine ramp.
     pub fine: Option<Volt>,
 }
@@ -52,7 +53,7 @@ impl Ramp {
     /// A fine ramp that no coarse one has placed.
     pub fn fine_only(seen: Volt) -> Self {
         Self {
-            coarse: Volt(f64::NAN),
+            coarse: Shown::NOTHING,
             fine: Some(seen),
         }
     }
@@ -78,6 +79,10 @@ pub struct Findings {
     pub ramp_start: Option<Volt>,
     /// Length of the ramp under way.
     pub ramp_span: Option<Volt>,
+    /// Both counters were read behind an ARM whose window nothing has opened since, and the supply is at nominal.
+    pub counted: bool,
+    /// No contact moves at nominal voltage, and which; the coil, which may be the cause, is still to be measured.
+    pub unmoved: Option<&'static str>,
     /// The armature is still operated from the stage before, at the instant that stage has marked.
     pub operated: bool,
     /// The drive went off in the stage before, at the instant it has marked or earlier.
@@ -152,6 +157,26 @@ impl Findings {
     pub fn result(&self, parameter: Parameter) -> Option<Reading> {
         let repetitions: Vec<Reading> = self.each(parameter).cloned().collect();
         budget::mean(&repetitions)
+    }
+
+    /// What the part has shown when its coarse ramp has just indicated so many volts.
+    pub fn shown(&self, indicated: Volt, direction: Direction) -> Shown {
+        let value = |parameter| {
+            self.result(parameter)
+                .map_or(f64::NAN, |reading| reading.value)
+        };
+        Shown {
+            indicated,
+            operate: match direction {
+                Direction::Rising => indicated,
+                Direction::Falling => self
+                    .operate
+                    .map_or(Volt(f64::NAN), |ramp| ramp.coarse.indicated),
+            },
+            operate_ms: value(Parameter::OperateTime),
+            release_ms: value(Parameter::ReleaseTime),
+            coil_ohm: value(Parameter::CoilResistance),
+        }
     }
 
     /// How often a parameter was measured.

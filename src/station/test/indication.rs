@@ -23,38 +23,36 @@ pub(super) fn gate0(bench: &Bench, readings: &Readings) -> Option<Second> {
     ))
 }
 
-/// The threshold behind a coarse ramp whose lag golden parts and lot have taught.
+/// The threshold behind a coarse ramp whose lag golden parts and lot have taught; none of a part unlike those, whose
+/// lag nobody knows.
 ///
 /// The scatter that was learned holds what a coarse ramp does not know of itself: resolution, repeatability, the
-/// error of its slope; each would otherwise be counted twice. With the operate time the lag is that of this very part.
+/// error of its slope; each would otherwise be counted twice.
 pub(super) fn coarse_reading(
     bench: &Bench,
-    (seen, lag): (Volt, Lag),
-    operate_ms: Option<f64>,
+    (seen, lag): (Shown, Lag),
     part: Celsius,
-) -> Reading {
-    let shown = operate_ms.map(|operate_ms| Shown {
-        operate_ms,
-        seen_v: seen.0,
-    });
-    let line = lag.line.zip(shown).map(|(line, shown)| line.lag_v(shown));
-    let (lag_v, scatter_v) = line.unwrap_or((lag.coarse_v, lag.coarse_u_v));
+    direction: Direction,
+) -> Option<Reading> {
+    let predicted = lag.coarse.of(&seen);
     // What was learned holds the operation of the fine ramp as well, which is none of this value's.
     let operation_v = bench.accuracy.operation_scatter_mv / 1e3;
-    let own_v = (scatter_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
+    let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let doubt = RampDoubt {
         slope: bench.calibration.coarse_v_per_s,
         slope_known: true,
         operation_v: 0.0,
         refresh: Second(0.0),
-        // The line follows the indication, and an error of gain with it.
-        level: line.map_or(bench.calibration.level.gain.u, |_| 0.0),
+        // The law follows the indication, and an error of gain with it.
+        level: 0.0,
         ..doubt(bench)
     };
     let reference = bench.reference_temperature();
-    let mut reading = quasi_static(seen - Volt(lag_v), Second(0.0), lag, part, reference, doubt);
+    let own = lag.own_v(predicted.volts, direction);
+    let as_fine = seen.indicated - Volt(predicted.volts);
+    let mut reading = quasi_static((as_fine, own), Second(0.0), lag, part, reference, doubt);
     reading.budget = reading.budget.with_random("strategy", own_v.sqrt());
-    reading
+    predicted.alike.then_some(reading)
 }
 
 /// Threshold from a fine ramp: less the lag of golden parts, or, by two rates, from both ramps.
@@ -70,19 +68,22 @@ pub(super) fn fine_reading(
     };
     let seen = ramps.fine.unwrap_or(Volt(f64::NAN));
     let reference = bench.reference_temperature();
-    let mut reading = quasi_static(seen, gate, lag, part, reference, doubt(bench));
-    if bench.strategy(parameter) == Strategy::TwoRates && ramps.coarse.0.is_finite() {
+    let own = lag.own_v((ramps.coarse.indicated - seen).0, direction);
+    let mut reading = quasi_static((seen, own), gate, lag, part, reference, doubt(bench));
+    if bench.strategy(parameter) == Strategy::TwoRates && ramps.coarse.indicated.0.is_finite() {
         let rates = [
             bench.calibration.coarse_v_per_s.value,
             bench.calibration.fine_v_per_s.value,
         ];
         let sign = direction.sign();
         // The growth time from the lags of both rates on golden parts; their common offset stays out of it.
-        let lags = [lag.coarse_v + lag.fine_v.value, lag.fine_v.value];
+        let predicted = lag.coarse.of(&ramps.coarse);
+        let fine_v = lag.fine_v.value + lag.own_v(predicted.volts, direction).value;
+        let lags = [predicted.volts + fine_v, fine_v];
         let growth = growth_s(lags.map(|it| it * sign), rates);
-        let seen = [ramps.coarse.0, seen.0].map(|volts| volts * sign);
+        let seen = [ramps.coarse.indicated.0, seen.0].map(|volts| volts * sign);
         let found = sign * from_two_rates(seen, rates, growth);
-        let scatter = rates[1] / (rates[0] - rates[1]) * lag.coarse_u_v;
+        let scatter = rates[1] / (rates[0] - rates[1]) * predicted.u_v;
         reading.value = found * to_reference(part, reference);
         reading.budget = reading.budget.with_random("strategy", scatter);
     }

@@ -1,10 +1,13 @@
 //! The test of one part: the order of stages, and what each leaves behind.
 //!
 //! ```text
-//! kelvin -> NC contact -> coil -> operate coarse -> release coarse -> operate fine -> release fine
-//!        -> timed operate + NO contact -> timed release + NC contact -> off -> verdict
+//! kelvin -> NC contact -> timed operate + NO contact -> timed release + NC contact -> coil
+//!        -> operate coarse -> release coarse -> operate fine -> release fine -> off -> verdict
 //! ```
 //! Each release follows on the operation before it, so that a part operates three times and not five.
+//! The times come first: a relay that is late on a step is late on a ramp, and what its times and its coil tell of
+//! that ([`crate::gauge::lag`]) places the fine ramps. A contact that does not move at nominal voltage is so found
+//! before any ramp; the coil is still measured, since it may be the cause.
 //! What needs no waiting (arming, counters, selections) is done while something else settles or converts;
 //! a mark therefore outlives the stage that set it, and so does the last reading of the counters.
 //! The board takes the source off by itself, 2 ms ahead of a change of drive, selection or direction;
@@ -52,11 +55,11 @@ const INTERLOCK: Span = Span::ms(2);
 
 /// Stages of the slow strategy in the order of the test.
 const SLOW: [Stage; 5] = [
+    Stage::TimedOperate,
+    Stage::TimedRelease,
     Stage::Coil,
     Stage::OperateFine(0),
     Stage::ReleaseFine(0),
-    Stage::TimedOperate,
-    Stage::TimedRelease,
 ];
 
 /// What the test wants from its surroundings.
@@ -166,7 +169,6 @@ impl Test {
             Stage::Coil => coil::conclude(bench, &readings, findings),
             Stage::Search(direction) => search::conclude(bench, &readings, findings, direction),
             Stage::OperateCoarse => operate::conclude_coarse(bench, &readings, findings),
-            Stage::PullIn => operate::conclude_pull_in(&readings, findings),
             Stage::OperateFine(attempt) => {
                 operate_fine::conclude(bench, &readings, findings, attempt)
             }

@@ -79,11 +79,16 @@ pub(super) fn conclude_coarse(
 ) -> Option<Stage> {
     let start = findings.ramp_start?;
     if readings.seen.first() != Some(&true) {
-        let pulled = readings.boards.last().is_some_and(|board| board.no_closed);
-        if pulled {
-            findings.void("coarse operate ramp: contact made outside the window");
-        } else {
-            return Some(Stage::PullIn);
+        // It has operated at nominal voltage.
+        match readings.boards.last() {
+            Some(board) if board.no_closed => {
+                findings.void("coarse operate ramp: contact made outside the window");
+            }
+            Some(_) => findings.fail(
+                "operate_voltage_v high: above the coarse ramp",
+                Bin::Voltage,
+            ),
+            None => findings.void("interface board not read"),
         }
         return None;
     }
@@ -102,35 +107,22 @@ pub(super) fn conclude_coarse(
         .and_then(|span| stopped_at(start, span, seen))
         .unwrap_or(seen);
     let lag = bench.operate_lag();
-    findings.operate = Some(Ramp { coarse, fine: None });
+    let seen = findings.shown(coarse, Direction::Rising);
+    findings.operate = Some(Ramp {
+        coarse: seen,
+        fine: None,
+    });
     findings.operated = true;
     findings.still_ramping = turning(bench, coarse - start);
-    findings.expected_operate = Some(Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v));
+    findings.expected_operate = Some(Expected::after(&seen, &lag));
     let strategy = bench.strategy(Parameter::OperateVoltage);
-    if strategy.trusts_coarse()
-        && let Some(part) = findings.track
-    {
-        let reading = coarse_reading(bench, (coarse, lag), None, part);
-        findings.found(
-            Parameter::OperateVoltage,
-            reading,
-            readings.gates.iter().flatten(),
-        );
-    }
-    (!strategy.ramps()).then_some(Stage::OperateFine(0))
-}
-
-/// A value that rests on the coarse ramp alone is corrected once the operate time of the part is known.
-pub(super) fn refine(bench: &Bench, readings: &Readings, findings: &mut Findings) {
-    let trusted = bench.strategy(Parameter::OperateVoltage).trusts_coarse();
-    let coarse = findings.operate.filter(|ramp| ramp.fine.is_none());
-    let time = findings.result(Parameter::OperateTime);
-    if let (true, Some(ramp), Some(time), Some(part)) = (trusted, coarse, time, findings.track) {
-        let lag = bench.operate_lag();
-        let reading = coarse_reading(bench, (ramp.coarse, lag), Some(time.value), part);
-        findings.forget(Parameter::OperateVoltage);
-        let samples = readings.gates.iter().flatten();
-        findings.found(Parameter::OperateVoltage, reading, samples);
+    let (samples, part) = (readings.gates.iter().flatten(), findings.track?);
+    match coarse_reading(bench, (seen, lag), part, Direction::Rising) {
+        Some(reading) if strategy.trusts_coarse() => {
+            findings.found(Parameter::OperateVoltage, reading, samples);
+            None
+        }
+        Some(_) | None => (!strategy.always_fine()).then_some(Stage::OperateFine(0)),
     }
 }
 
@@ -141,39 +133,6 @@ fn turning(bench: &Bench, climbed: Volt) -> Span {
     let over = climbed.0 + per_s * TURNS.as_seconds();
     let back = over.min(bench.recipe.test.coarse_span_v) - release_start(bench).0;
     TURNS + Span::seconds(back.abs() / per_s) + RAMP_MARGIN
-}
-
-/// Nominal voltage, to tell a stuck contact from a threshold above the coarse ramp.
-pub(super) fn acts_pull_in(bench: &Bench, supply: &mut Supply) -> Vec<Act> {
-    vec![
-        supply.step_to(Volt(bench.recipe.part.nominal_v)),
-        board(&[(CoilDrive, true)]),
-        Act::Wait(Span::ms(40)),
-        Act::Read(Read::Board),
-    ]
-}
-
-pub(super) fn conclude_pull_in(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
-    match readings.boards.first() {
-        Some(board) if board.no_closed => {
-            findings.fail(
-                "operate_voltage_v high: above the coarse ramp",
-                Bin::Voltage,
-            );
-        }
-        Some(board) if board.nc_closed => {
-            findings.fail(
-                "contact stuck: NC does not open at nominal voltage",
-                Bin::Contact,
-            );
-        }
-        Some(_) => findings.fail(
-            "contact stuck: NO does not make at nominal voltage",
-            Bin::Contact,
-        ),
-        None => findings.void("interface board not read"),
-    }
-    None
 }
 
 /// Drive off, unless the stage before has switched it off already; [`OFF`] counts from the mark.

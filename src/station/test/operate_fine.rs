@@ -11,7 +11,9 @@ use super::{Bench, Findings, OFF, Ramp, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::threshold::Direction;
 use crate::rig::point::DigitalIn;
-use crate::rig::point::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
+use crate::rig::point::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
 use crate::station::act::{Act, Read, Readings};
 use crate::station::supply::Supply;
 use crate::units::{Span, Volt};
@@ -37,22 +39,30 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
     let placed = expected.placed(Direction::Rising);
     let mut acts = dropped(findings);
     acts.extend(make_room(bench, supply, placed.start));
-    let approach = placed.start * APPROACH;
     acts.extend([
-        supply.step_to(approach),
-        board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
+        supply.step_to(placed.start * APPROACH),
         Act::WaitSinceMark(OFF),
-        board(&[(CoilDrive, true)]),
+        board(&[
+            (SourceOn, false),
+            (SourceReverse, false),
+            (RampMode, true),
+            (SelectNo, true),
+            (EventNoBreak, false),
+            (CoilDrive, true),
+        ]),
         Act::Wait(APPROACH_TIME),
         supply.step_to(placed.start),
         Act::Mark,
         board(&[(Arm, true)]),
-        Act::Read(Read::Gates),
-        Act::WaitSinceMark(FINE_SETTLES),
     ]);
     findings.ramp_start = Some(supply.total());
     findings.ramp_span = Some(placed.span);
-    let (ramp, takes) = supply.jump_and_ramp(ramp::JUMP, placed.span - ramp::JUMP);
+    acts.extend([
+        supply.step_to(placed.start + ramp::JUMP),
+        Act::Read(Read::Gates),
+        Act::WaitSinceMark(FINE_SETTLES),
+    ]);
+    let (ramp, takes) = supply.ramp_fine(supply.fine() + placed.span - ramp::JUMP);
     findings.ramp_takes = takes;
     acts.extend([
         ramp,

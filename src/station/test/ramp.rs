@@ -4,23 +4,31 @@
 use super::Bench;
 use super::findings::Findings;
 use super::indication::gate0;
+use crate::gauge::calibration::Lag;
+use crate::gauge::lag::Shown;
 use crate::gauge::threshold::{Direction, indicated};
 use crate::station::act::Readings;
 use crate::units::{Second, Volt};
 
-/// The level jumps by this much as the ramp begins: the window opens after [`WINDOW_V`], and on the fine
-/// ramp alone that would take 33 ms. What is left keeps the comparator's tolerance out of the way.
+/// The level jumps by this much between ARM and ramp: the window opens after [`WINDOW_V`], and on the fine
+/// ramp alone that would take 33 ms. What is left keeps the comparator's tolerance out of the way. Flux and
+/// armature settle after the jump, so that the ramp begins at rest.
 pub(super) const JUMP: Volt = Volt(0.045);
 /// The quasi-static threshold lies so far before the event of a fine ramp (its lag is some 27 mV at
-/// 1.5 V/s): the ramp must have begun before that, or it is a step.
-const RUN_UP: Volt = Volt(0.030);
-/// The same for a sealed armature, whose flux follows the jump at 6 to 9 ms instead of 1.5.
-const RUN_DOWN: Volt = Volt(0.045);
+/// 1.5 V/s): the ramp must have begun well before that. An armature just below its threshold floats, swings for some
+/// 30 ms after the approach, and goes over up to 15 mV early if it is brought too near.
+const RUN_UP: Volt = Volt(0.060);
+/// The same for a sealed armature, whose flux follows at 6 to 9 ms and still falls from the seal.
+const RUN_DOWN: Volt = Volt(0.085);
 /// Beyond the far end of the estimate, for the lag's own scatter.
 const FAR_MARGIN: Volt = Volt(0.015);
 /// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
 /// costs a second ramp of 0.2 s; each further half deviation would cost every part some 7 ms.
 const COVERAGE: f64 = 3.0;
+/// An odd part whose lag nobody knows gets no wider ramp than this, volts: a search by halves is quicker.
+const WIDEST_SD_V: f64 = 0.1;
+/// Width of the next interval against that of the one that was missed.
+const WIDER: f64 = 3.0;
 /// A fine ramp is placed so often before the test is void.
 pub(super) const ATTEMPTS: u8 = 5;
 
@@ -51,13 +59,16 @@ impl Expected {
         }
     }
 
+    /// Where a coarse ramp and the law of its lag say.
+    pub fn after(coarse: &Shown, lag: &Lag) -> Self {
+        let predicted = lag.coarse.of(coarse);
+        let sd_v = predicted.u_v.min(WIDEST_SD_V);
+        Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
+    }
+
     /// The ramp that searches this interval.
     pub fn placed(&self, direction: Direction) -> Placed {
-        let run = match direction {
-            Direction::Rising => RUN_UP,
-            Direction::Falling => RUN_DOWN,
-        };
-        let lead = JUMP + run;
+        let lead = JUMP + run(direction);
         Placed {
             start: self.centre - (self.half_width + lead) * direction.sign(),
             span: lead + self.half_width * 2.0 + FAR_MARGIN,
@@ -74,18 +85,26 @@ impl Expected {
     }
 
     /// The interval to search next: beyond the far end when nothing happened, before the near end when
-    /// the contact had already changed. The first neighbour is as wide, later ones three times.
-    pub fn next(&self, direction: Direction, changed_early: bool, attempt: u8) -> Self {
+    /// the contact had already changed. Each neighbour is three times as wide: what misses by more than expected may
+    /// miss by much.
+    pub fn next(&self, direction: Direction, changed_early: bool) -> Self {
         let away = if changed_early {
             -direction.sign()
         } else {
             direction.sign()
         };
-        let wider = if attempt == 0 { 1.0 } else { 3.0 };
         Self {
-            centre: self.centre + self.half_width * ((1.0 + wider) * away),
-            half_width: self.half_width * wider,
+            centre: self.centre + self.half_width * ((1.0 + WIDER) * away),
+            half_width: self.half_width * WIDER,
         }
+    }
+}
+
+/// Way of a ramp before the interval that it searches.
+fn run(direction: Direction) -> Volt {
+    match direction {
+        Direction::Rising => RUN_UP,
+        Direction::Falling => RUN_DOWN,
     }
 }
 
@@ -120,7 +139,9 @@ pub(super) fn meet(
     let stopped = findings
         .ramp_span
         .and_then(|span| stopped_at(start, span, seen));
-    if met && stopped.is_none() {
+    // Before the interval the ramp had hardly begun: what moved the armature was the step before it.
+    let hasty = met && (seen - start).abs() < JUMP + run(direction);
+    if met && stopped.is_none() && !hasty {
         return Some(Met::At(seen, gate));
     }
     let operated = direction == Direction::Rising;
@@ -130,7 +151,7 @@ pub(super) fn meet(
         .is_some_and(|board| board.no_closed == operated);
     *findings.expected(direction) = Some(match stopped {
         Some(end) if met => expected.around(end),
-        Some(_) | None => expected.next(direction, early, attempt),
+        Some(_) | None => expected.next(direction, early || hasty),
     });
     if attempt + 1 < ATTEMPTS {
         return Some(Met::Again);
@@ -176,9 +197,9 @@ mod tests {
             centre: Volt(7.9),
             half_width: Volt(0.03),
         };
-        let beyond = expected.next(Direction::Rising, false, 0);
+        let beyond = expected.next(Direction::Rising, false);
         assert!((beyond.centre.0 - beyond.half_width.0 - 7.93).abs() < 1e-12);
-        let before = expected.next(Direction::Falling, true, 1);
+        let before = expected.next(Direction::Falling, true);
         assert!((before.centre.0 - before.half_width.0 - 7.93).abs() < 1e-12);
     }
 }

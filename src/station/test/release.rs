@@ -25,12 +25,14 @@ const SEAL: f64 = 0.95;
 const FLOOR_V: f64 = 0.35;
 /// Operate, bounce and settling of the flux.
 const SEAL_TIME: Span = Span::ms(25);
+/// The flux of the seal has fallen to a few per cent of its step before a fine ramp begins; what the coarse ramp
+/// has left of it, after [`SETTLES`], its lag has learned.
+const FINE_SETTLES: Span = Span::ms(35);
 /// Slowest break after the end of a ramp that is still taken for its event.
 const LATE: Span = Span::ms(12);
 
-/// Seals the armature and steps to the start of a falling ramp, armed: ARM is a pulse, so that it may rise again as
-/// soon as the contact has broken. An armature that is still operated from the stage before is sealed from there,
-/// once the ramp that may still run has ended.
+/// Seals the armature, steps to where a falling ramp begins and arms it. An armature that is still operated from the stage
+/// before is sealed from there, once the ramp that may still run has ended.
 fn seal(bench: &Bench, supply: &mut Supply, findings: &mut Findings, start: Volt) -> Vec<Act> {
     let operated = std::mem::take(&mut findings.operated);
     findings.released = false;
@@ -64,52 +66,32 @@ fn seal(bench: &Bench, supply: &mut Supply, findings: &mut Findings, start: Volt
         supply.step_to(start),
         Act::Mark,
         board(&[(Arm, true)]),
-        Act::Read(Read::Gates),
-        board(&[(Arm, false)]),
-        Act::WaitSinceMark(SETTLES),
     ]);
+    findings.ramp_start = Some(supply.total());
     acts
 }
 
-/// What comes after a ramp, when all goes well.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Then {
-    /// Another ramp: counter 0 is enough, and the word is that of a rising ramp already.
-    Ramp,
-    /// The timed operation: it takes both counters over, and finds window and latch cleared. No start event comes
-    /// of a drive that goes off while NO is selected, so ARM may rise in the same word.
-    Timed,
+/// Flux and armature settle after the step; the counters are read meanwhile. ARM is a pulse: it may rise again as soon
+/// as the contact has broken.
+fn settled(within: Span) -> [Act; 3] {
+    [
+        Act::Read(Read::Gates),
+        board(&[(Arm, false)]),
+        Act::WaitSinceMark(within),
+    ]
 }
 
 /// The drive goes off once NO has broken; from that event on the armature falls.
-fn until_break(takes: Span, then: Then) -> [Act; 4] {
-    let mut off = vec![(CoilDrive, false), (EventNoBreak, false)];
-    let gates = match then {
-        Then::Ramp => Read::Gate,
-        Then::Timed => {
-            off.extend([(RampMode, false), (Arm, true)]);
-            Read::Gates
-        }
-    };
+fn until_break(takes: Span) -> [Act; 4] {
     [
         Act::Until {
             point: DigitalIn::Latch,
             within: takes + LATE,
         },
         Act::Mark,
-        Act::Board(off),
-        Act::Read(gates),
+        board(&[(CoilDrive, false), (EventNoBreak, false)]),
+        Act::Read(Read::Gate),
     ]
-}
-
-fn after_coarse(bench: &Bench) -> Then {
-    let fine = [Parameter::OperateVoltage, Parameter::ReleaseVoltage]
-        .map(|parameter| bench.strategy(parameter).always_fine());
-    if fine.contains(&true) {
-        Then::Ramp
-    } else {
-        Then::Timed
-    }
 }
 
 pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
@@ -120,10 +102,10 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
     }
     let start = supply.coarse() + supply.fine();
     acts.extend(seal(bench, supply, findings, start));
-    findings.ramp_start = Some(supply.total());
+    acts.extend(settled(SETTLES));
     let (ramp, takes) = supply.ramp_coarse(Volt(0.0));
     acts.push(ramp);
-    acts.extend(until_break(takes, after_coarse(bench)));
+    acts.extend(until_break(takes));
     acts
 }
 
@@ -139,31 +121,31 @@ pub(super) fn conclude_coarse(
     let gate =
         gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - FLOOR_V);
     findings.released = true;
-    findings.expected_release = Some(match gate {
-        Some(gate) => {
-            let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
-            let lag = bench.release_lag();
-            findings.release = Some(Ramp { coarse, fine: None });
-            if strategy.trusts_coarse()
-                && let Some(part) = findings.track
-            {
-                let reading = coarse_reading(bench, (coarse, lag), None, part);
-                findings.found(
-                    Parameter::ReleaseVoltage,
-                    reading,
-                    readings.gates.iter().flatten(),
-                );
-            }
-            Expected::new(coarse - Volt(lag.coarse_v), lag.coarse_sd_v)
-        }
-        None => Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v),
-    });
-    if gate.is_none() {
+    let Some(gate) = gate else {
         // Below its floor the coarse ramp tells nothing: the threshold is far from the lot's.
+        let expected = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
+        findings.expected_release = Some(expected);
         findings.search = Some(Search::placing(bench, Direction::Falling));
         return Some(Stage::Search(Direction::Falling));
+    };
+    let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
+    let (seen, lag) = (
+        findings.shown(coarse, Direction::Falling),
+        bench.release_lag(),
+    );
+    findings.release = Some(Ramp {
+        coarse: seen,
+        fine: None,
+    });
+    findings.expected_release = Some(Expected::after(&seen, &lag));
+    let (samples, part) = (readings.gates.iter().flatten(), findings.track?);
+    match coarse_reading(bench, (seen, lag), part, Direction::Falling) {
+        Some(reading) if strategy.trusts_coarse() => {
+            findings.found(Parameter::ReleaseVoltage, reading, samples);
+            None
+        }
+        Some(_) | None => (!strategy.always_fine()).then_some(Stage::ReleaseFine(0)),
     }
-    (!strategy.ramps()).then_some(Stage::ReleaseFine(0))
 }
 
 pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
@@ -186,11 +168,12 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
     let least = supply.coarse() + supply.fine() + ramp::JUMP;
     let start = placed.start.0.max(least.0);
     acts.extend(seal(bench, supply, findings, Volt(start)));
-    findings.ramp_start = Some(supply.total());
     findings.ramp_span = Some(placed.span);
-    let (ramp, takes) = supply.jump_and_ramp(-ramp::JUMP, -way);
+    acts.push(supply.step_to(Volt(start) - ramp::JUMP));
+    acts.extend(settled(FINE_SETTLES));
+    let (ramp, takes) = supply.ramp_fine(supply.fine() - way);
     acts.push(ramp);
-    acts.extend(until_break(takes, Then::Timed));
+    acts.extend(until_break(takes));
     acts
 }
 

@@ -22,8 +22,6 @@ pub enum Stage {
     Search(Direction),
     /// Coarse ramp from the pre-bias.
     OperateCoarse,
-    /// Nominal voltage, when the coarse ramp saw no make.
-    PullIn,
     /// Fine ramp from just below the coarse estimate; the number of the attempt widens it.
     OperateFine(u8),
     /// Step to nominal with both gates, and NO contact on that closure.
@@ -44,7 +42,12 @@ pub(super) fn order(bench: &Bench) -> VecDeque<Stage> {
         bench.strategy(Parameter::OperateVoltage),
         bench.strategy(Parameter::ReleaseVoltage),
     );
-    let mut stages = VecDeque::from([Stage::NcContact, Stage::Coil]);
+    let mut stages = VecDeque::from([
+        Stage::NcContact,
+        Stage::TimedOperate,
+        Stage::TimedRelease,
+        Stage::Coil,
+    ]);
     stages.push_back(match operate.ramps() {
         true => Stage::OperateCoarse,
         false => Stage::Search(Direction::Rising),
@@ -55,7 +58,7 @@ pub(super) fn order(bench: &Bench) -> VecDeque<Stage> {
     });
     stages.extend(operate.always_fine().then_some(Stage::OperateFine(0)));
     stages.extend(release.always_fine().then_some(Stage::ReleaseFine(0)));
-    stages.extend([Stage::TimedOperate, Stage::TimedRelease, Stage::Off]);
+    stages.push_back(Stage::Off);
     stages
 }
 
@@ -70,7 +73,6 @@ impl Stage {
             | Self::Coil
             | Self::Search(_)
             | Self::OperateCoarse
-            | Self::PullIn
             | Self::TimedOperate
             | Self::TimedRelease
             | Self::ReleaseCoarse
@@ -84,10 +86,9 @@ impl Stage {
             Self::Kelvin => "kelvin",
             Self::NcContact => "nc_contact",
             Self::Coil => "coil",
-            Self::OperateCoarse
-            | Self::PullIn
-            | Self::OperateFine(_)
-            | Self::Search(Direction::Rising) => "operate",
+            Self::OperateCoarse | Self::OperateFine(_) | Self::Search(Direction::Rising) => {
+                "operate"
+            }
             Self::ReleaseCoarse | Self::ReleaseFine(_) | Self::Search(Direction::Falling) => {
                 "release"
             }
@@ -122,11 +123,10 @@ pub(super) fn acts(
 ) -> Vec<Act> {
     match stage {
         Stage::Kelvin => kelvin::acts(),
-        Stage::NcContact => contact::acts_nc(bench),
+        Stage::NcContact => contact::acts_nc(bench, supply, findings),
         Stage::Coil => coil::acts(bench, supply, findings),
         Stage::Search(direction) => search::acts(bench, supply, findings, direction),
         Stage::OperateCoarse => operate::acts_coarse(bench, supply, findings),
-        Stage::PullIn => operate::acts_pull_in(bench, supply),
         Stage::OperateFine(_) => operate_fine::acts(bench, supply, findings),
         Stage::TimedOperate => timing::acts_operate(bench, supply, findings),
         Stage::TimedRelease => timing::acts_release(bench, supply, findings),

@@ -3,7 +3,7 @@
 
 use super::coil::rest;
 use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, reversed};
-use super::operate::{self, dropped};
+use super::operate::dropped;
 use super::{Bench, Findings, OFF, Stage, board};
 use crate::gauge::Parameter;
 use crate::gauge::contact::resistance;
@@ -27,28 +27,29 @@ const GATE_SKEW: u32 = 4;
 /// that the source asks for.
 const SOURCE_FLOWS: Span = Span::ms(11);
 
-/// A stage that follows on a contact event takes its counters over: the latch of that event keeps both
-/// gates shut until ARM. Any other start reads them after ARM.
+/// Counters are read after ARM, here unless the NC stage has done so: before ARM a window may still be open that an
+/// early end has left.
 pub(super) fn acts_operate(
     bench: &Bench,
     supply: &mut Supply,
     findings: &mut Findings,
 ) -> Vec<Act> {
-    let counted = findings.released;
     let mut acts = dropped(findings);
     let off = OFF.max(std::mem::take(&mut findings.still_ramping));
-    acts.extend([
-        board(&[
-            (SourceOn, false),
-            (SourceReverse, false),
-            (RampMode, false),
-            (SelectNo, true),
-            (EventNoBreak, false),
-            (Arm, true),
-        ]),
-        supply.step_to(Volt(bench.recipe.part.nominal_v)),
-    ]);
-    acts.extend((!counted).then_some(Act::Read(Read::Gates)));
+    acts.extend([board(&[
+        (SourceOn, false),
+        (SourceReverse, false),
+        (RampMode, false),
+        (SelectNo, true),
+        (EventNoBreak, false),
+        (Arm, true),
+    ])]);
+    if !std::mem::take(&mut findings.counted) {
+        acts.extend([
+            supply.step_to(Volt(bench.recipe.part.nominal_v)),
+            Act::Read(Read::Gates),
+        ]);
+    }
     acts.extend([
         Act::WaitSinceMark(off),
         board(&[(CoilDrive, true), (SourceOn, true)]),
@@ -59,6 +60,7 @@ pub(super) fn acts_operate(
     acts
 }
 
+/// After a timed operation its counters are taken over: the latch keeps both gates shut until ARM.
 pub(super) fn acts_release(
     bench: &Bench,
     supply: &mut Supply,
@@ -158,11 +160,7 @@ pub(super) fn conclude_operate(
     findings: &mut Findings,
 ) -> Option<Stage> {
     if readings.seen.first() != Some(&true) {
-        findings.fail(
-            "operate_time_ms high: NO does not make at nominal voltage",
-            Bin::Time,
-        );
-        return None;
+        return not_made(readings, findings);
     }
     time_and_bounce(
         bench,
@@ -172,7 +170,6 @@ pub(super) fn conclude_operate(
         findings,
     );
     findings.operated = true;
-    operate::refine(bench, readings, findings);
     match closure(bench, readings) {
         Ok(closure) => {
             let u = closure.u_v(bench.reading_u_v());
@@ -186,6 +183,26 @@ pub(super) fn conclude_operate(
         Err(unread) => unread.tell("NO contact", findings),
     }
     None
+}
+
+/// A relay that is late, or one whose contact does not move: that may lie at the coil, which is then measured
+/// before the part is judged.
+fn not_made(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+    findings.unmoved = match readings.boards.last() {
+        Some(board) if board.no_closed => {
+            findings.fail("operate_time_ms high: NO makes too late", Bin::Time);
+            None
+        }
+        Some(board) if board.nc_closed => {
+            Some("contact stuck: NC does not open at nominal voltage")
+        }
+        Some(_) => Some("contact stuck: NO does not make at nominal voltage"),
+        None => {
+            findings.void("interface board not read");
+            None
+        }
+    };
+    findings.unmoved.map(|_| Stage::Coil)
 }
 
 pub(super) fn conclude_release(

@@ -4,10 +4,11 @@ use super::bench;
 use super::instruments::golden_parts;
 use crate::gauge::Parameter;
 use crate::gauge::budget::{Budget, Reading};
-use crate::gauge::calibration::Factor;
+use crate::gauge::lag::Shown;
 use crate::gauge::settings::GoldenPart;
 use crate::rig::sample::Sample;
-use crate::station::golden::{CoarseLag, GoldenRun, interim, place};
+use crate::station::golden::{GoldenRun, interim};
+use crate::station::test::bench::untaught;
 use crate::station::test::{Findings, Ramp};
 use crate::units::{Celsius, Volt};
 
@@ -15,12 +16,7 @@ const REFERENCE: Celsius = Celsius(23.0);
 
 /// What a test finds on a golden part whose ramps overshoot by so much, at 23 C.
 fn tested(part: &GoldenPart, operate_v: f64, release_v: f64, coil_off_ohm: f64) -> Findings {
-    let fine = |volts: f64| {
-        Some(Ramp {
-            coarse: Volt(volts),
-            fine: Some(Volt(volts)),
-        })
-    };
+    let fine = |volts: f64| Some(Ramp::fine_only(Volt(volts)));
     let mut findings = Findings::default();
     findings.track = Some(REFERENCE);
     findings.operate = fine(part.operate_voltage_v.value + operate_v);
@@ -42,15 +38,11 @@ fn run_of(operate_mv: &[f64], release_mv: f64) -> GoldenRun {
     run
 }
 
-fn coarse() -> (CoarseLag, CoarseLag) {
-    (CoarseLag::default(), CoarseLag::default())
-}
-
 #[test]
 fn the_fine_lag_is_the_mean_shift_from_the_certificates() {
     let run = run_of(&[12.0, 15.0, 13.0, 14.0, 16.0], -9.0);
     let lags = run
-        .lags(&golden_parts(), &bench().accuracy, coarse())
+        .lags(&golden_parts(), &bench().accuracy, untaught())
         .unwrap();
     assert!((lags.operate.fine_v.value - 0.014).abs() < 1e-9);
     assert!((lags.release.fine_v.value + 0.009).abs() < 1e-9);
@@ -68,16 +60,16 @@ fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() 
         let mut findings = tested(part, 0.0, 0.0, 0.0);
         findings.track = Some(warm);
         findings.operate = Some(Ramp {
-            coarse: Volt(9.0),
+            coarse: Shown::NOTHING,
             fine: Some(Volt(part.operate_voltage_v.value * scale + 0.012)),
         });
         findings.release = Some(Ramp {
-            coarse: Volt(2.0),
+            coarse: Shown::NOTHING,
             fine: Some(Volt(part.release_voltage_v.value * scale - 0.012)),
         });
         run.learn(part, REFERENCE, &findings).unwrap();
     }
-    let lags = run.lags(&parts, &bench().accuracy, coarse()).unwrap();
+    let lags = run.lags(&parts, &bench().accuracy, untaught()).unwrap();
     assert!((lags.operate.fine_v.value - 0.012).abs() < 1e-9);
     assert!((lags.release.fine_v.value + 0.012).abs() < 1e-9);
 }
@@ -86,7 +78,7 @@ fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() 
 fn a_part_that_does_not_fit_the_others_is_named() {
     let run = run_of(&[12.0, 15.0, 130.0, 14.0, 16.0], -9.0);
     let why = run
-        .lags(&golden_parts(), &bench().accuracy, coarse())
+        .lags(&golden_parts(), &bench().accuracy, untaught())
         .unwrap_err();
     assert!(why.contains("G-12-3"), "{why}");
 }
@@ -95,7 +87,7 @@ fn a_part_that_does_not_fit_the_others_is_named() {
 fn fewer_than_three_golden_parts_teach_no_lag() {
     for (n, usable) in [(0, false), (1, false), (2, false), (3, true), (5, true)] {
         let run = run_of(&vec![14.0; n], -9.0);
-        let lags = run.lags(&golden_parts(), &bench().accuracy, coarse());
+        let lags = run.lags(&golden_parts(), &bench().accuracy, untaught());
         assert_eq!(lags.is_ok(), usable, "{n} parts");
     }
 }
@@ -104,7 +96,7 @@ fn fewer_than_three_golden_parts_teach_no_lag() {
 fn more_golden_parts_make_the_lag_surer() {
     let u = |n: usize| {
         let run = run_of(&vec![14.0; n], -9.0);
-        let lags = run.lags(&golden_parts(), &bench().accuracy, coarse());
+        let lags = run.lags(&golden_parts(), &bench().accuracy, untaught());
         lags.unwrap().operate.fine_v.u
     };
     assert!((u(3) / u(5) - (5f64 / 3.0).sqrt()).abs() < 1e-9);
@@ -139,59 +131,9 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
     assert_eq!(learned, Ok(()));
 }
 
-fn taught(lags: &[f64]) -> CoarseLag {
-    let mut coarse = CoarseLag::default();
-    for lag in lags {
-        coarse.learn(Ramp {
-            coarse: Volt(7.9 + lag),
-            fine: Some(Volt(7.9)),
-        });
-    }
-    coarse
-}
-
-#[test]
-fn the_scatter_of_the_coarse_lag_is_never_believed_below_the_least() {
-    let fine = Factor::new(0.0, 0.0);
-    let lag = place(fine, 7.88, taught(&[0.85; 40]));
-    assert!((lag.coarse_v - 0.85).abs() < 1e-9);
-    assert_eq!(lag.coarse_sd_v, 0.010);
-}
-
-#[test]
-fn few_parts_widen_the_coarse_scatter_and_many_settle_it() {
-    let fine = Factor::new(0.0, 0.0);
-    let pairs = |n: usize| [0.83, 0.87].repeat(n);
-    let sds: Vec<f64> = [1, 2, 5, 50]
-        .map(|n| place(fine, 7.88, taught(&pairs(n))).coarse_sd_v)
-        .to_vec();
-    assert!(sds.windows(2).all(|two| two[0] > two[1]), "{sds:?}");
-    assert!((sds[3] - 0.02).abs() < 0.001, "{sds:?}");
-    let one = place(fine, 7.88, taught(&[0.85])).coarse_sd_v;
-    assert!(one > sds[0], "{one} after one part");
-}
-
-#[test]
-fn a_ramp_without_a_fine_or_a_finite_coarse_indication_teaches_nothing() {
-    let mut coarse = taught(&[0.80, 0.90]);
-    let before = format!("{coarse:?}");
-    coarse.learn(Ramp {
-        coarse: Volt(12.0),
-        fine: None,
-    });
-    coarse.learn(Ramp {
-        coarse: Volt(f64::NAN),
-        fine: Some(Volt(7.9)),
-    });
-    assert_eq!(format!("{coarse:?}"), before);
-}
-
 #[test]
 fn while_golden_parts_run_the_fine_lag_proves_nothing() {
-    let guess = bench().operate_lag();
-    let lag = interim(guess, CoarseLag::default());
+    let lag = interim(untaught().0);
     assert_eq!((lag.fine_v.value, lag.fine_v.u), (0.0, f64::INFINITY));
-    assert_eq!((lag.coarse_v, lag.coarse_sd_v), (guess.coarse_v, 0.05));
-    let learned = interim(guess, taught(&[0.7, 0.7]));
-    assert!((learned.coarse_v - 0.7).abs() < 1e-9);
+    assert_eq!(lag.coarse, bench().operate_lag().coarse);
 }

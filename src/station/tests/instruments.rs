@@ -3,6 +3,7 @@
 use super::RIG;
 use crate::gauge::Calibration;
 use crate::gauge::calibration::{Factor, InputLine, Lag, Lags, OutputLine};
+use crate::gauge::lag::LagLaw;
 use crate::gauge::recipe::Recipe;
 use crate::gauge::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
 use crate::station::test::Bench;
@@ -42,11 +43,8 @@ fn calibration() -> Calibration {
     let lag = |coarse_v| Lag {
         fine_v: exact(0.0),
         at_v: 0.0,
-        coarse_v,
-        coarse_sd_v: 0.01,
-        coarse_u_v: 0.01,
-        coarse_n: 5,
-        line: None,
+        at_coarse_v: coarse_v,
+        coarse: LagLaw::guess(coarse_v),
     };
     Calibration {
         simulated: true,

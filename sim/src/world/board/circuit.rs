@@ -58,9 +58,7 @@ impl Board {
             return volts / self.reference_coil_ohm;
         }
         let meets = |r: &&Relay| self.touching && r.specimen().pins.coil();
-        relay
-            .filter(meets)
-            .map_or(0.0, |r| r.coil_current_a(self.now_us))
+        relay.filter(meets).map_or(0.0, Relay::coil_current_a)
     }
 
     pub(super) fn coil_v(&self, relay: Option<&Relay>) -> f64 {

@@ -4,8 +4,8 @@ use super::*;
 use crate::config::read_world;
 use crate::world::defect;
 use crate::world::draw::{Draw, Subject};
-use crate::world::mode::step_time;
-use crate::world::relay::{Contact, Relay, Supply, laws};
+use crate::world::relay::fit::Pace;
+use crate::world::relay::{Contact, Relay, Supply};
 use crate::world::specimen::{ContactFilm, Scale, Specimen};
 use crate::world::table::WorldTable;
 
@@ -14,6 +14,12 @@ fn still_world() -> WorldTable {
     let mut world = read_world(&config_dir(), None).unwrap();
     world.lot.threshold_scatter_sd_mv = 0.0;
     world.lot.bounce_ln_sd = 0.0;
+    world
+}
+
+/// The same with copper that does not warm: a ramp of half a second moves pickup by 1.7 mV otherwise.
+fn cool(mut world: WorldTable) -> WorldTable {
+    world.relay.coil_heat_j_per_k = 1e9;
     world
 }
 
@@ -26,10 +32,10 @@ fn reference_relay(world: &WorldTable) -> Relay {
     let mut specimen = Specimen::of_lot(world, scale, 1, 0);
     specimen.defect = None;
     specimen.coil_ohm = 400.0;
-    specimen.operate_v = 7.883_477;
-    specimen.release_v = 2.342_888;
-    specimen.operate_ms = 4.7308;
-    specimen.release_ms = 2.8650;
+    specimen.operate_v = 7.883_477_479_837_58;
+    specimen.release_v = 2.342_888_313_119_52;
+    specimen.operate_ms = 4.730_797_252;
+    specimen.release_ms = 2.864_980_410;
     specimen.offset_k = 0.0;
     specimen.film_no = ContactFilm::Steady {
         median_mohm: 18.0,
@@ -79,12 +85,12 @@ fn ramp(
 #[test]
 fn operate_time_follows_the_step_voltage_as_the_reference_transients_do() {
     let world = still_world();
-    for (volts, expected_ms) in [(9.0, 8.0014), (12.0, 4.7308), (16.0, 3.4236)] {
+    for (volts, expected_ms) in [(9.0, 8.001_395), (12.0, 4.730_797), (16.0, 3.423_619)] {
         let mut relay = reference_relay(&world);
         relay.drive(0.0, Supply::Volts(volts));
         let ms = first(&mut relay, 50_000.0, Contact::No, true).unwrap() / 1000.0;
         assert!(
-            (ms - expected_ms).abs() < 0.3,
+            (ms - expected_ms).abs() < 2e-4,
             "{volts} V: {ms} ms, expected {expected_ms}"
         );
     }
@@ -92,19 +98,19 @@ fn operate_time_follows_the_step_voltage_as_the_reference_transients_do() {
 
 #[test]
 fn a_rising_ramp_makes_no_as_late_as_the_reference_transients() {
-    let world = still_world();
+    let world = cool(still_world());
     for (rate, expected_v) in [
-        (2.0, 7.918_7),
-        (10.0, 8.021_3),
-        (50.0, 8.395_9),
-        (100.0, 8.770_4),
+        (2.0, 7.918_685),
+        (10.0, 8.021_304),
+        (50.0, 8.395_865),
+        (100.0, 8.770_410),
     ] {
         let mut relay = reference_relay(&world);
         relay.drive(0.0, Supply::Volts(7.0));
-        while relay.advance(40_000.0).is_some() {}
-        let volts = ramp(&mut relay, 40_000.0, 7.0, rate, Contact::No, true);
+        while relay.advance(400_000.0).is_some() {}
+        let volts = ramp(&mut relay, 400_000.0, 7.0, rate, Contact::No, true);
         assert!(
-            (volts - expected_v).abs() < 0.006,
+            (volts - expected_v).abs() < 0.001,
             "{rate} V/s: {volts} V, expected {expected_v}"
         );
     }
@@ -112,12 +118,12 @@ fn a_rising_ramp_makes_no_as_late_as_the_reference_transients() {
 
 #[test]
 fn a_falling_ramp_opens_no_as_late_as_the_reference_transients() {
-    let world = still_world();
+    let world = cool(still_world());
     for (rate, expected_v) in [
-        (2.0, 2.3075),
-        (10.0, 2.1938),
-        (50.0, 1.7419),
-        (100.0, 1.2593),
+        (2.0, 2.307_529),
+        (10.0, 2.193_789),
+        (50.0, 1.741_857),
+        (100.0, 1.259_328),
     ] {
         let mut relay = reference_relay(&world);
         relay.drive(0.0, Supply::Volts(12.0));
@@ -127,7 +133,7 @@ fn a_falling_ramp_opens_no_as_late_as_the_reference_transients() {
         while relay.advance(90_000.0).is_some() {}
         let volts = ramp(&mut relay, 90_000.0, high, -rate, Contact::No, false);
         assert!(
-            (volts - expected_v).abs() < 0.008,
+            (volts - expected_v).abs() < 0.001,
             "{rate} V/s: {volts} V, expected {expected_v}"
         );
     }
@@ -136,38 +142,40 @@ fn a_falling_ramp_opens_no_as_late_as_the_reference_transients() {
 #[test]
 fn a_step_just_above_the_threshold_operates_late_but_surely() {
     let world = still_world();
-    let (operate, _) = laws(&world.relay);
-    let ms = |above: f64| step_time(operate, 0.0, 8.0 * (1.0 + above), 8.0).unwrap() + 0.6;
-    assert!((ms(0.01) - 16.8).abs() < 1.0, "{}", ms(0.01));
-    let decades = [1e-3, 1e-4, 1e-5].map(ms);
-    let (one, two) = (decades[1] - decades[0], decades[2] - decades[1]);
+    let ms = |above: f64| {
+        let mut relay = reference_relay(&world);
+        relay.drive(0.0, Supply::Volts(7.855_922_332 * (1.0 + above)));
+        first(&mut relay, 90_000.0, Contact::No, true).map(|t| t / 1000.0)
+    };
+    let [one, two] = [1e-4, 1e-5].map(|above| ms(above).unwrap());
     assert!(
-        one > 5.0 && (one / two - 1.0).abs() < 0.02,
-        "a log law: {one} {two} ms per decade"
+        (two - one - 5.67).abs() < 0.3,
+        "a log law: {} ms per decade",
+        two - one
     );
-    assert!(step_time(operate, 0.0, 7.999, 8.0).is_none());
+    assert_eq!(ms(-1e-4), None);
 }
 
 #[test]
 fn switch_off_into_the_zener_is_quick_and_into_a_diode_slow() {
     let world = still_world();
-    let release = |slow: bool, clamp_v: f64| {
+    let release = |clamp_v: f64| {
         let mut relay = reference_relay(&world);
         relay.drive(0.0, Supply::Volts(12.0));
         while relay.advance(100_000.0).is_some() {}
-        relay.drive(100_000.0, Supply::Off { clamp_v, slow });
+        relay.drive(100_000.0, Supply::Off { clamp_v });
         let open = first(&mut relay, 150_000.0, Contact::No, false).unwrap();
         let make = first(&mut relay, 150_000.0, Contact::Nc, true).unwrap();
         ((open - 1e5) / 1000.0, (make - 1e5) / 1000.0)
     };
-    let (open, make) = release(false, 60.0);
+    let (open, make) = release(60.0);
     assert!(
-        (open - 1.96).abs() < 0.1 && (make - 2.865).abs() < 0.05,
+        (open - 1.961).abs() < 0.005 && (make - 2.865).abs() < 0.005,
         "{open} {make}"
     );
-    let (open, make) = release(true, 0.7);
+    let (open, make) = release(0.7);
     assert!(
-        (open - 10.29).abs() < 0.5 && (make - 11.73).abs() < 1.0,
+        (open - 10.29).abs() < 0.02 && (make - 11.73).abs() < 0.02,
         "{open} {make}"
     );
 }
@@ -187,15 +195,9 @@ fn a_pulse_that_ends_too_early_lets_nc_close_again_and_never_makes_no() {
     let world = still_world();
     let mut relay = reference_relay(&world);
     relay.drive(0.0, Supply::Volts(12.0));
-    assert!(first(&mut relay, 2_400.0, Contact::Nc, false).is_some());
-    while relay.advance(2_400.0).is_some() {}
-    relay.drive(
-        2_400.0,
-        Supply::Off {
-            clamp_v: 60.0,
-            slow: false,
-        },
-    );
+    assert!(first(&mut relay, 2_900.0, Contact::Nc, false).is_some());
+    while relay.advance(2_900.0).is_some() {}
+    relay.drive(2_900.0, Supply::Off { clamp_v: 60.0 });
     assert!(first(&mut relay, 60_000.0, Contact::Nc, true).is_some());
     assert!(first(&mut relay, 60_000.0, Contact::No, true).is_none());
 }
@@ -249,6 +251,95 @@ fn the_record_holds_the_bounce_as_it_happened() {
 }
 
 #[test]
+fn holding_the_equilibrium_moves_no_instant_by_a_microsecond() {
+    use crate::world::relay::lumped::{Excitation, Kind, Model, Outcome, Parameters, Waveform};
+    let world = still_world();
+    let points = [
+        (0.0, 5.0),
+        (40_000.0, 12.0),
+        (80_000.0, 4.0),
+        (120_000.0, 0.0),
+        (150_000.0, 12.0),
+    ];
+    let mut relay = reference_relay(&world);
+    let mut held = Vec::new();
+    for (i, (t_us, volts)) in points.into_iter().enumerate() {
+        relay.drive(t_us, Supply::Volts(volts));
+        let end_us = points.get(i + 1).map_or(180_000.0, |next| next.0);
+        while let Some(change) = relay.advance(end_us) {
+            if change.contact == Contact::No {
+                held.push(change.t_us);
+            }
+        }
+    }
+    let steps = points
+        .windows(2)
+        .flat_map(|w| [[w[0].0, w[0].1], [w[1].0, w[0].1]]);
+    let wave: Vec<[f64; 2]> = steps
+        .chain([[150_000.0, 12.0]])
+        .map(|[t, v]| [t * 1e-6, v])
+        .collect();
+    let model = Model::new(&Parameters::default());
+    let excitation = Excitation::Source(Waveform::new(wave).unwrap());
+    let whole = model
+        .transient(model.at_rest(0.0), &excitation, 0.18, 1e-8)
+        .unwrap();
+    let expected = Outcome::of(&whole.events);
+    let last_make = whole
+        .events
+        .iter()
+        .filter(|e| e.kind == Kind::No && e.t_s > 0.15 && e.on)
+        .map(|e| e.t_s);
+    let found = [held[0], *held.iter().find(|t| **t > 150_000.0).unwrap()];
+    let exact = [
+        expected.no_first_make.unwrap(),
+        last_make.min_by(f64::total_cmp).unwrap(),
+    ];
+    for (one, other) in found.iter().zip(exact) {
+        assert!(
+            (one - other * 1e6).abs() < 2.0,
+            "{one} us, integrated throughout {} us",
+            other * 1e6
+        );
+    }
+    let levels = relay.levels();
+    assert!(levels.held_s > 0.05 && levels.moving_s > 0.02, "{levels:?}");
+}
+
+#[test]
+fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
+    use crate::world::relay::lumped::Model;
+    let world = still_world();
+    for (nominal_v, nominal_coil_ohm) in [(12.0, 400.0), (9.0, 225.0)] {
+        let scale = Scale {
+            nominal_v,
+            nominal_coil_ohm,
+        };
+        let lot = (0..650).map(|i| Specimen::of_lot(&world, scale, 7, i));
+        let (good, bad): (Vec<_>, Vec<_>) = lot.partition(|s| s.defect.is_none());
+        for part in good.iter().take(6).chain(&bad) {
+            let wanted = part.wanted(&world);
+            let model = Model::new(&wanted.fit(&world.relay.lumped));
+            let what = format!("part {} {:?}", part.index, part.defect);
+            let near = |found: f64, drawn: f64, within: f64| {
+                assert!(
+                    (found / drawn - 1.0).abs() < within,
+                    "{what}: {found}, drawn {drawn}"
+                );
+            };
+            near(model.pickup().volts, part.operate_v, 1e-9);
+            near(model.release().volts, part.release_v, 1e-9);
+            if matches!(part.pace, Pace::Drawn | Pace::Hinge) {
+                near(wanted.operate_s(&model) * 1e3, part.operate_ms, 1e-3);
+            }
+            if matches!(part.pace, Pace::Drawn | Pace::Iron) {
+                near(wanted.release_s(&model) * 1e3, part.release_ms, 1e-3);
+            }
+        }
+    }
+}
+
+#[test]
 fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
     let world = read_world(&config_dir(), None).unwrap();
     let scale = Scale {
@@ -283,6 +374,42 @@ fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
         assert!(
             (m - mean).abs() < 4.0 * sd / 50.0 && (s / sd - 1.0).abs() < 0.06,
             "{m} {s}"
+        );
+    }
+}
+
+#[test]
+fn a_relay_that_was_operated_and_released_carries_the_current_of_its_coil_again() {
+    let world = read_world(&config_dir(), None).unwrap();
+    let scale = Scale {
+        nominal_v: 12.0,
+        nominal_coil_ohm: 400.0,
+    };
+    for i in 0..300 {
+        let specimen = Specimen::of_lot(&world, scale, 3, i);
+        if specimen.coil_ohm.is_infinite() {
+            continue;
+        }
+        let draw = Draw::new(3, Subject::LotOperations, i);
+        let mut relay = Relay::new(specimen, &world, draw, 0.0, 23.0, 23.0);
+        let off = Supply::Off {
+            clamp_v: world.board.zener_v,
+        };
+        let (mut t, mut steps) = (0.0, Vec::new());
+        for (supply, ms) in [
+            (Supply::Volts(12.0), 64.3),
+            (off, 58.1),
+            (Supply::Volts(5.0), 40.7),
+        ] {
+            relay.drive(t, supply);
+            t += ms * 1e3;
+            while relay.advance(t).is_some() {}
+            steps.push(relay.coil_current_a());
+        }
+        let expected = 5.0 / relay.coil_ohm();
+        assert!(
+            (steps[2] / expected - 1.0).abs() < 0.01,
+            "specimen {i}: {steps:?} A, expected {expected} at last"
         );
     }
 }

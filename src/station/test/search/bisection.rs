@@ -8,6 +8,10 @@ const TRIALS: u32 = 7;
 /// Time at the level: below 1 mV of dwell error.
 pub(super) const DWELL: Span = Span::ms(30);
 
+/// The same for a sealed armature: where the threshold is low the iron is good, and the flux of the seal takes three
+/// times 25 ms to fall.
+pub(super) const SEALED_DWELL: Span = Span::ms(80);
+
 /// The middle of what is open.
 pub(super) fn level(search: &Search) -> Volt {
     (search.untouched + search.changed) / 2.0

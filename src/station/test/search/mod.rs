@@ -142,10 +142,18 @@ impl Search {
     }
 
     fn dwell(&self) -> Span {
-        if self.strategy == Strategy::Staircase {
-            staircase::DWELL
-        } else {
-            bisection::DWELL
+        match (self.strategy, self.direction) {
+            (Strategy::Staircase, _) => staircase::DWELL,
+            (Strategy::Bisection, Direction::Falling) => bisection::SEALED_DWELL,
+            (
+                Strategy::Pulse
+                | Strategy::Bisection
+                | Strategy::Ramp
+                | Strategy::TwoRates
+                | Strategy::CoarseFine
+                | Strategy::Adaptive,
+                _,
+            ) => bisection::DWELL,
         }
     }
 }

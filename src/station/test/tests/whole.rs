@@ -116,6 +116,25 @@ fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
 }
 
 #[test]
+fn between_two_events_the_counters_are_read_and_before_a_timed_one_both() {
+    let (mut one, mut both) = (false, false);
+    for (stage, acts) in all_acts() {
+        for act in acts {
+            match act {
+                Act::Read(Read::Gates) => (one, both) = (true, true),
+                Act::Read(Read::Gate) => one = true,
+                Act::Until { .. } => {
+                    let timed = matches!(stage, Stage::TimedOperate | Stage::TimedRelease);
+                    assert!(if timed { both } else { one }, "{stage:?}");
+                    (one, both) = (false, false);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+#[test]
 fn no_stage_of_a_part_changes_the_channel_mask() {
     for (stage, acts) in all_acts() {
         let masks = acts.iter().any(|act| matches!(act, Act::CoilMask(_)));

@@ -59,6 +59,12 @@ impl Model {
         self.ohm
     }
 
+    /// Another temperature of the copper, as its resistance in ohm.
+    pub fn set_ohm(&mut self, ohm: f64) {
+        self.ohm = ohm;
+        self.eddy = 1.0 / (1.0 + ohm * self.p.k_ec * self.per_turns2);
+    }
+
     /// Permeance of the gap in units of pole area: `mu0 A + Pf g`.
     #[inline]
     pub(super) fn spread(&self, gap: f64) -> f64 {
@@ -110,11 +116,33 @@ impl Model {
         -current * self.p.N * self.p.N / self.p.k_ec
     }
 
-    /// Coil current, A.
-    pub fn current(&self, t_s: f64, s: &State, modes: Modes, drive: &Drive) -> f64 {
-        let still = self.still_current(s);
-        let rate = self.flux_rate(t_s, still, modes, drive);
-        still + self.p.k_ec * self.per_turns2 * rate
+    /// Rate of the flux linkage of an armature that rests, V: no flag, the clamp by its own rule.
+    pub fn resting_flux_rate(&self, t_s: f64, s: &State, drive: &Drive) -> f64 {
+        let current = self.still_current(s);
+        let conducting = self.flux_rate(t_s, current, Modes::default(), drive);
+        match drive {
+            Drive::Source { .. } => conducting,
+            Drive::Clamp { .. } => conducting.max(self.blocked_rate(current)),
+        }
+    }
+
+    /// Time constant of the flux linkage of an armature that rests and whose flux moves at a rate, s:
+    /// winding and eddy currents together, or eddy currents alone while the clamp blocks.
+    pub fn flux_time_s(&self, s: &State, flux_rate: f64, drive: &Drive) -> f64 {
+        let reluctance = self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]);
+        let eddy = self.p.k_ec / reluctance;
+        let blocked = self.blocked_rate(self.still_current(s));
+        match drive {
+            Drive::Clamp { .. } if flux_rate <= blocked => eddy,
+            Drive::Source { .. } | Drive::Clamp { .. } => {
+                eddy + self.p.N * self.p.N / (self.ohm * reluctance)
+            }
+        }
+    }
+
+    /// Coil current while the flux linkage moves at a rate, A.
+    pub fn current_at(&self, s: &State, flux_rate: f64) -> f64 {
+        self.still_current(s) + self.p.k_ec * self.per_turns2 * flux_rate
     }
 
     /// Rates of the five states.

@@ -87,11 +87,10 @@ impl Solver {
         }
     }
 
-    /// Another drive from now on: the clamp's flag is read anew, the next step is short.
+    /// Another drive from now on: the clamp's flag is read anew.
     pub fn drive_changed(&mut self, model: &Model, drive: &Drive) {
         let blocked = model.gap(Kind::CoilBlocked, &self.state, drive) > 0.0;
         self.modes.put(Kind::CoilBlocked, blocked);
-        self.h = self.h.min(10.0 * SHORT_S);
     }
 
     /// Goes on to `until_s`, or to the first event before it.

@@ -111,7 +111,7 @@ impl Model {
         for _ in 0..60 {
             let excess = p.k_c * depth * depth.sqrt() + p.k_l * (depth - bent);
             let next = depth - excess / (self.contact.stiffness(depth) + p.k_l);
-            let done = (next - depth).abs() <= 1e-16 * depth;
+            let done = (next - depth).abs() <= 1e-15 * depth;
             depth = next.max(0.0);
             if done {
                 break;
@@ -209,10 +209,12 @@ impl Model {
         s
     }
 
-    /// Sets travel and leaf of an armature that lies on a stop under the flux of the state.
-    pub fn pressed(&self, s: &mut State) {
+    /// Sets travel and leaf of an armature that lies on a stop under the flux of the state; the push
+    /// on that stop in N, below zero where the stop would have to pull.
+    pub fn pressed(&self, s: &mut State) -> f64 {
         let p = &self.p;
         let seated = s[X] > 0.5 * p.X;
+        let mut push = 0.0;
         for _ in 0..20 {
             let before = s[X];
             let bent = s[X] + p.d0;
@@ -222,15 +224,15 @@ impl Model {
                 free => free,
             };
             let leaf = p.k_l * (s[X] + p.d0 - s[Y]);
-            let push = self.pull(s[0] / p.N, p.X - s[X]) - p.F_r0 - p.k_r * s[X] - leaf;
-            s[X] = match seated {
-                true => p.X + self.stop.depth(push),
-                false => -self.stop.depth(-push),
-            };
-            if s[X] == before {
+            let free = self.pull(s[0] / p.N, p.X - s[X]) - p.F_r0 - p.k_r * s[X] - leaf;
+            push = if seated { free } else { -free };
+            let depth = self.stop.depth(push);
+            s[X] = if seated { p.X + depth } else { -depth };
+            if (s[X] - before).abs() <= 1e-15 * p.X {
                 break;
             }
         }
+        push
     }
 }
 

@@ -1,0 +1,237 @@
+//! A relay with wanted thresholds and times: the parameters that give a drawn specimen its values.
+//!
+//! What the world file draws are results: thresholds, times, resistance. What moves is a set of
+//! parameters, so the default relay is bent until its results are the drawn ones:
+//!
+//! - spring and travel together carry the pickup threshold (both hang on the same bent part),
+//! - the reluctance of the closed iron carries the release threshold,
+//! - mass of the armature and conductance of the eddy currents carry operate and release time.
+//!
+//! Thresholds first, by Newton's method on the exact statics; they do not depend on mass or eddy
+//! currents. Then the times, by Broyden's method on whole transients. All in logarithms, so that
+//! nothing becomes negative. One pair of times in thirty no relay has: a heavy armature does not fall
+//! fast. Then the operate time is the drawn one and the release time as near as it goes. A slow relay drags at its hinge, or its iron holds the flux: one
+//! parameter, by bisection, and the other time follows.
+
+use std::ops::Range;
+
+use super::lumped::{Drive, Kind, Model, Parameters, Solver, State};
+
+/// What a relay shall show, at 23 C.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    /// Coil resistance, ohm.
+    pub coil_ohm: f64,
+    /// Turns against those of the default relay.
+    pub turns: f64,
+    /// Quasi-static thresholds, V: pickup and release.
+    pub volts: [f64; 2],
+    /// Operate time from nominal voltage and release time into the zener, s.
+    pub seconds: [f64; 2],
+    /// Nominal coil voltage.
+    pub nominal_v: f64,
+    /// Clamp of the timed release, V.
+    pub zener_v: f64,
+    /// Which of the two times are its own.
+    pub pace: Pace,
+}
+
+/// Where a relay has its times from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pace {
+    /// Both were drawn.
+    Drawn,
+    /// Neither: they follow from springs and winding.
+    Follows,
+    /// A hinge that drags: it operates late.
+    Hinge,
+    /// Iron that holds the flux: it releases late.
+    Iron,
+}
+
+/// Tolerance of the transients: a fit needs a microsecond.
+const RTOL: f64 = 1e-6;
+/// A time that is right to this share is right, 0.5 us in 5 ms.
+const GOOD: f64 = 1e-4;
+/// No relay of any lot takes longer, s.
+const LONGEST_S: f64 = 0.04;
+/// How far from the default relay a parameter may be bent, as a logarithm.
+const FURTHEST: f64 = 3.5;
+/// The same for mass and eddy currents of a sound relay: an eighth to eightfold.
+const PLAUSIBLE: f64 = 2.0;
+/// Logarithmic slopes of operate and release time (rows) by mass and eddy currents (columns) of the
+/// default relay; a start for Broyden's method, no result depends on them.
+const SLOPES: [[f64; 2]; 2] = [[0.25, 0.1], [0.25, 0.45]];
+
+impl Wanted {
+    /// Parameters of such a relay, as near to the wanted values as bending goes.
+    pub fn fit(&self, base: &Parameters) -> Parameters {
+        let mut p = *base;
+        p.T = 23.0;
+        p.R23 = self.coil_ohm;
+        p.N = base.N * self.turns;
+        let p = self.with_thresholds(&p);
+        match self.pace {
+            Pace::Drawn => self.with_times(&p),
+            Pace::Follows => p,
+            Pace::Hinge => self.with_one(
+                0,
+                |x| Parameters {
+                    c_a: p.c_a * x.exp(),
+                    ..p
+                },
+                0.0..6.0,
+            ),
+            Pace::Iron => self.with_one(
+                1,
+                |x| Parameters {
+                    k_ec: p.k_ec * x.exp(),
+                    ..p
+                },
+                0.0..FURTHEST,
+            ),
+        }
+    }
+
+    fn with_thresholds(&self, p: &Parameters) -> Parameters {
+        let bent = |[spring, iron]: [f64; 2]| Parameters {
+            F_r0: p.F_r0 * spring.exp(),
+            X: p.X * (0.5 * spring).exp(),
+            Rr: p.Rr * iron.exp(),
+            Rc0: p.Rc0 * iron.exp(),
+            ..*p
+        };
+        let off = |at: [f64; 2]| {
+            let model = Model::new(&bent(at));
+            [
+                (model.pickup().volts / self.volts[0]).ln(),
+                (model.release().volts / self.volts[1]).ln(),
+            ]
+        };
+        let mut at = [0.0, 0.0];
+        for _ in 0..20 {
+            let now = off(at);
+            if size(now) < 1e-13 {
+                break;
+            }
+            let d = 1e-6;
+            let [one, two] = [off([at[0] + d, at[1]]), off([at[0], at[1] + d])];
+            let slopes = [0, 1].map(|i| [(one[i] - now[i]) / d, (two[i] - now[i]) / d]);
+            let Some(step) = solved(slopes, now) else {
+                break;
+            };
+            at = [0, 1].map(|i| (at[i] - step[i].clamp(-0.5, 0.5)).clamp(-FURTHEST, FURTHEST));
+        }
+        bent(at)
+    }
+
+    fn with_times(&self, p: &Parameters) -> Parameters {
+        let bent = |[mass, eddy]: [f64; 2]| Parameters {
+            m_a: p.m_a * mass.exp(),
+            k_ec: p.k_ec * eddy.exp(),
+            ..*p
+        };
+        let off = |at: [f64; 2]| {
+            let model = Model::new(&bent(at));
+            let seconds = [self.operate_s(&model), self.release_s(&model)];
+            [0, 1].map(|i| (seconds[i] / self.seconds[i]).ln())
+        };
+        let (mut at, mut slopes) = ([0.0, 0.0], SLOPES);
+        let mut now = off(at);
+        for _ in 0..12 {
+            if size(now) < GOOD {
+                break;
+            }
+            let Some(step) = solved(slopes, now) else {
+                break;
+            };
+            let next =
+                [0, 1].map(|i| (at[i] - step[i].clamp(-0.7, 0.7)).clamp(-PLAUSIBLE, PLAUSIBLE));
+            let moved = [next[0] - at[0], next[1] - at[1]];
+            let then = off(next);
+            let square = moved[0] * moved[0] + moved[1] * moved[1];
+            if square == 0.0 {
+                break;
+            }
+            for (i, row) in slopes.iter_mut().enumerate() {
+                let missed = then[i] - now[i] - row[0] * moved[0] - row[1] * moved[1];
+                row[0] += missed * moved[0] / square;
+                row[1] += missed * moved[1] / square;
+            }
+            (at, now) = (next, then);
+        }
+        match size(now) < GOOD {
+            true => bent(at),
+            false => self.with_one(0, |mass| bent([mass, at[1]]), -PLAUSIBLE..PLAUSIBLE),
+        }
+    }
+
+    /// One parameter alone for one time alone, which grows with it.
+    fn with_one(
+        &self,
+        which: usize,
+        bent: impl Fn(f64) -> Parameters,
+        within: Range<f64>,
+    ) -> Parameters {
+        let (mut low, mut high) = (within.start, within.end);
+        while high - low > GOOD {
+            let middle = 0.5 * (low + high);
+            let model = Model::new(&bent(middle));
+            let seconds = if which == 0 {
+                self.operate_s(&model)
+            } else {
+                self.release_s(&model)
+            };
+            if seconds < self.seconds[which] {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        bent(low)
+    }
+
+    /// From rest at nominal voltage to the first make of NO, s.
+    pub fn operate_s(&self, model: &Model) -> f64 {
+        first_make(
+            model,
+            model.at_rest(0.0),
+            &Drive::still(self.nominal_v),
+            Kind::No,
+        )
+    }
+
+    /// From nominal voltage into the zener to the first make of NC, s.
+    pub fn release_s(&self, model: &Model) -> f64 {
+        let sealed = model.sealed(self.nominal_v);
+        first_make(
+            model,
+            sealed,
+            &Drive::Clamp {
+                volts: self.zener_v,
+            },
+            Kind::Nc,
+        )
+    }
+}
+
+/// First make of a contact, s; [`LONGEST_S`] if there is none.
+fn first_make(model: &Model, start: State, drive: &Drive, contact: Kind) -> f64 {
+    let mut solver = Solver::new(model, drive, 0.0, start, RTOL);
+    while let Ok(Some(event)) = solver.advance(model, drive, LONGEST_S) {
+        if event.kind == contact && event.on {
+            return event.t_s;
+        }
+    }
+    LONGEST_S
+}
+
+fn size([a, b]: [f64; 2]) -> f64 {
+    a.abs().max(b.abs())
+}
+
+/// Solution of two linear equations.
+fn solved([[a, b], [c, d]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> Option<[f64; 2]> {
+    let det = a * d - b * c;
+    (det.abs() > 1e-12).then(|| [(d * x - b * y) / det, (a * y - c * x) / det])
+}

@@ -1,0 +1,114 @@
+//! What the law of the lag knows after so many parts.
+
+use super::*;
+
+/// A part of a lot whose lag of 0.85 V follows its times, less so its threshold; no two parts alike.
+fn part(at: u32) -> (Shown, Volt) {
+    let turn = |by: f64| (f64::from(at) * by).fract() - 0.5;
+    let (slow, holding, high) = (0.16 * turn(0.618), 0.15 * turn(0.382_7), 0.11 * turn(0.271));
+    let fine = 7.88 * (1.0 + high);
+    let lag = 0.85 + 0.9 * slow - 0.1 * holding + 0.3 * high;
+    let shown = Shown {
+        indicated: Volt(fine + lag),
+        operate: Volt(fine + lag),
+        operate_ms: 4.7 * (1.0 + slow),
+        release_ms: 2.9 * (1.0 + holding),
+        coil_ohm: 400.0 * (1.0 + 0.05 * turn(0.724)),
+    };
+    (shown, Volt(fine))
+}
+
+/// Taught by so many parts, each read wrong by `noise_v` in turn upwards and downwards.
+fn taught(parts: u32, noise_v: f64) -> LagLaw {
+    let mut law = LagLaw::guess(0.80);
+    for at in 0..parts {
+        let (shown, fine) = part(at);
+        let off = if at % 2 == 0 { noise_v } else { -noise_v };
+        law.learn(&shown, fine - Volt(off));
+    }
+    law
+}
+
+fn error_v(law: &LagLaw, at: u32) -> f64 {
+    let (shown, fine) = part(at);
+    (law.of(&shown).volts - (shown.indicated - fine).0).abs()
+}
+
+#[test]
+fn before_any_part_the_guess_stands_and_nothing_is_alike() {
+    let predicted = LagLaw::guess(0.85).of(&part(0).0);
+    assert_eq!((predicted.volts, predicted.alike), (0.85, false));
+    assert!(predicted.u_v > GUESS_SD_V, "{predicted:?}");
+}
+
+#[test]
+fn a_slow_relay_is_given_its_own_lag_and_not_that_of_the_lot() {
+    let law = taught(17, 0.0);
+    let worst = (17..60).map(|at| error_v(&law, at)).fold(0.0, f64::max);
+    assert!(worst < 0.006, "{worst} V, where the lot scatters by 0.05 V");
+}
+
+#[test]
+fn what_it_says_of_itself_holds_from_the_second_part_on() {
+    for parts in 1..60 {
+        let law = taught(parts, 0.002);
+        let u_v = law.of(&part(parts).0).u_v;
+        let error_v = error_v(&law, parts);
+        assert!(error_v < 3.0 * u_v, "{parts} parts: {error_v}, u {u_v}");
+    }
+}
+
+#[test]
+fn scatter_about_the_law_stays_in_the_uncertainty_however_many_parts_teach() {
+    let u_v = |parts| taught(parts, 0.006).of(&part(3).0).u_v;
+    assert!(u_v(6) > u_v(500), "{} {}", u_v(6), u_v(500));
+    assert!((u_v(500) - 0.006).abs() < 0.0005, "{}", u_v(500));
+}
+
+#[test]
+fn parts_of_the_lot_are_alike_and_one_far_outside_is_not_however_many_have_taught() {
+    for parts in [20, 500] {
+        let law = taught(parts, 0.002);
+        let strangers = (500..600).filter(|at| !law.of(&part(*at).0).alike);
+        assert!(strangers.count() < 5, "{parts} parts");
+        let (lot, fine) = part(3);
+        let weak = Shown {
+            indicated: Volt(fine.0 * 0.83),
+            operate: Volt(fine.0 * 0.83),
+            ..lot
+        };
+        let slow = Shown {
+            operate_ms: 9.0,
+            ..lot
+        };
+        for odd in [weak, slow] {
+            assert!(!law.of(&odd).alike, "{parts} parts: {odd:?}");
+            assert!(law.of(&odd).u_v > law.of(&lot).u_v);
+        }
+    }
+}
+
+#[test]
+fn a_part_that_has_not_shown_everything_teaches_nothing_and_is_unlike() {
+    let law = taught(20, 0.0);
+    let (shown, fine) = part(3);
+    for odd in [
+        Shown::NOTHING,
+        Shown {
+            release_ms: f64::NAN,
+            ..shown
+        },
+        Shown {
+            coil_ohm: f64::INFINITY,
+            ..shown
+        },
+    ] {
+        let mut after = law;
+        after.learn(&odd, fine);
+        assert_eq!(after, law);
+        assert!(!law.of(&odd).alike);
+    }
+    let mut after = law;
+    after.learn(&shown, Volt(f64::NAN));
+    assert_eq!(after, law);
+}
