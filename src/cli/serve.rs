@@ -254,3 +254,6 @@ impl SimulatedRig {
         }
     }
 }
+
+#[cfg(all(test, feature = "sim"))]
+mod tests;

@@ -169,6 +169,23 @@ fn every_body_of_the_scene_has_a_word_on_the_screen() {
     }
 }
 
+/// All scripts share one scope: the later of two functions would take the place of the other without a word.
+#[test]
+fn no_two_scripts_of_the_page_give_one_name_twice() {
+    let mut seen = std::collections::BTreeSet::new();
+    for line in SCRIPT.lines() {
+        let words = line.strip_prefix("async ").unwrap_or(line);
+        let Some(("function" | "const" | "let", rest)) = words.split_once(' ') else {
+            continue;
+        };
+        let end = rest
+            .find(|it: char| !it.is_alphanumeric() && it != '_')
+            .unwrap_or(rest.len());
+        assert!(seen.insert(&rest[..end]), "{line}");
+    }
+    assert!(seen.len() > 100, "{}", seen.len());
+}
+
 #[test]
 fn the_page_is_whole_small_and_asks_nobody_else() {
     assert!(PAGE.len() < 150_000, "{}", PAGE.len());

@@ -110,7 +110,7 @@ fn a_held_button_orders_once_and_is_told_until_it_is_let_go() {
 
 #[test]
 fn a_button_that_is_down_at_the_start_orders_nothing_until_it_was_let_go() {
-    let mut machine = Machine::attended(Some(1), vec![Specimen::MissingPin]);
+    let mut machine = Machine::attended(None, vec![Specimen::MissingPin; 50]);
     machine.shop.set(DigitalIn::ButtonStop, true);
     assert!(turns(&mut machine, 1_000).is_empty());
     machine.shop.set(DigitalIn::ButtonStop, false);

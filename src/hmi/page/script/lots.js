@@ -17,7 +17,7 @@ function lotAnswer(text) {
 async function orderLot(order) {
   const why = me === null ? word("stop.login") : await give(order);
   lotAnswer(why || word("order." + order.order) + ": " + word("order.taken"));
-  if (!why) readLots();
+  if (!why) readBook();
 }
 
 // Why an order about a lot would not be taken now: the machine's reason, or the lot's own.
@@ -100,7 +100,7 @@ function showBook() {
   showLotButtons();
 }
 
-async function readLots() {
+async function readBook() {
   try {
     book = await (await ask("/api/lots" + query({limit: BOOK, offset: skipped}))).json();
     showBook();
@@ -111,8 +111,8 @@ async function readLots() {
   }
 }
 
-at("l_newer").addEventListener("click", () => { skipped = Math.max(0, skipped - BOOK); readLots(); });
-at("l_older").addEventListener("click", () => { skipped += BOOK; readLots(); });
+at("l_newer").addEventListener("click", () => { skipped = Math.max(0, skipped - BOOK); readBook(); });
+at("l_older").addEventListener("click", () => { skipped += BOOK; readBook(); });
 
 // --- decisions ---
 
@@ -168,7 +168,7 @@ function showLots() {
   const now = JSON.stringify([view.lot, view.under_way, view.machine.state]);
   if (now !== readFor) {
     readFor = now;
-    readLots();
+    readBook();
   }
   showLotButtons();
 }

@@ -1,0 +1,111 @@
+//! Between lots on a rig in which a life of the program before has left a part.
+
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::hmi::Asked;
+use crate::view::{By, Order, View};
+use tokio::sync::{oneshot, watch};
+
+async fn until(view: &mut watch::Receiver<View>, test: impl Fn(&View) -> bool) {
+    view.wait_for(|view| test(view)).await.unwrap();
+}
+
+async fn reset(orders: &mpsc::Sender<Asked>) {
+    let (answer, answered) = oneshot::channel();
+    let order = Order {
+        order: "reset".into(),
+        ..Order::default()
+    };
+    let asked = Asked {
+        order,
+        by: By::default(),
+        denied: None,
+        answer,
+    };
+    orders.send(asked).await.unwrap();
+    assert_eq!(answered.await.unwrap(), Ok(()));
+}
+
+#[test]
+fn a_part_that_is_found_inside_between_lots_gets_a_row_in_a_lot_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let (config, db) = (Path::new("config"), folder.path().join("history.db"));
+    let plant = Plant::load(config).unwrap();
+    let rig = RigArgs {
+        sim: true,
+        pace: PaceArg::Virtual,
+        speed: None,
+        seed: 1,
+        world: None,
+        fault: Vec::new(),
+        line: Vec::new(),
+    };
+    let idle = between(config, &rig).unwrap();
+    let recipe = Arc::new(load_recipe(config, "jzc-22f-012").unwrap());
+    let lot = RunArgs {
+        lot: "A".into(),
+        recipe: recipe.name.clone(),
+        count: Some(9),
+        ..idle.clone()
+    };
+    let simulated = simulated::build(&plant, config, &lot).unwrap();
+    let controls = |between_lots| Controls {
+        stays: true,
+        between_lots,
+        stage: Some(Stage {
+            rig: simulated.clone(),
+            epoch_us: i64::try_from(simulated.now_us()).unwrap(),
+            calibration: None,
+        }),
+        ..Controls::new(true)
+    };
+    let bench = (&plant, &recipe);
+
+    let first = controls(None);
+    let (_orders, asked) = mpsc::channel(1);
+    let life = run::runtime(&rig).unwrap();
+    life.block_on(async {
+        let mut seen = first.view.subscribe();
+        let testing = |view: &View| view.judged == 1 && view.state.starts_with("testing");
+        tokio::select! {
+            _ = run::run_lot(bench, config, &db, &lot, &first, Orders::Screens(asked)) => panic!("it ended"),
+            () = until(&mut seen, testing) => {}
+        }
+    });
+    life.shutdown_background();
+
+    let second = controls(Some(State::Stopped));
+    let (orders, asked) = mpsc::channel(1);
+    let life = run::runtime(&rig).unwrap();
+    let status = life.block_on(async {
+        let mut seen = second.view.subscribe();
+        let person = async {
+            // The outputs went safe at the start: the spring has raised z.
+            until(&mut seen, |view| {
+                let is_on = |input| view.machine.inputs.get(input) == Some(&Some(true));
+                is_on("nest_present") && is_on("sort_z_up")
+            })
+            .await;
+            reset(&orders).await;
+            until(&mut seen, |view| {
+                assert!(view.machine.state != "Aborted", "{:?}", view.alarms);
+                view.machine.state == "Idle"
+            })
+            .await;
+            second.stop.store(true, Ordering::Release);
+            std::future::pending::<()>().await;
+        };
+        tokio::select! {
+            status = run::run_lot(bench, config, &db, &idle, &second, Orders::Screens(asked)) => status.unwrap(),
+            () = person => unreachable!(),
+        }
+    });
+    assert_eq!(status, STOPPED);
+    let archive = crate::history::Archive::open(&db).unwrap();
+    let found = archive.show(FOUND, 1, "lot").unwrap();
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].verdict, "void");
+    assert_eq!(found[0].landed_bin.as_deref(), Some("retest"));
+    assert!(archive.standing(FOUND).unwrap().is_some());
+}
