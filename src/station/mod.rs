@@ -156,6 +156,8 @@ pub struct Station {
     /// A person asked for the suspension; it does not end by itself.
     suspended_by_order: bool,
     asked_verify: bool,
+    /// When the modules were found as they should be, of this clearing.
+    verified: Option<RigTime>,
     golden_left: VecDeque<GoldenPart>,
     /// Golden parts that this run has asked for so far.
     golden_planned: u64,
@@ -208,6 +210,7 @@ impl Station {
             postponed: Vec::new(),
             suspended_by_order: false,
             asked_verify: false,
+            verified: None,
             golden_planned: golden_left.len() as u64,
             golden_left,
             gates: Gates::default(),

@@ -17,7 +17,7 @@ use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};
 
 /// Sensors must be there so long after the start at the latest.
-const FIRST_SCAN: Span = Span::ms(3000);
+pub(super) const FIRST_SCAN: Span = Span::ms(3000);
 /// A beam that is dark for so long has a part standing in it; a falling one darkens it for 11 ms.
 const FULL: Span = Span::ms(500);
 
@@ -293,4 +293,15 @@ impl Station {
     pub(super) fn cause(&self) -> Option<&Standing> {
         self.annunciator.still_sensed()
     }
+}
+
+/// Every safety input was read after `since`, open or closed.
+pub(super) fn safety_was_read(image: &Image, since: RigTime) -> bool {
+    let inputs = [
+        DigitalIn::EmergencyStopOk,
+        DigitalIn::DoorClosed,
+        DigitalIn::AirOk,
+    ];
+    let read = |point: &DigitalIn| image.input_at(*point).is_some_and(|at| at > since);
+    inputs.iter().all(read)
 }

@@ -5,6 +5,7 @@ use super::catalogue::Stops;
 use super::moves::Move;
 use super::packml::{self, Command, On, State};
 use super::recovery::Recovery;
+use super::safety::{FIRST_SCAN, safety_was_read};
 use super::sort::Sort;
 use super::trouble::Alarm;
 use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
@@ -109,7 +110,7 @@ impl Station {
                 self.fresh = false;
                 self.start = Start::Begin;
             }
-            State::Clearing => self.asked_verify = false,
+            State::Clearing => (self.asked_verify, self.verified) = (false, None),
             State::Stopped | State::Complete => self.make_safe("stopped", now, wants),
             State::Idle
             | State::Execute
@@ -305,9 +306,16 @@ impl Station {
         }
     }
 
+    /// The modules are verified first, which keeps the lines from the scan: whoever resets afterwards finds the safety inputs
+    /// read.
     fn clear(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
         if inputs.verified {
-            self.done(now, wants);
+            self.verified = Some(now);
+        }
+        if let Some(at) = self.verified {
+            if safety_was_read(inputs.image, at) || now.since(at) > FIRST_SCAN {
+                self.done(now, wants);
+            }
         } else if !self.asked_verify {
             self.asked_verify = true;
             wants.verify = true;

@@ -129,7 +129,7 @@ const COIL: &[Key] = &[
         "settles_ms",
         whole(1, 1000, "ms"),
         "station",
-        "from the drive to the first conversion that counts; 13 where nothing is said",
+        "from the drive to the first conversion that counts; 32 where nothing is said",
     ),
     optional(
         "scans",

@@ -332,7 +332,9 @@ fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
             if matches!(part.pace, Pace::Drawn | Pace::Hinge) {
                 near(wanted.operate_s(&model) * 1e3, part.operate_ms, 1e-3);
             }
-            if matches!(part.pace, Pace::Drawn | Pace::Iron) {
+            // A defect is drawn without regard to what a relay can be: its release comes as near as one can.
+            let sound = part.defect.is_none() && part.pace == Pace::Drawn;
+            if sound || part.pace == Pace::Iron {
                 near(wanted.release_s(&model) * 1e3, part.release_ms, 1e-3);
             }
         }
