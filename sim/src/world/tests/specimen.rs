@@ -329,11 +329,11 @@ fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
             };
             near(model.pickup().volts, part.operate_v, 1e-9);
             near(model.release().volts, part.release_v, 1e-9);
-            if matches!(part.pace, Pace::Drawn | Pace::Hinge) {
+            // A defect is drawn without regard to the times that a relay with such springs can have: they come as near as they can.
+            let sound = part.defect.is_none() && part.pace == Pace::Drawn;
+            if sound || part.pace == Pace::Hinge {
                 near(wanted.operate_s(&model) * 1e3, part.operate_ms, 1e-3);
             }
-            // A defect is drawn without regard to what a relay can be: its release comes as near as one can.
-            let sound = part.defect.is_none() && part.pace == Pace::Drawn;
             if sound || part.pace == Pace::Iron {
                 near(wanted.release_s(&model) * 1e3, part.release_ms, 1e-3);
             }
