@@ -85,6 +85,7 @@ pub(super) fn day(
         .with_context(|| format!("--listen {}: the page cannot listen there", args.listen))?;
     let address = listener.local_addr().context("the page's socket")?;
     let plant = Arc::new(Plant::load(config)?);
+    run::lines::overrides(&plant, &rig.line)?;
     let between = between(config, &rig)?;
     let recipe = Arc::new(load_recipe(config, &between.recipe)?);
     let first = first.map(|args| RunArgs {

@@ -272,3 +272,13 @@ fn a_line_that_is_missing_at_the_start_is_named_and_used_once_it_is_there() {
     }
     assert_eq!(served.interrupted(), 0);
 }
+
+#[test]
+fn a_line_that_is_not_wired_is_bad_input_before_any_file_is_made() {
+    let workshop = Workshop::new("serve_unwired");
+    let said = workshop
+        .run("--db day.db serve --listen 127.0.0.1:0 --line nope=/dev/null")
+        .with_status(2);
+    assert!(said.stderr.contains("nope"), "{said}");
+    assert!(!workshop.has("day.db") && !workshop.has("day-access.db"));
+}

@@ -1,6 +1,8 @@
 //! Facts about the world: the relay by itself, and the line by hand.
 #![allow(clippy::unwrap_used)]
 
+mod crashes;
+mod hand;
 mod line;
 mod magazine;
 mod specimen;

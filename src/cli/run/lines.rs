@@ -169,7 +169,11 @@ fn serial(plant: &Plant, line: LineId, port: &str, pace: &Pace, lines: &mut Line
     lines.ends.push(queues.ends);
 }
 
-fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId, String)>> {
+/// Lines by name and the ports they are to have instead of those of `rig.toml`.
+///
+/// # Errors
+/// No `NAME=PORT`, or a line that is not wired.
+pub fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId, String)>> {
     let one = |text: &String| {
         let Some((name, port)) = text.split_once('=') else {
             bail!("--line: found \"{text}\", expected NAME=PORT");

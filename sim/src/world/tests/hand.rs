@@ -1,0 +1,122 @@
+//! Whoever stands at the terminals: outputs set and inputs read by name.
+
+use super::*;
+use crate::config::{RigFile, read_rig};
+
+/// A hand on the terminals: commands by name, time in milliseconds.
+pub(super) struct Hand {
+    pub(super) world: World,
+    pub(super) rig: RigFile,
+    pub(super) bits: std::collections::BTreeMap<String, u16>,
+    pub(super) t_us: u64,
+}
+
+impl Hand {
+    pub(super) fn new(options: WorldOptions) -> Self {
+        let rig = read_rig(&config_dir()).unwrap();
+        let world = World::build(&options).unwrap();
+        Self {
+            world,
+            rig,
+            bits: std::collections::BTreeMap::new(),
+            t_us: 0,
+        }
+    }
+
+    pub(super) fn set(&mut self, point: &str, on: bool) {
+        let terminal = self.rig.digital_out[point].clone();
+        let bits = self.bits.entry(terminal.module.clone()).or_default();
+        *bits = if on {
+            *bits | 1 << terminal.channel
+        } else {
+            *bits & !(1 << terminal.channel)
+        };
+        self.world.digital_out(&terminal.module, *bits);
+    }
+
+    pub(super) fn wait(&mut self, ms: f64) {
+        self.t_us += (ms * 1000.0) as u64;
+        self.world.advance(self.t_us);
+    }
+
+    pub(super) fn pulse(&mut self, point: &str, ms: f64) {
+        self.set(point, true);
+        self.wait(ms);
+        self.set(point, false);
+    }
+
+    pub(super) fn sees(&mut self, point: &str) -> bool {
+        let terminal = self.rig.digital_in[point].clone();
+        let high = self.world.digital_in(&terminal.module) >> terminal.channel & 1 == 1;
+        high != terminal.active_low
+    }
+
+    pub(super) fn level(&mut self, supply_v: f64) {
+        self.world.analog_out("ao_level", supply_v / 1.5);
+    }
+
+    pub(super) fn reads(&mut self, point: &str) -> f64 {
+        let t = self.rig.analog_in[point].clone();
+        self.world.analog_in(&t.module, t.channel) / t.gain
+    }
+
+    pub(super) fn gate_ms(&mut self, point: &str) -> f64 {
+        let t = self.rig.counter[point].clone();
+        self.world.gate_open_us(&t.module, t.channel) / 1000.0
+    }
+
+    pub(super) fn axis(&mut self, point: u8) {
+        for (i, name) in ["axis_point_0", "axis_point_1", "axis_point_2"]
+            .into_iter()
+            .enumerate()
+        {
+            self.set(name, point >> i & 1 == 1);
+        }
+        self.pulse("axis_drive", 900.0);
+        assert!(self.sees("axis_in_position"));
+    }
+
+    /// Magazine to nest, clamped, probes up.
+    pub(super) fn feed(&mut self) {
+        self.pulse("escapement_release", 300.0);
+        assert!(self.sees("pocket_present"));
+        self.pulse("pusher_extend", 500.0);
+        assert!(self.sees("nest_present") && !self.sees("pocket_present"));
+        self.wait(500.0);
+        self.pulse("clamp_close", 200.0);
+        assert!(self.sees("jaw_left_closed") && self.sees("jaw_right_closed"));
+        self.set("probe_lift", true);
+        self.wait(250.0);
+        assert!(self.sees("probe_up") && self.sees("probe_chain"));
+    }
+
+    /// Nest to bin, axis back at the nest.
+    pub(super) fn sort(&mut self, point: u8) {
+        self.set("axis_servo_on", true);
+        self.axis(0);
+        self.set("sort_z_lower", true);
+        self.wait(400.0);
+        self.pulse("gripper_close", 200.0);
+        assert!(self.sees("gripper_part"));
+        self.set("probe_lift", false);
+        self.wait(250.0);
+        self.pulse("clamp_open", 200.0);
+        self.set("sort_z_lower", false);
+        self.wait(400.0);
+        assert!(!self.sees("nest_present") && self.sees("sort_z_up"));
+        self.axis(point);
+        self.pulse("gripper_release", 500.0);
+        self.axis(0);
+    }
+}
+
+pub(super) fn options(golden: bool) -> WorldOptions {
+    WorldOptions {
+        config_dir: config_dir(),
+        seed: 3,
+        recipe: "jzc-22f-012".into(),
+        parts: Some(3),
+        golden,
+        ..WorldOptions::default()
+    }
+}
