@@ -91,6 +91,8 @@ impl Record {
             return;
         }
         let [no, nc] = &mut self.timing;
+        no.following = false;
+        nc.following = false;
         no.start_us = (still && old_v <= none && new_v >= full).then_some(t_us);
         nc.start_us = (still && old_v >= full && new_v <= none).then_some(t_us);
     }
@@ -106,24 +108,16 @@ impl Record {
         }
     }
 
-    /// A bounce opens or closes a contact.
-    pub(super) fn bounce(&mut self, contact: Contact, t_us: f64, closed: bool) {
+    /// A contact opens or closes: bounce, as long as the supply that made it stays.
+    pub(super) fn moved(&mut self, contact: Contact, t_us: f64, closed: bool) {
         let timing = &mut self.timing[contact as usize];
         if !timing.following {
             return;
         }
-        match (closed, timing.open_since_us) {
-            (true, Some(since)) => {
-                timing.bounce_us += t_us - since;
-                timing.open_since_us = None;
-            }
+        match (closed, timing.open_since_us.take()) {
+            (true, Some(since)) => timing.bounce_us += t_us - since,
             (true, None) => {}
             (false, _) => timing.open_since_us = Some(t_us),
         }
-    }
-
-    /// A contact parts for good.
-    pub(super) fn part(&mut self, contact: Contact) {
-        self.timing[contact as usize].following = false;
     }
 }

@@ -31,8 +31,6 @@ impl Relay {
     /// The next entry of the bounce list is due.
     pub(super) fn bounced(&mut self) -> Option<Change> {
         let change = self.bounce.pop_front()?;
-        self.record
-            .bounce(change.contact, change.t_us, change.closed);
         self.set(change.t_us, change.contact, change.closed)
     }
 
@@ -51,7 +49,6 @@ impl Relay {
     /// A contact opens for good; its bounce ends.
     fn part(&mut self, contact: Contact, t_us: f64) -> Option<Change> {
         self.bounce.clear();
-        self.record.part(contact);
         self.set(t_us, contact, false)
     }
 
@@ -84,6 +81,9 @@ impl Relay {
         let now = &mut self.closed[contact as usize];
         let news = *now != closed;
         *now = closed;
+        if news {
+            self.record.moved(contact, t_us, closed);
+        }
         news.then_some(Change {
             t_us,
             contact,

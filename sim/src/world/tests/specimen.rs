@@ -250,6 +250,48 @@ fn the_record_holds_the_bounce_as_it_happened() {
     assert!((relay.record.time_ms(Contact::No).unwrap() - 4.7308).abs() < 0.001);
 }
 
+/// A release at `at_us`: open time of NC after its first make, and the last change after that make, both microseconds.
+fn released(relay: &mut Relay, at_us: f64) -> (f64, f64) {
+    relay.drive(at_us, Supply::Off { clamp_v: 60.0 });
+    let (mut open_us, mut last_us) = (0.0, 0.0);
+    let (mut since, mut made_us) = (None, None);
+    while let Some(change) = relay.advance(at_us + 70_000.0) {
+        if change.contact == Contact::Nc {
+            match (change.closed, since.take()) {
+                (true, Some(since)) => open_us += change.t_us - since,
+                (true, None) => made_us = Some(change.t_us),
+                (false, _) => since = Some(change.t_us),
+            }
+            last_us = change.t_us - made_us.unwrap_or(change.t_us);
+        }
+    }
+    (open_us, last_us)
+}
+
+#[test]
+fn the_record_holds_openings_that_come_after_the_bounce_list_has_ended() {
+    let world = still_world();
+    let reference = reference_relay(&world).specimen().clone();
+    let mut latest_us = 0.0_f64;
+    for step in 0..24 {
+        let mut specimen = reference.clone();
+        specimen.operate_v = 6.2;
+        specimen.release_v = 0.3 + 0.1 * f64::from(step);
+        let draw = Draw::new(1, Subject::LotOperations, 0);
+        let mut relay = Relay::new(specimen, &world, draw, 0.0, 23.0, 23.0);
+        relay.drive(0.0, Supply::Volts(12.0));
+        while relay.advance(50_000.0).is_some() {}
+        let (open_us, last_us) = released(&mut relay, 50_000.0);
+        let recorded_us = relay.record.bounce_ms(Contact::Nc).unwrap() * 1000.0;
+        assert!(
+            (recorded_us - open_us).abs() < 1e-3,
+            "{recorded_us} of {open_us}"
+        );
+        latest_us = latest_us.max(last_us);
+    }
+    assert!(latest_us > 8_000.0, "none opened late: {latest_us} us");
+}
+
 #[test]
 fn holding_the_equilibrium_moves_no_instant_by_a_microsecond() {
     use crate::world::relay::lumped::{Excitation, Kind, Model, Outcome, Parameters, Waveform};
