@@ -18,6 +18,9 @@ const TRANSACTIONS: u64 = 1_000_000;
 const CLASHES: u32 = 4_000_000;
 /// Share of the transactions in which two modules answer.
 const CLASHING: f64 = 0.01;
+/// Share of the transactions that ask for all inputs at once.
+const LISTS: f64 = 1.0 / 20.0;
+const FORM: InputForm = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
 /// Faults of the storm that a host sees by the damage, each at 1 %: truncate, flip, noise, garble, clash.
 const SEEN: i32 = 5;
 
@@ -61,39 +64,59 @@ fn tell(weather: &Weather) {
     );
 }
 
-/// What a host cannot tell: n transactions, a share c clashing, of which p pass; it sees a share d damaged.
+/// What a host cannot tell: n transactions, a share c clashing, of which p pass; it sees a share d damaged. Of all
+/// inputs at once a share q passes within the noise of their neighbours in time.
 fn expected(n: f64) {
-    let (p, close) = passing();
+    let channel = Channel::new(0).expect("0 is a channel");
+    let (p, _) = passing(
+        AnalogIn::ReadOne {
+            channel,
+            form: FORM,
+        },
+        4,
+    );
+    let (_, q) = passing(AnalogIn::ReadAll(FORM), 32);
     let c = CLASHING;
     let in_sight = (1.0 - c).powi(SEEN * i32::from(relayrig::bus::PROBATION));
     println!("two modules at one address, two characters apart at most:");
     println!(
         "  p, share that passes for another value {p:.2e} (in step 1/41, 8 bits 1/256: 9.5e-5)"
     );
+    let rest = [
+        (
+            "believed before any damage was seen  n c p (1 - d)^100",
+            n * c * p * in_sight,
+        ),
+        (
+            "two of three answers damaged         3 n (c p)^2",
+            3.0 * n * (c * p).powi(2),
+        ),
+        (
+            "all inputs at once, within the noise n / 20 c q",
+            n * LISTS * c * q,
+        ),
+    ];
     println!(
-        "  believed at the first word   n c p               {:.3}",
+        "  believed if nothing were asked twice n c p                {:.3}",
         n * c * p
     );
-    println!(
-        "  believed on probation        n c p (1 - d)^100   {:.4}",
-        n * c * p * in_sight
-    );
-    println!(
-        "  and within the reading's noise, said twice       {:.4}",
-        n * c * close
-    );
+    for (what, times) in rest {
+        println!("  {what:<57} {times:.4}");
+    }
+    let times: f64 = rest.iter().map(|(_, times)| times).sum();
+    println!("  to be expected in all {times:.4}");
 }
 
-/// Shares of clashing replies that are read as another value, and as one that a second reading does not contradict.
-fn passing() -> (f64, f64) {
-    let form = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
-    let channel = Channel::new(0).expect("0 is a channel");
-    let command = AnalogIn::ReadOne { channel, form }.to(Address(1));
+/// Shares of clashing replies of so many digits that are read as another value, and as one that is believed between two
+/// that are whole.
+fn passing(asked: AnalogIn, digits: usize) -> (f64, f64) {
+    let command = asked.to(Address(1));
     let mut faults = Faults::none(1);
     faults.add("clash", Some("1")).expect("a known fault");
     let (mut other, mut close) = (0u32, 0u32);
     for draw in 0..CLASHES {
-        let text = format!(">{:04X}", draw.wrapping_mul(0x9E37_79B9) >> 16);
+        let word = format!("{:04X}", draw.wrapping_mul(0x9E37_79B9) >> 16);
+        let text = format!(">{}", word.repeat(digits / 4));
         let mut frame = format!("{text}{:02X}\r", dcon::checksum(text.as_bytes())).into_bytes();
         let Ok(truth) = command.decode(&frame, true) else {
             continue;
@@ -103,7 +126,7 @@ fn passing() -> (f64, f64) {
             && heard != truth
         {
             other += 1;
-            close += u32::from(command.agree(&heard, &truth, 0));
+            close += u32::from(command.believed(&[truth, heard, truth], 0) == Some(1));
         }
     }
     let share = |count: u32| f64::from(count) / f64::from(CLASHES);

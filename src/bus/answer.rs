@@ -85,8 +85,8 @@ pub enum LineError {
         /// What was asked.
         command: Command,
     },
-    /// A reply of this address was damaged before; asked again, the module said what does not agree. Two modules at
-    /// one address, a disturbed line, or a quantity that has changed between.
+    /// A reply of this address was damaged before; asked again, the module said something else each time. Two modules at
+    /// one address, a disturbed line, or a quantity that changes faster than it is asked.
     #[error(
         "line {line}, {command}: not believed, another value when asked again after damaged replies"
     )]

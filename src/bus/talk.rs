@@ -7,6 +7,7 @@ use super::trust::Trust;
 use crate::dcon::{Address, Command, Reply, ReplyError};
 use crate::units::RigTime;
 use std::io;
+use std::mem::{replace, take};
 use tokio::io::{AsyncRead, AsyncWrite};
 
 /// What a try ran into; made into a [`super::LineError`] where line and command are known.
@@ -126,8 +127,8 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
         }
     }
 
-    /// The newest answer that the one after it confirms. What has changed between two of them does not agree; then
-    /// there is a third, if the module is prompt enough to be asked thrice in the time that two late answers take.
+    /// Asks again until one of the answers can be believed ([`Command::believed`]): a second time, and a third if the
+    /// module is prompt enough to be asked thrice in the time that two late answers take.
     async fn repeated(
         &mut self,
         command: &Command,
@@ -137,29 +138,27 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
         times: &mut Times,
         first: Reply,
     ) -> Result<Reply, Trouble> {
-        let one = self.settings.time_out(command) + self.settings.turnaround();
-        let third_until = times.asked_at + one;
-        let (mut before, mut last) = (None, first);
+        let begun = times.asked_at;
+        let third_until = begun + self.settings.time_out(command) + self.settings.turnaround();
+        let mut answers = vec![first];
+        let mut heard = Vec::with_capacity(2);
         loop {
-            let mut again = (Frame::new(), Times::default());
+            heard.push((replace(frame, Frame::new()), take(times)));
             let next = self
-                .attempt(command, address, request, &mut again.0, &mut again.1)
-                .await;
-            let confirmed = next.as_ref().is_ok_and(|next| {
-                let apart_ms = self.now().since(times.asked_at).0.div_ceil(1_000);
-                command.agree(&last, next, apart_ms)
-                    || before.is_some_and(|before| command.between(&before, &last, next))
-            });
-            if confirmed {
-                return Ok(last);
+                .attempt(command, address, request, frame, times)
+                .await?;
+            answers.push(next);
+            let apart_ms = self.now().since(begun).0.div_ceil(1_000);
+            if let Some(place) = command.believed(&answers, apart_ms) {
+                if let Some(earlier) = heard.into_iter().nth(place) {
+                    (*frame, *times) = earlier;
+                }
+                return Ok(answers[place]);
             }
-            (*frame, *times) = again;
-            let next = next?;
-            if before.is_some() || self.now() > third_until {
+            if answers.len() == 3 || self.now() > third_until {
                 self.trust.damaged(address);
                 return Err(Trouble::Contradicted);
             }
-            before = Some(std::mem::replace(&mut last, next));
         }
     }
 

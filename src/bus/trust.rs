@@ -2,17 +2,15 @@
 //!
 //! Two modules at one address, a bad plug, a motor beside the cable: most of what they make of a reply is told from a
 //! reply by its form and its checksum, and now and then one passes, for a checksum of eight bits catches 255 in 256.
-//! So the damage that is seen gives the rest away. An address whose reply was damaged is on probation: what it says
-//! is believed only when, asked again, it says what agrees ([`crate::dcon::Command::agree`]), until
-//! [`PROBATION`] answers in a row were whole. A line in order pays nothing. What has changed between the two answers is
-//! asked a third time: an input, a frequency, a count after a reset is believed when the third says what the second said,
-//! a terminal that moves when the second lies between the others. What changes faster is not believed, and may be tried
-//! again as often as the request allows.
+//! So the damage that is seen gives the rest away. An address whose reply was damaged is on probation until [`PROBATION`]
+//! answers in a row were whole: it is asked again, and believed when it says the same. What is noisy or moves is asked a third
+//! time, and the answer between the others is believed ([`crate::dcon::Command::believed`]). What changes faster is not
+//! believed, and may be tried again as often as the request allows. A line in order pays nothing.
 //!
 //! What is left: a share c of the replies of an address damaged such that a share p of them passes, and a share d of
-//! all damaged visibly, gives c p (1 - d)^100 readings falsely believed. With every fault of the storm at 1 % that is less
-//! than one in ten million; `cargo bench --bench line_storm` prints it. For two modules that always answer
-//! together c is 1 and d nearly: it ends with the first reply.
+//! all damaged visibly, gives c p (1 - d)^100 readings falsely believed before the probation begins, and (c p)^2 within it.
+//! With every fault of the storm at 1 % that is less than one in ten million; `cargo bench --bench line_storm` prints it. For
+//! two modules that always answer together c is 1 and d nearly: it ends with the first reply.
 
 use crate::dcon::Address;
 
