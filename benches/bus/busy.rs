@@ -2,16 +2,20 @@
 //! simulated modules, with a request always waiting.
 //!
 //! After each reply the line rests two characters. No host can do better than that, and how much it costs depends on
-//! the length of the frames: so each workload stands beside the share that this rest alone leaves. A bar above that
-//! share is out of reach of the workload, whoever the host is.
+//! the length of the frames: so each workload stands beside the share that this rest alone leaves (`bound`), and beside
+//! what a client that does nothing else reaches over the same pseudo-terminal in the same run (`peer`). A bar above
+//! either is out of reach here, whoever the host is.
 
+use super::bare;
 use relayrig::bus::{self, Answer, LineSettings, Pace, Request, SerialPorts, Wire};
 use relayrig::dcon::{
     Address, AnalogIn, Channel, Command, Counter, DataFormat, Digital, InputForm, OutputWord,
     TypeCode, UpTo, Width,
 };
 use relayrig::units::{RigTime, Span};
+use rigsim::pty::Rates;
 use std::error::Error;
+use std::time::Duration;
 use tokio::sync::mpsc;
 
 /// Latency of a simulated module.
@@ -87,6 +91,8 @@ struct Row {
     share: f64,
     /// The same if nothing but the rest of two characters came between.
     bound: f64,
+    /// What a bare client reaches.
+    peer: f64,
     /// From question to question, microseconds, sorted.
     each_us: Vec<u64>,
 }
@@ -94,23 +100,34 @@ struct Row {
 /// Prints every workload at every rate.
 pub fn tell() {
     println!(
-        "line kept busy, no checksum, modules of 2 ms, pseudo-terminal; bound: nothing but a rest of two characters"
+        "line kept busy, no checksum, modules of 2 ms, pseudo-terminal; bound: nothing but a rest of two characters, \
+         peer: a bare client that spins"
     );
     println!(
-        "{:>7} {:<28} {:>5} {:>6} {:>10} {:>8} {:>6} {:>6} {:>5}",
-        "baud", "workload", "asked", "chars", "median us", "p99 us", "bound", "share", "bar"
+        "{:>7} {:<28} {:>5} {:>6} {:>10} {:>8} {:>6} {:>6} {:>6} {:>5}",
+        "baud",
+        "workload",
+        "asked",
+        "chars",
+        "median us",
+        "p99 us",
+        "bound",
+        "peer",
+        "share",
+        "bar"
     );
     for (baud, bar) in BARS {
         for workload in workloads() {
             match measured(baud, &workload.commands) {
                 Ok(row) => println!(
-                    "{baud:>7} {:<28} {:>5} {:>6.1} {:>10} {:>8} {:>6.3} {:>6.3} {bar:>5} {}",
+                    "{baud:>7} {:<28} {:>5} {:>6.1} {:>10} {:>8} {:>6.3} {:>6.3} {:>6.3} {bar:>5} {}",
                     workload.name,
                     row.asked,
                     row.characters,
                     row.each_us[row.each_us.len() / 2],
                     row.each_us[row.each_us.len() * 99 / 100],
                     row.bound,
+                    row.peer,
                     row.share,
                     reached(&row, bar),
                 ),
@@ -123,7 +140,7 @@ pub fn tell() {
 fn reached(row: &Row, bar: f64) -> &'static str {
     if row.share >= bar {
         "met"
-    } else if row.bound < bar {
+    } else if row.bound.min(row.peer) < bar {
         "out of reach"
     } else {
         "missed"
@@ -143,17 +160,25 @@ fn measured(baud: u32, commands: &[Command]) -> Result<Row, Box<dyn Error>> {
     std::fs::write(&file, format!("baud = {baud}\n{BENCH}"))?;
     let rig = rigsim::build_bench(&file, &[])?;
     std::fs::remove_file(&file)?;
-    let ptys = rigsim::pty::serve(&rig)?;
+    let ptys = rigsim::pty::serve(&rig, Rates::Any)?;
     let path = ptys.paths().remove(0).1.to_string_lossy().into_owned();
+    let ports = SerialPorts { path, baud };
     let answers = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(2)
         .enable_all()
         .build()?
-        .block_on(asked(SerialPorts { path, baud }, commands, count));
-    row(wire, &answers, count)
+        .block_on(asked(ports.clone(), commands, count));
+    let requests: Vec<Vec<u8>> = commands.iter().cycle().take(count).map(written).collect();
+    let peer = bare::asked(&ports.path, wire, &requests)?;
+    row(wire, &answers, count, peer)
 }
 
-fn row(wire: Wire, answers: &[Answer], count: usize) -> Result<Row, Box<dyn Error>> {
+fn row(
+    wire: Wire,
+    answers: &[Answer],
+    count: usize,
+    peer: Duration,
+) -> Result<Row, Box<dyn Error>> {
     let good = answers.iter().filter(|answer| answer.outcome.is_ok());
     let bad = count - good.count();
     if bad > 0 {
@@ -178,15 +203,20 @@ fn row(wire: Wire, answers: &[Answer], count: usize) -> Result<Row, Box<dyn Erro
         characters: characters.iter().sum::<usize>() as f64 / characters.len() as f64,
         share: needed as f64 / elapsed as f64,
         bound: needed as f64 / (needed + rest) as f64,
+        peer: needed as f64 / peer.as_micros() as f64,
         each_us,
     })
 }
 
 /// Of request and reply, each with its CR.
 fn characters(answer: &Answer) -> usize {
+    written(&answer.command).len() + answer.raw.len() + 1
+}
+
+fn written(command: &Command) -> Vec<u8> {
     let mut request = Vec::new();
-    answer.command.encode(false, &mut request);
-    request.len() + answer.raw.len() + 1
+    command.encode(false, &mut request);
+    request
 }
 
 /// Asks `commands` in turn until `count` have been answered; the next request always waits.

@@ -3,6 +3,7 @@
 
 #![allow(missing_docs)]
 
+mod bare;
 mod busy;
 
 use relayrig::dcon::{

@@ -48,6 +48,11 @@ impl Receiver {
         }
     }
 
+    /// From now on the host talks at this rate.
+    pub fn retune(&mut self, baud: u32) {
+        self.baud = baud;
+    }
+
     /// Takes bytes that the host sent at `now_us`; gives the requests they complete.
     pub fn take(&mut self, bytes: &[u8], now_us: u64) -> Vec<Arrival> {
         if now_us > self.busy_until_us + SILENCE_US {

@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use rigsim::pty::{self, Ptys};
+use rigsim::pty::{self, Ptys, Rates};
 use rigsim::{Options, SharedRig, SimError};
 
 struct Arguments {
@@ -39,7 +39,7 @@ fn serve(arguments: &Arguments) -> Result<(SharedRig, Ptys), SimError> {
         Some(file) => rigsim::build_bench(file, &arguments.options.faults)?,
         None => rigsim::build(&arguments.options)?,
     };
-    let ptys = pty::serve(&rig)?;
+    let ptys = pty::serve(&rig, Rates::Any)?;
     if let Some(dir) = &arguments.link {
         ptys.link(dir)?;
     }

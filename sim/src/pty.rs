@@ -3,8 +3,8 @@
 //! The slave is put into raw mode before anybody opens it, and one slave descriptor stays open, so
 //! that clients may open and close the port per request. Two threads serve a line: one reads the
 //! master and stamps what comes, the other keeps absolute deadlines, so that late wake-ups never
-//! add up. A pseudo-terminal has no baud rate: the time of every character is added here. Each
-//! reply is one write. While nobody talks the rig still goes on, so that watchdogs expire in time.
+//! add up. A pseudo-terminal has no baud rate: the time of every character is added here, and whatever rate a
+//! client has set is as good as another, unless [`Rates::Heeded`]. Each reply is one write. While nobody talks the rig still goes on, so that watchdogs expire in time.
 //!
 //! A lost port is a terminal that is closed from this side: clients see an end of file or an I/O error,
 //! as with an unplugged converter. Its link is gone until the port is back, then points at another terminal.
@@ -32,6 +32,16 @@ pub struct Ptys {
     stop: Arc<AtomicBool>,
 }
 
+/// What the rate that a client has set at its end means.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rates {
+    /// Nothing: it is heard at the rate of the line.
+    Any,
+    /// A module hears only who talks at its own rate, as on a wire; 9600 with INIT* grounded. A client that sets
+    /// none has that of the line.
+    Heeded,
+}
+
 struct Port {
     line: String,
     socket: Arc<Socket>,
@@ -43,7 +53,7 @@ struct Port {
 ///
 /// # Errors
 /// The system gives no pseudo-terminal or thread.
-pub fn serve(rig: &SharedRig) -> Result<Ptys, SimError> {
+pub fn serve(rig: &SharedRig, rates: Rates) -> Result<Ptys, SimError> {
     let origin = Instant::now()
         .checked_sub(Duration::from_micros(rig.now_us()))
         .unwrap_or_else(Instant::now);
@@ -56,6 +66,7 @@ pub fn serve(rig: &SharedRig) -> Result<Ptys, SimError> {
             rig: rig.clone(),
             number,
             baud,
+            host_baud: (rates == Rates::Heeded).then_some(baud),
             origin,
             socket: Arc::new(Socket::default()),
             stop: Arc::clone(&ptys.stop),
@@ -121,7 +132,8 @@ impl Drop for Ptys {
 
 impl Port {
     fn start(line: String, server: Server) -> Result<Self, SimError> {
-        let tty = Tty::open().map_err(|source| terminal("open a pseudo-terminal", source))?;
+        let tty =
+            Tty::open(server.baud).map_err(|source| terminal("open a pseudo-terminal", source))?;
         let socket = Arc::clone(&server.socket);
         socket
             .plug(&tty.path, tty.slave)

@@ -138,11 +138,22 @@ impl Rig {
 
     /// A request (without CR) has arrived on a line at `t_us`; gives the reply, if there is one.
     pub fn exchange(&mut self, line: usize, text: &[u8], t_us: u64) -> Option<Reply> {
+        self.exchange_at(line, None, text, t_us)
+    }
+
+    /// The same from a host that talks at a rate of its own; without one it has that of the line, and of every module.
+    pub fn exchange_at(
+        &mut self,
+        line: usize,
+        host_baud: Option<u32>,
+        text: &[u8],
+        t_us: u64,
+    ) -> Option<Reply> {
         self.advance(t_us);
         let now_us = self.now_us;
         self.scene.heard(now_us);
         let spec = self.lines.get(line)?;
-        let (name, baud) = (spec.name.clone(), spec.baud);
+        let (name, baud) = (spec.name.clone(), host_baud.unwrap_or(spec.baud));
         self.faults.may_lose_port(&name, now_us);
         if self.faults.line_dead(&name, now_us)
             || self.faults.port_back_us(&name, now_us).is_some()
@@ -155,7 +166,7 @@ impl Rig {
         let mut last = None;
         for place in 0..self.modules.len() {
             let module = &self.modules[place];
-            if module.line() != name || !module.hears(address) {
+            if module.line() != name || !module.hears(address, host_baud) {
                 continue;
             }
             let answer = self.answer(place, text);

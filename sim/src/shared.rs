@@ -214,6 +214,17 @@ impl SharedRig {
         self.rig().exchange(line, text, t_us)
     }
 
+    /// See [`Rig::exchange_at`].
+    pub fn exchange_at(
+        &self,
+        line: usize,
+        host_baud: Option<u32>,
+        text: &[u8],
+        t_us: u64,
+    ) -> Option<Reply> {
+        self.rig().exchange_at(line, host_baud, text, t_us)
+    }
+
     /// Lets everything happen that is due up to `t_us`.
     pub fn advance(&self, t_us: u64) {
         self.rig().advance(t_us);

@@ -15,8 +15,8 @@ pub struct Pace {
     is_virtual: bool,
 }
 
-/// Real waits shorter than this are slept on the thread: tokio's timer would round them up to a millisecond or two.
-const FINE: Span = Span(1_000);
+/// The end of a real rest is slept on the thread: tokio's timer may be so late.
+const FINE: Span = Span(2_000);
 /// A virtual clock that is held back stands this long at a time: half a frame of a screen.
 const HOLD: Span = Span(10_000);
 
@@ -69,7 +69,7 @@ impl Pace {
         }
     }
 
-    /// As [`Pace::sleep_until`], true to some 0.1 ms in real pace: the last millisecond keeps the thread. For turnarounds.
+    /// As [`Pace::sleep_until`], true to some 0.1 ms in real pace: the last two milliseconds keep the thread. For turnarounds.
     pub async fn rest_until(&self, until: RigTime) {
         if self.is_virtual {
             return self.sleep_until(until).await;

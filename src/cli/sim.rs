@@ -1,7 +1,8 @@
 //! `relayrig sim`: only the simulated rig, on pseudo-terminals in real time.
 
 use anyhow::Context;
-use rigsim::{Options, SharedRig, pty};
+use rigsim::pty::{self, Rates};
+use rigsim::{Options, SharedRig};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -14,6 +15,7 @@ use std::time::Duration;
   relayrig sim --link /tmp/rig
   relayrig run --lot A --recipe jzc-22f-012 --count 5 --line measure=/tmp/rig/measure --line motion=/tmp/rig/motion
   relayrig sim --bench modules.toml
+  relayrig sim --bench modules.toml --heed-baud
   relayrig sim --bench modules.toml --fault flip=0.05 --fault late=0.01/350
   relayrig sim --fault port_lost=motion@20..23
   relayrig sim --faults
@@ -41,6 +43,9 @@ pub struct SimArgs {
     /// No rig: the modules of this file on one pseudo-terminal
     #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "truth"])]
     pub bench: Option<PathBuf>,
+    /// A module hears only a client at its own rate, as on a wire. Without it a pseudo-terminal has no rate
+    #[arg(long)]
+    pub heed_baud: bool,
     /// Tells every change of a digital output and every expired host watchdog, one object per line
     #[arg(long)]
     pub journal: bool,
@@ -72,7 +77,12 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
             faults: args.fault.clone(),
         })?,
     };
-    let ptys = pty::serve(&rig)?;
+    let rates = if args.heed_baud {
+        Rates::Heeded
+    } else {
+        Rates::Any
+    };
+    let ptys = pty::serve(&rig, rates)?;
     if let Some(dir) = &args.link {
         ptys.link(dir)?;
     }

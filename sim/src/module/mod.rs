@@ -143,12 +143,13 @@ impl Module {
         &mut self.plate
     }
 
-    /// Is meant by a request for `address`.
-    pub fn hears(&self, address: Address) -> bool {
-        match address {
+    /// Is meant by a request for `address`, and listens at the rate of its host; none is any.
+    pub fn hears(&self, address: Address, host_baud: Option<u32>) -> bool {
+        let meant = match address {
             Address::Everybody => true,
             Address::Module(address) => self.plate.hears_at(address),
-        }
+        };
+        meant && host_baud.is_none_or(|baud| baud == self.plate.baud())
     }
 
     /// Microseconds from the end of a request to the first character of its reply.

@@ -31,6 +31,9 @@ const LONGEST_DELAY_MS: u8 = 30;
 /// Baud rates in the order of their codes, from 03.
 const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115_200];
 
+/// Rate of a module with INIT* grounded, whatever it has stored.
+const INIT_BAUD: u32 = 9_600;
+
 /// How the line talks to a module that is commissioned for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Commissioning {
@@ -66,6 +69,7 @@ pub struct Plate {
     soft_init_until_us: u64,
     init_grounded: bool,
     checksum_running: bool,
+    baud_running: u32,
     reset_unread: bool,
 }
 
@@ -94,6 +98,7 @@ impl Plate {
             soft_init_until_us: 0,
             init_grounded: setting::flag(spec, "init")?.unwrap_or(false),
             checksum_running: checksum,
+            baud_running: line.baud,
             reset_unread: !setting::flag(spec, "reset_seen")?.unwrap_or(false),
         })
     }
@@ -106,6 +111,15 @@ impl Plate {
     /// Requests and replies carry a checksum.
     pub fn uses_checksum(&self) -> bool {
         self.checksum_running && !self.init_grounded
+    }
+
+    /// Bits per second at which it listens and answers.
+    pub fn baud(&self) -> u32 {
+        if self.init_grounded {
+            INIT_BAUD
+        } else {
+            self.baud_running
+        }
     }
 
     /// Its firmware knows the commands of newer modules.
@@ -124,6 +138,7 @@ impl Plate {
         self.soft_init_s = 0;
         self.soft_init_until_us = 0;
         self.checksum_running = self.format & CHECKSUM != 0;
+        self.baud_running = BAUDS[usize::from(self.baud_code) - 3];
     }
 
     /// Poses as another product (a fault): other name, type 00.

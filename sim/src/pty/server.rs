@@ -27,6 +27,8 @@ pub(super) struct Server {
     pub(super) rig: SharedRig,
     pub(super) number: usize,
     pub(super) baud: u32,
+    /// Rate of the client, if it matters.
+    pub(super) host_baud: Option<u32>,
     /// Instant of rig time 0.
     pub(super) origin: Instant,
     pub(super) socket: Arc<Socket>,
@@ -93,7 +95,7 @@ impl Server {
             self.receiver = line::Receiver::new(self.baud);
             self.arrivals.clear();
             self.replies.clear();
-            let again = Tty::open().and_then(|tty| {
+            let again = Tty::open(self.baud).and_then(|tty| {
                 self.socket.plug(&tty.path, tty.slave)?;
                 Ok(tty.master)
             });
@@ -132,6 +134,7 @@ impl Server {
             match reader.pieces.recv_timeout(self.pause()) {
                 Ok((at, bytes)) => {
                     let at_us = self.rig_us(at);
+                    self.retune();
                     self.arrivals.extend(self.receiver.take(&bytes, at_us));
                 }
                 Err(RecvTimeoutError::Timeout) => {}
@@ -141,6 +144,15 @@ impl Server {
         }
         reader.finish(&self.socket);
         outcome
+    }
+
+    /// Takes over the rate that the client has set.
+    fn retune(&mut self) {
+        if let Some(known) = self.host_baud {
+            let baud = self.socket.baud().unwrap_or(known);
+            self.host_baud = Some(baud);
+            self.receiver.retune(baud);
+        }
     }
 
     fn rig_us(&self, at: Instant) -> u64 {
@@ -187,7 +199,9 @@ impl Server {
             .is_some_and(|next| next.at_us <= now_us)
         {
             let arrival = self.arrivals.remove(0);
-            let reply = self.rig.exchange(self.number, &arrival.text, arrival.at_us);
+            let reply =
+                self.rig
+                    .exchange_at(self.number, self.host_baud, &arrival.text, arrival.at_us);
             self.replies.extend(reply);
         }
         while let Some(place) = self.replies.iter().position(|reply| reply.at_us <= now_us) {

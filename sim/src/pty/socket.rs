@@ -5,7 +5,7 @@ use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use rustix::termios::{QueueSelector, tcflush};
+use rustix::termios::{QueueSelector, tcflush, tcgetattr};
 
 /// Path, links and the slave that is kept open.
 #[derive(Default)]
@@ -53,6 +53,13 @@ impl Socket {
     /// Removes the links for good.
     pub(super) fn unlink(&self) {
         self.behind().links.drain(..).for_each(|link| remove(&link));
+    }
+
+    /// The rate that the client has set at its end.
+    pub(super) fn baud(&self) -> Option<u32> {
+        let behind = self.behind();
+        let mode = tcgetattr(behind.slave.as_ref()?).ok()?;
+        Some(mode.output_speed())
     }
 
     /// Wakes the reader by a character, which is no request.

@@ -18,7 +18,8 @@ pub(super) struct Tty {
 }
 
 impl Tty {
-    pub(super) fn open() -> io::Result<Self> {
+    /// `baud` is what a client finds that sets nothing.
+    pub(super) fn open(baud: u32) -> io::Result<Self> {
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&master)?;
         unlockpt(&master)?;
@@ -27,6 +28,7 @@ impl Tty {
         let slave = rustix::fs::open(name.as_c_str(), flags, Mode::empty())?;
         let mut mode = tcgetattr(&slave)?;
         mode.make_raw();
+        mode.set_speed(baud)?;
         tcsetattr(&slave, OptionalActions::Now, &mode)?;
         let path = PathBuf::from(std::ffi::OsString::from_vec(name.into_bytes()));
         Ok(Self {

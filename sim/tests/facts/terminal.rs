@@ -3,7 +3,9 @@
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
 
+use rigsim::pty::Rates;
 use rigsim::{SharedRig, pty};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 fn client(path: &std::path::Path) -> File {
     let mut options = OpenOptions::new();
@@ -25,7 +27,7 @@ fn ask(port: &mut File, request: &[u8]) -> Vec<u8> {
 fn a_naive_client_may_reopen_the_port_for_every_request() {
     let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"\ninputs = [1.0]";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
     let (name, path) = ptys.paths().remove(0);
     assert_eq!(name, "bench");
     for _ in 0..3 {
@@ -41,7 +43,7 @@ fn a_naive_client_may_reopen_the_port_for_every_request() {
 fn links_point_at_the_ports_and_go_with_them() {
     let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
     let folder = tempfile::tempdir().expect("a folder");
     let dir = folder.path().join("links");
     ptys.link(&dir).expect("a link");
@@ -60,7 +62,7 @@ fn a_lost_port_is_an_end_for_its_client_and_comes_back_under_its_link() {
     let file = dir.path().join("bench.toml");
     std::fs::write(&file, "[[module]]\naddress = 1\nmodel = \"I-7017\"").expect("a file");
     let rig = rigsim::build_bench(&file, &["port_lost=1/100@0..0.5".to_owned()]).expect("a bench");
-    let ptys = pty::serve(&rig).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
     ptys.link(dir.path()).expect("a link");
     let link = dir.path().join("bench");
     let mut port = client(&link);
@@ -81,5 +83,35 @@ fn a_lost_port_is_an_end_for_its_client_and_comes_back_under_its_link() {
         })
     });
     assert_eq!(back.flatten().next(), Some(b'!'));
+    ptys.stop();
+}
+
+fn set_baud(port: &File, baud: u32) {
+    let mut mode = tcgetattr(port).expect("a terminal");
+    mode.set_speed(baud).expect("a rate");
+    tcsetattr(port, OptionalActions::Now, &mode).expect("a terminal");
+}
+
+#[test]
+fn where_rates_are_heeded_a_module_hears_only_its_own_and_with_init_grounded_9600() {
+    let bench = "[[module]]
+        address = 1
+        model = \"I-7017\"
+        baud = 9600
+        [[module]]
+        address = 2
+        model = \"I-7021\"
+        [[module]]
+        address = 3
+        model = \"I-7080\"
+        init = true";
+    let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
+    let ptys = pty::serve(&rig, Rates::Heeded).expect("a pseudo-terminal");
+    let mut port = client(&ptys.paths().remove(0).1);
+    // Whoever sets no rate has that of the line. Each time the first to answer is asked last.
+    assert_eq!(ask(&mut port, b"$01M\r$00M\r$02M\r"), b"!027021\r");
+    set_baud(&port, 9_600);
+    assert_eq!(ask(&mut port, b"$02M\r$01M\r"), b"!017017\r");
+    assert_eq!(ask(&mut port, b"$00M\r"), b"!037080\r");
     ptys.stop();
 }

@@ -199,7 +199,8 @@ pub fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId,
 pub(in crate::cli) mod simulated {
     use super::{Behind, Lines, Pace, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings};
     use crate::cli::plug::PlugPorts;
-    use rigsim::{Options, SharedRig, pty, wire};
+    use rigsim::pty::{self, Rates};
+    use rigsim::{Options, SharedRig, wire};
 
     /// The faults asked for; and the magazine is loaded as the golden checks of the lot want it, as a person would.
     fn faults(plant: &Plant, args: &RunArgs) -> Vec<String> {
@@ -259,7 +260,7 @@ pub(in crate::cli) mod simulated {
             logs: Vec::new(),
         };
         if !args.rig.is_virtual() {
-            let ptys = pty::serve(&rig)?;
+            let ptys = pty::serve(&rig, Rates::Any)?;
             for (name, path) in ptys.paths() {
                 let line = plant
                     .wiring
