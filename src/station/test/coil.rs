@@ -47,7 +47,8 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
     (findings.operated, findings.released, findings.armed) = (false, false, true);
     let mut acts = Vec::new();
     if repeated {
-        let down = OFF.max(coarse_takes).max(fine_takes);
+        let falls = std::mem::take(&mut findings.still_ramping);
+        let down = OFF.max(coarse_takes).max(falls + fine_takes);
         acts.extend([coarse, fine, Act::Board(IDLE.to_vec()), Act::Wait(down)]);
     }
     acts.extend((supply.total() != prebias).then(|| supply.step_to(prebias)));

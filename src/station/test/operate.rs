@@ -59,6 +59,7 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
 fn prepared(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
     let mut acts = dropped(findings);
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
+    let takes = takes.max(std::mem::take(&mut findings.still_ramping));
     acts.extend([
         coarse,
         supply.step_to(Volt(bench.recipe.test.prebias_v)),

@@ -37,11 +37,13 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
     };
     findings.expected_operate = Some(expected);
     let placed = expected.placed(Direction::Rising);
+    let falls = falling(findings);
     let mut acts = dropped(findings);
-    acts.extend(make_room(bench, supply, placed.start));
+    acts.extend(make_room(bench, supply, falls, placed.start));
     acts.extend([
         supply.step_to(placed.start * APPROACH),
-        Act::WaitSinceMark(OFF),
+        // At the first step the supply may still fall.
+        Act::WaitSinceMark(OFF.max(Span(falls.0.saturating_sub(APPROACH_TIME.0)))),
         board(&[
             (SourceOn, false),
             (SourceReverse, false),
@@ -76,14 +78,21 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
     acts
 }
 
-/// Takes the ramps back when they stand higher than the approach needs, or the fine one stands at all.
-fn make_room(bench: &Bench, supply: &mut Supply, start: Volt) -> Vec<Act> {
+/// How long after the mark a ramp still falls that nobody has waited for; one that rises is turned round.
+fn falling(findings: &mut Findings) -> Span {
+    let left = std::mem::take(&mut findings.still_ramping);
+    if findings.released { left } else { Span(0) }
+}
+
+/// Takes the ramps back when they stand higher than the approach needs, or the fine one stands at all: further down
+/// than where it `falls` to already.
+fn make_room(bench: &Bench, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
     let mut acts = Vec::new();
     let mut wait = Span(0);
     if supply.fine() > Volt(0.02) {
         let (fine, takes) = supply.ramp_fine(Volt(0.0));
         acts.push(fine);
-        wait = takes;
+        wait = falls + takes;
     }
     let room = (start.0 * APPROACH - 0.3).clamp(0.0, bench.recipe.test.coarse_span_v);
     if supply.coarse().0 > room + 0.05 {
@@ -108,12 +117,6 @@ pub(super) fn conclude(
         Met::Again => return Some(again(bench, findings, Direction::Rising, attempt)),
     };
     findings.operated = true;
-    findings.still_ramping = Span(
-        findings
-            .ramp_takes
-            .0
-            .saturating_sub(Span::seconds(gate.0).0),
-    );
     let part = findings.track?;
     if findings.operate.is_none_or(|ramp| ramp.fine.is_none()) {
         findings.forget(Parameter::OperateVoltage);

@@ -8,7 +8,7 @@ use crate::gauge::calibration::Lag;
 use crate::gauge::lag::Shown;
 use crate::gauge::threshold::{Direction, indicated};
 use crate::station::act::Readings;
-use crate::units::{Second, Volt};
+use crate::units::{Second, Span, Volt};
 
 /// The level jumps by this much between ARM and ramp: the window opens after [`WINDOW_V`], and on the fine
 /// ramp alone that would take 33 ms. What is left keeps the comparator's tolerance out of the way. Flux and
@@ -139,6 +139,11 @@ pub(super) fn meet(
     let stopped = findings
         .ramp_span
         .and_then(|span| stopped_at(start, span, seen));
+    let left = findings
+        .ramp_takes
+        .0
+        .saturating_sub(Span::seconds(gate.0).0);
+    findings.still_ramping = Span(if met { left } else { 0 });
     // Before the interval the ramp had hardly begun: what moved the armature was the step before it.
     let hasty = met && (seen - start).abs() < JUMP + run(direction);
     if met && stopped.is_none() && !hasty {

@@ -162,7 +162,13 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
     let mut acts = Vec::new();
     if supply.fine() < way {
         let (fine, takes) = supply.ramp_fine(way);
-        findings.still_ramping += takes;
+        // A ramp that rises goes on, one that falls turns round.
+        let rises = if findings.operated {
+            findings.still_ramping
+        } else {
+            Span(0)
+        };
+        findings.still_ramping = rises + takes;
         acts.push(fine);
     }
     let least = supply.coarse() + supply.fine() + ramp::JUMP;
@@ -172,6 +178,7 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
     acts.push(supply.step_to(Volt(start) - ramp::JUMP));
     acts.extend(settled(FINE_SETTLES));
     let (ramp, takes) = supply.ramp_fine(supply.fine() - way);
+    findings.ramp_takes = takes;
     acts.push(ramp);
     acts.extend(until_break(takes));
     acts

@@ -1,6 +1,7 @@
 //! What each stage concludes from what was seen.
 #![allow(clippy::unwrap_used)]
 
+mod ramps;
 mod rests;
 mod sampling;
 mod stages;
@@ -12,7 +13,7 @@ use crate::gauge::verdict::Bin;
 use crate::rig::point::{AnalogIn, Counter};
 use crate::rig::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
 use crate::rig::wiring::{LineId, ModuleId};
-use crate::station::act::{BoardInputs, CoilScan};
+use crate::station::act::{BoardInputs, CoilScan, Readings};
 use crate::station::tests::bench;
 use crate::units::{Celsius, RigTime};
 
@@ -88,6 +89,17 @@ const PULLED: BoardInputs = BoardInputs {
     nc_closed: false,
     ..RESTING
 };
+
+/// A stage that waited for the latch: seen or not, the board after it, gate 0 open for so long.
+fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
+    let counts = (gate_ms * 50.0).round() as u32;
+    Readings {
+        seen: vec![seen],
+        boards: vec![board],
+        gates: vec![gates([u32::MAX, 5]), gates([counts.wrapping_sub(1), 5])],
+        ..Readings::default()
+    }
+}
 
 /// Findings of a part whose temperature is known.
 fn at_23_c() -> Findings {

@@ -56,9 +56,10 @@ pub(in crate::station::test) fn acts(
 fn from_rest(supply: &mut Supply, findings: &mut Findings, at: Volt) -> Vec<Act> {
     let mut acts = dropped(findings);
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
+    let still_ramping = std::mem::take(&mut findings.still_ramping);
     acts.extend([
         coarse,
-        Act::WaitSinceMark(OFF),
+        Act::WaitSinceMark(OFF.max(still_ramping)),
         supply.step_to(at * APPROACH),
         board(&[
             (RampMode, false),
@@ -82,6 +83,7 @@ fn from_sealed(
     near: Volt,
 ) -> Vec<Act> {
     (findings.operated, findings.released) = (false, false);
+    let still_ramping = std::mem::take(&mut findings.still_ramping);
     let mut acts = Vec::new();
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
     if findings.operate.is_some() && findings.search.is_none_or(|search| search.trials == 0) {
@@ -97,7 +99,7 @@ fn from_sealed(
             (Arm, false),
             (CoilDrive, true),
         ]),
-        Act::Wait(INTERLOCK + SEALS),
+        Act::Wait((INTERLOCK + SEALS).max(still_ramping)),
         // The flux of a sealed armature falls slowly: from the near end of the interval, not from above.
         supply.step_to(near),
         Act::Wait(SEALS),

@@ -1,7 +1,7 @@
 //! Conclusions on a moving armature: ramps, timed operation and release.
 
 use super::super::{Ramp, Stage, coil, operate, operate_fine, release, timing};
-use super::{PULLED, RESTING, assert_ends, at_23_c, bench, drop_of, ended, gates, scan};
+use super::{PULLED, RESTING, assert_ends, at_23_c, bench, drop_of, ended, gates, scan, watched};
 use crate::gauge::lag::{LagLaw, Shown};
 use crate::gauge::threshold::Direction;
 use crate::gauge::verdict::Bin;
@@ -12,17 +12,6 @@ use crate::station::test::ramp::Expected;
 use crate::station::test::{Bench, Findings};
 use crate::units::Volt;
 use std::sync::Arc;
-
-/// A stage that waited for the latch: seen or not, the board after it, gate 0 open for so long.
-fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
-    let counts = (gate_ms * 50.0).round() as u32;
-    Readings {
-        seen: vec![seen],
-        boards: vec![board],
-        gates: vec![gates([u32::MAX, 5]), gates([counts.wrapping_sub(1), 5])],
-        ..Readings::default()
-    }
-}
 
 fn ramp_from(start: f64, span: f64) -> Findings {
     let mut findings = at_23_c();
