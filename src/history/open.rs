@@ -4,9 +4,12 @@
 //!    before anything is written to it.
 //! 2. A schema newer than this program is refused; an older one is migrated, one transaction a step.
 //! 3. Write-ahead log with `synchronous = FULL`: a batch that was acknowledged survives power loss.
+//! 4. A plan is made once for a statement, whatever its values (`QPSG`): a statement that is asked part by part
+//!    would else be planned anew for each of them, which takes longer than its answer.
 
 use super::error::{Doing, HistoryError, Result};
 use super::views;
+use rusqlite::config::DbConfig;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 use std::path::Path;
 use std::time::Duration;
@@ -15,11 +18,12 @@ use std::time::Duration;
 pub const APPLICATION_ID: i64 = 0x5252_6967;
 
 /// Step `n` brings schema `n` to `n + 1`. Steps are only ever added.
-pub(super) const MIGRATIONS: [&str; 4] = [
+pub(super) const MIGRATIONS: [&str; 5] = [
     include_str!("schema/v1.sql"),
     include_str!("schema/v2.sql"),
     include_str!("schema/v3.sql"),
     include_str!("schema/v4.sql"),
+    include_str!("schema/v5.sql"),
 ];
 
 /// Latest schema this program knows.
@@ -33,7 +37,7 @@ pub(super) fn writer(path: &Path) -> Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE
         | OpenFlags::SQLITE_OPEN_CREATE
         | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let connection = Connection::open_with_flags(path, flags).doing("opening the history")?;
+    let connection = connected(path, flags).doing("opening the history")?;
     prepare(&connection, path)?;
     Ok(connection)
 }
@@ -46,21 +50,26 @@ pub(super) fn reader(path: &Path) -> Result<Connection> {
         });
     }
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let connection = Connection::open_with_flags(path, flags).doing("opening the history")?;
-    connection.busy_timeout(BUSY).doing("opening the history")?;
+    let connection = connected(path, flags).doing("opening the history")?;
     if check(&connection, path)? < SCHEMA {
         prepare(&connection, path)?;
     }
     connection
         .pragma_update(None, "query_only", true)
         .doing("opening the history")?;
+    Ok(connection)
+}
+
+fn connected(path: &Path, flags: OpenFlags) -> rusqlite::Result<Connection> {
+    let connection = Connection::open_with_flags(path, flags)?;
+    connection.busy_timeout(BUSY)?;
+    connection.set_db_config(DbConfig::SQLITE_DBCONFIG_ENABLE_QPSG, true)?;
     connection.set_prepared_statement_cache_capacity(64);
     Ok(connection)
 }
 
 fn prepare(connection: &Connection, path: &Path) -> Result<()> {
     const DOING: &str = "preparing the history";
-    connection.busy_timeout(BUSY).doing(DOING)?;
     let found = check(connection, path)?;
     connection
         .pragma_update_and_check(None, "journal_mode", "WAL", |_| Ok(()))
@@ -71,7 +80,6 @@ fn prepare(connection: &Connection, path: &Path) -> Result<()> {
     connection
         .pragma_update(None, "foreign_keys", true)
         .doing(DOING)?;
-    connection.set_prepared_statement_cache_capacity(64);
     migrate(connection, found)
 }
 

@@ -3,6 +3,7 @@
 use super::super::{archive, curve, lots, retention, values};
 use super::reading::operate;
 use super::*;
+use rusqlite::StatementStatus;
 
 /// The plan of a statement, one line per step.
 fn plan(file: &File, select: &filter::Select) -> String {
@@ -30,14 +31,37 @@ fn a_value_range_enters_the_index_at_its_first_value() {
         verdict: Some("fail".into()),
         ..operate(7.0, 8.0)
     };
-    for filter in [operate(7.0, 8.0), lot] {
+    let late = Filter {
+        since: Some(Moment(5)),
+        bin: Some("coil".into()),
+        ..lot.clone()
+    };
+    for filter in [operate(7.0, 8.0), lot, late] {
         let plan = plan(&file, &filter.parts());
         assert!(plan.contains("measurement_value (parameter_id=? AND population=? AND run_id=? AND part_verdict=? AND value>? AND value<?)"), "{plan}");
         assert!(
             plan.contains("SEARCH part USING INTEGER PRIMARY KEY"),
             "{plan}"
         );
+        assert!(!plan.contains("TEMP B-TREE"), "sorted as found:\n{plan}");
     }
+}
+
+#[test]
+fn the_values_of_a_part_are_read_from_their_index_and_planned_once() {
+    let file = File::new();
+    let _store = filled(&file, 10);
+    let archive = file.archive();
+    let plan = explained(&archive.connection, archive::VALUES);
+    assert!(
+        plan.contains("SEARCH m USING COVERING INDEX measurement_part (part_id=?)"),
+        "{plan}"
+    );
+    let mut statement = archive.connection.prepare(archive::VALUES).unwrap();
+    for part in 1..=10 {
+        assert!(statement.query([part]).unwrap().next().unwrap().is_some());
+    }
+    assert_eq!(statement.get_status(StatementStatus::RePrepare), 0);
 }
 
 #[test]
