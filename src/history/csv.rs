@@ -4,6 +4,7 @@
 //! lines end with LF or CRLF. Every record carries the number of the line it begins on. A record
 //! with another number of fields than the header is an error, never padded.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// What spreadsheets need in front to take a file for UTF-8.
@@ -117,13 +118,36 @@ fn field(text: &str) -> Option<(String, usize)> {
     }
 }
 
-/// One record with CRLF. A text field that a spreadsheet would take for a formula is not changed:
-/// figures first, whoever opens foreign lots in a spreadsheet must know.
-pub fn write<'a>(
+/// What a spreadsheet takes for the begin of a formula. A sign before a figure is none: only texts are asked.
+const FORMULA: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
+
+/// Whether a spreadsheet may take the text for a formula, or for one that was made harmless.
+fn is_delicate(text: &str) -> bool {
+    text.trim_start_matches('\'').starts_with(FORMULA)
+}
+
+/// The text of a person as a spreadsheet shows it and never computes it: an apostrophe in front, where it needs one.
+pub fn harmless(text: &str) -> Cow<'_, str> {
+    if is_delicate(text) {
+        Cow::Owned(format!("'{text}"))
+    } else {
+        Cow::Borrowed(text)
+    }
+}
+
+/// The text that [`harmless`] was given.
+pub fn as_typed(text: &str) -> &str {
+    let inner = text.strip_prefix('\'').filter(|it| is_delicate(it));
+    inner.unwrap_or(text)
+}
+
+/// One record with CRLF.
+pub fn write(
     out: &mut impl Write,
-    fields: impl IntoIterator<Item = &'a str>,
+    fields: impl IntoIterator<Item = impl AsRef<str>>,
 ) -> io::Result<()> {
     for (n, field) in fields.into_iter().enumerate() {
+        let field = field.as_ref();
         if n > 0 {
             out.write_all(b",")?;
         }
@@ -160,6 +184,27 @@ mod tests {
             back.iter().map(|it| it.line).collect::<Vec<_>>(),
             [1, 2, 3, 5]
         );
+    }
+
+    #[test]
+    fn a_text_that_looks_like_a_formula_is_made_harmless_and_comes_back_as_typed() {
+        let attacks = [
+            "=cmd|' /C calc'!A0",
+            "+1",
+            "-B2",
+            "@SUM(A1)",
+            "\t=1",
+            "\r=1",
+            "'=1",
+        ];
+        for text in attacks {
+            let shown = harmless(text);
+            assert!(shown.starts_with('\''), "{shown}");
+            assert_eq!(as_typed(&shown), text);
+        }
+        for text in ["批次 7", "7-A", "", "'", "'quoted'", "A=1"] {
+            assert_eq!((harmless(text).as_ref(), as_typed(text)), (text, text));
+        }
     }
 
     #[test]

@@ -208,9 +208,12 @@ fn take(row: &mut ImportRow, column: &Column, name: &str, cell: &str) -> Result<
         Column::Verdict => {
             row.part.verdict = verdict(cell).ok_or("pass, fail, void or unjudged")?
         }
-        Column::Serial => row.part.serial = Some(cell.to_owned()),
-        Column::Bin => row.part.bin = cell.to_owned(),
-        Column::Reasons => row.part.reasons = cell.split("; ").map(str::to_owned).collect(),
+        Column::Serial => row.part.serial = Some(csv::as_typed(cell).to_owned()),
+        Column::Bin => row.part.bin = csv::as_typed(cell).to_owned(),
+        Column::Reasons => {
+            let typed = csv::as_typed(cell).split("; ");
+            row.part.reasons = typed.map(str::to_owned).collect();
+        }
         Column::Parameter => row.part.measurements.push(measurement(name, cell)?),
         Column::PassedOver => {}
     }

@@ -1,14 +1,15 @@
 //! All parts that a filter leaves, as CSV or as a spreadsheet; memory does not grow with their number.
 
 use super::Result;
-use crate::history::{Archive, Filter, columns, csv};
+use crate::history::columns::{self, Cell};
+use crate::history::{Archive, Filter, csv};
 use crate::report::Language;
 use crate::report::sheet::Sheet;
 use jiff::tz::TimeZone;
 use rust_xlsxwriter::Workbook;
 use std::io::Write;
 
-/// One line per part under the header. Reads back with `history import`.
+/// One line per part under the header. Reads back with `history import`. A text never becomes a formula.
 pub fn csv_lines(
     archive: &Archive,
     filter: &Filter,
@@ -16,12 +17,13 @@ pub fn csv_lines(
     out: &mut impl Write,
 ) -> Result<()> {
     let header = columns::header(parameters);
-    csv::write(out, header.iter().map(String::as_str))?;
+    csv::write(out, &header)?;
     archive.each(filter, |part| {
-        let cells: Vec<String> = columns::row(&part, parameters)
-            .map(|cell| cell.to_string())
-            .collect();
-        csv::write(out, cells.iter().map(String::as_str))
+        let cells = columns::row(&part, parameters).map(|cell| match cell {
+            Cell::Text(text) => csv::harmless(&text).into_owned(),
+            figure => figure.to_string(),
+        });
+        csv::write(out, cells)
     })??;
     Ok(())
 }

@@ -45,7 +45,7 @@ pub(super) fn write(lots: &[LotSummary], format: Format, out: &mut Output) -> an
         Format::Csv => {
             csv::write(out, HEADER)?;
             for lot in lots {
-                csv::write(out, cells(lot).iter().map(String::as_str))?;
+                csv::write(out, cells(lot).iter().map(|cell| csv::harmless(cell)))?;
             }
         }
         Format::Table => {
