@@ -268,21 +268,23 @@ pub(super) async fn run_lot(
     })
 }
 
-/// The first one finishes the parts inside, the second does not wait for them.
-async fn interruptions(flags: [Arc<AtomicBool>; 2]) {
-    for flag in flags {
-        if interrupted().await.is_ok() {
-            flag.store(true, Ordering::Release);
-        }
-    }
-}
-
-/// Ctrl-C, or the signal that a service manager ends a program with.
-async fn interrupted() -> std::io::Result<()> {
+/// Ctrl-C, or the signal that a service manager ends a program with: the first one finishes the parts inside, the
+/// second does not wait for them. One that comes while the one before is being told is not lost.
+async fn interruptions(flags: [Arc<AtomicBool>; 2]) -> std::io::Result<()> {
     use tokio::signal::unix::{SignalKind, signal};
+    let mut pressed = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;
-    tokio::select! {
-        pressed = tokio::signal::ctrl_c() => pressed,
-        _ = terminate.recv() => Ok(()),
+    let said = [
+        "stopping when the parts inside are finished; once more stops at once",
+        "stopping at once, outputs safe",
+    ];
+    for (flag, said) in flags.into_iter().zip(said) {
+        tokio::select! {
+            _ = pressed.recv() => {}
+            _ = terminate.recv() => {}
+        }
+        flag.store(true, Ordering::Release);
+        tracing::warn!("{said}");
     }
+    Ok(())
 }

@@ -36,7 +36,8 @@ fn interrupted(workshop: &Workshop, signal: &str, after: usize) -> Ended {
     }
 }
 
-fn send(signal: &str, lot: &Child) {
+/// Sends a program a signal by its name.
+pub fn send(signal: &str, lot: &Child) {
     let sent = Command::new("kill")
         .args(["-s", signal, &lot.id().to_string()])
         .status();

@@ -1,9 +1,10 @@
-//! The controller killed in the middle of its work, over real pseudo-terminals: the modules make their outputs safe.
+//! The controller killed or stopped at once in the middle of its work, over real pseudo-terminals: outputs are safe.
 //!
 //! Judged by the simulated rig in rig time, which follows the wall clock: how long this machine takes to notice
 //! anything does not matter.
 
-use crate::program::Workshop;
+use crate::interruptions::send;
+use crate::program::{Workshop, objects};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
@@ -45,6 +46,20 @@ impl Rig {
         let mut line = String::new();
         let count = self.told.read_line(&mut line).unwrap();
         (count > 0).then(|| serde_json::from_str(&line).unwrap())
+    }
+
+    /// What each digital output module carries when the first watchdog expires.
+    fn left_by_its_host(&mut self) -> BTreeMap<String, f64> {
+        let told = std::iter::from_fn(|| self.next());
+        let outputs = told
+            .take_while(|told| told["type"] != "expired")
+            .filter(|told| told["type"] == "output");
+        outputs
+            .map(|told| {
+                let module = told["module"].as_str().unwrap().to_owned();
+                (module, told["bits"].as_f64().unwrap())
+            })
+            .collect()
     }
 
     /// The next so many watchdogs that expire; fewer when it ends before.
@@ -146,4 +161,49 @@ fn a_controller_that_is_killed_leaves_every_output_safe_within_the_watchdog_time
         let after_us = told["t_us"].as_i64().unwrap() - told["last_request_us"].as_i64().unwrap();
         assert!(after_us <= limit_us, "{told}: limit {limit_us} us");
     }
+}
+
+/// A lot that is told to stop, and to stop at once, while the coil is driven: rig, status and what it said. None when it
+/// did not come so far, or ended with an alarm before it was told.
+fn stopped_twice(workshop: &Workshop) -> Option<(Rig, i32, String)> {
+    let mut rig = Rig::start(workshop, "");
+    let mut controller = workshop.start_heard(
+        "run --lot A --recipe jzc-22f-012 --json \
+         --line measure=ports/measure --line motion=ports/motion",
+    );
+    let works = rig.works();
+    let mut log = BufReader::new(controller.stderr.take().unwrap()).lines();
+    let heeded = ["once more stops at once", "stopping at once"].map(|answer| {
+        send("INT", &controller);
+        log.any(|row| row.unwrap().contains(answer))
+    });
+    let told = controller.wait_with_output().unwrap();
+    let said = String::from_utf8(told.stdout).unwrap();
+    (works && heeded == [true; 2]).then_some((rig, told.status.code().unwrap(), said))
+}
+
+#[test]
+fn ctrl_c_twice_makes_outputs_safe_at_once_keeps_the_rows_and_ends_with_4() {
+    let (workshop, (mut rig, status, said)) = (0..TRIES)
+        .find_map(|_| {
+            let workshop = Workshop::new("ctrl-c-twice");
+            stopped_twice(&workshop).map(|ended| (workshop, ended))
+        })
+        .expect("a machine with a second to spare");
+    assert_eq!(status, 4, "{said}");
+    // Left by its own hand: no watchdog had to do it.
+    let safe = watched(&workshop);
+    let left = rig.left_by_its_host();
+    assert_eq!(left.get("board_do"), Some(&0.0), "{left:?}");
+    for (module, bits) in left {
+        let safe = safe.get(&module).copied().unwrap_or_default();
+        assert_eq!(bits, safe, "{module}");
+    }
+    let told = objects(&said);
+    assert_eq!(told.last().unwrap()["type"], "summary", "{told:?}");
+    let count = |of: &str| workshop.count(&format!("SELECT count(*) FROM {of}"));
+    let parts = i64::try_from(told.len() - 1).unwrap();
+    assert_eq!(count("part WHERE kind = 'lot'"), parts);
+    assert_eq!(count("run WHERE closed_at_us IS NULL"), 0);
+    workshop.run("history check").with_status(0);
 }

@@ -57,6 +57,7 @@ pub struct Machine {
     pub shop: Shop,
     pub bus: Option<Alarm>,
     pub stop: bool,
+    pub abort: bool,
     /// Key of an actuator that never arrives.
     pub sticking: Option<&'static str>,
     magazine: VecDeque<Specimen>,
@@ -132,6 +133,7 @@ impl Machine {
             shop,
             bus: None,
             stop: false,
+            abort: false,
             sticking: None,
             magazine: magazine.into(),
             under_way: Vec::new(),
@@ -253,6 +255,7 @@ impl Machine {
             recorded,
             bus: bus.clone(),
             stop,
+            abort: self.abort,
             ..quiet(&image)
         };
         let mut wants = self.station.step(now, inputs);

@@ -52,6 +52,23 @@ fn an_order_to_stop_finishes_the_parts_inside() {
 }
 
 #[test]
+fn a_second_order_to_stop_waits_for_nobody_at_any_instant_of_a_cycle() {
+    for turns in (0..600).step_by(23) {
+        let mut machine = Machine::new(None, vec![Specimen::MissingPin; 50]);
+        while machine.landed.is_empty() {
+            machine.turn();
+        }
+        (0..turns).for_each(|_| drop(machine.turn()));
+        machine.stop = true;
+        assert_eq!(machine.turn().ending, None, "{turns} turns");
+        machine.abort = true;
+        let wants = machine.turn();
+        assert_eq!(wants.ending, Some(Ending::Stopped), "{turns} turns");
+        assert!(wants.safe && wants.motions.is_empty(), "{turns}: {wants:?}");
+    }
+}
+
+#[test]
 fn more_turns_than_needed_change_nothing() {
     let mut once = Machine::new(Some(4), MIXED.to_vec());
     once.run();
