@@ -142,3 +142,16 @@ impl Cli {
         }
     }
 }
+
+/// A reader that has seen enough and closed the pipe is no error.
+fn unless_reader_left(done: anyhow::Result<i32>) -> anyhow::Result<i32> {
+    let left = |cause: &(dyn std::error::Error + 'static)| {
+        cause
+            .downcast_ref::<std::io::Error>()
+            .is_some_and(|it| it.kind() == std::io::ErrorKind::BrokenPipe)
+    };
+    match done {
+        Err(error) if error.chain().any(left) => Ok(DONE),
+        done => done,
+    }
+}

@@ -1,6 +1,7 @@
 //! `relayrig bus`: find modules, send one command, watch a line. No rig file is needed.
 
 mod follow;
+mod found;
 pub mod meaning;
 mod monitor;
 mod scan;
@@ -8,6 +9,7 @@ mod send;
 
 use crate::bus::{LineSettings, open_serial};
 use anyhow::Context;
+use std::io::Write;
 use std::path::PathBuf;
 use tokio_serial::SerialStream;
 
@@ -62,11 +64,20 @@ pub fn run(args: &BusArgs) -> anyhow::Result<i32> {
         .enable_all()
         .build()
         .context("starting the runtime")?;
-    runtime.block_on(async {
+    let done = runtime.block_on(async {
         match &args.command {
             BusCommand::Scan(args) => scan::run(args).await,
             BusCommand::Send(args) => send::run(args).await,
             BusCommand::Monitor(args) => monitor::run(args).await,
         }
-    })
+    });
+    super::unless_reader_left(done)
+}
+
+/// Writes whole lines at once.
+fn print(text: &str) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes())
+        .and_then(|()| out.flush())
+        .context("writing to stdout")
 }

@@ -26,7 +26,6 @@ use crate::history::{Archive, Filter, Identity, Store};
 use crate::inquiry::InquiryError;
 use clap::{Args, Subcommand};
 use output::Output;
-use std::io;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `history`.
@@ -108,7 +107,7 @@ enum Command {
 
 /// Runs the command on the history file `db`; gives the exit status. An error is bad input: status 2.
 pub fn run(config: &Path, db: &Path, args: HistoryArgs) -> anyhow::Result<i32> {
-    unless_reader_left(dispatch(config, db, *args.command).map_err(by_option))
+    super::unless_reader_left(dispatch(config, db, *args.command).map_err(by_option))
 }
 
 /// A member of the question that cannot be meant is an option here.
@@ -163,17 +162,5 @@ fn check(db: &Path) -> anyhow::Result<i32> {
             eprintln!("{damage}");
             Ok(1)
         }
-    }
-}
-
-fn unless_reader_left(done: anyhow::Result<i32>) -> anyhow::Result<i32> {
-    let left = |cause: &(dyn std::error::Error + 'static)| {
-        cause
-            .downcast_ref::<io::Error>()
-            .is_some_and(|it| it.kind() == io::ErrorKind::BrokenPipe)
-    };
-    match done {
-        Err(error) if error.chain().any(left) => Ok(0),
-        done => done,
     }
 }

@@ -1,6 +1,7 @@
 //! `relayrig sim`: only the simulated rig, on pseudo-terminals in real time.
 
 use anyhow::Context;
+use rigsim::fault::FaultInfo;
 use rigsim::pty::{self, Rates};
 use rigsim::{Options, SharedRig};
 use serde_json::{Value, json};
@@ -57,13 +58,16 @@ pub struct SimArgs {
 /// Runs the command until it is interrupted; the result is the exit status.
 pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
     if args.faults {
-        for fault in rigsim::faults(config, args.world.as_deref())? {
-            println!(
-                "{:<14} {:<30} default {:<12} {}",
+        let faults = rigsim::faults(config, args.world.as_deref())?;
+        let row = |fault: FaultInfo| {
+            format!(
+                "{:<14} {:<30} default {:<12} {}\n",
                 fault.name, fault.unit, fault.default, fault.what
-            );
-        }
-        return Ok(0);
+            )
+        };
+        let rows: String = faults.into_iter().map(row).collect();
+        let told = std::io::stdout().write_all(rows.as_bytes());
+        return super::unless_reader_left(told.map(|()| 0).context("writing the faults"));
     }
     let rig = match &args.bench {
         Some(file) => rigsim::build_bench(file, &args.fault)?,

@@ -19,6 +19,10 @@ inputs = [5.0, 4.0, 3.0, 2.0, 1.0, 0.0, -1.0, -2.0]
 address = 18
 model = "I-7043"
 checksum = true
+[[module]]
+address = 4
+model = "I-7021"
+init = true
 "#;
 
 /// Modules on a pseudo-terminal, until dropped.
@@ -30,9 +34,14 @@ struct Bench {
 
 impl Bench {
     fn new(name: &str) -> Self {
+        Self::with(name, "")
+    }
+
+    /// `words` are further ones of the command.
+    fn with(name: &str, words: &str) -> Self {
         let shop = Workshop::new(name);
         std::fs::write(shop.folder.join("bench.toml"), BENCH).unwrap();
-        let mut sim = shop.start("sim --bench bench.toml");
+        let mut sim = shop.start(&format!("sim --bench bench.toml {words}"));
         let mut first = String::new();
         BufReader::new(sim.stdout.take().unwrap())
             .read_line(&mut first)
@@ -58,45 +67,95 @@ impl Drop for Bench {
     }
 }
 
+/// Milliseconds that a busy machine may keep the simulated modules from answering; a silent address costs twice that.
+const ALLOWANCE: u32 = 400;
+
 #[test]
 fn scan_finds_every_module_with_its_name_and_configuration_and_nobody_else() {
     let bench = Bench::new("bus_scan");
-    let (status, out, _) =
-        bench.bus("scan --baud 115200 --addresses 00-13 --checksum on --allowance 120 --json");
-    let found: Vec<Value> = out
-        .lines()
-        .map(|line| serde_json::from_str(line).unwrap())
-        .collect();
-    assert_eq!((status, found.len()), (0, 2), "{out}");
+    let found = |addresses: &str| {
+        let (status, out, err) = bench.bus(&format!(
+            "scan --baud 115200 --addresses {addresses} --checksum on --allowance {ALLOWANCE} --json"
+        ));
+        let rows = out.lines().map(|line| serde_json::from_str(line).unwrap());
+        (status, rows.collect::<Vec<Value>>(), err)
+    };
+    let (status, rows, err) = found("11-13");
+    assert_eq!((status, rows.len()), (0, 1), "{rows:?} {err}");
+    let module = &rows[0];
     assert_eq!(
-        (&found[0]["address"], &found[0]["type"]),
-        (&"01".into(), &"08".into())
+        (&module["address"], &module["type"]),
+        (&"12".into(), &"40".into())
     );
-    assert_eq!(found[1]["address"], "12");
-    assert!(found[1]["name"].as_str().unwrap().contains("7043"), "{out}");
-    assert!(found[0]["p99_ms"].as_f64().unwrap() >= 1.0, "{out}");
-    let (status, out, _) = bench.bus("scan --baud 115200 --addresses 20-22 --checksum on --json");
-    assert_eq!((status, &*out), (1, ""));
+    assert!(
+        module["name"].as_str().unwrap().contains("7043"),
+        "{module}"
+    );
+    assert!(module["p99_ms"].as_f64().unwrap() >= 1.0, "{module}");
+    assert_eq!(found("20-21").0, 1);
+}
+
+#[test]
+fn scan_finds_modules_of_different_rates_with_and_without_checksum_on_one_port() {
+    let bench = Bench::with("bus_scan_rates", "--heed-baud");
+    let (status, out, err) = bench.bus(&format!(
+        "scan --baud 115200 --baud 9600 --addresses 00-01 --allowance {ALLOWANCE} --json"
+    ));
+    let found = out.lines().map(|line| {
+        let it: Value = serde_json::from_str(line).unwrap();
+        let word = |key| it[key].as_str().unwrap().to_owned();
+        format!(
+            "{} {} {} {}",
+            word("address"),
+            word("name"),
+            it["baud"],
+            it["checksum"]
+        )
+    });
+    assert_eq!(status, 0, "{err}");
+    assert_eq!(
+        found.collect::<Vec<_>>(),
+        ["00 7021 9600 false", "01 7017 115200 true"],
+        "{out}"
+    );
+    assert!(out.contains("INIT* mode, stored address 04"), "{out}");
+}
+
+#[test]
+fn a_tool_whose_reader_has_seen_enough_ends_without_a_word() {
+    let bench = Bench::new("bus_unread");
+    let send = format!(
+        "bus send --port {} --allowance 900 --checksum $01M",
+        bench.port
+    );
+    for line in [&*send, "sim --faults"] {
+        let said = bench.shop.run_unread(line);
+        assert_eq!((said.status, &*said.stderr), (0, ""), "{line}");
+    }
 }
 
 #[test]
 fn send_puts_a_reply_into_words_and_never_sends_what_only_the_factory_may() {
     let bench = Bench::new("bus_send");
-    let (status, out, _) = bench.bus("send --checksum #010 --model 7017");
+    let (status, out, _) = bench.bus("send --allowance 900 --checksum #010 --model 7017");
     assert!(status == 0 && out.contains("ReadOne"), "{out}");
     assert!(
         out.contains("> #010B4\\r") && out.contains("< >+0"),
         "{out}"
     );
-    let (status, out, _) = bench.bus("send --checksum @12BEEF");
+    let (status, out, _) = bench.bus("send --allowance 900 --checksum @12BEEF");
     assert!(status == 0 && out.contains("accepted"), "{out}");
-    let (status, out, _) = bench.bus("send --checksum $015FF --model 7017");
+    let (status, out, _) = bench.bus("send --allowance 900 --checksum $015FF --model 7017");
     assert!(status == 0 && out.contains("not written again"), "{out}");
-    let (status, out, _) = bench.bus("send --checksum $552");
+    let (status, out, _) = bench.bus("send --allowance 900 --checksum $552");
     assert!(status == 1 && out.contains("no reply"), "{out}");
     for factory in ["$010", "~01E1"] {
         let (status, _, err) = bench.bus(&format!("send --checksum {factory}"));
         assert!(status == 2 && err.contains("factory"), "{err}");
+    }
+    for address in ["$0zM", "$0aM", "$1"] {
+        let (status, _, err) = bench.bus(&format!("send --checksum {address}"));
+        assert!(status == 2 && err.contains("capitals"), "{err}");
     }
     let (status, _, err) = bench.bus("send --baud 12345 $012");
     assert!(status == 2 && err.contains("12345"), "{err}");

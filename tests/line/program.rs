@@ -50,6 +50,19 @@ impl Workshop {
         said(&self.command(line).output().unwrap())
     }
 
+    /// As [`Self::run`], but nobody reads what it tells.
+    #[cfg(all(feature = "sim", unix))]
+    pub fn run_unread(&self, line: &str) -> Said {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let started = self
+            .command(line)
+            .stdout(writer)
+            .stderr(Stdio::piped())
+            .spawn();
+        said(&started.unwrap().wait_with_output().unwrap())
+    }
+
     /// As [`Self::run`], but no file may become larger than so many blocks of the shell.
     #[cfg(all(feature = "sim", unix))]
     pub fn run_with_little_room(&self, blocks: u32, line: &str) -> Said {

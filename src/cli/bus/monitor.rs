@@ -2,11 +2,10 @@
 //! the trace of an alarm.
 
 use super::meaning::Meaning;
-use super::{PortArgs, follow};
+use super::{PortArgs, follow, print};
 use crate::bus::{Direction, Entry, Pace, Recorded, arrow, escaped, open_serial};
 use crate::dcon;
 use anyhow::{Context, bail};
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;
 use tokio::io::AsyncReadExt;
@@ -19,8 +18,8 @@ use tokio::io::AsyncReadExt;
   relayrig bus monitor --trace relayrig.alarm-1-motion.trace
   relayrig bus monitor --trace relayrig.alarm-1-motion.trace --level bytes
 
-On a port both directions are heard as one: a frame with # $ % @ ~ counts as a question, one with ! > ? as the reply to
-the question before it. Nothing is ever sent. A running controller has its ports for itself; it is asked over the address
+On a port both directions are heard as one: a frame with # $ % @ ~ counts as a question, one with ! > ? as the reply to \
+the question before it. Nothing is ever sent. A running controller has its ports for itself; it is asked over the address \
 of its page, and tells what it kept of every line. Ctrl-C ends it.")]
 pub struct MonitorArgs {
     /// Serial port to listen to
@@ -134,13 +133,6 @@ fn direction(frame: &[u8]) -> Direction {
         Some(b'!' | b'>' | b'?') => Direction::Heard,
         Some(_) | None => Direction::Stray,
     }
-}
-
-fn print(text: &str) -> anyhow::Result<()> {
-    let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes())
-        .and_then(|()| out.flush())
-        .context("writing to stdout")
 }
 
 /// Puts entries into words.

@@ -1,13 +1,14 @@
 //! `relayrig bus scan`: who is on the line.
 
-use super::PortArgs;
+use super::found::{Found, told};
+use super::{PortArgs, print};
 use crate::bus::{self, Answer, LineLog, Pace, Request};
-use crate::dcon::{Address, BaudCode, Command, Common, Config, Reply};
-use anyhow::{anyhow, bail};
+use crate::dcon::{Address, BaudCode, Command, Common, Reply};
+use anyhow::{Context, anyhow, bail};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::json;
 use std::io::IsTerminal;
 use tokio::sync::mpsc;
+use tokio::task::JoinHandle;
 
 /// Find modules.
 #[derive(Debug, clap::Args)]
@@ -15,8 +16,9 @@ use tokio::sync::mpsc;
   relayrig bus scan --port /dev/ttyUSB0
   relayrig bus scan --port /dev/ttyUSB0 --baud 115200 --baud 9600 --addresses 01-20 --checksum on
 
-A module is asked for its configuration word ($AA2), which changes nothing. All addresses at all rates with and without
-checksum take about three minutes. Exit status 1 when nobody answers.")]
+A module is asked for its configuration word ($AA2), which changes nothing. All addresses at all rates with and without \
+checksum take about three minutes; Ctrl-C ends it and prints what was found. Exit status 1 when nobody answers, 4 after \
+Ctrl-C.")]
 pub struct ScanArgs {
     #[command(flatten)]
     port: PortArgs,
@@ -81,54 +83,52 @@ const RATES: [u32; 8] = [115_200, 9_600, 19_200, 38_400, 57_600, 4_800, 2_400, 1
 /// Times each found module is asked again for the spread of its latency.
 const ASKED_AGAIN: usize = 16;
 
-struct Found {
-    asked: Address,
-    stored: Address,
-    baud: u32,
-    checksum: bool,
-    config: Config,
-    name: String,
-    firmware: String,
-    log: LineLog,
+pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<i32> {
+    let mut found: Vec<Found> = Vec::new();
+    let interrupted = tokio::select! {
+        asked = ask_all(args, &mut found) => asked.map(|()| false)?,
+        pressed = tokio::signal::ctrl_c() => pressed.map(|()| true)?,
+    };
+    found.sort_by_key(|module| module.asked);
+    print(&told(&found, args.json))?;
+    Ok(match (interrupted, found.is_empty()) {
+        (true, _) => super::super::STOPPED,
+        (false, true) => 1,
+        (false, false) => super::super::DONE,
+    })
 }
 
-pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<i32> {
+/// Every address at every rate, with checksum and without.
+async fn ask_all(args: &ScanArgs, found: &mut Vec<Found>) -> anyhow::Result<()> {
     let rates = if args.baud.is_empty() {
-        RATES.to_vec()
+        &RATES[..]
     } else {
-        args.baud.clone()
+        &args.baud
     };
     let (first, last) = args.addresses;
+    let checksums = args.checksum.list();
     let each = u64::from(last - first) + 1;
-    let rounds = rates.len() * args.checksum.list().len();
-    let bar = bar(each * rounds as u64);
-    let mut found: Vec<Found> = Vec::new();
-    for rate in rates {
-        for checksum in args.checksum.list() {
-            bar.set_message(format!(
-                "{rate} baud, {} checksum",
-                if *checksum { "with" } else { "no" }
-            ));
-            let mut line = Asking::open(args, rate, *checksum)?;
-            for address in (first..=last).map(Address) {
-                bar.inc(1);
-                // A module listens at one rate only; a terminal without a rate would show it at each.
-                if found.iter().all(|module| module.asked != address)
-                    && let Some(module) = line.who(address, rate, *checksum).await?
-                {
-                    found.push(module);
-                }
+    let bar = bar(each * (rates.len() * checksums.len()) as u64);
+    for (rate, checksum) in rates
+        .iter()
+        .flat_map(|rate| checksums.iter().map(move |it| (*rate, *it)))
+    {
+        let with = if checksum { "with" } else { "no" };
+        bar.set_message(format!("{rate} baud, {with} checksum"));
+        let mut line = Asking::open(args, rate, checksum)?;
+        for address in (first..=last).map(Address) {
+            bar.inc(1);
+            // A module listens at one rate only; a terminal without a rate would show it at each.
+            if found.iter().all(|module| module.asked != address)
+                && let Some(module) = line.who(address, rate, checksum).await?
+            {
+                found.push(module);
             }
         }
+        line.close().await?;
     }
     bar.finish_and_clear();
-    found.sort_by_key(|module| module.asked);
-    print(&found, args.json);
-    Ok(if found.is_empty() {
-        1
-    } else {
-        super::super::DONE
-    })
+    Ok(())
 }
 
 /// A line that is asked one thing after the other.
@@ -136,6 +136,7 @@ struct Asking {
     requests: mpsc::Sender<Request>,
     answers: mpsc::Receiver<Answer>,
     log: LineLog,
+    task: JoinHandle<()>,
 }
 
 impl Asking {
@@ -146,12 +147,20 @@ impl Asking {
         let log = settings.log.clone();
         let (requests, to_line) = mpsc::channel(1);
         let (from_line, answers) = mpsc::channel(1);
-        tokio::spawn(bus::run(port, settings, Pace::real(), to_line, from_line));
+        let task = tokio::spawn(bus::run(port, settings, Pace::real(), to_line, from_line));
         Ok(Self {
             requests,
             answers,
             log,
+            task,
         })
+    }
+
+    /// Gives the port back, so that it can be opened at another rate.
+    async fn close(self) -> anyhow::Result<()> {
+        let Self { requests, task, .. } = self;
+        drop(requests);
+        task.await.context("the task of the line")
     }
 
     async fn ask(&mut self, command: Command, tries: u8) -> anyhow::Result<Answer> {
@@ -183,9 +192,11 @@ impl Asking {
         else {
             return Ok(None);
         };
-        let name = self.text(Common::ReadName.to(asked)).await?;
-        let firmware = self.text(Common::ReadFirmware.to(asked)).await?;
-        for _ in 0..ASKED_AGAIN {
+        let name = self.text(Common::ReadName.to(asked), stored).await?;
+        let firmware = self.text(Common::ReadFirmware.to(asked), stored).await?;
+        // A reply in INIT* mode names the stored address; it is no answer of the one that was asked.
+        let again = if stored == asked { ASKED_AGAIN } else { 0 };
+        for _ in 0..again {
             self.ask(Common::ReadConfig.to(asked), 1).await?;
         }
         let log = self.log.clone();
@@ -201,102 +212,17 @@ impl Asking {
         }))
     }
 
-    async fn text(&mut self, command: Command) -> anyhow::Result<String> {
-        let answer = self.ask(command, 3).await?;
+    /// What a module says of itself, under its stored address; a module in INIT* mode has no checksum.
+    async fn text(&mut self, command: Command, stored: Address) -> anyhow::Result<String> {
+        let is_init = command.address() != Some(stored);
+        let answer = self.ask(command, if is_init { 1 } else { 3 }).await?;
+        let said = answer.raw.strip_prefix(&format!("!{stored}"));
         Ok(match answer.outcome {
             Ok(Reply::Text(text)) => text.as_str().to_owned(),
-            Ok(_) | Err(_) => "?".to_owned(),
+            Ok(_) => "?".to_owned(),
+            Err(_) => said.filter(|_| is_init).unwrap_or("?").to_owned(),
         })
     }
-}
-
-fn print(found: &[Found], as_json: bool) {
-    if !as_json {
-        println!(
-            "{:<4} {:>6} {:<8} {:<6} {:<8} {:<4} {:<6} {:>7} {:>7} {:>5} {:>4}  remarks",
-            "addr",
-            "baud",
-            "checksum",
-            "name",
-            "firmware",
-            "type",
-            "format",
-            "p50 ms",
-            "p99 ms",
-            "asked",
-            "bad"
-        );
-    }
-    for module in found {
-        let health = module.log.health();
-        let counts = health.module(module.asked).cloned().unwrap_or_default();
-        let ms = |share| {
-            counts
-                .latency
-                .percentile(share)
-                .map(|span| span.as_seconds() * 1e3)
-        };
-        let bad = counts.time_outs + counts.checksum_errors + counts.other_errors;
-        let (config, remarks) = (module.config, remarks(module));
-        if as_json {
-            println!(
-                "{}",
-                json!({
-                    "address": module.asked.to_string(), "stored_address": module.stored.to_string(),
-                    "baud": module.baud, "checksum": module.checksum, "name": module.name,
-                    "firmware": module.firmware, "type": format!("{:02X}", config.type_code.0),
-                    "stored_baud": config.baud.rate(), "format": format!("{:02X}", config.format.0),
-                    "p50_ms": ms(0.5), "p99_ms": ms(0.99), "transactions": counts.transactions,
-                    "time_outs": counts.time_outs, "checksum_errors": counts.checksum_errors,
-                    "other_errors": counts.other_errors, "resets": counts.resets, "remarks": remarks,
-                })
-            );
-        } else {
-            println!(
-                "{:<4} {:>6} {:<8} {:<6} {:<8} {:<4} {:<6} {:>7.2} {:>7.2} {:>5} {:>4}  {}",
-                module.asked.to_string(),
-                module.baud,
-                if module.checksum { "on" } else { "off" },
-                module.name,
-                module.firmware,
-                format!("{:02X}", config.type_code.0),
-                format!("{:02X}", config.format.0),
-                ms(0.5).unwrap_or(0.0),
-                ms(0.99).unwrap_or(0.0),
-                counts.transactions,
-                bad,
-                remarks.join("; ")
-            );
-        }
-    }
-}
-
-/// What differs between how the module was found and what it has stored.
-fn remarks(module: &Found) -> Vec<String> {
-    let mut remarks = Vec::new();
-    if module.stored != module.asked {
-        remarks.push(format!("INIT* mode, stored address {}", module.stored));
-    }
-    if let Some(stored) = module
-        .config
-        .baud
-        .rate()
-        .filter(|rate| *rate != module.baud)
-    {
-        remarks.push(format!("has {stored} baud stored"));
-    }
-    if module.config.format.checksum() != module.checksum {
-        let stored = if module.config.format.checksum() {
-            "on"
-        } else {
-            "off"
-        };
-        remarks.push(format!("has checksum {stored} stored"));
-    }
-    if !module.checksum {
-        remarks.push("without checksum a damaged digit is believed".to_owned());
-    }
-    remarks
 }
 
 fn bar(length: u64) -> ProgressBar {

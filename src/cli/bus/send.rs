@@ -1,7 +1,7 @@
 //! `relayrig bus send`: one command as typed, and what the reply means.
 
-use super::PortArgs;
-use crate::bus::{LineSettings, Pace, escaped, send_raw};
+use super::{PortArgs, print};
+use crate::bus::{LineSettings, Pace, RawReply, escaped, send_raw};
 use crate::dcon::{self, Command, Family};
 use anyhow::bail;
 use serde_json::json;
@@ -13,8 +13,8 @@ use tokio_serial::SerialStream;
   relayrig bus send --port /dev/ttyUSB0 --baud 9600 '$01M'
   relayrig bus send --port /dev/ttyUSB0 --checksum '#01' --model 7017F
 
-Exit status: 0 a reply that can be read, 1 refused, silent or garbled, 2 bad input. Factory calibration and trim are
-never sent. A setting that stands already is not written again; --model says which setting it is where the same characters
+Exit status: 0 a reply that can be read, 1 refused, silent or garbled, 2 bad input. Factory calibration and trim are \
+never sent. A setting that stands already is not written again; --model says which setting it is where the same characters \
 mean several.")]
 pub struct SendArgs {
     #[command(flatten)]
@@ -25,6 +25,9 @@ pub struct SendArgs {
     /// The line has checksums: add one, and check the reply's
     #[arg(long)]
     checksum: bool,
+    /// Milliseconds that a module may think
+    #[arg(long, value_name = "MS", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000))]
+    allowance: u64,
     /// Model of the module, where the same reply could mean several things
     #[arg(long, value_name = "NAME")]
     model: Option<String>,
@@ -47,11 +50,12 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<i32> {
     }
     request.push(b'\r');
     let mut port = args.port.open(args.baud)?;
-    let settings = args.port.settings(args.baud, args.checksum);
+    let mut settings = args.port.settings(args.baud, args.checksum);
+    settings.store_allowance_ms = args.allowance;
     if let Some(command) = lone_reading(text, family)
         && let Some(found) = stands(&mut port, &settings, &command).await?
     {
-        return Ok(told_standing(args, &found));
+        return told_standing(args, &found);
     }
     let reply = send_raw(&mut port, &settings, Pace::real(), &request).await?;
     let mut meanings = dcon::understand(&request, &reply.bytes, args.checksum);
@@ -66,35 +70,46 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<i32> {
         })
         .collect();
     words.dedup();
-    let taken_ms = reply.taken.as_seconds() * 1e3;
-    if args.json {
+    print(&if args.json {
         let object = json!({
             "request": escaped(&request), "reply": escaped(&reply.bytes), "more": reply.more,
-            "taken_ms": taken_ms, "meanings": words,
+            "taken_ms": reply.taken.as_seconds() * 1e3, "meanings": words,
         });
-        println!("{object}");
+        format!("{object}\n")
     } else {
-        println!("> {}", escaped(&request));
-        match (reply.bytes.is_empty(), broadcast) {
-            (true, true) => println!("  sent to all; nobody answers"),
-            (true, false) => println!("  no reply within {taken_ms:.1} ms"),
-            (false, _) => println!("< {}   {taken_ms:.1} ms", escaped(&reply.bytes)),
-        }
-        if reply.more {
-            println!("  more characters behind the reply");
-        }
-        if !reply.bytes.is_empty() && words.is_empty() {
-            println!("  not a command of the modules known here");
-        }
-        for word in words.iter().filter(|_| !reply.bytes.is_empty()) {
-            println!("  {word}");
-        }
-    }
+        told(&request, &reply, &words, broadcast)
+    })?;
     Ok(if good || broadcast {
         super::super::DONE
     } else {
         NO
     })
+}
+
+/// Request, reply and its meanings.
+fn told(request: &[u8], reply: &RawReply, words: &[String], broadcast: bool) -> String {
+    let taken_ms = reply.taken.as_seconds() * 1e3;
+    let mut rows = vec![format!("> {}", escaped(request))];
+    if reply.bytes.is_empty() {
+        rows.push(if broadcast {
+            "  sent to all; nobody answers".to_owned()
+        } else {
+            format!(
+                "  no reply within {taken_ms:.1} ms: nobody there knows this address, rate, checksum and command"
+            )
+        });
+    } else {
+        rows.push(format!("< {}   {taken_ms:.1} ms", escaped(&reply.bytes)));
+    }
+    if reply.more {
+        rows.push("  more characters behind the reply".to_owned());
+    }
+    if !reply.bytes.is_empty() && words.is_empty() {
+        rows.push("  not a command of the modules known here".to_owned());
+    }
+    let meant = words.iter().filter(|_| !reply.bytes.is_empty());
+    rows.extend(meant.map(|word| format!("  {word}")));
+    rows.join("\n") + "\n"
 }
 
 /// What the text means, if that is one thing only.
@@ -125,14 +140,14 @@ async fn stands(
         .then(|| escaped(&said.bytes)))
 }
 
-fn told_standing(args: &SendArgs, found: &str) -> i32 {
-    if args.json {
+fn told_standing(args: &SendArgs, found: &str) -> anyhow::Result<i32> {
+    print(&if args.json {
         let object = json!({ "request": args.command, "written": false, "found": found });
-        println!("{object}");
+        format!("{object}\n")
     } else {
-        println!("  stands already, {found}: not written again, an EEPROM wears");
-    }
-    super::super::DONE
+        format!("  stands already, {found}: not written again, an EEPROM wears\n")
+    })?;
+    Ok(super::super::DONE)
 }
 
 /// A command that can be a request of the protocol and is none that spoils a module.
@@ -142,6 +157,13 @@ fn checked(command: &str) -> anyhow::Result<&[u8]> {
     let lead = text.first().is_some_and(|lead| b"#$%@~".contains(lead));
     if !plain || !lead || text.len() > 24 {
         bail!("COMMAND: found \"{command}\", expected # $ % @ or ~ and at most 24 characters");
+    }
+    let address = text.get(1..3).unwrap_or_default();
+    let capital = |byte: &u8| matches!(byte, b'0'..=b'9' | b'A'..=b'F');
+    if address != b"**" && !(address.len() == 2 && address.iter().all(capital)) {
+        bail!(
+            "COMMAND: found \"{command}\", expected two hexadecimal digits in capitals behind its first character, or **"
+        );
     }
     if let Some(what) = dcon::factory(text) {
         bail!("COMMAND: \"{command}\" is {what}: only the factory may do that, it is never sent");

@@ -31,7 +31,7 @@ enum Command {
 
 /// Runs the command; gives the exit status. An error is bad input: status 2.
 pub fn run_quality(args: QualityArgs) -> anyhow::Result<i32> {
-    super::unless_reader_left(dispatch(&args.command))
+    super::super::unless_reader_left(dispatch(&args.command))
 }
 
 fn dispatch(command: &Command) -> anyhow::Result<i32> {
