@@ -330,6 +330,7 @@ impl Cycle {
                 self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
             }
         }
+        self.traffic.suspect(wants.suspicious);
         self.traffic
             .watch_beam(wants.beam.map(|beam| self.wiring.read_events(beam)));
         let is_job = wants.job.is_some();

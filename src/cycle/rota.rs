@@ -2,8 +2,9 @@
 //!
 //! The module with the emergency-stop contact is every second transaction, whatever the others are: a write, too, waits
 //! for it. The turns between go to the watched beam and
-//! the other modules alternately, and now and then to the question whether a module has restarted. Each list has a
-//! counter of its own, so that none of them can starve another, however many there are.
+//! the other modules alternately, and now and then to the question whether a module has restarted; to that at once, one
+//! module after the other, when an actuator is not where it should be. Each list has a counter of its own, so that none
+//! of them can starve another, however many there are.
 
 use crate::dcon::Command;
 
@@ -24,6 +25,8 @@ pub(super) struct Rota {
     turn: usize,
     next_other: usize,
     next_reset: usize,
+    /// Reset questions that come before anything else.
+    urgent_resets: usize,
     beam_was_last: bool,
 }
 
@@ -50,6 +53,7 @@ impl Rota {
             turn: 0,
             next_other: 0,
             next_reset: 0,
+            urgent_resets: 0,
             beam_was_last: false,
         }
     }
@@ -65,12 +69,23 @@ impl Rota {
         self.contact_is_due = true;
     }
 
+    /// Every module of a line that is scanned is asked next whether it has restarted.
+    pub(super) fn ask_for_resets(&mut self) {
+        if self.priority.is_some() || !self.others.is_empty() {
+            self.urgent_resets = self.resets.len();
+        }
+    }
+
     /// None when there is nothing to ask in this turn.
     pub(super) fn next(&mut self, beam: Option<Command>) -> Option<Next> {
         if let Some(command) = self.contact() {
             return Some(Next::Priority(command));
         }
         self.something_else();
+        if self.urgent_resets > 0 {
+            self.urgent_resets -= 1;
+            return round(&self.resets, &mut self.next_reset).map(Next::Other);
+        }
         let turn = self.turn;
         self.turn += 1;
         if turn % RESET_EVERY == RESET_EVERY - 1
@@ -169,6 +184,28 @@ mod tests {
         rota.something_else();
         assert_eq!(rota.next(None), Some(Next::Priority(poll(0x11))));
         assert_eq!(rota.next(None), Some(Next::Other(poll(0x12))));
+    }
+
+    #[test]
+    fn when_an_actuator_is_not_where_it_should_be_each_module_is_asked_at_once_whether_it_has_restarted()
+     {
+        let resets = vec![reset(0x13), reset(0x14)];
+        let mut rota = Rota::new(Some(poll(0x11)), vec![poll(0x12)], resets);
+        rota.ask_for_resets();
+        let asked = std::iter::from_fn(|| rota.next(Some(beam())));
+        let asked: Vec<Command> = asked
+            .map(|(Next::Priority(command) | Next::Other(command))| command)
+            .filter(|command| *command != poll(0x11))
+            .take(3)
+            .collect();
+        assert_eq!(asked, [reset(0x13), reset(0x14), beam()]);
+    }
+
+    #[test]
+    fn a_line_that_is_not_scanned_is_left_to_its_measurements() {
+        let mut rota = Rota::new(None, Vec::new(), vec![reset(0x04)]);
+        rota.ask_for_resets();
+        assert_eq!(rota.next(None), None);
     }
 
     #[test]

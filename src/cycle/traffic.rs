@@ -76,6 +76,8 @@ pub struct Traffic {
     scan_period: Span,
     job: Option<JobUnderway>,
     beam: Option<Command>,
+    /// An actuator is not where it should be.
+    suspicious: bool,
     beam_line: LineId,
     scanning: bool,
     check_tries: u8,
@@ -131,6 +133,7 @@ impl Traffic {
             scan_period: Span::seconds(wiring.bus.scan_period_ms / 1e3),
             job: None,
             beam: None,
+            suspicious: false,
             beam_line: estop_line,
             scanning: false,
             check_tries: wiring.bus.tries,
@@ -191,6 +194,17 @@ impl Traffic {
     /// Event counter to read with the scan, or none.
     pub fn watch_beam(&mut self, command: Option<Command>) {
         self.beam = command;
+    }
+
+    /// When an actuator is first found where it should not be, the modules that are scanned are asked at once whether
+    /// they have restarted: within the time for which a sensor is taken to bounce.
+    pub fn suspect(&mut self, suspicious: bool) {
+        if suspicious && !self.suspicious {
+            for slot in &mut self.slots {
+                slot.rota.ask_for_resets();
+            }
+        }
+        self.suspicious = suspicious;
     }
 
     /// A lost write of the job will be written again; the job waits for it.

@@ -131,6 +131,16 @@ impl Mechanism {
         self.watch.is_in_doubt()
     }
 
+    /// Something is not where it should be, and no alarm names a cause yet: a sensor differs, or a motion has taken half of
+    /// its time-out.
+    pub fn is_suspicious(&self, now: RigTime) -> bool {
+        let slow = |underway: &Underway| {
+            let limit = self.timeout_of(underway.movement);
+            now.since(underway.since).0 > limit.0 / 2
+        };
+        self.is_in_doubt() || self.underway.iter().any(slow)
+    }
+
     /// Motions that wait for a step, or until no sensor is in doubt; none of their actuators counts as arrived.
     pub fn keep_waiting(&mut self, movements: &[Move]) {
         self.waiting.clear();

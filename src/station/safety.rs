@@ -35,6 +35,7 @@ impl Station {
     ) {
         let mut found = self.mechanism.update(now, inputs.image);
         wants.motions.extend(found.motions);
+        wants.suspicious = self.mechanism.is_suspicious(now);
         self.still_in_nest(now, inputs.image, &mut found.alarms);
         let mut there = self.safety(now, inputs.image);
         there.extend(stuck);

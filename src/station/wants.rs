@@ -134,6 +134,8 @@ pub struct Wants {
     pub outputs: Vec<(DigitalOut, bool)>,
     /// Work for the measuring line.
     pub job: Option<Job>,
+    /// An actuator is not where it should be: before it is named, the modules are asked whether one has restarted.
+    pub suspicious: bool,
     /// Beam whose event counter is to be read with every scan.
     pub beam: Option<DigitalIn>,
     /// Orders of the buttons at the machine, each with its answer.

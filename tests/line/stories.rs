@@ -78,6 +78,30 @@ fn misplaced(name: &str, workshop: &Workshop) -> Vec<String> {
         .collect()
 }
 
+/// Seconds after a part has left the nest, in a cycle of 1.4 s.
+const INSTANTS: [f64; 4] = [0.05, 0.4, 0.75, 1.1];
+
+#[test]
+fn after_a_module_restarts_at_any_instant_of_a_cycle_the_first_alarm_names_it_and_no_actuator() {
+    let workshop = Workshop::new("module-restarts");
+    for (number, instant) in INSTANTS.into_iter().enumerate() {
+        for module in ["mech_do_a", "mech_do_b"] {
+            let script = format!(
+                "# {module} restarts.\nparts 4\n\nafter left 2 +{instant} fault reset={module}\n\
+                 after state Aborted +1 order clear\nafter state Stopped order reset\n\
+                 after state Idle order start\n"
+            );
+            workshop.write("script.txt", &script);
+            let said = workshop.run(&format!("--db {module}-{number}.db story script.txt"));
+            let alarm = said.stdout.lines().find(|row| row.contains("ALARM"));
+            assert!(
+                alarm.is_some_and(|row| row.contains(&format!("{module} has restarted"))),
+                "{instant} s: {said}"
+            );
+        }
+    }
+}
+
 /// Twelve instants of each here; `study stop` has as many as one likes.
 #[test]
 fn after_an_emergency_stop_at_any_instant_of_a_cycle_or_of_homing_outputs_are_off_in_time_and_the_lot_goes_on()
