@@ -1,6 +1,7 @@
 //! Instants at the border of the program: RFC 3339 outside, integer microseconds UTC inside.
 
 use jiff::Timestamp;
+use jiff::fmt::temporal::Pieces;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 use std::fmt;
 use std::str::FromStr;
@@ -20,13 +21,20 @@ pub struct MomentError {
 impl FromStr for Moment {
     type Err = MomentError;
     fn from_str(text: &str) -> std::result::Result<Self, MomentError> {
-        text.trim()
-            .parse::<Timestamp>()
-            .map(|at| Self(at.as_microsecond()))
-            .map_err(|_| MomentError {
-                found: text.to_owned(),
-            })
+        let text = text.trim();
+        let at = text.parse::<Timestamp>().ok().or_else(|| never(text));
+        let missing = || MomentError {
+            found: text.to_owned(),
+        };
+        at.map(|at| Self(at.as_microsecond())).ok_or_else(missing)
     }
+}
+
+/// The last days of the year 9999, by which people say "never": the latest instant of the calendar.
+fn never(text: &str) -> Option<Timestamp> {
+    let said = Pieces::parse(text).ok()?;
+    let is_last_year = said.date().year() == 9999;
+    (is_last_year && said.time().is_some() && said.offset().is_some()).then_some(Timestamp::MAX)
 }
 
 impl fmt::Display for Moment {
@@ -63,6 +71,14 @@ mod tests {
         let moment: Moment = "2026-03-01T08:00:00.000001+08:00".parse().unwrap();
         assert_eq!(moment.to_string(), "2026-03-01T00:00:00.000001Z");
         assert_eq!(moment.to_string().parse(), Ok(moment));
+    }
+
+    #[test]
+    fn the_last_days_of_the_calendar_mean_never() {
+        let never: Moment = "9999-12-31T23:59:59Z".parse().unwrap();
+        assert_eq!(never.0, Timestamp::MAX.as_microsecond());
+        assert!("9999-12-31".parse::<Moment>().is_err());
+        assert!("9999-13-31T23:59:59Z".parse::<Moment>().is_err());
     }
 
     #[test]

@@ -56,7 +56,7 @@ pub fn page(paper: &Paper, about: &str, charts: &[Charted], shown: usize) -> Str
     let named: Vec<Named<'_>> = charts
         .iter()
         .map(|it| Named {
-            title: it.of.clone(),
+            of: &it.of,
             chart: &it.chart,
             names: &it.names,
         })

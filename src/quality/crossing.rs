@@ -44,13 +44,17 @@ pub(super) fn cells(readings: &[Reading]) -> Result<Cells, GaugeRrError> {
         .collect()
 }
 
+/// Readings below this have squares, and sums of them, that an f64 holds.
+const LARGEST: f64 = 1e150;
+
 fn found(readings: &[Reading]) -> Result<BTreeMap<(&str, &str, &str), f64>, GaugeRrError> {
     let mut found = BTreeMap::new();
     for it in readings {
         let key = (it.part.as_str(), it.operator.as_str(), it.trial.as_str());
         let (part, operator, trial) = (it.part.clone(), it.operator.clone(), it.trial.clone());
-        if !it.value.is_finite() {
-            return Err(GaugeRrError::NotFinite {
+        let has_a_square = it.value.abs() < LARGEST;
+        if !has_a_square {
+            return Err(GaugeRrError::TooLarge {
                 part,
                 operator,
                 trial,

@@ -103,9 +103,9 @@ pub enum GaugeRrError {
         /// Which trial.
         trial: String,
     },
-    /// A reading that is no number.
-    #[error("part {part:?}, operator {operator:?}, trial {trial:?} is not finite")]
-    NotFinite {
+    /// A reading that is no number, or one whose square is none.
+    #[error("part {part:?}, operator {operator:?}, trial {trial:?}: expected a number below 1e150")]
+    TooLarge {
         /// Which part.
         part: String,
         /// Which operator.

@@ -178,6 +178,18 @@ fn an_incomplete_study_names_what_is_missing() {
 }
 
 #[test]
+fn a_reading_whose_square_no_f64_holds_is_refused_and_not_taken_for_no_variation() {
+    for value in [1e200, -1e150, f64::NAN, f64::INFINITY] {
+        let mut readings = study();
+        readings[0].value = value;
+        assert!(
+            matches!(anova(&readings), Err(GaugeRrError::TooLarge { .. })),
+            "{value}"
+        );
+    }
+}
+
+#[test]
 fn one_operator_leaves_repeatability_and_parts() {
     let one: Vec<Reading> = study()
         .into_iter()

@@ -90,16 +90,9 @@ impl Spread {
     }
     /// Standard deviation with n - 1; none below two values.
     pub fn sd(&self) -> Option<f64> {
-        if self.n < 2 {
-            return None;
-        }
-        finite(Some(
-            self.squares
-                .over((self.n - 1) as f64)
-                .value()
-                .max(0.0)
-                .sqrt(),
-        ))
+        let degrees = self.n.checked_sub(1).filter(|&it| it > 0)?;
+        let variance = finite(Some(self.squares.over(degrees as f64).value()))?;
+        Some(variance.max(0.0).sqrt())
     }
     /// Least value.
     pub fn min(&self) -> Option<f64> {

@@ -150,3 +150,9 @@ fn the_median_is_exact() {
     assert_eq!(median(&[4.0, 1.0, 3.0, 2.0]), Some(2.5));
     assert_eq!(median(&[]), None);
 }
+
+#[test]
+fn squares_beyond_the_range_of_f64_give_no_deviation_rather_than_none_at_all() {
+    let spread = Spread::of(&[1e308, -1e308, 0.0]);
+    assert_eq!((spread.mean(), spread.sd()), (Some(0.0), None));
+}

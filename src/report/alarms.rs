@@ -33,7 +33,7 @@ pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
                         Some(at) => { (span((at.0 - it.raised.0) as f64 / 1e6)) }
                         None => { (of("to the end", "至结束")) }
                     } }
-                    td.text { (state(paper, it)) }
+                    td.state { (state(paper, it)) }
                     td.text { (it.lot.as_deref().unwrap_or("–")) @if let Some(run) = it.run { " / " (run) } }
                     td { (it.code) }
                     td.text { @if let (Language::Zh, Some(cause)) = (paper.language, it.cause_zh) { (cause) br; }

@@ -6,6 +6,9 @@ use crate::quality::chart::Chart;
 use crate::quality::ordered::{Histogram, round_step};
 use crate::quality::{Limits, Ordered};
 
+/// Of a control chart: as wide as a sheet that lies, so high that two of them and what is told of them fill it.
+const WIDE: [f64; 2] = [1000.0, 215.0];
+
 /// The last `shown` points of a control chart with its limits; points that a rule objects to stand out
 /// and bear the number of the rule. `names` are told under every few points.
 pub(super) fn control(chart: &Chart, shown: usize, names: &[String]) -> String {
@@ -17,11 +20,7 @@ pub(super) fn control(chart: &Chart, shown: usize, names: &[String]) -> String {
     });
     let room = 0.08 * (high - low);
     let last = points.len().saturating_sub(1) as f64;
-    let mut plot = Plot::new(
-        [760.0, 210.0],
-        [-0.5, last + 0.5],
-        [low - room, high + room],
-    );
+    let mut plot = Plot::new(WIDE, [-0.5, last + 0.5], [low - room, high + room]);
     limits(&mut plot, chart, first);
     let path: Vec<String> = points
         .iter()

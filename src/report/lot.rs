@@ -2,7 +2,7 @@
 
 use super::charts;
 use super::page::{Format, facts, head, page, sign_off};
-use super::words::{Language, figure, percent, span};
+use super::words::{Language, figure, percent, span, unbroken};
 use super::{Paper, alarms};
 use crate::history::{Alarm, LotSummary, Passed};
 use crate::quality::capability::{Index, by_percentiles};
@@ -217,7 +217,7 @@ fn row(language: Language, it: &ParameterValues) -> Markup {
         moments.max(),
     ];
     html! { tr {
-        td { (language.parameter(&it.key)) } td.n { (moments.n()) }
+        td { (unbroken(&language.parameter(&it.key))) } td.n { (moments.n()) }
         td.n { (limits(it.limits)) }
         @for value in figures { td.n { (figure(value)) } }
         td.n { (index(able.cpk)) } td.n { (index(able.ppk)) }

@@ -11,8 +11,8 @@ use maud::{Markup, PreEscaped, html};
 /// A chart with the names of its points, if they have any.
 #[derive(Debug, Clone)]
 pub struct Named<'a> {
-    /// What stands over it: a parameter key or a bin.
-    pub title: String,
+    /// A parameter key, or a bin.
+    pub of: &'a str,
     /// The chart.
     pub chart: &'a Chart,
     /// Under the points; numbers from 1 where there are none.
@@ -22,28 +22,46 @@ pub struct Named<'a> {
 /// The page; of every chart the last `shown` points are drawn.
 pub fn spc(paper: &Paper, about: &str, charts: &[Named<'_>], shown: usize) -> String {
     let language = paper.language;
-    let title = language.of("Control charts", "统计过程控制图");
+    let heading = language.of("Control charts", "统计过程控制图");
     let body = html! {
-        (head(title, about))
+        (head(heading, about))
         @for it in charts {
             figure.wide {
-                figcaption { (language.parameter(&it.title)) " – " (kind(language, it.chart.kind)) }
+                figcaption { (title(language, it)) (cut(language, it.chart.points.len(), shown)) }
                 (PreEscaped(charts::control(it.chart, shown, it.names)))
             }
         }
         (legend(language, charts))
     };
-    page(language, Format::Landscape, title, &paper.made, &body)
+    page(language, Format::Landscape, heading, &paper.made, &body)
 }
 
-/// Name of a chart.
+/// What the chart is of, and its kind.
+fn title(language: Language, it: &Named<'_>) -> String {
+    let of = match it.chart.kind {
+        "share" => language.of("bin ", "料箱：").to_owned() + language.bin(it.of),
+        _ => language.parameter(it.of),
+    };
+    format!("{of} – {}", kind(language, it.chart.kind))
+}
+
+/// Says that there are more points than are drawn.
+fn cut(language: Language, points: usize, shown: usize) -> String {
+    match language {
+        _ if points <= shown => String::new(),
+        Language::En => format!(", the last {shown} of {points} points"),
+        Language::Zh => format!("，共 {points} 点，图示最后 {shown} 点"),
+    }
+}
+
+/// Name of a kind of chart.
 fn kind(language: Language, kind: &str) -> &str {
     match kind {
         "individuals" => language.of("individuals", "单值图 (I)"),
         "moving range" => language.of("moving range", "移动极差图 (MR)"),
         "means" => language.of("means of subgroups", "均值图 (X̄)"),
         "ranges" => language.of("ranges of subgroups", "极差图 (R)"),
-        "share" => language.of("share", "不合格品率图 (p)"),
+        "share" => language.of("share of parts (p)", "占比图 (p)"),
         other => other,
     }
 }
@@ -56,7 +74,7 @@ fn legend(language: Language, charts: &[Named<'_>]) -> Markup {
                 th.n { (language.of("Centre", "中心线")) } th { (language.of("Signals", "异常信号")) }
             } }
             tbody { @for it in charts { tr {
-                td { (language.parameter(&it.title)) " – " (kind(language, it.chart.kind)) }
+                td { (title(language, it)) }
                 td.n { (it.chart.points.len()) } td.n { (figure(Some(it.chart.centre))) }
                 td.text { (told(language, &it.chart.signals)) }
             } } }

@@ -9,7 +9,7 @@ use super::*;
 use crate::config::load_recipe;
 use crate::history::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Shelf, Yield};
 use crate::quality::Limits;
-use crate::quality::chart::individuals;
+use crate::quality::chart::{individuals, shares};
 use crate::quality::rules::Rules;
 use std::path::Path;
 
@@ -115,7 +115,7 @@ fn a_text_of_an_operator_stays_text_on_every_page() {
     let [chart, _] = individuals(&[1.0, 2.0, 3.0], Rules::Nelson).unwrap();
     let names = [EVIL.to_owned(), EVIL.to_owned(), EVIL.to_owned()];
     let named = Named {
-        title: EVIL.into(),
+        of: EVIL,
         chart: &chart,
         names: &names,
     };
@@ -154,6 +154,37 @@ fn a_part_that_failed_gets_a_record_and_no_certificate() {
     assert!(good.contains("<h1>Test certificate</h1>"));
     let bad = certificate(&paper(Language::En), &part("fail"), &run());
     assert!(bad.contains("<h1>Test record</h1>") && !bad.contains("certificate"));
+}
+
+#[test]
+fn a_record_says_in_its_language_why_the_part_failed() {
+    let mut failed = part("fail");
+    failed.reasons = vec!["operate_voltage_v high".into(), "coil open".into()];
+    for (language, words) in [
+        (
+            Language::En,
+            ["Operate voltage / V: above the upper limit", "coil open"],
+        ),
+        (Language::Zh, ["动作电压 / V：超出上限", "线圈开路"]),
+    ] {
+        let page = certificate(&paper(language), &failed, &run());
+        assert!(words.iter().all(|it| page.contains(it)), "{page}");
+    }
+}
+
+#[test]
+fn a_chart_of_a_bin_bears_its_name_and_says_what_it_leaves_out() {
+    let chart = shares(&[(100, 3), (100, 5), (100, 4)]).unwrap();
+    let named = Named {
+        of: "coil",
+        chart: &chart,
+        names: &[],
+    };
+    let page = spc(&paper(Language::Zh), "", &[named], 2);
+    assert!(
+        page.contains("料箱：线圈 – 占比图 (p)，共 3 点，图示最后 2 点"),
+        "{page}"
+    );
 }
 
 #[test]

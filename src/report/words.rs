@@ -49,6 +49,25 @@ impl Language {
         format!("{} / {}", self.of(en, zh), unit(parameter))
     }
 
+    /// Why a part did not pass; a text that only the history knows as it stands there.
+    pub fn reason(self, text: &str) -> String {
+        let (key, side) = text.split_once(' ').unwrap_or((text, ""));
+        if Parameter::from_name(key).is_none() {
+            return self.of(text, found(text)).to_owned();
+        }
+        let side = match side {
+            "high" => self.of("above the upper limit", "超出上限"),
+            "low" => self.of("below the lower limit", "低于下限"),
+            "high not proven" => self.of("not proven below the upper limit", "未能证明低于上限"),
+            "low not proven" => self.of("not proven above the lower limit", "未能证明高于下限"),
+            "not measured" => self.of("not measured", "未测得"),
+            "high: above the coarse ramp" => self.of("above the ramp", "超出扫描范围"),
+            "low: current over range" => self.of("too low: current over range", "过低：电流超量程"),
+            other => other,
+        };
+        format!("{}{}{side}", self.parameter(key), self.of(": ", "："))
+    }
+
     /// Name of a verdict.
     pub fn verdict(self, verdict: &str) -> &str {
         match verdict {
@@ -82,6 +101,29 @@ impl Language {
             Self::Zh => "未测项目：绝缘电阻、介质耐压、电气寿命与机械寿命。",
         }
     }
+}
+
+/// What a test found without a figure, in Chinese.
+fn found(text: &str) -> &str {
+    match text {
+        "not proven" => "未能证明",
+        "coil open" => "线圈开路",
+        "contact stuck: NO closed at rest" => "触点粘连：静止时常开触点闭合",
+        "contact stuck: NC open at rest" => "触点故障：静止时常闭触点断开",
+        "contact stuck: NC does not open at nominal voltage" => {
+            "触点粘连：额定电压下常闭触点不断开"
+        }
+        "contact stuck: NO does not make at nominal voltage" => {
+            "触点故障：额定电压下常开触点不闭合"
+        }
+        "part turned or COM probe without contact" => "零件放反或公共端探针未接触",
+        other => other,
+    }
+}
+
+/// A name whose unit stays beside it where the line breaks.
+pub(super) fn unbroken(name: &str) -> String {
+    name.replace(" / ", "\u{a0}/\u{a0}")
 }
 
 /// As printed: with the sign for ohm.

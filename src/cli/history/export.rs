@@ -38,6 +38,7 @@ pub(super) struct ExportArgs {
 pub(super) fn run(db: &Path, args: &ExportArgs) -> anyhow::Result<()> {
     let archive = &Archive::open(db)?;
     let filter = args.parts.within(&args.range)?;
+    checks::known_runs(archive, &filter)?;
     let parameters = checks::parameters(archive, filter.param.as_deref())?;
     let named_so = args
         .file

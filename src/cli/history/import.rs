@@ -4,8 +4,8 @@
 mod sheet;
 
 use crate::history::{
-    Archive, Filter, Identity, ImportRow, LotRecord, PartRecord, Store, csv, parse_records,
-    snapshot_hash,
+    Archive, Filter, Identity, ImportRow, LOT_NAME, LotRecord, PartRecord, Store, csv, is_lot_name,
+    parse_records, snapshot_hash,
 };
 use anyhow::Context;
 use clap::Args;
@@ -33,6 +33,11 @@ fn pair(text: &str) -> Result<(String, String), String> {
 }
 
 pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<i32> {
+    anyhow::ensure!(
+        is_lot_name(&args.lot),
+        "--lot: found {:?}, expected {LOT_NAME}",
+        args.lot
+    );
     let name = args.file.display();
     let bytes = read(&args.file).with_context(|| format!("reading {name}"))?;
     let records = if sheet::is_named_so(&args.file) {

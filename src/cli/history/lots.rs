@@ -32,11 +32,10 @@ const HEADER: [&str; 14] = [
 ];
 
 pub(super) fn run(archive: &Archive, args: &ListArgs) -> anyhow::Result<()> {
-    write(
-        &archive.lots(&args.runs.filter())?,
-        args.format.format(),
-        &mut Output::stdout(),
-    )
+    let filter = args.runs.filter();
+    super::query::remark_unknown(archive, &filter);
+    let lots = archive.lots(&filter)?;
+    write(&lots, args.format.format(), &mut Output::stdout())
 }
 
 pub(super) fn write(lots: &[LotSummary], format: Format, out: &mut Output) -> anyhow::Result<()> {

@@ -19,6 +19,7 @@ pub(super) struct QueryArgs {
 
 pub(super) fn run(archive: &Archive, args: &QueryArgs) -> anyhow::Result<()> {
     let filter = args.parts.within(&args.range)?;
+    remark_unknown(archive, &filter);
     let parameters = checks::parameters(archive, filter.param.as_deref())?;
     let mut out = Output::stdout();
     match args.format.format() {
@@ -27,6 +28,13 @@ pub(super) fn run(archive: &Archive, args: &QueryArgs) -> anyhow::Result<()> {
         Format::Table => write_table(archive, &filter, &parameters, &mut out)?,
     }
     Ok(out.flush()?)
+}
+
+/// No parts of a lot that never was are an answer, too; a misspelt name shall be seen.
+pub(super) fn remark_unknown(archive: &Archive, filter: &Filter) {
+    if let Err(unknown) = checks::known_runs(archive, filter) {
+        eprintln!("{unknown}");
+    }
 }
 
 /// As many columns as a person reads: those parameters that the first parts have.

@@ -5,23 +5,21 @@ use crate::cli::calibrate;
 use crate::config::{ConfigError, Plant, load_recipe};
 use crate::gauge::Recipe;
 use crate::history::{
-    AlarmRecord, Archive, HistoryError, Identity, LotRecord, LotStanding, LotState, Store,
+    AlarmRecord, Archive, HistoryError, Identity, LOT_NAME, LotRecord, LotStanding, LotState,
+    Store, is_lot_name,
 };
 use crate::view::NotTaken;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Longest name of a lot, bytes.
-const LONGEST_NAME: usize = 200;
-
 /// Why a lot is not run. The text is that of the command line, where it names the option.
 #[derive(Debug, thiserror::Error)]
 pub enum NotAdmitted {
     /// A name that no row may have.
-    #[error("--lot: found {length} characters, expected 1 to {LONGEST_NAME}")]
+    #[error("--lot: found {found:?}, expected {LOT_NAME}")]
     Name {
-        /// Its bytes.
-        length: usize,
+        /// The name.
+        found: String,
     },
     /// A lot without parts.
     #[error("--count: found 0, expected at least 1")]
@@ -84,8 +82,8 @@ impl NotAdmitted {
     pub fn at_the_screen(&self) -> NotTaken {
         let (en, zh) = match self {
             Self::Name { .. } => (
-                format!("the name of a lot has 1 to {LONGEST_NAME} characters"),
-                format!("批次名称应为 1 至 {LONGEST_NAME} 个字符"),
+                format!("the name of a lot has {LOT_NAME}"),
+                "批次名称应为 1 至 200 个字符，不能含控制字符，也不能全是空白".into(),
             ),
             Self::NoParts => (
                 "a lot has at least one part".into(),
@@ -131,9 +129,9 @@ pub fn admit(
     args: &RunArgs,
     calibrates: bool,
 ) -> Result<Arc<Recipe>, NotAdmitted> {
-    let length = args.lot.len();
-    if !(1..=LONGEST_NAME).contains(&length) {
-        return Err(NotAdmitted::Name { length });
+    if !is_lot_name(&args.lot) {
+        let found = args.lot.clone();
+        return Err(NotAdmitted::Name { found });
     }
     if args.count == Some(0) && !calibrates {
         return Err(NotAdmitted::NoParts);

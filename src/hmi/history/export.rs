@@ -47,8 +47,11 @@ pub(in super::super) async fn csv(
     let filter = filter?.0;
     checks::sensible(&filter)?;
     let (archive, place) = desk.readers.open().await?;
-    let param = filter.param.clone();
-    let known = move || checks::parameters(&archive, param.as_deref()).map(|it| (archive, it));
+    let asked = filter.clone();
+    let known = move || {
+        checks::known_runs(&archive, &asked)?;
+        checks::parameters(&archive, asked.param.as_deref()).map(|it| (archive, it))
+    };
     let known = spawn_blocking(known).await;
     let (archive, keys) = known.map_err(|_| HmiError::ReaderLost)??;
     let lines = feed::streamed((archive, place), move |archive, out| {
@@ -68,6 +71,7 @@ pub(in super::super) async fn xlsx(
     super::paper::refuse("seq", own.seq.is_some())?;
     super::paper::refuse("ideal_cycle_s", own.ideal_cycle_s.is_some())?;
     let made = move |archive: &crate::history::Archive| {
+        checks::known_runs(archive, &filter)?;
         let keys = checks::parameters(archive, filter.param.as_deref())?;
         let parts = archive.how_many(&filter)?;
         if parts > SHEET_PARTS {

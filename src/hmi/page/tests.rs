@@ -5,6 +5,7 @@
 mod contrast;
 
 use super::*;
+use crate::report::Language;
 use std::collections::{BTreeMap, BTreeSet};
 
 type Table = BTreeMap<String, BTreeMap<String, String>>;
@@ -27,6 +28,22 @@ fn every_word_is_there_in_both_languages() {
         let languages: Vec<&str> = word.keys().map(String::as_str).collect();
         assert_eq!(languages, ["en", "zh"], "{key}");
         assert!(word.values().all(|it| !it.trim().is_empty()), "{key}");
+    }
+}
+
+#[test]
+fn paper_can_say_in_chinese_what_the_page_can_say_of_a_part() {
+    for key in table().keys() {
+        if let Some(text) = key.strip_prefix("text.") {
+            assert_ne!(Language::Zh.reason(text), text);
+        }
+        if let Some(side) = key.strip_prefix("reason.") {
+            let said = Language::Zh.reason(&format!("operate_voltage_v {side}"));
+            assert!(
+                said.starts_with("动作电压") && !said.ends_with(side),
+                "{said}"
+            );
+        }
     }
 }
 

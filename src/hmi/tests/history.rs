@@ -313,6 +313,8 @@ async fn what_never_was_is_not_found() {
         "report/certificate?lot=A&seq=1&recipe=x",
         "report/chart?param=operate_voltage_v&lot=B",
         "report/alarms?lot=B",
+        "export.csv?lot=B",
+        "export.xlsx?lot=B",
     ] {
         bench
             .get(&format!("/api/history/{path}"))
