@@ -10,7 +10,8 @@
 //! prior (normal with inverse gamma), so it says from the first part on how sure it is: what has hardly varied yet
 //! widens the answer. The prior is forgotten with the parts.
 //!
-//! A line holds where it was learnt. A part that lies far outside ([`Predicted::alike`]) may be placed by it, not judged.
+//! A line holds where it was learnt. A part that lies far outside ([`Predicted::alike`]) may be placed by it, not judged:
+//! what bends the line grows with the square of the distance, and so does the doubt.
 
 use crate::units::Volt;
 use serde::{Deserialize, Serialize};
@@ -150,16 +151,20 @@ impl LagLaw {
         let freedom = WORTH + f64::from(self.parts);
         // Student's t of so many degrees of freedom is wider than a normal distribution by this.
         let student = freedom / (freedom - 2.0);
+        let beyond = self.beyond(spread);
         Predicted {
             volts: self.guess_v + dot(line, terms),
-            u_v: (left / freedom * (1.0 + spread) * student).sqrt(),
-            alike: logarithms.is_some() && self.is_near(spread),
+            u_v: (left / freedom * (1.0 + spread) * student).sqrt()
+                * beyond.unwrap_or(1.0).max(1.0),
+            alike: logarithms.is_some() && beyond.is_some_and(|it| it < 1.0),
         }
     }
 
-    fn is_near(&self, spread: f64) -> bool {
-        let more = f64::from(self.parts) - RESULTS as f64;
-        more > 0.0 && f64::from(self.parts) * spread - 1.0 < FURTHEST2 * (1.0 + WIDER / more)
+    /// Squared distance from the parts seen against that of the furthest that are like them; none while too few were.
+    fn beyond(&self, spread: f64) -> Option<f64> {
+        let parts = f64::from(self.parts);
+        let more = parts - RESULTS as f64;
+        (more > 0.0).then(|| (parts * spread - 1.0) / (FURTHEST2 * (1.0 + WIDER / more)))
     }
 
     fn terms(&self, logarithms: [f64; RESULTS]) -> [f64; TERMS] {

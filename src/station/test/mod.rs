@@ -28,6 +28,7 @@ mod indication;
 mod kelvin;
 mod operate;
 mod operate_fine;
+mod pace;
 pub mod ramp;
 mod release;
 pub mod search;

@@ -5,6 +5,7 @@
 
 use super::indication::fine_reading;
 use super::operate::{LATE, dropped};
+use super::pace::Pace;
 use super::ramp::{self, Expected, Met};
 use super::search::{AFTER_SEARCH, Search};
 use super::{Bench, Findings, OFF, Ramp, Stage, board};
@@ -20,10 +21,6 @@ use crate::units::{Span, Volt};
 
 /// First step of the approach, as a fraction of the start of the fine ramp.
 pub(super) const APPROACH: f64 = 0.93;
-/// Time at the first step.
-pub(super) const APPROACH_TIME: Span = Span::ms(12);
-/// The same from 0.93 of it: a smaller step, and what is left of it golden parts show as well.
-const FINE_SETTLES: Span = Span::ms(20);
 /// Scatter of a repeated fine ramp around the first, volts.
 pub(super) const REPEAT_SD_V: f64 = 0.008;
 
@@ -36,14 +33,15 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
         return Vec::new();
     };
     findings.expected_operate = Some(expected);
-    let placed = expected.placed(Direction::Rising);
+    let pace = Pace::of(findings);
+    let placed = expected.rising(pace.run_up(bench.calibration.fine_v_per_s.value));
     let falls = falling(findings);
     let mut acts = dropped(findings);
     acts.extend(make_room(bench, supply, falls, placed.start));
     acts.extend([
         supply.step_to(placed.start * APPROACH),
         // At the first step the supply may still fall.
-        Act::WaitSinceMark(OFF.max(Span(falls.0.saturating_sub(APPROACH_TIME.0)))),
+        Act::WaitSinceMark(OFF.max(Span(falls.0.saturating_sub(pace.approaches().0)))),
         board(&[
             (SourceOn, false),
             (SourceReverse, false),
@@ -52,7 +50,7 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
             (EventNoBreak, false),
             (CoilDrive, true),
         ]),
-        Act::Wait(APPROACH_TIME),
+        Act::Wait(pace.approaches()),
         supply.step_to(placed.start),
         Act::Mark,
         board(&[(Arm, true)]),
@@ -62,7 +60,7 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
     acts.extend([
         supply.step_to(placed.start + ramp::JUMP),
         Act::Read(Read::Gates),
-        Act::WaitSinceMark(FINE_SETTLES),
+        Act::WaitSinceMark(pace.settles()),
     ]);
     let (ramp, takes) = supply.ramp_fine(supply.fine() + placed.span - ramp::JUMP);
     findings.ramp_takes = takes;
@@ -132,15 +130,16 @@ pub(super) fn conclude(
     None
 }
 
-/// After a first miss the neighbour is tried, after a second the threshold is searched by halves.
+/// After a first miss the neighbour is tried; after a second, or when that is wide, the threshold is searched by halves.
 pub(super) fn again(
     bench: &Bench,
     findings: &mut Findings,
     direction: Direction,
     attempt: u8,
 ) -> Stage {
-    if attempt + 1 == AFTER_SEARCH {
-        findings.search = Some(Search::placing(bench, direction));
+    let wide = findings.expected(direction).is_some_and(|it| it.is_wide());
+    if attempt + 1 == AFTER_SEARCH || attempt + 1 < AFTER_SEARCH && wide {
+        findings.search = Some(Search::placing(bench, findings, direction));
         return Stage::Search(direction);
     }
     match direction {

@@ -4,6 +4,7 @@
 use super::Bench;
 use super::findings::Findings;
 use super::indication::gate0;
+use super::pace::Pace;
 use crate::gauge::calibration::Lag;
 use crate::gauge::lag::Shown;
 use crate::gauge::threshold::{Direction, indicated};
@@ -14,12 +15,11 @@ use crate::units::{Second, Span, Volt};
 /// ramp alone that would take 33 ms. What is left keeps the comparator's tolerance out of the way. Flux and
 /// armature settle after the jump, so that the ramp begins at rest.
 pub(super) const JUMP: Volt = Volt(0.045);
-/// The quasi-static threshold lies so far before the event of a fine ramp (its lag is some 27 mV at
-/// 1.5 V/s): the ramp must have begun well before that. An armature just below its threshold floats, swings for some
-/// 30 ms after the approach, and goes over up to 15 mV early if it is brought too near.
-const RUN_UP: Volt = Volt(0.060);
-/// The same for a sealed armature, whose flux follows at 6 to 9 ms and still falls from the seal.
+/// Way of a falling ramp before the interval that it searches: the flux of a sealed armature follows at 6 to 9 ms and
+/// still falls from the seal.
 const RUN_DOWN: Volt = Volt(0.085);
+/// After so much of it what is left of the seal is a millivolt: an event there is that of the ramp.
+const SETTLED_DOWN: Volt = Volt(0.068);
 /// Beyond the far end of the estimate, for the lag's own scatter.
 const FAR_MARGIN: Volt = Volt(0.015);
 /// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
@@ -27,6 +27,8 @@ const FAR_MARGIN: Volt = Volt(0.015);
 const COVERAGE: f64 = 3.0;
 /// An odd part whose lag nobody knows gets no wider ramp than this, volts: a search by halves is quicker.
 const WIDEST_SD_V: f64 = 0.1;
+/// The same of a ramp that is placed anew.
+const WIDEST: Volt = Volt(0.2);
 /// Width of the next interval against that of the one that was missed.
 const WIDER: f64 = 3.0;
 /// A fine ramp is placed so often before the test is void.
@@ -66,9 +68,18 @@ impl Expected {
         Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
     }
 
-    /// The ramp that searches this interval.
-    pub fn placed(&self, direction: Direction) -> Placed {
-        let lead = JUMP + run(direction);
+    /// The rising ramp that searches this interval after a run-up.
+    pub fn rising(&self, run_up: Volt) -> Placed {
+        self.placed(Direction::Rising, run_up)
+    }
+
+    /// The falling ramp that does.
+    pub fn falling(&self) -> Placed {
+        self.placed(Direction::Falling, RUN_DOWN)
+    }
+
+    fn placed(&self, direction: Direction, run: Volt) -> Placed {
+        let lead = JUMP + run;
         Placed {
             start: self.centre - (self.half_width + lead) * direction.sign(),
             span: lead + self.half_width * 2.0 + FAR_MARGIN,
@@ -84,27 +95,24 @@ impl Expected {
         }
     }
 
-    /// The interval to search next: beyond the far end when nothing happened, before the near end when
-    /// the contact had already changed. Each neighbour is three times as wide: what misses by more than expected may
-    /// miss by much.
+    /// The interval to search next, three times as wide: what misses by more than expected may miss by much. Beyond the
+    /// far end when nothing happened. When the contact had already changed the far end stays: either the event lies
+    /// before the near end, or the approach has brought the armature too near.
     pub fn next(&self, direction: Direction, changed_early: bool) -> Self {
-        let away = if changed_early {
-            -direction.sign()
+        let further = if changed_early {
+            1.0 - WIDER
         } else {
-            direction.sign()
+            1.0 + WIDER
         };
         Self {
-            centre: self.centre + self.half_width * ((1.0 + WIDER) * away),
+            centre: self.centre + self.half_width * (further * direction.sign()),
             half_width: self.half_width * WIDER,
         }
     }
-}
 
-/// Way of a ramp before the interval that it searches.
-fn run(direction: Direction) -> Volt {
-    match direction {
-        Direction::Rising => RUN_UP,
-        Direction::Falling => RUN_DOWN,
+    /// A ramp over it would take longer than a search by halves.
+    pub fn is_wide(&self) -> bool {
+        self.half_width > WIDEST
     }
 }
 
@@ -145,7 +153,11 @@ pub(super) fn meet(
         .saturating_sub(Span::seconds(gate.0).0);
     findings.still_ramping = Span(if met { left } else { 0 });
     // Before the interval the ramp had hardly begun: what moved the armature was the step before it.
-    let hasty = met && (seen - start).abs() < JUMP + run(direction);
+    let settled = match direction {
+        Direction::Rising => Pace::of(findings).run_up(bench.calibration.fine_v_per_s.value),
+        Direction::Falling => SETTLED_DOWN,
+    };
+    let hasty = met && (seen - start).abs() < JUMP + settled;
     if met && stopped.is_none() && !hasty {
         return Some(Met::At(seen, gate));
     }
@@ -176,10 +188,10 @@ mod tests {
     #[test]
     fn the_window_is_open_before_the_earliest_expected_event() {
         let expected = Expected::new(Volt(7.9), 0.01);
-        let ramp = expected.placed(Direction::Rising);
+        let ramp = expected.rising(Volt(0.060));
         assert!(ramp.start.0 + WINDOW_V.0 < 7.9 - 0.025);
         assert!(ramp.start.0 + ramp.span.0 > 7.9 + 0.025);
-        let falling = expected.placed(Direction::Falling);
+        let falling = expected.falling();
         assert!(falling.start.0 - WINDOW_V.0 > 7.9 + 0.025);
     }
 
@@ -197,14 +209,24 @@ mod tests {
     }
 
     #[test]
-    fn the_next_interval_begins_where_the_last_ended() {
-        let expected = Expected {
-            centre: Volt(7.9),
-            half_width: Volt(0.03),
-        };
-        let beyond = expected.next(Direction::Rising, false);
+    fn after_nothing_the_next_interval_begins_where_the_last_ended() {
+        let beyond = NARROW.next(Direction::Rising, false);
         assert!((beyond.centre.0 - beyond.half_width.0 - 7.93).abs() < 1e-12);
-        let before = expected.next(Direction::Falling, true);
-        assert!((before.centre.0 - before.half_width.0 - 7.93).abs() < 1e-12);
+        let below = NARROW.next(Direction::Falling, false);
+        assert!((below.centre.0 + below.half_width.0 - 7.87).abs() < 1e-12);
     }
+
+    #[test]
+    fn after_an_early_event_the_next_interval_begins_earlier_and_ends_where_the_last_did() {
+        let again = NARROW.next(Direction::Rising, true);
+        assert!((again.centre.0 + again.half_width.0 - 7.93).abs() < 1e-12);
+        assert!((again.centre.0 - again.half_width.0 - 7.75).abs() < 1e-12);
+        let again = NARROW.next(Direction::Falling, true);
+        assert!((again.centre.0 - again.half_width.0 - 7.87).abs() < 1e-12);
+    }
+
+    const NARROW: Expected = Expected {
+        centre: Volt(7.9),
+        half_width: Volt(0.03),
+    };
 }

@@ -125,7 +125,7 @@ pub(super) fn conclude_coarse(
         // Below its floor the coarse ramp tells nothing: the threshold is far from the lot's.
         let expected = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
         findings.expected_release = Some(expected);
-        findings.search = Some(Search::placing(bench, Direction::Falling));
+        findings.search = Some(Search::placing(bench, findings, Direction::Falling));
         return Some(Stage::Search(Direction::Falling));
     };
     let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
@@ -157,7 +157,7 @@ pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findi
         return Vec::new();
     };
     findings.expected_release = Some(expected);
-    let placed = expected.placed(Direction::Falling);
+    let placed = expected.falling();
     let way = placed.span - ramp::JUMP;
     let mut acts = Vec::new();
     if supply.fine() < way {

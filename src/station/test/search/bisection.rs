@@ -5,10 +5,7 @@ use crate::units::{Span, Volt};
 
 /// Trials. The interval of the default lot, 2.3 V, comes down to 18 mV.
 const TRIALS: u32 = 7;
-/// Time at the level: below 1 mV of dwell error.
-pub(super) const DWELL: Span = Span::ms(30);
-
-/// The same for a sealed armature: where the threshold is low the iron is good, and the flux of the seal takes three
+/// Time at the level for a sealed armature: where the threshold is low the iron is good, and the flux of the seal takes three
 /// times 25 ms to fall.
 pub(super) const SEALED_DWELL: Span = Span::ms(80);
 

@@ -12,7 +12,9 @@ mod pulse;
 mod staircase;
 mod trial;
 
-use super::Bench;
+use super::pace::Pace;
+use super::{Bench, Findings};
+use crate::gauge::lag::Shown;
 use crate::gauge::threshold::Direction;
 use crate::gauge::{Parameter, Strategy};
 use crate::units::{Celsius, Span, Volt};
@@ -23,6 +25,9 @@ pub(super) use trial::acts;
 const REACH: f64 = 4.5;
 /// The interval of a search that only places a ramp, in standard deviations of the lot.
 const WIDE: f64 = 6.0;
+/// A coarse ramp has overshot by as many times what it overshoots on other parts: a dragging hinge by the most.
+const MOST_LAG: f64 = 3.5;
+const LEAST_LAG: f64 = 0.3;
 /// No release threshold is looked for below this fraction of nominal.
 const LOWEST: f64 = 0.02;
 /// Number of the attempt of a fine ramp that a search has placed.
@@ -92,19 +97,9 @@ impl Search {
     }
 
     /// A wide one by halves, to place a fine ramp where the coarse one has told nothing, or something wrong.
-    pub fn placing(bench: &Bench, direction: Direction) -> Self {
-        let test = &bench.recipe.test;
-        let far = |centre: f64, sd: f64| Volt(centre + WIDE * sd);
-        let (near, end) = match direction {
-            Direction::Rising => (
-                far(test.expected_operate_v, -test.expected_operate_sd_v),
-                far(test.expected_operate_v, test.expected_operate_sd_v),
-            ),
-            Direction::Falling => (
-                far(test.expected_release_v, test.expected_release_sd_v),
-                Volt(LOWEST * bench.recipe.part.nominal_v),
-            ),
-        };
+    pub fn placing(bench: &Bench, findings: &Findings, direction: Direction) -> Self {
+        let (near, end) =
+            overshot(bench, findings, direction).unwrap_or_else(|| far(bench, direction));
         Self {
             strategy: Strategy::Bisection,
             direction,
@@ -141,7 +136,7 @@ impl Search {
         self.trials == 0 || self.strategy != Strategy::Staircase
     }
 
-    fn dwell(&self) -> Span {
+    fn dwell(&self, pace: Pace) -> Span {
         match (self.strategy, self.direction) {
             (Strategy::Staircase, _) => staircase::DWELL,
             (Strategy::Bisection, Direction::Falling) => bisection::SEALED_DWELL,
@@ -153,9 +148,36 @@ impl Search {
                 | Strategy::CoarseFine
                 | Strategy::Adaptive,
                 _,
-            ) => bisection::DWELL,
+            ) => pace.dwells(),
         }
     }
+}
+
+/// Between the ends of what a coarse ramp may have overshot by, if there was one.
+fn overshot(bench: &Bench, findings: &Findings, direction: Direction) -> Option<(Volt, Volt)> {
+    let (ramp, lag) = match direction {
+        Direction::Rising => (findings.operate, bench.operate_lag()),
+        Direction::Falling => (findings.release, bench.release_lag()),
+    };
+    let indicated = ramp?.coarse.indicated;
+    let lag_v = lag.coarse.of(&Shown::NOTHING).volts;
+    let [near, end] = [MOST_LAG, LEAST_LAG].map(|lags| indicated - Volt(lags * lag_v));
+    (near.0.is_finite() && near.0 > 0.0).then_some((near, end))
+}
+
+/// Far to both sides of the lot; no release threshold is looked for near nothing.
+fn far(bench: &Bench, direction: Direction) -> (Volt, Volt) {
+    let test = &bench.recipe.test;
+    let (centre, sd) = match direction {
+        Direction::Rising => (test.expected_operate_v, test.expected_operate_sd_v),
+        Direction::Falling => (test.expected_release_v, test.expected_release_sd_v),
+    };
+    let near = Volt(centre - WIDE * sd * direction.sign());
+    let end = match direction {
+        Direction::Rising => Volt(centre + WIDE * sd),
+        Direction::Falling => Volt(LOWEST * bench.recipe.part.nominal_v),
+    };
+    (near, end)
 }
 
 /// What a direction measures.

@@ -8,7 +8,8 @@ use crate::rig::point::DigitalOut::{
 use crate::station::act::{Act, Read};
 use crate::station::supply::Supply;
 use crate::station::test::operate::dropped;
-use crate::station::test::operate_fine::{APPROACH, APPROACH_TIME};
+use crate::station::test::operate_fine::APPROACH;
+use crate::station::test::pace::Pace;
 use crate::station::test::{Bench, Findings, INTERLOCK, OFF, board};
 use crate::units::{Span, Volt};
 
@@ -45,7 +46,7 @@ pub(in crate::station::test) fn acts(
     }
     acts.extend([
         supply.step_to(search.at),
-        Act::Wait(search.dwell()),
+        Act::Wait(search.dwell(Pace::of(findings))),
         Act::Read(Read::Board),
         Act::Mark,
     ]);
@@ -67,7 +68,7 @@ fn from_rest(supply: &mut Supply, findings: &mut Findings, at: Volt) -> Vec<Act>
             (EventNoBreak, false),
             (CoilDrive, true),
         ]),
-        Act::Wait(APPROACH_TIME),
+        Act::Wait(Pace::of(findings).approaches()),
     ]);
     if supply.coarse() > Volt(0.1) {
         acts.push(Act::Wait(takes));

@@ -37,10 +37,7 @@ fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
         let mut findings = at_23_c();
         findings.expected_release = Some(Expected::new(Volt(0.7), sd_v));
         findings.expected_operate = Some(Expected::new(Volt(6.7), 0.03));
-        let way = findings
-            .expected_release
-            .unwrap()
-            .placed(Direction::Falling);
+        let way = findings.expected_release.unwrap().falling();
         release::acts_fine(&bench, &mut supply, &mut findings);
         let event = watched(true, RESTING, gate_ms);
         release::conclude_fine(&bench, &event, &mut findings, 0);

@@ -168,7 +168,7 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
     assert!((coarse.0 - (4.0 - 0.05 - 2.4)).abs() < 1e-9);
     let expected = findings.expected_release.unwrap();
     assert!((expected.centre.0 - (coarse.0 + 1.05)).abs() < 1e-9);
-    let start = expected.placed(Direction::Falling).start;
+    let start = expected.falling().start;
     assert!(start > expected.centre);
 }
 
