@@ -120,7 +120,7 @@ impl Model {
         self.names.leave(&element.id);
         let mut number = element.first;
         while number != NONE {
-            self.space.remove(number, &self.pieces.cover(number));
+            self.space.remove(number, &self.pieces.at(number).seat);
             number = self.pieces.let_go(number);
         }
         if element.interior.is_some() {

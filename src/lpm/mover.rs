@@ -195,10 +195,26 @@ fn turned<const N: usize>(
     centres: &[[f32; N]; 3],
     halves: &[[f32; N]; 3],
 ) -> ([[f32; N]; 3], [[f32; N]; 3]) {
+    if frame.is_yaw() {
+        let (mut centre, mut half) = along_axes::<N, 2>(frame, centres, halves);
+        (centre[2], half[2]) = (centres[2], halves[2]);
+        (centre, half)
+    } else {
+        along_axes::<N, 3>(frame, centres, halves)
+    }
+}
+
+/// The first `AXES` of them, from as many.
+#[inline(always)]
+fn along_axes<const N: usize, const AXES: usize>(
+    frame: &Frame,
+    centres: &[[f32; N]; 3],
+    halves: &[[f32; N]; 3],
+) -> ([[f32; N]; 3], [[f32; N]; 3]) {
     let mut turned = ([[0.0; N]; 3], [[0.0; N]; 3]);
-    for axis in 0..3 {
+    for axis in 0..AXES {
         let images = [frame.x, frame.y, frame.z].map(|image| image[axis] as f32);
-        for (own, image) in images.into_iter().enumerate() {
+        for (own, image) in images.into_iter().enumerate().take(AXES) {
             for place in 0..N {
                 turned.0[axis][place] += image * centres[own][place];
                 turned.1[axis][place] += image.abs() * halves[own][place];

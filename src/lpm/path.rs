@@ -24,7 +24,8 @@ impl Path {
     #[inline(always)]
     pub(crate) fn between(from: &Pose, to: &Pose) -> Option<Path> {
         let is_turned = !same(&from.rotation, &to.rotation);
-        if !(from.is_sound() && to.is_placed() && (!is_turned || to.is_sound())) {
+        let stays = same(&from.position, &to.position);
+        if !(from.is_sound() && (stays || to.is_placed()) && (!is_turned || to.is_sound())) {
             return None;
         }
         let turn = if is_turned {
@@ -33,12 +34,12 @@ impl Path {
             None
         };
         let [_, x, y, z] = from.rotation;
-        let is_unturned = x == 0.0 && y == 0.0 && z == 0.0;
+        let is_unturned = (x == 0.0) & (y == 0.0) & (z == 0.0);
         let path = Path {
             from: from.position,
             to: to.position,
             displacement: sub(to.position, from.position),
-            is_at_rest: same(&from.position, &to.position) && turn.is_none(),
+            is_at_rest: stays && turn.is_none(),
             start: if is_unturned {
                 Frame::IDENTITY
             } else {

@@ -63,8 +63,8 @@ impl Frame {
     #[inline]
     pub(crate) fn of(rotation: [f64; 4]) -> Frame {
         let [w, x, y, z] = rotation;
-        if x == 0.0 && y == 0.0 && z == 0.0 {
-            return Frame::IDENTITY;
+        if (x == 0.0) & (y == 0.0) {
+            return Frame::yaw(w, z);
         }
         let twice = 2.0 / (w * w + x * x + y * y + z * z);
         let (xx, yy, zz) = (x * x * twice, y * y * twice, z * z * twice);
@@ -74,6 +74,21 @@ impl Frame {
             x: [1.0 - (yy + zz), xy + wz, xz - wy],
             y: [xy - wz, 1.0 - (xx + zz), yz + wx],
             z: [xz + wy, yz - wx, 1.0 - (xx + yy)],
+        }
+    }
+
+    /// Of the quaternion `[w, 0, 0, z]`.
+    #[inline]
+    fn yaw(w: f64, z: f64) -> Frame {
+        if z == 0.0 {
+            return Frame::IDENTITY;
+        }
+        let twice = 2.0 / (w * w + z * z);
+        let (zz, wz) = (z * z * twice, w * z * twice);
+        Frame {
+            x: [1.0 - zz, wz, 0.0],
+            y: [-wz, 1.0 - zz, 0.0],
+            z: [0.0, 0.0, 1.0],
         }
     }
 
@@ -87,6 +102,12 @@ impl Frame {
     #[inline]
     pub(crate) fn is_upright(&self) -> bool {
         self.is_vertical() && self.x[2] == 0.0 && self.y[2] == 0.0
+    }
+
+    /// Whether it is upright and z points upward.
+    #[inline]
+    pub(crate) fn is_yaw(&self) -> bool {
+        self.z == Frame::IDENTITY.z && (self.x[2] == 0.0) & (self.y[2] == 0.0)
     }
 
     /// Whether nothing is turned. (Of frames made by [`Frame::of`], only the identity has this x and z.)

@@ -68,19 +68,27 @@ impl Prism {
     pub(crate) fn carried(&self, frame: &Frame, position: Vec3) -> Prism {
         let mut placed = *self;
         if !frame.is_identity() {
-            placed.span += reach(self.centre);
-            let [x, y] = self.axis;
-            let turned = frame.apply([x, y, 0.0]);
-            placed.centre = frame.apply(self.centre);
-            if self.radius == 0.0 {
-                (placed.half, placed.axis) = beside_x(self.half, [turned[0], turned[1]]);
-            }
+            placed = self.turned(frame);
         }
         if !is_exact_sum(placed.centre, position) {
             placed.span += reach(position) + reach(placed.centre);
         }
         placed.centre = add(placed.centre, position);
         placed
+    }
+
+    /// The same in a parent turned by an upright frame.
+    #[inline(always)]
+    pub(crate) fn turned(&self, frame: &Frame) -> Prism {
+        let mut turned = *self;
+        turned.span += reach(self.centre);
+        turned.centre = frame.apply(self.centre);
+        if self.radius == 0.0 {
+            let [x, y] = self.axis;
+            let [x, y, _] = frame.apply([x, y, 0.0]);
+            (turned.half, turned.axis) = beside_x(self.half, [x, y]);
+        }
+        turned
     }
 
     /// The whole piece again, its footprint perhaps turned by quarters.

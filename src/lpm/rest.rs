@@ -9,11 +9,12 @@ use super::contact::{Findings, Found};
 use super::meeting::slack;
 use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending};
+use super::piece::NOISE;
 use super::prism::Prism;
 use super::space::{Boxes, Cover};
 use super::standing::Stands;
-use super::touch::beside;
-use super::vector::sub;
+use super::touch::lie_apart;
+use super::vector::{add, reach, sub};
 
 impl Passage<'_> {
     /// A contact within the margin where the body stands.
@@ -63,9 +64,14 @@ impl Passage<'_> {
         while places != 0 {
             let local = (group.first + places.trailing_zeros() as usize) as u32;
             places &= places - 1;
-            match (&element.form, self.prism_at(local, 0.0)) {
-                (Stands::Upright(standing), Some(mover)) if self.level => {
-                    if !self.may_share(standing, &mover) {
+            match (&element.form, &self.body.prisms[local as usize]) {
+                (Stands::Upright(standing), Some(own)) if self.level => {
+                    let may_share = if self.path.is_unturned() {
+                        self.may_share(standing, own)
+                    } else {
+                        self.may_share(standing, &own.turned(self.path.start()))
+                    };
+                    if !may_share {
                         continue;
                     }
                     if self.way.margin_mm == 0.0 {
@@ -83,12 +89,15 @@ impl Passage<'_> {
         }
     }
 
-    /// False is proof that two upright pieces are farther apart than the margin.
-    #[inline]
+    /// False is proof that two upright pieces are farther apart than the margin; that of the mover is
+    /// turned, but not at its place yet.
+    #[inline(always)]
     fn may_share(&self, element: &Prism, mover: &Prism) -> bool {
-        let apart = sub(mover.centre, element.centre);
-        let grown = self.way.margin_mm + slack(element, mover, apart);
+        let origin = self.path.from;
+        let apart = sub(add(mover.centre, origin), element.centre);
+        let placed = NOISE * (reach(origin) + reach(mover.centre));
+        let grown = self.way.margin_mm + placed + slack(element, mover, apart);
         let above = apart[2].abs() - element.half[2] - mover.half[2];
-        !(above > grown) && !(beside(element, mover, apart) > grown)
+        !((above > grown) | lie_apart(element, mover, apart, grown))
     }
 }

@@ -132,14 +132,14 @@ impl Pose {
         let squared = w * w + x * x + y * y + z * z;
         // Outside this range the squared length has lost its digits to under- or overflow; what is
         // not finite is outside, too.
-        self.is_placed() && squared > 1e-200 && squared < 1e200
+        self.is_placed() & (squared > 1e-200) & (squared < 1e200)
     }
 
     /// The same of the position alone.
     #[inline]
     pub(crate) fn is_placed(&self) -> bool {
         let [x, y, z] = self.position.map(f64::abs);
-        x <= LARGEST_COORDINATE_MM && y <= LARGEST_COORDINATE_MM && z <= LARGEST_COORDINATE_MM
+        (x <= LARGEST_COORDINATE_MM) & (y <= LARGEST_COORDINATE_MM) & (z <= LARGEST_COORDINATE_MM)
     }
 }
 

@@ -7,7 +7,7 @@ use super::piece::{Piece, each_piece};
 use super::pose::{Frame, Pose};
 use super::prism::Prism;
 use super::shape::Shape;
-use super::space::{Cover, Entering};
+use super::space::{Cover, Entering, Seat};
 
 /// No piece.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -16,6 +16,8 @@ pub(crate) const NONE: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Standing {
     pub(crate) form: Stands,
+    /// Where the space has it.
+    pub(crate) seat: Seat,
     /// Slot of its element.
     pub(crate) owner: u32,
     /// Another piece of the same element, or [`NONE`].
@@ -80,14 +82,15 @@ impl Pieces {
         owner: u32,
         sibling: u32,
     ) -> u32 {
+        let next = self.standing.len() as u32;
+        let number = self.free.last().copied().unwrap_or(next);
         let standing = Standing {
             form,
+            seat: space.enter(number, cover),
             owner,
             sibling,
         };
-        let number = kept(&mut self.standing, &mut self.free, standing);
-        space.enter(number, cover);
-        number
+        kept(&mut self.standing, &mut self.free, standing)
     }
 
     /// Forgets a piece and says which is the next one of its element.
@@ -110,15 +113,6 @@ impl Pieces {
         match &self.at(number).form {
             Stands::Upright(prism) => prism.piece(),
             Stands::Askew(whole) => self.askew[*whole as usize],
-        }
-    }
-
-    /// Its box.
-    #[inline]
-    pub(crate) fn cover(&self, number: u32) -> Cover {
-        match &self.at(number).form {
-            Stands::Upright(prism) => Cover::of(prism.bounds()),
-            Stands::Askew(whole) => Cover::of(self.askew[*whole as usize].bounds()),
         }
     }
 

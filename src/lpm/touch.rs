@@ -19,10 +19,28 @@ struct Side {
     at: [f64; 2],
 }
 
-/// How far apart the footprints are, mm; at most 0 when they share a point.
-#[inline]
-pub(crate) fn beside(element: &Prism, mover: &Prism, apart: Vec3) -> f64 {
-    side(element, mover, apart).beyond
+/// True is proof that the footprints of two pieces, whose centres lie `apart`, are farther from each other
+/// than `by` (mm, above 0, rounding included). Squares are compared and axes multiplied where they could be
+/// asked for: a branch that nobody can guess costs more.
+#[inline(always)]
+pub(crate) fn lie_apart(element: &Prism, mover: &Prism, apart: Vec3, by: f64) -> bool {
+    if are_askew(element, mover) {
+        let [a, b] = over_sides(element, mover, apart);
+        let [c, d] = over_sides(mover, element, apart);
+        return (a > by) | (b > by) | (c > by) | (d > by);
+    }
+    let framed = if element.radius > 0.0 { mover } else { element };
+    let [x, y] = framed.axis;
+    let p = [apart[0] * x + apart[1] * y, apart[1] * x - apart[0] * y];
+    let over = |axis: usize| (p[axis].abs() - element.half[axis] - mover.half[axis]).max(0.0);
+    let within = element.radius + mover.radius + by;
+    over(0) * over(0) + over(1) * over(1) > within * within
+}
+
+/// Whether both are rectangles without a common axis.
+#[inline(always)]
+fn are_askew(element: &Prism, mover: &Prism) -> bool {
+    element.radius + mover.radius == 0.0 && element.axis != mover.axis
 }
 
 /// The contact of two pieces whose centres lie `apart`, from the element to the mover.
@@ -46,10 +64,12 @@ pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
 
 #[inline(always)]
 fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
-    match (element.radius > 0.0, mover.radius > 0.0) {
-        (false, false) if element.axis != mover.axis => askew(element, mover, apart),
-        (true, false) => rounded(element, mover, mover, apart),
-        (false, _) | (true, true) => rounded(element, mover, element, apart),
+    if are_askew(element, mover) {
+        askew(element, mover, apart)
+    } else if element.radius > 0.0 {
+        rounded(element, mover, mover, apart)
+    } else {
+        rounded(element, mover, element, apart)
     }
 }
 
@@ -104,19 +124,25 @@ fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
 /// mover. (The centres lie `apart`; a side of the mover counts the other way round, which is the same.)
 fn deepest(framed: &Prism, other: &Prism, apart: Vec3) -> (f64, [f64; 2]) {
     let p = framed.along(apart);
-    let [cos, sin] = framed
-        .along([other.axis[0], other.axis[1], 0.0])
-        .map(f64::abs);
-    let [a, b, _] = other.half;
-    let over = [
-        p[0].abs() - framed.half[0] - a * cos - b * sin,
-        p[1].abs() - framed.half[1] - a * sin - b * cos,
-    ];
+    let over = over_sides(framed, other, apart);
     if over[0] >= over[1] {
         (over[0], out_of(framed, [1.0f64.copysign(p[0]), 0.0]))
     } else {
         (over[1], out_of(framed, [0.0, 1.0f64.copysign(p[1])]))
     }
+}
+
+/// How far beyond the sides of one rectangle another one lies, along its axes, mm.
+#[inline(always)]
+fn over_sides(framed: &Prism, other: &Prism, apart: Vec3) -> [f64; 2] {
+    let [x, y] = framed.axis;
+    let [u, v] = other.axis;
+    let (cos, sin) = ((u * x + v * y).abs(), (v * x - u * y).abs());
+    let [a, b, _] = other.half;
+    [
+        (apart[0] * x + apart[1] * y).abs() - framed.half[0] - a * cos - b * sin,
+        (apart[1] * x - apart[0] * y).abs() - framed.half[1] - a * sin - b * cos,
+    ]
 }
 
 /// The corner of a rectangle that lies farthest along `n`, from its centre.

@@ -3,32 +3,11 @@
 use super::area::Area;
 use super::cover::Cover;
 use super::grid::Grid;
-use super::silhouettes::{Bundle, NONE};
+use super::silhouettes::Bundle;
 
-/// A few cells that have something to show, noted without a branch.
-struct Heads {
-    heads: [u32; 8],
-    count: usize,
-}
-
-impl Heads {
-    const NONE: Heads = Heads {
-        heads: [NONE; 8],
-        count: 0,
-    };
-
-    #[inline]
-    fn is_full(&self) -> bool {
-        self.count == self.heads.len()
-    }
-
-    /// Notes a cell if one of its layers is wanted, where there is room.
-    #[inline]
-    fn push(&mut self, head: u32, wanted: u64) {
-        self.heads[self.count % 8] = head;
-        self.count += usize::from(wanted != 0);
-    }
-}
+/// Of two by two squares those that differ, by columns and rows less one: bit 0 the first, bit 1 the next
+/// column, bit 2 the next row.
+const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
 
 impl Grid {
     /// Shows the bundles in some of these layers that have pieces which may meet a box, until one is
@@ -40,48 +19,45 @@ impl Grid {
         layers: u64,
         mut show: impl FnMut(&Bundle, u32) -> bool,
     ) {
-        let mut heads = Heads::NONE;
-        heads.push(self.open_head, self.open_layers & layers);
+        if self.open_layers & layers != 0 && self.shown(self.open_head, cover, &mut show) {
+            return;
+        }
         let Some(area) = self.common(&Area::of(cover)) else {
-            self.shown(&mut heads, cover, &mut show);
             return;
         };
         let first = self.place(area.low[0], area.low[1]);
         let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
-        if wide <= 1 && deep <= 1 {
-            // Most boxes lie over four squares at most: without a branch between them.
-            for (across, along) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                let place = first + across * wide + along * deep * self.columns;
-                let is_new = across <= wide && along <= deep;
-                let wanted = self.layers[place] & layers;
-                heads.push(self.heads[place], if is_new { wanted } else { 0 });
-            }
-        } else {
-            for row in 0..=deep {
-                for column in 0..=wide {
-                    if heads.is_full() && self.shown(&mut heads, cover, &mut show) {
-                        return;
-                    }
-                    let place = first + row * self.columns + column;
-                    heads.push(self.heads[place], self.layers[place] & layers);
+        if wide > 1 || deep > 1 {
+            let rows = (0..=deep).map(|row| first + row * self.columns);
+            for place in rows.flat_map(|row| row..=row + wide) {
+                if self.layers[place] & layers != 0
+                    && self.shown(self.heads[place], cover, &mut show)
+                {
+                    return;
                 }
             }
+            return;
         }
-        self.shown(&mut heads, cover, &mut show);
+        // Most boxes lie over four squares at most: their words are read without a branch between them.
+        let next = first + deep * self.columns;
+        let places = [first, first + wide, next, next + wide];
+        let wanted = |square: usize| u32::from(self.layers[places[square]] & layers != 0) << square;
+        let mut left = (wanted(0) | wanted(1) | wanted(2) | wanted(3)) & DIFFERENT[deep][wide];
+        while left != 0 {
+            let square = left.trailing_zeros() as usize % 4;
+            left &= left - 1;
+            if self.shown(self.heads[places[square]], cover, &mut show) {
+                return;
+            }
+        }
     }
 
-    fn shown(
-        &self,
-        heads: &mut Heads,
-        cover: &Cover,
-        show: &mut impl FnMut(&Bundle, u32) -> bool,
-    ) -> bool {
-        let noted = std::mem::replace(&mut heads.count, 0);
-        heads.heads[..noted].iter().any(|head| {
-            self.pool.chain(*head).any(|(_, bundle)| {
-                let lanes = bundle.boxes.meeting(cover);
-                lanes != 0 && show(bundle, lanes)
-            })
+    /// The bundles of one cell; true when one was answered with true.
+    #[inline]
+    fn shown(&self, head: u32, cover: &Cover, show: &mut impl FnMut(&Bundle, u32) -> bool) -> bool {
+        self.pool.chain(head).any(|(_, bundle)| {
+            let lanes = bundle.boxes.meeting(cover);
+            lanes != 0 && show(bundle, lanes)
         })
     }
 }

@@ -4,11 +4,13 @@
 //! piece is entered in every cell that its silhouette touches. Words and chains are kept apart: a
 //! way over empty squares reads words only.
 
+use super::Seat;
+use std::ops::Range;
+
 use super::area::{Area, GROWTH};
 use super::cover::Cover;
-use super::layers::Reach;
 use super::pool::{Cell, Chain, Pool};
-use super::silhouettes::{Bundle, NONE};
+use super::silhouettes::{Bundle, Lane, NONE};
 
 /// Pieces over more cells than this are kept in the open cell (the baseplate).
 const MOST_CELLS_OF_A_PIECE: i64 = 128;
@@ -32,8 +34,7 @@ pub(crate) struct Grid {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Silhouette {
     pub(crate) cover: Cover,
-    pub(crate) reach: Reach,
-    pub(crate) area: Area,
+    pub(crate) seat: Seat,
 }
 
 impl Default for Grid {
@@ -52,21 +53,20 @@ impl Default for Grid {
 
 impl Grid {
     /// Enters a piece wherever its silhouette lies.
-    pub(crate) fn put(&mut self, piece: u32, reach: Reach, cover: &Cover) {
-        let area = Area::of(cover);
-        if is_small(&area) && self.reach_over(&area) {
-            self.each_cell(&area, |pool, cell| pool.put(cell, piece, reach, cover));
+    pub(crate) fn put(&mut self, piece: u32, cover: &Cover, seat: &Seat) {
+        let (area, lane) = (&seat.area, Lane::of(piece, cover, seat));
+        if is_small(area) && self.reach_over(area) {
+            self.each_cell(area, |pool, cell| pool.put(cell, &lane));
         } else {
-            self.in_the_open(|pool, cell| pool.put(cell, piece, reach, cover));
+            self.in_the_open(|pool, cell| pool.put(cell, &lane));
         }
     }
 
     /// Takes a piece out again.
-    pub(crate) fn take(&mut self, piece: u32, cover: &Cover) {
-        let area = Area::of(cover);
+    pub(crate) fn take(&mut self, piece: u32, area: &Area) {
         let mut known = false;
-        if is_small(&area) && self.area.holds(&area) {
-            self.each_cell(&area, |pool, cell| known = pool.take(cell, piece));
+        if is_small(area) && self.area.holds(area) {
+            self.each_cell(area, |pool, cell| known = pool.take(cell, piece));
         }
         // What stood too far out when it came is in the open cell, however large the grid is now.
         if !known {
@@ -78,10 +78,12 @@ impl Grid {
 
     #[inline]
     fn each_cell(&mut self, area: &Area, mut change: impl FnMut(&mut Pool, Cell<'_>)) {
-        for_each_place(self.area.low, self.columns, area, |at| {
-            let (layers, head) = (&mut self.layers[at], &mut self.heads[at]);
-            change(&mut self.pool, Cell { layers, head });
-        });
+        for row in rows(self.area.low, self.columns, area) {
+            let cells = self.layers[row.clone()].iter_mut();
+            for (layers, head) in cells.zip(&mut self.heads[row]) {
+                change(&mut self.pool, Cell { layers, head });
+            }
+        }
     }
 
     fn in_the_open(&mut self, change: impl FnOnce(&mut Pool, Cell<'_>)) {
@@ -198,47 +200,55 @@ impl Grid {
     /// A grid with pieces numbered from 0: the same as [`Grid::put`] for one after the other. Squares
     /// are counted first, so that every cell gets all its bundles at once.
     pub(crate) fn filled(silhouettes: &[Silhouette]) -> Grid {
-        let small = silhouettes.iter().filter(|it| is_small(&it.area));
+        let small = silhouettes.iter().filter(|it| is_small(&it.seat.area));
         let whole = small
-            .map(|it| it.area)
+            .map(|it| it.seat.area)
             .reduce(|whole, area| whole.around(&area));
         let fitting = whole.filter(|whole| whole.cells() <= MOST_CELLS);
         let mut grid = fitting.map_or_else(Grid::default, Grid::over);
-        let reserved = |it: &Silhouette| fitting.is_some() && is_small(&it.area);
-        grid.reserve(silhouettes.iter().filter(|it| reserved(it)));
+        let reserved = |it: &Silhouette| fitting.is_some() && is_small(&it.seat.area);
+        let mut lanes = grid.reserve(silhouettes.iter().filter(|it| reserved(it)));
         for (number, it) in silhouettes.iter().enumerate() {
             let number = number as u32;
             if reserved(it) {
-                grid.put_reserved(number, it);
+                grid.put_reserved(&mut lanes, number, it);
             } else {
-                grid.put(number, it.reach, &it.cover);
+                grid.put(number, &it.cover, &it.seat);
             }
         }
         grid
     }
 
-    /// Bundles for what will be entered, and the words of the cells.
-    fn reserve<'a>(&mut self, silhouettes: impl Iterator<Item = &'a Silhouette>) {
+    /// Bundles for what will be entered, and the words of the cells; the result is where the first
+    /// silhouette of each cell goes.
+    fn reserve<'a>(&mut self, silhouettes: impl Iterator<Item = &'a Silhouette>) -> Vec<u32> {
         let mut counts = vec![0u32; self.layers.len()];
         for it in silhouettes {
-            let word = it.reach.word();
-            for_each_place(self.area.low, self.columns, &it.area, |at| {
-                counts[at] += 1;
-                self.layers[at] |= word;
-            });
+            let word = it.seat.reach.word();
+            for row in rows(self.area.low, self.columns, &it.seat.area) {
+                let cells = counts[row.clone()].iter_mut();
+                for (count, layers) in cells.zip(&mut self.layers[row]) {
+                    *count += 1;
+                    *layers |= word;
+                }
+            }
         }
         self.pool.expect(&counts);
-        for (head, count) in self.heads.iter_mut().zip(counts) {
-            *head = self.pool.reserve(count);
+        for (head, count) in self.heads.iter_mut().zip(&mut counts) {
+            (*head, *count) = self.pool.reserve(*count);
         }
+        counts
     }
 
     #[inline]
-    fn put_reserved(&mut self, piece: u32, it: &Silhouette) {
-        for_each_place(self.area.low, self.columns, &it.area, |at| {
-            self.pool
-                .put_reserved(&mut self.heads[at], piece, it.reach, &it.cover);
-        });
+    fn put_reserved(&mut self, lanes: &mut [u32], piece: u32, it: &Silhouette) {
+        let lane = Lane::of(piece, &it.cover, &it.seat);
+        for row in rows(self.area.low, self.columns, &it.seat.area) {
+            for at in &mut lanes[row] {
+                self.pool.put_reserved(*at, &lane);
+                *at += 1;
+            }
+        }
     }
 }
 
@@ -248,13 +258,21 @@ fn is_small(area: &Area) -> bool {
     area.cells() <= MOST_CELLS_OF_A_PIECE
 }
 
-/// Shows the number of each cell of `area` in a grid that begins at `low`.
-#[inline]
-fn for_each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(usize)) {
-    let wide = (area.high[0] - area.low[0]) as usize;
-    let mut first = (area.low[1] - low[1]) as usize * columns + (area.low[0] - low[0]) as usize;
-    for _ in area.low[1]..=area.high[1] {
-        (first..=first + wide).for_each(&mut show);
-        first += columns;
+impl Lane {
+    #[inline]
+    fn of(piece: u32, cover: &Cover, seat: &Seat) -> Lane {
+        Lane {
+            piece,
+            word: seat.reach.word(),
+            cover: *cover,
+        }
     }
+}
+
+/// The numbers of the cells of `area` in a grid that begins at `low`, row by row.
+#[inline]
+fn rows(low: [i32; 2], columns: usize, area: &Area) -> impl Iterator<Item = Range<usize>> {
+    let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize + 1);
+    let first = (area.low[1] - low[1]) as usize * columns + (area.low[0] - low[0]) as usize;
+    (0..deep).map(move |row| first + row * columns..first + row * columns + wide)
 }

@@ -13,6 +13,9 @@ use super::cover::{larger, nearest, smaller};
 /// Layers fit the bits of one word.
 const LAYERS: usize = 64;
 
+/// Layers that nearly all pieces pass at most.
+const SHORT: usize = 8;
+
 /// Height of a layer, mm: a third of the lowest elements of a fixture, so that a hand that passes
 /// over them shares no layer with them.
 const STEP_MM: f32 = 8.0;
@@ -37,12 +40,6 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Of nothing.
-    pub(crate) const NONE: Reach = Reach {
-        low: LAYERS as u8 - 1,
-        high: 0,
-    };
-
     /// Of a piece between two heights, mm.
     #[inline]
     pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {
@@ -63,7 +60,7 @@ impl Reach {
 #[derive(Debug, Clone)]
 pub(crate) struct Layers {
     /// Pieces that pass through each layer from below to above, that begin in it, that end in it.
-    passing: [u32; LAYERS],
+    passing: [u32; LAYERS + SHORT],
     beginning: [u32; LAYERS],
     ending: [u32; LAYERS],
     /// Lowest bottom of those that begin, highest top of those that end in a layer, mm.
@@ -77,7 +74,7 @@ pub(crate) struct Layers {
 impl Default for Layers {
     fn default() -> Layers {
         Layers {
-            passing: [0; LAYERS],
+            passing: [0; LAYERS + SHORT],
             beginning: [0; LAYERS],
             ending: [0; LAYERS],
             h1: [f32::INFINITY; LAYERS],
@@ -94,9 +91,7 @@ impl Layers {
     pub(crate) fn join(&mut self, bottom_mm: f32, top_mm: f32) -> Reach {
         let reach = Reach::of(bottom_mm, top_mm);
         let (low, high) = (usize::from(reach.low), usize::from(reach.high));
-        if let Some(between) = self.passing.get_mut(low + 1..high) {
-            between.iter_mut().for_each(|count| *count += 1);
-        }
+        self.pass(reach, 1);
         self.beginning[low] += 1;
         self.ending[high] += 1;
         self.h1[low] = self.h1[low].min(bottom_mm);
@@ -106,13 +101,31 @@ impl Layers {
         reach
     }
 
+    /// Counts a piece in the layers between its lowest and its highest: 1 more, or with `u32::MAX` 1 less.
+    #[inline]
+    fn pass(&mut self, reach: Reach, more: u32) {
+        let first = usize::from(reach.low) + 1;
+        let between = usize::from(reach.high).saturating_sub(first);
+        let passed = &mut self.passing[first..];
+        match passed.first_chunk_mut::<SHORT>() {
+            // How many they are cannot be guessed, so all of a few are written, most with what they had.
+            Some(few) if between <= SHORT => {
+                for (at, count) in few.iter_mut().enumerate() {
+                    *count = count.wrapping_add(if at < between { more } else { 0 });
+                }
+            }
+            Some(_) | None => {
+                let long = passed.iter_mut().take(between);
+                long.for_each(|count| *count = count.wrapping_add(more));
+            }
+        }
+    }
+
     /// Lets a piece go. `h1` and `h2` of a layer stay (a superset is safe) until nothing begins or
     /// ends there.
     pub(crate) fn leave(&mut self, reach: Reach) {
         let (low, high) = (usize::from(reach.low), usize::from(reach.high));
-        if let Some(between) = self.passing.get_mut(low + 1..high) {
-            between.iter_mut().for_each(|count| *count -= 1);
-        }
+        self.pass(reach, u32::MAX);
         self.beginning[low] -= 1;
         self.ending[high] -= 1;
         if self.beginning[low] == 0 {

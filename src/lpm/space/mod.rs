@@ -41,11 +41,11 @@ pub(crate) struct Space {
 }
 
 impl Space {
-    /// Takes a piece out by the cover it came with.
+    /// Takes a piece out of where it was entered.
     #[inline]
-    pub(crate) fn remove(&mut self, piece: u32, cover: &Cover) {
-        self.layers.leave(Reach::of(cover.low[2], cover.high[2]));
-        self.grid.take(piece, cover);
+    pub(crate) fn remove(&mut self, piece: u32, seat: &Seat) {
+        self.layers.leave(seat.reach);
+        self.grid.take(piece, &seat.area);
     }
 
     /// Heap in use, bytes.
@@ -80,17 +80,36 @@ impl Space {
     }
 }
 
+/// Where a piece is entered: squares and layers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seat {
+    area: Area,
+    reach: Reach,
+}
+
+impl Layers {
+    /// Takes a piece in and says where it belongs.
+    #[inline]
+    fn seat(&mut self, cover: &Cover) -> Seat {
+        Seat {
+            area: Area::of(cover),
+            reach: self.join(cover.low[2], cover.high[2]),
+        }
+    }
+}
+
 /// Where pieces are entered by their covers.
 pub(crate) trait Entering {
-    /// Enters the piece of this number.
-    fn enter(&mut self, piece: u32, cover: &Cover);
+    /// Enters the piece of this number and says where, for [`Space::remove`].
+    fn enter(&mut self, piece: u32, cover: &Cover) -> Seat;
 }
 
 impl Entering for Space {
     #[inline]
-    fn enter(&mut self, piece: u32, cover: &Cover) {
-        let reach = self.layers.join(cover.low[2], cover.high[2]);
-        self.grid.put(piece, reach, cover);
+    fn enter(&mut self, piece: u32, cover: &Cover) -> Seat {
+        let seat = self.layers.seat(cover);
+        self.grid.put(piece, cover, &seat);
+        seat
     }
 }
 
@@ -122,11 +141,10 @@ impl Filling {
 impl Entering for Filling {
     /// Pieces come in the order of their numbers, from 0.
     #[inline]
-    fn enter(&mut self, _piece: u32, cover: &Cover) {
-        self.silhouettes.push(Silhouette {
-            cover: *cover,
-            reach: self.layers.join(cover.low[2], cover.high[2]),
-            area: Area::of(cover),
-        });
+    fn enter(&mut self, _piece: u32, cover: &Cover) -> Seat {
+        let seat = self.layers.seat(cover);
+        let cover = *cover;
+        self.silhouettes.push(Silhouette { cover, seat });
+        seat
     }
 }

@@ -1,8 +1,6 @@
 //! Bundles of all cells in one block: putting in and taking out asks the allocator for nothing.
 
-use super::cover::Cover;
-use super::layers::Reach;
-use super::silhouettes::{Bundle, LANES, NONE};
+use super::silhouettes::{Bundle, LANES, Lane, NONE};
 
 /// What is kept of a cell: the layers that have something here (bit k: layer k) and its newest bundle,
 /// the only one that need not be full.
@@ -21,15 +19,15 @@ pub(super) struct Pool {
 impl Pool {
     /// Adds a silhouette to a cell.
     #[inline]
-    pub(super) fn put(&mut self, cell: Cell<'_>, piece: u32, reach: Reach, cover: &Cover) {
+    pub(super) fn put(&mut self, cell: Cell<'_>, lane: &Lane) {
         match self.bundles.get_mut(*cell.head as usize) {
-            Some(head) if !head.is_full() => head.push(piece, reach, cover),
+            Some(head) if !head.is_full() => head.push(lane),
             Some(_) | None => {
                 *cell.head = self.fresh(*cell.head);
-                self.bundles[*cell.head as usize].push(piece, reach, cover);
+                self.bundles[*cell.head as usize].push(lane);
             }
         }
-        *cell.layers |= reach.word();
+        *cell.layers |= lane.word;
     }
 
     /// An empty bundle before `next`.
@@ -53,22 +51,27 @@ impl Pool {
             .reserve_exact(1 + bundles.sum::<u32>() as usize);
     }
 
-    /// Bundles for so many silhouettes of one new cell, one after the other; the result is the first.
-    pub(super) fn reserve(&mut self, count: u32) -> u32 {
-        let mut next = NONE;
-        let first = self.bundles.len() as u32;
-        for at in first..first + count.div_ceil(LANES as u32) {
-            self.bundles.push(Bundle::before(next));
-            next = at;
+    /// Bundles for so many silhouettes of one new cell, one after the other: the newest, and the lane
+    /// of the first silhouette ([`Pool::put_reserved`]).
+    #[inline]
+    pub(super) fn reserve(&mut self, count: u32) -> (u32, u32) {
+        let (first, mut newest) = (self.bundles.len() as u32, NONE);
+        let mut left = count;
+        while left > 0 {
+            let own = left.min(LANES as u32);
+            let mut bundle = Bundle::before(newest);
+            bundle.expect(own);
+            newest = self.bundles.len() as u32;
+            self.bundles.push(bundle);
+            left -= own;
         }
-        if count == 0 { NONE } else { first }
+        (newest, first * LANES as u32)
     }
 
-    /// Adds a silhouette to reserved bundles; `head` becomes the newest.
+    /// Writes a silhouette into a lane of the reserved bundles, all of them counted.
     #[inline]
-    pub(super) fn put_reserved(&mut self, head: &mut u32, piece: u32, reach: Reach, cover: &Cover) {
-        *head += u32::from(self.bundles[*head as usize].is_full());
-        self.bundles[*head as usize].push(piece, reach, cover);
+    pub(super) fn put_reserved(&mut self, at: u32, lane: &Lane) {
+        self.bundles[at as usize / LANES].set(at as usize % LANES, lane);
     }
 
     /// Takes a silhouette out of a cell, if it is there: the last of the newest bundle fills the gap.
@@ -76,11 +79,15 @@ impl Pool {
         let Some((at, lane)) = self.whereabouts(*cell.head, piece) else {
             return false;
         };
-        self.close(*cell.head, at, lane);
-        let head = &self.bundles[*cell.head as usize];
-        if head.is_empty() {
+        let newest = &mut self.bundles[*cell.head as usize];
+        let last = newest.pop();
+        let (is_empty, next) = (newest.is_empty(), newest.next);
+        if last.piece != piece {
+            self.bundles[at as usize].set(lane, &last);
+        }
+        if is_empty {
             self.spare.push(*cell.head);
-            *cell.head = head.next;
+            *cell.head = next;
         }
         *cell.layers = self
             .chain(*cell.head)
@@ -88,23 +95,10 @@ impl Pool {
         true
     }
 
+    #[inline]
     fn whereabouts(&self, head: u32, piece: u32) -> Option<(u32, usize)> {
-        let mut at = head;
-        while let Some(bundle) = self.bundles.get(at as usize) {
-            if let Some(lane) = bundle.lane_of(piece) {
-                return Some((at, lane));
-            }
-            at = bundle.next;
-        }
-        None
-    }
-
-    fn close(&mut self, head: u32, at: u32, lane: usize) {
-        let places = [at as usize, head as usize];
-        match self.bundles.get_disjoint_mut(places) {
-            Ok([gap, newest]) => gap.refill(lane, newest),
-            Err(_) => self.bundles[head as usize].close(lane),
-        }
+        let mut chain = self.chain(head);
+        chain.find_map(|(at, bundle)| Some((at, bundle.lane_of(piece)?)))
     }
 
     /// A bundle by its number.

@@ -2,7 +2,6 @@
 
 use super::boxes::Boxes;
 use super::cover::Cover;
-use super::layers::Reach;
 
 /// Pieces of one bundle.
 pub(crate) const LANES: usize = 8;
@@ -10,13 +9,35 @@ pub(crate) const LANES: usize = 8;
 /// No bundle, no piece.
 pub(super) const NONE: u32 = u32::MAX;
 
+/// One silhouette of a bundle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lane {
+    pub(super) piece: u32,
+    /// Its layers, bit k: layer k.
+    pub(super) word: u64,
+    pub(super) cover: Cover,
+}
+
+impl Lane {
+    /// Meets nothing.
+    const EMPTY: Lane = Lane {
+        piece: NONE,
+        word: 0,
+        cover: Cover {
+            low: [f32::INFINITY; 3],
+            high: [f32::INFINITY; 3],
+        },
+    };
+}
+
 /// Eight silhouettes and whose they are. Lanes from `count` on meet nothing.
 #[derive(Debug, Clone)]
 #[repr(align(64))]
 pub(crate) struct Bundle {
     pub(crate) boxes: Boxes<LANES>,
     pieces: [u32; LANES],
-    reaches: [Reach; LANES],
+    /// The layers of each piece, bit k: layer k.
+    words: [u64; LANES],
     count: u32,
     /// Next bundle of the same cell; always a full one.
     pub(super) next: u32,
@@ -29,7 +50,7 @@ impl Bundle {
         Bundle {
             boxes: Boxes::NOWHERE,
             pieces: [NONE; LANES],
-            reaches: [Reach::NONE; LANES],
+            words: [0; LANES],
             count: 0,
             next,
         }
@@ -45,55 +66,52 @@ impl Bundle {
     }
 
     #[inline]
-    pub(super) fn push(&mut self, piece: u32, reach: Reach, cover: &Cover) {
-        let lane = self.count as usize % LANES;
+    pub(super) fn push(&mut self, lane: &Lane) {
         self.count += 1;
-        self.boxes.set(lane, cover);
-        self.pieces[lane] = piece;
-        self.reaches[lane] = reach;
+        self.set(self.last(), lane);
     }
 
-    /// The last of `self` takes the place of `lane`, which may be its own.
+    /// Counts lanes that will be [`Bundle::set`].
     #[inline]
-    pub(super) fn close(&mut self, lane: usize) {
-        let last = self.last();
-        let cover = self.boxes.cover(last);
-        self.boxes.set(lane, &cover);
-        self.pieces[lane] = self.pieces[last];
-        self.reaches[lane] = self.reaches[last];
-        self.forget_last();
+    pub(super) fn expect(&mut self, count: u32) {
+        self.count = count;
     }
 
-    /// The last of `newest` takes the place of `lane`.
-    pub(super) fn refill(&mut self, lane: usize, newest: &mut Bundle) {
-        let last = newest.last();
-        self.boxes.set(lane, &newest.boxes.cover(last));
-        self.pieces[lane] = newest.pieces[last];
-        self.reaches[lane] = newest.reaches[last];
-        newest.forget_last();
+    #[inline]
+    pub(super) fn set(&mut self, at: usize, lane: &Lane) {
+        self.boxes.set(at, &lane.cover);
+        self.pieces[at] = lane.piece;
+        self.words[at] = lane.word;
+    }
+
+    /// Takes the last lane out; of an empty bundle, nothing that anybody knows.
+    #[inline]
+    pub(super) fn pop(&mut self) -> Lane {
+        let last = self.last();
+        let lane = Lane {
+            piece: self.pieces[last],
+            word: self.words[last],
+            cover: self.boxes.cover(last),
+        };
+        self.set(last, &Lane::EMPTY);
+        self.count = self.count.saturating_sub(1);
+        lane
     }
 
     #[inline]
     fn last(&self) -> usize {
-        (self.count as usize).saturating_sub(1) % LANES
+        (self.count as usize).wrapping_sub(1) % LANES
     }
 
-    #[inline]
-    fn forget_last(&mut self) {
-        let last = self.last();
-        for axis in 0..3 {
-            self.boxes.low[axis][last] = f32::INFINITY;
-            self.boxes.high[axis][last] = f32::INFINITY;
-        }
-        self.pieces[last] = NONE;
-        self.reaches[last] = Reach::NONE;
-        self.count -= 1;
-    }
-
+    /// Where a piece is; first of all where the newest is, which is the first to go where parts pass and a
+    /// fixture stays.
     #[inline]
     pub(super) fn lane_of(&self, piece: u32) -> Option<usize> {
-        let lanes = 0..LANES;
-        let word = lanes.fold(0, |word, lane| {
+        let last = self.last();
+        if self.pieces[last] == piece {
+            return Some(last);
+        }
+        let word = (0..LANES).fold(0, |word, lane| {
             word | u32::from(self.pieces[lane] == piece) << lane
         });
         (word != 0).then(|| word.trailing_zeros() as usize % LANES)
@@ -102,8 +120,7 @@ impl Bundle {
     /// Word of the layers of this bundle.
     #[inline]
     pub(super) fn word(&self) -> u64 {
-        let reaches = self.reaches.iter();
-        reaches.fold(0, |word, reach| word | reach.word())
+        self.words.iter().fold(0, |whole, word| whole | word)
     }
 
     #[inline]
