@@ -49,7 +49,7 @@ fn default_latency() -> f64 {
 }
 
 /// Keys of a bench module beyond address and model.
-const KEYS: [&str; 30] = [
+const KEYS: [&str; 32] = [
     "checksum",
     "format",
     "range",
@@ -80,6 +80,8 @@ const KEYS: [&str; 30] = [
     "overflow",
     "led",
     "baud",
+    "signed",
+    "refusal",
 ];
 
 /// Builds the bench that a file describes.

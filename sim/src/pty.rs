@@ -1,7 +1,7 @@
 //! Lines as pseudo-terminals in real time.
 //!
 //! The slave is put into raw mode before anybody opens it, and one slave descriptor stays open, so
-//! that clients may open and close the port per request. Two threads serve a line: one reads the
+//! that clients may open and close the port per request; a killed one does not keep it for itself. Two threads serve a line: one reads the
 //! master and stamps what comes, the other keeps absolute deadlines, so that late wake-ups never
 //! add up. A pseudo-terminal has no baud rate: the time of every character is added here, and whatever rate a
 //! client has set is as good as another, unless [`Rates::Heeded`]. Each reply is one write. While nobody talks the rig still goes on, so that watchdogs expire in time.

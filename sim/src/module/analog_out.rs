@@ -10,7 +10,8 @@
 //! | `$AA9N`, `$AA9NTS` | type and slew of one channel (7022) |
 //!
 //! The terminals carry the quantised value with this module's gain error and offset. Data of the
-//! right alphabet but the wrong width are refused with `?AA`; other text is not understood.
+//! right alphabet but the wrong width are refused with `?AA`; other text is not understood. What a 7021 makes of six
+//! characters with a sign (`+5.000`) is not documented: refused, unless its table says `signed = true`.
 
 use super::habit::Habit;
 use super::output::{Data, Model, Span, model, read, span, spell};
@@ -44,7 +45,10 @@ pub(super) fn build(
     line: Commissioning,
     habit: &Habit,
 ) -> Result<Built, SimError> {
-    let model = model(number);
+    let model = Model {
+        takes_sign: setting::flag(spec, "signed")?.unwrap_or(false),
+        ..model(number)
+    };
     let key = if spec.settings.contains_key("type") {
         "type"
     } else {

@@ -23,6 +23,8 @@ use crate::terminal::ModuleSpec;
 
 struct Digital {
     shape: Shape,
+    /// A refused output command is answered with the address.
+    names_refusals: bool,
     outputs: u16,
     power_on: u16,
     safe: u16,
@@ -72,8 +74,14 @@ pub(super) fn build(
         start: counts.get(usize::from(channel)).copied().unwrap_or(0.0) as u64,
         ..EventCounter::default()
     };
+    let names_refusals = match setting::text(spec, "refusal")? {
+        None | Some("?") => false,
+        Some("?AA") => true,
+        Some(_) => return Err(setting::wrong(spec, "refusal", "? or ?AA")),
+    };
     let mut family = Digital {
         shape,
+        names_refusals,
         outputs: 0,
         power_on: bits("power_on")? & shape.all_outputs(),
         safe: safe & shape.all_outputs(),
@@ -147,13 +155,22 @@ impl Digital {
         }
     }
 
+    /// The manual of the digital modules leaves the address out of these refusals, others put it in.
+    fn refused_output(&self, plate: &Plate) -> Answer {
+        if self.names_refusals {
+            dcon::refused(plate.address)
+        } else {
+            dcon::refused_output()
+        }
+    }
+
     fn write_all(&mut self, plate: &Plate, data: &[u8], at: &mut Terminals<'_>) -> Answer {
         let Some(value) = dcon::hex(data) else {
             return Answer::Unknown;
         };
         let too_much = value & !u32::from(self.shape.all_outputs()) != 0;
         if self.shape.outputs == 0 || data.len() != self.shape.output_digits() || too_much {
-            return dcon::refused_output();
+            return self.refused_output(plate);
         }
         if plate.watchdog.tripped() {
             return dcon::ignored();
@@ -169,7 +186,7 @@ impl Digital {
             return Answer::Unknown;
         };
         let Some(outputs) = self.grouped(group, channel, data) else {
-            return dcon::refused_output();
+            return self.refused_output(plate);
         };
         if plate.watchdog.tripped() {
             return dcon::ignored();

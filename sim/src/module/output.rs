@@ -10,6 +10,8 @@ pub(super) struct Model {
     pub(super) bits: i32,
     /// Data carry a sign (7024).
     pub(super) signed: bool,
+    /// Data may carry a sign for their first digit.
+    pub(super) takes_sign: bool,
     /// Commands carry a channel digit.
     pub(super) numbered: bool,
     /// Type and slew belong to the channel (7022).
@@ -50,6 +52,7 @@ pub(super) fn model(number: &str) -> Model {
         channels: 1,
         bits: 12,
         signed: false,
+        takes_sign: false,
         numbered: false,
         own_slew: false,
         true_readback: true,
@@ -96,7 +99,10 @@ pub(super) fn read(model: Model, format: Format, span: Span, data: &[u8]) -> Dat
             }
             other => other,
         },
-        Format::Engineering => fixed(data, model.signed, 2, 3),
+        Format::Engineering => match data {
+            [b'+' | b'-', _, b'.', _, _, _] if model.takes_sign => fixed(data, true, 1, 3),
+            _ => fixed(data, model.signed, 2, 3),
+        },
     }
 }
 

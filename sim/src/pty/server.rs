@@ -137,6 +137,7 @@ impl Server {
                     self.retune();
                     self.arrivals.extend(self.receiver.take(&bytes, at_us));
                 }
+                Err(RecvTimeoutError::Timeout) if self.next_us().is_none() => self.socket.share(),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => break,
             }

@@ -5,7 +5,7 @@ use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use rustix::termios::{QueueSelector, tcflush, tcgetattr};
+use rustix::termios::{QueueSelector, ioctl_tiocnxcl, tcflush, tcgetattr};
 
 /// Path, links and the slave that is kept open.
 #[derive(Default)]
@@ -53,6 +53,14 @@ impl Socket {
     /// Removes the links for good.
     pub(super) fn unlink(&self) {
         self.behind().links.drain(..).for_each(|link| remove(&link));
+    }
+
+    /// A client that was killed has left the terminal exclusive; as long as this slave is open, nobody else would end
+    /// that.
+    pub(super) fn share(&self) {
+        if let Some(slave) = &self.behind().slave {
+            let _ = ioctl_tiocnxcl(slave);
+        }
     }
 
     /// The rate that the client has set at its end.

@@ -2,12 +2,15 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::path::Path;
+use std::process::Command;
 
 use rigsim::pty::Rates;
 use rigsim::{SharedRig, pty};
-use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use rustix::termios::{OptionalActions, ioctl_tiocexcl, tcgetattr, tcsetattr};
 
-fn client(path: &std::path::Path) -> File {
+fn client(path: &Path) -> File {
     let mut options = OpenOptions::new();
     options.read(true).write(true).open(path).expect("a port")
 }
@@ -113,5 +116,35 @@ fn where_rates_are_heeded_a_module_hears_only_its_own_and_with_init_grounded_960
     set_baud(&port, 9_600);
     assert_eq!(ask(&mut port, b"$02M\r$01M\r"), b"!017017\r");
     assert_eq!(ask(&mut port, b"$00M\r"), b"!037080\r");
+    ptys.stop();
+}
+
+/// Whether somebody without privileges can open a port; an administrator may always.
+fn opens_for_anybody(path: &Path, administrator: bool) -> bool {
+    let open = format!("exec 3<>{}", path.display());
+    let mut shell = Command::new(if administrator { "setpriv" } else { "sh" });
+    if administrator {
+        shell.args(["--reuid=65534", "--clear-groups", "sh"]);
+    }
+    let opened = shell.args(["-c", &open]).output();
+    opened.expect("setpriv of util-linux").status.success()
+}
+
+#[test]
+fn a_client_that_was_killed_does_not_keep_the_port_for_itself() {
+    let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"";
+    let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
+    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
+    let path = ptys.paths().remove(0).1;
+    let all = std::fs::Permissions::from_mode(0o666);
+    std::fs::set_permissions(&path, all).expect("own port");
+    let folder = tempfile::tempdir().expect("a folder");
+    let administrator = folder.path().metadata().expect("a folder").uid() == 0;
+    // Ended without a word of leave, as by a kill.
+    let port = client(&path);
+    ioctl_tiocexcl(&port).expect("a terminal");
+    drop(port);
+    let mut tries = std::iter::repeat_with(|| opens_for_anybody(&path, administrator));
+    assert!(tries.by_ref().take(1_000).any(|opened| opened));
     ptys.stop();
 }
