@@ -1,7 +1,10 @@
 //! Is a module already as a command would make it? An EEPROM is written a limited number of times, so a setting is read
 //! first ([`Command::setting`]) and written only if it differs ([`Command::stands`]).
 //!
-//! Nothing tells of the stored outputs of a module whether the present ones are the same, nor of the alarms of a 7080.
+//! Of stored outputs two answers would have to tell, the stored pattern and the present one, and which half of the present
+//! one is outputs depends on a model that the request does not name: they are written. So is an alarm of a 7080 that is
+//! switched on, and its mode: what `@AADI` says of an alarm that is on depends on the mode, and nothing tells the mode. One that is
+//! off is off in both.
 
 use super::{AnalogIn, AnalogOut, Command, Common, Config, Counter, FormatByte, Reply, TypeCode};
 
@@ -149,6 +152,7 @@ fn counter(ask: Counter) -> Option<Counter> {
         Counter::WriteThreshold(side, _) => Some(Counter::ReadThreshold(side)),
         Counter::WriteLimit(n, _) => Some(Counter::ReadLimit(n)),
         Counter::WriteDisplay(_) => Some(Counter::ReadDisplay),
+        Counter::DisableAlarm | Counter::DisableAlarmOf(_) => Some(Counter::ReadAlarm),
         Counter::Read(_)
         | Counter::ReadFrequency(_)
         | Counter::Reset(_)
@@ -165,10 +169,8 @@ fn counter(ask: Counter) -> Option<Counter> {
         | Counter::ReadAlarm
         | Counter::WriteAlarmMode(_)
         | Counter::EnableAlarm(_)
-        | Counter::DisableAlarm
         | Counter::ClearAlarm
         | Counter::EnableAlarmOf(_)
-        | Counter::DisableAlarmOf(_)
         | Counter::ReadLimit(_)
         | Counter::WriteOutputs(_)
         | Counter::ReadDisplay
@@ -192,6 +194,9 @@ fn counter_stands(ask: Counter, found: Reply) -> bool {
         }
         (Counter::WriteThreshold(_, tenths), Reply::Decimal(found)) => {
             u32::from(tenths.get()) == found
+        }
+        (Counter::DisableAlarm | Counter::DisableAlarmOf(_), Reply::Alarm(found)) => {
+            found.state == 0
         }
         (Counter::WriteDisplay(what), Reply::Decimal(found)) => u32::from(what.get()) == found,
         (_, _) => false,

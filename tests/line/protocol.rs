@@ -3,8 +3,8 @@
 
 use relayrig::bus::{self, Answer, LineSettings, Pace, PortError, Ports, Request};
 use relayrig::dcon::{
-    Address, AnalogIn, BaudCode, Command, Common, Config, Family, FormatByte, ModuleName, Reply,
-    ReplyError, TypeCode, factory, readings,
+    Address, AnalogIn, BaudCode, Command, Common, Config, Counter, Family, FormatByte, ModuleName,
+    Reply, ReplyError, TypeCode, UpTo, factory, readings,
 };
 use rigsim::{SharedRig, bench, wire};
 use std::collections::BTreeSet;
@@ -196,6 +196,21 @@ fn a_setting_that_stands_is_not_written_to_the_eeprom_again() {
         counted > 40,
         "only {counted} settings differed and were written"
     );
+}
+
+#[test]
+fn an_alarm_that_is_off_is_not_switched_off_again_and_one_that_is_on_is() {
+    let zero = UpTo::new(0).unwrap();
+    let asked = [
+        Counter::EnableAlarmOf(zero),
+        Counter::DisableAlarmOf(zero),
+        Counter::DisableAlarmOf(zero),
+    ];
+    let module = "[[module]]\naddress = 1\nmodel = \"I-7080\"";
+    let told = told(module, false, &asked.map(|ask| ask.to(Address(1))));
+    assert!(told.iter().all(|(it, _)| it.outcome == Ok(Reply::Accepted)));
+    let writes: Vec<u64> = told.iter().map(|(_, writes)| *writes).collect();
+    assert_eq!(writes, [1, 2, 2]);
 }
 
 #[test]
