@@ -3,7 +3,7 @@
 //! | state | a run may begin | set by |
 //! |---|---|---|
 //! | open | yes, with the recipe of the run before | a run that was stopped, cut off or ended by an alarm; a release |
-//! | running | yes: the run before was cut off | the begin of a run |
+//! | running | yes: the run before was cut off | the begin of a run; the next program on the rig makes it open |
 //! | held | no | a failed golden check, the discard limit, a person |
 //! | complete | yes, as a new beginning | the count was reached, or a person closed it |
 //!
@@ -12,8 +12,8 @@
 //! in every run.
 
 use super::error::{Doing, Result};
-use super::store::Known;
-use super::{Archive, Filter, Moment};
+use super::store::{Known, source};
+use super::{Archive, Filter, Moment, Store};
 use rusqlite::{Connection, OptionalExtension, Transaction, params, params_from_iter};
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 pub enum LotState {
     /// May be run.
     Open,
-    /// A run is under way, or was cut off.
+    /// A run is under way, or was cut off and no program has been on the rig since.
     Running,
     /// May not be run before somebody releases it.
     Held,
@@ -160,6 +160,22 @@ pub(super) fn golden_check(
     Ok(())
 }
 
+impl Store {
+    /// Whoever has the rig now knows that no run of before is under way: lots whose run was cut off are open. The
+    /// simulated rig and the rig are two.
+    pub fn cut_off(&mut self, simulated: bool, at_us: i64) -> Result<()> {
+        self.connection()
+            .execute(
+                "UPDATE lot_state SET state = 'open', since_us = ?2 WHERE state = 'running'
+                   AND ?1 = (SELECT source FROM run WHERE run.lot_id = lot_state.lot_id
+                             ORDER BY number DESC LIMIT 1)",
+                params![source(simulated), at_us],
+            )
+            .doing("looking for lots that were cut off")?;
+        Ok(())
+    }
+}
+
 impl Archive {
     /// Where a lot stands; none when nobody has run it.
     pub fn standing(&self, lot: &str) -> Result<Option<LotStanding>> {
@@ -230,13 +246,12 @@ impl Archive {
 
     /// The golden check made last, on the simulated rig or on the rig.
     pub fn last_golden_check(&self, simulated: bool) -> Result<Option<GoldenCheck>> {
-        let source = if simulated { "simulated" } else { "rig" };
         self.connection
             .query_row(
                 "SELECT run.number, golden_check.at_us, passed, text, suspect_since_us
                  FROM golden_check JOIN run ON run.id = golden_check.run_id
                  WHERE run.source = ?1 ORDER BY golden_check.at_us DESC, golden_check.id DESC LIMIT 1",
-                [source],
+                [source(simulated)],
                 golden_check_of,
             )
             .optional()

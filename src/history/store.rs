@@ -81,7 +81,7 @@ impl Store {
     /// Opens a run of the lot and gives its number: 1, or one more than the last time.
     pub fn begin_lot(&mut self, lot: &LotRecord) -> Result<u32> {
         const DOING: &str = "opening the lot";
-        let source = if lot.simulated { "simulated" } else { "rig" };
+        let source = source(lot.simulated);
         let written_by = self.written_by.clone();
         let transaction = self.transaction(DOING)?;
         let (run, number) = insert::run(&transaction, lot, source, &written_by).doing(DOING)?;
@@ -236,6 +236,11 @@ impl Store {
             .transaction_with_behavior(TransactionBehavior::Immediate)
             .doing(doing)
     }
+}
+
+/// Of the rig or of the simulated one, as rows say it.
+pub(super) const fn source(simulated: bool) -> &'static str {
+    if simulated { "simulated" } else { "rig" }
 }
 
 fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Result<()> {

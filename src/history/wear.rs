@@ -1,6 +1,7 @@
 //! How often what wears was used since it was replaced.
 
 use super::error::{Doing, Result};
+use super::store::source;
 use super::{Archive, Moment, Store};
 use rusqlite::{Connection, Transaction, params};
 use serde::Serialize;
@@ -27,10 +28,6 @@ pub struct Wear {
     pub replaced: Option<Moment>,
     /// Who did it.
     pub replaced_by: Option<String>,
-}
-
-const fn source(simulated: bool) -> &'static str {
-    if simulated { "simulated" } else { "rig" }
 }
 
 pub(super) fn add(tx: &Transaction<'_>, it: &WearRecord) -> Result<()> {

@@ -146,25 +146,53 @@ impl HmiError {
     /// What stands beside status and reason.
     fn more(&self) -> serde_json::Value {
         match self {
-            Self::NotNow { reason_zh, .. } => json!({ "reason_zh": reason_zh }),
-            Self::Revision { refused } => of_revision(refused),
-            _ => json!({}),
+            Self::Revision {
+                refused:
+                    refused @ ConfigError::Value {
+                        found, expected, ..
+                    },
+            } => json!({ "key": refused.key(), "found": found, "expected": expected }),
+            _ => match self.in_chinese() {
+                Some(reason_zh) => json!({ "reason_zh": reason_zh }),
+                None => json!({}),
+            },
         }
+    }
+
+    /// What an operator meets, in Chinese; the rest is met by scripts and by whoever mends the plant.
+    fn in_chinese(&self) -> Option<String> {
+        Some(match self {
+            Self::NotNow { reason_zh, .. } => reason_zh.clone(),
+            Self::NotLoggedIn { .. } => "请先登录".into(),
+            Self::WrongPassword => "用户名或密码错误".into(),
+            Self::NotAllowed { found, needed } => format!(
+                "此操作需要{}权限，您的角色是{}",
+                needed.in_chinese(),
+                found.in_chinese()
+            ),
+            Self::TooManyTries { wait } => {
+                format!("密码错误次数过多，请 {} 秒后再试", wait.as_secs() + 1)
+            }
+            Self::History(history) | Self::Inquiry(InquiryError::History(history)) => {
+                of_history(history)?.into()
+            }
+            Self::Revision {
+                refused: ConfigError::NotNewest { newest, .. },
+            } => format!(
+                "这份修改所依据的版本已不是最新版本（最新为第 {newest} 版），未保存任何内容"
+            ),
+            _ => return None,
+        })
     }
 }
 
-fn of_revision(refused: &ConfigError) -> serde_json::Value {
-    match refused {
-        ConfigError::NotNewest { newest, .. } => {
-            let zh = format!(
-                "这份修改所依据的版本已不是最新版本（最新为第 {newest} 版），未保存任何内容"
-            );
-            json!({ "reason_zh": zh })
-        }
-        ConfigError::Value {
-            found, expected, ..
-        } => json!({ "key": refused.key(), "found": found, "expected": expected }),
-        _ => json!({}),
+fn of_history(history: &HistoryError) -> Option<&'static str> {
+    match history {
+        HistoryError::Missing { .. } => Some("尚无历史记录"),
+        HistoryError::Locked { .. } => Some("历史文件被其他程序占用"),
+        HistoryError::DiskFull { .. } => Some("磁盘已满"),
+        HistoryError::ReadOnly { .. } => Some("历史文件为只读"),
+        _ => None,
     }
 }
 

@@ -67,7 +67,7 @@ fn kind(language: Language, kind: &str) -> &str {
 }
 
 fn legend(language: Language, charts: &[Named<'_>]) -> Markup {
-    html! {
+    html! { div.together {
         table {
             thead { tr {
                 th { (language.of("Chart", "控制图")) } th.n { (language.of("Points", "点数")) }
@@ -85,7 +85,7 @@ fn legend(language: Language, charts: &[Named<'_>]) -> Markup {
              2 sd; 6 four of five beyond 1 sd; 7 all within 1 sd; 8 none within 1 sd.",
             "控制限取短期波动的三倍标准差。红点旁数字为判异准则：1 超出控制限；2 连续同侧；3 连续递增或递减；4 交替升降；5 三点中两点超 2σ；6 五点中四点超 1σ；7 连续在 1σ 内；8 连续在 1σ 外。"
         )) }
-    }
+    } }
 }
 
 fn told(language: Language, signals: &[Signal]) -> String {

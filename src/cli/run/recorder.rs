@@ -101,6 +101,7 @@ impl<'a> Recorder<'a> {
         traces: Traces,
     ) -> anyhow::Result<(Self, Known)> {
         let mut store = Store::open(db, &Identity::of_this_program())?;
+        store.cut_off(setup.args.rig.sim, setup.epoch_us)?;
         let calibration = if let Some(stage) = &controls.stage {
             stage.calibration.clone()
         } else if setup.args.rig.sim || controls.calibrates.is_some() {

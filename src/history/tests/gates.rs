@@ -105,6 +105,35 @@ fn a_lot_is_where_it_was_put_last_and_open_before() {
 }
 
 #[test]
+fn a_lot_that_was_cut_off_is_open_once_a_program_has_the_rig_again() {
+    let file = File::new();
+    let mut store = file.store();
+    let put = |store: &mut Store, name: &str, simulated: bool, state| {
+        let opened = LotRecord {
+            simulated,
+            ..lot(name)
+        };
+        store.begin_lot(&opened).unwrap();
+        let record = LotStateRecord {
+            lot: name.into(),
+            state,
+            why: None,
+            at_us: 9,
+        };
+        store.record(&[Row::LotState(record)]).unwrap();
+    };
+    put(&mut store, "cut off", false, LotState::Running);
+    put(&mut store, "simulated", true, LotState::Running);
+    put(&mut store, "held", false, LotState::Held);
+    store.cut_off(false, 20).unwrap();
+    let standing = |name: &str| file.archive().standing(name).unwrap().unwrap();
+    let cut_off = standing("cut off");
+    assert_eq!((cut_off.state, cut_off.since), (LotState::Open, Moment(20)));
+    assert_eq!(standing("simulated").state, LotState::Running);
+    assert_eq!(standing("held").state, LotState::Held);
+}
+
+#[test]
 fn a_retest_adds_to_the_final_yield_and_leaves_the_first_pass_yield() {
     let file = File::new();
     let mut store = file.store();

@@ -39,10 +39,12 @@ async fn an_unknown_order_is_answered_with_the_known_ones() {
 #[tokio::test]
 async fn what_a_person_may_not_order_and_what_is_no_order_go_to_the_audit_with_the_name() {
     let bench = Bench::new();
-    bench
+    let too_weak = bench
         .order(r#"{"order":"shelve","alarm":"door_open","reason":"x"}"#)
-        .await
-        .refused(403);
+        .await;
+    too_weak.refused(403);
+    let in_chinese = &too_weak.json()["reason_zh"];
+    assert_eq!(in_chinese, "此操作需要维修员权限，您的角色是操作员");
     bench.order(r#"{"order":"halt"}"#).await.refused(400);
     bench.order(r#"{"order":"stop"}"#).await;
     let denied = bench.denied.lock().unwrap().clone();

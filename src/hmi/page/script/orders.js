@@ -8,7 +8,7 @@ async function give(order) {
   try {
     const reply = await post("/api/orders", order);
     const body = await reply.json();
-    return reply.ok ? "" : (language === "zh" && (refusedJog(order) || body.reason_zh)) || body.reason;
+    return reply.ok ? "" : (language === "zh" && refusedJog(order)) || whyRefused(body);
   } catch {
     return word("stop.lost");
   }

@@ -31,7 +31,7 @@ at("login").addEventListener("submit", async (event) => {
       at("password").value = "";
       at("login").close();
     } else {
-      at("login_answer").textContent = known("login." + answer.status, body.reason);
+      at("login_answer").textContent = known("login." + answer.status, whyRefused(body));
     }
   } catch {
     at("login_answer").textContent = word("stop.lost");

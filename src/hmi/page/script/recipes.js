@@ -68,7 +68,7 @@ function refusedValue(answer) {
   return "▲ " + word("r.found") + " " + answer.found + word("r.expected") + " " + expected;
 }
 
-const refusal = (answer) => () => [answer.key ? word("r.refused") : (language === "zh" && answer.reason_zh) || answer.reason, true];
+const refusal = (answer) => () => [answer.key ? word("r.refused") : whyRefused(answer), true];
 
 async function saveRecipe() {
   const values = changedValues();

@@ -104,8 +104,11 @@ function query(members) {
 async function ask(path) {
   const reply = await fetch(path, {signal: AbortSignal.timeout(20000)});
   if (reply.ok) return reply;
-  throw new Error((await reply.json()).reason);
+  throw new Error(whyRefused(await reply.json()));
 }
+
+// Why a request was refused, in the language of the page where the rig knows it.
+const whyRefused = (answer) => (language === "zh" && answer.reason_zh) || answer.reason;
 
 async function post(path, body) {
   const headers = {"Content-Type": "application/json"};
