@@ -84,9 +84,28 @@ pub struct Lag {
     /// Coarse minus fine indication: places the fine ramp, and gives results where a recipe trusts it.
     #[serde(default = "untaught")]
     pub coarse: LagLaw,
+    /// That law was taught by parts of the lot, enough of them to judge others like them.
+    #[serde(default)]
+    pub judges: bool,
 }
 
+/// Parts of a lot that teach the coarse lag before it gives results.
+const FIRST_PARTS: u32 = 20;
+
 impl Lag {
+    /// With what golden parts and lot have taught so far, and what the lot alone has. Golden parts are chosen to lie far
+    /// apart, where the line bends and their times do not go with their thresholds: they place ramps, and judge nothing
+    /// once the lot has taught enough.
+    pub fn taught(self, by_all: LagLaw, by_lot: LagLaw) -> Self {
+        let judges = by_lot.parts() >= FIRST_PARTS;
+        let coarse = if judges { by_lot } else { by_all };
+        Self {
+            coarse,
+            judges,
+            ..self
+        }
+    }
+
     /// How much further than on the golden parts the fine ramp overshoots on a part, volts, and how sure that is (1 sd).
     ///
     /// A rising ramp waits for the armature at both rates: of a part that overshoots more on the coarse one the fine one
@@ -210,6 +229,7 @@ mod tests {
             at_v: 7.88,
             at_coarse_v: 0.84,
             coarse: LagLaw::guess(0.84),
+            judges: false,
         };
         let rising = |coarse_v| lag.own_v(coarse_v, Direction::Rising);
         assert_eq!(rising(0.84), Factor::new(0.0, 0.0));

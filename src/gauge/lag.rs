@@ -100,11 +100,9 @@ pub struct LagLaw {
 impl LagLaw {
     /// Before any part was seen: a guess of the lag in volts.
     pub fn guess(guess_v: f64) -> Self {
-        let slope_sd_v = ELASTICITY * guess_v.abs().max(GUESS_SD_V);
         let mut products = [[0.0; TERMS]; TERMS];
         for (term, row) in products.iter_mut().enumerate() {
-            let sd = if term == 0 { GUESS_SD_V } else { slope_sd_v };
-            row[term] = (SCATTER_V / sd).powi(2);
+            row[term] = believed(guess_v, term);
         }
         Self {
             guess_v,
@@ -148,7 +146,7 @@ impl LagLaw {
         let line = solved(self.products, self.with_lag);
         let spread = dot(terms, solved(self.products, terms));
         let left = (self.squares - dot(line, self.with_lag)).max(0.0);
-        let freedom = WORTH + f64::from(self.parts);
+        let freedom = WORTH + f64::from(self.parts) - self.told();
         // Student's t of so many degrees of freedom is wider than a normal distribution by this.
         let student = freedom / (freedom - 2.0);
         let beyond = self.beyond(spread);
@@ -158,6 +156,16 @@ impl LagLaw {
                 * beyond.unwrap_or(1.0).max(1.0),
             alike: logarithms.is_some() && beyond.is_some_and(|it| it < 1.0),
         }
+    }
+
+    /// How many terms the parts have told, and not the prior: so many of them are gone into the line and leave no scatter.
+    fn told(&self) -> f64 {
+        let of_term = |term: usize| {
+            let mut alone = [0.0; TERMS];
+            alone[term] = 1.0;
+            1.0 - believed(self.guess_v, term) * solved(self.products, alone)[term]
+        };
+        (0..TERMS).map(of_term).sum()
     }
 
     /// Squared distance from the parts seen against that of the furthest that are like them; none while too few were.
@@ -177,6 +185,15 @@ impl LagLaw {
         }
         terms
     }
+}
+
+/// What the prior adds to the product of a term with itself.
+fn believed(guess_v: f64, term: usize) -> f64 {
+    let sd_v = match term {
+        0 => GUESS_SD_V,
+        _ => ELASTICITY * guess_v.abs().max(GUESS_SD_V),
+    };
+    (SCATTER_V / sd_v).powi(2)
 }
 
 fn dot(a: [f64; TERMS], b: [f64; TERMS]) -> f64 {

@@ -112,6 +112,7 @@ mod tests {
             at_v: 7.88,
             at_coarse_v: 0.85,
             coarse: LagLaw::guess(0.85),
+            judges: false,
         };
         let doubt = RampDoubt {
             slope: Factor::new(1.5, 0.0),

@@ -84,14 +84,23 @@ impl GoldenRun {
                 at_v: mean(sets, |part| part.operate_voltage_v),
                 at_coarse_v: self.over(0),
                 coarse: coarse.0,
+                judges: false,
             },
             release: Lag {
                 fine_v: release,
                 at_v: mean(sets, |part| part.release_voltage_v),
                 at_coarse_v: self.over(1),
                 coarse: coarse.1,
+                judges: false,
             },
         })
+    }
+
+    /// Mean of fine indication minus certificate so far, operate and release.
+    pub fn fine_v(&self) -> Option<(f64, f64)> {
+        let n = self.shifts.len() as f64;
+        let mean = |shift: fn(&Shift) -> f64| self.shifts.iter().map(shift).sum::<f64>() / n;
+        (n > 0.0).then(|| (mean(|it| it.operate), mean(|it| it.release)))
     }
 
     /// Mean of coarse minus fine indication where both were seen, 0 if nowhere.
@@ -191,12 +200,13 @@ pub fn check(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
     Ok(())
 }
 
-/// Lag before the golden parts are complete: no fine correction yet, the coarse one as far as learned.
-pub fn interim(coarse: LagLaw) -> Lag {
+/// Lag before the golden parts are complete: no fine correction yet but where to look, the coarse one as far as learned.
+pub fn interim(coarse: LagLaw, fine_v: f64) -> Lag {
     Lag {
-        fine_v: Factor::new(0.0, f64::INFINITY),
+        fine_v: Factor::new(fine_v, f64::INFINITY),
         at_v: 0.0,
         at_coarse_v: 0.0,
         coarse,
+        judges: false,
     }
 }

@@ -4,11 +4,13 @@
 use super::act::Runner;
 use super::gates::Told;
 use super::ledger::Kind;
+use super::test::bench::UNTAUGHT_FINE_V;
 use super::trouble::Alarm;
 use super::wants::{Judged, Wants};
 use super::{Station, golden, reference};
 use crate::gauge::Calibration;
-use crate::gauge::calibration::{Lag, Lags};
+use crate::gauge::calibration::Lags;
+use crate::gauge::settings::GoldenPart;
 use crate::gauge::verdict::Verdict;
 use crate::units::RigTime;
 use std::collections::VecDeque;
@@ -75,13 +77,17 @@ impl Station {
         let findings = &judged.findings;
         // A slow or sticking part would spoil the place of the ramp for all that follow.
         if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
+            let lot = matches!(judged.part.kind, Kind::Lot(_));
             let both = [
-                (findings.operate, &mut self.coarse.0),
-                (findings.release, &mut self.coarse.1),
+                (findings.operate, &mut self.coarse.0, &mut self.of_lot.0),
+                (findings.release, &mut self.coarse.1, &mut self.of_lot.1),
             ];
-            for (ramp, law) in both {
+            for (ramp, law, of_lot) in both {
                 if let Some((coarse, fine)) = ramp.and_then(|it| Some((it.coarse, it.fine?))) {
                     law.learn(&coarse, fine);
+                    if lot {
+                        of_lot.learn(&coarse, fine);
+                    }
                 }
             }
         }
@@ -99,6 +105,16 @@ impl Station {
         }
         let still_golden = matches!(judged.part.kind, Kind::Golden(_));
         self.take_lags(still_golden, calibrated, told);
+    }
+
+    /// Certificate of the golden part in the nest, while golden parts teach and are not checked.
+    pub(super) fn teaching(&self) -> Option<&GoldenPart> {
+        match self.ledger.nest.as_ref().map(|part| &part.kind) {
+            Some(Kind::Golden(serial)) if !self.gates.is_checking() => {
+                self.plan.golden.iter().find(|part| part.serial == *serial)
+            }
+            Some(Kind::Golden(_) | Kind::Lot(_)) | None => None,
+        }
     }
 
     /// The last golden part was interrupted: what the others taught has to do, or the calibration has failed.
@@ -132,14 +148,8 @@ impl Station {
         if !golden {
             let known = (bench.operate_lag(), bench.release_lag());
             let lags = Lags {
-                operate: Lag {
-                    coarse: self.coarse.0,
-                    ..known.0
-                },
-                release: Lag {
-                    coarse: self.coarse.1,
-                    ..known.1
-                },
+                operate: known.0.taught(self.coarse.0, self.of_lot.0),
+                release: known.1.taught(self.coarse.1, self.of_lot.1),
             };
             return Ok((lags, false));
         }
@@ -149,9 +159,10 @@ impl Station {
                 .lags(&self.plan.golden, &bench.accuracy, self.coarse)?;
             return Ok((lags, true));
         }
+        let fine_v = self.golden_run.fine_v().unwrap_or(UNTAUGHT_FINE_V);
         let lags = Lags {
-            operate: golden::interim(self.coarse.0),
-            release: golden::interim(self.coarse.1),
+            operate: golden::interim(self.coarse.0, fine_v.0),
+            release: golden::interim(self.coarse.1, fine_v.1),
         };
         Ok((lags, false))
     }

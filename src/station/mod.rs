@@ -164,6 +164,8 @@ pub struct Station {
     gates: Gates,
     golden_run: GoldenRun,
     coarse: (LagLaw, LagLaw),
+    /// The same of parts of this lot alone.
+    of_lot: (LagLaw, LagLaw),
     last_left: Option<RigTime>,
     lot_began: bool,
     /// Nobody has started anything yet: the first start is the program's own.
@@ -180,6 +182,11 @@ impl Station {
         } else {
             plan.golden.iter().cloned().collect()
         };
+        // What golden parts taught before a restart is not forgotten.
+        let known = bench.calibration.lags;
+        let known = known.map_or(untaught(), |lags| {
+            (lags.operate.coarse, lags.release.coarse)
+        });
         let mut station = Self {
             fresh: true,
             state: plan.between_lots.unwrap_or(State::Stopped),
@@ -215,7 +222,8 @@ impl Station {
             golden_left,
             gates: Gates::default(),
             golden_run: GoldenRun::default(),
-            coarse: untaught(),
+            coarse: known,
+            of_lot: untaught(),
             last_left: None,
             lot_began: false,
             stopping: false,

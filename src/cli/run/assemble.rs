@@ -75,6 +75,7 @@ pub fn cycle(
         nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
             .map(|output| nominal_v_per_s(&wiring, output)),
         thorough: false,
+        golden: None,
     };
     let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), size_of(setup.recipe));
     let mut station = Station::new(plan, bench, wiring.axis.clone(), mechanism);

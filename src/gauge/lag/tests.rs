@@ -66,6 +66,42 @@ fn scatter_about_the_law_stays_in_the_uncertainty_however_many_parts_teach() {
 }
 
 #[test]
+fn what_the_line_has_taken_for_itself_is_not_taken_for_agreement() {
+    // Ten parts and six terms: what is left about the line is less than the scatter of the parts.
+    let u_v = taught(10, 0.006).of(&part(7).0).u_v;
+    assert!(u_v > 0.006, "{u_v}");
+    for parts in [15, 20, 30] {
+        let law = taught(parts, 0.006);
+        let beyond_two_u = (parts..parts + 200)
+            .filter(|at| {
+                let (shown, fine) = part(*at);
+                let off = if at % 2 == 0 { 0.006 } else { -0.006 };
+                let predicted = law.of(&shown);
+                (predicted.volts - (shown.indicated - fine).0 - off).abs() > 2.0 * predicted.u_v
+            })
+            .count();
+        assert!(
+            beyond_two_u <= 10,
+            "{beyond_two_u} of 200 after {parts} parts"
+        );
+    }
+}
+
+#[test]
+fn beyond_the_parts_seen_the_doubt_grows_with_the_square_of_the_distance() {
+    let law = taught(40, 0.002);
+    let (lot, fine) = part(3);
+    let at = |further: f64| Shown {
+        indicated: Volt(fine.0 * (1.0 + further)),
+        operate: Volt(fine.0 * (1.0 + further)),
+        ..lot
+    };
+    let (far, twice) = (law.of(&at(0.6)), law.of(&at(1.2)));
+    assert!(!far.alike && !twice.alike);
+    assert!(twice.u_v > 4.0 * far.u_v, "{far:?} {twice:?}");
+}
+
+#[test]
 fn parts_of_the_lot_are_alike_and_one_far_outside_is_not_however_many_have_taught() {
     for parts in [20, 500] {
         let law = taught(parts, 0.002);

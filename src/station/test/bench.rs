@@ -4,7 +4,7 @@ use crate::gauge::calibration::{Calibration, Lag};
 use crate::gauge::coil::ScanDoubt;
 use crate::gauge::lag::LagLaw;
 use crate::gauge::recipe::{CoilChannels, Recipe};
-use crate::gauge::settings::{AccuracySettings, ReferenceSettings};
+use crate::gauge::settings::{AccuracySettings, GoldenPart, ReferenceSettings};
 use crate::gauge::timing::Clock;
 use crate::gauge::{Parameter, Strategy};
 use crate::station::golden::interim;
@@ -18,8 +18,8 @@ const LSB_V: f64 = 20.0 / 4096.0;
 const UNTAUGHT_OPERATE_V: f64 = 0.85;
 const UNTAUGHT_RELEASE_V: f64 = -1.05;
 
-/// Golden parts and first parts of a lot that teach the coarse lag before it gives results.
-const FIRST_PARTS: u32 = 15;
+/// The same of a 1.5 V/s ramp, operate and release.
+pub const UNTAUGHT_FINE_V: (f64, f64) = (0.03, -0.02);
 
 /// Recipe, calibration and instrument data of a test.
 #[derive(Debug, Clone)]
@@ -36,6 +36,8 @@ pub struct Bench {
     pub nominal_v_per_s: [f64; 2],
     /// The slow strategy for every result: a golden check or a first article.
     pub thorough: bool,
+    /// The golden part in the nest while golden parts teach the lags: its certificate places its fine ramps.
+    pub golden: Option<GoldenPart>,
 }
 
 impl Bench {
@@ -102,9 +104,7 @@ impl Bench {
         let mut each = self.recipe.test.strategy.each().into_iter();
         match each.find(|(known, _)| *known == parameter) {
             Some(_) if self.thorough => Strategy::CoarseFine,
-            Some((_, Strategy::Adaptive)) if lag.coarse.parts() < FIRST_PARTS => {
-                Strategy::CoarseFine
-            }
+            Some((_, Strategy::Adaptive)) if !lag.judges => Strategy::CoarseFine,
             Some((_, strategy)) if lag.fine_v.u.is_finite() => strategy,
             Some(_) | None => Strategy::CoarseFine,
         }
@@ -114,14 +114,18 @@ impl Bench {
     pub fn operate_lag(&self) -> Lag {
         self.calibration
             .lags
-            .map_or(interim(untaught().0), |lags| lags.operate)
+            .map_or(interim(untaught().0, UNTAUGHT_FINE_V.0), |lags| {
+                lags.operate
+            })
     }
 
     /// Lag of the release ramps.
     pub fn release_lag(&self) -> Lag {
         self.calibration
             .lags
-            .map_or(interim(untaught().1), |lags| lags.release)
+            .map_or(interim(untaught().1, UNTAUGHT_FINE_V.1), |lags| {
+                lags.release
+            })
     }
 }
 

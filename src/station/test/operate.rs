@@ -115,9 +115,10 @@ pub(super) fn conclude_coarse(
     });
     findings.operated = true;
     findings.still_ramping = turning(bench, coarse - start);
-    findings.expected_operate = Some(Expected::after(&seen, &lag));
     let strategy = bench.strategy(Parameter::OperateVoltage);
     let (samples, part) = (readings.gates.iter().flatten(), findings.track?);
+    let certified = Expected::certified(bench, part, Direction::Rising);
+    findings.expected_operate = certified.or(Some(Expected::after(&seen, &lag)));
     match coarse_reading(bench, (seen, lag), part, Direction::Rising) {
         Some(reading) if strategy.trusts_coarse() => {
             findings.found(Parameter::OperateVoltage, reading, samples);

@@ -6,10 +6,11 @@ use super::findings::Findings;
 use super::indication::gate0;
 use super::pace::Pace;
 use crate::gauge::calibration::Lag;
+use crate::gauge::coil::to_reference;
 use crate::gauge::lag::Shown;
 use crate::gauge::threshold::{Direction, indicated};
 use crate::station::act::Readings;
-use crate::units::{Second, Span, Volt};
+use crate::units::{Celsius, Second, Span, Volt};
 
 /// The level jumps by this much between ARM and ramp: the window opens after [`WINDOW_V`], and on the fine
 /// ramp alone that would take 33 ms. What is left keeps the comparator's tolerance out of the way. Flux and
@@ -29,6 +30,11 @@ const COVERAGE: f64 = 3.0;
 const WIDEST_SD_V: f64 = 0.1;
 /// The same of a ramp that is placed anew.
 const WIDEST: Volt = Volt(0.2);
+/// How far the guessed lag of a fine ramp may be off (1 sd).
+const FINE_GUESS_SD_V: f64 = 0.020;
+/// Operations of two golden parts, volts, and a quarter of a kelvin between them, as a share of the threshold (1 sd).
+const TWO_OPERATIONS_V: f64 = 0.004;
+const TWO_TEMPERATURES: f64 = 0.001;
 /// Width of the next interval against that of the one that was missed.
 const WIDER: f64 = 3.0;
 /// A fine ramp is placed so often before the test is void.
@@ -66,6 +72,21 @@ impl Expected {
         let predicted = lag.coarse.of(coarse);
         let sd_v = predicted.u_v.min(WIDEST_SD_V);
         Self::new(coarse.indicated - Volt(predicted.volts), sd_v)
+    }
+
+    /// Where the certificate of a golden part that teaches the lags says; the first of them is to tell the fine one.
+    pub fn certified(bench: &Bench, track: Celsius, direction: Direction) -> Option<Self> {
+        let golden = bench.golden.as_ref()?;
+        let (certified, lag) = match direction {
+            Direction::Rising => (golden.operate_voltage_v, bench.operate_lag()),
+            Direction::Falling => (golden.release_voltage_v, bench.release_lag()),
+        };
+        let at_part = certified.value / to_reference(track, bench.reference_temperature());
+        let sd_v = match lag.coarse.parts() {
+            0 => FINE_GUESS_SD_V,
+            _ => TWO_OPERATIONS_V.hypot(TWO_TEMPERATURES * at_part),
+        };
+        Some(Self::new(Volt(at_part + lag.fine_v.value), sd_v))
     }
 
     /// The rising ramp that searches this interval after a run-up.

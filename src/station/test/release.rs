@@ -137,8 +137,9 @@ pub(super) fn conclude_coarse(
         coarse: seen,
         fine: None,
     });
-    findings.expected_release = Some(Expected::after(&seen, &lag));
     let (samples, part) = (readings.gates.iter().flatten(), findings.track?);
+    let certified = Expected::certified(bench, part, Direction::Falling);
+    findings.expected_release = certified.or(Some(Expected::after(&seen, &lag)));
     match coarse_reading(bench, (seen, lag), part, Direction::Falling) {
         Some(reading) if strategy.trusts_coarse() => {
             findings.found(Parameter::ReleaseVoltage, reading, samples);

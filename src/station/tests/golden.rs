@@ -133,7 +133,7 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
 
 #[test]
 fn while_golden_parts_run_the_fine_lag_proves_nothing() {
-    let lag = interim(untaught().0);
+    let lag = interim(untaught().0, 0.0);
     assert_eq!((lag.fine_v.value, lag.fine_v.u), (0.0, f64::INFINITY));
     assert_eq!(lag.coarse, bench().operate_lag().coarse);
 }

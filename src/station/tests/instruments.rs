@@ -28,6 +28,7 @@ pub fn bench() -> Bench {
         accuracy: instruments.accuracy,
         nominal_v_per_s: [96.0, 1.5],
         thorough: false,
+        golden: None,
     }
 }
 
@@ -45,6 +46,7 @@ fn calibration() -> Calibration {
         at_v: 0.0,
         at_coarse_v: coarse_v,
         coarse: LagLaw::guess(coarse_v),
+        judges: false,
     };
     Calibration {
         simulated: true,

@@ -23,7 +23,7 @@ mod sort;
 mod supply;
 mod trouble;
 
-pub(in crate::station) use instruments::bench;
+pub(in crate::station) use instruments::{bench, golden_parts};
 pub(in crate::station) use shop::Shop;
 
 use crate::rig::settings::RigSettings;

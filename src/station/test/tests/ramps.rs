@@ -2,12 +2,22 @@
 
 use super::super::{operate_fine, release};
 use super::{PULLED, RESTING, at_23_c, bench, watched};
+use crate::gauge::Parameter;
+use crate::gauge::budget::{Budget, Reading};
+use crate::gauge::calibration::{Calibration, Lags};
+use crate::gauge::lag::{LagLaw, Shown};
 use crate::gauge::threshold::Direction;
 use crate::rig::point::DigitalOut;
+use crate::rig::sample::CountSample;
 use crate::station::act::Act;
+use crate::station::golden::interim;
 use crate::station::supply::Supply;
+use crate::station::test::pace::Pace;
 use crate::station::test::ramp::Expected;
+use crate::station::tests::golden_parts;
+use crate::units::Celsius;
 use crate::units::{Span, Volt};
+use std::sync::Arc;
 
 /// Least time from the mark before these acts to the first ARM among them.
 fn until_armed(acts: &[Act]) -> Span {
@@ -71,4 +81,69 @@ fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
     let (falling, rising) = (wait_ms(false), wait_ms(true));
     assert!((100.0..110.0).contains(&falling), "{falling}");
     assert!((130.0..150.0).contains(&rising), "{rising}");
+}
+
+#[test]
+fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
+    let mut bench = bench();
+    let learned = bench.operate_lag();
+    let mut half_width = |coarse: LagLaw| {
+        bench.golden = golden_parts().into_iter().next();
+        let lag = interim(coarse, 0.03);
+        let lags = Lags {
+            operate: lag,
+            release: lag,
+        };
+        bench.calibration = Arc::new(Calibration {
+            lags: Some(lags),
+            ..(*bench.calibration).clone()
+        });
+        let found = Expected::certified(&bench, Celsius(23.0), Direction::Rising).unwrap();
+        assert!((found.centre.0 - 7.43).abs() < 1e-9, "{found:?}");
+        found.half_width.0
+    };
+    let first = half_width(LagLaw::guess(0.85));
+    let mut taught = learned.coarse;
+    taught.learn(&shown(), Volt(7.9));
+    let second = half_width(taught);
+    assert!((0.05..0.08).contains(&first) && (0.02..0.03).contains(&second));
+}
+
+#[test]
+fn a_part_of_the_lot_has_no_certificate_to_be_looked_for_at() {
+    let found = Expected::certified(&bench(), Celsius(23.0), Direction::Falling);
+    assert_eq!(found, None);
+}
+
+#[test]
+fn a_slow_armature_gets_more_time_and_a_longer_run_up() {
+    let of = |operate_ms: f64| {
+        let mut findings = at_23_c();
+        let reading = Reading {
+            value: operate_ms,
+            budget: Budget::default(),
+        };
+        findings.found::<CountSample>(Parameter::OperateTime, reading, []);
+        Pace::of(&findings)
+    };
+    let (usual, slow) = (of(4.7), of(9.4));
+    assert_eq!(
+        usual.approaches().as_seconds() * 2.0,
+        slow.approaches().as_seconds()
+    );
+    assert!((usual.run_up(1.5).0 - 0.060).abs() < 1e-3, "{usual:?}");
+    assert!((slow.run_up(1.5).0 - 0.120).abs() < 2e-3, "{slow:?}");
+    assert_eq!(of(1e9), of(20.0), "within reason");
+    assert_eq!(Pace::of(&at_23_c()), of(5.0), "one that has shown nothing");
+}
+
+/// Results of a part of the lot.
+fn shown() -> Shown {
+    Shown {
+        indicated: Volt(8.75),
+        operate: Volt(8.75),
+        operate_ms: 4.7,
+        release_ms: 2.9,
+        coil_ohm: 400.0,
+    }
 }
