@@ -14,9 +14,6 @@ use std::borrow::Cow;
 /// 1e4 mm) can never make them too small.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// What `may_touch` leaves of a piece that is thinner than the depth, mm: a core, never nothing.
-const CORE_MM: f64 = 1e-3;
-
 /// Axis-parallel box of offsets, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Offsets {
@@ -71,27 +68,6 @@ pub(super) fn room<'a>(shape: &'a Shape, pose: &Pose, offsets: &Offsets) -> (Cow
         &mut covers,
     );
     (Cow::Owned(Shape::Compound(covers)), Pose::at(pose.position))
-}
-
-/// `shape` with `depth_mm` taken off every face of every piece.
-pub(super) fn shrunk(shape: &Shape, depth_mm: f64) -> Shape {
-    let less = |half: f64| (half - depth_mm).max(CORE_MM.min(half));
-    match shape {
-        Shape::Block { half } => Shape::Block {
-            half: half.map(less),
-        },
-        Shape::Cylinder { radius, height } => Shape::Cylinder {
-            radius: less(*radius),
-            height: 2.0 * less(height / 2.0),
-        },
-        Shape::Compound(parts) => Shape::Compound(
-            parts
-                .iter()
-                .map(|(pose, part)| (*pose, shrunk(part, depth_mm)))
-                .collect(),
-        ),
-        Shape::Mesh(mesh) => Shape::Mesh(mesh.clone()),
-    }
 }
 
 fn collect(

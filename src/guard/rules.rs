@@ -1,30 +1,22 @@
-//! What any two bodies may do, as a table: one look-up per pair, no search at run time.
+//! Which two bodies have which permission, as a table: one look-up per pair, no search at run time. What a
+//! permission means is the core's.
 
 use super::actuator::Actuator;
 use super::error::GuardError;
 use super::settings::{GuardSettings, PairRule, PairSettings};
+use crate::lpm::Permission;
 
-/// What one body must keep from another while a certain actuator moves.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Keep {
-    /// Further apart than this, mm.
-    Apart(f64),
-    /// Not pressed in deeper than this, mm.
-    Depth(f64),
-    /// The pair is not tested.
-    Nothing,
-}
-
+/// What a pair may do, and while which actuators move, if not always.
 #[derive(Debug, Clone, Copy)]
-struct Permission {
-    keep: Keep,
+struct Allowed {
+    permission: Permission,
     by: Option<[bool; 8]>,
 }
 
 /// The table; bodies are numbered as in the scene.
 #[derive(Debug, Clone)]
 pub(super) struct Rules {
-    permissions: Vec<Permission>,
+    allowed: Vec<Allowed>,
     table: Vec<u16>,
     bodies: usize,
 }
@@ -32,17 +24,19 @@ pub(super) struct Rules {
 impl Rules {
     /// Lays the pairs of `settings` over the default margin, in their order.
     pub fn of(settings: &GuardSettings, ids: &[String]) -> Result<Rules, GuardError> {
-        let default = Permission {
-            keep: Keep::Apart(settings.guard.default_margin_mm),
+        let default = Allowed {
+            permission: Permission::Forbidden {
+                margin_mm: settings.guard.default_margin_mm,
+            },
             by: None,
         };
         let mut rules = Rules {
-            permissions: vec![default],
+            allowed: vec![default],
             table: vec![0; ids.len() * ids.len()],
             bodies: ids.len(),
         };
         for (index, pair) in settings.pair.iter().enumerate() {
-            rules.permissions.push(permission(pair, index, settings)?);
+            rules.allowed.push(allowed(pair, index, settings)?);
             let first = matching(&pair.a, ids, index)?;
             let second = matching(&pair.b, ids, index)?;
             for a in &first {
@@ -56,24 +50,24 @@ impl Rules {
     }
 
     fn allow(&mut self, a: usize, b: usize) {
-        self.table[a * self.bodies + b] = (self.permissions.len() - 1) as u16;
+        self.table[a * self.bodies + b] = (self.allowed.len() - 1) as u16;
     }
 
-    /// What `mover` must keep from `other` while `actuator` moves it.
-    pub fn keep(&self, mover: usize, other: usize, actuator: Actuator) -> Keep {
-        let permission = &self.permissions[self.table[mover * self.bodies + other] as usize];
-        match permission.by {
-            Some(by) if !by[actuator.index()] => self.permissions[0].keep,
-            Some(_) | None => permission.keep,
+    /// What `mover` may do to `other` while `actuator` moves it.
+    pub fn permission(&self, mover: usize, other: usize, actuator: Actuator) -> Permission {
+        let allowed = &self.allowed[self.table[mover * self.bodies + other] as usize];
+        match allowed.by {
+            Some(by) if !by[actuator.index()] => self.allowed[0].permission,
+            Some(_) | None => allowed.permission,
         }
     }
 }
 
-fn permission(
+fn allowed(
     pair: &PairSettings,
     index: usize,
     settings: &GuardSettings,
-) -> Result<Permission, GuardError> {
+) -> Result<Allowed, GuardError> {
     let member = |key, value: Option<f64>, default: f64| match value.unwrap_or(default) {
         mm if mm.is_finite() && mm >= 0.0 => Ok(mm),
         found => Err(GuardError::Number {
@@ -82,22 +76,22 @@ fn permission(
             expected: ">= 0",
         }),
     };
-    let margin = member(
+    let margin_mm = member(
         "margin_mm",
         pair.margin_mm,
         settings.guard.default_margin_mm,
     )?;
-    let depth = member("depth_mm", pair.depth_mm, settings.guard.touch_depth_mm)?;
-    let keep = match pair.rule {
-        PairRule::Forbidden => Keep::Apart(margin),
-        PairRule::MayTouch => Keep::Depth(depth),
-        PairRule::Ignore => Keep::Nothing,
+    let depth_mm = member("depth_mm", pair.depth_mm, settings.guard.touch_depth_mm)?;
+    let permission = match pair.rule {
+        PairRule::Forbidden => Permission::Forbidden { margin_mm },
+        PairRule::MayTouch => Permission::MayTouch { depth_mm },
+        PairRule::Ignore => Permission::Ignored,
     };
     let by = pair
         .by
         .as_ref()
         .map(|by| Actuator::ALL.map(|actuator| by.contains(&actuator)));
-    Ok(Permission { keep, by })
+    Ok(Allowed { permission, by })
 }
 
 fn matching(pattern: &str, ids: &[String], index: usize) -> Result<Vec<usize>, GuardError> {

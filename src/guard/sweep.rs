@@ -6,22 +6,17 @@
 //! real combination of positions that the situation allows, the real bodies lie inside what was
 //! tested: a cleared stroke is clear for all of them.
 //!
-//! The core answers one margin at a time: the other bodies are grouped by what the mover must keep
-//! from them. Where two may touch, the mover is tested with the depth taken off its faces.
+//! What the mover may do to each other body is named here; the core applies it.
 
 use super::carried::{Company, company};
 use super::motion::Stroke;
-use super::occupancy::{Offsets, room, scaled, shrunk, sum};
+use super::occupancy::{Offsets, room, scaled, sum};
 use super::part::{Role, shape_of};
-use super::rules::Keep;
 use super::scene::Scene;
 use super::situation::Situation;
 use super::space::Space;
-use crate::lpm::{Answer, Contact, ElementKey, Flaw, Move, Mover, Moving, Pose, Shape};
+use crate::lpm::{ElementKey, Flaw, Forbidden, Move, Mover, Passing, Permission, Pose, Shape};
 use std::borrow::Cow;
-
-/// How far beyond the margin a refusal still measures the least distance, mm.
-const MEASURED_BEYOND_MM: f64 = 1.0;
 
 /// The first contact of a stroke.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,14 +47,6 @@ struct Travel<'a> {
     to: [f64; 3],
 }
 
-/// A contact of one mover.
-struct Hit {
-    mover: usize,
-    contact: Contact,
-    distance_mm: f64,
-    margin_mm: f64,
-}
-
 /// Sweeps `stroke` from where `situation` has its actuator; `Ok(None)` is proof that it is clear.
 pub(super) fn sweep(
     scene: &Scene,
@@ -73,18 +60,18 @@ pub(super) fn sweep(
     let way = way(span, stroke.to_mm);
     let travels = travels(scene, situation, stroke, &company, way);
     let moving: Vec<usize> = travels.iter().map(|travel| travel.number).collect();
-    let mut first: Option<Hit> = None;
+    let mut first: Option<(usize, Forbidden)> = None;
     for travel in &travels {
-        let hit = first_hit(scene, space, stroke, travel, &moving, &company);
-        if let Some(hit) = hit
-            && first
-                .as_ref()
-                .is_none_or(|known| hit.contact.t_stop < known.contact.t_stop)
+        let permissions = permissions(scene, space, stroke, travel, &moving, &company);
+        let model = space.model();
+        let found = model.first_forbidden(&permissions, |depth_mm| travel.passing(depth_mm))?;
+        if let Some(found) = found
+            && first.is_none_or(|(_, known)| found.contact.t_stop < known.contact.t_stop)
         {
-            first = Some(hit);
+            first = Some((travel.number, found));
         }
     }
-    Ok(first.map(|hit| finding(space, stroke, span.0 == span.1, way, &hit)))
+    Ok(first.map(|first| finding(space, stroke, span.0 == span.1, way, first)))
 }
 
 /// Least distance of `stroke` to the bodies that it must keep apart from, mm; nothing beyond `range_mm`. Those that may
@@ -102,11 +89,11 @@ pub(super) fn least_mm(
     let travels = travels(scene, situation, stroke, &company, way);
     let moving: Vec<usize> = travels.iter().map(|travel| travel.number).collect();
     let all = travels.iter().filter_map(|travel| {
-        let kept = kept(scene, space, stroke, travel, &moving, &company);
-        let apart = |keep: &Keep| matches!(keep, Keep::Apart(_));
-        let ignore: Vec<ElementKey> = kept
+        let permissions = permissions(scene, space, stroke, travel, &moving, &company);
+        let apart = |permission: &Permission| matches!(permission, Permission::Forbidden { .. });
+        let ignore: Vec<ElementKey> = permissions
             .iter()
-            .filter(|(_, keep)| !apart(keep))
+            .filter(|(_, permission)| !apart(permission))
             .map(|(key, _)| *key)
             .collect();
         let (shape, pose) = room(&travel.shape, &travel.pose, &travel.unsure);
@@ -176,120 +163,49 @@ fn travels<'a>(
     .collect()
 }
 
-fn first_hit(
+/// What `travel` may do to every body in the space; those that move with it are ignored.
+fn permissions(
     scene: &Scene,
     space: &Space,
     stroke: &Stroke,
     travel: &Travel<'_>,
     moving: &[usize],
     company: &Company,
-) -> Option<Hit> {
-    let kept = kept(scene, space, stroke, travel, moving, company);
-    let mut groups: Vec<Keep> = Vec::new();
-    for (_, keep) in &kept {
-        if *keep != Keep::Nothing && !groups.contains(keep) {
-            groups.push(*keep);
-        }
-    }
-    let hits = groups
-        .iter()
-        .filter_map(|keep| hit_in_group(space, travel, *keep, &kept));
-    hits.min_by(|a, b| a.contact.t_stop.total_cmp(&b.contact.t_stop))
-}
-
-/// What `travel` must keep from every body in the space; nothing from those that move with it.
-fn kept(
-    scene: &Scene,
-    space: &Space,
-    stroke: &Stroke,
-    travel: &Travel<'_>,
-    moving: &[usize],
-    company: &Company,
-) -> Vec<(ElementKey, Keep)> {
+) -> Vec<(ElementKey, Permission)> {
     let left = company.left.map(|role| scene.number_of(role));
-    let keep = |number: usize| {
+    let permission = |number: usize| {
         if moving.contains(&number) || left == Some(number) {
-            return Keep::Nothing;
+            return Permission::Ignored;
         }
-        scene.rules.keep(travel.number, number, stroke.actuator)
+        let rules = &scene.rules;
+        rules.permission(travel.number, number, stroke.actuator)
     };
     let occupants = space.occupants();
-    occupants.map(|(number, key)| (key, keep(number))).collect()
+    occupants
+        .map(|(number, key)| (key, permission(number)))
+        .collect()
 }
 
-fn hit_in_group(
-    space: &Space,
-    travel: &Travel<'_>,
-    keep: Keep,
-    kept: &[(ElementKey, Keep)],
-) -> Option<Hit> {
-    let (shape, margin_mm) = match keep {
-        Keep::Apart(margin_mm) => {
-            if let Some(mover) = travel.ready {
-                let pose = travel
-                    .pose
-                    .moved_to(sum(travel.pose.position, travel.unsure.low));
-                return ask(space, travel, mover, pose, keep, margin_mm, kept);
+impl<'a> Travel<'a> {
+    /// The room of the body, less a depth off its faces, on its way.
+    fn passing(&self, depth_mm: f64) -> Result<Passing<'a>, Flaw> {
+        let (mover, pose) = match self.ready {
+            Some(ready) if depth_mm == 0.0 => {
+                let position = sum(self.pose.position, self.unsure.low);
+                (Cow::Borrowed(ready), self.pose.moved_to(position))
             }
-            (Cow::Borrowed(&*travel.shape), margin_mm)
-        }
-        Keep::Depth(depth_mm) => (Cow::Owned(shrunk(&travel.shape, depth_mm)), 0.0),
-        Keep::Nothing => return None,
-    };
-    let (shape, pose) = room(&shape, &travel.pose, &travel.unsure);
-    ask(space, travel, &*shape, pose, keep, margin_mm, kept)
-}
-
-/// First contact of `body`, standing at `pose` before the stroke, with those to which `keep` applies.
-fn ask(
-    space: &Space,
-    travel: &Travel<'_>,
-    body: &impl Moving,
-    pose: Pose,
-    keep: Keep,
-    margin_mm: f64,
-    kept: &[(ElementKey, Keep)],
-) -> Option<Hit> {
-    let ignore: Vec<ElementKey> = kept
-        .iter()
-        .filter(|(_, other)| *other != keep)
-        .map(|(key, _)| *key)
-        .collect();
-    let from = pose.moved_to(sum(pose.position, travel.from));
-    let to = pose.moved_to(sum(pose.position, travel.to));
-    let contact = match space.model().first_contact(
-        body,
-        &Move {
-            from,
-            to,
-            margin_mm,
-            ignore: &ignore,
-        },
-    ) {
-        Answer::Clear => return None,
-        Answer::Blocked(contact) => contact,
-    };
-    let ignore: Vec<ElementKey> = kept
-        .iter()
-        .map(|(key, _)| *key)
-        .filter(|key| *key != contact.blocker)
-        .collect();
-    let alone = Move {
-        from,
-        to,
-        margin_mm,
-        ignore: &ignore,
-    };
-    let least = space
-        .model()
-        .clearance(body, &alone, margin_mm + MEASURED_BEYOND_MM);
-    let distance_mm = least.map_or(contact.distance_mm, |least| least.distance_mm);
-    Some(Hit {
-        mover: travel.number,
-        contact,
-        distance_mm,
-        margin_mm,
-    })
+            Some(_) | None => {
+                let shape = self.shape.less(depth_mm);
+                let (room, pose) = room(&shape, &self.pose, &self.unsure);
+                (Cow::Owned(Mover::new(&room)?), pose)
+            }
+        };
+        Ok(Passing {
+            mover,
+            from: pose.moved_to(sum(pose.position, self.from)),
+            to: pose.moved_to(sum(pose.position, self.to)),
+        })
+    }
 }
 
 fn finding(
@@ -297,18 +213,22 @@ fn finding(
     stroke: &Stroke,
     start_known: bool,
     way: (f64, f64),
-    hit: &Hit,
+    (mover, found): (usize, Forbidden),
 ) -> Finding {
-    let at_fraction = if start_known { hit.contact.t_stop } else { 0.0 };
+    let at_fraction = if start_known {
+        found.contact.t_stop
+    } else {
+        0.0
+    };
     let reached = way.0 + at_fraction * (way.1 - way.0);
     Finding {
         stroke: *stroke,
-        mover: hit.mover,
-        blocker: space.number_of(hit.contact.blocker),
-        distance_mm: hit.distance_mm,
-        margin_mm: hit.margin_mm,
+        mover,
+        blocker: space.number_of(found.contact.blocker),
+        distance_mm: found.distance_mm,
+        margin_mm: found.margin_mm,
         at_fraction,
-        at: hit.contact.at,
+        at: found.contact.at,
         clear_way_mm: (at_fraction > 0.0).then_some((way.0, reached)),
     }
 }

@@ -109,31 +109,3 @@ fn a_body_that_stands_keeps_its_true_shape() {
         (&shape, Pose::at([1.0, 2.0, -37.0]))
     );
 }
-
-#[test]
-fn what_may_touch_never_shrinks_to_nothing() {
-    assert_eq!(
-        shrunk(
-            &Shape::Block {
-                half: [2.0, 0.05, 1.0]
-            },
-            0.1
-        ),
-        Shape::Block {
-            half: [1.9, CORE_MM, 0.9]
-        }
-    );
-    assert_eq!(
-        shrunk(
-            &Shape::Cylinder {
-                radius: 3.0,
-                height: 4.0
-            },
-            0.5
-        ),
-        Shape::Cylinder {
-            radius: 2.5,
-            height: 3.0
-        }
-    );
-}

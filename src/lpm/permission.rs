@@ -1,0 +1,269 @@
+//! Permissions of pairs: what a mover may do to each element, and where its way is first forbidden.
+//!
+//! A pair is forbidden within a margin, may touch, or is ignored. A question knows one margin for all, so
+//! elements are asked about in groups of equal permission and the earliest answer counts. Bodies that may
+//! touch are pressed into each other by no more than a depth: the mover is asked about with that depth taken
+//! off its faces, so contact in its ends is found wherever it goes in deeper, and nowhere else.
+
+use std::borrow::Cow;
+
+use super::answer::{Answer, Contact, ElementKey, Move};
+use super::model::Model;
+use super::mover::Mover;
+use super::pose::Pose;
+use super::shape::{Flaw, Shape};
+
+/// What is left of a piece that is thinner than the depth taken off it, mm: a core, never nothing.
+const CORE_MM: f64 = 1e-3;
+
+/// How far beyond its margin a forbidden pair is still measured, mm.
+const MEASURED_BEYOND_MM: f64 = 1.0;
+
+/// What a mover may do to an element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Permission {
+    /// It may not come as near as this, mm, >= 0.
+    Forbidden {
+        /// Distance that must be exceeded, mm.
+        margin_mm: f64,
+    },
+    /// It may touch, and press in by less than this, mm, >= 0.
+    MayTouch {
+        /// Depth that is taken off every face of the mover, mm.
+        depth_mm: f64,
+    },
+    /// The pair is not tested.
+    Ignored,
+}
+
+impl Permission {
+    /// Margin and depth, mm; `None` when there is nothing to ask.
+    fn asked_mm(self) -> Option<(f64, f64)> {
+        match self {
+            Permission::Forbidden { margin_mm } => Some((margin_mm, 0.0)),
+            Permission::MayTouch { depth_mm } => Some((0.0, depth_mm)),
+            Permission::Ignored => None,
+        }
+    }
+}
+
+/// A mover on its way.
+#[derive(Debug, Clone)]
+pub struct Passing<'a> {
+    /// The body, its depth taken off.
+    pub mover: Cow<'a, Mover>,
+    /// Where it stands.
+    pub from: Pose,
+    /// Where it should go.
+    pub to: Pose,
+}
+
+/// Where a way first does what a permission does not allow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Forbidden {
+    /// With the element of that pair.
+    pub contact: Contact,
+    /// Least distance of the pair over the whole way, mm; never more than 1 mm beyond the margin.
+    pub distance_mm: f64,
+    /// Margin of the pair, mm; 0 where it may touch.
+    pub margin_mm: f64,
+}
+
+impl Model {
+    /// Where a way is first forbidden by the permissions of its pairs; `None` is proof that it is allowed.
+    ///
+    /// An element that `permissions` do not name may not be touched. `passing` gives the mover with so many
+    /// millimetres taken off its faces ([`Shape::less`]); it is asked once for each different permission.
+    ///
+    /// # Errors
+    /// Those of `passing`.
+    pub fn first_forbidden<'a>(
+        &self,
+        permissions: &[(ElementKey, Permission)],
+        mut passing: impl FnMut(f64) -> Result<Passing<'a>, Flaw>,
+    ) -> Result<Option<Forbidden>, Flaw> {
+        let pairs = self.all_pairs(permissions);
+        let mut first: Option<Forbidden> = None;
+        for (number, (_, permission)) in pairs.iter().enumerate() {
+            let is_known = pairs[..number].iter().any(|pair| pair.1 == *permission);
+            let asked = permission.asked_mm().filter(|_| !is_known);
+            let Some((margin_mm, depth_mm)) = asked else {
+                continue;
+            };
+            let others = pairs.iter().filter(|pair| pair.1 != *permission);
+            let ignore: Vec<ElementKey> = others.map(|pair| pair.0).collect();
+            let found = self.forbidden(&passing(depth_mm)?, margin_mm, &ignore);
+            first = match (first, found) {
+                (Some(a), Some(b)) if a.contact.t_stop <= b.contact.t_stop => Some(a),
+                (known, None) => known,
+                (_, found) => found,
+            };
+        }
+        Ok(first)
+    }
+
+    /// The permissions, and those of elements that nobody has named.
+    fn all_pairs(&self, permissions: &[(ElementKey, Permission)]) -> Vec<(ElementKey, Permission)> {
+        let mut pairs = permissions.to_vec();
+        pairs.sort_by_key(|pair| pair.0);
+        let is_named = |key: &ElementKey| pairs.binary_search_by_key(key, |pair| pair.0).is_ok();
+        let unnamed: Vec<ElementKey> = self.keys().filter(|key| !is_named(key)).collect();
+        let touching = Permission::Forbidden { margin_mm: 0.0 };
+        pairs.extend(unnamed.into_iter().map(|key| (key, touching)));
+        pairs
+    }
+
+    fn forbidden(
+        &self,
+        passing: &Passing,
+        margin_mm: f64,
+        ignore: &[ElementKey],
+    ) -> Option<Forbidden> {
+        let way = |ignore| Move {
+            from: passing.from,
+            to: passing.to,
+            margin_mm,
+            ignore,
+        };
+        let contact = match self.first_contact(&*passing.mover, &way(ignore)) {
+            Answer::Clear => return None,
+            Answer::Blocked(contact) => contact,
+        };
+        let others = self.keys().filter(|key| *key != contact.blocker);
+        let others: Vec<ElementKey> = others.collect();
+        let range_mm = margin_mm + MEASURED_BEYOND_MM;
+        let least = self.clearance(&*passing.mover, &way(&others), range_mm);
+        Some(Forbidden {
+            contact,
+            distance_mm: least.map_or(contact.distance_mm, |least| least.distance_mm),
+            margin_mm,
+        })
+    }
+}
+
+impl Shape {
+    /// The shape with `depth_mm` taken off every face of every block and cylinder; meshes stay whole.
+    pub fn less(&self, depth_mm: f64) -> Shape {
+        let less = |half: f64| (half - depth_mm).max(CORE_MM.min(half));
+        match self {
+            Shape::Block { half } => Shape::Block {
+                half: half.map(less),
+            },
+            Shape::Cylinder { radius, height } => Shape::Cylinder {
+                radius: less(*radius),
+                height: 2.0 * less(height / 2.0),
+            },
+            Shape::Compound(parts) => {
+                let parts = parts
+                    .iter()
+                    .map(|(pose, part)| (*pose, part.less(depth_mm)));
+                Shape::Compound(parts.collect())
+            }
+            Shape::Mesh(_) => self.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    const CUBE: Shape = Shape::Block { half: [1.0; 3] };
+
+    /// A cube goes from x = 0 to 10 towards a wall whose face stands at x = 5: they meet after 0.4 of the way.
+    fn asked(permission: Option<Permission>) -> Option<Forbidden> {
+        let mut model = Model::new();
+        let wall = Shape::Block {
+            half: [1.0, 5.0, 5.0],
+        };
+        let key = model
+            .insert("wall", &wall, &Pose::at([6.0, 0.0, 0.0]))
+            .unwrap();
+        let permissions: Vec<_> = permission.map(|it| (key, it)).into_iter().collect();
+        let found = model.first_forbidden(&permissions, |depth_mm| {
+            Ok(Passing {
+                mover: Cow::Owned(Mover::new(&CUBE.less(depth_mm))?),
+                from: Pose::IDENTITY,
+                to: Pose::at([10.0, 0.0, 0.0]),
+            })
+        });
+        found.unwrap()
+    }
+
+    fn stop(permission: Option<Permission>) -> Option<f64> {
+        asked(permission).map(|found| found.contact.t_stop)
+    }
+
+    #[test]
+    fn a_forbidden_pair_stops_at_its_margin_and_one_that_may_touch_at_its_depth() {
+        let near = |found: Option<f64>, wanted: f64| {
+            let found = found.unwrap();
+            assert!(found <= wanted && wanted - found < 1e-9, "{found} {wanted}");
+        };
+        near(stop(Some(Permission::Forbidden { margin_mm: 0.5 })), 0.35);
+        near(stop(Some(Permission::Forbidden { margin_mm: 0.0 })), 0.4);
+        near(stop(Some(Permission::MayTouch { depth_mm: 0.25 })), 0.425);
+        assert_eq!(stop(Some(Permission::Ignored)), None);
+        near(stop(None), 0.4);
+    }
+
+    #[test]
+    fn a_forbidden_pair_is_measured_over_the_whole_way() {
+        let found = asked(Some(Permission::Forbidden { margin_mm: 0.5 })).unwrap();
+        assert_eq!((found.distance_mm, found.margin_mm), (0.0, 0.5));
+    }
+
+    #[test]
+    fn of_several_permissions_the_one_that_is_broken_first_is_told() {
+        let mut model = Model::new();
+        let mut stand = |x: f64| {
+            model
+                .insert("cube", &CUBE, &Pose::at([x, 0.0, 0.0]))
+                .unwrap()
+        };
+        let (near, middle, far) = (stand(4.0), stand(7.0), stand(10.0));
+        let passing = |depth_mm: f64| {
+            Ok(Passing {
+                mover: Cow::Owned(Mover::new(&CUBE.less(depth_mm))?),
+                from: Pose::IDENTITY,
+                to: Pose::at([20.0, 0.0, 0.0]),
+            })
+        };
+        let told = |of_near, of_middle| {
+            let far = (far, Permission::Forbidden { margin_mm: 0.0 });
+            let permissions = [far, (middle, of_middle), (near, of_near)];
+            let found = model.first_forbidden(&permissions, passing).unwrap();
+            found.unwrap().contact.blocker
+        };
+        let deep = Permission::MayTouch { depth_mm: 0.5 };
+        let apart = Permission::Forbidden { margin_mm: 1.0 };
+        assert_eq!(told(deep, apart), near);
+        assert_eq!(told(Permission::Ignored, apart), middle);
+        assert_eq!(told(Permission::Ignored, Permission::Ignored), far);
+    }
+
+    #[test]
+    fn what_may_touch_never_shrinks_to_nothing() {
+        let foil = Shape::Block {
+            half: [5.0, 5.0, 0.1],
+        };
+        assert_eq!(
+            foil.less(0.25),
+            Shape::Block {
+                half: [4.75, 4.75, CORE_MM]
+            }
+        );
+        let pin = Shape::Cylinder {
+            radius: 0.3,
+            height: 8.0,
+        };
+        assert_eq!(
+            pin.less(0.25),
+            Shape::Cylinder {
+                radius: 0.3 - 0.25,
+                height: 7.5
+            }
+        );
+    }
+}
