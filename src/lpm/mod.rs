@@ -60,9 +60,10 @@
 //! | `turning::LEAST_RESOLUTION_MM` | 2e-4 mm | least distance of turning moves |
 //!
 //! # What a false blocked costs
-//! A contact that only grazes a round side is reported by up to 1e-4 mm early where bodies came to their
-//! places by rounding (turned, or at places whose sums are no numbers of double precision); where they
-//! did not, within 1e-6 mm: `grazing`.
+//! A contact that only grazes a round side is reported early by the root of twice the radius times the
+//! rounding where bodies came to their places by rounding (turned, kept with a margin, or at places whose
+//! sums are no numbers of double precision): up to 1e-4 mm within a metre. The verdict keeps its 1e-6 mm.
+//! Where nothing was rounded the stop does, too: `grazing`.
 //! Straight: meant to stay within 1e-6 mm of the margin for coordinates up to 1e6 mm. This rests on
 //! the searches for planes, which are tested against built truth, not proven to converge: of 60,000
 //! drawn pairs (needles, foils, tilts of 1e-12, places up to 1e6 mm) one loses 1.1e-6 mm, always to

@@ -52,9 +52,10 @@ impl Model {
         if slot as usize == self.slots.len() {
             self.slots.push(Slot::default());
         }
-        let first = self.pieces.stand(&mut self.space, shape, pose, slot);
+        let key = self.key(slot);
+        let first = self.pieces.stand(&mut self.space, shape, pose, key);
         self.slots[slot as usize].element = Some(self.element(id, shape, pose, slot, first));
-        Ok(self.key(slot))
+        Ok(key)
     }
 
     /// A model of many elements at once: the same as one [`Model::insert`] after the other, sooner.
@@ -73,8 +74,13 @@ impl Model {
             let flawed = |flaw| (number, flaw);
             shape.check().map_err(flawed)?;
             pose.check().map_err(flawed)?;
-            let first = model.pieces.stand(&mut filling, shape, pose, number as u32);
-            let element = model.element(id, shape, pose, number as u32, first);
+            let slot = number as u32;
+            let key = ElementKey {
+                slot,
+                generation: 0,
+            };
+            let first = model.pieces.stand(&mut filling, shape, pose, key);
+            let element = model.element(id, shape, pose, slot, first);
             model.slots.push(Slot {
                 generation: 0,
                 element: Some(element),

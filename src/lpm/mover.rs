@@ -205,6 +205,10 @@ fn turned<const N: usize>(
 }
 
 /// The first `AXES` of them, from as many.
+#[allow(
+    clippy::needless_range_loop,
+    reason = "both ends known, the loops unroll: half the time of iterators"
+)]
 #[inline(always)]
 fn along_axes<const N: usize, const AXES: usize>(
     frame: &Frame,
@@ -212,9 +216,10 @@ fn along_axes<const N: usize, const AXES: usize>(
     halves: &[[f32; N]; 3],
 ) -> ([[f32; N]; 3], [[f32; N]; 3]) {
     let mut turned = ([[0.0; N]; 3], [[0.0; N]; 3]);
+    let images = [frame.x, frame.y, frame.z];
     for axis in 0..AXES {
-        let images = [frame.x, frame.y, frame.z].map(|image| image[axis] as f32);
-        for (own, image) in images.into_iter().enumerate().take(AXES) {
+        for own in 0..AXES {
+            let image = images[own][axis] as f32;
             for place in 0..N {
                 turned.0[axis][place] += image * centres[own][place];
                 turned.1[axis][place] += image.abs() * halves[own][place];

@@ -65,7 +65,7 @@ impl<'a> Passage<'a> {
     /// Whether a piece belongs to an element that is not to be ignored.
     #[inline]
     pub(crate) fn counts(&self, element: &Standing) -> bool {
-        self.way.ignore.is_empty() || !self.way.ignore.contains(&self.model.key(element.owner))
+        self.way.ignore.is_empty() || !self.way.ignore.contains(&element.owner)
     }
 
     /// A piece of the mover at `t` of a level way, if it is upright.

@@ -55,7 +55,7 @@ impl Model {
             let nearest = Passage::new(self, body, path, way).least(range_mm)?;
             Some(Clearance {
                 distance_mm: nearest.distance_mm,
-                nearest: self.key(self.pieces.at(nearest.element).owner),
+                nearest: self.pieces.at(nearest.element).owner,
                 t: nearest.t,
             })
         });
@@ -63,7 +63,7 @@ impl Model {
     }
 
     fn owner(&self, found: &Found) -> ElementKey {
-        self.key(self.pieces.at(found.element).owner)
+        self.pieces.at(found.element).owner
     }
 
     /// An element that holds the mover, or is held by it, without touching.

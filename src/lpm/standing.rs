@@ -3,6 +3,7 @@
 //! An upright piece is kept as its [`Prism`] alone, which says all there is to say of it. What is
 //! tilted, and triangles, need a whole [`Piece`] each and are kept apart.
 
+use super::answer::ElementKey;
 use super::piece::{Piece, each_piece};
 use super::pose::{Frame, Pose};
 use super::prism::Prism;
@@ -18,8 +19,8 @@ pub(crate) struct Standing {
     pub(crate) form: Stands,
     /// Where the space has it.
     pub(crate) seat: Seat,
-    /// Slot of its element.
-    pub(crate) owner: u32,
+    /// Its element.
+    pub(crate) owner: ElementKey,
     /// Another piece of the same element, or [`NONE`].
     pub(crate) sibling: u32,
 }
@@ -51,7 +52,7 @@ impl Pieces {
         space: &mut impl Entering,
         shape: &Shape,
         pose: &Pose,
-        owner: u32,
+        owner: ElementKey,
     ) -> u32 {
         // What nearly all elements are needs no detour by the general piece.
         if let Some(prism) = Prism::standing(shape, pose) {
@@ -79,7 +80,7 @@ impl Pieces {
         space: &mut impl Entering,
         form: Stands,
         cover: &Cover,
-        owner: u32,
+        owner: ElementKey,
         sibling: u32,
     ) -> u32 {
         let next = self.standing.len() as u32;

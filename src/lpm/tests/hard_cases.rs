@@ -1,5 +1,6 @@
 //! Straight moves where others fail: grazing, tiny tilts, foils, tangents.
 use super::*;
+use crate::lpm::distance::tests::Dice;
 
 #[test]
 fn a_move_of_no_length_is_judged_where_it_stands() {
@@ -195,4 +196,44 @@ fn a_graze_that_touches_in_one_point_stops_there_to_a_nanometre() {
         let early = (touched - stop(&pin, &mover, &way).unwrap()) * length;
         assert!((0.0..1e-6).contains(&early), "{early:e} mm early");
     }
+}
+
+/// How early a contact that grazes a round side may stop a move where places were rounded, mm, within a metre:
+/// the root of twice the radius times the rounding.
+const GRAZED_EARLY_MM: f64 = 1e-4;
+
+#[test]
+fn a_graze_of_turned_bodies_within_a_metre_stops_at_most_a_ten_thousandth_of_a_millimetre_early() {
+    // A turn of three, four, five takes [5k, 0] to [3k, 4k]; a cylinder then passes along x at just the distance
+    // at which it touches over that place, or comes to its margin.
+    let turned = Pose {
+        position: [0.0; 3],
+        rotation: [2.0, 0.0, 0.0, 1.0],
+    };
+    let mut dice = Dice(77);
+    let mut earliest = 0.0_f64;
+    for _ in 0..400 {
+        let mut whole = |most: u64| 1.0 + dice.pick(most) as f64;
+        let (k, radius, own) = (whole(200), whole(30), whole(30));
+        let (margin_mm, length) = (whole(8) / 4.0 - 0.25, 100.0 + whole(900));
+        let arm = Shape::Compound(vec![(
+            Pose::at([5.0 * k, 0.0, 0.0]),
+            cylinder(radius, 20.0),
+        )]);
+        let model = standing(&arm, turned);
+        let beside = 4.0 * k + radius + own + margin_mm;
+        let from = [3.0 * k - length / 2.0, beside, 0.0];
+        let order = Move {
+            margin_mm,
+            ..straight(from, [from[0] + length, beside, 0.0])
+        };
+        let early = (0.5 - stop(&model, &cylinder(own, 10.0), &order).unwrap()) * length;
+        assert!(
+            (0.0..=GRAZED_EARLY_MM).contains(&early),
+            "{early} mm early: k {k}, radii {radius} {own}, margin {margin_mm}"
+        );
+        earliest = earliest.max(early);
+    }
+    // It is a bound that is needed, not one for show.
+    assert!(earliest > GRAZED_EARLY_MM / 100.0, "{earliest}");
 }
