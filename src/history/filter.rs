@@ -4,6 +4,9 @@
 //! one, `measurement_value` (parameter, population, run, verdict, value) is entered once per run and
 //! verdict at the first value of the range, and gives the row numbers of the parts. These are gone through in
 //! ascending order, so that only parts that match are touched, neighbours together, and a page ends early.
+//! What stands beside the parts (runs, alarms, orders) is asked for in `filter/beside.rs`.
+
+mod beside;
 
 use super::Moment;
 use super::gates::SUSPECT;
@@ -142,71 +145,6 @@ impl Filter {
         select
     }
 
-    /// The runs that the filter leaves.
-    pub(super) fn runs(&self) -> Select {
-        let mut select = Select::default();
-        select.sql.push_str(
-            "SELECT run.id FROM run JOIN lot ON lot.id = run.lot_id \
-             JOIN recipe ON recipe.id = run.recipe_id WHERE 1",
-        );
-        if let Some(lot) = &self.lot {
-            select.add(" AND lot.name = ?", lot.clone());
-        }
-        if let Some(recipe) = &self.recipe {
-            select.add(" AND recipe.name = ?", recipe.clone());
-        }
-        if let Some(run) = self.run {
-            select.add(" AND run.number = ?", i64::from(run));
-        }
-        select
-    }
-
-    /// Alarms in order of time, with name of lot and number of run.
-    pub(super) fn alarms(&self) -> Select {
-        let mut select = Select::default();
-        select.sql.push_str(
-            "SELECT lot.name, run.number, alarm.code, alarm.line, alarm.text, alarm.raised_at_us, \
-             alarm.cleared_at_us, alarm_state.acknowledged_at_us, alarm_state.acknowledged_by, \
-             alarm_state.shelved_until_us, alarm_state.shelved_by, alarm_state.shelf_reason \
-             FROM alarm LEFT JOIN alarm_state ON alarm_state.alarm_id = alarm.id \
-             LEFT JOIN run ON run.id = alarm.run_id LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
-        );
-        self.run_conditions(&mut select, "alarm");
-        if let Some(since) = self.since {
-            select.add(" AND alarm.raised_at_us >= ?", since.0);
-        }
-        if let Some(until) = self.until {
-            select.add(" AND alarm.raised_at_us < ?", until.0);
-        }
-        select
-            .sql
-            .push_str(" ORDER BY alarm.raised_at_us, alarm.id");
-        self.page(&mut select);
-        select
-    }
-
-    /// Orders, with name of lot and number of run, in order of time.
-    pub(super) fn orders(&self, who: Option<&str>) -> Select {
-        let mut select = Select::default();
-        select.sql.push_str(
-            "SELECT ordered.at_us, lot.name, run.number, ordered.who, ordered.role, ordered.origin, \
-             ordered.what, ordered.refused FROM ordered LEFT JOIN run ON run.id = ordered.run_id \
-             LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
-        );
-        self.run_conditions(&mut select, "ordered");
-        if let Some(since) = self.since {
-            select.add(" AND ordered.at_us >= ?", since.0);
-        }
-        if let Some(until) = self.until {
-            select.add(" AND ordered.at_us < ?", until.0);
-        }
-        if let Some(who) = who {
-            select.add(" AND ordered.who = ?", who.to_owned());
-        }
-        select.sql.push_str(" ORDER BY ordered.id");
-        select
-    }
-
     /// How many parts there are; where values alone decide, nothing but their index is read.
     pub(super) fn count(&self) -> Select {
         let found = match &self.param {
@@ -221,6 +159,13 @@ impl Filter {
             sql: format!("SELECT count(*) FROM ({})", found.sql),
             values: found.values,
         }
+    }
+
+    /// Whether nothing but whole runs is asked for, production parts of every verdict; a page does not matter.
+    pub(super) fn asks_for_runs_alone(&self) -> bool {
+        let production = self.kind.as_deref().is_none_or(|kind| kind == "lot");
+        let ranged = self.min.is_some() || self.max.is_some();
+        production && self.verdict.is_none() && !ranged && !self.asks_of_part()
     }
 
     /// Whether a member asks for what stands in the row of the part alone.

@@ -40,6 +40,7 @@ mod part;
 mod record;
 mod rejudge;
 mod retention;
+mod series;
 mod store;
 mod values;
 mod views;

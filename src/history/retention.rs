@@ -93,7 +93,8 @@ impl Store {
 }
 
 /// What goes of a run, rows that point elsewhere first.
-pub(super) const EMPTYING: [&str; 6] = [
+pub(super) const EMPTYING: [&str; 7] = [
+    "DELETE FROM series WHERE run_id = ?1",
     "DELETE FROM curve WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
     "DELETE FROM sample WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
     "DELETE FROM measurement WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",

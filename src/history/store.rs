@@ -6,7 +6,7 @@
 use super::error::{Doing, HistoryError, Result};
 use super::{
     AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, PartRecord, Row, alarm_states, gates,
-    insert, landing, open, orders, wear,
+    insert, landing, open, orders, series, wear,
 };
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::collections::HashMap;
@@ -114,6 +114,7 @@ impl Store {
                 [run],
             )
             .doing(DOING)?;
+        series::pack(&transaction, run).doing(DOING)?;
         transaction.commit().doing(DOING)?;
         Ok(number)
     }
@@ -132,6 +133,7 @@ impl Store {
 
     /// Ends the run of the lot; rows for it are refused from now on.
     pub fn close_lot(&mut self, lot: &str, at_us: i64) -> Result<()> {
+        const PACKING: &str = "packing the values of a closed lot";
         let run = self.known.run(lot)?;
         self.connection
             .execute(
@@ -140,7 +142,10 @@ impl Store {
             )
             .doing("closing the lot")?;
         self.known.runs.remove(lot);
-        Ok(())
+        // It is closed whatever becomes of this: without it statistics read the index.
+        let transaction = self.transaction(PACKING)?;
+        series::pack(&transaction, run).doing(PACKING)?;
+        transaction.commit().doing(PACKING)
     }
 
     /// Writes a batch in one transaction: all of it, or on any error nothing.

@@ -1,5 +1,5 @@
 //! The values of one parameter in order of judgement, and the limits they were judged by: what the
-//! statistics need, read from the index of values alone.
+//! statistics need, read from the packed values of whole runs or else from the index of values alone.
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter};
@@ -46,6 +46,17 @@ impl Archive {
     }
 
     fn series(&self, param: &str, filter: &Filter) -> rusqlite::Result<Vec<f64>> {
+        let mut values = match self.side_by_side(param, filter)? {
+            Some(values) => values,
+            None => self.one_by_one(param, filter)?,
+        };
+        let whole = |it: u64| usize::try_from(it).unwrap_or(usize::MAX);
+        values.drain(..filter.offset.map_or(0, whole).min(values.len()));
+        values.truncate(filter.limit.map_or(usize::MAX, whole));
+        Ok(values)
+    }
+
+    fn one_by_one(&self, param: &str, filter: &Filter) -> rusqlite::Result<Vec<f64>> {
         let select = filter.series(param);
         let mut statement = self.connection.prepare(&select.sql)?;
         let mut rows = statement.query(params_from_iter(&select.values))?;
@@ -53,23 +64,14 @@ impl Archive {
         while let Some(row) = rows.next()? {
             found.push((row.get(0)?, row.get(1)?));
         }
-        let whole = |it: u64| usize::try_from(it).unwrap_or(usize::MAX);
-        Ok(in_order(found)
-            .skip(filter.offset.map_or(0, whole))
-            .take(filter.limit.map_or(usize::MAX, whole))
-            .collect())
+        Ok(in_order(found).collect())
     }
 
     /// A recipe is frozen during a run, so one measurement speaks for all of its run.
     fn limits(&self, param: &str, filter: &Filter) -> rusqlite::Result<LimitsSeen> {
-        let runs = filter.runs();
-        let mut statement = self.connection.prepare(&runs.sql)?;
-        let runs: Vec<i64> = statement
-            .query_map(params_from_iter(&runs.values), |row| row.get(0))?
-            .collect::<rusqlite::Result<_>>()?;
         let mut one = self.connection.prepare_cached(LIMITS)?;
         let mut seen: Option<(Option<f64>, Option<f64>)> = None;
-        for run in runs {
+        for run in self.run_rows(filter)? {
             let pair = one.query_row(params![param, run], |row| Ok((row.get(0)?, row.get(1)?)));
             match (pair.optional()?, seen) {
                 (None, _) => {}

@@ -97,7 +97,9 @@ pub fn generate(config: &Path, db: &Path, args: &GenerateArgs) -> anyhow::Result
             bar.set_position(done.parts + seq);
         }
         done.parts += of_lot;
+        let from = Instant::now();
         store.close_lot(&name, opened_at_us + CYCLE_US * i64::try_from(of_lot)?)?;
+        done.writing += from.elapsed();
     }
     bar.finish_and_clear();
     Ok(done)

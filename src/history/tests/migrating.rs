@@ -36,6 +36,9 @@ fn a_file_of_every_earlier_schema_keeps_its_rows_and_can_be_written_on() {
             (parts[0].lot.as_str(), &parts[0].values["operate_voltage_v"]),
             ("批次", &7.5.into())
         );
+        let values = archive.values("operate_voltage_v", &Filter::default());
+        assert_eq!(values.unwrap().values, [7.5]);
+        assert_eq!(count(&file.by_hand(), "series"), 1, "packed on the way");
         archive.check().unwrap();
         let mut store = file.store();
         assert_eq!(store.begin_lot(&lot("批次")).unwrap(), 2);
@@ -79,6 +82,9 @@ fn what_was_not_copied_whole_is_never_pruned() {
         ("A", 3, "copy.db")
     );
     let archive = file.archive();
+    assert_eq!(count(&file.by_hand(), "series"), 2, "of lot B alone");
+    let left = archive.values("operate_voltage_v", &Filter::default());
+    assert_eq!(left.unwrap().values, [7.0]);
     assert_eq!(archive.how_many(&Filter::default()).unwrap(), 1);
     assert_eq!(
         archive.lots(&Filter::default()).unwrap().len(),

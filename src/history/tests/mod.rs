@@ -7,6 +7,7 @@ mod plans;
 mod reading;
 mod rejudging;
 mod safety;
+mod side_by_side;
 mod writing;
 
 use super::*;

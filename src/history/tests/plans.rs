@@ -1,6 +1,6 @@
 //! Plans of the queries: each that may run on many rows finds them by an index.
 
-use super::super::{archive, curve, lots, retention, values};
+use super::super::{archive, curve, lots, retention, series, values};
 use super::reading::operate;
 use super::*;
 use rusqlite::StatementStatus;
@@ -73,6 +73,11 @@ fn statistics_read_the_index_alone() {
         plan.contains("SEARCH m USING COVERING INDEX measurement_value"),
         "{plan}"
     );
+    let plan = explained(&file.by_hand(), series::OF_RUN);
+    assert!(
+        plan.contains("SEARCH measurement USING COVERING INDEX measurement_value"),
+        "{plan}"
+    );
 }
 
 #[test]
@@ -117,7 +122,7 @@ fn parts_are_found_by_an_index_of_their_own() {
 }
 
 /// Tables that grow with the parts.
-const GROWING: [&str; 5] = ["part", "measurement", "sample", "curve", "m"];
+const GROWING: [&str; 6] = ["part", "measurement", "sample", "curve", "series", "m"];
 
 fn scans_a_growing_table(plan: &str) -> bool {
     let scans = |table: &str| {
@@ -189,6 +194,7 @@ fn what_is_read_or_deleted_part_by_part_is_found_by_its_key() {
         lots::YIELD,
         lots::COUNTS,
         values::LIMITS,
+        series::PACKED,
     ];
     let golden = filter::golden_part();
     let all = fixed.into_iter().chain([golden.as_str()]);

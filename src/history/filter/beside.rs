@@ -1,0 +1,70 @@
+//! What stands beside the parts: the runs, alarms and orders that a filter leaves.
+
+use super::{Filter, Select};
+
+impl Filter {
+    /// The runs that the filter leaves.
+    pub(in super::super) fn runs(&self) -> Select {
+        let mut select = Select::default();
+        select.sql.push_str(
+            "SELECT run.id FROM run JOIN lot ON lot.id = run.lot_id \
+             JOIN recipe ON recipe.id = run.recipe_id WHERE 1",
+        );
+        if let Some(lot) = &self.lot {
+            select.add(" AND lot.name = ?", lot.clone());
+        }
+        if let Some(recipe) = &self.recipe {
+            select.add(" AND recipe.name = ?", recipe.clone());
+        }
+        if let Some(run) = self.run {
+            select.add(" AND run.number = ?", i64::from(run));
+        }
+        select
+    }
+
+    /// Alarms in order of time, with name of lot and number of run.
+    pub(in super::super) fn alarms(&self) -> Select {
+        let mut select = Select::default();
+        select.sql.push_str(
+            "SELECT lot.name, run.number, alarm.code, alarm.line, alarm.text, alarm.raised_at_us, \
+             alarm.cleared_at_us, alarm_state.acknowledged_at_us, alarm_state.acknowledged_by, \
+             alarm_state.shelved_until_us, alarm_state.shelved_by, alarm_state.shelf_reason \
+             FROM alarm LEFT JOIN alarm_state ON alarm_state.alarm_id = alarm.id \
+             LEFT JOIN run ON run.id = alarm.run_id LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
+        );
+        self.run_conditions(&mut select, "alarm");
+        if let Some(since) = self.since {
+            select.add(" AND alarm.raised_at_us >= ?", since.0);
+        }
+        if let Some(until) = self.until {
+            select.add(" AND alarm.raised_at_us < ?", until.0);
+        }
+        select
+            .sql
+            .push_str(" ORDER BY alarm.raised_at_us, alarm.id");
+        self.page(&mut select);
+        select
+    }
+
+    /// Orders, with name of lot and number of run, in order of time.
+    pub(in super::super) fn orders(&self, who: Option<&str>) -> Select {
+        let mut select = Select::default();
+        select.sql.push_str(
+            "SELECT ordered.at_us, lot.name, run.number, ordered.who, ordered.role, ordered.origin, \
+             ordered.what, ordered.refused FROM ordered LEFT JOIN run ON run.id = ordered.run_id \
+             LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
+        );
+        self.run_conditions(&mut select, "ordered");
+        if let Some(since) = self.since {
+            select.add(" AND ordered.at_us >= ?", since.0);
+        }
+        if let Some(until) = self.until {
+            select.add(" AND ordered.at_us < ?", until.0);
+        }
+        if let Some(who) = who {
+            select.add(" AND ordered.who = ?", who.to_owned());
+        }
+        select.sql.push_str(" ORDER BY ordered.id");
+        select
+    }
+}

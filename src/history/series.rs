@@ -1,0 +1,125 @@
+//! Values of closed runs side by side: what statistics over many runs read instead of an entry a value.
+//!
+//! A closed run does not change. When it is closed, the counted values of its production parts are packed, a blob a
+//! parameter: 8 bytes a value against the 31 of its entry in the index, and nothing to be decoded row by row. They are
+//! taken for a filter that asks for nothing but runs; for a run that was never closed, and for every other filter, the
+//! index of values is read. Either way gives the same values in the same order.
+
+use super::{Archive, Filter};
+use rusqlite::{Connection, OptionalExtension, params, params_from_iter};
+
+/// Parts and counted values of one parameter in one run, in no order.
+pub(super) const OF_RUN: &str = "SELECT part_id, value FROM measurement
+    WHERE parameter_id = ?1 AND population = 'lot' AND run_id = ?2
+      AND part_verdict IN ('pass', 'fail', 'void', 'unjudged')";
+/// The same, packed.
+pub(super) const PACKED: &str = "SELECT first_part, last_part, packed FROM series
+    WHERE run_id = ?2 AND parameter_id = ?1";
+
+/// Values of one run in order of judgement, with the row numbers of its first and last part.
+struct Piece {
+    first: i64,
+    last: i64,
+    values: Vec<f64>,
+}
+
+/// Packs every parameter of a run that was just closed.
+pub(super) fn pack(connection: &Connection, run: i64) -> rusqlite::Result<()> {
+    let parameters: Vec<i64> = connection
+        .prepare_cached("SELECT id FROM parameter")?
+        .query_map([], |row| row.get(0))?
+        .collect::<rusqlite::Result<_>>()?;
+    let mut insert = connection.prepare_cached(
+        "INSERT INTO series (run_id, parameter_id, first_part, last_part, packed)
+         VALUES (?1, ?2, ?3, ?4, ?5)",
+    )?;
+    for parameter in parameters {
+        if let Some(it) = loose(connection, parameter, run)? {
+            let packed: Vec<u8> = it.values.iter().flat_map(|it| it.to_le_bytes()).collect();
+            insert.execute(params![run, parameter, it.first, it.last, packed])?;
+        }
+    }
+    Ok(())
+}
+
+/// Packs the runs that were closed before there was this table.
+pub(super) fn pack_all(connection: &Connection) -> rusqlite::Result<()> {
+    let runs: Vec<i64> = connection
+        .prepare("SELECT id FROM run WHERE closed_at_us IS NOT NULL")?
+        .query_map([], |row| row.get(0))?
+        .collect::<rusqlite::Result<_>>()?;
+    runs.into_iter().try_for_each(|run| pack(connection, run))
+}
+
+/// From the index; none without a value.
+fn loose(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result<Option<Piece>> {
+    let mut found: Vec<(i64, f64)> = connection
+        .prepare_cached(OF_RUN)?
+        .query_map([parameter, run], |row| Ok((row.get(0)?, row.get(1)?)))?
+        .collect::<rusqlite::Result<_>>()?;
+    found.sort_unstable_by_key(|&(part, _)| part);
+    let (Some(&(first, _)), Some(&(last, _))) = (found.first(), found.last()) else {
+        return Ok(None);
+    };
+    let values = found.into_iter().map(|(_, value)| value).collect();
+    Ok(Some(Piece {
+        first,
+        last,
+        values,
+    }))
+}
+
+fn packed(connection: &Connection, parameter: i64, run: i64) -> rusqlite::Result<Option<Piece>> {
+    let read = |row: &rusqlite::Row<'_>| {
+        let bytes = row.get_ref(2)?.as_blob()?;
+        let values = bytes.as_chunks::<8>().0.iter();
+        Ok(Piece {
+            first: row.get(0)?,
+            last: row.get(1)?,
+            values: values.map(|it| f64::from_le_bytes(*it)).collect(),
+        })
+    };
+    connection
+        .prepare_cached(PACKED)?
+        .query_row([parameter, run], read)
+        .optional()
+}
+
+impl Archive {
+    /// Values of `param` in order of judgement; none when the filter asks for more than runs, or when parts of
+    /// two runs alternate.
+    pub(super) fn side_by_side(
+        &self,
+        param: &str,
+        filter: &Filter,
+    ) -> rusqlite::Result<Option<Vec<f64>>> {
+        if !filter.asks_for_runs_alone() {
+            return Ok(None);
+        }
+        let find = "SELECT id FROM parameter WHERE key = ?1";
+        let mut find = self.connection.prepare_cached(find)?;
+        let Some(parameter) = find.query_row([param], |row| row.get(0)).optional()? else {
+            return Ok(Some(Vec::new()));
+        };
+        let mut pieces = Vec::new();
+        for run in self.run_rows(filter)? {
+            let piece = match packed(&self.connection, parameter, run)? {
+                None => loose(&self.connection, parameter, run)?,
+                piece => piece,
+            };
+            pieces.extend(piece);
+        }
+        pieces.sort_unstable_by_key(|it| it.first);
+        let apart = pieces.windows(2).all(|two| two[0].last < two[1].first);
+        Ok(apart.then(|| pieces.into_iter().flat_map(|it| it.values).collect()))
+    }
+
+    /// Row numbers of the runs that the filter leaves.
+    pub(super) fn run_rows(&self, filter: &Filter) -> rusqlite::Result<Vec<i64>> {
+        let runs = filter.runs();
+        self.connection
+            .prepare(&runs.sql)?
+            .query_map(params_from_iter(&runs.values), |row| row.get(0))?
+            .collect()
+    }
+}
