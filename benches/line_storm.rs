@@ -16,13 +16,11 @@ use std::process::ExitCode;
 const TRANSACTIONS: u64 = 1_000_000;
 /// Clashes drawn to see how many pass for a reply.
 const CLASHES: u32 = 4_000_000;
-/// Share of the transactions in which two modules answer.
-const CLASHING: f64 = 0.01;
 /// Share of the transactions that ask for all inputs at once.
 const LISTS: f64 = 1.0 / 20.0;
 const FORM: InputForm = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
-/// Faults of the storm that a host sees by the damage, each at 1 %: truncate, flip, noise, garble, clash.
-const SEEN: i32 = 5;
+/// Faults that a host sees by the damage.
+const SEEN: [&str; 5] = ["truncate", "flip", "noise", "garble", "clash"];
 
 fn main() -> ExitCode {
     let words = || std::env::args().skip(1);
@@ -37,9 +35,7 @@ fn main() -> ExitCode {
     let weather = rage(seed, transactions, &faults);
     println!("line_storm: seed {seed}, {}", faults.join(" "));
     tell(&weather);
-    if named.is_empty() {
-        expected(weather.transactions as f64);
-    }
+    expected(weather.transactions as f64, &faults);
     weather.examples.iter().for_each(|lie| println!("{lie}"));
     ExitCode::from(u8::from(!weather.is_honest()))
 }
@@ -66,7 +62,7 @@ fn tell(weather: &Weather) {
 
 /// What a host cannot tell: n transactions, a share c clashing, of which p pass; it sees a share d damaged. Of all
 /// inputs at once a share q passes within the noise of their neighbours in time.
-fn expected(n: f64) {
+fn expected(n: f64, faults: &[&str]) {
     let channel = Channel::new(0).expect("0 is a channel");
     let (p, _) = passing(
         AnalogIn::ReadOne {
@@ -76,8 +72,9 @@ fn expected(n: f64) {
         4,
     );
     let (_, q) = passing(AnalogIn::ReadAll(FORM), 32);
-    let c = CLASHING;
-    let in_sight = (1.0 - c).powi(SEEN * i32::from(relayrig::bus::PROBATION));
+    let c = chance(faults, "clash");
+    let calm: f64 = SEEN.iter().map(|name| 1.0 - chance(faults, name)).product();
+    let in_sight = calm.powi(i32::from(relayrig::bus::PROBATION));
     println!("two modules at one address, two characters apart at most:");
     println!(
         "  p, share that passes for another value {p:.2e} (in step 1/41, 8 bits 1/256: 9.5e-5)"
@@ -105,6 +102,14 @@ fn expected(n: f64) {
     }
     let times: f64 = rest.iter().map(|(_, times)| times).sum();
     println!("  to be expected in all {times:.4}");
+}
+
+/// Probability of a fault that is asked for once; 0 of one that is not.
+fn chance(faults: &[&str], name: &str) -> f64 {
+    let values = faults.iter().filter_map(|fault| fault.split_once('='));
+    let mut own = values.filter(|(known, _)| *known == name);
+    let value = own.next().and_then(|(_, value)| value.parse().ok());
+    value.unwrap_or(0.0)
 }
 
 /// Shares of clashing replies of so many digits that are read as another value, and as one that is believed between two

@@ -3,8 +3,8 @@
 //!
 //! After each reply the line rests two characters. No host can do better than that, and how much it costs depends on
 //! the length of the frames: so each workload stands beside the share that this rest alone leaves (`bound`), and beside
-//! what a client that does nothing else reaches over the same pseudo-terminal in the same run (`peer`). A bar above
-//! either is out of reach here, whoever the host is.
+//! what a client that does nothing else reaches over the same pseudo-terminal in the same run (`peer`). A bar above the
+//! bound is out of reach of the workload, whoever the host is; one above the peer is out of reach of this machine.
 
 use super::bare;
 use relayrig::bus::{self, Answer, LineSettings, Pace, Request, SerialPorts, Wire};
@@ -140,7 +140,7 @@ pub fn tell() {
 fn reached(row: &Row, bar: f64) -> &'static str {
     if row.share >= bar {
         "met"
-    } else if row.bound.min(row.peer) < bar {
+    } else if row.bound < bar {
         "out of reach"
     } else {
         "missed"

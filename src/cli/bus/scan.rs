@@ -17,7 +17,7 @@ use tokio::task::JoinHandle;
   relayrig bus scan --port /dev/ttyUSB0 --baud 115200 --baud 9600 --addresses 01-20 --checksum on
 
 A module is asked for its configuration word ($AA2), which changes nothing. All addresses at all rates with and without \
-checksum take about three minutes; Ctrl-C ends it and prints what was found. Exit status 1 when nobody answers, 4 after \
+checksum take about ten minutes, at 115200 and 9600 one and a half; Ctrl-C ends it and prints what was found. Exit status 1 when nobody answers, 4 after \
 Ctrl-C.")]
 pub struct ScanArgs {
     #[command(flatten)]
