@@ -78,7 +78,7 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
             || file.lines.iter().any(|line| line.name == target)
     })?;
     let world = World::build(&options.of_world(world_faults))?;
-    let modules = modules(&file, &table, options.seed)?;
+    let modules = modules(&file, &table, options.seed, world.noise_seed())?;
     let rig = Rig::new(Box::new(world), modules, file.lines, faults);
     Ok(SharedRig::new(rig))
 }
@@ -158,7 +158,13 @@ pub(crate) fn check_targets(faults: &Faults, known: impl Fn(&str) -> bool) -> Re
     }
 }
 
-fn modules(file: &RigFile, table: &WorldTable, seed: u64) -> Result<Vec<Module>, SimError> {
+/// The errors of a module belong to the rig, its noise to the day.
+fn modules(
+    file: &RigFile,
+    table: &WorldTable,
+    seed: u64,
+    noise: Option<u64>,
+) -> Result<Vec<Module>, SimError> {
     let module = |spec: &ModuleSpec| {
         let line = file.lines.iter().find(|line| line.name == spec.line);
         let commissioning = Commissioning {
@@ -168,7 +174,8 @@ fn modules(file: &RigFile, table: &WorldTable, seed: u64) -> Result<Vec<Module>,
         };
         let mut rng = habit::stream(seed, &spec.id);
         let habit = Habit::draw(&table.devices, &mut rng);
-        Module::new(spec, commissioning, habit, rng)
+        let noise = noise.map(|noise| habit::stream(noise, &format!("noise of {}", spec.id)));
+        Module::new(spec, commissioning, habit, noise.unwrap_or(rng))
     };
     file.modules.iter().map(module).collect()
 }

@@ -51,6 +51,7 @@ mod timing;
 #[cfg(feature = "sim")]
 mod transient;
 mod variant;
+mod verification;
 
 use crate::config::load_recipe;
 use crate::gauge::Parameter;
@@ -102,6 +103,8 @@ pub enum Study {
     Timing,
     /// The relay model of the simulated rig over the cases of a file
     Transient,
+    /// How often a verification fails a rig that has not changed
+    Verification,
 }
 
 impl Study {
@@ -122,6 +125,7 @@ impl Study {
             Self::Threshold => Some((4, 40)),
             Self::Stop => Some((16, 25)),
             Self::Transient => None,
+            Self::Verification => Some((20, 10)),
         }
     }
 
@@ -143,6 +147,7 @@ impl Study {
             Self::Timing => "timing",
             Self::Stop => "stop",
             Self::Transient => "transient",
+            Self::Verification => "verification",
         }
     }
 
@@ -164,6 +169,7 @@ impl Study {
             Self::Timing => timing::study(order),
             Self::Stop => stop::study(order),
             Self::Transient => bail!("study transient runs no lot"),
+            Self::Verification => verification::study(order),
         }
     }
 }

@@ -189,9 +189,10 @@ impl LagLaw {
 
 /// What the prior adds to the product of a term with itself.
 fn believed(guess_v: f64, term: usize) -> f64 {
-    let sd_v = match term {
-        0 => GUESS_SD_V,
-        _ => ELASTICITY * guess_v.abs().max(GUESS_SD_V),
+    let sd_v = if term == 0 {
+        GUESS_SD_V
+    } else {
+        ELASTICITY * guess_v.abs().max(GUESS_SD_V)
     };
     (SCATTER_V / sd_v).powi(2)
 }

@@ -54,6 +54,7 @@ faults! {
     }
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",
+        NoiseSeed = "noise_seed",
         GoldenEvery = "golden_every",
     }
 }
@@ -107,6 +108,11 @@ impl Faults {
             .iter()
             .filter(move |(f, _)| *f == fault)
             .map(|(_, v)| *v)
+    }
+
+    /// Seed of the day, where it is not that of the rig.
+    pub fn noise_seed(&self) -> Option<u64> {
+        self.values(Fault::NoiseSeed).next().map(|it| it as u64)
     }
 
     /// Whatever still waits for its part is called off.

@@ -175,7 +175,7 @@ impl Magazine {
         let number = self.next_number();
         let (mut specimen, draw) = match number {
             Some(n) => self.lot_part(n - 1, faults),
-            None => self.golden_part(self.out.0),
+            None => self.golden_part(self.out.0, faults),
         };
         match number {
             Some(_) => self.out.1 += 1,
@@ -204,15 +204,14 @@ impl Magazine {
     fn lot_part(&self, index: u64, faults: &Faults) -> (Specimen, Draw) {
         let asked = |fault| faults.values(fault).next().map(|it| it as u64);
         let seed = asked(Fault::PartsSeed).unwrap_or(self.seed);
+        let noise = faults.noise_seed().unwrap_or(self.seed);
         let body = asked(Fault::Refeed).map_or(index, |parts| index % parts.max(1));
         let specimen = Specimen::of_lot(&self.world, self.scale, seed, body);
-        (
-            specimen,
-            Draw::new(self.seed, Subject::LotOperations, index),
-        )
+        (specimen, Draw::new(noise, Subject::LotOperations, index))
     }
 
-    fn golden_part(&self, index: u64) -> (Specimen, Draw) {
+    /// On another day a golden part is the same body with another temperature.
+    fn golden_part(&self, index: u64, faults: &Faults) -> (Specimen, Draw) {
         let place = index - self.filled_at.0;
         let body = if place < self.golden.len() as u64 {
             place
@@ -220,10 +219,14 @@ impl Magazine {
             0
         };
         let paper = &self.golden[body as usize];
-        let specimen = Specimen::of_certificate(&self.world, self.scale, self.seed, body, paper);
-        (
-            specimen,
-            Draw::new(self.seed, Subject::GoldenOperations, index),
-        )
+        let mut specimen =
+            Specimen::of_certificate(&self.world, self.scale, self.seed, body, paper);
+        let noise = faults.noise_seed();
+        let mut draw = Draw::new(noise.unwrap_or(self.seed), Subject::GoldenOperations, index);
+        if noise.is_some() {
+            let sd_k = self.world.environment.part_minus_track_sd_k;
+            specimen.offset_k = draw.normal(0.0, sd_k);
+        }
+        (specimen, draw)
     }
 }

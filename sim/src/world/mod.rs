@@ -81,6 +81,7 @@ pub struct World {
     commands: Commands,
     edges: Vec<(Wire<In>, Edges)>,
     drift: Option<f64>,
+    noise_seed: Option<u64>,
     clock_hz: f64,
     now_us: u64,
 }
@@ -100,6 +101,7 @@ impl World {
         let (track, ambient) = (environment.track_c, environment.ambient_c);
         let magazine = Magazine::load(options, &table, &faults, track, ambient)?;
         let drift = faults.values(Fault::Drift).next();
+        let noise_seed = faults.noise_seed();
         let wiring = Wiring::new(&rig);
         let board = Board::new(
             &table.board,
@@ -130,11 +132,17 @@ impl World {
             commands,
             edges,
             drift,
+            noise_seed,
             clock_hz,
             now_us: 0,
         };
         world.begin_edges();
         Ok(world)
+    }
+
+    /// Seed of the day, where it is not that of the rig.
+    pub fn noise_seed(&self) -> Option<u64> {
+        self.noise_seed
     }
 
     /// Truth of every lot part that has entered the nest, in order.

@@ -82,9 +82,10 @@ impl Expected {
             Direction::Falling => (golden.release_voltage_v, bench.release_lag()),
         };
         let at_part = certified.value / to_reference(track, bench.reference_temperature());
-        let sd_v = match lag.coarse.parts() {
-            0 => FINE_GUESS_SD_V,
-            _ => TWO_OPERATIONS_V.hypot(TWO_TEMPERATURES * at_part),
+        let sd_v = if lag.coarse.parts() == 0 {
+            FINE_GUESS_SD_V
+        } else {
+            TWO_OPERATIONS_V.hypot(TWO_TEMPERATURES * at_part)
         };
         Some(Self::new(Volt(at_part + lag.fine_v.value), sd_v))
     }

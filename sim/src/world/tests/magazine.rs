@@ -43,3 +43,26 @@ fn a_magazine_that_is_filled_anew_gives_the_golden_parts_again_and_other_parts_o
     assert_eq!(numbers, [3, 4, 5], "none of them comes twice");
     assert_eq!(second.waiting(), 0);
 }
+
+#[test]
+fn on_another_day_the_golden_parts_are_the_same_bodies_with_other_temperatures() {
+    let on = |day: Option<f64>| {
+        let asked: Vec<_> = day
+            .map(|it| ("noise_seed".into(), it))
+            .into_iter()
+            .collect();
+        let world = read_world(&config_dir(), None).unwrap();
+        let mut faults = Faults::resolve(&asked, &world.fault, &config_dir()).unwrap();
+        let part = loaded(0).take(0, &mut faults).unwrap();
+        let specimen = part.relay.specimen();
+        (specimen.operate_v, specimen.offset_k)
+    };
+    let (bodies, kelvin): (Vec<f64>, Vec<f64>) =
+        [on(None), on(Some(2.0)), on(Some(3.0))].into_iter().unzip();
+    assert_eq!(bodies, [bodies[0]; 3]);
+    assert!(
+        kelvin[0] != kelvin[1] && kelvin[1] != kelvin[2],
+        "{kelvin:?}"
+    );
+    assert_eq!(on(Some(2.0)), on(Some(2.0)));
+}
