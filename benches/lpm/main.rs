@@ -12,7 +12,7 @@ mod world;
 use std::cell::RefCell;
 
 use relayrig::lpm::{Answer, Model, Move, Mover, Pose, Shape};
-use timing::{Spread, clock_ns, clock_step_ns, cold, rounds, warm};
+use timing::{Spread, clock_ns, cold, rounds, warm};
 use world::{KINDS, World, gripper, moves, specks, world};
 
 /// Numbers of elements.
@@ -33,8 +33,7 @@ const RANGE_MM: f64 = 25.0;
 fn main() {
     let clock = clock_ns();
     println!(
-        "one query alone, best of several passes, ns; cost of the clock taken off: {clock} ns; its steps: {} ns",
-        clock_step_ns()
+        "one query alone, best of several passes, ns; cost of the clock taken off: {clock} ns"
     );
     let asked = |name: &str| std::env::args().any(|argument| argument == name);
     if asked("--growth") {

@@ -39,22 +39,6 @@ pub fn clock_ns() -> f64 {
     Spread::of(empty.collect()).median
 }
 
-/// The least step that the clock takes, ns: nothing is told more finely.
-pub fn clock_step_ns() -> f64 {
-    let steps = (0..10_001).map(|_| {
-        let start = Instant::now();
-        let mut step = 0.0;
-        while step == 0.0 {
-            step = start.elapsed().as_nanos() as f64;
-        }
-        step
-    });
-    let mut steps: Vec<f64> = steps.collect();
-    steps.sort_by(f64::total_cmp);
-    let apart = steps.windows(2).map(|pair| pair[1] - pair[0]);
-    apart.filter(|apart| *apart > 0.0).fold(steps[0], f64::min)
-}
-
 /// Each query alone, its best of [`PASSES`].
 pub fn warm<Q, A>(queries: &[Q], clock_ns: f64, ask: impl Fn(&Q) -> A) -> Spread {
     let mut best = vec![f64::INFINITY; queries.len()];

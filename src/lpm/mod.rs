@@ -18,6 +18,7 @@
 //! shapes (cylinders stay round, in any orientation): `straight`. Turning moves advance
 //! conservatively with a second-order bound: `turning`.
 //! The gate asks for no distance (`contact`, `search`), a clearance for no more than the nearest (`nearest`).
+//! What a pair may do (forbidden within a margin, may touch, ignored) is applied by `permission`.
 //!
 //! # Never a false clear
 //! Bodies are closed sets: touching is contact. *Blocked* means that the distance comes within the

@@ -12,7 +12,7 @@ const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
 impl Grid {
     /// Shows the bundles in some of these layers that have pieces which may meet a box, until one is
     /// answered with true.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn around(
         &self,
         cover: &Cover,

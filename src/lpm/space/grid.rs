@@ -258,17 +258,6 @@ fn is_small(area: &Area) -> bool {
     area.cells() <= MOST_CELLS_OF_A_PIECE
 }
 
-impl Lane {
-    #[inline]
-    fn of(piece: u32, cover: &Cover, seat: &Seat) -> Lane {
-        Lane {
-            piece,
-            word: seat.reach.word(),
-            cover: *cover,
-        }
-    }
-}
-
 /// The numbers of the cells of `area` in a grid that begins at `low`, row by row.
 #[inline]
 fn rows(low: [i32; 2], columns: usize, area: &Area) -> impl Iterator<Item = Range<usize>> {

@@ -55,7 +55,7 @@ impl Space {
 
     /// Shows whatever a box at rest may meet, bundle by bundle: bit k: lane k. A piece may be shown more
     /// than once. True: nothing else matters.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn around(&self, cover: &Cover, show: impl FnMut(&Bundle, u32) -> bool) {
         let layers = self.layers.between(cover.low[2], cover.high[2]);
         if layers != 0 {

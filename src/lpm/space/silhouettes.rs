@@ -1,5 +1,6 @@
 //! Silhouettes, `B` of the paper: what each piece covers of x, y and z, eight pieces at a time.
 
+use super::Seat;
 use super::boxes::Boxes;
 use super::cover::Cover;
 
@@ -19,6 +20,15 @@ pub(super) struct Lane {
 }
 
 impl Lane {
+    #[inline]
+    pub(super) fn of(piece: u32, cover: &Cover, seat: &Seat) -> Lane {
+        Lane {
+            piece,
+            word: seat.reach.word(),
+            cover: *cover,
+        }
+    }
+
     /// Meets nothing.
     const EMPTY: Lane = Lane {
         piece: NONE,
