@@ -3,7 +3,7 @@
 use super::DONE;
 use crate::hmi::access::{Register, Role, beside};
 use anyhow::Context;
-use std::io::BufRead;
+use std::io::{BufRead, Write};
 use std::path::Path;
 
 /// People who may log in at the screen.
@@ -55,8 +55,9 @@ pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<i32> {
     let mut register = Register::open(&beside(db))?;
     match args.action {
         Action::List => {
+            let mut out = std::io::stdout().lock();
             for person in register.people()? {
-                println!("{:<12}{}", person.role, person.name);
+                writeln!(out, "{:<12}{}", person.role, person.name)?;
             }
         }
         Action::Add { name, role, stdin } => {
