@@ -7,7 +7,7 @@ use crate::quality::ordered::{Histogram, round_step};
 use crate::quality::{Limits, Ordered};
 
 /// Of a control chart: as wide as a sheet that lies, so high that two of them and what is told of them fill it.
-const WIDE: [f64; 2] = [1000.0, 215.0];
+const WIDE: [f64; 2] = [1000.0, 200.0];
 
 /// The last `shown` points of a control chart with its limits; points that a rule objects to stand out
 /// and bear the number of the rule. `names` are told under every few points.
