@@ -2,8 +2,9 @@
 //!
 //! What makes a relay late on a step (mass, drag, a pull that grows slowly) makes it swing longer after an approach and
 //! leave its rest later at a level, so every wait for a free armature is a multiple of the operate time at nominal voltage
-//! that the part has shown before any ramp. The multiples are those of the five-state model: of two thousand parts that
-//! dropped [`super::OFF`] before, none went over early that had such a run-up.
+//! that the part has shown before any ramp. Of two thousand drawn relays (five states, dropped [`super::OFF`] before) none
+//! goes over early when the approach ends 45 mV before its threshold, and seven do at 30 mV, heavy ones; the run-up ends in
+//! between at the near end of an interval and further away everywhere else.
 
 use super::Findings;
 use crate::gauge::Parameter;
