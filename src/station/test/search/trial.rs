@@ -53,14 +53,17 @@ pub(in crate::station::test) fn acts(
     acts
 }
 
-/// Off, then two steps towards `at`: a single one from zero picks up some 30 mV below the threshold.
+/// Off until the armature is back and both ramps are down, then two steps towards `at`: a single one from zero picks up
+/// some 30 mV below the threshold.
 fn from_rest(supply: &mut Supply, findings: &mut Findings, at: Volt) -> Vec<Act> {
+    let pace = Pace::of(findings);
     let mut acts = dropped(findings);
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
     let still_ramping = std::mem::take(&mut findings.still_ramping);
     acts.extend([
         coarse,
-        Act::WaitSinceMark(OFF.max(still_ramping)),
+        Act::Wait(takes),
+        Act::WaitSinceMark(OFF.max(pace.approaches()).max(still_ramping)),
         supply.step_to(at * APPROACH),
         board(&[
             (RampMode, false),
@@ -68,11 +71,8 @@ fn from_rest(supply: &mut Supply, findings: &mut Findings, at: Volt) -> Vec<Act>
             (EventNoBreak, false),
             (CoilDrive, true),
         ]),
-        Act::Wait(Pace::of(findings).approaches()),
+        Act::Wait(pace.approaches()),
     ]);
-    if supply.coarse() > Volt(0.1) {
-        acts.push(Act::Wait(takes));
-    }
     acts
 }
 
@@ -91,6 +91,8 @@ fn from_sealed(
         acts.extend([coarse, Act::Wait(takes)]);
     }
     acts.extend([
+        // What still falls would seal at more than nominal.
+        Act::Wait(still_ramping),
         supply.step_to(Volt(SEAL * bench.recipe.part.nominal_v)),
         board(&[
             (SourceOn, false),
@@ -100,7 +102,7 @@ fn from_sealed(
             (Arm, false),
             (CoilDrive, true),
         ]),
-        Act::Wait((INTERLOCK + SEALS).max(still_ramping)),
+        Act::Wait(INTERLOCK + SEALS),
         // The flux of a sealed armature falls slowly: from the near end of the interval, not from above.
         supply.step_to(near),
         Act::Wait(SEALS),

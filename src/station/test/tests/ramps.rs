@@ -1,6 +1,6 @@
 //! One ramp after another: where the supply stands when the next one begins.
 
-use super::super::{operate_fine, release};
+use super::super::{Stage, operate_fine, release, search};
 use super::{PULLED, RESTING, at_23_c, bench, watched};
 use crate::gauge::Parameter;
 use crate::gauge::budget::{Budget, Reading};
@@ -58,6 +58,23 @@ fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
         assert!(armed_ms >= falls_ms.min(24.0), "{armed_ms} of {falls_ms}");
         assert!(sd_v < 0.02 || falls_ms > 30.0 && armed_ms >= falls_ms);
     }
+}
+
+#[test]
+fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
+    let bench = bench();
+    let mut supply = Supply::new(&bench.calibration);
+    let mut findings = at_23_c();
+    findings.expected_release = Some(Expected::new(Volt(1.9), 0.1));
+    release::acts_fine(&bench, &mut supply, &mut findings);
+    let missed = watched(true, RESTING, 10.0);
+    let next = release::conclude_fine(&bench, &missed, &mut findings, 0);
+    assert_eq!(next, Some(Stage::Search(Direction::Falling)));
+    let acts = search::acts(&bench, &mut supply, &mut findings, Direction::Falling);
+    let driven = |act: &Act| matches!(act, Act::Board(outputs) if outputs.contains(&(DigitalOut::CoilDrive, true)));
+    let at = acts.iter().position(driven).unwrap();
+    // 0.7 V at 1.5 V/s, of which 10 ms had passed.
+    assert!(until_armed(&acts[..at]) > Span::ms(440), "{acts:?}");
 }
 
 #[test]
