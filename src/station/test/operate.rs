@@ -1,9 +1,8 @@
 //! Operate voltage on the coarse ramp from the pre-bias: an estimate to some 10 mV that places the fine ramp.
 
-use super::indication::{coarse_reading, gate0};
-use super::ramp::{Expected, stopped_at};
+use super::indication::gate0;
+use super::ramp::{after_coarse, stopped_at};
 use super::{Bench, Findings, INTERLOCK, OFF, Ramp, Stage, board};
-use crate::gauge::Parameter;
 use crate::gauge::threshold::{Direction, indicated};
 use crate::gauge::verdict::Bin;
 use crate::rig::point::DigitalIn;
@@ -115,17 +114,8 @@ pub(super) fn conclude_coarse(
     });
     findings.operated = true;
     findings.still_ramping = turning(bench, coarse - start);
-    let strategy = bench.strategy(Parameter::OperateVoltage);
-    let (samples, part) = (readings.gates.iter().flatten(), findings.track?);
-    let certified = Expected::certified(bench, part, Direction::Rising);
-    findings.expected_operate = certified.or(Some(Expected::after(&seen, &lag)));
-    match coarse_reading(bench, (seen, lag), part, Direction::Rising) {
-        Some(reading) if strategy.trusts_coarse() => {
-            findings.found(Parameter::OperateVoltage, reading, samples);
-            None
-        }
-        Some(_) | None => (!strategy.always_fine()).then_some(Stage::OperateFine(0)),
-    }
+    let told = (seen, lag, Direction::Rising);
+    after_coarse(bench, readings, findings, told).then_some(Stage::OperateFine(0))
 }
 
 /// How long the coarse ramp needs from its event back down to [`release_start`]: it has gone on while the

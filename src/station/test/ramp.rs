@@ -3,8 +3,9 @@
 
 use super::Bench;
 use super::findings::Findings;
-use super::indication::gate0;
+use super::indication::{coarse_reading, gate0};
 use super::pace::Pace;
+use super::search::parameter;
 use crate::gauge::calibration::Lag;
 use crate::gauge::coil::to_reference;
 use crate::gauge::lag::Shown;
@@ -200,6 +201,30 @@ pub(super) fn meet(
         "{which} threshold not found in {ATTEMPTS} fine ramps"
     ));
     None
+}
+
+/// What follows from a coarse ramp: where the fine one looks, and the result where the recipe trusts this one. True if
+/// a fine one has to be put in that the recipe did not plan.
+pub fn after_coarse(
+    bench: &Bench,
+    readings: &Readings,
+    findings: &mut Findings,
+    (seen, lag, direction): (Shown, Lag, Direction),
+) -> bool {
+    let Some(part) = findings.track else {
+        return false;
+    };
+    let certified = Expected::certified(bench, part, direction);
+    *findings.expected(direction) = certified.or(Some(Expected::after(&seen, &lag)));
+    let parameter = parameter(direction);
+    let strategy = bench.strategy(parameter);
+    match coarse_reading(bench, (seen, lag), part, direction) {
+        Some(reading) if strategy.trusts_coarse() => {
+            findings.found(parameter, reading, readings.gates.iter().flatten());
+            false
+        }
+        Some(_) | None => !strategy.always_fine(),
+    }
 }
 
 #[cfg(test)]

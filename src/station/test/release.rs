@@ -3,7 +3,7 @@
 //! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
 //! voltage, so the timed one stays the last of those.
 
-use super::indication::{coarse_reading, fine_reading, gate0};
+use super::indication::{fine_reading, gate0};
 use super::operate::{SETTLES, release_start};
 use super::operate_fine::{REPEAT_SD_V, again};
 use super::ramp::{self, Expected, Met};
@@ -115,7 +115,6 @@ pub(super) fn conclude_coarse(
     findings: &mut Findings,
 ) -> Option<Stage> {
     let (start, test) = (findings.ramp_start?, &bench.recipe.test);
-    let strategy = bench.strategy(Parameter::ReleaseVoltage);
     let coarse_v_per_s = bench.calibration.coarse_v_per_s.value;
     let seen = readings.seen.first() == Some(&true);
     let gate =
@@ -137,16 +136,8 @@ pub(super) fn conclude_coarse(
         coarse: seen,
         fine: None,
     });
-    let (samples, part) = (readings.gates.iter().flatten(), findings.track?);
-    let certified = Expected::certified(bench, part, Direction::Falling);
-    findings.expected_release = certified.or(Some(Expected::after(&seen, &lag)));
-    match coarse_reading(bench, (seen, lag), part, Direction::Falling) {
-        Some(reading) if strategy.trusts_coarse() => {
-            findings.found(Parameter::ReleaseVoltage, reading, samples);
-            None
-        }
-        Some(_) | None => (!strategy.always_fine()).then_some(Stage::ReleaseFine(0)),
-    }
+    let told = (seen, lag, Direction::Falling);
+    ramp::after_coarse(bench, readings, findings, told).then_some(Stage::ReleaseFine(0))
 }
 
 pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
