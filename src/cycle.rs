@@ -33,6 +33,7 @@ use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
 use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
 use crate::station::act::{Job, JobDone, Read};
+use crate::station::inside::Inside;
 use crate::station::packml;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Inputs, Wants};
@@ -97,6 +98,8 @@ pub struct Cycle {
     publish_at: RigTime,
     /// State of the outer machine that was told last.
     told: packml::State,
+    /// What the next run has to look for, as it was told last.
+    inside: Inside,
     /// Longest time that the emergency-stop input was not known anew.
     worst_age: Span,
     /// The motion that the guard refused last, until another one is driven.
@@ -120,6 +123,7 @@ impl Cycle {
             patience: Patience::new(&wiring),
             wiring,
             pace,
+            inside: station.ledger().to_look_for(),
             station,
             guard,
             outside,
@@ -414,9 +418,6 @@ impl Cycle {
         for left in wants.left.drain(..) {
             self.tell(Event::Left(left));
         }
-        if !wants.landed.is_empty() || wants.ending.is_some() {
-            self.tell(Event::Uses(self.station.uses()));
-        }
         for landed in wants.landed.drain(..) {
             self.tell(Event::Landed(landed));
         }
@@ -438,6 +439,12 @@ impl Cycle {
         if wants.alarms_changed {
             let standing = self.station.annunciator().standing().to_vec();
             self.tell(Event::Standing(standing, now));
+        }
+        let inside = self.station.ledger().to_look_for();
+        let moved = std::mem::replace(&mut self.inside, inside) != inside;
+        if moved || wants.ending.is_some() {
+            self.tell(Event::Uses(self.station.uses()));
+            self.tell(Event::Inside(inside));
         }
         let state = self.station.outer();
         if std::mem::replace(&mut self.told, state) != state {

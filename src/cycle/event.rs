@@ -3,6 +3,7 @@
 use crate::gauge::Calibration;
 use crate::station::annunciator::Standing;
 use crate::station::gates::Uses;
+use crate::station::inside::Inside;
 use crate::station::packml;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Checked, Interrupted, Judged, Landed, Left};
@@ -34,6 +35,8 @@ pub enum Event {
     Ordered(Box<Answered>, RigTime),
     /// Uses of what wears, since the start.
     Uses(Uses),
+    /// What the next run has to look for.
+    Inside(Inside),
     /// The lot itself began.
     LotBegan(RigTime),
 }

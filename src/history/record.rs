@@ -4,7 +4,8 @@
 //! number that is not finite is stored as no number at all.
 
 use super::{
-    AlarmChangeRecord, CurveRecord, GoldenCheckRecord, LotStateRecord, OrderRecord, WearRecord,
+    AlarmChangeRecord, CurveRecord, GoldenCheckRecord, InsideRecord, LotStateRecord, OrderRecord,
+    WearRecord,
 };
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -188,6 +189,8 @@ pub enum Row {
     Order(OrderRecord),
     /// Uses of what wears.
     Wear(WearRecord),
+    /// What the next run has to look for.
+    Inside(InsideRecord),
 }
 
 /// SHA-256 of a snapshot's text, hexadecimal: the name under which it is stored once.

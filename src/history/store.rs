@@ -6,7 +6,7 @@
 use super::error::{Doing, HistoryError, Result};
 use super::{
     AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, PartRecord, Row, alarm_states, gates,
-    insert, landing, open, orders, series, wear,
+    insert, inside, landing, open, orders, series, wear,
 };
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::collections::HashMap;
@@ -261,6 +261,7 @@ fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Resu
         Row::GoldenCheck(it) => gates::golden_check(transaction, known, it),
         Row::Order(it) => orders::insert(transaction, known, it),
         Row::Wear(it) => wear::add(transaction, it),
+        Row::Inside(it) => inside::keep(transaction, it),
     })
 }
 

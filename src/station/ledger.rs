@@ -5,6 +5,7 @@
 //! An opening of the fingers that was driven may still not come: the module that should open them has tripped. So a
 //! part that was let go is lost only when the fingers were seen empty; one that they still show is theirs again.
 
+use super::inside::Inside;
 use crate::gauge::verdict::Bin;
 use crate::units::{RigTime, Second};
 
@@ -75,11 +76,30 @@ pub struct Ledger {
     pub found: u64,
     /// The part in the pocket is one of them.
     pub pocket_found: bool,
+    /// What a run before left inside, until somebody has looked.
+    pub left: Inside,
     numbered: u64,
     lot_numbered: u64,
 }
 
 impl Ledger {
+    /// Nothing is known but what a run before left inside.
+    pub fn after(left: Inside) -> Self {
+        Self {
+            left,
+            ..Self::default()
+        }
+    }
+
+    /// What a run has to look for that begins now.
+    pub fn to_look_for(&self) -> Inside {
+        if self.left == Inside::default() {
+            Inside::of(self)
+        } else {
+            self.left
+        }
+    }
+
     /// Parts between pocket and beam.
     pub fn inside(&self) -> u64 {
         u64::from(self.pocket)

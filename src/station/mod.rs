@@ -27,6 +27,7 @@ pub mod clamp;
 pub mod feed;
 pub mod gates;
 pub mod golden;
+pub mod inside;
 mod lamps;
 mod learning;
 pub mod ledger;
@@ -62,6 +63,7 @@ use clamp::Clamp;
 use feed::Feed;
 use gates::{Gates, LotSettings, Uses};
 use golden::GoldenRun;
+use inside::Inside;
 use lamps::Lamps;
 use ledger::Ledger;
 use mechanism::Mechanism;
@@ -103,6 +105,8 @@ pub struct Plan {
     pub lot: LotSettings,
     /// Uses of what wears before this run.
     pub worn: Uses,
+    /// What the run before left inside.
+    pub left: Inside,
 }
 
 /// What `Starting` is doing.
@@ -187,6 +191,7 @@ impl Station {
         let known = known.map_or(untaught(), |lags| {
             (lags.operate.coarse, lags.release.coarse)
         });
+        let ledger = Ledger::after(plan.left);
         let mut station = Self {
             fresh: true,
             state: plan.between_lots.unwrap_or(State::Stopped),
@@ -205,7 +210,7 @@ impl Station {
             releasing: false,
             clamp: Clamp::Empty,
             sort: Sort::Returning,
-            ledger: Ledger::default(),
+            ledger,
             mechanism,
             annunciator: Annunciator::default(),
             patience: Patience::default(),

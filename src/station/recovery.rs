@@ -3,7 +3,8 @@
 //! 1. The drive of the axis is reset and its servo switched on; nothing has moved yet.
 //! 2. z up, before anything else moves near the nest.
 //! 3. The ledger is compared with what the sensors show: parts are where they are seen. A part that the
-//!    ledger does not know is *found*, one that nobody sees is *lost*; both are told.
+//!    ledger does not know is *found*, one that nobody sees is *lost*; both are told. So is one that a run
+//!    before [left inside](super::inside).
 //! 4. Every other actuator goes to its rest end, one at a time. A motion that the guard refuses waits
 //!    until the others are home; when all that are left are refused, that is an alarm. Fingers that hold
 //!    a part stay closed.
@@ -186,6 +187,7 @@ fn pushed(turn: &mut Turn, seen: &Seen) {
 
 /// Brings the ledger to what is seen, z being up. Parts in nest and gripper are interrupted by this.
 pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, alarms: &mut Vec<Alarm>) {
+    alarms.extend(std::mem::take(&mut ledger.left).missing(seen));
     hand_over(ledger, seen);
     match (ledger.gripper.is_some(), seen.gripper) {
         (true, false) => {

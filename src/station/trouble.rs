@@ -192,6 +192,34 @@ impl Alarm {
         )
     }
 
+    /// A run before left a part inside, and it is nowhere.
+    pub fn part_gone(place: &str) -> Self {
+        Self::new(
+            "part_lost",
+            format!(
+                "The {place} held a part when the program stopped; it is seen nowhere. Find it and scrap it."
+            ),
+            format!(
+                "{}在程序终止时有工件，现未在任何位置检测到。请找到并报废。",
+                chinese::name(place)
+            ),
+        )
+    }
+
+    /// A run before let a part go, and was cut off before a beam had confirmed it.
+    pub fn fall_unseen(bin: &str) -> Self {
+        Self::new(
+            "part_lost",
+            format!(
+                "The program stopped before the beam of bin {bin} had confirmed the part let go over it. Look whether it is there."
+            ),
+            format!(
+                "{}箱的光电传感器确认放下的工件之前程序已终止。请检查工件是否在料箱内。",
+                chinese::bin(bin)
+            ),
+        )
+    }
+
     /// The fingers hold nothing any more.
     pub fn part_dropped() -> Self {
         Self::new(

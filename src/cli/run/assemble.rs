@@ -37,6 +37,7 @@ pub fn cycle(
         calibration,
         worn,
         alarms,
+        left,
     } = known;
     let plant = setup.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
@@ -66,6 +67,7 @@ pub fn cycle(
         voltage_gain: wiring.analog_in(AnalogIn::CoilVoltageFine).gain,
         lot: plant.lot.clone(),
         worn,
+        left,
     };
     let bench = Bench {
         calibration: Arc::new(calibration.unwrap_or_else(|| uncalibrated(recipe.part.nominal_v))),

@@ -1,11 +1,12 @@
 //! Rows of a run beside its parts: the state of its lot, alarms and what becomes of them, golden checks, wear.
 
 use crate::history::{
-    AlarmChange, AlarmChangeRecord, AlarmRecord, GoldenCheckRecord, LotState, LotStateRecord,
-    OrderRecord, Row, WearRecord,
+    AlarmChange, AlarmChangeRecord, AlarmRecord, GoldenCheckRecord, InsideRecord, LotState,
+    LotStateRecord, OrderRecord, Row, WearRecord,
 };
 use crate::station::annunciator::Standing;
 use crate::station::gates::Uses;
+use crate::station::inside::Inside;
 use crate::station::orders::shelf_minutes;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Checked, Ending};
@@ -179,6 +180,14 @@ impl Diary {
                 })
             })
             .collect()
+    }
+
+    /// Parts have moved on inside.
+    pub fn inside(&self, inside: Inside) -> Row {
+        Row::Inside(InsideRecord {
+            simulated: self.simulated,
+            inside,
+        })
     }
 
     /// Where the lot stands after the run.

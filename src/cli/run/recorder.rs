@@ -21,6 +21,7 @@ use crate::history::{
     Store, snapshot_hash,
 };
 use crate::station::gates::Uses;
+use crate::station::inside::Inside;
 use crate::station::ledger::Kind;
 use crate::station::wants::{Ending, Interrupted, Judged, Landed};
 use crate::units::RigTime;
@@ -86,6 +87,8 @@ pub struct Known {
     pub worn: Uses,
     /// Alarms that nobody has seen yet.
     pub alarms: Vec<AlarmLeft>,
+    /// What the run before left inside.
+    pub left: Inside,
 }
 
 /// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
@@ -120,6 +123,11 @@ impl<'a> Recorder<'a> {
         }
         let worn = worn(&store, setup.args.rig.sim)?;
         let alarms = store.alarms_left(setup.args.rig.sim)?;
+        let left = if setup.args.rig.sim && controls.rig_is_new() {
+            Inside::default()
+        } else {
+            store.left_inside(setup.args.rig.sim)?
+        };
         let recorder = Self {
             setup,
             controls,
@@ -142,6 +150,7 @@ impl<'a> Recorder<'a> {
             calibration,
             worn,
             alarms,
+            left,
         };
         Ok((recorder, known))
     }
@@ -229,6 +238,7 @@ impl<'a> Recorder<'a> {
                 rows.extend(self.diary.ordered(&answered, self.wall_us(at)));
             }
             Event::Uses(uses) => rows.extend(self.diary.uses(uses)),
+            Event::Inside(inside) => rows.push(self.diary.inside(inside)),
             Event::Calibrated(calibration) => {
                 rows.extend(self.diary.calibrated(calibration.made_at_us));
                 self.calibrated(&calibration)?;

@@ -24,6 +24,15 @@ impl Controls {
         self.stage.as_ref().map_or_else(now, |stage| stage.epoch_us)
     }
 
+    /// A simulated rig whose time begins with this run: what an earlier one left inside was inside of another rig.
+    pub(super) fn rig_is_new(&self) -> bool {
+        #[cfg(feature = "sim")]
+        let lived = self.stage.as_ref().is_some_and(|it| it.rig.now_us() > 0);
+        #[cfg(not(feature = "sim"))]
+        let lived = false;
+        !lived
+    }
+
     /// The rig of the stage.
     #[cfg(feature = "sim")]
     pub(super) fn staged_rig(&self) -> Option<SharedRig> {

@@ -184,6 +184,7 @@ impl Seen {
             | Event::Checked(..)
             | Event::Ordered(..)
             | Event::Uses(_)
+            | Event::Inside(_)
             | Event::Calibrated(_) => {}
         }
     }

@@ -83,6 +83,7 @@ impl Told {
             | Event::Checked(..)
             | Event::Ordered(..)
             | Event::Uses(_)
+            | Event::Inside(_)
             | Event::Calibrated(_) => {}
         }
     }

@@ -1,6 +1,8 @@
 //! What the writer keeps, and what it refuses.
 
 use super::*;
+use crate::gauge::verdict::Bin;
+use crate::station::inside::Inside;
 
 #[test]
 fn a_part_is_kept_down_to_the_raw_reply() {
@@ -38,6 +40,27 @@ fn a_part_is_kept_down_to_the_raw_reply() {
         (sample.module.as_str(), sample.raw.as_str()),
         ("01", ">4C53")
     );
+}
+
+#[test]
+fn what_is_inside_is_known_to_the_next_run_of_the_same_rig() {
+    let file = File::new();
+    let mut store = file.store();
+    let inside = Inside {
+        nest: true,
+        falling: Some(Bin::Coil),
+        ..Inside::default()
+    };
+    for inside in [Inside::default(), inside] {
+        let simulated = false;
+        store
+            .record(&[Row::Inside(InsideRecord { simulated, inside })])
+            .unwrap();
+    }
+    drop(store);
+    let store = file.store();
+    assert_eq!(store.left_inside(false).unwrap(), inside);
+    assert_eq!(store.left_inside(true).unwrap(), Inside::default());
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::rig::image::Image;
 use crate::rig::point::{AnalogIn, Counter, DigitalIn, DigitalOut};
 use crate::station::act::{Job, JobDone, Read};
 use crate::station::gates::{LotSettings, Uses};
+use crate::station::inside::Inside;
 use crate::station::moves::Move;
 use crate::station::orders::{Order, Refused};
 use crate::station::trouble::Alarm;
@@ -116,6 +117,7 @@ fn plan(count: Option<u64>) -> Plan {
         voltage_gain: 1.6,
         lot: LotSettings::default(),
         worn: Uses::default(),
+        left: Inside::default(),
     }
 }
 

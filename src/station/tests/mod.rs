@@ -8,6 +8,7 @@ mod feed;
 mod gates;
 mod golden;
 mod graph;
+mod inside;
 mod instruments;
 mod ledger;
 mod machine;

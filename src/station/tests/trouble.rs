@@ -118,7 +118,13 @@ fn what_a_chinese_text_is_about_is_named_in_chinese() {
         ]
     });
     let ended = MOVES.map(|it| [Alarm::left_end(it), Alarm::both_ends(it)]);
-    let of_two = places.into_iter().chain(bins).chain(ended).flatten();
+    let gone = [Alarm::part_gone("nest"), Alarm::fall_unseen("coil")];
+    let of_two = places
+        .into_iter()
+        .chain(bins)
+        .chain(ended)
+        .chain([gone])
+        .flatten();
     for alarm in of_two.chain(moved.flatten()) {
         assert!(
             begins_chinese(&alarm.text_zh),

@@ -4,7 +4,7 @@
 //! the beam that counted it says which bin it lies in.
 
 use super::{Case, rig_us, seconds};
-use crate::cli::study::storm::life::End;
+use crate::cli::study::storm::life::{End, Lived};
 use crate::history::{Alarm, Part};
 use rigsim::truth::{BodyTruth, Place};
 
@@ -174,26 +174,39 @@ fn in_a_bin(
     }
 }
 
-/// The life in which it happened was cut off before it could be told, or an alarm tells it.
+/// An alarm of the life in which it happened tells it, or of one that came after.
 fn is_declared(case: &Case, at_us: u64) -> bool {
     is_told(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
 }
 
-/// The same of a body that fell into a bin beside the one that was let go: the alarm names the bin.
+/// The same of a body that fell into a bin beside the one that was let go: the alarm names the bin. A life that was cut
+/// off may have confirmed the first one and not have heard of the second.
 fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
-    is_told(case, at_us, |alarm| {
-        alarm.code == "bin_beam" && alarm.text.contains(bin)
-    })
+    let confirmed_us = at_us + CONFIRMED_US;
+    let cut_off = case
+        .life_at(at_us)
+        .is_none_or(|life| life.ended_us < confirmed_us && life.end != End::Hung);
+    cut_off
+        || is_told(case, at_us, |alarm| {
+            alarm.code == "bin_beam" && alarm.text.contains(bin)
+        })
 }
 
 fn is_told(case: &Case, at_us: u64, tells: impl Fn(&Alarm) -> bool) -> bool {
-    let Some(life) = case.life_at(at_us) else {
-        return true;
+    let noticed_us = at_us + NOTICED_US;
+    let told = |life: &Lived| {
+        let until_us = noticed_us.max(life.began_us + NOTICED_US);
+        let mut alarms = case.alarms_of(life);
+        alarms.any(|(raised_us, alarm)| (at_us..=until_us).contains(&raised_us) && tells(alarm))
     };
-    let cut_off = life.ended_us < at_us + CONFIRMED_US && life.end != End::Hung;
-    let noticed = at_us..=at_us + NOTICED_US;
-    let mut alarms = case.alarms_of(life);
-    cut_off || alarms.any(|(raised_us, alarm)| noticed.contains(&raised_us) && tells(alarm))
+    let own = case
+        .life_at(at_us)
+        .filter(|life| life.ended_us >= noticed_us);
+    let mut since = case.lives.iter().filter(|life| life.ended_us >= at_us);
+    match own {
+        Some(life) => told(life),
+        None => since.any(told),
+    }
 }
 
 fn name(body: &BodyTruth) -> String {

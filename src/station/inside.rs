@@ -1,0 +1,66 @@
+//! What the next run has to know of the parts inside: a program that is killed tells nobody what became of them.
+//!
+//! Whoever comes next looks at its first homing, z being up: each part left inside is where it was, or farther on, or
+//! it is told. A part that was let go and that no beam had confirmed is told in any case, unless the fingers hold it
+//! still. Sensors alone say where parts are; what is known from before moves nothing.
+
+use super::ledger::Ledger;
+use super::recovery::Seen;
+use super::trouble::Alarm;
+use crate::gauge::verdict::Bin;
+
+/// Places that held a part when they were written down last.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Inside {
+    /// The pocket.
+    pub pocket: bool,
+    /// The nest.
+    pub nest: bool,
+    /// The gripper.
+    pub gripper: bool,
+    /// A part had been let go over this bin, and its beam had not confirmed it.
+    pub falling: Option<Bin>,
+}
+
+impl Inside {
+    /// As the ledger has it.
+    pub fn of(ledger: &Ledger) -> Self {
+        Self {
+            pocket: ledger.pocket,
+            nest: ledger.nest.is_some(),
+            gripper: ledger.gripper.is_some(),
+            falling: ledger.falling.as_ref().map(|it| it.bin),
+        }
+    }
+
+    /// Parts that are not seen where they were left, nor where they could have got to since.
+    pub fn missing(self, seen: &Seen) -> Vec<Alarm> {
+        let Seen {
+            mut pocket,
+            mut nest,
+            mut gripper,
+        } = *seen;
+        let never_opened = self.falling.is_some() && !self.gripper && claim(&mut gripper);
+        let fell = self.falling.filter(|_| !never_opened);
+        let held = self.gripper && claim(&mut gripper);
+        let stayed = self.nest && (claim(&mut nest) || claim(&mut gripper));
+        let waits = self.pocket && (claim(&mut pocket) || claim(&mut nest) || claim(&mut gripper));
+        // Jaws keep a part from which the fingers have slid off.
+        let set_down = self.gripper && !held && claim(&mut nest);
+        let gone = [
+            ("gripper", self.gripper && !held && !set_down),
+            ("nest", self.nest && !stayed),
+            ("pocket", self.pocket && !waits),
+        ];
+        let gone = gone.into_iter().filter(|(_, is_gone)| *is_gone);
+        fell.map(|bin| Alarm::fall_unseen(bin.name()))
+            .into_iter()
+            .chain(gone.map(|(place, _)| Alarm::part_gone(place)))
+            .collect()
+    }
+}
+
+/// What is seen once accounts for one part.
+fn claim(seen: &mut bool) -> bool {
+    std::mem::take(seen)
+}

@@ -1,0 +1,108 @@
+//! What a run before left inside is where it was, or farther on, or told.
+
+use super::Shop;
+use crate::gauge::verdict::Bin;
+use crate::rig::point::DigitalIn;
+use crate::station::inside::Inside;
+use crate::station::ledger::Ledger;
+use crate::station::recovery::{Recovery, Seen};
+
+/// Pocket, nest, gripper as bits.
+fn left(places: u8) -> Inside {
+    Inside {
+        pocket: places & 1 != 0,
+        nest: places & 2 != 0,
+        gripper: places & 4 != 0,
+        falling: None,
+    }
+}
+
+fn seen(places: u8) -> Seen {
+    Seen {
+        pocket: places & 1 != 0,
+        nest: places & 2 != 0,
+        gripper: places & 4 != 0,
+    }
+}
+
+/// Most parts that can be accounted for, over every way to say which seen part is which left one: one of the pocket
+/// may be anywhere, one of nest or gripper in either.
+fn accounted(left: u8, seen: u8) -> usize {
+    let may = |part: usize, place: usize| part == 0 || place > 0;
+    let of = |places: u8| (0..3).filter(move |bit| places & (1 << bit) != 0);
+    match of(left).next() {
+        None => 0,
+        Some(part) => {
+            let rest = left & !(1 << part);
+            let taken = of(seen).filter(|place| may(part, *place));
+            let with = taken.map(|place| 1 + accounted(rest, seen & !(1 << place)));
+            with.chain([accounted(rest, seen)]).max().unwrap_or(0)
+        }
+    }
+}
+
+#[test]
+fn each_part_that_no_seen_one_can_be_is_told_once() {
+    for places in 0..8_u8 {
+        for found in 0..8_u8 {
+            let told = left(places).missing(&seen(found)).len();
+            let gone = places.count_ones() as usize - accounted(places, found);
+            assert_eq!(told, gone, "left {places:03b}, seen {found:03b}");
+        }
+    }
+}
+
+#[test]
+fn the_place_that_held_the_part_is_named() {
+    for (places, found, place) in [
+        (0b100, 0, "gripper"),
+        (0b110, 0b100, "nest"),
+        (0b101, 0b10, "gripper"),
+    ] {
+        let told = left(places).missing(&seen(found));
+        assert_eq!(told.len(), 1, "{places:03b} {found:03b}");
+        assert!(told[0].text_en.contains(place), "{}", told[0].text_en);
+        assert_eq!(told[0].code, "part_lost");
+    }
+}
+
+#[test]
+fn a_part_that_was_let_go_is_told_with_its_bin_unless_the_fingers_hold_it_still() {
+    let falling = Inside {
+        falling: Some(Bin::Coil),
+        ..left(0b010)
+    };
+    let told = falling.missing(&seen(0b010));
+    assert_eq!(told.len(), 1);
+    assert!(told[0].text_en.contains("coil"), "{}", told[0].text_en);
+    assert!(falling.missing(&seen(0b110)).is_empty());
+}
+
+#[test]
+fn the_first_homing_tells_what_is_gone_and_the_second_one_does_not() {
+    let mut shop = Shop::at_rest();
+    shop.ledger = Ledger::after(left(0b110));
+    shop.set(DigitalIn::NestPresent, true);
+    shop.scan();
+    assert_eq!(
+        shop.ledger.to_look_for(),
+        left(0b110),
+        "still to be looked for"
+    );
+    let mut told = Vec::new();
+    for _ in 0..2 {
+        let mut recovery = Recovery::default();
+        for _ in 0..10 {
+            recovery.step(&mut shop.turn(), false);
+            told.extend(shop.alarms().into_iter().map(str::to_owned));
+            shop.after(20);
+        }
+    }
+    assert_eq!(told, ["part_lost", "part_found"]);
+    assert_eq!(
+        shop.ledger.to_look_for(),
+        left(0b010),
+        "the one that was found"
+    );
+    assert_eq!(shop.ledger.lost, 0, "it was none of this run's parts");
+}
