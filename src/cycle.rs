@@ -443,8 +443,7 @@ impl Cycle {
         let inside = self.station.ledger().to_look_for();
         let moved = std::mem::replace(&mut self.inside, inside) != inside;
         if moved || wants.ending.is_some() {
-            self.tell(Event::Uses(self.station.uses()));
-            self.tell(Event::Inside(inside));
+            self.tell(Event::Inside(inside, self.station.uses()));
         }
         let state = self.station.outer();
         if std::mem::replace(&mut self.told, state) != state {

@@ -33,10 +33,8 @@ pub enum Event {
     Checked(Checked, RigTime),
     /// An order was answered.
     Ordered(Box<Answered>, RigTime),
-    /// Uses of what wears, since the start.
-    Uses(Uses),
-    /// What the next run has to look for.
-    Inside(Inside),
+    /// A part has moved on inside: what the next run has to look for, and the uses of what wears since the start.
+    Inside(Inside, Uses),
     /// The lot itself began.
     LotBegan(RigTime),
 }

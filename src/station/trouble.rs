@@ -197,10 +197,10 @@ impl Alarm {
         Self::new(
             "part_lost",
             format!(
-                "The {place} held a part when the program stopped; it is seen nowhere. Find it and scrap it."
+                "A part was last known in the {place} before the program stopped, and is seen nowhere. Look for it, in the bins too, and scrap it."
             ),
             format!(
-                "{}在程序终止时有工件，现未在任何位置检测到。请找到并报废。",
+                "{}在程序终止前有工件，现未在任何位置检测到。请查找（包括料箱）并报废。",
                 chinese::name(place)
             ),
         )

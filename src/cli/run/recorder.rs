@@ -77,6 +77,7 @@ pub struct Recorder<'a> {
     eeprom_at_start: Option<u64>,
     writing: Duration,
     diary: Diary,
+    aside: Option<(Inside, Uses)>,
 }
 
 /// What the history knows of the rig before a run.
@@ -145,6 +146,7 @@ impl<'a> Recorder<'a> {
             eeprom_at_start: None,
             writing: Duration::ZERO,
             diary,
+            aside: None,
         };
         let known = Known {
             calibration,
@@ -173,12 +175,25 @@ impl<'a> Recorder<'a> {
                 }
                 durable = self.take(event, &mut rows)?.or(durable);
             }
+            if !rows.is_empty() {
+                rows.extend(self.aside());
+            }
             self.write(rows).await?;
             if let Some(ordinal) = durable {
                 recorded.fetch_max(ordinal, Ordering::AcqRel);
             }
         }
         Ok(())
+    }
+
+    /// What is worth no transaction of its own: it is written with the next rows, at the latest at the end.
+    fn aside(&mut self) -> Vec<Row> {
+        let Some((inside, uses)) = self.aside.take() else {
+            return Vec::new();
+        };
+        let mut rows = self.diary.uses(uses);
+        rows.push(self.diary.inside(inside));
+        rows
     }
 
     async fn write(&mut self, rows: Vec<Row>) -> anyhow::Result<()> {
@@ -237,8 +252,7 @@ impl<'a> Recorder<'a> {
             Event::Ordered(answered, at) => {
                 rows.extend(self.diary.ordered(&answered, self.wall_us(at)));
             }
-            Event::Uses(uses) => rows.extend(self.diary.uses(uses)),
-            Event::Inside(inside) => rows.push(self.diary.inside(inside)),
+            Event::Inside(inside, uses) => self.aside = Some((inside, uses)),
             Event::Calibrated(calibration) => {
                 rows.extend(self.diary.calibrated(calibration.made_at_us));
                 self.calibrated(&calibration)?;
@@ -408,12 +422,13 @@ impl<'a> Recorder<'a> {
             std::io::stdout().write_all(text.as_bytes()).ok();
         }
         let end_us = self.wall_us(end);
-        if let Some(store) = &mut self.store
-            && !self.diary.is_of_no_lot()
-        {
-            let ended: Vec<Row> = self.diary.ended(ending, end_us).into_iter().collect();
-            store.record(&ended)?;
-            store.close_lot(&self.setup.args.lot, end_us)?;
+        let mut rows = self.aside();
+        if let Some(store) = &mut self.store {
+            rows.extend(self.diary.ended(ending, end_us));
+            store.record(&rows)?;
+            if !self.diary.is_of_no_lot() {
+                store.close_lot(&self.setup.args.lot, end_us)?;
+            }
         }
         Ok(())
     }

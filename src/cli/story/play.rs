@@ -183,8 +183,7 @@ impl Seen {
             | Event::Standing(..)
             | Event::Checked(..)
             | Event::Ordered(..)
-            | Event::Uses(_)
-            | Event::Inside(_)
+            | Event::Inside(..)
             | Event::Calibrated(_) => {}
         }
     }

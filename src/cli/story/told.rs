@@ -82,8 +82,7 @@ impl Told {
             | Event::Left(_)
             | Event::Checked(..)
             | Event::Ordered(..)
-            | Event::Uses(_)
-            | Event::Inside(_)
+            | Event::Inside(..)
             | Event::Calibrated(_) => {}
         }
     }
