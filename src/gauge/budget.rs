@@ -55,11 +55,12 @@ impl Budget {
 
     /// Combined standard uncertainty.
     pub fn combined(&self) -> f64 {
-        self.0
-            .iter()
-            .map(|term| term.u * term.u)
-            .sum::<f64>()
-            .sqrt()
+        root_sum(self.0.iter())
+    }
+
+    /// Standard uncertainty of what is drawn anew at each repetition.
+    pub fn random(&self) -> f64 {
+        root_sum(self.0.iter().filter(|term| term.random))
     }
 
     /// Expanded uncertainty, k = 2.
@@ -68,25 +69,8 @@ impl Budget {
     }
 }
 
-/// Mean of repetitions of one measurement: random terms shrink with the root of their number.
-///
-/// `None` without a repetition. The terms are those of the first one.
-pub fn mean(repetitions: &[Reading]) -> Option<Reading> {
-    let first = repetitions.first()?;
-    let n = repetitions.len() as f64;
-    let value = repetitions.iter().map(|reading| reading.value).sum::<f64>() / n;
-    let shrink = |term: &Term| Term {
-        u: if term.random {
-            term.u / n.sqrt()
-        } else {
-            term.u
-        },
-        ..term.clone()
-    };
-    Some(Reading {
-        value,
-        budget: Budget(first.budget.0.iter().map(shrink).collect()),
-    })
+fn root_sum<'a>(terms: impl Iterator<Item = &'a Term>) -> f64 {
+    terms.map(|term| term.u * term.u).sum::<f64>().sqrt()
 }
 
 /// A result with its budget, both in the unit that the parameter's name ends in.
@@ -119,17 +103,6 @@ mod tests {
         let budget = Budget::default().with("a", 3.0).with("b", -4.0);
         assert_eq!(budget.combined(), 5.0);
         assert_eq!(budget.expanded(), 10.0);
-    }
-
-    #[test]
-    fn repetition_helps_only_against_what_is_random() {
-        let budget = Budget::default()
-            .with("gain", 3.0)
-            .with_random("noise", 8.0);
-        let one = Reading { value: 1.0, budget };
-        let four = mean(&[one.clone(), one.clone(), one.clone(), one]).expect("four repetitions");
-        assert_eq!(four.budget.combined(), 5.0);
-        assert!(mean(&[]).is_none());
     }
 
     #[test]

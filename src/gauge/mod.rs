@@ -15,7 +15,7 @@
 //! | operate and release voltage | [`threshold`], [`lag`] |
 //! | times and bounce | [`timing`] |
 //! | contact resistance | [`contact`] |
-//! | how sure | [`budget`] |
+//! | how sure | [`budget`]; of several readings [`repetition`] |
 //! | pass, fail, void; which bin | [`verdict`] |
 
 pub mod budget;
@@ -26,6 +26,7 @@ pub mod feasible;
 pub mod lag;
 pub mod parameter;
 pub mod recipe;
+pub mod repetition;
 pub mod sampling;
 pub mod settings;
 pub mod strategy;

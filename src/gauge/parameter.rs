@@ -1,5 +1,6 @@
 //! The nine quantities measured on every part. Their keys are the same in recipes, rows, files and API.
 
+use super::repetition::SpokenOf;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -75,6 +76,17 @@ impl Parameter {
                 "ms"
             }
             Self::ContactResistanceNo | Self::ContactResistanceNc => "mOhm",
+        }
+    }
+
+    /// What a row with a mean of several readings speaks of.
+    pub const fn spoken_of(self) -> SpokenOf {
+        match self {
+            Self::CoilResistance | Self::OperateVoltage | Self::ReleaseVoltage => SpokenOf::Part,
+            Self::OperateTime | Self::ReleaseTime | Self::OperateBounce | Self::ReleaseBounce => {
+                SpokenOf::Operation
+            }
+            Self::ContactResistanceNo | Self::ContactResistanceNc => SpokenOf::Closures,
         }
     }
 

@@ -3,8 +3,9 @@
 use super::ramp::Expected;
 use super::search::Search;
 use crate::gauge::Parameter;
-use crate::gauge::budget::{self, Reading};
+use crate::gauge::budget::Reading;
 use crate::gauge::lag::Shown;
+use crate::gauge::repetition::mean;
 use crate::gauge::threshold::Direction;
 use crate::gauge::verdict::{Bin, Judgement, Reason};
 use crate::rig::sample::{CountSample, Origin, Sample};
@@ -153,10 +154,10 @@ impl Findings {
             .map(|(_, reading)| reading)
     }
 
-    /// Result of a parameter: the mean of its repetitions.
+    /// Result of a parameter: the mean of its repetitions, which lie apart as far as the part scatters.
     pub fn result(&self, parameter: Parameter) -> Option<Reading> {
         let repetitions: Vec<Reading> = self.each(parameter).cloned().collect();
-        budget::mean(&repetitions)
+        mean(&repetitions, parameter.spoken_of())
     }
 
     /// What the part has shown when its coarse ramp has just indicated so many volts.
