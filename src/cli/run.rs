@@ -5,6 +5,7 @@ mod counts;
 mod diary;
 pub(super) mod gate;
 mod grr;
+mod known;
 pub(super) mod lines;
 mod orders;
 pub(super) mod recorder;

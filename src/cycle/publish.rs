@@ -129,6 +129,7 @@ impl Cycle {
                 .into_iter()
                 .map(|(name, count)| (name.to_owned(), count))
                 .collect(),
+            probe_contact_ohm: station.probe_contact().map(|it| it.0),
         }
     }
 

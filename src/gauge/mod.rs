@@ -25,6 +25,7 @@ pub mod contact;
 pub mod feasible;
 pub mod lag;
 pub mod parameter;
+pub mod probe_contact;
 pub mod recipe;
 pub mod repetition;
 pub mod sampling;

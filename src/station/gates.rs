@@ -8,16 +8,18 @@
 //!   A golden part that was interrupted has said nothing: the check is made anew.
 //! - *Calibration*: one that runs out during a lot stops it; the next start makes a new one.
 //! - *Discard limit*: more failed parts than the lot may have hold the line, once.
-//! - *Wear*: a counter at its limit is told, once, and the line goes on.
+//! - *Wear*: a counter at its limit is told, once, and the line goes on. So is the contact of the probes, where the
+//!   mean over the last parts is beyond its limit.
 
 use super::Station;
 use super::golden;
 use super::ledger::Kind;
 use super::trouble::Alarm;
 use super::wants::{Checked, Judged, Wants};
+use crate::gauge::probe_contact::Trend;
 use crate::gauge::settings::GoldenPart;
 use crate::gauge::verdict::Verdict;
-use crate::units::{RigTime, Span};
+use crate::units::{Ohm, RigTime, Span};
 use serde::Deserialize;
 use std::collections::VecDeque;
 
@@ -65,6 +67,8 @@ pub struct WearSettings {
     pub probe_touches: Option<u64>,
     /// Of the jaws: times they closed.
     pub jaw_closings: Option<u64>,
+    /// Of the probes at the coil: resistance in series of both force contacts, ohm.
+    pub probe_contact_ohm: Option<f64>,
 }
 
 /// Uses of what wears.
@@ -106,6 +110,10 @@ pub(super) struct Gates {
     discarded: bool,
     /// Counters whose limit was told.
     worn: Vec<&'static str>,
+    /// The limit of the probes' contact was told.
+    fouled: bool,
+    /// How well the probes have met the coils of this run.
+    probe_contact: Trend,
 }
 
 impl Gates {
@@ -238,6 +246,26 @@ impl Station {
         self.mechanism.uses()
     }
 
+    /// Resistance in series of both force contacts of the coil, mean over the last parts of the lot.
+    pub fn probe_contact(&self) -> Option<Ohm> {
+        self.gates.probe_contact.mean()
+    }
+
+    /// How well the probes have met this part.
+    pub(super) fn follow_probes(&mut self, judged: &Judged) {
+        if let Some(ohm) = judged.findings.probe_contact {
+            self.gates.probe_contact.add(ohm);
+        }
+    }
+
+    /// The limit of the probes' contact is passed, told once.
+    fn fouled(&mut self) -> Option<Alarm> {
+        let limit_ohm = self.plan.lot.wear.probe_contact_ohm?;
+        let Ohm(mean) = self.probe_contact().filter(|mean| mean.0 > limit_ohm)?;
+        let told = std::mem::replace(&mut self.gates.fouled, true);
+        (!told).then(|| Alarm::probe_contact(mean, limit_ohm))
+    }
+
     /// Counters at their limit, each told once.
     pub(super) fn worn(&mut self) -> Vec<Alarm> {
         let uses = self.plan.worn.with(self.mechanism.uses());
@@ -246,7 +274,7 @@ impl Station {
             ("probes", uses.probe_touches, limits.probe_touches),
             ("jaws", uses.jaw_closings, limits.jaw_closings),
         ];
-        let mut alarms = Vec::new();
+        let mut alarms: Vec<Alarm> = self.fouled().into_iter().collect();
         for (what, count, limit) in each {
             if let Some(limit) = limit.filter(|limit| count >= *limit)
                 && !self.gates.worn.contains(&what)

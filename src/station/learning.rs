@@ -59,6 +59,7 @@ impl Station {
                 Kind::Golden(_) => self.learn_from(judged, &mut wants.calibrated, &mut told),
                 Kind::Lot(_) => {
                     self.count_discards(judged, &mut told);
+                    self.follow_probes(judged);
                     self.learn_from(judged, &mut wants.calibrated, &mut told);
                 }
             }

@@ -343,6 +343,19 @@ impl Alarm {
         )
     }
 
+    /// The probes lose more on the way to the coil than they may, mean over the last parts.
+    pub fn probe_contact(mean_ohm: f64, limit_ohm: f64) -> Self {
+        Self::new(
+            "probe_contact",
+            format!(
+                "The probes of the coil have {mean_ohm:.2} ohm in series, mean over the last parts; the limit is {limit_ohm:.2} ohm. Clean them."
+            ),
+            format!(
+                "线圈探针串联接触电阻(近期工件均值)为 {mean_ohm:.2} Ω，限值 {limit_ohm:.2} Ω。请清洁探针。"
+            ),
+        )
+    }
+
     /// A golden part has to be measured, and nobody can have put it into the magazine.
     pub fn golden_check_due(serial: &str) -> Self {
         Self::new(

@@ -31,6 +31,8 @@ pub struct Machine {
     pub phases_s: BTreeMap<String, f64>,
     /// Strokes and touches since the start of the program, by name.
     pub wear: BTreeMap<String, u64>,
+    /// Force contacts of the coil in series, ohm, mean over the last parts of the lot; null before the first.
+    pub probe_contact_ohm: Option<f64>,
 }
 
 /// One order that a button gives.

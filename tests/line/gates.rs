@@ -172,6 +172,34 @@ fn worn_probes_are_told_once_the_line_goes_on_and_the_counter_outlives_the_run()
 }
 
 #[test]
+fn probes_that_foul_are_told_before_a_pin_counts_as_open_and_no_value_changes() {
+    let workshop = with_lot("gates_fouled", "[wear]\nprobe_contact_ohm = 3.0\n");
+    run(&workshop, 40, "").with_status(0);
+    assert!(workshop.texts("SELECT code FROM alarm").is_empty());
+    run(&workshop, 40, "--fault probe_film=20").with_status(0);
+    assert_eq!(workshop.texts("SELECT code FROM alarm"), ["probe_contact"]);
+    let told = workshop.texts("SELECT text FROM alarm");
+    assert!(
+        told[0].contains("3.0") && told[0].contains("limit is 3.00 ohm"),
+        "{told:?}"
+    );
+    let changed = |more: &str| {
+        workshop.count(&format!(
+            "SELECT count(*) FROM measurements AS a JOIN measurements AS b USING (kind, seq, parameter)
+             WHERE a.run = 1 AND b.run = 2 AND kind = 'lot' AND parameter = 'coil_resistance_ohm' {more}"
+        ))
+    };
+    assert!(changed("") > 30);
+    assert_eq!(
+        changed("AND abs(a.value - b.value) > a.uncertainty"),
+        0,
+        "four wires"
+    );
+    let verdicts = "SELECT count(*) FROM parts WHERE verdict = 'void' AND kind = 'lot'";
+    assert_eq!(workshop.count(verdicts), 0);
+}
+
+#[test]
 fn a_lot_without_gates_needs_no_file_and_a_wrong_key_is_named_with_its_line() {
     let workshop = Workshop::new("gates_file");
     std::fs::remove_file(workshop.folder.join("config/lot.toml")).unwrap();

@@ -14,6 +14,9 @@ use super::signal::{Commands, In, Out, Source};
 use super::table::BoardTable;
 use crate::config::References;
 
+/// A pin counts as met below so much between force and sense.
+const KELVIN_OHM: f64 = 5.0;
+
 /// What drive, selection and direction stand at.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Switches {
@@ -42,6 +45,9 @@ pub struct Board {
     clamp_diode: bool,
     chain: bool,
     touching: bool,
+    /// Film on both probes of the coil together, and what a touch adds.
+    film_ohm: f64,
+    film_per_touch_ohm: f64,
     source_live: bool,
     closed_since_us: Option<f64>,
     arm_level_v: f64,
@@ -84,6 +90,8 @@ impl Board {
             clamp_diode: false,
             chain: false,
             touching: false,
+            film_ohm: 0.0,
+            film_per_touch_ohm: 0.0,
             source_live: false,
             closed_since_us: None,
             arm_level_v: 0.0,
@@ -149,9 +157,17 @@ impl Board {
 
     /// The probe block is up (`chain`) and on the pins of a part (`touching`).
     pub fn probe(&mut self, chain: bool, touching: bool, relay: Option<&mut Relay>) {
+        if touching && !self.touching {
+            self.film_ohm += self.film_per_touch_ohm;
+        }
         self.chain = chain;
         self.touching = touching;
         self.refresh(relay);
+    }
+
+    /// From now on each touch leaves so much film on both probes of the coil together.
+    pub fn soil(&mut self, per_touch_ohm: f64) {
+        self.film_per_touch_ohm = per_touch_ohm;
     }
 
     /// The coil voltage divider shifts by so many parts per thousand.
@@ -167,7 +183,9 @@ impl Board {
     /// A digital signal of the board; `None` where the signal is none of its own.
     pub fn signal(&self, signal: In, relay: Option<&Relay>) -> Option<bool> {
         let kelvin = |pin: usize| {
-            let good = relay.is_some_and(|r| r.specimen().kelvin[pin]);
+            let film_ohm = if pin < 2 { self.film_ohm / 2.0 } else { 0.0 };
+            let clean = film_ohm < KELVIN_OHM;
+            let good = clean && relay.is_some_and(|r| r.specimen().kelvin[pin]);
             Some(self.commands.is_on(Out::KelvinTest) && self.touching && good)
         };
         match signal {
@@ -315,7 +333,7 @@ impl Board {
     fn coil_supply(&self, relay: &Relay) -> Supply {
         let meets = self.touching && relay.specimen().pins.coil();
         if self.driving && meets && !self.commands.is_on(Out::ReferenceCoil) {
-            return Supply::Volts(self.limited_v(relay.coil_ohm()));
+            return Supply::Volts(self.behind_probes_v(relay.coil_ohm()));
         }
         let clamp_v = if self.clamp_diode && meets {
             self.table.diode_v

@@ -54,7 +54,7 @@ faults! {
     }
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",
-        NoiseSeed = "noise_seed",
+        NoiseSeed = "noise_seed", ProbeFilm = "probe_film",
         GoldenEvery = "golden_every",
     }
 }

@@ -81,6 +81,7 @@ pub struct World {
     commands: Commands,
     edges: Vec<(Wire<In>, Edges)>,
     drift: Option<f64>,
+    film: Option<f64>,
     noise_seed: Option<u64>,
     clock_hz: f64,
     now_us: u64,
@@ -101,6 +102,7 @@ impl World {
         let (track, ambient) = (environment.track_c, environment.ambient_c);
         let magazine = Magazine::load(options, &table, &faults, track, ambient)?;
         let drift = faults.values(Fault::Drift).next();
+        let film = faults.values(Fault::ProbeFilm).next();
         let noise_seed = faults.noise_seed();
         let wiring = Wiring::new(&rig);
         let board = Board::new(
@@ -132,6 +134,7 @@ impl World {
             commands,
             edges,
             drift,
+            film,
             noise_seed,
             clock_hz,
             now_us: 0,
@@ -253,10 +256,13 @@ impl World {
                 edges.level(present != wire.active_low, now);
             }
         }
-        if self.mechanism.places.entered() > 0
-            && let Some(drift) = self.drift.take()
-        {
-            self.board.drift(drift);
+        if self.mechanism.places.entered() > 0 {
+            if let Some(drift) = self.drift.take() {
+                self.board.drift(drift);
+            }
+            if let Some(film) = self.film.take() {
+                self.board.soil(film / 100.0);
+            }
         }
     }
 }

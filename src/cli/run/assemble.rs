@@ -1,7 +1,8 @@
 //! Puts a cycle together from configuration, recipe and calibration.
 
 use super::Controls;
-use super::recorder::{Known, Setup};
+use super::known::Known;
+use super::recorder::Setup;
 use crate::bus::Pace;
 use crate::config::Plant;
 use crate::cycle::{Cycle, LineEnds, Outside, mimic};

@@ -8,6 +8,7 @@
 
 use super::counts::Counts;
 use super::diary::Diary;
+use super::known::Known;
 use super::table::Table;
 use super::traces::Traces;
 use super::{Controls, RunArgs, rows, screen, summary};
@@ -17,8 +18,8 @@ use crate::cycle::{Event, Profile};
 use crate::gauge::verdict::{Bin, Verdict};
 use crate::gauge::{Calibration, Recipe};
 use crate::history::{
-    AlarmLeft, CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row,
-    Store, snapshot_hash,
+    CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
+    snapshot_hash,
 };
 use crate::station::gates::Uses;
 use crate::station::inside::Inside;
@@ -80,18 +81,6 @@ pub struct Recorder<'a> {
     aside: Option<(Inside, Uses)>,
 }
 
-/// What the history knows of the rig before a run.
-pub struct Known {
-    /// A calibration that is still valid.
-    pub calibration: Option<Calibration>,
-    /// Uses of what wears.
-    pub worn: Uses,
-    /// Alarms that nobody has seen yet.
-    pub alarms: Vec<AlarmLeft>,
-    /// What the run before left inside.
-    pub left: Inside,
-}
-
 /// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
 pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
 
@@ -106,29 +95,16 @@ impl<'a> Recorder<'a> {
     ) -> anyhow::Result<(Self, Known)> {
         let mut store = Store::open(db, &Identity::of_this_program())?;
         store.cut_off(setup.args.rig.sim, setup.epoch_us)?;
-        let calibration = if let Some(stage) = &controls.stage {
-            stage.calibration.clone()
-        } else if setup.args.rig.sim || controls.calibrates.is_some() {
-            None
-        } else {
-            valid_calibration(&store, setup)?
-        };
+        let known = Known::read(&store, setup, controls)?;
         let mut diary = Diary::new(setup.args.rig.sim);
         if controls.between_lots.is_some() {
             controls
                 .view
                 .send_modify(|view| screen::between(view, setup));
         } else {
-            begin(&mut store, &mut diary, setup, calibration.as_ref())?;
+            begin(&mut store, &mut diary, setup, known.calibration.as_ref())?;
             controls.view.send_modify(|view| screen::begun(view, setup));
         }
-        let worn = worn(&store, setup.args.rig.sim)?;
-        let alarms = store.alarms_left(setup.args.rig.sim)?;
-        let left = if setup.args.rig.sim && controls.rig_is_new() {
-            Inside::default()
-        } else {
-            store.left_inside(setup.args.rig.sim)?
-        };
         let recorder = Self {
             setup,
             controls,
@@ -147,12 +123,6 @@ impl<'a> Recorder<'a> {
             writing: Duration::ZERO,
             diary,
             aside: None,
-        };
-        let known = Known {
-            calibration,
-            worn,
-            alarms,
-            left,
         };
         Ok((recorder, known))
     }
@@ -463,30 +433,6 @@ fn hash(calibration: &Calibration) -> String {
     serde_json::to_string(calibration)
         .map(|body| snapshot_hash(&body))
         .unwrap_or_default()
-}
-
-fn worn(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
-    let wear = store.wear(simulated)?;
-    let of = |name: &str| {
-        wear.iter()
-            .find(|it| it.name == name)
-            .map_or(0, |it| it.count)
-    };
-    Ok(Uses {
-        probe_touches: of("probe_touches"),
-        jaw_closings: of("jaw_closings"),
-    })
-}
-
-/// The stored calibration, provided it is not overdue.
-fn valid_calibration(store: &Store, setup: &Setup) -> anyhow::Result<Option<Calibration>> {
-    let Some(record) = store.latest_calibration_of(false, setup.recipe.part.nominal_v)? else {
-        return Ok(None);
-    };
-    let calibration: Calibration =
-        serde_json::from_str(&record.body).context("the stored calibration cannot be read")?;
-    let fits = calibration.lags.is_some() && calibration.made_at_us <= setup.epoch_us;
-    Ok((record.verified && fits && record.due_at_us > setup.epoch_us).then_some(calibration))
 }
 
 fn bar(count: Option<u64>, hidden: bool) -> ProgressBar {

@@ -36,6 +36,12 @@ const WEAR: &[Key] = &[
         "station",
         "times that the jaws close before they are worn",
     ),
+    optional(
+        "probe_contact_ohm",
+        above_zero(20.0, "ohm"),
+        "station",
+        "both force contacts of the coil in series, mean over the last parts, beyond what they were at the calibration",
+    ),
 ];
 
 /// The whole file.

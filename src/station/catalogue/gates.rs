@@ -52,6 +52,21 @@ pub(super) const GATES: &[Entry] = &[
         ),
     },
     Entry {
+        code: "probe_contact",
+        stops: Stops::Nothing,
+        goes: Goes::ByClear,
+        retries: 0,
+        cause: (
+            "Less of the supply reaches the coil than at the calibration: dirty or worn probes, or an input that has drifted.",
+            "到达线圈的电压低于校准时的数值：探针脏污、磨损，或输入漂移。",
+        ),
+        consequence: GOES_ON,
+        action: (
+            "Clean the probes. If it stays, check with a golden part and calibrate.",
+            "清洁探针；若仍存在，请用标准件检查并重新校准。",
+        ),
+    },
+    Entry {
         code: "_worn",
         stops: Stops::Nothing,
         goes: Goes::ByClear,

@@ -3,7 +3,8 @@
 
 use super::{Bench, Findings, INTERLOCK, OFF, Stage, board};
 use crate::gauge::Parameter;
-use crate::gauge::coil::resistance;
+use crate::gauge::coil::{resistance, to_reference};
+use crate::gauge::probe_contact::in_series;
 use crate::gauge::recipe::CoilChannels;
 use crate::gauge::verdict::Bin;
 use crate::rig::point::DigitalOut::{
@@ -12,7 +13,7 @@ use crate::rig::point::DigitalOut::{
 use crate::rig::sample::{Quality, Sample};
 use crate::station::act::{Act, CoilScan, Read, Readings};
 use crate::station::supply::Supply;
-use crate::units::{Span, Volt};
+use crate::units::{Ohm, Span, Volt};
 
 /// Channels of the coil converter that a recipe has enabled.
 const CHANNELS: usize = 2;
@@ -155,20 +156,38 @@ pub(super) fn conclude(
         return None;
     }
     let part = findings.track?;
-    match resistance(
-        &scans,
-        ohm,
-        part,
-        bench.reference_temperature(),
-        bench.scan_doubt(),
-    ) {
-        Some(reading) => findings.found(Parameter::CoilResistance, reading, &samples),
+    let reference = bench.reference_temperature();
+    match resistance(&scans, ohm, part, reference, bench.scan_doubt()) {
+        Some(reading) => {
+            let coil = Ohm(reading.value / to_reference(part, reference));
+            findings.probe_contact = probe_contact(bench, &readings.coil, coil);
+            findings.found(Parameter::CoilResistance, reading, &samples);
+        }
         None => findings.fail("coil open", Bin::Coil),
     }
     if let Some(unmoved) = findings.unmoved.take() {
         findings.fail(unmoved, Bin::Contact);
     }
     None
+}
+
+/// What is lost between the supply and the pins of `coil`; the input is taken as it was calibrated, like the supply.
+fn probe_contact(bench: &Bench, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
+    let at_pins = |scan: &CoilScan| {
+        let Sample {
+            value,
+            terminal_volts,
+            ..
+        } = *scan.voltage_fine.as_ref()?;
+        let corrected = bench.calibration.coil_input.correct(Volt(terminal_volts));
+        Some(value * corrected.0 / terminal_volts)
+    };
+    let volts = scans.iter().map(at_pins).sum::<Option<f64>>()? / scans.len() as f64;
+    Some(in_series(
+        Volt(bench.recipe.test.prebias_v),
+        Volt(volts),
+        coil,
+    ))
 }
 
 pub(super) fn conclude_off(

@@ -11,7 +11,7 @@ use crate::gauge::verdict::{Bin, Judgement, Reason};
 use crate::rig::sample::{CountSample, Origin, Sample};
 use crate::station::act::Spent;
 use crate::station::trace::Trace;
-use crate::units::{Celsius, Span, Volt};
+use crate::units::{Celsius, Ohm, Span, Volt};
 use std::collections::BTreeMap;
 
 /// What a result was made from: line, module, channel and raw text lead back to the bytes.
@@ -70,6 +70,8 @@ pub struct Findings {
     pub trace: Trace,
     /// Where the time went.
     pub spent: Spent,
+    /// Force contacts of the coil in series, once it was measured.
+    pub probe_contact: Option<Ohm>,
     /// Temperature of the magazine track when the test began.
     pub track: Option<Celsius>,
     /// Terminal voltage of the contact drop without current.

@@ -184,6 +184,7 @@ fn wear_of_earlier_runs_counts() {
         wear: WearSettings {
             probe_touches: Some(102),
             jaw_closings: Some(1000),
+            probe_contact_ohm: None,
         },
         ..LotSettings::default()
     };

@@ -59,6 +59,7 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::golden_check_failed("odd"),
         Alarm::discard_limit(3, 40, 5.0),
         Alarm::worn("probes", 8, 8),
+        Alarm::probe_contact(3.2, 3.0),
         Alarm::calibration_cut_off("coil_ai"),
         Alarm::safety("emergency_stop", "", ""),
         Alarm::safety("door_open", "", ""),

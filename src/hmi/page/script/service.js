@@ -68,8 +68,9 @@ function showIo() {
   showButtons(at("jogs"), label);
   for (const item of at("jogs").children) showClearance(item, view.machine.jogs.find((it) => it.motion === item.dataset.motion));
   for (const element of at("modes").children) element.classList.toggle("now", element.dataset.with === view.machine.mode);
-  at("wear").replaceChildren(...Object.entries(view.machine.wear).map(([name, count]) =>
-    row(known("actuator." + name, name), whole(count))));
+  const {wear, probe_contact_ohm: contact} = view.machine;
+  at("wear").replaceChildren(...Object.entries(wear).map(([name, count]) => row(known("actuator." + name, name), whole(count))),
+    row(word("io.probe_contact"), contact === null ? "-" : contact.toFixed(2) + " ohm"));
 }
 
 PAGES.io = {show: showIo};
