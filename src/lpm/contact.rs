@@ -185,7 +185,7 @@ impl Visit for Search<'_, '_> {
         while left != 0 {
             let lane = left.trailing_zeros() as usize % LANES;
             left &= left - 1;
-            self.piece(bundle.piece(lane), &bundle.boxes.cover(lane));
+            self.piece(bundle.piece(lane), &bundle.cover(lane));
             if self.found.until() < 0.0 {
                 return true;
             }
@@ -202,7 +202,7 @@ impl Visit for Search<'_, '_> {
             // Equally early, so next to each other: the same for another cell.
             if last != Some(piece) {
                 last = Some(piece);
-                self.piece(piece, &bundle.boxes.cover(place.lane()));
+                self.piece(piece, &bundle.cover(place.lane()));
             }
         }
         self.found.until()

@@ -126,7 +126,7 @@ impl Model {
         self.names.leave(&element.id);
         let mut number = element.first;
         while number != NONE {
-            self.space.remove(number, &self.pieces.at(number).seat);
+            self.space.remove(number);
             number = self.pieces.let_go(number);
         }
         if element.interior.is_some() {

@@ -33,7 +33,7 @@ impl Visit for Near<'_> {
 
     fn bundle(&mut self, (_, bundle): (u32, &Bundle), lanes: u32, _: &[f32; LANES]) -> bool {
         for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-            let (element, cover) = (bundle.piece(lane), bundle.boxes.cover(lane));
+            let (element, cover) = (bundle.piece(lane), bundle.cover(lane));
             if !self.passage.counts(self.passage.element(element)) {
                 continue;
             }

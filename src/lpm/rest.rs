@@ -29,7 +29,7 @@ impl Passage<'_> {
                 while lanes != 0 {
                     let lane = lanes.trailing_zeros() as usize;
                     lanes &= lanes - 1;
-                    let cover = bundle.boxes.cover(lane);
+                    let cover = bundle.cover(lane);
                     self.standing(bundle.piece(lane), &cover, (group, boxes), found);
                     if found.best.is_some() {
                         return true;

@@ -8,7 +8,7 @@ use super::piece::{Piece, each_piece};
 use super::pose::{Frame, Pose};
 use super::prism::Prism;
 use super::shape::Shape;
-use super::space::{Cover, Entering, Seat};
+use super::space::{Cover, Entering};
 
 /// No piece.
 pub(crate) const NONE: u32 = u32::MAX;
@@ -17,8 +17,6 @@ pub(crate) const NONE: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Standing {
     pub(crate) form: Stands,
-    /// Where the space has it.
-    pub(crate) seat: Seat,
     /// Its element.
     pub(crate) owner: ElementKey,
     /// Another piece of the same element, or [`NONE`].
@@ -85,9 +83,9 @@ impl Pieces {
     ) -> u32 {
         let next = self.standing.len() as u32;
         let number = self.free.last().copied().unwrap_or(next);
+        space.enter(number, cover);
         let standing = Standing {
             form,
-            seat: space.enter(number, cover),
             owner,
             sibling,
         };

@@ -51,14 +51,6 @@ impl Area {
         (0..2).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
     }
 
-    /// The smallest area that holds both.
-    pub(super) fn around(&self, other: &Area) -> Area {
-        Area {
-            low: [0, 1].map(|axis: usize| self.low[axis].min(other.low[axis])),
-            high: [0, 1].map(|axis: usize| self.high[axis].max(other.high[axis])),
-        }
-    }
-
     /// Both, with room to grow where `other` reaches out.
     pub(super) fn with(&self, other: &Area) -> Area {
         let span = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) / 4 + GROWTH;

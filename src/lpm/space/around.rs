@@ -3,11 +3,7 @@
 use super::area::Area;
 use super::cover::Cover;
 use super::grid::Grid;
-use super::silhouettes::Bundle;
-
-/// Of two by two squares those that differ, by columns and rows less one: bit 0 the first, bit 1 the next
-/// column, bit 2 the next row.
-const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
+use super::silhouettes::{Bundle, NONE};
 
 impl Grid {
     /// Shows the bundles in some of these layers that have pieces which may meet a box, until one is
@@ -19,45 +15,59 @@ impl Grid {
         layers: u64,
         mut show: impl FnMut(&Bundle, u32) -> bool,
     ) {
-        if self.open_layers & layers != 0 && self.shown(self.open_head, cover, &mut show) {
-            return;
-        }
-        let Some(area) = self.common(&Area::of(cover)) else {
-            return;
+        let mut next = if self.open_layers & layers != 0 {
+            self.open_head
+        } else {
+            NONE
         };
-        let first = self.place(area.low[0], area.low[1]);
-        let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
-        if wide > 1 || deep > 1 {
-            let rows = (0..=deep).map(|row| first + row * self.columns);
-            for place in rows.flat_map(|row| row..=row + wide) {
-                if self.layers[place] & layers != 0
-                    && self.shown(self.heads[place], cover, &mut show)
-                {
+        let (places, mut left) = match self.common(&Area::of(cover)) {
+            None => ([0; 4], 0),
+            Some(area) => match self.few(&area) {
+                None => return self.around_many(&area, cover, layers, &mut show),
+                // Their words are read without a branch between them.
+                Some((places, different)) => {
+                    let wanted = |at: usize| u32::from(self.layers[places[at]] & layers != 0) << at;
+                    let word = wanted(0) | wanted(1) | wanted(2) | wanted(3);
+                    (places, word & different)
+                }
+            },
+        };
+        // One loop over all bundles of all cells: what is done with one stands in the program once.
+        loop {
+            let Some(bundle) = self.pool.bundles.get(next as usize) else {
+                if left == 0 {
                     return;
                 }
-            }
-            return;
-        }
-        // Most boxes lie over four squares at most: their words are read without a branch between them.
-        let next = first + deep * self.columns;
-        let places = [first, first + wide, next, next + wide];
-        let wanted = |square: usize| u32::from(self.layers[places[square]] & layers != 0) << square;
-        let mut left = (wanted(0) | wanted(1) | wanted(2) | wanted(3)) & DIFFERENT[deep][wide];
-        while left != 0 {
-            let square = left.trailing_zeros() as usize % 4;
-            left &= left - 1;
-            if self.shown(self.heads[places[square]], cover, &mut show) {
+                next = self.heads[places[left.trailing_zeros() as usize % 4]];
+                left &= left - 1;
+                continue;
+            };
+            next = bundle.next;
+            let lanes = bundle.meeting(cover);
+            if lanes != 0 && show(bundle, lanes) {
                 return;
             }
         }
     }
 
-    /// The bundles of one cell; true when one was answered with true.
-    #[inline]
-    fn shown(&self, head: u32, cover: &Cover, show: &mut impl FnMut(&Bundle, u32) -> bool) -> bool {
-        self.pool.chain(head).any(|(_, bundle)| {
-            let lanes = bundle.boxes.meeting(cover);
-            lanes != 0 && show(bundle, lanes)
-        })
+    #[cold]
+    fn around_many(
+        &self,
+        area: &Area,
+        cover: &Cover,
+        layers: u64,
+        show: &mut dyn FnMut(&Bundle, u32) -> bool,
+    ) {
+        let open = self.open_in_layers(layers).into_iter();
+        let rows = (area.low[1]..=area.high[1]).map(|row| self.place(area.low[0], row));
+        let wide = (area.high[0] - area.low[0]) as usize;
+        let squares = rows.flat_map(|first| first..=first + wide);
+        let chains = open.chain(squares.filter_map(|place| self.in_layers(place, layers)));
+        for (_, bundle) in chains.flatten() {
+            let lanes = bundle.meeting(cover);
+            if lanes != 0 && show(bundle, lanes) {
+                return;
+            }
+        }
     }
 }

@@ -86,6 +86,17 @@ impl Cover {
         swept
     }
 
+    /// The smallest one that holds both.
+    #[inline]
+    pub(crate) fn around(self, other: Cover) -> Cover {
+        let least = |axis: usize| smaller(self.low[axis], other.low[axis]);
+        let most = |axis: usize| larger(self.high[axis], other.high[axis]);
+        Cover {
+            low: [least(0), least(1), least(2)],
+            high: [most(0), most(1), most(2)],
+        }
+    }
+
     /// Not above the distance of what the covers hold, mm.
     pub(crate) fn distance(&self, other: &Cover) -> f64 {
         let squared = (0..3).fold(0.0, |sum, axis| {

@@ -17,6 +17,10 @@ const MOST_CELLS_OF_A_PIECE: i64 = 128;
 /// Largest grid, in cells; pieces farther out are kept in the open cell.
 const MOST_CELLS: i64 = 1 << 18;
 
+/// Of two by two squares those that differ, by rows and columns less one: bit 0 the first, bit 1 the next
+/// column, bit 2 the next row.
+const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
+
 /// The squares, and one open cell for pieces too large or too far out for them.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
@@ -28,13 +32,6 @@ pub(crate) struct Grid {
     pub(super) open_layers: u64,
     pub(super) open_head: u32,
     pub(super) pool: Pool,
-}
-
-/// A piece on its way into a grid.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Silhouette {
-    pub(crate) cover: Cover,
-    pub(crate) seat: Seat,
 }
 
 impl Default for Grid {
@@ -105,6 +102,16 @@ impl Grid {
     #[inline]
     pub(crate) fn place(&self, column: i32, row: i32) -> usize {
         (row - self.area.low[1]) as usize * self.columns + (column - self.area.low[0]) as usize
+    }
+
+    /// The cells of an area of two by two at most, and which of them differ (bit k: that at place k).
+    #[inline(always)]
+    pub(super) fn few(&self, area: &Area) -> Option<([usize; 4], u32)> {
+        let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
+        let different = DIFFERENT.get(deep)?.get(wide)?;
+        let first = self.place(area.low[0], area.low[1]);
+        let next = first + deep * self.columns;
+        Some(([first, first + wide, next, next + wide], *different))
     }
 
     /// From the number of a cell to that of the next column (axis 0) or row (1).
@@ -199,21 +206,21 @@ impl Grid {
 
     /// A grid with pieces numbered from 0: the same as [`Grid::put`] for one after the other. Squares
     /// are counted first, so that every cell gets all its bundles at once.
-    pub(crate) fn filled(silhouettes: &[Silhouette]) -> Grid {
-        let small = silhouettes.iter().filter(|it| is_small(&it.seat.area));
-        let whole = small
-            .map(|it| it.seat.area)
-            .reduce(|whole, area| whole.around(&area));
+    pub(super) fn filled(covers: &[Cover], seats: &[Seat]) -> Grid {
+        let with_squares = |(_, seat): &(&Cover, &Seat)| is_small(&seat.area);
+        let small = covers.iter().zip(seats).filter(with_squares);
+        let whole = small.map(|(cover, _)| *cover).reduce(Cover::around);
+        let whole = whole.map(|whole| Area::of(&whole));
         let fitting = whole.filter(|whole| whole.cells() <= MOST_CELLS);
         let mut grid = fitting.map_or_else(Grid::default, Grid::over);
-        let reserved = |it: &Silhouette| fitting.is_some() && is_small(&it.seat.area);
-        let mut lanes = grid.reserve(silhouettes.iter().filter(|it| reserved(it)));
-        for (number, it) in silhouettes.iter().enumerate() {
+        let reserved = |seat: &Seat| fitting.is_some() && is_small(&seat.area);
+        let mut lanes = grid.reserve(seats.iter().filter(|seat| reserved(seat)));
+        for (number, (cover, seat)) in covers.iter().zip(seats).enumerate() {
             let number = number as u32;
-            if reserved(it) {
-                grid.put_reserved(&mut lanes, number, it);
+            if reserved(seat) {
+                grid.put_reserved(&mut lanes, &Lane::of(number, cover, seat), &seat.area);
             } else {
-                grid.put(number, &it.cover, &it.seat);
+                grid.put(number, cover, seat);
             }
         }
         grid
@@ -221,11 +228,19 @@ impl Grid {
 
     /// Bundles for what will be entered, and the words of the cells; the result is where the first
     /// silhouette of each cell goes.
-    fn reserve<'a>(&mut self, silhouettes: impl Iterator<Item = &'a Silhouette>) -> Vec<u32> {
+    fn reserve<'a>(&mut self, seats: impl Iterator<Item = &'a Seat>) -> Vec<u32> {
         let mut counts = vec![0u32; self.layers.len()];
-        for it in silhouettes {
-            let word = it.seat.reach.word();
-            for row in rows(self.area.low, self.columns, &it.seat.area) {
+        for seat in seats {
+            let word = seat.reach.word();
+            // Two by two squares at most: how many cannot be guessed, so four are counted, some by nothing.
+            if let Some((places, used)) = self.few(&seat.area) {
+                for (square, place) in places.into_iter().enumerate() {
+                    counts[place] += used >> square & 1;
+                    self.layers[place] |= word;
+                }
+                continue;
+            }
+            for row in rows(self.area.low, self.columns, &seat.area) {
                 let cells = counts[row.clone()].iter_mut();
                 for (count, layers) in cells.zip(&mut self.layers[row]) {
                     *count += 1;
@@ -233,19 +248,15 @@ impl Grid {
                 }
             }
         }
-        self.pool.expect(&counts);
-        for (head, count) in self.heads.iter_mut().zip(&mut counts) {
-            (*head, *count) = self.pool.reserve(*count);
-        }
+        self.pool.reserve(&mut self.heads, &mut counts);
         counts
     }
 
     #[inline]
-    fn put_reserved(&mut self, lanes: &mut [u32], piece: u32, it: &Silhouette) {
-        let lane = Lane::of(piece, &it.cover, &it.seat);
-        for row in rows(self.area.low, self.columns, &it.seat.area) {
+    fn put_reserved(&mut self, lanes: &mut [u32], lane: &Lane, area: &Area) {
+        for row in rows(self.area.low, self.columns, area) {
             for at in &mut lanes[row] {
-                self.pool.put_reserved(*at, &lane);
+                self.pool.put_reserved(*at, lane);
                 *at += 1;
             }
         }

@@ -8,7 +8,8 @@
 //!
 //! The checking space Omega reaches from the lowest `h1` to the highest `h2` and follows them.
 
-use super::cover::{larger, nearest, smaller};
+use super::Seat;
+use super::cover::{Cover, larger, nearest, smaller};
 
 /// Layers fit the bits of one word.
 const LAYERS: usize = 64;
@@ -40,6 +41,12 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
+    /// Into none.
+    pub(super) const NONE: Reach = Reach {
+        low: LAYERS as u8 - 1,
+        high: 0,
+    };
+
     /// Of a piece between two heights, mm.
     #[inline]
     pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {
@@ -86,19 +93,41 @@ impl Default for Layers {
 }
 
 impl Layers {
-    /// Takes a piece between two heights (mm) in and says which layers it now belongs to.
+    /// Of many pieces at once.
+    pub(super) fn of(seats: &[Seat], covers: &[Cover]) -> Layers {
+        let mut layers = Layers::default();
+        for (Seat { reach, .. }, cover) in seats.iter().zip(covers) {
+            layers.enclose(*reach, cover.low[2], cover.high[2]);
+            // Where passing begins and where it ends; the sums follow.
+            let first = usize::from(reach.low) + 1;
+            let beyond = first.max(usize::from(reach.high));
+            layers.passing[first] = layers.passing[first].wrapping_add(1);
+            layers.passing[beyond] = layers.passing[beyond].wrapping_sub(1);
+        }
+        let mut passing = 0u32;
+        for count in &mut layers.passing {
+            passing = passing.wrapping_add(*count);
+            *count = passing;
+        }
+        layers
+    }
+
+    /// Takes a piece between two heights (mm) in.
     #[inline]
-    pub(crate) fn join(&mut self, bottom_mm: f32, top_mm: f32) -> Reach {
-        let reach = Reach::of(bottom_mm, top_mm);
-        let (low, high) = (usize::from(reach.low), usize::from(reach.high));
+    pub(crate) fn join(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
+        self.enclose(reach, bottom_mm, top_mm);
         self.pass(reach, 1);
+    }
+
+    #[inline]
+    fn enclose(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
+        let (low, high) = (usize::from(reach.low), usize::from(reach.high));
         self.beginning[low] += 1;
         self.ending[high] += 1;
-        self.h1[low] = self.h1[low].min(bottom_mm);
-        self.h2[high] = self.h2[high].max(top_mm);
-        self.bottom = self.bottom.min(bottom_mm);
-        self.top = self.top.max(top_mm);
-        reach
+        self.h1[low] = smaller(self.h1[low], bottom_mm);
+        self.h2[high] = larger(self.h2[high], top_mm);
+        self.bottom = smaller(self.bottom, bottom_mm);
+        self.top = larger(self.top, top_mm);
     }
 
     /// Counts a piece in the layers between its lowest and its highest: 1 more, or with `u32::MAX` 1 less.
@@ -173,6 +202,12 @@ mod tests {
     use super::*;
     use crate::lpm::distance::tests::Dice;
 
+    fn joined(layers: &mut Layers, bottom: f32, top: f32) -> Reach {
+        let reach = Reach::of(bottom, top);
+        layers.join(reach, bottom, top);
+        reach
+    }
+
     #[test]
     fn no_layer_that_reaches_into_the_asked_heights_is_left_out() {
         let mut dice = Dice(3);
@@ -181,7 +216,7 @@ mod tests {
         for round in 0..3_000 {
             let bottom = (300.0 * dice.signed() + 150.0) as f32;
             let top = bottom + (60.0 * dice.signed().abs()) as f32;
-            standing.push((bottom, top, layers.join(bottom, top)));
+            standing.push((bottom, top, joined(&mut layers, bottom, top)));
             if round % 3 > 0 {
                 let (.., gone) = standing.swap_remove(round % standing.len());
                 layers.leave(gone);
@@ -203,8 +238,8 @@ mod tests {
     fn the_top_of_omega_follows_the_elements() {
         let mut layers = Layers::default();
         assert_eq!(layers.meeting(-1e6, 1e6), 0);
-        let plate = layers.join(-20.0, 0.0);
-        let tower = layers.join(0.0, 180.0);
+        let plate = joined(&mut layers, -20.0, 0.0);
+        let tower = joined(&mut layers, 0.0, 180.0);
         assert_eq!((layers.bottom, layers.top), (-20.0, 180.0));
         layers.leave(tower);
         assert_eq!((layers.bottom, layers.top), (-20.0, 0.0));
@@ -216,8 +251,8 @@ mod tests {
     #[test]
     fn what_passes_between_the_real_ends_of_a_layer_shares_none() {
         let mut layers = Layers::default();
-        layers.join(-20.0, 2.0);
-        layers.join(5.0, 40.0);
+        joined(&mut layers, -20.0, 2.0);
+        joined(&mut layers, 5.0, 40.0);
         assert_eq!(layers.meeting(3.0, 4.0), 0);
         assert_eq!(layers.meeting(2.0, 4.0).count_ones(), 1);
         assert_eq!(layers.meeting(3.0, 5.0).count_ones(), 1);

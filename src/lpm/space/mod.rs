@@ -29,7 +29,7 @@ pub(crate) use sweep::{SLOWEST_MM, Sweep};
 pub(crate) use walk::Visit;
 
 use area::Area;
-use grid::{Grid, Silhouette};
+use grid::Grid;
 use layers::{Layers, Reach};
 use walk::Walk;
 
@@ -38,19 +38,22 @@ use walk::Walk;
 pub(crate) struct Space {
     layers: Layers,
     grid: Grid,
+    /// Where each piece is, by its number.
+    seats: Vec<Seat>,
 }
 
 impl Space {
     /// Takes a piece out of where it was entered.
     #[inline]
-    pub(crate) fn remove(&mut self, piece: u32, seat: &Seat) {
+    pub(crate) fn remove(&mut self, piece: u32) {
+        let seat = &self.seats[piece as usize];
         self.layers.leave(seat.reach);
         self.grid.take(piece, &seat.area);
     }
 
     /// Heap in use, bytes.
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.grid.heap_bytes()
+        self.grid.heap_bytes() + self.seats.capacity() * size_of::<Seat>()
     }
 
     /// Shows whatever a box at rest may meet, bundle by bundle: bit k: lane k. A piece may be shown more
@@ -87,53 +90,57 @@ pub(crate) struct Seat {
     reach: Reach,
 }
 
-impl Layers {
-    /// Takes a piece in and says where it belongs.
+impl Seat {
     #[inline]
-    fn seat(&mut self, cover: &Cover) -> Seat {
+    fn of(cover: &Cover) -> Seat {
         Seat {
             area: Area::of(cover),
-            reach: self.join(cover.low[2], cover.high[2]),
+            reach: Reach::of(cover.low[2], cover.high[2]),
         }
     }
 }
 
 /// Where pieces are entered by their covers.
 pub(crate) trait Entering {
-    /// Enters the piece of this number and says where, for [`Space::remove`].
-    fn enter(&mut self, piece: u32, cover: &Cover) -> Seat;
+    /// Enters the piece of this number, which is that of one that was taken out or the next new one.
+    fn enter(&mut self, piece: u32, cover: &Cover);
 }
 
 impl Entering for Space {
     #[inline]
-    fn enter(&mut self, piece: u32, cover: &Cover) -> Seat {
-        let seat = self.layers.seat(cover);
+    fn enter(&mut self, piece: u32, cover: &Cover) {
+        let seat = Seat::of(cover);
+        self.layers.join(seat.reach, cover.low[2], cover.high[2]);
         self.grid.put(piece, cover, &seat);
-        seat
+        match self.seats.get_mut(piece as usize) {
+            Some(known) => *known = seat,
+            None => self.seats.push(seat),
+        }
     }
 }
 
-/// A space in the making: many pieces that come at once.
+/// A space in the making: many pieces that come at once, and are seated when all are known. (Each step for all
+/// pieces before the next: one piece through all steps is one long chain that a processor has to wait for.)
 #[derive(Debug, Default)]
 pub(crate) struct Filling {
-    layers: Layers,
-    silhouettes: Vec<Silhouette>,
+    covers: Vec<Cover>,
 }
 
 impl Filling {
     /// Room for so many pieces.
     pub(crate) fn of(count: usize) -> Filling {
         Filling {
-            layers: Layers::default(),
-            silhouettes: Vec::with_capacity(count),
+            covers: Vec::with_capacity(count),
         }
     }
 
     /// The space, as if each piece had been inserted.
     pub(crate) fn space(self) -> Space {
+        let seats: Vec<Seat> = self.covers.iter().map(Seat::of).collect();
         Space {
-            grid: Grid::filled(&self.silhouettes),
-            layers: self.layers,
+            layers: Layers::of(&seats, &self.covers),
+            grid: Grid::filled(&self.covers, &seats),
+            seats,
         }
     }
 }
@@ -141,10 +148,7 @@ impl Filling {
 impl Entering for Filling {
     /// Pieces come in the order of their numbers, from 0.
     #[inline]
-    fn enter(&mut self, _piece: u32, cover: &Cover) -> Seat {
-        let seat = self.layers.seat(cover);
-        let cover = *cover;
-        self.silhouettes.push(Silhouette { cover, seat });
-        seat
+    fn enter(&mut self, _piece: u32, cover: &Cover) {
+        self.covers.push(*cover);
     }
 }

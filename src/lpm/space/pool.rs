@@ -27,7 +27,7 @@ impl Pool {
                 self.bundles[*cell.head as usize].push(lane);
             }
         }
-        *cell.layers |= lane.word;
+        *cell.layers |= lane.reach.word();
     }
 
     /// An empty bundle before `next`.
@@ -44,28 +44,27 @@ impl Pool {
         }
     }
 
-    /// Room for the bundles of so many silhouettes in each cell, and for one of the open cell.
-    pub(super) fn expect(&mut self, counts: &[u32]) {
+    /// Bundles for so many silhouettes of each of some new cells, one after the other: of each cell the newest
+    /// into `heads`, and in place of the count the lane of the first silhouette ([`Pool::put_reserved`]).
+    pub(super) fn reserve(&mut self, heads: &mut [u32], counts: &mut [u32]) {
         let bundles = counts.iter().map(|count| count.div_ceil(LANES as u32));
-        self.bundles
-            .reserve_exact(1 + bundles.sum::<u32>() as usize);
-    }
-
-    /// Bundles for so many silhouettes of one new cell, one after the other: the newest, and the lane
-    /// of the first silhouette ([`Pool::put_reserved`]).
-    #[inline]
-    pub(super) fn reserve(&mut self, count: u32) -> (u32, u32) {
-        let (first, mut newest) = (self.bundles.len() as u32, NONE);
-        let mut left = count;
-        while left > 0 {
-            let own = left.min(LANES as u32);
-            let mut bundle = Bundle::before(newest);
-            bundle.expect(own);
-            newest = self.bundles.len() as u32;
-            self.bundles.push(bundle);
-            left -= own;
+        let whole = bundles.sum::<u32>() as usize;
+        // One more for the open cell.
+        self.bundles.reserve_exact(whole + 1);
+        self.bundles.resize(whole, Bundle::before(NONE));
+        let mut fresh = 0..whole as u32;
+        for (head, count) in heads.iter_mut().zip(counts) {
+            let lane = fresh.start * LANES as u32;
+            let mut left = std::mem::replace(count, lane);
+            while left > 0
+                && let Some(newest) = fresh.next()
+            {
+                let bundle = &mut self.bundles[newest as usize];
+                bundle.next = std::mem::replace(head, newest);
+                bundle.expect(left.min(LANES as u32));
+                left = left.saturating_sub(LANES as u32);
+            }
         }
-        (newest, first * LANES as u32)
     }
 
     /// Writes a silhouette into a lane of the reserved bundles, all of them counted.
@@ -79,12 +78,15 @@ impl Pool {
         let Some((at, lane)) = self.whereabouts(*cell.head, piece) else {
             return false;
         };
-        let newest = &mut self.bundles[*cell.head as usize];
-        let last = newest.pop();
-        let (is_empty, next) = (newest.is_empty(), newest.next);
-        if last.piece != piece {
-            self.bundles[at as usize].set(lane, &last);
+        let newest = &self.bundles[*cell.head as usize];
+        let last = newest.last();
+        if (at, lane) != (*cell.head, last) {
+            let moved = newest.lane(last);
+            self.bundles[at as usize].set(lane, &moved);
         }
+        let newest = &mut self.bundles[*cell.head as usize];
+        newest.pop();
+        let (is_empty, next) = (newest.is_empty(), newest.next);
         if is_empty {
             self.spare.push(*cell.head);
             *cell.head = next;

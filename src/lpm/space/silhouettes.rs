@@ -3,6 +3,8 @@
 use super::Seat;
 use super::boxes::Boxes;
 use super::cover::Cover;
+use super::layers::Reach;
+use super::sweep::Sweep;
 
 /// Pieces of one bundle.
 pub(crate) const LANES: usize = 8;
@@ -14,8 +16,7 @@ pub(super) const NONE: u32 = u32::MAX;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lane {
     pub(super) piece: u32,
-    /// Its layers, bit k: layer k.
-    pub(super) word: u64,
+    pub(super) reach: Reach,
     pub(super) cover: Cover,
 }
 
@@ -24,30 +25,21 @@ impl Lane {
     pub(super) fn of(piece: u32, cover: &Cover, seat: &Seat) -> Lane {
         Lane {
             piece,
-            word: seat.reach.word(),
+            reach: seat.reach,
             cover: *cover,
         }
     }
-
-    /// Meets nothing.
-    const EMPTY: Lane = Lane {
-        piece: NONE,
-        word: 0,
-        cover: Cover {
-            low: [f32::INFINITY; 3],
-            high: [f32::INFINITY; 3],
-        },
-    };
 }
 
-/// Eight silhouettes and whose they are. Lanes from `count` on meet nothing.
-#[derive(Debug, Clone)]
+/// Eight silhouettes and whose they are. Lanes from `count` on are nobody's.
+#[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Bundle {
-    pub(crate) boxes: Boxes<LANES>,
+    boxes: Boxes<LANES>,
     pieces: [u32; LANES],
-    /// The layers of each piece, bit k: layer k.
-    words: [u64; LANES],
+    /// The lowest and the highest layer of each piece.
+    lowest: [u8; LANES],
+    highest: [u8; LANES],
     count: u32,
     /// Next bundle of the same cell; always a full one.
     pub(super) next: u32,
@@ -60,7 +52,8 @@ impl Bundle {
         Bundle {
             boxes: Boxes::NOWHERE,
             pieces: [NONE; LANES],
-            words: [0; LANES],
+            lowest: [Reach::NONE.low; LANES],
+            highest: [Reach::NONE.high; LANES],
             count: 0,
             next,
         }
@@ -91,25 +84,34 @@ impl Bundle {
     pub(super) fn set(&mut self, at: usize, lane: &Lane) {
         self.boxes.set(at, &lane.cover);
         self.pieces[at] = lane.piece;
-        self.words[at] = lane.word;
+        (self.lowest[at], self.highest[at]) = (lane.reach.low, lane.reach.high);
     }
 
-    /// Takes the last lane out; of an empty bundle, nothing that anybody knows.
+    /// The silhouette of a lane.
     #[inline]
-    pub(super) fn pop(&mut self) -> Lane {
+    pub(super) fn lane(&self, at: usize) -> Lane {
+        Lane {
+            piece: self.pieces[at],
+            reach: Reach {
+                low: self.lowest[at],
+                high: self.highest[at],
+            },
+            cover: self.cover(at),
+        }
+    }
+
+    /// Forgets the last lane.
+    #[inline]
+    pub(super) fn pop(&mut self) {
         let last = self.last();
-        let lane = Lane {
-            piece: self.pieces[last],
-            word: self.words[last],
-            cover: self.boxes.cover(last),
-        };
-        self.set(last, &Lane::EMPTY);
+        self.pieces[last] = NONE;
+        (self.lowest[last], self.highest[last]) = (Reach::NONE.low, Reach::NONE.high);
         self.count = self.count.saturating_sub(1);
-        lane
     }
 
+    /// The newest lane; of an empty bundle, one that is nobody's.
     #[inline]
-    fn last(&self) -> usize {
+    pub(super) fn last(&self) -> usize {
         (self.count as usize).wrapping_sub(1) % LANES
     }
 
@@ -127,10 +129,45 @@ impl Bundle {
         (word != 0).then(|| word.trailing_zeros() as usize % LANES)
     }
 
-    /// Word of the layers of this bundle.
+    /// Word of the layers from the lowest to the highest of this bundle.
     #[inline]
     pub(super) fn word(&self) -> u64 {
-        self.words.iter().fold(0, |whole, word| whole | word)
+        let reach = Reach {
+            low: self.lowest.into_iter().fold(u8::MAX, u8::min),
+            high: self.highest.into_iter().fold(0, u8::max),
+        };
+        reach.word()
+    }
+
+    /// Bit k: lane k is in use.
+    #[inline]
+    fn used(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+
+    /// Bit k: the silhouette of lane k shares a point with `cover` on every axis.
+    #[inline]
+    pub(super) fn meeting(&self, cover: &Cover) -> u32 {
+        self.boxes.meeting(cover) & self.used()
+    }
+
+    /// Which silhouettes a box on its way meets up to the fraction `until`, and not before when.
+    #[inline(always)]
+    pub(super) fn crossing(&self, sweep: &Sweep, until: f32) -> (u32, [f32; LANES]) {
+        let crossing = self.boxes.crossing(&sweep.start, &sweep.pace, until);
+        (crossing.lanes & self.used(), crossing.entry)
+    }
+
+    /// Before which fraction of a way along one axis each silhouette is not met.
+    #[inline]
+    pub(super) fn entry(&self, sweep: &Sweep, axis: usize) -> [f32; LANES] {
+        self.boxes.entry(&sweep.start, &sweep.pace, axis)
+    }
+
+    /// What the piece of a lane covers.
+    #[inline]
+    pub(crate) fn cover(&self, lane: usize) -> Cover {
+        self.boxes.cover(lane)
     }
 
     #[inline]

@@ -88,12 +88,11 @@ impl<'a, V: Visit> Walk<'a, V> {
         for (number, bundle) in chain {
             // What only shares the box around a slanted way may be met by no time at all.
             let (lanes, entry) = if self.is_slanted {
-                let crossing = bundle.boxes.crossing(&sweep.start, &sweep.pace, until);
-                (crossing.lanes, crossing.entry)
+                bundle.crossing(sweep, until)
             } else {
-                let lanes = bundle.boxes.meeting(&self.cover);
+                let lanes = bundle.meeting(&self.cover);
                 let entry = if in_order && lanes != 0 {
-                    bundle.boxes.entry(&sweep.start, &sweep.pace, self.axis)
+                    bundle.entry(sweep, self.axis)
                 } else {
                     [0.0; LANES]
                 };

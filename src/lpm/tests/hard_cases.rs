@@ -237,3 +237,18 @@ fn a_graze_of_turned_bodies_within_a_metre_stops_at_most_a_ten_thousandth_of_a_m
     // It is a bound that is needed, not one for show.
     assert!(earliest > GRAZED_EARLY_MM / 100.0, "{earliest}");
 }
+
+#[test]
+fn a_margin_or_a_range_beyond_single_precision_is_a_margin_like_any_other() {
+    let model = standing(&block(1.0, 1.0, 1.0), Pose::IDENTITY);
+    let mover = block(1.0, 1.0, 1.0);
+    for to in [[500.0, 0.0, 0.0], [500.0, 300.0, -40.0], [900.0, 1.0, 2.0]] {
+        let order = Move {
+            margin_mm: 1e300,
+            ..straight([500.0, 0.0, 0.0], to)
+        };
+        assert_eq!(stop(&model, &mover, &order), Some(0.0));
+        let least = model.clearance(&mover, &straight([500.0, 0.0, 0.0], to), 1e300);
+        assert!((least.unwrap().distance_mm - 498.0).abs() < 1e-9);
+    }
+}
