@@ -78,6 +78,9 @@ impl Pool {
         let Some((at, lane)) = self.whereabouts(*cell.head, piece) else {
             return false;
         };
+        *cell.layers = self.chain(*cell.head).fold(0, |word, (number, bundle)| {
+            word | bundle.word_without((number == at).then_some(lane))
+        });
         let newest = &self.bundles[*cell.head as usize];
         let last = newest.last();
         if (at, lane) != (*cell.head, last) {
@@ -91,9 +94,6 @@ impl Pool {
             self.spare.push(*cell.head);
             *cell.head = next;
         }
-        *cell.layers = self
-            .chain(*cell.head)
-            .fold(0, |word, (_, bundle)| word | bundle.word());
         true
     }
 

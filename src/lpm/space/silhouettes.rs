@@ -129,12 +129,24 @@ impl Bundle {
         (word != 0).then(|| word.trailing_zeros() as usize % LANES)
     }
 
-    /// Word of the layers from the lowest to the highest of this bundle.
+    /// Word of the layers from the lowest to the highest of this bundle, but for one lane.
+    ///
+    /// Asked before that lane goes: bytes that have just been written one by one are not read eight at a
+    /// time without waiting for them.
     #[inline]
-    pub(super) fn word(&self) -> u64 {
+    pub(super) fn word_without(&self, gone: Option<usize>) -> u64 {
+        let gone = gone.map_or(0, |lane| 0xff << (8 * lane));
+        let lowest = u64::from_le_bytes(self.lowest) | gone;
+        let highest = u64::from_le_bytes(self.highest) & !gone;
         let reach = Reach {
-            low: self.lowest.into_iter().fold(u8::MAX, u8::min),
-            high: self.highest.into_iter().fold(0, u8::max),
+            low: lowest
+                .to_le_bytes()
+                .into_iter()
+                .fold(Reach::NONE.low, u8::min),
+            high: highest
+                .to_le_bytes()
+                .into_iter()
+                .fold(Reach::NONE.high, u8::max),
         };
         reach.word()
     }
