@@ -156,7 +156,7 @@ impl<'a> Recorder<'a> {
         Ok(())
     }
 
-    /// What is worth no transaction of its own: it is written with the next rows, at the latest at the end.
+    /// What is inside: written with the next rows, when a part is let go, and at the end.
     fn aside(&mut self) -> Vec<Row> {
         let Some((inside, uses)) = self.aside.take() else {
             return Vec::new();
@@ -222,7 +222,13 @@ impl<'a> Recorder<'a> {
             Event::Ordered(answered, at) => {
                 rows.extend(self.diary.ordered(&answered, self.wall_us(at)));
             }
-            Event::Inside(inside, uses) => self.aside = Some((inside, uses)),
+            Event::Inside(inside, uses) => {
+                self.aside = Some((inside, uses));
+                // The one hand-over that sensors cannot tell of later.
+                if inside.falling.is_some() {
+                    rows.extend(self.aside());
+                }
+            }
             Event::Calibrated(calibration) => {
                 rows.extend(self.diary.calibrated(calibration.made_at_us));
                 self.calibrated(&calibration)?;
