@@ -16,14 +16,23 @@
 use crate::units::Volt;
 use serde::{Deserialize, Serialize};
 
-/// Scatter about the line that is believed before any part was seen, volts (1 sd): that of one operation.
-const SCATTER_V: f64 = 0.003;
+/// Scatter about the line that is believed before any part was seen, volts (1 sd): that of two operations, and what a
+/// line leaves of golden parts that lie far apart.
+const SCATTER_V: f64 = 0.004;
 /// How many parts that belief is worth.
 const WORTH: f64 = 4.0;
 /// How far the guess of the lag may be off for the first part, volts (1 sd).
 const GUESS_SD_V: f64 = 0.05;
-/// A result that is greater by a hundredth of itself changes the lag by so many hundredths of the lag, or less (1 sd).
-const ELASTICITY: f64 = 0.5;
+/// By how many hundredths of itself the lag changes when a result is greater by a hundredth (mean and 1 sd), in the order of
+/// [`Shown`]. An armature that operates late is a heavy one: its flight is most of what a rising ramp waits for and half of
+/// an operation. A high threshold makes an operation late without any mass, and so is taken off again; of a rising ramp
+/// both indications are the same. A falling ramp waits for the flux, which follows each result a little.
+const RISING: [f64; RESULTS] = [-0.8, -0.8, 1.3, 0.0, 0.3];
+const FALLING: [f64; RESULTS] = [0.0; RESULTS];
+const ELASTICITY_SD: f64 = 0.25;
+/// A part that is further from what is expected of it teaches as if it were so far, in standard uncertainties: one odd golden
+/// part does not bend the line for a lot, and a line that is wrong still widens until it is not.
+const ODD: f64 = 3.0;
 /// Greatest squared distance from the parts seen, in standard deviations along every direction in which they vary, and
 /// how it widens while few parts tell those: of parts like them one in two thousand is further away (Hotelling's T2 of
 /// five variates, to a tenth from ten parts on).
@@ -100,18 +109,21 @@ pub struct LagLaw {
 impl LagLaw {
     /// Before any part was seen: a guess of the lag in volts.
     pub fn guess(guess_v: f64) -> Self {
-        let mut products = [[0.0; TERMS]; TERMS];
-        for (term, row) in products.iter_mut().enumerate() {
-            row[term] = believed(guess_v, term);
-        }
-        Self {
+        let mut law = Self {
             guess_v,
             parts: 0,
             first: [0.0; RESULTS],
-            products,
+            products: [[0.0; TERMS]; TERMS],
             with_lag: [0.0; TERMS],
             squares: WORTH * SCATTER_V.powi(2),
+        };
+        for term in 0..TERMS {
+            let (mean_v, weight) = believed(guess_v, term);
+            law.products[term][term] = weight;
+            law.with_lag[term] = weight * mean_v;
+            law.squares += weight * mean_v.powi(2);
         }
+        law
     }
 
     /// Parts that have taught it.
@@ -121,13 +133,16 @@ impl LagLaw {
 
     /// Takes in a part with both indications; one that is not a number is passed over.
     pub fn learn(&mut self, shown: &Shown, fine: Volt) {
-        let lag_v = (shown.indicated - fine).0 - self.guess_v;
+        let lag_v = (shown.indicated - fine).0;
         let Some(logarithms) = shown.logarithms().filter(|_| lag_v.is_finite()) else {
             return;
         };
         if self.parts == 0 {
             self.first = logarithms;
         }
+        let expected = self.of(shown);
+        let off_v = (lag_v - expected.volts).clamp(-ODD * expected.u_v, ODD * expected.u_v);
+        let lag_v = expected.volts + off_v - self.guess_v;
         let terms = self.terms(logarithms);
         for (row, one) in terms.iter().enumerate() {
             for (column, other) in terms.iter().enumerate() {
@@ -163,7 +178,7 @@ impl LagLaw {
         let of_term = |term: usize| {
             let mut alone = [0.0; TERMS];
             alone[term] = 1.0;
-            1.0 - believed(self.guess_v, term) * solved(self.products, alone)[term]
+            1.0 - believed(self.guess_v, term).1 * solved(self.products, alone)[term]
         };
         (0..TERMS).map(of_term).sum()
     }
@@ -187,14 +202,18 @@ impl LagLaw {
     }
 }
 
-/// What the prior adds to the product of a term with itself.
-fn believed(guess_v: f64, term: usize) -> f64 {
-    let sd_v = if term == 0 {
-        GUESS_SD_V
-    } else {
-        ELASTICITY * guess_v.abs().max(GUESS_SD_V)
+/// What is believed of a term of the line before any part was seen, volts, and what it adds to the product of that term
+/// with itself. The lag of a rising ramp lies above zero, that of a falling one below.
+fn believed(guess_v: f64, term: usize) -> (f64, f64) {
+    let elasticities = if guess_v > 0.0 { RISING } else { FALLING };
+    let (mean_v, sd_v) = match term.checked_sub(1) {
+        None => (0.0, GUESS_SD_V),
+        Some(result) => (
+            elasticities[result] * guess_v,
+            ELASTICITY_SD * guess_v.abs().max(GUESS_SD_V),
+        ),
     };
-    (SCATTER_V / sd_v).powi(2)
+    (mean_v, (SCATTER_V / sd_v).powi(2))
 }
 
 fn dot(a: [f64; TERMS], b: [f64; TERMS]) -> f64 {

@@ -148,3 +148,52 @@ fn a_part_that_has_not_shown_everything_teaches_nothing_and_is_unlike() {
     after.learn(&shown, Volt(f64::NAN));
     assert_eq!(after, law);
 }
+
+#[test]
+fn one_odd_part_among_those_that_teach_bends_the_law_no_further_than_it_was_in_doubt() {
+    let (law, (shown, fine)) = (taught(12, 0.002), part(12));
+    let before = law.of(&shown);
+    let after = |off_v: f64| {
+        let mut after = law;
+        after.learn(&shown, fine - Volt(off_v));
+        after.of(&shown)
+    };
+    let (odd, odder) = (after(0.1), after(0.5));
+    assert!((odd.volts - odder.volts).abs() < 1e-9);
+    assert!(odd.volts - before.volts < ODD * before.u_v);
+    assert!(odd.u_v > before.u_v, "{odd:?} {before:?}");
+}
+
+#[test]
+fn parts_that_go_on_to_disagree_with_the_law_win() {
+    let mut law = taught(12, 0.002);
+    for at in 12..60 {
+        let (shown, fine) = part(at);
+        law.learn(&shown, fine - Volt(0.2));
+    }
+    let (shown, fine) = part(60);
+    let now = law.of(&shown);
+    let error_v = now.volts - (shown.indicated - fine).0 - 0.2;
+    // The twelve have a fifth of the say.
+    assert!(
+        error_v.abs() < 0.06 && error_v.abs() < 2.0 * now.u_v,
+        "{error_v} {now:?}"
+    );
+}
+
+#[test]
+fn a_late_armature_is_expected_to_lag_before_two_parts_have_told_so() {
+    let (one, _) = part(0);
+    let late = Shown {
+        operate_ms: one.operate_ms * 1.1,
+        ..one
+    };
+    let further = |guess_v: f64| {
+        let mut law = LagLaw::guess(guess_v);
+        law.learn(&one, one.indicated - Volt(guess_v));
+        law.of(&late).volts - law.of(&one).volts
+    };
+    let expected = RISING[2] * 0.85 * 1.1f64.ln();
+    assert!((further(0.85) - expected).abs() < 1e-9);
+    assert!(further(-1.05).abs() < 1e-9, "flux knows no armature");
+}
