@@ -69,8 +69,8 @@ function showIo() {
   for (const item of at("jogs").children) showClearance(item, view.machine.jogs.find((it) => it.motion === item.dataset.motion));
   for (const element of at("modes").children) element.classList.toggle("now", element.dataset.with === view.machine.mode);
   const {wear, probe_contact_ohm: contact} = view.machine;
-  at("wear").replaceChildren(...Object.entries(wear).map(([name, count]) => row(known("actuator." + name, name), whole(count))),
-    row(word("io.probe_contact"), contact === null ? "-" : contact.toFixed(2) + " ohm"));
+  at("wear").replaceChildren(...Object.entries(wear).map(([name, count]) => row(known("actuator." + name, known("counter." + name, name)), whole(count))),
+    row(word("io.probe_contact"), contact === null ? "-" : contact.toFixed(2) + " Ω"));
 }
 
 PAGES.io = {show: showIo};
