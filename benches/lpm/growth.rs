@@ -32,7 +32,7 @@ pub fn report(clock: f64) {
     }
     print!("{:<26}", "mean, ns; n =");
     SIZES.iter().for_each(|size| print!(" {size:>9}"));
-    println!("   largest / smallest");
+    println!("   largest / smallest (bar for local moves, any hit and first contact: below 2)");
     for (name, figures) in table {
         print!("{name:<26}");
         figures.iter().for_each(|figure| print!(" {figure:>9.0}"));

@@ -1,9 +1,11 @@
 //! Speed of the collision core against its peers, in one run: `cargo bench --bench lpm`.
 //!
 //! Printed are nanoseconds and ratios (how many times the peer needs) of mean and 99th percentile,
-//! warm and cold, and how many answers differ. `-- --quick` stops at 1,000 elements, `-- --bar` is 1,000
-//! alone, `-- --growth` asks the core alone how its cost grows from 10 to 100,000 elements.
+//! warm and cold, and how many answers differ; below a missed bar, what it is made of ([`bound`]).
+//! `-- --quick` stops at 1,000 elements, `-- --bar` is 1,000 alone, `-- --growth` asks the core alone
+//! how its cost grows from 10 to 100,000 elements.
 
+mod bound;
 mod growth;
 mod peer;
 mod timing;
@@ -13,7 +15,7 @@ use std::cell::RefCell;
 
 use relayrig::lpm::{Answer, Model, Move, Mover, Pose, Shape};
 use timing::{Spread, clock_ns, cold, rounds, warm};
-use world::{KINDS, World, gripper, moves, specks, world};
+use world::{KINDS, World, gripper, moves, world};
 
 /// Numbers of elements.
 const SIZES: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
@@ -25,8 +27,6 @@ const COLD_QUERIES: usize = 300;
 const MARGIN_MM: f64 = 0.5;
 /// How many times faster than parry3d-f64 is wanted.
 const BAR: f64 = 10.0;
-/// Higher than anything stands, mm.
-const FAR_ABOVE_MM: f64 = 10_000.0;
 /// Range of the clearance question, mm: that of `check`.
 const RANGE_MM: f64 = 25.0;
 
@@ -113,7 +113,7 @@ impl Bench {
             self.kind(kind, &moves(world, kind, QUERIES));
         }
         self.margins(world);
-        self.floor(world);
+        self.far_above(world);
         println!(
             "\n{:<10} {:>5} {:<14} {:>22}   {:>19} {:>19}",
             "cold", "", "question", "ours, ns", "f64 one call", "f64 over pairs"
@@ -151,6 +151,9 @@ impl Bench {
             &any,
             &[one, pairs, best(single_one, single_any)],
         );
+        bound::of_question(self, ways, &one, &any, &|mover, way| {
+            model.any_hit(mover, way).is_some()
+        });
         let first = warm(ways, *clock, |way| stop(model, mover, way));
         let pairs = warm(ways, *clock, |way| double.pairs_first(way));
         let single_first = warm(ways, *clock, |way| single.pairs_first(way));
@@ -161,6 +164,9 @@ impl Bench {
             &first,
             &[one, pairs, best(single_one, single_first)],
         );
+        bound::of_question(self, ways, &one, &first, &|mover, way| {
+            stop(model, mover, way).is_some()
+        });
         let least = warm(ways, *clock, |way| model.clearance(mover, way, RANGE_MM));
         row(kind, &share, "clearance", &least, &[]);
     }
@@ -176,33 +182,15 @@ impl Bench {
         }
     }
 
-    /// What of a discrete question the shapes have no part in: taking poses (everything stands far below), and
-    /// finding whose boxes meet (four specks in the corners of the gripper's box, which meet next to nothing).
-    fn floor(&self, world: &World) {
-        let ways = moves(world, "disc_yaw0", QUERIES);
-        let mut above = ways.clone();
-        for way in &mut above {
-            way.from.position[2] += FAR_ABOVE_MM;
-            way.to.position[2] += FAR_ABOVE_MM;
-        }
-        let ask = |mover: &Mover, ways: &[Move]| {
-            warm(ways, self.clock, |way| self.model.any_hit(mover, way))
-        };
-        let poses = ask(&self.mover, &above);
-        let one = warm(&above, self.clock, |way| self.double.compound(way));
-        let pairs = warm(&above, self.clock, |way| self.double.pairs_any(way));
+    /// A question far above everything: what taking poses costs.
+    fn far_above(&self, world: &World) {
+        let ways = bound::lifted(&moves(world, "disc_yaw0", QUERIES));
+        let poses = warm(&ways, self.clock, |way| {
+            self.model.any_hit(&self.mover, way)
+        });
+        let one = warm(&ways, self.clock, |way| self.double.compound(way));
+        let pairs = warm(&ways, self.clock, |way| self.double.pairs_any(way));
         row("far above", "0%", "any hit", &poses, &[one, pairs]);
-        let specks = mover(specks());
-        let met = |way: &&Move| self.model.any_hit(&specks, way).is_some();
-        let share = 100 * ways.iter().filter(met).count() / ways.len();
-        let boxes = ask(&specks, &ways);
-        row("specks", &format!("{share}%"), "any hit", &boxes, &[]);
-        let whole = ask(&self.mover, &ways);
-        let bar = warm(&ways, self.clock, |way| self.double.compound(way)).mean / BAR;
-        println!(
-            "(discrete: poses alone {:.0} ns, poses and boxes {:.0} ns, with shapes and an end at the first hit {:.0} ns; a {BAR:.0}th of f64 is {bar:.0} ns)",
-            poses.mean, boxes.mean, whole.mean,
-        );
     }
 
     fn cold_kind(&self, kind: &str, ways: &[Move]) {
@@ -235,15 +223,7 @@ impl Bench {
             &ours,
             &[rebuild, rebuild, single],
         );
-        // All that is built, written once: building cannot be faster.
-        let copy = rounds(times, || (), |()| self.model.clone());
-        row(
-            "build",
-            "",
-            "copy of it",
-            &copy,
-            &[rebuild, rebuild, single],
-        );
+        bound::of_build(self, times, &ours, &rebuild);
         let picked: Vec<usize> = (0..QUERIES)
             .map(|index| 1 + index * 7919 % (count - 1))
             .collect();

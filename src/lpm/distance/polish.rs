@@ -11,11 +11,13 @@ use crate::lpm::piece::Piece;
 use crate::lpm::vector::{Vec3, add, cross, dot, scale, unit};
 
 /// Directions tried.
-const MOST_TRIALS: usize = 200;
+const MOST_TRIALS: usize = 600;
 /// Support points remembered.
-const MOST_CUTS: usize = 14;
+const MOST_CUTS: usize = 18;
 /// First reach of a trial, as the tangent of its angle to the present direction.
 const FIRST_REACH: f64 = 1e-2;
+/// First reaches of further rounds, when one has ended without proof that nothing is left to gain.
+const AGAIN_REACHES: [f64; 3] = [1e-4, 1e-6, 1e-8];
 /// Reaches below this change nothing any more.
 const LAST_REACH: f64 = 1e-15;
 
@@ -37,6 +39,7 @@ pub(super) fn polished(a: &Piece, b: &Piece, c: Vec3, n: Vec3, best: f64, resolu
     let (mut n, mut best) = (n, best);
     let mut points = vec![support(a, b, c, n).w];
     let mut reach = FIRST_REACH;
+    let mut again = AGAIN_REACHES.iter();
     for _ in 0..MOST_TRIALS {
         let [u, v] = tangents(n);
         let cuts: Vec<Cut> = points
@@ -48,8 +51,17 @@ pub(super) fn polished(a: &Piece, b: &Piece, c: Vec3, n: Vec3, best: f64, resolu
             .collect();
         let (place, bound) = highest(&cuts, reach);
         let inside = place.iter().all(|member| member.abs() < reach);
-        if (inside && bound - best <= resolution) || reach < LAST_REACH {
+        if inside && bound - best <= resolution {
             break;
+        }
+        if reach < LAST_REACH {
+            let Some(next) = again.next() else {
+                break;
+            };
+            // Cuts of farther away may have hidden what is near: once more without them.
+            reach = *next;
+            points = vec![support(a, b, c, n).w];
+            continue;
         }
         let Some(trial) = unit(add(n, add(scale(u, place[0]), scale(v, place[1])))) else {
             break;

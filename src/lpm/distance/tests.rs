@@ -101,7 +101,6 @@ fn direction(dice: &mut Dice, a: &Piece, b: &Piece) -> Vec3 {
 
 #[test]
 fn the_distance_of_any_two_pieces_is_proven_to_half_a_nanometre() {
-    let (mut worst, mut poor) = (0.0_f64, 0);
     for seed in 0..60_000 {
         let mut dice = Dice(seed);
         let (shape_a, shape_b) = (dice.shape(), dice.shape());
@@ -128,12 +127,6 @@ fn the_distance_of_any_two_pieces_is_proven_to_half_a_nanometre() {
             found.lower
         );
         let missed = gap_mm - found.lower.max(0.0);
-        poor += usize::from(missed > 5e-7 + built);
-        worst = worst.max(missed);
+        assert!(missed <= 5e-7 + built, "seed {seed}: {missed:e} mm missed");
     }
-    // Needles of 1 : 10,000 a few micrometres apart may lose digits, on the safe side.
-    assert!(
-        poor <= 3 && worst < 2e-6,
-        "{poor} poor planes, worst {worst:e} mm"
-    );
 }
