@@ -146,7 +146,7 @@ fn expected_u(parameter: Parameter, recipe: &Recipe, accuracy: &AccuracySettings
     let per_kelvin = relative_per_kelvin(Celsius(recipe.part.reference_temperature_c));
     let threshold = |volts: f64| {
         let kelvin = volts * per_kelvin * accuracy.part_minus_track_k;
-        kelvin.hypot(accuracy.operation_scatter_mv * 1e-3)
+        kelvin.hypot(accuracy.operation_v(recipe.part.nominal_v))
     };
     let u = match parameter {
         Parameter::CoilResistance => {

@@ -142,7 +142,7 @@ impl GoldenRun {
             let value = certified(part);
             let kelvin =
                 value.value * accuracy.part_minus_track_k * relative_per_kelvin(Celsius(23.0));
-            value.u.powi(2) + kelvin.powi(2) + (accuracy.operation_scatter_mv / 1e3).powi(2)
+            value.u.powi(2) + kelvin.powi(2) + accuracy.operation_v(part.nominal_v).powi(2)
         };
         let promised = parts.iter().map(of_part).sum::<f64>() / parts.len().max(1) as f64;
         Ok(Factor::new(mean, (promised / n).sqrt()))

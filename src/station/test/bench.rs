@@ -74,6 +74,11 @@ impl Bench {
         }
     }
 
+    /// Scatter of a threshold of this part from operation to operation, volts (1 sd).
+    pub fn operation_v(&self) -> f64 {
+        self.accuracy.operation_v(self.recipe.part.nominal_v)
+    }
+
     /// Clock of the gated counters.
     pub fn clock(&self) -> Clock {
         Clock {

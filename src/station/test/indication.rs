@@ -36,7 +36,7 @@ pub(super) fn coarse_reading(
 ) -> Option<Reading> {
     let predicted = lag.coarse.of(&seen);
     // What was learned holds the operation of the fine ramp as well, which is none of this value's.
-    let operation_v = bench.accuracy.operation_scatter_mv / 1e3;
+    let operation_v = bench.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let doubt = RampDoubt {
         slope: bench.calibration.coarse_v_per_s,
@@ -95,7 +95,7 @@ fn doubt(bench: &Bench) -> RampDoubt {
     RampDoubt {
         slope: bench.calibration.fine_v_per_s,
         slope_known: false,
-        operation_v: bench.accuracy.operation_scatter_mv / 1e3,
+        operation_v: bench.operation_v(),
         refresh: Second(bench.accuracy.ao_refresh_ms * 1e-3),
         level: bench.calibration.level.gain.u,
         temperature_k: bench.accuracy.part_minus_track_k,

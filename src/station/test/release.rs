@@ -21,8 +21,8 @@ use crate::units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
 const SEAL: f64 = 0.95;
-/// Below this indicated voltage the coarse ramp has ended or is about to: no estimate, volts.
-const FLOOR_V: f64 = 0.35;
+/// Within so many refreshes of its end the output may have stopped already: an event there is no estimate.
+const LAST_REFRESHES: f64 = 1.5;
 /// Operate, bounce and settling of the flux.
 const SEAL_TIME: Span = Span::ms(25);
 /// The flux of the seal has fallen to a few per cent of its step before a fine ramp begins; what the coarse ramp
@@ -117,8 +117,9 @@ pub(super) fn conclude_coarse(
     let (start, test) = (findings.ramp_start?, &bench.recipe.test);
     let coarse_v_per_s = bench.calibration.coarse_v_per_s.value;
     let seen = readings.seen.first() == Some(&true);
+    let floor_v = coarse_v_per_s * LAST_REFRESHES * bench.accuracy.ao_refresh_ms * 1e-3;
     let gate =
-        gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - FLOOR_V);
+        gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - floor_v);
     findings.released = true;
     let Some(gate) = gate else {
         // Below its floor the coarse ramp tells nothing: the threshold is far from the lot's.

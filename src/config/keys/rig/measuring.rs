@@ -124,7 +124,7 @@ pub(super) const ACCURACY: &[Key] = &[
         "operation_scatter_mv",
         from_to(0.0, 1000.0, "mV"),
         "gauge",
-        "threshold from operation to operation, standard deviation",
+        "threshold of a 12 V coil from operation to operation, standard deviation; of other coils in proportion",
     ),
     key(
         "conversions_per_s",

@@ -96,7 +96,7 @@ fn found(
             value * kelvin * relative_per_kelvin(part),
         )
         .with("strategy", resolution(step.0))
-        .with_random("repeatability", bench.accuracy.operation_scatter_mv / 1e3);
+        .with_random("repeatability", bench.operation_v());
     let reading = Reading { value, budget };
     findings.found(parameter(direction), reading, samples.iter().flatten());
 }

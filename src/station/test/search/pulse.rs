@@ -24,7 +24,7 @@ pub(super) fn level(bench: &Bench, direction: Direction, part: Celsius) -> Volt 
     let u = at_part * bench.accuracy.part_minus_track_k * relative_per_kelvin(part)
         + at_part * bench.calibration.level.gain.u
         + bench.calibration.level.offset_v.u
-        + bench.accuracy.operation_scatter_mv / 1e3;
+        + bench.operation_v();
     Volt(at_part - sign * (2.0 * u + at_part * KINDER))
 }
 

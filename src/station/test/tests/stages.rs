@@ -155,6 +155,8 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
         watched(false, PULLED, 0.0),
         // The ramp has ended long before: the time is no voltage.
         watched(true, RESTING, 60.0),
+        // It ends after 41.1 ms, and its last step may have been made.
+        watched(true, RESTING, 40.6),
     ] {
         let mut findings = ramp_from(4.0, 4.0);
         let next = release::conclude_coarse(&bench(), &readings, &mut findings);
@@ -170,6 +172,14 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
     assert!((expected.centre.0 - (coarse.0 + 1.05)).abs() < 1e-9);
     let start = expected.falling().start;
     assert!(start > expected.centre);
+}
+
+#[test]
+fn a_coarse_release_of_a_coil_of_few_volts_is_told_down_to_the_last_step_of_its_ramp() {
+    let mut findings = ramp_from(4.0, 4.0);
+    release::conclude_coarse(&bench(), &watched(true, RESTING, 40.0), &mut findings);
+    let coarse = findings.release.unwrap().coarse.indicated;
+    assert!((coarse.0 - 0.11).abs() < 1e-9);
 }
 
 /// A timed stage: gate 0 and 1 in counts of 20 us, drops of both polarities.
