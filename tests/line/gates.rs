@@ -191,7 +191,7 @@ fn probes_that_foul_are_told_before_a_pin_counts_as_open_and_no_value_changes() 
     };
     assert!(changed("") > 30);
     assert_eq!(
-        changed("AND abs(a.value - b.value) > a.uncertainty"),
+        changed("AND abs(a.value - b.value) > a.uncertainty + b.uncertainty"),
         0,
         "four wires"
     );

@@ -10,6 +10,8 @@ use rigsim::truth::{BodyTruth, Place};
 
 /// From a body at rest to its confirmation by the beam: fall, second body, polls and repeated polls, microseconds.
 const CONFIRMED_US: u64 = 3_000_000;
+/// The fingers take so long to open, microseconds: a run that ends meanwhile tells of the part before it falls.
+const OPENING_US: u64 = 300_000;
 /// A part that is gone is noticed at the latest at the reset after it, microseconds; a person may take this long.
 const NOTICED_US: u64 = 60_000_000;
 /// A part is gone: what says so.
@@ -166,7 +168,7 @@ fn in_a_bin(
     match row.landed_bin.as_deref() {
         Some(seen) if seen == bin => None,
         Some(seen) => Some(format!("lies in {bin}, was seen in {seen}")),
-        None if is_declared(case, let_go_us) => None,
+        None if is_declared(case, let_go_us.saturating_sub(OPENING_US)) => None,
         None => Some(format!(
             "lies in {bin} since {}, its row does not know it",
             seconds(at_us)
