@@ -74,6 +74,7 @@ impl Pool {
     }
 
     /// Takes a silhouette out of a cell, if it is there: the last of the newest bundle fills the gap.
+    #[inline(always)]
     pub(super) fn take(&mut self, cell: Cell<'_>, piece: u32) -> bool {
         let Some((at, lane)) = self.whereabouts(*cell.head, piece) else {
             return false;

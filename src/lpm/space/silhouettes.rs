@@ -187,3 +187,50 @@ impl Bundle {
         self.pieces[lane]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lpm::distance::tests::Dice;
+
+    #[test]
+    fn a_bundle_reaches_from_the_lowest_to_the_highest_layer_of_all_that_stay() {
+        let mut dice = Dice(17);
+        for _ in 0..2_000 {
+            let mut bundle = Bundle::before(NONE);
+            let mut reaches = Vec::new();
+            for piece in 0..dice.pick(9) as u32 {
+                let low = dice.pick(64) as u8;
+                let high = low + dice.pick(64 - u64::from(low)) as u8;
+                let reach = Reach { low, high };
+                let cover = Cover {
+                    low: [0.0; 3],
+                    high: [0.0; 3],
+                };
+                bundle.push(&Lane {
+                    piece,
+                    reach,
+                    cover,
+                });
+                reaches.push(reach);
+            }
+            let gone = dice.pick(9) as usize;
+            let gone = (gone < reaches.len()).then_some(gone);
+            let stay = |at: &usize| Some(*at) != gone;
+            let stay: Vec<Reach> = (0..reaches.len())
+                .filter(stay)
+                .map(|at| reaches[at])
+                .collect();
+            let low = stay.iter().map(|reach| reach.low).min();
+            let high = stay.iter().map(|reach| reach.high).max();
+            let word = low
+                .zip(high)
+                .map_or(0, |(low, high)| Reach { low, high }.word());
+            assert_eq!(
+                bundle.word_without(gone),
+                word,
+                "{reaches:?} without {gone:?}"
+            );
+        }
+    }
+}
