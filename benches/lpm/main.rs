@@ -1,12 +1,12 @@
 //! Speed of the collision core against its peers, in one run: `cargo bench --bench lpm`.
 //!
 //! Printed are nanoseconds and ratios (how many times the peer needs) of mean and 99th percentile,
-//! warm and cold, and how many answers differ; below a missed bar, what it is made of ([`bound`]).
+//! warm and cold, and how many answers differ; below a missed bar, what it is made of ([`missed`]).
 //! `-- --quick` stops at 1,000 elements, `-- --bar` is 1,000 alone, `-- --growth` asks the core alone
 //! how its cost grows from 10 to 100,000 elements.
 
-mod bound;
 mod growth;
+mod missed;
 mod peer;
 mod timing;
 mod world;
@@ -151,7 +151,7 @@ impl Bench {
             &any,
             &[one, pairs, best(single_one, single_any)],
         );
-        bound::of_question(self, ways, &one, &any, &|mover, way| {
+        missed::of_question(self, ways, &one, &any, &|mover, way| {
             model.any_hit(mover, way).is_some()
         });
         let first = warm(ways, *clock, |way| stop(model, mover, way));
@@ -164,7 +164,7 @@ impl Bench {
             &first,
             &[one, pairs, best(single_one, single_first)],
         );
-        bound::of_question(self, ways, &one, &first, &|mover, way| {
+        missed::of_question(self, ways, &one, &first, &|mover, way| {
             stop(model, mover, way).is_some()
         });
         let least = warm(ways, *clock, |way| model.clearance(mover, way, RANGE_MM));
@@ -184,7 +184,7 @@ impl Bench {
 
     /// A question far above everything: what taking poses costs.
     fn far_above(&self, world: &World) {
-        let ways = bound::lifted(&moves(world, "disc_yaw0", QUERIES));
+        let ways = missed::lifted(&moves(world, "disc_yaw0", QUERIES));
         let poses = warm(&ways, self.clock, |way| {
             self.model.any_hit(&self.mover, way)
         });
@@ -223,7 +223,7 @@ impl Bench {
             &ours,
             &[rebuild, rebuild, single],
         );
-        bound::of_build(self, times, &ours, &rebuild);
+        missed::of_build(self, times, &ours, &rebuild);
         let picked: Vec<usize> = (0..QUERIES)
             .map(|index| 1 + index * 7919 % (count - 1))
             .collect();
