@@ -34,6 +34,14 @@ struct Underway {
     from: [Position; 8],
 }
 
+impl Underway {
+    /// Every sensor of its end was asked for at `since` or later.
+    fn was_looked_at(&self, since: RigTime, image: &Image) -> bool {
+        let mut arrival = self.movement.arrival().iter();
+        arrival.all(|(point, _)| image.input_at(*point).is_some_and(|at| at >= since))
+    }
+}
+
 /// A work stroke that failed and is being tried again: back to rest, then forth.
 #[derive(Debug, Clone, Copy)]
 struct Again {
@@ -214,7 +222,7 @@ impl Mechanism {
         for underway in std::mem::take(&mut self.underway) {
             if self.is_there(&underway, now, image) {
                 self.arrived(underway.movement, &mut found);
-            } else if now.since(underway.since) > self.timeout_of(underway.movement) {
+            } else if self.is_late(&underway, image) {
                 self.late(underway, &mut found);
             } else {
                 self.underway.push(underway);
@@ -227,12 +235,16 @@ impl Mechanism {
     fn is_there(&self, underway: &Underway, now: RigTime, image: &Image) -> bool {
         let is_axis = matches!(underway.movement, Move::AxisTo(_));
         let believed = !is_axis || now.since(underway.since) >= AXIS_REACTS;
-        let fresh = underway.movement.arrival().iter().all(|(point, _)| {
-            image
-                .input_at(*point)
-                .is_some_and(|at| at >= underway.since)
-        });
-        believed && fresh && self.sensed(underway.movement, now, image)
+        believed
+            && underway.was_looked_at(underway.since, image)
+            && self.sensed(underway.movement, now, image)
+    }
+
+    /// A look that was asked for after the time-out has not shown the end: where replies are late, the look before it may
+    /// be older than the stroke took.
+    fn is_late(&self, underway: &Underway, image: &Image) -> bool {
+        let limit = self.timeout_of(underway.movement);
+        underway.was_looked_at(underway.since + limit, image)
     }
 
     /// Back at rest for a second try: forth again. Anything else stands now and is watched.

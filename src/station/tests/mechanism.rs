@@ -8,7 +8,7 @@ use crate::rig::point::DigitalIn;
 use crate::station::mechanism::SENSOR_AGE;
 use crate::station::moves::Move;
 use crate::station::trouble::Alarm;
-use crate::units::Span;
+use crate::units::{RigTime, Span};
 
 const TO_PASS: Move = Move::AxisTo(AxisStation::Bin(Bin::Pass));
 
@@ -157,10 +157,12 @@ fn an_actuator_that_takes_too_long_is_an_alarm_with_its_name() {
         }
         shop.mechanism.driven(movement, shop.now, &shop.image);
         let limit = shop.now + TIMEOUT;
-        shop.now = limit;
+        shop.now = RigTime(limit.0 - 1);
         shop.scan();
         assert!(seen(&mut shop).is_empty());
-        shop.now = limit + Span(1);
+        shop.now = limit + Span::ms(30);
+        assert!(seen(&mut shop).is_empty(), "the look is from before");
+        shop.scan();
         let first = seen(&mut shop);
         let alarm = match movement.way_back() {
             Some(back) => second_try(&mut shop, movement, back, &first),
