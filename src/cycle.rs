@@ -400,6 +400,7 @@ impl Cycle {
         match read {
             Read::Board => vec![wiring.poll(wiring.digital_in(DigitalIn::Latch).module)],
             Read::Coil => vec![wiring.poll(wiring.analog_in(AnalogIn::CoilVoltageFine).module)],
+            Read::Current(channel) => vec![wiring.read_analog(channel)],
             Read::Drop => vec![wiring.read_analog(AnalogIn::ContactDrop)],
             Read::Gates => vec![
                 wiring.read_counter(Counter::Gate0),

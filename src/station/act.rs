@@ -16,6 +16,8 @@ pub enum Read {
     Board,
     /// The enabled channels of the coil converter, one scan.
     Coil,
+    /// One channel of it, in little more than half the time.
+    Current(AnalogIn),
     /// The contact drop.
     Drop,
     /// Both gate counters.
@@ -133,6 +135,8 @@ pub struct Readings {
     pub boards: Vec<BoardInputs>,
     /// Scans of the coil converter.
     pub coil: Vec<CoilScan>,
+    /// Coil currents read by themselves.
+    pub currents: Vec<Sample>,
     /// Contact drops.
     pub drops: Vec<Sample>,
     /// Gate counters 0 and 1.
@@ -373,6 +377,11 @@ impl Runner {
                 };
                 self.readings.trace.scan(&scan);
                 self.readings.coil.push(scan);
+            }
+            Read::Current(channel) => {
+                let current = image.analog(channel).ok_or_else(missing)?;
+                self.readings.trace.input(channel, current);
+                self.readings.currents.push(current.clone());
             }
             Read::Drop => {
                 let drop = image.analog(AnalogIn::ContactDrop).ok_or_else(missing)?;

@@ -18,6 +18,9 @@ use crate::quality::spread::median;
 
 /// Longest test of a good part, seconds of rig time.
 const TEST_S: f64 = 0.85;
+/// The law that places the fine ramps ([`crate::gauge::lag`]) has six terms, and golden parts are chosen to lie far apart:
+/// before as many parts of a lot have taught it, it is sure of so little that ramps are long. That bounds the first.
+const TEACH: usize = 6;
 /// Longest test of any part: a defect may ask for another ramp.
 const ANY_TEST_S: f64 = 1.0;
 /// Mean test of a recipe that measures adaptively.
@@ -69,52 +72,49 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     })
 }
 
-/// Longest, mean and median of tests and cycles.
+/// Longest, mean and median of tests and cycles; tests of good parts also apart, as far as their lot had taught the law of
+/// its ramps.
 pub fn times(lots: &[Lot]) -> Vec<Figure> {
-    let all = || lots.iter().flat_map(|lot| &lot.parts);
-    let row = |name: &str, times: Vec<f64>| {
-        let spread = Spread::of(&times);
-        let over = |bar: f64| {
-            percent(
-                times.iter().filter(|it| **it > bar).count() as u64,
-                spread.n(),
-            )
-        };
-        let bar = match name {
-            "test, longest of good parts" => TEST_S,
-            "test, longest of all parts" => ANY_TEST_S,
-            _ => CYCLE_S,
-        };
-        Figure::new(name, spread.n(), spread.max(), "s")
-            .with("mean", spread.mean())
-            .with("median", median(&times))
-            .with("over_bar_pct", over(bar))
-            .bar(Bar::AtMost(bar))
+    let good = |from: usize, to: usize| {
+        let of = move |lot| Lot::good(lot).skip(from).take(to - from);
+        row_of(lots.iter().flat_map(of), |it| it.test_s)
     };
+    let any = |of| row_of(lots.iter().flat_map(|lot| &lot.parts), of);
+    let cycles = row_of(lots.iter().flat_map(Lot::good), |it| it.cycle_s);
     vec![
-        row(
-            "test, longest of good parts",
-            lots.iter()
-                .flat_map(Lot::good)
-                .filter_map(|it| it.test_s)
-                .collect(),
+        longest("test, longest of good parts", TEST_S, &good(0, usize::MAX)),
+        longest(
+            format!("  of the first {TEACH} of a lot, which teach"),
+            TEST_S,
+            &good(0, TEACH),
         ),
-        row(
+        longest("  of those after them", TEST_S, &good(TEACH, usize::MAX)),
+        longest(
             "test, longest of all parts",
-            all().filter_map(|it| it.test_s).collect(),
+            ANY_TEST_S,
+            &any(|it| it.test_s),
         ),
-        row(
-            "cycle, longest of good parts",
-            lots.iter()
-                .flat_map(Lot::good)
-                .filter_map(|it| it.cycle_s)
-                .collect(),
-        ),
-        row(
+        longest("cycle, longest of good parts", CYCLE_S, &cycles),
+        longest(
             "cycle, longest of all parts",
-            all().filter_map(|it| it.cycle_s).collect(),
+            CYCLE_S,
+            &any(|it| it.cycle_s),
         ),
     ]
+}
+
+fn row_of<'a>(parts: impl Iterator<Item = &'a Part>, of: fn(&Part) -> Option<f64>) -> Vec<f64> {
+    parts.filter_map(of).collect()
+}
+
+fn longest(name: impl Into<String>, bar_s: f64, times: &[f64]) -> Figure {
+    let spread = Spread::of(times);
+    let over = times.iter().filter(|it| **it > bar_s).count() as u64;
+    Figure::new(name, spread.n(), spread.max(), "s")
+        .with("mean", spread.mean())
+        .with("median", median(times))
+        .with("over_bar_pct", percent(over, spread.n()))
+        .bar(Bar::AtMost(bar_s))
 }
 
 /// Mean test of good parts against the same acts on a bus that takes no time: what conversion rate, settling

@@ -7,6 +7,7 @@ use crate::gauge::coil::{resistance, to_reference};
 use crate::gauge::probe_contact::in_series;
 use crate::gauge::recipe::CoilChannels;
 use crate::gauge::verdict::Bin;
+use crate::rig::point::AnalogIn;
 use crate::rig::point::DigitalOut::{
     self, Arm, CoilDrive, EventNoBreak, KelvinTest, RampMode, SelectNo, SourceOn, SourceReverse,
 };
@@ -90,7 +91,7 @@ pub(super) fn acts_off(bench: &Bench, supply: &mut Supply, findings: &Findings) 
     }
     acts.extend([
         Act::ConvertSinceMark(FREED + bench.fresh(CHANNELS)),
-        Act::Read(Read::Coil),
+        Act::Read(Read::Current(current_channel(bench))),
     ]);
     acts
 }
@@ -108,6 +109,13 @@ fn current_of(bench: &Bench, scan: &CoilScan) -> Option<Sample> {
     match bench.recipe.test.coil_channels {
         CoilChannels::Fine => scan.current_fine.clone(),
         CoilChannels::CoarseCurrent => scan.current_wide.clone(),
+    }
+}
+
+fn current_channel(bench: &Bench) -> AnalogIn {
+    match bench.recipe.test.coil_channels {
+        CoilChannels::Fine => AnalogIn::CoilCurrentFine,
+        CoilChannels::CoarseCurrent => AnalogIn::CoilCurrent,
     }
 }
 
@@ -190,16 +198,8 @@ fn probe_contact(bench: &Bench, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
     ))
 }
 
-pub(super) fn conclude_off(
-    bench: &Bench,
-    readings: &Readings,
-    findings: &mut Findings,
-) -> Option<Stage> {
-    let current = readings
-        .coil
-        .first()
-        .and_then(|scan| current_of(bench, scan));
-    match current {
+pub(super) fn conclude_off(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+    match readings.currents.first() {
         Some(sample) if sample.quality == Quality::Good && sample.value.abs() < OFF_CURRENT_A => {}
         Some(_) | None => findings.void("coil current not gone after the test"),
     }

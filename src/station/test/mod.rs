@@ -179,7 +179,7 @@ impl Test {
             Stage::ReleaseFine(attempt) => {
                 release::conclude_fine(bench, &readings, findings, attempt)
             }
-            Stage::Off => coil::conclude_off(bench, &readings, findings),
+            Stage::Off => coil::conclude_off(&readings, findings),
         };
         if findings.stopped() && self.stage != Stage::Off {
             self.stages = VecDeque::from([Stage::Off]);

@@ -33,6 +33,10 @@ fn every_act_of_the_bus_becomes_its_job_and_is_asked_once() {
         (Act::Board(outputs.clone()), Job::Board(outputs)),
         (Act::Supply(supply.clone()), Job::Supply(supply)),
         (Act::Read(Read::Coil), Job::Read(Read::Coil)),
+        (
+            Act::Read(Read::Current(AnalogIn::CoilCurrentFine)),
+            Job::Read(Read::Current(AnalogIn::CoilCurrentFine)),
+        ),
         (Act::Read(Read::Drop), Job::Read(Read::Drop)),
         (Act::Read(Read::Gates), Job::Read(Read::Gates)),
         (Act::Read(Read::Track), Job::Read(Read::Track)),

@@ -387,6 +387,7 @@ impl Machine {
                 self.shop.volts(AnalogIn::CoilVoltageFine, 8.0);
                 self.shop.volts(AnalogIn::CoilCurrentFine, 0.0);
             }
+            Job::Read(Read::Current(channel)) => self.shop.volts(*channel, 0.0),
             Job::Read(Read::Drop) => {
                 let volts = if self.reversed { -1.1 } else { 1.1 };
                 self.shop.volts(AnalogIn::ContactDrop, volts);

@@ -3,7 +3,7 @@
 use super::super::cycle::{pieces, times};
 use super::super::pace::{profile, same_bytes};
 use super::{figure, lot, near, row, three_good_one_bad, truth};
-use serde_json::json;
+use serde_json::{Value, json};
 
 #[test]
 fn the_pieces_of_a_cycle_add_up_to_the_cycle() {
@@ -60,6 +60,22 @@ fn a_repeat_with_other_bytes_is_seen_and_silence_about_bytes_is_no_proof() {
     near(same_bytes(&[a.clone(), b.clone(), b.clone()]).value, 1.0);
     b.summary.bytes.clear();
     assert_eq!(same_bytes(&[a, b]).met(), Some(false));
+}
+
+#[test]
+fn the_first_parts_of_a_lot_are_told_apart_from_those_that_follow() {
+    let with_test = |seq: u64| {
+        let mut row = row(seq, "pass", "pass", 8.0);
+        row["test_s"] = json!(if seq == 6 { 1.05 } else { 0.7 });
+        row
+    };
+    let rows: Vec<Value> = (1..=8).map(with_test).collect();
+    let truths: Vec<Value> = (1..=8).map(|seq| truth(seq, None, "pass", 8.0)).collect();
+    let found = times(&[lot(&rows, &truths)]);
+    let first = figure(&found, "  of the first 6 of a lot, which teach");
+    assert_eq!((first.n, first.met()), (6, Some(false)));
+    let after = figure(&found, "  of those after them");
+    assert_eq!((after.n, after.met()), (2, Some(true)));
 }
 
 #[test]

@@ -236,23 +236,28 @@ fn a_coil_of_low_resistance_is_read_on_the_wide_channel() {
 
 #[test]
 fn a_test_ends_void_unless_the_current_is_seen_to_be_gone() {
-    let blank = with(Quality::Blank, |scan| &mut scan.current_fine);
-    let over = with(Quality::OverRange, |scan| &mut scan.current_fine);
+    let of = |scan: CoilScan| scan.current_fine;
     let cases = [
-        (vec![scan(0.0, 0.0005)], false),
-        (vec![scan(0.0, -0.0005)], false),
-        (vec![scan(0.0, 0.0011)], true),
-        (vec![blank], true),
-        (vec![over], true),
-        (Vec::new(), true),
+        (of(scan(0.0, 0.0005)), false),
+        (of(scan(0.0, -0.0005)), false),
+        (of(scan(0.0, 0.0011)), true),
+        (
+            of(with(Quality::Blank, |scan| &mut scan.current_fine)),
+            true,
+        ),
+        (
+            of(with(Quality::OverRange, |scan| &mut scan.current_fine)),
+            true,
+        ),
+        (None, true),
     ];
-    for (coil, void) in cases {
+    for (current, void) in cases {
         let readings = Readings {
-            coil,
+            currents: current.into_iter().collect(),
             ..Readings::default()
         };
         let mut findings = at_23_c();
-        coil::conclude_off(&bench(), &readings, &mut findings);
+        coil::conclude_off(&readings, &mut findings);
         let bin = ended(&findings).map(|(bin, _)| bin);
         assert_eq!(bin, void.then_some(Bin::Retest));
     }
