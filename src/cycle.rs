@@ -201,13 +201,13 @@ impl Cycle {
     }
 
     fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
-        // Reading the reset status clears it, so it is never asked twice; a lost one is asked again anyway.
-        let asked_again = matches!(
+        // Reading the reset status clears it, so it is never asked twice: where its reply is lost nobody knows whether the module
+        // has restarted under the part, which is void.
+        let is_status = matches!(
             answer.command,
             Command::Common(_, dcon::Common::ReadResetStatus)
         );
         let trouble = match &answer.outcome {
-            Err(_) if asked_again && purpose == Purpose::Job => None,
             Ok(reply) => self
                 .image
                 .accept(line, &answer.command, reply, &answer.raw, answer.asked_at)
@@ -243,7 +243,7 @@ impl Cycle {
                 }
             }
             (Purpose::Job, trouble) => {
-                if let Some(trouble) = trouble.as_ref().filter(|_| !refused) {
+                if let Some(trouble) = trouble.as_ref().filter(|_| !refused && !is_status) {
                     self.bus_alarm.get_or_insert(Alarm::bus(trouble));
                 }
                 self.finish_job(true, answer.answered_at, trouble);

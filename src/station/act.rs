@@ -9,6 +9,11 @@ use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Tem
 use crate::rig::sample::{CountSample, Sample};
 use crate::units::{RigTime, Span, Volt};
 
+/// What follows an awaited event is sent within so long after the last look that had not shown it yet: a poll, a reading,
+/// the write. Where a request is lost and asked again, or the line is slow, a ramp is sent later and ends later by as
+/// much; one that turns round has gone on meanwhile, and needs as long again to come back.
+const PROMPT: Span = Span::ms(13);
+
 /// What one transaction (or one pair, for the gates) brings in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Read {
@@ -43,7 +48,7 @@ pub enum Act {
     CoilMask(u8),
     /// Remembers this instant for [`Act::WaitSinceMark`].
     Mark,
-    /// Waits until so much time has passed since the mark.
+    /// Waits until so much time has passed since the mark, and longer where a ramp behind the mark was sent late.
     WaitSinceMark(Span),
     /// Waits so long after the previous act was answered.
     Wait(Span),
@@ -56,6 +61,14 @@ pub enum Act {
         /// Longest wait.
         within: Span,
     },
+}
+
+impl Act {
+    /// The supply begins to ramp and is not waited for.
+    fn is_ramp(&self) -> bool {
+        let ramps = |output: &AnalogOut| *output != AnalogOut::SupplyLevel;
+        matches!(self, Self::Supply(outputs) if outputs.iter().any(|(output, _)| ramps(output)))
+    }
 }
 
 /// Work for the measuring line.
@@ -201,6 +214,12 @@ pub struct Runner {
     mark: RigTime,
     /// How long ago the mark would be on a bus that takes no time.
     since_mark: Span,
+    /// Of the point that is waited for, or was: the last look that did not show it.
+    looked: Option<RigTime>,
+    /// From when on what was marked may have happened.
+    marked_from: RigTime,
+    /// By how much a ramp behind the mark was sent late.
+    late: Span,
     spent: Spent,
     /// What was read so far.
     pub readings: Readings,
@@ -219,6 +238,9 @@ impl Runner {
             since: now,
             mark: now,
             since_mark: Span(0),
+            looked: None,
+            marked_from: now,
+            late: Span(0),
             spent: Spent::default(),
             readings: Readings::default(),
         }
@@ -240,6 +262,7 @@ impl Runner {
         let mut runner = Self::new(acts, now);
         runner.mark = before.mark;
         runner.since_mark = before.since_mark;
+        (runner.marked_from, runner.late) = (before.marked_from, before.late);
         runner.readings.gates.extend(gates);
         runner
     }
@@ -266,6 +289,8 @@ impl Runner {
                 Act::Until { .. } => return self.ask(Job::Read(Read::Board)),
                 Act::Mark => {
                     self.mark = self.since;
+                    self.marked_from = self.looked.take().unwrap_or(self.since);
+                    self.late = Span(0);
                     self.next();
                 }
                 Act::Wait(span) => {
@@ -277,7 +302,7 @@ impl Runner {
                     self.next();
                 }
                 Act::WaitSinceMark(span) | Act::ConvertSinceMark(span) => {
-                    let until = self.mark + *span;
+                    let until = self.mark + *span + self.late + self.late;
                     if now < until {
                         return Doing::Wait(until);
                     }
@@ -315,6 +340,9 @@ impl Runner {
             Some(Act::Mark) => Span(0),
             Some(_) | None => self.since_mark + least,
         };
+        if !matches!(&self.current, Some(Act::Until { .. } | Act::Mark)) {
+            self.looked = None;
+        }
         match &self.current {
             Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_)) => {
                 self.spent.bus += took
@@ -339,13 +367,19 @@ impl Runner {
                 let inputs = BoardInputs::take(image, now).ok_or("a board input is stale")?;
                 self.readings.trace.board(&inputs, self.since);
                 if !active && self.since.since(self.began) < within {
+                    self.looked = Some(self.since);
                     return Ok(());
                 }
+                self.looked.get_or_insert(self.began);
                 self.readings.boards.push(inputs);
                 self.readings.seen.push(active);
             }
             Some(act @ (Act::Board(_) | Act::Supply(_))) => {
                 self.readings.trace.asked(&act, self.since);
+                if act.is_ramp() {
+                    let after = self.since.since(self.marked_from);
+                    self.late = self.late.max(Span(after.0.saturating_sub(PROMPT.0)));
+                }
             }
             Some(
                 Act::CoilMask(_)

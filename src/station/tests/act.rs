@@ -172,6 +172,44 @@ fn until_asks_again_as_long_as_the_point_is_inactive_then_keeps_that_it_came() {
     assert_eq!(runner.spent().ramp, Span::ms(30));
 }
 
+/// The latch is seen at the second poll, `poll_ms` after the first, and the ramp is sent `sent_ms` after that; when, in ms
+/// after the mark, a wait of 40 ms since it is over.
+fn ramp_behind_an_event(poll_ms: u64, sent_ms: u64) -> u64 {
+    let mut shop = read_once();
+    let mut acts = until(Span::ms(200));
+    let ramp = vec![(AnalogOut::SupplyCoarse, Volt(1.0))];
+    acts.extend([
+        Act::Mark,
+        Act::Supply(ramp),
+        Act::WaitSinceMark(Span::ms(40)),
+    ]);
+    let mut runner = Runner::new(acts, shop.now);
+    runner.step(shop.now, None, &shop.image);
+    shop.after(3);
+    runner.step(shop.now, Some(&done(shop.now)), &shop.image);
+    shop.set(DigitalIn::Latch, true);
+    shop.after(poll_ms);
+    runner.step(shop.now, Some(&done(shop.now)), &shop.image);
+    let mark = shop.now;
+    shop.after(sent_ms);
+    match runner.step(shop.now, Some(&done(shop.now)), &shop.image) {
+        Doing::Wait(until) => until.since(mark).0 / 1_000,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_ramp_that_was_sent_late_is_waited_for_twice_as_much_longer() {
+    assert_eq!(ramp_behind_an_event(3, 4), 40, "as planned");
+    assert_eq!(ramp_behind_an_event(9, 4), 40, "as planned at the longest");
+    assert_eq!(
+        ramp_behind_an_event(3, 34),
+        40 + 2 * 24,
+        "the write was asked again"
+    );
+    assert_eq!(ramp_behind_an_event(33, 4), 40 + 2 * 24, "a poll was");
+}
+
 #[test]
 fn until_gives_up_after_its_longest_wait_and_keeps_that_nothing_came() {
     let mut shop = read_once();
