@@ -98,6 +98,8 @@ pub struct Cycle {
     publish_at: RigTime,
     /// State of the outer machine that was told last.
     told: packml::State,
+    /// Why nobody knows whether a module of the measuring line has restarted.
+    lost_status: Option<String>,
     /// What the next run has to look for, as it was told last.
     inside: Inside,
     /// Longest time that the emergency-stop input was not known anew.
@@ -138,6 +140,7 @@ impl Cycle {
             told: packml::State::Stopped,
             worst_age: Span(0),
             refused: None,
+            lost_status: None,
         }
     }
 
@@ -201,8 +204,8 @@ impl Cycle {
     }
 
     fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
-        // Reading the reset status clears it, so it is never asked twice: where its reply is lost nobody knows whether the module
-        // has restarted under the part, which is void.
+        // Reading the reset status clears it, so it is never asked twice: where its reply is lost, whoever asked, nobody knows
+        // whether the module has restarted under the part, which is void.
         let is_status = matches!(
             answer.command,
             Command::Common(_, dcon::Common::ReadResetStatus)
@@ -243,12 +246,19 @@ impl Cycle {
                 }
             }
             (Purpose::Job, trouble) => {
+                let trouble = match is_status {
+                    true => trouble.or(self.lost_status.take()),
+                    false => trouble,
+                };
                 if let Some(trouble) = trouble.as_ref().filter(|_| !refused && !is_status) {
                     self.bus_alarm.get_or_insert(Alarm::bus(trouble));
                 }
                 self.finish_job(true, answer.answered_at, trouble);
             }
             (Purpose::Scan, Some(trouble)) => {
+                if is_status && self.is_measuring(line) {
+                    self.lost_status = Some(trouble.clone());
+                }
                 if let Some(times) = self.patience.scan_failed(line, &answer.command) {
                     self.bus_alarm
                         .get_or_insert(Alarm::bus(&format!("{trouble}, {times} times in a row")));

@@ -48,8 +48,10 @@ pub enum Act {
     CoilMask(u8),
     /// Remembers this instant for [`Act::WaitSinceMark`].
     Mark,
-    /// Waits until so much time has passed since the mark, and longer where a ramp behind the mark was sent late.
+    /// Waits until so much time has passed since the mark.
     WaitSinceMark(Span),
+    /// Waits as [`Act::WaitSinceMark`] does, for a ramp that was sent behind the mark: longer if that was late.
+    RampSinceMark(Span),
     /// Waits so long after the previous act was answered.
     Wait(Span),
     /// Waits as [`Act::WaitSinceMark`] does, for a conversion that began after the mark.
@@ -302,6 +304,14 @@ impl Runner {
                     self.next();
                 }
                 Act::WaitSinceMark(span) | Act::ConvertSinceMark(span) => {
+                    let until = self.mark + *span;
+                    if now < until {
+                        return Doing::Wait(until);
+                    }
+                    self.since = self.since.max(until);
+                    self.next();
+                }
+                Act::RampSinceMark(span) => {
                     let until = self.mark + *span + self.late + self.late;
                     if now < until {
                         return Doing::Wait(until);
@@ -328,9 +338,9 @@ impl Runner {
         let took = self.since.since(self.began);
         let least = match &self.current {
             Some(Act::Wait(span)) => *span,
-            Some(Act::WaitSinceMark(span) | Act::ConvertSinceMark(span)) => {
-                Span(span.0.saturating_sub(self.since_mark.0))
-            }
+            Some(
+                Act::WaitSinceMark(span) | Act::RampSinceMark(span) | Act::ConvertSinceMark(span),
+            ) => Span(span.0.saturating_sub(self.since_mark.0)),
             Some(Act::Until { .. }) => took,
             Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_) | Act::Mark)
             | None => Span(0),
@@ -347,7 +357,9 @@ impl Runner {
             Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_)) => {
                 self.spent.bus += took
             }
-            Some(Act::Wait(_) | Act::WaitSinceMark(_)) => self.spent.settling += took,
+            Some(Act::Wait(_) | Act::WaitSinceMark(_) | Act::RampSinceMark(_)) => {
+                self.spent.settling += took
+            }
             Some(Act::ConvertSinceMark(_)) => self.spent.conversion += took,
             Some(Act::Until { .. }) => self.spent.ramp += took,
             Some(Act::Mark) | None => {}
@@ -386,6 +398,7 @@ impl Runner {
                 | Act::Mark
                 | Act::Wait(_)
                 | Act::WaitSinceMark(_)
+                | Act::RampSinceMark(_)
                 | Act::ConvertSinceMark(_),
             )
             | None => {}

@@ -114,6 +114,7 @@ impl Trace {
             | Act::CoilMask(_)
             | Act::Mark
             | Act::WaitSinceMark(_)
+            | Act::RampSinceMark(_)
             | Act::Wait(_)
             | Act::ConvertSinceMark(_)
             | Act::Until { .. } => {}

@@ -63,7 +63,7 @@ fn prepared(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<
         coarse,
         supply.step_to(Volt(bench.recipe.test.prebias_v)),
         board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
-        Act::WaitSinceMark(OFF.max(takes)),
+        Act::RampSinceMark(OFF.max(takes)),
         board(&[(CoilDrive, true)]),
         board(&[(Arm, true)]),
         Act::Read(Read::Gates),

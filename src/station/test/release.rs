@@ -62,7 +62,7 @@ fn seal(bench: &Bench, supply: &mut Supply, findings: &mut Findings, start: Volt
     }
     let still_ramping = std::mem::take(&mut findings.still_ramping);
     acts.extend([
-        Act::WaitSinceMark(SEAL_TIME.max(still_ramping)),
+        Act::RampSinceMark(SEAL_TIME.max(still_ramping)),
         supply.step_to(start),
         Act::Mark,
         board(&[(Arm, true)]),

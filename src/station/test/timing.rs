@@ -51,7 +51,7 @@ pub(super) fn acts_operate(
         ]);
     }
     acts.extend([
-        Act::WaitSinceMark(off),
+        Act::RampSinceMark(off),
         board(&[(CoilDrive, true), (SourceOn, true)]),
     ]);
     acts.extend(until_made());

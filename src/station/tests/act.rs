@@ -181,7 +181,7 @@ fn ramp_behind_an_event(poll_ms: u64, sent_ms: u64) -> u64 {
     acts.extend([
         Act::Mark,
         Act::Supply(ramp),
-        Act::WaitSinceMark(Span::ms(40)),
+        Act::RampSinceMark(Span::ms(40)),
     ]);
     let mut runner = Runner::new(acts, shop.now);
     runner.step(shop.now, None, &shop.image);

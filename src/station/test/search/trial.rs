@@ -63,7 +63,7 @@ fn from_rest(supply: &mut Supply, findings: &mut Findings, at: Volt) -> Vec<Act>
     acts.extend([
         coarse,
         Act::Wait(takes),
-        Act::WaitSinceMark(OFF.max(pace.approaches()).max(still_ramping)),
+        Act::RampSinceMark(OFF.max(pace.approaches()).max(still_ramping)),
         supply.step_to(at * APPROACH),
         board(&[
             (RampMode, false),

@@ -26,7 +26,7 @@ fn until_armed(acts: &[Act]) -> Span {
         match act {
             Act::Board(outputs) if outputs.contains(&(DigitalOut::Arm, true)) => break,
             Act::Wait(time) => passed += *time,
-            Act::WaitSinceMark(time) => passed = passed.max(*time),
+            Act::WaitSinceMark(time) | Act::RampSinceMark(time) => passed = passed.max(*time),
             Act::Mark => before += std::mem::take(&mut passed),
             Act::Board(_)
             | Act::Supply(_)

@@ -55,9 +55,10 @@ fn waits_after(acts: &[Act]) -> Span {
     let mut waited = Span(0);
     for act in acts {
         match act {
-            Act::Wait(span) | Act::WaitSinceMark(span) | Act::ConvertSinceMark(span) => {
-                waited += *span
-            }
+            Act::Wait(span)
+            | Act::WaitSinceMark(span)
+            | Act::RampSinceMark(span)
+            | Act::ConvertSinceMark(span) => waited += *span,
             Act::Mark | Act::Board(_) | Act::Supply(_) | Act::CoilMask(_) => {}
             Act::Read(Read::Drop | Read::Coil) | Act::Until { .. } => break,
             Act::Read(_) => {}
