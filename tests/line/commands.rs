@@ -71,8 +71,8 @@ const SLIPS: &[Slip] = &[
     Slip {
         name: "a text that is no TOML",
         file: RECIPE,
-        from: "prebias_v = 5.3",
-        to: "prebias_v = = 5.3",
+        from: "prebias_v = 5.0",
+        to: "prebias_v = = 5.0",
         offset: 0,
         says: "expected",
     },

@@ -87,6 +87,8 @@ pub(super) fn acts_off(bench: &Bench, supply: &mut Supply, findings: &Findings) 
     let mut acts = vec![Act::Board(IDLE.to_vec())];
     if !findings.rested {
         acts.extend((!findings.released).then_some(Act::Mark));
+        // What stands already is not written: a module that ignores writes would be found out by the next part only.
+        acts.extend(findings.stopped().then(|| supply.step_to(Volt(0.0))));
         acts.extend(rest(bench, supply));
     }
     acts.extend([

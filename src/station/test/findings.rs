@@ -39,6 +39,8 @@ pub enum Stop {
     Fail(Reason),
     /// It cannot be judged.
     Void(String),
+    /// The rig was in trouble: what it has said of the part so far, good or bad, proves nothing.
+    Trouble(String),
 }
 
 /// A ramp as it was seen.
@@ -211,6 +213,13 @@ impl Findings {
     /// Ends the test early because it cannot be judged.
     pub fn void(&mut self, why: impl Into<String>) {
         self.stop(Stop::Void(why.into()));
+    }
+
+    /// Ends the test early because the rig is in trouble, whatever the part has ended it by before.
+    pub fn trouble(&mut self, why: String) {
+        if !matches!(self.stop, Some(Stop::Trouble(_))) {
+            self.stop = Some(Stop::Trouble(why));
+        }
     }
 
     /// True once the test has ended early.

@@ -120,7 +120,7 @@ impl Test {
                 Doing::Trouble(why) => {
                     let seen = std::mem::take(&mut self.runner.readings.trace);
                     self.findings.trace.append(seen);
-                    self.findings.stop(Stop::Void(why));
+                    self.findings.trouble(why);
                     if self.stage == Stage::Off {
                         return Progress::Judged;
                     }
@@ -255,7 +255,7 @@ impl Test {
         measured.chain(proven.filter(unmeasured)).collect()
     }
 
-    /// Verdict of the part. A proven failure outweighs whatever ended the test early.
+    /// Verdict of the part. A proven failure outweighs whatever ended the test early, but for trouble of the rig.
     pub fn verdict(&self) -> Verdict {
         let judged = self.judgements();
         let Some(stop) = self.findings.why_stopped() else {
@@ -266,6 +266,7 @@ impl Test {
             .filter(|(_, judgement)| matches!(judgement, Judgement::Fail(_)))
             .collect();
         match (stop, of_part(&failed)) {
+            (Stop::Trouble(why), _) => Verdict::Void(vec![why.clone()]),
             (Stop::Fail(reason), Verdict::Fail(reasons)) => failed_with(reason, reasons),
             (Stop::Fail(reason), Verdict::Pass | Verdict::Void(_)) => {
                 Verdict::Fail(vec![reason.clone()])

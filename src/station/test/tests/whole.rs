@@ -1,11 +1,11 @@
 //! The acts of all stages against the rules of the interface board, and how a test ends early.
 
-use super::super::{Progress, Stage, Test, acts, order};
+use super::super::{Findings, Progress, Stage, Test, acts, order};
 use super::{at_23_c, bench};
 use crate::gauge::budget::{Budget, Reading};
 use crate::gauge::verdict::{Bin, Reason, Verdict};
 use crate::gauge::{Parameter, parameter};
-use crate::rig::point::DigitalOut;
+use crate::rig::point::{AnalogOut, DigitalOut};
 use crate::rig::sample::Sample;
 use crate::station::act::{Act, Doing, Job, JobDone, Read};
 use crate::station::supply::Supply;
@@ -182,6 +182,41 @@ fn fails_at(job: &Job) -> Test {
         }
     }
     panic!("the test does not end");
+}
+
+#[test]
+fn a_rig_in_trouble_has_proven_no_part_bad() {
+    let mut test = fails_at(&Job::Read(Read::Resets));
+    let mut findings = Findings::default();
+    findings.fail(
+        "operate_voltage_v high: above the coarse ramp",
+        Bin::Voltage,
+    );
+    test.findings = findings.clone();
+    assert_eq!(test.verdict().name(), "fail");
+    findings.trouble("module answers ?AA".into());
+    findings.trouble("and again".into());
+    test.findings = findings;
+    assert_eq!(
+        test.verdict(),
+        Verdict::Void(vec!["module answers ?AA".into()])
+    );
+}
+
+#[test]
+fn the_level_is_written_anew_after_a_test_that_ended_early() {
+    let bench = bench();
+    let writes = |ends: fn(&mut Findings)| {
+        let mut supply = Supply::new(&bench.calibration);
+        supply.step_to(Volt(bench.recipe.test.prebias_v));
+        let mut findings = Findings::default();
+        ends(&mut findings);
+        let acts = acts(Stage::Off, &bench, &mut supply, &mut findings);
+        let level = |act: &&Act| matches!(act, Act::Supply(to) if to.iter().any(|(it, _)| *it == AnalogOut::SupplyLevel));
+        acts.iter().filter(level).count()
+    };
+    assert_eq!(writes(|_| {}), 1, "which is none where it stands already");
+    assert_eq!(writes(|it| it.void("nothing came")), 2, "down and up");
 }
 
 #[test]
