@@ -25,6 +25,7 @@ impl Cycle {
             }
         }
         self.image.take_resets();
+        self.lost_status = None;
         self.outputs.everything_safe();
     }
 

@@ -1,6 +1,8 @@
 //! Contact of the probes at the pins of the coil, from the voltage of its source.
 //!
-//! The sense wires keep it out of every result, so that nothing else would tell before the Kelvin bits open at 5 ohm.
+//! The sense wires keep it out of the coil's resistance. Thresholds are told in volts of the supply: each ohm in series lifts
+//! them by its share of the coil's, 20 mV of 8 V at 400 ohm, which no budget holds. Nothing else would tell before the
+//! Kelvin bits open at 5 ohm a pin.
 //! The supply was calibrated on the reference resistor, on the board and without probes. What the pins get less than
 //! it was asked for is lost in the force wires: divided by the current, the resistance of both contacts in series.
 //!
@@ -12,6 +14,8 @@ use crate::units::{Ohm, Volt};
 
 /// Weight of the latest part in the mean.
 const WEIGHT: f64 = 1.0 / 16.0;
+/// One part with a dirty pin is no trend.
+const ENOUGH: u32 = 16;
 
 /// Resistance of both force contacts of a coil of `coil` that sees `at_pins` when the supply is to give `asked`.
 pub fn in_series(asked: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
@@ -21,18 +25,27 @@ pub fn in_series(asked: Volt, at_pins: Volt, coil: Ohm) -> Ohm {
 /// Mean over the parts of a run, the latest ones before all: a part counts as much as the sixteenth after it counts
 /// 0.37.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Trend(Option<f64>);
+pub struct Trend {
+    mean: Option<f64>,
+    parts: u32,
+}
 
 impl Trend {
     /// One part more.
     pub fn add(&mut self, Ohm(ohm): Ohm) {
-        let mean = self.0.map_or(ohm, |mean| mean + WEIGHT * (ohm - mean));
-        self.0 = Some(mean);
+        let mean = self.mean.map_or(ohm, |mean| mean + WEIGHT * (ohm - mean));
+        self.mean = Some(mean);
+        self.parts = self.parts.saturating_add(1);
     }
 
     /// None before the first part.
     pub fn mean(&self) -> Option<Ohm> {
-        self.0.map(Ohm)
+        self.mean.map(Ohm)
+    }
+
+    /// The same once it is one of enough parts for an alarm.
+    pub fn settled(&self) -> Option<Ohm> {
+        self.mean().filter(|_| self.parts >= ENOUGH)
     }
 }
 
@@ -54,9 +67,11 @@ mod tests {
         assert!(trend.mean().is_none());
         trend.add(Ohm(0.0));
         trend.add(Ohm(8.0));
+        assert!(trend.settled().is_none(), "of two parts");
         let after = |trend: &Trend| trend.mean().expect("parts").0;
         assert_eq!(after(&trend), 0.5);
         (0..48).for_each(|_| trend.add(Ohm(4.0)));
         assert!((after(&trend) - 4.0).abs() < 0.2);
+        assert_eq!(trend.settled(), trend.mean());
     }
 }

@@ -441,6 +441,21 @@ const MACHINE: &[Entry] = &[
         action: ("Find the part and scrap it.", "找到该工件并报废。"),
     },
     Entry {
+        code: "fall_unseen",
+        stops: Stops::Nothing,
+        goes: Goes::AtOnce,
+        retries: 0,
+        cause: (
+            "The program stopped while a part fell.",
+            "工件下落时程序终止。",
+        ),
+        consequence: (
+            "Its row names no bin that has seen it.",
+            "其记录中没有料箱确认。",
+        ),
+        action: ("Look into chute and bin.", "检查滑道和料箱。"),
+    },
+    Entry {
         code: "part_found",
         stops: Stops::Nothing,
         goes: Goes::AtOnce,

@@ -110,7 +110,7 @@ pub(super) struct Gates {
     discarded: bool,
     /// Counters whose limit was told.
     worn: Vec<&'static str>,
-    /// The limit of the probes' contact was told.
+    /// The limit of the probes' contact is passed, and was told.
     fouled: bool,
     /// How well the probes have met the coils of this run.
     probe_contact: Trend,
@@ -258,12 +258,12 @@ impl Station {
         }
     }
 
-    /// The limit of the probes' contact is passed, told once.
+    /// The limit of the probes' contact is passed, told once until it is kept again.
     fn fouled(&mut self) -> Option<Alarm> {
         let limit_ohm = self.plan.lot.wear.probe_contact_ohm?;
-        let Ohm(mean) = self.probe_contact().filter(|mean| mean.0 > limit_ohm)?;
-        let told = std::mem::replace(&mut self.gates.fouled, true);
-        (!told).then(|| Alarm::probe_contact(mean, limit_ohm))
+        let Ohm(mean) = self.gates.probe_contact.settled()?;
+        let told = std::mem::replace(&mut self.gates.fouled, mean > limit_ohm);
+        (self.gates.fouled && !told).then(|| Alarm::probe_contact(mean, limit_ohm))
     }
 
     /// Counters at their limit, each told once.

@@ -172,7 +172,7 @@ fn worn_probes_are_told_once_the_line_goes_on_and_the_counter_outlives_the_run()
 }
 
 #[test]
-fn probes_that_foul_are_told_before_a_pin_counts_as_open_and_no_value_changes() {
+fn probes_that_foul_are_told_before_a_pin_counts_as_open_and_the_coil_reads_the_same() {
     let workshop = with_lot("gates_fouled", "[wear]\nprobe_contact_ohm = 3.0\n");
     run(&workshop, 40, "").with_status(0);
     assert!(workshop.texts("SELECT code FROM alarm").is_empty());

@@ -48,6 +48,7 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::button_stuck(DigitalIn::ButtonStop),
         Alarm::part_found("nest"),
         Alarm::part_lost("nest"),
+        Alarm::fall_unseen("coil"),
         Alarm::part_dropped(),
         Alarm::part_stuck(),
         Alarm::axis_drive(),

@@ -107,7 +107,7 @@ impl Alarm {
     /// A run before let a part go, and was cut off before a beam had confirmed it.
     pub fn fall_unseen(bin: &str) -> Self {
         Self::new(
-            "part_lost",
+            "fall_unseen",
             format!(
                 "The program stopped before the beam of bin {bin} had confirmed the part let go over it. Look whether it is there."
             ),

@@ -15,9 +15,10 @@ const OPENING_US: u64 = 300_000;
 /// A part that is gone is noticed at the latest at the reset after it, microseconds; a person may take this long.
 const NOTICED_US: u64 = 60_000_000;
 /// A part is gone: what says so.
-const DECLARED: [&str; 5] = [
+const DECLARED: [&str; 6] = [
     "part_dropped",
     "part_lost",
+    "fall_unseen",
     "bin_beam",
     "part_not_in_nest",
     "gripper_left_end",
