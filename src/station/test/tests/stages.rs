@@ -238,6 +238,9 @@ fn a_contact_that_never_makes_fails_by_time_and_an_unread_counter_is_void() {
         unread.gates.truncate(1);
         conclude(&bench(), &unread, &mut findings);
         assert_ends(&findings, Bin::Retest, "gate counters");
+        let mut findings = at_23_c();
+        conclude(&bench(), &timed(true, [0, 0]), &mut findings);
+        assert_ends(&findings, Bin::Retest, "0 and 0 counts");
     }
 }
 
