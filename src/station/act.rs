@@ -303,16 +303,16 @@ impl Runner {
                     self.since = until;
                     self.next();
                 }
-                Act::WaitSinceMark(span) | Act::ConvertSinceMark(span) => {
-                    let until = self.mark + *span;
-                    if now < until {
-                        return Doing::Wait(until);
-                    }
-                    self.since = self.since.max(until);
-                    self.next();
-                }
-                Act::RampSinceMark(span) => {
-                    let until = self.mark + *span + self.late + self.late;
+                Act::WaitSinceMark(span)
+                | Act::RampSinceMark(span)
+                | Act::ConvertSinceMark(span) => {
+                    let ramps = matches!(act, Act::RampSinceMark(_));
+                    let longer = if ramps {
+                        self.late + self.late
+                    } else {
+                        Span(0)
+                    };
+                    let until = self.mark + *span + longer;
                     if now < until {
                         return Doing::Wait(until);
                     }
