@@ -33,6 +33,12 @@ impl Inside {
         }
     }
 
+    /// Hand-overs that sensors cannot tell of later: a part that falls, and one that was lifted when the next one has
+    /// taken its place.
+    pub fn is_hard_to_tell(self) -> bool {
+        self.falling.is_some() || self.gripper && self.nest
+    }
+
     /// Parts that are not seen where they were left, nor where they could have got to since.
     pub fn missing(self, seen: &Seen) -> Vec<Alarm> {
         let Seen {

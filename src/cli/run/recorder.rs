@@ -224,8 +224,7 @@ impl<'a> Recorder<'a> {
             }
             Event::Inside(inside, uses) => {
                 self.aside = Some((inside, uses));
-                // The one hand-over that sensors cannot tell of later.
-                if inside.falling.is_some() {
+                if inside.is_hard_to_tell() {
                     rows.extend(self.aside());
                 }
             }

@@ -79,6 +79,24 @@ fn a_part_that_was_let_go_is_told_with_its_bin_unless_the_fingers_hold_it_still(
 }
 
 #[test]
+fn a_lifted_part_that_is_taken_away_is_told_wherever_the_two_behind_it_stand() {
+    let mut written = left(0b011);
+    for (places, without_it) in [
+        (0b011, 0b001),
+        (0b101, 0b001),
+        (0b110, 0b010),
+        (0b111, 0b011),
+    ] {
+        let now = left(places);
+        if now.is_hard_to_tell() {
+            written = now;
+        }
+        let told = written.missing(&seen(without_it)).len();
+        assert_eq!(told, 1, "{places:03b}");
+    }
+}
+
+#[test]
 fn the_first_homing_tells_what_is_gone_and_the_second_one_does_not() {
     let mut shop = Shop::at_rest();
     shop.ledger = Ledger::after(left(0b110));

@@ -177,7 +177,7 @@ fn in_a_bin(
     }
 }
 
-/// An alarm of the life in which it happened tells it, or of one that came after.
+/// An alarm of the life in which it happened tells it, or of the ones that came after until one had homed.
 fn is_declared(case: &Case, at_us: u64) -> bool {
     is_told(case, at_us, |alarm| DECLARED.contains(&alarm.code.as_str()))
 }
@@ -188,7 +188,7 @@ fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
     let confirmed_us = at_us + CONFIRMED_US;
     let cut_off = case
         .life_at(at_us)
-        .is_none_or(|life| life.ended_us < confirmed_us && life.end != End::Hung);
+        .is_none_or(|life| life.ended_us < confirmed_us && life.end == End::Killed);
     cut_off
         || is_told(case, at_us, |alarm| {
             alarm.code == "bin_beam" && alarm.text.contains(bin)
@@ -205,11 +205,25 @@ fn is_told(case: &Case, at_us: u64, tells: impl Fn(&Alarm) -> bool) -> bool {
     let own = case
         .life_at(at_us)
         .filter(|life| life.ended_us >= noticed_us);
-    let mut since = case.lives.iter().filter(|life| life.ended_us >= at_us);
+    let since = case.lives.iter().filter(|life| life.ended_us >= at_us);
     match own {
         Some(life) => told(life),
-        None => since.any(told),
+        None => whose_turn(case, since).into_iter().any(told),
     }
+}
+
+/// The life in which something happened, and those after it up to the first that has judged a part: that one has homed
+/// and seen what is gone, so whatever a later one tells is something else.
+fn whose_turn<'a>(case: &Case, since: impl Iterator<Item = &'a Lived>) -> Vec<&'a Lived> {
+    let has_homed = |life: &Lived| case.rows.iter().any(|row| row.lot == life.lot);
+    let mut turns = Vec::new();
+    for life in since {
+        turns.push(life);
+        if turns.len() > 1 && has_homed(life) {
+            break;
+        }
+    }
+    turns
 }
 
 fn name(body: &BodyTruth) -> String {

@@ -219,6 +219,27 @@ fn a_part_that_fell_while_the_program_was_killed_is_told_by_the_one_that_comes_a
 }
 
 #[test]
+fn what_a_run_tells_after_another_one_has_judged_parts_does_not_declare_an_earlier_loss() {
+    let mut case = sound();
+    case.lives[0].ended_us = 14 * S;
+    case.lives[0].end = End::Killed;
+    case.lives[0].said.clear();
+    case.lives.push(life("three", 70, 90, End::Status(0)));
+    for (lot, declared) in [("one", true), ("two", true), ("three", false)] {
+        let mut case = case.clone();
+        let raised_s = match lot {
+            "one" => 13,
+            "two" => 33,
+            _ => 71,
+        };
+        case.alarms = vec![alarm(lot, "part_lost", raised_s)];
+        let broken = case.broken();
+        let is_found = |it: &String| it.contains("lies on the floor since 12.000 s");
+        assert_eq!(!broken.iter().any(is_found), declared, "{lot}: {broken:?}");
+    }
+}
+
+#[test]
 fn a_part_on_the_floor_that_no_alarm_declares_is_found() {
     found(
         |case| case.alarms[0].code = "door_open".into(),
