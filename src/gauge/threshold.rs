@@ -52,6 +52,8 @@ pub struct RampDoubt {
     pub refresh: Second,
     /// Relative standard uncertainty of the gain of the level at which the ramp starts.
     pub level: f64,
+    /// What the force contacts of the coil put in series to it, a share of its resistance.
+    pub contact: f64,
     /// Part's temperature against the track's, kelvin (1 sd).
     pub temperature_k: f64,
 }
@@ -88,7 +90,8 @@ pub fn quasi_static(
             "resolution",
             resolution(doubt.slope.value * doubt.refresh.0),
         )
-        .with("level", (at_part - lag.at_v) * doubt.level);
+        .with("level", (at_part - lag.at_v) * doubt.level)
+        .with("probe contact", value * doubt.contact);
     Reading { value, budget }
 }
 
@@ -105,8 +108,8 @@ mod tests {
         assert!((seen.0 - 2.39).abs() < 1e-12);
     }
 
-    #[test]
-    fn one_kelvin_is_thirty_millivolts_of_an_operate_voltage() {
+    /// U / 2 of an operate voltage of 7.88 V with these doubts and no others.
+    fn doubted(contact: f64, temperature_k: f64) -> f64 {
         let lag = Lag {
             fine_v: Factor::new(0.0, 0.0),
             at_v: 7.88,
@@ -120,7 +123,8 @@ mod tests {
             operation_v: 0.0,
             refresh: Second(0.0),
             level: 0.0,
-            temperature_k: 1.0,
+            contact,
+            temperature_k,
         };
         let reading = quasi_static(
             (Volt(7.88), Factor::new(0.0, 0.0)),
@@ -130,6 +134,16 @@ mod tests {
             Celsius(23.0),
             doubt,
         );
-        assert!((reading.budget.combined() - 0.0306).abs() < 1e-4);
+        reading.budget.combined()
+    }
+
+    #[test]
+    fn one_kelvin_is_thirty_millivolts_of_an_operate_voltage() {
+        assert!((doubted(0.0, 1.0) - 0.0306).abs() < 1e-4);
+    }
+
+    #[test]
+    fn one_ohm_at_the_probes_is_twenty_millivolts_of_an_operate_voltage() {
+        assert!((doubted(1.0 / 400.0, 0.0) - 0.0197).abs() < 1e-4);
     }
 }

@@ -28,6 +28,7 @@ impl Station {
         let (feed, clamp) = (self.feed, std::mem::replace(&mut self.clamp, Clamp::Empty));
         let (mut sort, mut last_left, mut bench) = (self.sort, self.last_left, self.bench.clone());
         bench.thorough = self.is_thorough();
+        bench.probe_contact = self.probe_contact();
         bench.golden = self.teaching().cloned();
         let table = self.table.clone();
         let before = wants.motions.len();

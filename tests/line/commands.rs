@@ -71,7 +71,7 @@ const SLIPS: &[Slip] = &[
     Slip {
         name: "a text that is no TOML",
         file: RECIPE,
-        from: "prebias_v = 5.0",
+        from: "prebias_v = 5.1",
         to: "prebias_v = = 5.0",
         offset: 0,
         says: "expected",

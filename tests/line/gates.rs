@@ -173,28 +173,28 @@ fn worn_probes_are_told_once_the_line_goes_on_and_the_counter_outlives_the_run()
 
 #[test]
 fn probes_that_foul_are_told_before_a_pin_counts_as_open_and_the_coil_reads_the_same() {
-    let workshop = with_lot("gates_fouled", "[wear]\nprobe_contact_ohm = 3.0\n");
+    let workshop = with_lot("gates_fouled", "[wear]\nprobe_contact_ohm = 1.5\n");
     run(&workshop, 40, "").with_status(0);
     assert!(workshop.texts("SELECT code FROM alarm").is_empty());
-    run(&workshop, 40, "--fault probe_film=20").with_status(0);
+    run(&workshop, 40, "--fault probe_film=8").with_status(0);
     assert_eq!(workshop.texts("SELECT code FROM alarm"), ["probe_contact"]);
     let told = workshop.texts("SELECT text FROM alarm");
     assert!(
-        told[0].contains("3.0") && told[0].contains("limit is 3.00 ohm"),
+        told[0].contains("1.5") && told[0].contains("limit is 1.50 ohm"),
         "{told:?}"
     );
-    let changed = |more: &str| {
+    let changed = |parameter: &str, more: &str| {
         workshop.count(&format!(
             "SELECT count(*) FROM measurements AS a JOIN measurements AS b USING (kind, seq, parameter)
-             WHERE a.run = 1 AND b.run = 2 AND kind = 'lot' AND parameter = 'coil_resistance_ohm' {more}"
+             WHERE a.run = 1 AND b.run = 2 AND kind = 'lot' AND parameter = '{parameter}' {more}"
         ))
     };
-    assert!(changed("") > 30);
-    assert_eq!(
-        changed("AND abs(a.value - b.value) > a.uncertainty + b.uncertainty"),
-        0,
-        "four wires"
-    );
+    let apart = "AND abs(a.value - b.value) > a.uncertainty + b.uncertainty";
+    assert!(changed("coil_resistance_ohm", "") > 30);
+    assert_eq!(changed("coil_resistance_ohm", apart), 0, "four wires");
+    let doubted = "AND b.uncertainty > 2 * a.uncertainty";
+    assert!(changed("operate_voltage_v", doubted) > 10);
+    assert_eq!(changed("operate_voltage_v", apart), 0, "the budget knows");
     let verdicts = "SELECT count(*) FROM parts WHERE verdict = 'void' AND kind = 'lot'";
     assert_eq!(workshop.count(verdicts), 0);
 }

@@ -77,6 +77,7 @@ pub fn cycle(
         accuracy: plant.accuracy,
         nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
             .map(|output| nominal_v_per_s(&wiring, output)),
+        probe_contact: None,
         thorough: false,
         golden: None,
     };

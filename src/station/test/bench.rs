@@ -8,7 +8,7 @@ use crate::gauge::settings::{AccuracySettings, GoldenPart, ReferenceSettings};
 use crate::gauge::timing::Clock;
 use crate::gauge::{Parameter, Strategy};
 use crate::station::golden::interim;
-use crate::units::{Celsius, Span};
+use crate::units::{Celsius, Ohm, Span};
 use std::sync::Arc;
 
 /// Span of a +-10 V input of 12 bits, volts per step.
@@ -34,6 +34,8 @@ pub struct Bench {
     pub accuracy: AccuracySettings,
     /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
     pub nominal_v_per_s: [f64; 2],
+    /// Force contacts of the coil in series, mean over the last parts; `None`: no part has told it since the calibration.
+    pub probe_contact: Option<Ohm>,
     /// The slow strategy for every result: a golden check or a first article.
     pub thorough: bool,
     /// The golden part in the nest while golden parts teach the lags: its certificate places its fine ramps.
@@ -77,6 +79,12 @@ impl Bench {
     /// Scatter of a threshold of this part from operation to operation, volts (1 sd).
     pub fn operation_v(&self) -> f64 {
         self.accuracy.operation_v(self.recipe.part.nominal_v)
+    }
+
+    /// What the probes may lift a threshold by, relative (1 sd): all that their trend shows, which nothing takes off.
+    pub fn contact_share(&self) -> f64 {
+        let shown = self.probe_contact.map_or(0.0, |Ohm(ohm)| ohm.abs());
+        shown / self.recipe.part.nominal_coil_ohm
     }
 
     /// Clock of the gated counters.

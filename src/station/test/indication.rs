@@ -98,6 +98,7 @@ fn doubt(bench: &Bench) -> RampDoubt {
         operation_v: bench.operation_v(),
         refresh: Second(bench.accuracy.ao_refresh_ms * 1e-3),
         level: bench.calibration.level.gain.u,
+        contact: bench.contact_share(),
         temperature_k: bench.accuracy.part_minus_track_k,
     }
 }

@@ -83,6 +83,8 @@ pub struct Test {
     slow_done: bool,
     gates: Option<[CountSample; 2]>,
     began: RigTime,
+    /// Tests of this part so far, this one included.
+    pub number: u8,
     /// What has been found so far.
     pub findings: Findings,
 }
@@ -98,6 +100,7 @@ impl Test {
             bench,
             supply,
             began: now,
+            number: 1,
             stage: Stage::Kelvin,
             runner,
             slow_done: false,

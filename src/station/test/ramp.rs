@@ -27,8 +27,9 @@ const FAR_MARGIN: Volt = Volt(0.015);
 /// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
 /// costs a second ramp of 0.2 s; each further half deviation would cost every part some 7 ms.
 const COVERAGE: f64 = 3.0;
-/// An odd part whose lag nobody knows gets no wider ramp than this, volts: a search by halves is quicker.
-const WIDEST_SD_V: f64 = 0.1;
+/// What is less sure gets no wider ramp than one of this (1 sd): each further 10 mV would cost every such part 7 ms, and
+/// a second ramp costs 0.3 s where it is needed, one part in some dozens. An odd part is found sooner by halves.
+const WIDEST_SD_V: f64 = 0.02;
 /// The same of a ramp that is placed anew.
 const WIDEST: Volt = Volt(0.2);
 /// How far the guessed lag of a fine ramp may be off (1 sd).

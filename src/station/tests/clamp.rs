@@ -66,6 +66,10 @@ impl Nest {
     /// The test ends in trouble 40 ms after it began.
     fn judged(&mut self) -> Clamp {
         let clamp = self.testing();
+        self.fails(clamp)
+    }
+
+    fn fails(&mut self, clamp: Clamp) -> Clamp {
         self.shop.after(40);
         let failed = JobDone {
             at: self.shop.now,
@@ -120,9 +124,17 @@ fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
 }
 
 #[test]
-fn a_golden_part_ends_in_retest_under_its_serial() {
+fn a_golden_part_that_could_not_be_judged_is_tested_three_times_and_ends_in_retest_under_its_serial()
+ {
     let mut nest = Nest::loaded(Some("G-12-1".into()));
-    nest.judged();
+    let mut clamp = nest.judged();
+    for tests in 1..3 {
+        assert!(nest.shop.wants.judged.is_empty(), "after {tests}");
+        let pins = Job::Board(vec![(DigitalOut::KelvinTest, true)]);
+        assert_eq!(nest.shop.wants.job, Some(pins), "from the beginning");
+        clamp = nest.fails(clamp);
+    }
+    assert!(matches!(clamp, Clamp::Judged));
     let part = &nest.shop.wants.judged[0].part;
     assert_eq!(part.bin, Some(Bin::Retest));
     assert_eq!(format!("{:?}", part.kind), "Golden(\"G-12-1\")");

@@ -27,6 +27,7 @@ pub fn bench() -> Bench {
         reference: instruments.reference,
         accuracy: instruments.accuracy,
         nominal_v_per_s: [96.0, 1.5],
+        probe_contact: None,
         thorough: false,
         golden: None,
     }

@@ -95,6 +95,7 @@ fn found(
             "coil temperature",
             value * kelvin * relative_per_kelvin(part),
         )
+        .with("probe contact", value * bench.contact_share())
         .with("strategy", resolution(step.0))
         .with_random("repeatability", bench.operation_v());
     let reading = Reading { value, budget };

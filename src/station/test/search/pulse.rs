@@ -1,4 +1,4 @@
-//! Go / no-go: one step to the limit, less what the level and the temperature may be off. A contact that
+//! Go / no-go: one step to the limit, less what the level, the probes and the temperature may be off. A contact that
 //! changes proves the limit kept; one that does not proves nothing, and ramps measure it.
 
 use super::{Next, parameter};
@@ -22,7 +22,7 @@ pub(super) fn level(bench: &Bench, direction: Direction, part: Celsius) -> Volt 
     let reference = bench.reference_temperature();
     let at_part = limit / to_reference(part, reference);
     let u = at_part * bench.accuracy.part_minus_track_k * relative_per_kelvin(part)
-        + at_part * bench.calibration.level.gain.u
+        + at_part * (bench.calibration.level.gain.u + bench.contact_share())
         + bench.calibration.level.offset_v.u
         + bench.operation_v();
     Volt(at_part - sign * (2.0 * u + at_part * KINDER))

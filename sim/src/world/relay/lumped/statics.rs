@@ -91,7 +91,7 @@ impl Model {
     /// Force of the leaf on NO at a travel, and its rate with the travel.
     fn leaf_on_no(&self, x: f64) -> (f64, f64) {
         let p = &self.p;
-        let depth = self.leaf_overlap(x + p.d0 - p.G);
+        let depth = self.leaf_overlap(x + p.d0 - p.G, 0.0);
         let stiffness = self.contact.stiffness(depth);
         let rate = if depth > 0.0 {
             p.k_l * stiffness / (p.k_l + stiffness)
@@ -101,13 +101,18 @@ impl Model {
         (p.k_c * depth.powf(1.5), rate)
     }
 
-    /// Overlap at a contact when the leaf is bent so far beyond the touch: `k_c d^1.5 + k_l d = k_l bent`.
-    fn leaf_overlap(&self, bent: f64) -> f64 {
+    /// Overlap at a contact when the leaf is bent so far beyond the touch: `k_c d^1.5 + k_l d = k_l bent`. It is sought
+    /// from the one that is known; 0 or below: none is.
+    fn leaf_overlap(&self, bent: f64, known: f64) -> f64 {
         let p = &self.p;
         if bent <= 0.0 {
             return 0.0;
         }
-        let mut depth = self.contact.depth(p.k_l * bent).min(bent);
+        let mut depth = match known > 0.0 {
+            true => known,
+            false => self.contact.depth(p.k_l * bent),
+        }
+        .min(bent);
         for _ in 0..60 {
             let excess = p.k_c * depth * depth.sqrt() + p.k_l * (depth - bent);
             let next = depth - excess / (self.contact.stiffness(depth) + p.k_l);
@@ -122,7 +127,7 @@ impl Model {
 
     /// Quasi-static pickup: the first fold met from rest.
     pub fn pickup(&self) -> Balance {
-        let deepest = self.leaf_overlap(-self.p.d0);
+        let deepest = self.leaf_overlap(-self.p.d0, 0.0);
         let depth = root(deepest, |depth| self.steepness(&self.load_on_nc(depth)));
         let load = self.load_on_nc(depth);
         self.balance(load.x, load.newtons)
@@ -219,14 +224,15 @@ impl Model {
             let before = s[X];
             let bent = s[X] + p.d0;
             s[Y] = match bent {
-                on_nc if on_nc < 0.0 => -self.leaf_overlap(-on_nc),
-                on_no if on_no > p.G => p.G + self.leaf_overlap(on_no - p.G),
+                on_nc if on_nc < 0.0 => -self.leaf_overlap(-on_nc, -s[Y]),
+                on_no if on_no > p.G => p.G + self.leaf_overlap(on_no - p.G, s[Y] - p.G),
                 free => free,
             };
             let leaf = p.k_l * (s[X] + p.d0 - s[Y]);
             let free = self.pull(s[0] / p.N, p.X - s[X]) - p.F_r0 - p.k_r * s[X] - leaf;
             push = if seated { free } else { -free };
-            let depth = self.stop.depth(push);
+            let known = if seated { s[X] - p.X } else { -s[X] };
+            let depth = self.stop.nearer(known, push);
             s[X] = if seated { p.X + depth } else { -depth };
             if (s[X] - before).abs() <= 1e-15 * p.X {
                 break;
