@@ -70,7 +70,8 @@ pub(super) fn acts_release(
     if !findings.operated {
         acts.extend(dropped(findings));
         acts.extend([
-            board(&[(RampMode, false), (EventNoBreak, false)]),
+            // Nobody reads this closure: no current is to leave its mark on the contact.
+            board(&[(RampMode, false), (EventNoBreak, false), (SourceOn, false)]),
             supply.step_to(Volt(bench.recipe.part.nominal_v)),
             board(&[(CoilDrive, true), (SelectNo, true)]),
             Act::Wait(Span::ms(40)),

@@ -6,8 +6,10 @@ use crate::gauge::lag::{LagLaw, Shown};
 use crate::gauge::threshold::Direction;
 use crate::gauge::verdict::Bin;
 use crate::gauge::{Parameter, Strategy};
+use crate::rig::point::DigitalOut;
 use crate::rig::sample::Quality;
-use crate::station::act::{BoardInputs, Readings};
+use crate::station::act::{Act, BoardInputs, Readings};
+use crate::station::supply::Supply;
 use crate::station::test::ramp::Expected;
 use crate::station::test::{Bench, Findings};
 use crate::units::Volt;
@@ -323,4 +325,19 @@ fn a_part_unlike_those_that_taught_the_law_is_measured_by_the_fine_ramp() {
     assert_eq!(findings.attempts(Parameter::OperateVoltage), 0);
     let expected = findings.expected_operate.unwrap();
     assert!(expected.half_width > Volt(0.01), "{expected:?}");
+}
+
+#[test]
+fn a_closure_that_nobody_reads_carries_no_current() {
+    let bench = bench();
+    let mut supply = Supply::new(&bench.calibration);
+    let acts = timing::acts_release(&bench, &mut supply, &mut at_23_c());
+    let closed = acts.iter().position(|act| matches!(act, Act::Wait(_)));
+    let words = acts[..closed.unwrap()].iter().filter_map(|act| match act {
+        Act::Board(word) => Some(word),
+        _ => None,
+    });
+    let source = words.flatten().filter(|it| it.0 == DigitalOut::SourceOn);
+    let states: Vec<bool> = source.map(|it| it.1).collect();
+    assert_eq!(states, [false]);
 }
