@@ -9,10 +9,10 @@
 use super::act::{Doing, JobDone};
 use super::moves::Move;
 use super::sort::Sort;
-use super::test::{Bench, Progress, Test};
+use super::test::{Bench, Progress, Stop, Test};
 use super::turn::Turn;
 use super::wants::{Judged, Left};
-use crate::gauge::verdict::{Bin, Verdict};
+use crate::gauge::verdict::Bin;
 use crate::rig::point::DigitalIn;
 use crate::station::ledger::Kind;
 use crate::units::{RigTime, Second};
@@ -173,7 +173,12 @@ fn testing(turn: &mut Turn, beside: Beside, mut test: Box<Test>) -> Clamp {
 fn is_worth_another(turn: &Turn, test: &Test) -> bool {
     let part = turn.ledger.nest.as_ref();
     let is_golden = part.is_some_and(|part| matches!(part.kind, Kind::Golden(_)));
-    is_golden && test.number < GOLDEN_TESTS && matches!(test.verdict(), Verdict::Void(_))
+    // What ran to its end proves nothing either while the lags are being taught, and is all that is wanted.
+    let is_cut_off = matches!(
+        test.findings.why_stopped(),
+        Some(Stop::Void(_) | Stop::Trouble(_))
+    );
+    is_golden && test.number < GOLDEN_TESTS && is_cut_off
 }
 
 fn judged(turn: &mut Turn, bench: &Bench, test: Test) {

@@ -33,7 +33,7 @@ impl Stop {
     #[inline]
     pub fn nearer(self, known: f64, force: f64) -> f64 {
         let next = known / 3.0 + force / (1.5 * self.k * known.sqrt());
-        match force > 0.0 && next < 4.0 * known {
+        match known > 0.0 && force > 0.0 && next < 4.0 * known {
             true => next,
             // Far from it, or no overlap at all.
             false => self.depth(force),
