@@ -169,6 +169,9 @@ pub struct Calibration {
     pub fine_v_per_s: Factor,
     /// Ramp lags, once golden parts were run.
     pub lags: Option<Lags>,
+    /// Force contacts of the coil in series when the golden parts taught these lags, which hold it, ohm; 0: not known.
+    #[serde(default)]
+    pub probe_contact_ohm: f64,
 }
 
 /// A factor with its name.

@@ -1,7 +1,7 @@
 //! Contact of the probes at the pins of the coil, from the voltage of its source.
 //!
 //! The sense wires keep it out of the coil's resistance. Thresholds are told in volts of the supply: each ohm in series lifts
-//! them by its share of the coil's, 20 mV of 8 V at 400 ohm. What the trend shows is a term of their budgets: it is not
+//! them by its share of the coil's, 20 mV of 8 V at 400 ohm. What the trend shows beyond what golden parts have seen is a term of their budgets: it is not
 //! taken off, since a part's own pins may be better or worse than those before. Nothing else would tell before the
 //! Kelvin bits open at 5 ohm a pin.
 //! The supply was calibrated on the reference resistor, on the board and without probes. What the pins get less than
@@ -13,9 +13,7 @@
 
 use crate::units::{Ohm, Volt};
 
-/// Weight of the latest part in the mean.
-const WEIGHT: f64 = 1.0 / 16.0;
-/// One part with a dirty pin is no trend.
+/// One part with a dirty pin is no trend. Of so many each counts alike; from then on the latest weighs as much.
 const ENOUGH: u32 = 16;
 
 /// Resistance of both force contacts of a coil of `coil` that sees `at_pins` when the supply is to give `asked`.
@@ -34,9 +32,9 @@ pub struct Trend {
 impl Trend {
     /// One part more.
     pub fn add(&mut self, Ohm(ohm): Ohm) {
-        let mean = self.mean.map_or(ohm, |mean| mean + WEIGHT * (ohm - mean));
-        self.mean = Some(mean);
         self.parts = self.parts.saturating_add(1);
+        let mean = self.mean.unwrap_or(ohm);
+        self.mean = Some(mean + (ohm - mean) / f64::from(self.parts.min(ENOUGH)));
     }
 
     /// None before the first part.
@@ -70,7 +68,7 @@ mod tests {
         trend.add(Ohm(8.0));
         assert!(trend.settled().is_none(), "of two parts");
         let after = |trend: &Trend| trend.mean().expect("parts").0;
-        assert_eq!(after(&trend), 0.5);
+        assert_eq!(after(&trend), 4.0);
         (0..48).for_each(|_| trend.add(Ohm(4.0)));
         assert!((after(&trend) - 4.0).abs() < 0.2);
         assert_eq!(trend.settled(), trend.mean());

@@ -4,7 +4,7 @@
 //! latch closes it at the contact event, so the indicated voltage is
 //! `start +- (WINDOW_V + slope x gate)`. A ramp overshoots the quasi-static threshold by its lag;
 //! golden parts tell the lag of the fine ramp, and the same number absorbs the tolerance of the
-//! 50 mV, the error of the level and the mean heating of the coil, all of which were there too.
+//! 50 mV, the error of the level, the contact of the probes and the mean heating of the coil, all of which were there too.
 //! Pickup current does not depend on temperature, so the voltage scales like the coil (IEC 61810-7).
 
 use super::budget::{Budget, Reading, resolution};
@@ -52,7 +52,8 @@ pub struct RampDoubt {
     pub refresh: Second,
     /// Relative standard uncertainty of the gain of the level at which the ramp starts.
     pub level: f64,
-    /// What the force contacts of the coil put in series to it, a share of its resistance.
+    /// What the force contacts of the coil put in series to it now and not when golden parts ran, a share of its
+    /// resistance.
     pub contact: f64,
     /// Part's temperature against the track's, kelvin (1 sd).
     pub temperature_k: f64,

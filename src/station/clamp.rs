@@ -10,6 +10,7 @@ use super::act::{Doing, JobDone};
 use super::moves::Move;
 use super::sort::Sort;
 use super::test::{Bench, Progress, Stop, Test};
+use super::trouble::Alarm;
 use super::turn::Turn;
 use super::wants::{Judged, Left};
 use crate::gauge::verdict::Bin;
@@ -18,7 +19,7 @@ use crate::station::ledger::Kind;
 use crate::units::{RigTime, Second};
 
 /// A golden part that could not be judged is tested so often in all: what it teaches holds for every part after it, and
-/// one lost reply is no reason to calibrate anew.
+/// one reset status that was lost, or one reply refused, is no reason to calibrate anew.
 const GOLDEN_TESTS: u8 = 3;
 
 /// Where the nest stands.
@@ -137,13 +138,11 @@ fn begin(turn: &mut Turn, beside: Beside) -> Clamp {
     if let Some(part) = &mut turn.ledger.nest {
         part.probed_at = Some(turn.now);
     }
-    again(turn, beside, 1)
+    let test = Test::begin(beside.bench.clone(), turn.now);
+    begun(turn, beside, test)
 }
 
-/// The test of that number of the part in the nest; the probes are up.
-fn again(turn: &mut Turn, beside: Beside, number: u8) -> Clamp {
-    let mut test = Test::begin(beside.bench.clone(), turn.now);
-    test.number = number;
+fn begun(turn: &mut Turn, beside: Beside, test: Test) -> Clamp {
     testing(
         turn,
         Beside {
@@ -159,10 +158,12 @@ fn testing(turn: &mut Turn, beside: Beside, mut test: Box<Test>) -> Clamp {
         Progress::Doing(Doing::Job(job)) => turn.wants.job = Some(job),
         Progress::Doing(Doing::Wait(until)) => turn.wants.wake_at = Some(until),
         Progress::Doing(Doing::Busy | Doing::Done | Doing::Trouble(_)) => {}
-        Progress::Judged if is_worth_another(turn, &test) => {
-            return again(turn, beside, test.number + 1);
-        }
         Progress::Judged => {
+            if let Some(again) = worth_another(turn, &test) {
+                turn.alarm(again);
+                let fresh = Test::begin(beside.bench.clone(), turn.now);
+                return begun(turn, beside, fresh.another(test.number() + 1));
+            }
             judged(turn, beside.bench, *test);
             return Clamp::Judged;
         }
@@ -170,15 +171,16 @@ fn testing(turn: &mut Turn, beside: Beside, mut test: Box<Test>) -> Clamp {
     Clamp::Testing(test)
 }
 
-fn is_worth_another(turn: &Turn, test: &Test) -> bool {
-    let part = turn.ledger.nest.as_ref();
-    let is_golden = part.is_some_and(|part| matches!(part.kind, Kind::Golden(_)));
+/// What to tell before a golden part is tested again, if it is.
+fn worth_another(turn: &Turn, test: &Test) -> Option<Alarm> {
+    let Kind::Golden(serial) = &turn.ledger.nest.as_ref()?.kind else {
+        return None;
+    };
     // What ran to its end proves nothing either while the lags are being taught, and is all that is wanted.
-    let is_cut_off = matches!(
-        test.findings.why_stopped(),
-        Some(Stop::Void(_) | Stop::Trouble(_))
-    );
-    is_golden && test.number < GOLDEN_TESTS && is_cut_off
+    let (Stop::Void(why) | Stop::Trouble(why)) = test.findings.why_stopped()? else {
+        return None;
+    };
+    (test.number() < GOLDEN_TESTS).then(|| Alarm::golden_repeated(serial, why))
 }
 
 fn judged(turn: &mut Turn, bench: &Bench, test: Test) {

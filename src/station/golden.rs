@@ -7,9 +7,10 @@ use super::test::{Findings, Ramp};
 use crate::gauge::calibration::{Factor, Lag, Lags};
 use crate::gauge::coil::{relative_per_kelvin, to_reference};
 use crate::gauge::lag::LagLaw;
+use crate::gauge::probe_contact::Trend;
 use crate::gauge::settings::{AccuracySettings, Certified, GoldenPart};
 use crate::gauge::{Parameter, Reading};
-use crate::units::Celsius;
+use crate::units::{Celsius, Ohm};
 
 /// A golden part whose fine indication lies further from the others' lag is out of its band, volts.
 const BAND_V: f64 = 0.060;
@@ -28,6 +29,7 @@ struct Shift {
 #[derive(Debug, Clone, Default)]
 pub struct GoldenRun {
     shifts: Vec<Shift>,
+    contact: Trend,
 }
 
 impl GoldenRun {
@@ -49,6 +51,10 @@ impl GoldenRun {
         let operate = fine(findings.operate).ok_or_else(|| why("no operate voltage"))?;
         let release = fine(findings.release).ok_or_else(|| why("no release voltage"))?;
         check_coil(part, findings)?;
+        findings
+            .probe_contact
+            .into_iter()
+            .for_each(|ohm| self.contact.add(ohm));
         let at_part = |certified: Certified| certified.value / to_reference(track, reference);
         self.shifts.push(Shift {
             serial: serial.clone(),
@@ -94,6 +100,11 @@ impl GoldenRun {
                 judges: false,
             },
         })
+    }
+
+    /// Force contacts of the coil in series, mean over the parts so far; 0 where none has told it.
+    pub fn probe_contact_ohm(&self) -> f64 {
+        self.contact.mean().map_or(0.0, |Ohm(ohm)| ohm)
     }
 
     /// Mean of fine indication minus certificate so far, operate and release.

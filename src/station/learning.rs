@@ -132,6 +132,10 @@ impl Station {
             Ok((lags, complete)) => {
                 let calibration = Calibration {
                     lags: Some(lags),
+                    probe_contact_ohm: match golden {
+                        true => self.golden_run.probe_contact_ohm(),
+                        false => self.bench.calibration.probe_contact_ohm,
+                    },
                     ..(*self.bench.calibration).clone()
                 };
                 if complete {

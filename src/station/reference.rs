@@ -284,6 +284,7 @@ pub fn conclude(
         ],
         coil_input,
         lags: None,
+        probe_contact_ohm: 0.0,
     })
 }
 

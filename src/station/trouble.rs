@@ -264,6 +264,15 @@ impl Alarm {
         )
     }
 
+    /// The test of a golden part was cut off and begins anew.
+    pub fn golden_repeated(serial: &str, why: &str) -> Self {
+        Self::new(
+            "golden_repeated",
+            format!("Golden part {serial} is tested again: {why}."),
+            format!("标准件 {serial} 重新测试：{why}。"),
+        )
+    }
+
     /// Calibration did not come out.
     pub fn calibration(text: &str) -> Self {
         Self::new(

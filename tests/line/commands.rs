@@ -72,7 +72,7 @@ const SLIPS: &[Slip] = &[
         name: "a text that is no TOML",
         file: RECIPE,
         from: "prebias_v = 5.1",
-        to: "prebias_v = = 5.0",
+        to: "prebias_v = = 5.1",
         offset: 0,
         says: "expected",
     },

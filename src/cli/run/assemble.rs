@@ -146,5 +146,6 @@ fn uncalibrated(nominal_v: f64) -> Calibration {
         coarse_v_per_s: unknown,
         fine_v_per_s: unknown,
         lags: None,
+        probe_contact_ohm: 0.0,
     }
 }

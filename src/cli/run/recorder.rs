@@ -156,7 +156,8 @@ impl<'a> Recorder<'a> {
         Ok(())
     }
 
-    /// What is inside: written with the next rows, when a part is let go, and at the end.
+    /// What is inside: written with the next rows, when a part is let go, when the next one stands behind a lifted one, and
+    /// at the end.
     fn aside(&mut self) -> Vec<Row> {
         let Some((inside, uses)) = self.aside.take() else {
             return Vec::new();

@@ -33,6 +33,7 @@ fn made(at_us: i64, simulated: bool, nominal_v: f64) -> CalibrationRecord {
         coarse_v_per_s: known,
         fine_v_per_s: known,
         lags: None,
+        probe_contact_ohm: 0.0,
     });
     let body = body.unwrap();
     CalibrationRecord {

@@ -37,6 +37,21 @@ pub(super) const GATES: &[Entry] = &[
         ),
     },
     Entry {
+        code: "golden_repeated",
+        stops: Stops::Nothing,
+        goes: Goes::ByClear,
+        retries: 2,
+        cause: (
+            "The test of a golden part was cut off: a reply was lost or refused, or a reading was none.",
+            "标准件的测试中断：应答丢失或被拒绝，或读数无效。",
+        ),
+        consequence: GOES_ON,
+        action: (
+            "Nothing; if it comes often, look at the line of the measuring modules.",
+            "无需处理；若经常出现，请检查测量模块的通信线路。",
+        ),
+    },
+    Entry {
         code: "lot_discard_limit",
         stops: Stops::Hold,
         goes: Goes::ByClear,

@@ -34,7 +34,7 @@ pub struct Bench {
     pub accuracy: AccuracySettings,
     /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
     pub nominal_v_per_s: [f64; 2],
-    /// Force contacts of the coil in series, mean over the last parts; `None`: no part has told it since the calibration.
+    /// Force contacts of the coil in series, mean over the last parts; `None`: no part of this run has told it.
     pub probe_contact: Option<Ohm>,
     /// The slow strategy for every result: a golden check or a first article.
     pub thorough: bool,
@@ -81,10 +81,12 @@ impl Bench {
         self.accuracy.operation_v(self.recipe.part.nominal_v)
     }
 
-    /// What the probes may lift a threshold by, relative (1 sd): all that their trend shows, which nothing takes off.
+    /// What the probes may have lifted or lowered a threshold by since the golden parts taught its lag, relative (1 sd):
+    /// all that their trend shows, which nothing takes off.
     pub fn contact_share(&self) -> f64 {
-        let shown = self.probe_contact.map_or(0.0, |Ohm(ohm)| ohm.abs());
-        shown / self.recipe.part.nominal_coil_ohm
+        let then_ohm = self.calibration.probe_contact_ohm;
+        let changed = self.probe_contact.map_or(0.0, |Ohm(now)| now - then_ohm);
+        changed.abs() / self.recipe.part.nominal_coil_ohm
     }
 
     /// Clock of the gated counters.

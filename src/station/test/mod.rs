@@ -63,6 +63,9 @@ const SLOW: [Stage; 5] = [
     Stage::ReleaseFine(0),
 ];
 
+/// A fine ramp that was placed anew takes 0.3 s, also on its way back.
+const CUT_OFF: Span = Span::ms(400);
+
 /// What the test wants from its surroundings.
 #[derive(Debug)]
 pub enum Progress {
@@ -84,7 +87,7 @@ pub struct Test {
     gates: Option<[CountSample; 2]>,
     began: RigTime,
     /// Tests of this part so far, this one included.
-    pub number: u8,
+    number: u8,
     /// What has been found so far.
     pub findings: Findings,
 }
@@ -107,6 +110,18 @@ impl Test {
             gates: None,
             findings,
         }
+    }
+
+    /// The same as another test of a part that was tested just now: a ramp that was cut off may still run.
+    pub fn another(mut self, number: u8) -> Self {
+        self.number = number;
+        self.findings.still_ramping = CUT_OFF;
+        self
+    }
+
+    /// Tests of this part so far, this one included.
+    pub fn number(&self) -> u8 {
+        self.number
     }
 
     /// Stage under way, for screens.

@@ -27,10 +27,10 @@ const FAR_MARGIN: Volt = Volt(0.015);
 /// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
 /// costs a second ramp of 0.2 s; each further half deviation would cost every part some 7 ms.
 const COVERAGE: f64 = 3.0;
-/// What is less sure gets no wider ramp than one of this (1 sd): each further 10 mV would cost every such part 7 ms, and
-/// a second ramp costs 0.3 s where it is needed, one part in some dozens. An odd part is found sooner by halves.
+/// What is less sure gets no wider ramp than one of this (1 sd): each further 10 mV of half width would cost every such
+/// part 7 ms, and a second ramp costs 0.3 s where it is needed, one part in some dozens.
 const WIDEST_SD_V: f64 = 0.02;
-/// The same of a ramp that is placed anew.
+/// Widest half width of a ramp that is placed anew; beyond it a search by halves is quicker.
 const WIDEST: Volt = Volt(0.2);
 /// How far the guessed lag of a fine ramp may be off (1 sd).
 const FINE_GUESS_SD_V: f64 = 0.020;

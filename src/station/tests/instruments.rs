@@ -67,6 +67,7 @@ fn calibration() -> Calibration {
         fine: OutputLine::IDEAL,
         coarse_v_per_s: exact(96.0),
         fine_v_per_s: exact(1.5),
+        probe_contact_ohm: 0.0,
         lags: Some(Lags {
             operate: lag(0.85),
             release: lag(-1.05),

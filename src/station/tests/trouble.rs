@@ -58,6 +58,7 @@ fn every_alarm() -> Vec<Alarm> {
         Alarm::calibration_overdue(),
         Alarm::golden_check_due("G-12-1"),
         Alarm::golden_check_failed("odd"),
+        Alarm::golden_repeated("G-12-1", "odd"),
         Alarm::discard_limit(3, 40, 5.0),
         Alarm::worn("probes", 8, 8),
         Alarm::probe_contact(3.2, 3.0),

@@ -327,17 +327,34 @@ fn a_part_unlike_those_that_taught_the_law_is_measured_by_the_fine_ramp() {
     assert!(expected.half_width > Volt(0.01), "{expected:?}");
 }
 
+/// What the source was told last before an output is switched on.
+fn source_before(switched: DigitalOut, acts: &[Act]) -> Option<bool> {
+    let words = acts.iter().filter_map(|act| match act {
+        Act::Board(word) => Some(word),
+        _ => None,
+    });
+    let mut told = None;
+    for word in words {
+        let source = word.iter().find(|it| it.0 == DigitalOut::SourceOn);
+        told = source.map(|it| it.1).or(told);
+        if word.contains(&(switched, true)) {
+            return told;
+        }
+    }
+    panic!("{switched:?} is never switched on");
+}
+
 #[test]
 fn a_closure_that_nobody_reads_carries_no_current() {
     let bench = bench();
     let mut supply = Supply::new(&bench.calibration);
-    let acts = timing::acts_release(&bench, &mut supply, &mut at_23_c());
-    let closed = acts.iter().position(|act| matches!(act, Act::Wait(_)));
-    let words = acts[..closed.unwrap()].iter().filter_map(|act| match act {
-        Act::Board(word) => Some(word),
-        _ => None,
-    });
-    let source = words.flatten().filter(|it| it.0 == DigitalOut::SourceOn);
-    let states: Vec<bool> = source.map(|it| it.1).collect();
-    assert_eq!(states, [false]);
+    let mut after_a_release = at_23_c();
+    after_a_release.released = true;
+    let timed = timing::acts_release(&bench, &mut supply, &mut after_a_release);
+    assert_eq!(source_before(DigitalOut::CoilDrive, &timed), Some(false));
+    let mut after_an_operation = at_23_c();
+    after_an_operation.operated = true;
+    after_an_operation.expected_release = Some(Expected::new(Volt(2.3), 0.01));
+    let fine = release::acts_fine(&bench, &mut supply, &mut after_an_operation);
+    assert_eq!(source_before(DigitalOut::RampMode, &fine), Some(false));
 }

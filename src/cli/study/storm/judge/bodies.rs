@@ -208,18 +208,23 @@ fn is_told(case: &Case, at_us: u64, tells: impl Fn(&Alarm) -> bool) -> bool {
     let since = case.lives.iter().filter(|life| life.ended_us >= at_us);
     match own {
         Some(life) => told(life),
-        None => whose_turn(case, since).into_iter().any(told),
+        None => whose_turn(case, at_us, since).into_iter().any(told),
     }
 }
 
 /// The life in which something happened, and those after it up to the first that has judged a part: that one has homed
 /// and seen what is gone, so whatever a later one tells is something else.
-fn whose_turn<'a>(case: &Case, since: impl Iterator<Item = &'a Lived>) -> Vec<&'a Lived> {
-    let has_homed = |life: &Lived| case.rows.iter().any(|row| row.lot == life.lot);
+fn whose_turn<'a>(
+    case: &Case,
+    at_us: u64,
+    since: impl Iterator<Item = &'a Lived>,
+) -> Vec<&'a Lived> {
+    let has_homed =
+        |life: &Lived| life.began_us > at_us && case.rows.iter().any(|row| row.lot == life.lot);
     let mut turns = Vec::new();
     for life in since {
         turns.push(life);
-        if turns.len() > 1 && has_homed(life) {
+        if has_homed(life) {
             break;
         }
     }
