@@ -32,6 +32,22 @@ pub struct Move<'a> {
     pub ignore: &'a [ElementKey],
 }
 
+impl Move<'_> {
+    /// Whether it ends where it begins, bit by bit. (A way of no length is judged as well where this says no.)
+    #[inline]
+    pub(crate) fn goes_nowhere(&self) -> bool {
+        let (from, to) = (&self.from, &self.to);
+        let places = from.position.iter().zip(&to.position);
+        let turns = from.rotation.iter().zip(&to.rotation);
+        let differing = |(a, b): (&f64, &f64)| a.to_bits() ^ b.to_bits();
+        places
+            .chain(turns)
+            .map(differing)
+            .fold(0, |all, bits| all | bits)
+            == 0
+    }
+}
+
 /// Answer to a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Answer {

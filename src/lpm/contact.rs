@@ -46,16 +46,6 @@ enum How {
 }
 
 impl Found {
-    /// Two upright pieces that share a point where the way begins.
-    #[inline]
-    pub(crate) fn at_start(element: u32, local: u32) -> Found {
-        Found {
-            t: 0.0,
-            element,
-            how: How::Closed(local),
-        }
-    }
-
     pub(crate) fn searched(element: u32, hit: Hit) -> Found {
         Found {
             t: hit.t,
@@ -84,7 +74,6 @@ impl Found {
 
 impl Passage<'_> {
     /// A contact within the margin; `None` is proof that there is none.
-    #[inline(always)]
     pub(crate) fn contact(&self, wanted: Wanted) -> Option<Found> {
         let mut found = Findings {
             wanted,
@@ -92,34 +81,25 @@ impl Passage<'_> {
             pending: Vec::new(),
             run: None,
         };
-        if self.path.is_at_rest() {
-            self.rest(&mut found);
-        } else {
-            self.pass(&mut found);
-        }
-        found.best
-    }
-
-    /// On a way that goes somewhere.
-    fn pass<'a>(&'a self, found: &mut Findings<'a>) {
         for group in &self.body.groups {
-            let hull = group.hull(self.path, self.way.margin_mm);
+            let hull = group.hull(&self.whereabouts(self.way.margin_mm));
             let sweep = Sweep::new(hull, self.path.displacement);
             let until = found.until();
-            let mut search = Search::new(self, group, found, &sweep);
+            let mut search = Search::new(self, group, &mut found, &sweep);
             self.model.space.walk(&sweep, until, &mut search);
             if found.until() < 0.0 {
-                return;
+                return found.best;
             }
         }
-        self.searches(found);
+        self.searches(&mut found);
+        found.best
     }
 }
 
 /// What is found so far.
 pub(crate) struct Findings<'a> {
     wanted: Wanted,
-    pub(crate) best: Option<Found>,
+    best: Option<Found>,
     pub(crate) pending: Vec<Pending>,
     /// When it was wanted before.
     run: Option<Run<'a>>,
@@ -232,10 +212,10 @@ impl<'a, 'b> Search<'a, 'b> {
     #[inline]
     fn piece(&mut self, element: u32, cover: &Cover) {
         let until = self.found.until();
-        let (path, margin) = (self.passage.path, self.passage.way.margin_mm);
+        let (passage, margin) = (self.passage, self.passage.way.margin_mm);
         let boxes = self
             .boxes
-            .get_or_insert_with(|| self.group.boxes(path, margin));
+            .get_or_insert_with(|| self.group.boxes(&passage.whereabouts(margin)));
         let crossing = boxes.crossing(cover, &self.sweep.pace.reversed(), above(until));
         let mut places = crossing.lanes & self.group.used();
         while places != 0 {
@@ -259,8 +239,8 @@ impl<'a, 'b> Search<'a, 'b> {
         match (&element.form, &passage.body.prisms[local]) {
             (Stands::Upright(standing), Some(own)) if passage.level => {
                 let path = passage.path;
-                let mover = self.prisms[place]
-                    .get_or_insert_with(|| own.carried(path.start(), path.origin(0.0)));
+                let mover =
+                    self.prisms[place].get_or_insert_with(|| own.carried(path.turned(), path.from));
                 let until = self.found.until();
                 let run = self.found.run.get_or_insert_with(|| Run::of(path));
                 let found = passage.met(run, standing, mover, until);

@@ -201,6 +201,14 @@ impl Model {
         }
     }
 
+    /// One of the pieces of the element in a slot.
+    pub(crate) fn a_piece(&self, slot: u32) -> u32 {
+        let element = self.slots[slot as usize].element.as_ref();
+        element
+            .expect("only slots of standing elements are asked about")
+            .first
+    }
+
     /// A point of the element in a slot, or of `other`, that lies inside the other one although no
     /// surfaces need to meet.
     pub(crate) fn shared_point(&self, slot: u32, other: &Interior) -> Option<[f64; 3]> {

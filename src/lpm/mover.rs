@@ -1,13 +1,12 @@
 //! Bodies that move: taken apart once, asked about often.
 
-use super::path::Path;
 use super::piece::{Piece, pieces_of};
-use super::pose::Frame;
+use super::pose::{Frame, Pose, Yaw};
 use super::prism::Prism;
 use super::shape::{Flaw, Shape};
 use super::solid::Interior;
-use super::space::{Boxes, Cover, SLOWEST_MM};
-use super::vector::{add, length, reach};
+use super::space::{Boxes, Cover, Four, SLOWEST_MM};
+use super::vector::{Vec3, add, length, reach};
 
 /// Pieces of a group: as many as are placed at once without asking for memory.
 pub(crate) const MOST_OF_A_GROUP: usize = 4;
@@ -31,13 +30,35 @@ pub(crate) struct Group {
     /// Centres and half extents, member by member, mm; unused places repeat the first piece.
     centres: [[f32; MOST_OF_A_GROUP]; 3],
     halves: [[f32; MOST_OF_A_GROUP]; 3],
-    /// The box around all of them, likewise.
-    centre: [f32; 3],
-    half: [f32; 3],
+    /// The box around all of them, likewise; the fourth members are 0.
+    centre: [f32; 4],
+    half: [f32; 4],
     /// Largest distance of a point from the origin of the body, rounded outward, mm.
     ball: f64,
     /// How far the boxes of the group are widened wherever it stands, mm.
     wider: f64,
+}
+
+/// Where a group is when its boxes are asked for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Whereabouts<'a> {
+    /// Origin of its body where that stands, or its way begins, mm.
+    pub(crate) origin: Vec3,
+    pub(crate) orientation: Orientation<'a>,
+    /// The way of its body, mm.
+    pub(crate) run: Vec3,
+    /// How far the boxes are widened, mm.
+    pub(crate) margin_mm: f64,
+}
+
+/// How a body is turned.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Orientation<'a> {
+    Unturned,
+    Yawed(Yaw),
+    Tilted(&'a Frame),
+    /// Another one from instant to instant.
+    Turning,
 }
 
 /// Relative error allowed for the boxes of a group at their place: fewer than ten roundings to
@@ -72,9 +93,9 @@ impl Mover {
             .is_some_and(|interior| !interior.solids.is_empty())
     }
 
-    /// The inside where the way begins.
-    pub(crate) fn interior_at_start(&self, path: &Path) -> Interior {
-        let (frame, position) = (path.start(), path.origin(0.0));
+    /// The inside of the body where it stands at `pose`.
+    pub(crate) fn interior_at(&self, pose: &Pose) -> Interior {
+        let (frame, position) = (&Frame::of(pose.rotation), pose.position);
         match &self.interior {
             Some(interior) => interior.placed(frame, position),
             None => {
@@ -96,8 +117,8 @@ impl Group {
             count: pieces.len(),
             centres: [[0.0; MOST_OF_A_GROUP]; 3],
             halves: [[0.0; MOST_OF_A_GROUP]; 3],
-            centre: [0.0; 3],
-            half: [0.0; 3],
+            centre: [0.0; 4],
+            half: [0.0; 4],
             ball: 0.0,
             wider: 0.0,
         };
@@ -129,104 +150,103 @@ impl Group {
         (1 << self.count) - 1
     }
 
-    /// How far beyond its size a box is widened along each axis for `margin` and all rounding to single
+    /// How far beyond its size a box is widened along each axis for the margin and all rounding to single
     /// precision, mm. What is rounded along an axis is of the magnitude of places along it, and of the group.
-    #[inline]
-    fn wider(&self, path: &Path, margin: f64) -> [f32; 3] {
-        let always = (self.wider + margin * (1.0 + SINGLE)) as f32;
-        let on = |axis: usize| {
-            let way = (path.from[axis] as f32).abs() + (path.displacement[axis] as f32).abs();
-            always + SINGLE as f32 * way
-        };
-        [on(0), on(1), on(2)]
+    #[inline(always)]
+    fn wider(&self, at: &Whereabouts) -> Four {
+        let always = (self.wider + at.margin_mm * (1.0 + SINGLE)) as f32;
+        let way = Four::rounded(&at.origin)
+            .abs()
+            .plus(Four::rounded(&at.run).abs());
+        Four::all(always).plus(Four::all(SINGLE as f32).times(way))
     }
 
-    /// The boxes of the pieces where the way begins, rounded outward and widened by `margin` (mm).
+    /// The boxes of the pieces where the way begins, rounded outward and widened by the margin.
     ///
     /// Of a turning group: the box of the ball it stays in, whatever the turn.
-    #[inline]
-    pub(crate) fn boxes(&self, path: &Path, margin: f64) -> Boxes<MOST_OF_A_GROUP> {
-        self.placed(path, margin, &self.centres, &self.halves)
+    #[inline(always)]
+    pub(crate) fn boxes(&self, at: &Whereabouts) -> Boxes<MOST_OF_A_GROUP> {
+        let centres = self.centres.each_ref().map(Four::of);
+        let halves = self.halves.each_ref().map(Four::of);
+        let (centres, halves) = match at.orientation {
+            Orientation::Unturned => (centres, halves),
+            Orientation::Yawed(yaw) => yawed(yaw, centres, halves),
+            Orientation::Tilted(frame) => tilted(frame, centres, halves),
+            Orientation::Turning => ([Four::all(0.0); 3], [Four::all(self.ball as f32); 3]),
+        };
+        let (origin, wider) = (
+            Four::rounded(&at.origin).numbers(),
+            self.wider(at).numbers(),
+        );
+        let mut boxes = Boxes::NOWHERE;
+        for axis in 0..3 {
+            let centre = centres[axis].plus(Four::all(origin[axis]));
+            let half = halves[axis].plus(Four::all(wider[axis]));
+            boxes.low[axis] = centre.minus(half).numbers();
+            boxes.high[axis] = centre.plus(half).numbers();
+        }
+        boxes
     }
 
     /// The box around all of them, likewise.
     #[inline(always)]
-    pub(crate) fn hull(&self, path: &Path, margin: f64) -> Cover {
-        let (centre, half) = (self.centre.map(|it| [it]), self.half.map(|it| [it]));
-        self.placed(path, margin, &centre, &half).cover(0)
+    pub(crate) fn hull(&self, at: &Whereabouts) -> Cover {
+        let (centre, half) = match at.orientation {
+            Orientation::Unturned => (Four::of(&self.centre), Four::of(&self.half)),
+            Orientation::Yawed(yaw) => self.yawed_hull(yaw),
+            Orientation::Tilted(frame) => self.tilted_hull(frame),
+            Orientation::Turning => (Four::all(0.0), Four::all(self.ball as f32)),
+        };
+        let centre = centre.plus(Four::rounded(&at.origin));
+        let half = half.plus(self.wider(at));
+        Cover {
+            low: centre.minus(half).numbers(),
+            high: centre.plus(half).numbers(),
+        }
     }
 
     #[inline(always)]
-    fn placed<const N: usize>(
-        &self,
-        path: &Path,
-        margin: f64,
-        centres: &[[f32; N]; 3],
-        halves: &[[f32; N]; 3],
-    ) -> Boxes<N> {
-        let oriented;
-        let (centres, halves) = if path.is_unturned() && path.turn.is_none() {
-            (centres, halves)
-        } else {
-            oriented = match path.turn {
-                Some(_) => ([[0.0; N]; 3], [[self.ball as f32; N]; 3]),
-                None => turned(path.start(), centres, halves),
-            };
-            (&oriented.0, &oriented.1)
+    fn yawed_hull(&self, yaw: Yaw) -> (Four, Four) {
+        let (cos, sin) = (yaw.cos as f32, yaw.sin as f32);
+        let ([x, y, z, _], [a, b, c, _]) = (self.centre, self.half);
+        let centre = [x * cos - y * sin, x * sin + y * cos, z, 0.0];
+        let (cos, sin) = (cos.abs(), sin.abs());
+        let half = [a * cos + b * sin, a * sin + b * cos, c, 0.0];
+        (Four::of(&centre), Four::of(&half))
+    }
+
+    fn tilted_hull(&self, frame: &Frame) -> (Four, Four) {
+        let images = [&frame.x, &frame.y, &frame.z].map(Four::rounded);
+        let of = |own: usize| {
+            let centre = images[own].times(Four::all(self.centre[own]));
+            (centre, images[own].abs().times(Four::all(self.half[own])))
         };
-        let wider = self.wider(path, margin);
-        let mut boxes = Boxes::NOWHERE;
-        for axis in 0..3 {
-            let (origin, wider) = (path.from[axis] as f32, wider[axis]);
-            for place in 0..N {
-                let (centre, half) = (centres[axis][place] + origin, halves[axis][place] + wider);
-                boxes.low[axis][place] = centre - half;
-                boxes.high[axis][place] = centre + half;
-            }
-        }
-        boxes
+        let (x, y, z) = (of(0), of(1), of(2));
+        (x.0.plus(y.0).plus(z.0), x.1.plus(y.1).plus(z.1))
     }
 }
 
-/// Centres, as seen from the origin, and half extents along the axes of the parent frame.
-#[inline]
-fn turned<const N: usize>(
-    frame: &Frame,
-    centres: &[[f32; N]; 3],
-    halves: &[[f32; N]; 3],
-) -> ([[f32; N]; 3], [[f32; N]; 3]) {
-    if frame.is_yaw() {
-        let (mut centre, mut half) = along_axes::<N, 2>(frame, centres, halves);
-        (centre[2], half[2]) = (centres[2], halves[2]);
-        (centre, half)
-    } else {
-        along_axes::<N, 3>(frame, centres, halves)
-    }
-}
-
-/// The first `AXES` of them, from as many.
-#[allow(
-    clippy::needless_range_loop,
-    reason = "both ends known, the loops unroll: half the time of iterators"
-)]
+/// Centres, as seen from the origin, and half extents along the axes of the parent frame, member by member.
 #[inline(always)]
-fn along_axes<const N: usize, const AXES: usize>(
-    frame: &Frame,
-    centres: &[[f32; N]; 3],
-    halves: &[[f32; N]; 3],
-) -> ([[f32; N]; 3], [[f32; N]; 3]) {
-    let mut turned = ([[0.0; N]; 3], [[0.0; N]; 3]);
+fn yawed(yaw: Yaw, [x, y, z]: [Four; 3], [a, b, c]: [Four; 3]) -> ([Four; 3], [Four; 3]) {
+    let (cos, sin) = (Four::all(yaw.cos as f32), Four::all(yaw.sin as f32));
+    let across = x.times(cos).minus(y.times(sin));
+    let centres = [across, x.times(sin).plus(y.times(cos)), z];
+    let (cos, sin) = (cos.abs(), sin.abs());
+    let wide = a.times(cos).plus(b.times(sin));
+    (centres, [wide, a.times(sin).plus(b.times(cos)), c])
+}
+
+/// The same in any frame.
+fn tilted(frame: &Frame, centres: [Four; 3], halves: [Four; 3]) -> ([Four; 3], [Four; 3]) {
     let images = [frame.x, frame.y, frame.z];
-    for axis in 0..AXES {
-        for own in 0..AXES {
-            let image = images[own][axis] as f32;
-            for place in 0..N {
-                turned.0[axis][place] += image * centres[own][place];
-                turned.1[axis][place] += image.abs() * halves[own][place];
-            }
-        }
-    }
-    turned
+    let sum = |members: [Four; 3], of: fn(f32) -> f32| {
+        [0, 1, 2].map(|axis: usize| {
+            let part = |own: usize| members[own].times(Four::all(of(images[own][axis] as f32)));
+            part(0).plus(part(1)).plus(part(2))
+        })
+    };
+    (sum(centres, |it| it), sum(halves, f32::abs))
 }
 
 /// Largest distance of a point of the piece from the origin of its body, mm, rounded outward.

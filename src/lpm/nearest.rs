@@ -86,7 +86,7 @@ impl Passage<'_> {
         let mut pending = Vec::new();
         let run = self.path.displacement;
         for group in &self.body.groups {
-            let own = group.boxes(self.path, 0.0);
+            let own = group.boxes(&self.whereabouts(0.0));
             let swept = [0, 1, 2, 3].map(|place: usize| own.cover(place).swept(run));
             let mut near = Near {
                 passage: self,
@@ -95,7 +95,7 @@ impl Passage<'_> {
                 range_mm,
                 pending: &mut pending,
             };
-            let sweep = Sweep::new(group.hull(self.path, range_mm), run);
+            let sweep = Sweep::new(group.hull(&self.whereabouts(range_mm)), run);
             self.model.space.walk(&sweep, 1.0, &mut near);
         }
         pending

@@ -2,9 +2,10 @@
 
 use super::answer::Move;
 use super::model::Model;
-use super::mover::Mover;
+use super::mover::{Mover, Orientation, Whereabouts};
 use super::path::Path;
 use super::piece::Piece;
+use super::pose::Frame;
 use super::prism::Prism;
 use super::standing::Standing;
 
@@ -16,6 +17,7 @@ pub(crate) struct Passage<'a> {
     pub(crate) way: &'a Move<'a>,
     /// A straight way on which upright pieces stay upright: closed forms apply.
     pub(crate) level: bool,
+    orientation: Orientation<'a>,
 }
 
 /// Pieces of an element and of the mover that a search has to look at.
@@ -35,13 +37,14 @@ impl<'a> Passage<'a> {
         path: &'a Path,
         way: &'a Move<'a>,
     ) -> Passage<'a> {
-        let level = path.turn.is_none() && (path.is_unturned() || path.start().is_upright());
+        let level = path.turn.is_none() && path.turned().is_none_or(Frame::is_upright);
         Passage {
             model,
             body,
             path,
             way,
             level,
+            orientation: path.orientation(),
         }
     }
 
@@ -69,10 +72,21 @@ impl<'a> Passage<'a> {
     }
 
     /// A piece of the mover at `t` of a level way, if it is upright.
-    #[inline(always)]
+    #[inline]
     pub(crate) fn prism_at(&self, index: u32, t: f64) -> Option<Prism> {
         let own = self.body.prisms[index as usize].as_ref()?;
-        Some(own.carried(self.path.start(), self.path.origin(t)))
+        Some(own.carried(self.path.turned(), self.path.origin(t)))
+    }
+
+    /// Where the body is when its boxes are asked for, to be widened by `margin_mm`.
+    #[inline(always)]
+    pub(crate) fn whereabouts(&self, margin_mm: f64) -> Whereabouts<'a> {
+        Whereabouts {
+            origin: self.path.from,
+            orientation: self.orientation,
+            run: self.path.displacement,
+            margin_mm,
+        }
     }
 }
 

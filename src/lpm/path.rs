@@ -1,7 +1,9 @@
 //! The way of a mover: a straight translation, or position linear and rotation the shortest turn.
 
+use super::answer::Move;
+use super::mover::Orientation;
 use super::piece::{Piece, is_exact_sum};
-use super::pose::{Frame, Pose, Turn};
+use super::pose::{Frame, Turn};
 use super::vector::{Vec3, along, negate, reach, sub};
 
 /// A move between two checked poses; `t` runs from 0 to 1.
@@ -12,20 +14,21 @@ pub(crate) struct Path {
     to: Vec3,
     /// Whole displacement of the origin, mm.
     pub(crate) displacement: Vec3,
-    start: Frame,
-    is_unturned: bool,
-    is_at_rest: bool,
+    /// Orientation at the start; `None`: the common one.
+    turned: Option<Frame>,
     /// `None`: the move is a translation. (Apart: most are.)
     pub(crate) turn: Option<Box<Turn>>,
 }
 
 impl Path {
-    /// `None` when a number is not finite: nothing can be said about such a move.
-    #[inline(always)]
-    pub(crate) fn between(from: &Pose, to: &Pose) -> Option<Path> {
-        let is_turned = !same(&from.rotation, &to.rotation);
-        let stays = same(&from.position, &to.position);
-        if !(from.is_sound() && (stays || to.is_placed()) && (!is_turned || to.is_sound())) {
+    /// `None` when a number is not finite, or the margin is none: nothing can be said about such a move.
+    pub(crate) fn of(way: &Move) -> Option<Path> {
+        if !(way.margin_mm >= 0.0 && way.margin_mm <= f64::MAX) {
+            return None;
+        }
+        let (from, to) = (&way.from, &way.to);
+        let is_turned = from.rotation != to.rotation;
+        if !(from.is_sound() && to.is_placed() && (!is_turned || to.is_sound())) {
             return None;
         }
         let turn = if is_turned {
@@ -33,28 +36,13 @@ impl Path {
         } else {
             None
         };
-        let [_, x, y, z] = from.rotation;
-        let is_unturned = (x == 0.0) & (y == 0.0) & (z == 0.0);
-        let path = Path {
+        Some(Path {
             from: from.position,
             to: to.position,
             displacement: sub(to.position, from.position),
-            is_at_rest: stays && turn.is_none(),
-            start: if is_unturned {
-                Frame::IDENTITY
-            } else {
-                Frame::of(from.rotation)
-            },
-            is_unturned,
+            turned: (!from.is_unturned()).then(|| Frame::of(from.rotation)),
             turn,
-        };
-        Some(path)
-    }
-
-    /// Whether the move goes nowhere.
-    #[inline]
-    pub(crate) fn is_at_rest(&self) -> bool {
-        self.is_at_rest
+        })
     }
 
     /// Origin of the mover at `t`.
@@ -66,7 +54,7 @@ impl Path {
     /// A piece of the mover where it stands at `t`.
     pub(crate) fn piece_at(&self, local: &Piece, t: f64) -> Piece {
         match &self.turn {
-            None => local.placed(&self.start, self.origin(t)),
+            None => local.placed(self.start(), self.origin(t)),
             Some(turn) => local.placed(&turn.frame_at(t), self.origin(t)),
         }
     }
@@ -82,21 +70,25 @@ impl Path {
         is_exact_sum(self.to, negate(self.from))
     }
 
-    /// Whether the frame of the mover is the common one at the start.
+    /// Orientation of the mover at the start, when it is not the common one.
     #[inline]
-    pub(crate) fn is_unturned(&self) -> bool {
-        self.is_unturned
+    pub(crate) fn turned(&self) -> Option<&Frame> {
+        self.turned.as_ref()
     }
 
-    /// Orientation of the mover at the start.
-    #[inline]
+    /// How the mover is turned on the way.
+    pub(crate) fn orientation(&self) -> Orientation<'_> {
+        match (&self.turn, &self.turned) {
+            (Some(_), _) => Orientation::Turning,
+            (None, None) => Orientation::Unturned,
+            (None, Some(frame)) => frame
+                .yaw()
+                .map_or(Orientation::Tilted(frame), Orientation::Yawed),
+        }
+    }
+
+    /// Orientation of the mover at the start, whatever it is.
     pub(crate) fn start(&self) -> &Frame {
-        &self.start
+        self.turned.as_ref().unwrap_or(&Frame::IDENTITY)
     }
-}
-
-/// Equality of all members at once, which here is sooner than one after the other.
-#[inline]
-fn same<const N: usize>(a: &[f64; N], b: &[f64; N]) -> bool {
-    a.iter().zip(b).fold(true, |same, (a, b)| same & (a == b))
 }

@@ -35,6 +35,13 @@ impl Pose {
         }
     }
 
+    /// Whether it turns nothing.
+    #[inline(always)]
+    pub(crate) fn is_unturned(&self) -> bool {
+        let [_, x, y, z] = self.rotation;
+        (x == 0.0) & (y == 0.0) & (z == 0.0)
+    }
+
     /// The same turn at another position (mm).
     pub fn moved_to(self, position: [f64; 3]) -> Pose {
         Pose { position, ..self }
@@ -64,7 +71,7 @@ impl Frame {
     pub(crate) fn of(rotation: [f64; 4]) -> Frame {
         let [w, x, y, z] = rotation;
         if (x == 0.0) & (y == 0.0) {
-            return Frame::yaw(w, z);
+            return Yaw::of(w, z).frame();
         }
         let twice = 2.0 / (w * w + x * x + y * y + z * z);
         let (xx, yy, zz) = (x * x * twice, y * y * twice, z * z * twice);
@@ -74,21 +81,6 @@ impl Frame {
             x: [1.0 - (yy + zz), xy + wz, xz - wy],
             y: [xy - wz, 1.0 - (xx + zz), yz + wx],
             z: [xz + wy, yz - wx, 1.0 - (xx + yy)],
-        }
-    }
-
-    /// Of the quaternion `[w, 0, 0, z]`.
-    #[inline]
-    fn yaw(w: f64, z: f64) -> Frame {
-        if z == 0.0 {
-            return Frame::IDENTITY;
-        }
-        let twice = 2.0 / (w * w + z * z);
-        let (zz, wz) = (z * z * twice, w * z * twice);
-        Frame {
-            x: [1.0 - zz, wz, 0.0],
-            y: [-wz, 1.0 - zz, 0.0],
-            z: [0.0, 0.0, 1.0],
         }
     }
 
@@ -104,10 +96,12 @@ impl Frame {
         self.is_vertical() && self.x[2] == 0.0 && self.y[2] == 0.0
     }
 
-    /// Whether it is upright and z points upward.
+    /// The same as a turn about z, if it is one.
     #[inline]
-    pub(crate) fn is_yaw(&self) -> bool {
-        self.z == Frame::IDENTITY.z && (self.x[2] == 0.0) & (self.y[2] == 0.0)
+    pub(crate) fn yaw(&self) -> Option<Yaw> {
+        let [cos, sin, rise] = self.x;
+        let is_yaw = self.z == Frame::IDENTITY.z && (rise == 0.0) & (self.y[2] == 0.0);
+        is_yaw.then_some(Yaw { cos, sin })
     }
 
     /// Whether nothing is turned. (Of frames made by [`Frame::of`], only the identity has this x and z.)
@@ -129,6 +123,43 @@ impl Frame {
             x: self.apply(inner.x),
             y: self.apply(inner.y),
             z: self.apply(inner.z),
+        }
+    }
+}
+
+/// A turn about z.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Yaw {
+    pub(crate) cos: f64,
+    pub(crate) sin: f64,
+}
+
+impl Yaw {
+    /// Of the quaternion `[w, 0, 0, z]`.
+    #[inline]
+    pub(crate) fn of(w: f64, z: f64) -> Yaw {
+        if z == 0.0 {
+            return Yaw { cos: 1.0, sin: 0.0 };
+        }
+        let twice = 2.0 / (w * w + z * z);
+        Yaw {
+            cos: 1.0 - z * z * twice,
+            sin: w * z * twice,
+        }
+    }
+
+    /// What a vector in the plane becomes.
+    #[inline(always)]
+    pub(crate) fn apply(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [x * self.cos - y * self.sin, x * self.sin + y * self.cos]
+    }
+
+    #[inline]
+    fn frame(&self) -> Frame {
+        Frame {
+            x: [self.cos, self.sin, 0.0],
+            y: [-self.sin, self.cos, 0.0],
+            z: [0.0, 0.0, 1.0],
         }
     }
 }

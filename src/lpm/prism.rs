@@ -2,7 +2,7 @@
 //! a way: [`meeting`](super::meeting), where they touch: [`touch`](super::touch).
 
 use super::piece::{Form, NOISE, Piece, is_exact_sum};
-use super::pose::{Frame, Pose};
+use super::pose::{Frame, Pose, Yaw};
 use super::shape::Shape;
 use super::vector::{Vec3, add, reach};
 
@@ -63,13 +63,10 @@ impl Prism {
         })
     }
 
-    /// The same carried along by its parent, which stands turned by the upright `frame` at `position`.
+    /// The same carried along by its parent, which stands at `position`, perhaps turned by an upright frame.
     #[inline(always)]
-    pub(crate) fn carried(&self, frame: &Frame, position: Vec3) -> Prism {
-        let mut placed = *self;
-        if !frame.is_identity() {
-            placed = self.turned(frame);
-        }
+    pub(crate) fn carried(&self, frame: Option<&Frame>, position: Vec3) -> Prism {
+        let mut placed = frame.map_or(*self, |frame| self.turned(frame));
         if !is_exact_sum(placed.centre, position) {
             placed.span += reach(position) + reach(placed.centre);
         }
@@ -89,6 +86,19 @@ impl Prism {
             (turned.half, turned.axis) = beside_x(self.half, [x, y]);
         }
         turned
+    }
+
+    /// The same in a parent turned about z, its axis wherever it comes to lie.
+    #[inline(always)]
+    pub(crate) fn yawed(&self, yaw: Yaw) -> Prism {
+        let [x, y, z] = self.centre;
+        let [turned_x, turned_y] = yaw.apply([x, y]);
+        Prism {
+            centre: [turned_x, turned_y, z],
+            axis: yaw.apply(self.axis),
+            span: self.span + reach(self.centre),
+            ..*self
+        }
     }
 
     /// The whole piece again, its footprint perhaps turned by quarters.

@@ -5,7 +5,8 @@
 //! never safety: a rounded box holds the true one, and what overlaps by rounding only is sorted out by
 //! the exact phase.
 
-use super::cover::{Cover, larger, smaller};
+use super::cover::Cover;
+use super::four::Four;
 use super::sweep::Pace;
 
 /// `N` boxes, a multiple of four.
@@ -46,7 +47,7 @@ impl<const N: usize> Boxes<N> {
     /// One of them.
     #[inline]
     pub(crate) fn cover(&self, lane: usize) -> Cover {
-        let member = |[x, y, z]: &[[f32; N]; 3]| [x[lane], y[lane], z[lane]];
+        let member = |[x, y, z]: &[[f32; N]; 3]| [x[lane], y[lane], z[lane], 0.0];
         Cover {
             low: member(&self.low),
             high: member(&self.high),
@@ -56,76 +57,61 @@ impl<const N: usize> Boxes<N> {
     /// Bit k: box k shares a point with `cover` on every axis.
     #[inline]
     pub(crate) fn meeting(&self, cover: &Cover) -> u32 {
-        let beside = |axis: usize| {
-            at_most(&self.low[axis], &[cover.high[axis]; N])
-                & at_most(&[cover.low[axis]; N], &self.high[axis])
-        };
-        beside(0) & beside(1) & beside(2)
+        let (low, high) = (cover.low.map(Four::all), cover.high.map(Four::all));
+        (0..N / 4).fold(0, |lanes, four| {
+            let pair = |axis: usize| {
+                let [own_low, own_high] =
+                    [&self.low[axis], &self.high[axis]].map(|it| Four::of(&it.as_chunks().0[four]));
+                [(own_low, high[axis]), (low[axis], own_high)]
+            };
+            let ([a, b], [c, d], [e, f]) = (pair(0), pair(1), pair(2));
+            lanes | Four::all_at_most([a, b, c, d, e, f]) << (4 * four)
+        })
     }
 
     /// Before which fraction of the way each box is not met, on a way along one axis.
     #[inline]
     pub(crate) fn entry(&self, cover: &Cover, pace: &Pace, axis: usize) -> [f32; N] {
-        let (low, high, pace) = (cover.low[axis], cover.high[axis], pace.0[axis]);
-        std::array::from_fn(|lane| {
-            let near = (self.low[axis][lane] - high) * pace;
-            let far = (self.high[axis][lane] - low) * pace;
-            larger(smaller(near, far), 0.0) * EARLIER
-        })
+        let mut entry = [0.0; N];
+        for (four, entries) in entry.as_chunks_mut().0.iter_mut().enumerate() {
+            let (near, far) = self.ends(four, cover, pace, axis);
+            let entry = near.smaller(far).larger(Four::all(0.0));
+            *entries = entry.times(Four::all(EARLIER)).numbers();
+        }
+        entry
     }
 
     /// The boxes that a box, starting as `cover`, meets on its way up to the fraction `until`. The
     /// same holds when the boxes go the other way and `cover` stands.
     #[inline(always)]
     pub(crate) fn crossing(&self, cover: &Cover, pace: &Pace, until: f32) -> Crossing<N> {
-        let (mut entry, mut exit) = ([0.0; N], [until; N]);
-        for axis in 0..3 {
-            let (low, high) = (cover.low[axis], cover.high[axis]);
-            for lane in 0..N {
-                let near = (self.low[axis][lane] - high) * pace.0[axis];
-                let far = (self.high[axis][lane] - low) * pace.0[axis];
-                entry[lane] = larger(smaller(near, far), entry[lane]);
-                exit[lane] = smaller(larger(near, far), exit[lane]);
+        let mut crossing = Crossing {
+            lanes: 0,
+            entry: [0.0; N],
+        };
+        for (four, entries) in crossing.entry.as_chunks_mut().0.iter_mut().enumerate() {
+            let (mut entry, mut exit) = (Four::all(0.0), Four::all(until));
+            for axis in 0..3 {
+                let (near, far) = self.ends(four, cover, pace, axis);
+                entry = near.smaller(far).larger(entry);
+                exit = near.larger(far).smaller(exit);
             }
+            let entry = entry.times(Four::all(EARLIER));
+            let exit = exit.times(Four::all(LATER));
+            crossing.lanes |= entry.at_most(exit) << (4 * four);
+            *entries = entry.numbers();
         }
-        for lane in 0..N {
-            entry[lane] *= EARLIER;
-            exit[lane] *= LATER;
-        }
-        Crossing {
-            lanes: at_most(&entry, &exit),
-            entry,
-        }
+        crossing
     }
-}
 
-/// Bit k: `a[k] <= b[k]`.
-#[inline]
-fn at_most<const N: usize>(a: &[f32; N], b: &[f32; N]) -> u32 {
-    #[cfg(target_arch = "x86_64")]
-    // SAFETY: SSE is part of every x86-64; the call needs nothing else.
-    return unsafe { at_most_by_four(a, b) };
-    #[cfg(not(target_arch = "x86_64"))]
-    return at_most_one_by_one(a, b);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "sse")]
-#[inline]
-fn at_most_by_four<const N: usize>(a: &[f32; N], b: &[f32; N]) -> u32 {
-    use std::arch::x86_64::{_mm_cmple_ps, _mm_loadu_ps, _mm_movemask_ps};
-    let fours = a.as_chunks::<4>().0.iter().zip(b.as_chunks::<4>().0);
-    fours.enumerate().fold(0, |word, (at, (a, b))| {
-        // SAFETY: each chunk is four numbers that may be read, wherever they stand.
-        let (a, b) = unsafe { (_mm_loadu_ps(a.as_ptr()), _mm_loadu_ps(b.as_ptr())) };
-        word | (_mm_movemask_ps(_mm_cmple_ps(a, b)) as u32) << (4 * at)
-    })
-}
-
-/// The same, lane by lane.
-#[cfg(any(test, not(target_arch = "x86_64")))]
-fn at_most_one_by_one<const N: usize>(a: &[f32; N], b: &[f32; N]) -> u32 {
-    (0..N).fold(0, |word, lane| word | u32::from(a[lane] <= b[lane]) << lane)
+    /// Of four boxes: at which fractions of the way `cover` has come to one side, and has left the other.
+    #[inline(always)]
+    fn ends(&self, four: usize, cover: &Cover, pace: &Pace, axis: usize) -> (Four, Four) {
+        let pace = Four::all(pace.0[axis]);
+        let [low, high] = [&self.low, &self.high].map(|it| Four::of(&it[axis].as_chunks().0[four]));
+        let near = low.minus(Four::all(cover.high[axis])).times(pace);
+        (near, high.minus(Four::all(cover.low[axis])).times(pace))
+    }
 }
 
 #[cfg(test)]
@@ -133,28 +119,20 @@ mod tests {
     use super::*;
     use crate::lpm::distance::tests::Dice;
 
-    #[test]
-    fn four_lanes_at_a_time_say_what_one_by_one_says() {
-        let mut dice = Dice(8);
-        for _ in 0..2_000 {
-            let mut drawn = || {
-                [0; 8].map(|_| match dice.pick(5) {
-                    0 => f32::NAN,
-                    1 => f32::INFINITY,
-                    _ => (3.0 * dice.signed()).round() as f32,
-                })
-            };
-            let (a, b) = (drawn(), drawn());
-            assert_eq!(at_most(&a, &b), at_most_one_by_one(&a, &b), "{a:?} {b:?}");
-        }
+    fn three([x, y, z, _]: [f32; 4]) -> [f64; 3] {
+        [x, y, z].map(f64::from)
+    }
+
+    fn four([x, y, z]: [f32; 3]) -> [f32; 4] {
+        [x, y, z, 0.0]
     }
 
     fn drawn(dice: &mut Dice) -> Cover {
         let at = dice.vector().map(|member| (3.0 * member).round());
         let size = dice.vector().map(|member| (2.0 * member).abs().round());
         Cover {
-            low: [0, 1, 2].map(|axis| (at[axis] - size[axis]) as f32),
-            high: [0, 1, 2].map(|axis| (at[axis] + size[axis]) as f32),
+            low: four([0, 1, 2].map(|axis| (at[axis] - size[axis]) as f32)),
+            high: four([0, 1, 2].map(|axis| (at[axis] + size[axis]) as f32)),
         }
     }
 
@@ -189,14 +167,11 @@ mod tests {
             }
             let mut boxes = Boxes::<4>::NOWHERE;
             // A hair larger, as rounding outward leaves them.
-            boxes.set(
-                1,
-                &Cover::of((element.low.map(f64::from), element.high.map(f64::from))),
-            );
+            boxes.set(1, &Cover::of((three(element.low), three(element.high))));
             let crossing = boxes.crossing(&mover, &Pace::of(run), 1.0);
             let at = |t: f64| {
-                let moved = |bound: [f32; 3]| {
-                    [0, 1, 2].map(|axis| (f64::from(bound[axis]) + t * run[axis]) as f32)
+                let moved = |bound: [f32; 4]| {
+                    four([0, 1, 2].map(|axis| (f64::from(bound[axis]) + t * run[axis]) as f32))
                 };
                 let (low, high) = (moved(mover.low), moved(mover.high));
                 element.distance(&Cover { low, high }) == 0.0

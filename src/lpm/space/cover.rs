@@ -1,5 +1,6 @@
 //! Boxes of single precision around boxes of double precision.
 
+use super::four::Four;
 use crate::lpm::vector::Vec3;
 
 /// More than half a unit in the last place of an f32, relative.
@@ -35,65 +36,46 @@ pub(crate) fn larger(a: f32, b: f32) -> f32 {
 const SINGLE: f32 = 4.0 * f32::EPSILON;
 const TINY: f32 = f32::MIN_POSITIVE;
 
-/// Adding it leaves an f32 no digits behind the point.
-const NO_FRACTION: f32 = 12_582_912.0;
-
-/// A number of at most 2^21 rounded to the nearest whole one, without the care that a cast takes of all
-/// others. Monotone.
-#[inline]
-pub(crate) fn nearest(x: f32) -> i32 {
-    (x + NO_FRACTION).to_bits() as i32 - NO_FRACTION.to_bits() as i32
-}
-
-/// The same rounded down.
-#[inline]
-pub(crate) fn whole(x: f32) -> i32 {
-    let rounded = (x + NO_FRACTION) - NO_FRACTION;
-    nearest(x) - i32::from(rounded > x)
-}
-
-/// A box of single precision that holds a box of double precision.
+/// A box of single precision that holds a box of double precision. (The fourth members are 0: four numbers
+/// are one register.)
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(16))]
 pub(crate) struct Cover {
-    pub(crate) low: [f32; 3],
-    pub(crate) high: [f32; 3],
+    pub(crate) low: [f32; 4],
+    pub(crate) high: [f32; 4],
 }
 
 impl Cover {
     #[inline]
     pub(crate) fn of((low, high): (Vec3, Vec3)) -> Cover {
         Cover {
-            low: [below(low[0]), below(low[1]), below(low[2])],
-            high: [above(high[0]), above(high[1]), above(high[2])],
+            low: [below(low[0]), below(low[1]), below(low[2]), 0.0],
+            high: [above(high[0]), above(high[1]), above(high[2]), 0.0],
         }
     }
 
     /// Around the way of this box by `run`, mm.
     #[inline]
     pub(crate) fn swept(&self, run: Vec3) -> Cover {
-        let mut swept = *self;
-        for (axis, way) in run.into_iter().enumerate() {
-            let way = way as f32;
-            // Nothing is added at rest; the slack is twice what the sum and the way may have lost.
-            if way != 0.0 {
-                let (low, high) = (self.low[axis], self.high[axis]);
-                let slack = (low.abs() + way.abs()) * SINGLE + TINY;
-                swept.low[axis] = low + smaller(way, 0.0) - slack;
-                let slack = (high.abs() + way.abs()) * SINGLE + TINY;
-                swept.high[axis] = high + larger(way, 0.0) + slack;
-            }
+        let (low, high) = (Four::of(&self.low), Four::of(&self.high));
+        let (way, rest) = (Four::rounded(&run), Four::all(0.0));
+        // Twice what the sum and the way may have lost.
+        let slack = |bound: Four| {
+            let magnitude = bound.abs().plus(way.abs());
+            magnitude.times(Four::all(SINGLE)).plus(Four::all(TINY))
+        };
+        Cover {
+            low: low.plus(way.smaller(rest)).minus(slack(low)).numbers(),
+            high: high.plus(way.larger(rest)).plus(slack(high)).numbers(),
         }
-        swept
     }
 
     /// The smallest one that holds both.
     #[inline]
     pub(crate) fn around(self, other: Cover) -> Cover {
-        let least = |axis: usize| smaller(self.low[axis], other.low[axis]);
-        let most = |axis: usize| larger(self.high[axis], other.high[axis]);
         Cover {
-            low: [least(0), least(1), least(2)],
-            high: [most(0), most(1), most(2)],
+            low: Four::of(&self.low).smaller(Four::of(&other.low)).numbers(),
+            high: Four::of(&self.high).larger(Four::of(&other.high)).numbers(),
         }
     }
 
@@ -124,20 +106,6 @@ mod tests {
             }
         }
         assert!(f64::from(below(0.0)) < 0.0 && f64::from(above(-0.0)) > 0.0);
-    }
-
-    #[test]
-    fn a_number_is_rounded_down_as_its_floor_says_and_to_the_nearest_without_stepping_back() {
-        let mut dice = Dice(12);
-        for exponent in -30..21 {
-            for _ in 0..200 {
-                let x = (dice.signed() * 2f64.powi(exponent)) as f32;
-                for x in [x, x.round(), x.round().next_down(), x.round().next_up()] {
-                    assert_eq!(whole(x), x.floor() as i32, "{x:e}");
-                    assert!(nearest(x) <= nearest(x.next_up()), "{x:e}");
-                }
-            }
-        }
     }
 
     #[test]

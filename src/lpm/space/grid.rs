@@ -7,7 +7,7 @@
 use super::Seat;
 use std::ops::Range;
 
-use super::area::{Area, GROWTH};
+use super::area::{Area, Ends, GROWTH};
 use super::cover::Cover;
 use super::pool::{Cell, Chain, Pool};
 use super::silhouettes::{Bundle, Lane, NONE};
@@ -17,14 +17,12 @@ const MOST_CELLS_OF_A_PIECE: i64 = 128;
 /// Largest grid, in cells; pieces farther out are kept in the open cell.
 const MOST_CELLS: i64 = 1 << 18;
 
-/// Of two by two squares those that differ, by rows and columns less one: bit 0 the first, bit 1 the next
-/// column, bit 2 the next row.
-const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
-
 /// The squares, and one open cell for pieces too large or too far out for them.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
     area: Area,
+    /// Of that area.
+    pub(super) ends: Ends,
     pub(super) columns: usize,
     /// Of each cell, as in [`Cell`]; then of the open one.
     pub(super) layers: Vec<u64>,
@@ -38,6 +36,7 @@ impl Default for Grid {
     fn default() -> Grid {
         Grid {
             area: Area::NOWHERE,
+            ends: Ends::FIRST,
             columns: 0,
             layers: Vec::new(),
             heads: Vec::new(),
@@ -104,14 +103,13 @@ impl Grid {
         (row - self.area.low[1]) as usize * self.columns + (column - self.area.low[0]) as usize
     }
 
-    /// The cells of an area of two by two at most, and which of them differ (bit k: that at place k).
+    /// The cells of an area of two by two, or fewer, and which of them differ (bit k: that at place k).
     #[inline(always)]
-    pub(super) fn few(&self, area: &Area) -> Option<([usize; 4], u32)> {
+    pub(super) fn few(&self, area: &Area) -> ([usize; 4], u32) {
         let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
-        let different = DIFFERENT.get(deep)?.get(wide)?;
         let first = self.place(area.low[0], area.low[1]);
         let next = first + deep * self.columns;
-        Some(([first, first + wide, next, next + wide], *different))
+        ([first, first + wide, next, next + wide], area.different())
     }
 
     /// From the number of a cell to that of the next column (axis 0) or row (1).
@@ -134,11 +132,16 @@ impl Grid {
         steps > 3 || steps >= 0 && (word(0) | word(1) | word(2) | word(3)) & layers != 0
     }
 
+    /// The layers that have something in a cell, if there is one of this number.
+    #[inline]
+    pub(super) fn word(&self, place: usize) -> u64 {
+        self.layers.get(place).copied().unwrap_or(0)
+    }
+
     /// The bundles of a cell that has something in one of these layers.
     #[inline]
     pub(crate) fn in_layers(&self, place: usize, layers: u64) -> Option<Chain<'_>> {
-        let word = self.layers.get(place).copied().unwrap_or(0);
-        (word & layers != 0).then(|| self.pool.chain(self.heads[place]))
+        (self.word(place) & layers != 0).then(|| self.pool.chain(self.heads[place]))
     }
 
     /// A bundle that was shown, by its number.
@@ -188,7 +191,7 @@ impl Grid {
                 .copy_from_slice(&self.heads[from..from + self.columns]);
         }
         (self.layers, self.heads) = (larger.layers, larger.heads);
-        (self.columns, self.area) = (larger.columns, larger.area);
+        (self.columns, self.area, self.ends) = (larger.columns, larger.area, larger.ends);
         true
     }
 
@@ -197,6 +200,7 @@ impl Grid {
         let cells = area.cells() as usize;
         Grid {
             area,
+            ends: area.ends(),
             columns: area.columns() as usize,
             layers: vec![0; cells],
             heads: vec![NONE; cells],
@@ -233,7 +237,8 @@ impl Grid {
         for seat in seats {
             let word = seat.reach.word();
             // Two by two squares at most: how many cannot be guessed, so four are counted, some by nothing.
-            if let Some((places, used)) = self.few(&seat.area) {
+            if seat.area.is_few() {
+                let (places, used) = self.few(&seat.area);
                 for (square, place) in places.into_iter().enumerate() {
                     counts[place] += used >> square & 1;
                     self.layers[place] |= word;

@@ -9,7 +9,8 @@
 //! The checking space Omega reaches from the lowest `h1` to the highest `h2` and follows them.
 
 use super::Seat;
-use super::cover::{Cover, larger, nearest, smaller};
+use super::cover::{Cover, larger, smaller};
+use super::four::Four;
 
 /// Layers fit the bits of one word.
 const LAYERS: usize = 64;
@@ -21,17 +22,9 @@ const SHORT: usize = 8;
 /// over them shares no layer with them.
 const STEP_MM: f32 = 8.0;
 
-/// Layers below the top of the baseplate, less the half that rounding to the nearest adds; whatever lies
-/// lower belongs to the lowest layer, what lies above all steps (440 mm) to the highest.
-const STEPS_BELOW: f32 = 7.5;
-
-/// The layer of a height. Monotone, which is all that safety needs.
-#[inline]
-fn step(height_mm: f32) -> usize {
-    let steps = height_mm * (1.0 / STEP_MM) + STEPS_BELOW;
-    // NaN is the lowest.
-    nearest(smaller(larger(steps, 0.0), LAYERS as f32 - 1.0)) as usize
-}
+/// Layers below the top of the baseplate; whatever lies lower belongs to the lowest layer, what lies above all
+/// steps (448 mm) to the highest.
+const STEPS_BELOW: f32 = 8.0;
 
 /// The layers that a piece reaches into: the lowest and the highest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,18 +41,27 @@ impl Reach {
     };
 
     /// Of a piece between two heights, mm.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {
+        let heights = Four::of(&[bottom_mm, top_mm, 0.0, 0.0]);
+        let steps = heights.times(Four::all(1.0 / STEP_MM));
+        let steps = steps.plus(Four::all(STEPS_BELOW));
+        // All of this is monotone, which is all that safety needs.
+        let within = steps.within(Four::all(0.0), Four::all(LAYERS as f32 - 1.0));
+        let [low, high, ..] = within.floor();
         Reach {
-            low: step(bottom_mm) as u8,
-            high: step(top_mm) as u8,
+            low: low as u8,
+            high: high as u8,
         }
     }
 
     /// One bit a layer.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn word(self) -> u64 {
-        u64::MAX << self.low & u64::MAX >> (LAYERS - 1 - usize::from(self.high))
+        // What would be shifted out is no layer.
+        let last = LAYERS as u32 - 1;
+        u64::MAX.wrapping_shl(u32::from(self.low))
+            & u64::MAX.wrapping_shr(last.wrapping_sub(u32::from(self.high)))
     }
 }
 
@@ -177,21 +179,22 @@ impl Layers {
         if high < self.bottom || low > self.top {
             return 0;
         }
-        u64::MAX << step(low) & u64::MAX >> (LAYERS - 1 - step(high))
+        Reach::of(low, high).word()
     }
 
     /// The same without those in which nothing reaches into these heights: what a way over many squares
     /// is worth.
     #[inline]
     pub(crate) fn meeting(&self, low: f32, high: f32) -> u64 {
-        let outermost = self.void(step(low), low, high) | self.void(step(high), low, high);
+        let reach = Reach::of(low, high);
+        let outermost = self.void(reach.low, low, high) | self.void(reach.high, low, high);
         self.between(low, high) & !outermost
     }
 
     /// The bit of a layer where `low..=high` lies between its real tops and real bottoms.
     #[inline]
-    fn void(&self, layer: usize, low: f32, high: f32) -> u64 {
-        let layer = layer % LAYERS;
+    fn void(&self, layer: u8, low: f32, high: f32) -> u64 {
+        let layer = usize::from(layer) % LAYERS;
         let is_void = (self.passing[layer] == 0) & (self.h2[layer] < low) & (self.h1[layer] > high);
         u64::from(is_void) << layer
     }

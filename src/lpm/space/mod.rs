@@ -15,20 +15,24 @@ mod area;
 mod around;
 mod boxes;
 mod cover;
+mod four;
 mod grid;
 mod layers;
 mod pool;
 mod silhouettes;
+mod strip;
 mod sweep;
 mod walk;
 
 pub(crate) use boxes::Boxes;
 pub(crate) use cover::{Cover, above};
+pub(crate) use four::Four;
 pub(crate) use silhouettes::{Bundle, LANES};
 pub(crate) use sweep::{SLOWEST_MM, Sweep};
 pub(crate) use walk::Visit;
 
 use area::Area;
+use around::Around;
 use grid::Grid;
 use layers::{Layers, Reach};
 use walk::Walk;
@@ -56,14 +60,11 @@ impl Space {
         self.grid.heap_bytes() + self.seats.capacity() * size_of::<Seat>()
     }
 
-    /// Shows whatever a box at rest may meet, bundle by bundle: bit k: lane k. A piece may be shown more
-    /// than once. True: nothing else matters.
+    /// The bundles with what a box at rest may meet: bit k: lane k. A piece may come more than once.
     #[inline(always)]
-    pub(crate) fn around(&self, cover: &Cover, show: impl FnMut(&Bundle, u32) -> bool) {
+    pub(crate) fn around<'a>(&'a self, cover: &'a Cover) -> Option<Around<'a>> {
         let layers = self.layers.between(cover.low[2], cover.high[2]);
-        if layers != 0 {
-            self.grid.around(cover, layers, show);
-        }
+        (layers != 0).then(|| Around::new(&self.grid, cover, layers))
     }
 
     /// A bundle that was shown, by its number.

@@ -204,8 +204,8 @@ mod tests {
                 let high = low + dice.pick(64 - u64::from(low)) as u8;
                 let reach = Reach { low, high };
                 let cover = Cover {
-                    low: [0.0; 3],
-                    high: [0.0; 3],
+                    low: [0.0; 4],
+                    high: [0.0; 4],
                 };
                 bundle.push(&Lane {
                     piece,

@@ -1,11 +1,12 @@
 //! The way of a box over the squares of the baseplate, in the direction in which it goes.
 
-use super::area::{Area, PITCH_MM};
+use super::area::Area;
 use super::cover::{Cover, above};
 use super::grid::Grid;
 use super::pool::Chain;
 use super::silhouettes::{Bundle, LANES};
-use super::sweep::{SLACK_MM, SLOWEST_MM, Sweep};
+use super::strip::Strip;
+use super::sweep::{SLOWEST_MM, Sweep};
 
 /// Who is shown what a box may meet.
 pub(crate) trait Visit {
@@ -136,22 +137,13 @@ impl<'a, V: Visit> Walk<'a, V> {
     /// Band by band across the axis of the longer way, in its direction: of each band only the
     /// squares that the box passes while it is over the band.
     fn along<const AXIS: usize>(&mut self, area: &Area) {
-        let across = 1 - AXIS;
-        let strip = Strip::new::<AXIS>(self.sweep, area.low[across]);
-        let width = area.high[across] - area.low[across];
-        let stride = self.grid.stride(across);
+        let mut strip = Strip::new::<AXIS>(self.sweep, area);
+        let stride = self.grid.stride(1 - AXIS);
         let until = self.visit.pause();
         self.shorten(until);
-        for step in 0..=area.high[AXIS] - area.low[AXIS] {
-            let band = if strip.forward {
-                area.low[AXIS] + step
-            } else {
-                area.high[AXIS] - step
-            };
-            if strip.is_after(band, self.until) {
-                return;
-            }
-            let (from, to) = strip.over(band, width);
+        let mut last = strip.last(self.until);
+        while strip.step <= last {
+            let (band, from, to) = strip.next();
             let first = if AXIS == 0 {
                 self.grid.place(band, area.low[1] + from)
             } else {
@@ -170,69 +162,7 @@ impl<'a, V: Visit> Walk<'a, V> {
             }
             let until = self.visit.pause();
             self.shorten(until);
-        }
-    }
-}
-
-/// What a box passes of each band: between two lines, in squares across the bands.
-struct Strip {
-    forward: bool,
-    /// Across per band, and where both lines would be over band 0.
-    slope: f64,
-    low: f64,
-    high: f64,
-    /// Way along the bands until the box comes over band 0, in its direction; and the whole way, mm.
-    ahead: f64,
-    run: f64,
-}
-
-impl Strip {
-    /// `origin` is the row or column that counts as 0 across.
-    #[inline]
-    fn new<const AXIS: usize>(sweep: &Sweep, origin: i32) -> Strip {
-        let across = 1 - AXIS;
-        let start = |bounds: &[f32; 3], axis: usize| f64::from(bounds[axis]);
-        let run = sweep.run[AXIS];
-        let slope = sweep.run[across] / run;
-        // The way of the box over band 0 begins and ends here, whichever way it goes.
-        let first = -start(&sweep.start.high, AXIS) - SLACK_MM;
-        let last = PITCH_MM - start(&sweep.start.low, AXIS) + SLACK_MM;
-        let (lowest, highest) = if slope >= 0.0 {
-            (first, last)
-        } else {
-            (last, first)
-        };
-        let squares = |mm: f64| mm * (1.0 / PITCH_MM) - f64::from(origin);
-        Strip {
-            forward: run > 0.0,
-            slope,
-            low: squares(start(&sweep.start.low, across) - SLACK_MM + slope * lowest),
-            high: squares(start(&sweep.start.high, across) + SLACK_MM + slope * highest),
-            ahead: if run > 0.0 { first } else { last },
-            run,
-        }
-    }
-
-    /// First and last square that the box may pass over a band, of `0..=width`. Where it stands at the
-    /// ends of its way does not count: a superset is safe.
-    #[inline]
-    fn over(&self, band: i32, width: i32) -> (i32, i32) {
-        let shift = self.slope * f64::from(band);
-        // A cast cuts towards 0, which is downward for all that counts. What is no number, of a box
-        // without end, is every square.
-        let from = ((self.low + shift) as i32).clamp(0, width);
-        let to = (self.high + shift).min(f64::from(width)) as i32;
-        (from, to.max(0))
-    }
-
-    /// Whether the box comes over a band only after the fraction `until` of its way.
-    #[inline]
-    fn is_after(&self, band: i32, until: f64) -> bool {
-        let way = self.ahead + f64::from(band) * PITCH_MM;
-        if self.forward {
-            way > self.run * until
-        } else {
-            way < self.run * until
+            last = strip.last(self.until);
         }
     }
 }
