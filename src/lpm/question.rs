@@ -6,54 +6,23 @@ use super::model::Model;
 use super::mover::{Mover, Moving};
 use super::passage::Passage;
 use super::path::Path;
-use super::rest::{Rested, Where, Whether};
+use super::prism::Prism;
+use super::rest::Question;
 use super::straight::Hit;
+use super::touch::touch;
+use super::vector::Vec3;
 
 impl Model {
     /// When and where the mover first comes within the margin of an element.
     pub fn first_contact(&self, mover: &impl Moving, way: &Move) -> Answer {
-        let answer = mover.asked(|body| match self.at_rest::<Where>(body, way) {
-            Rested::Clear => Some(Answer::Clear),
-            Rested::Met(piece, gap) => Some(self.blocked(piece, &Hit { t: 0.0, gap })),
-            Rested::Unsaid => self.first_on_the_way(body, way),
-        });
-        answer.flatten().unwrap_or_else(undecidable)
-    }
-
-    fn first_on_the_way(&self, body: &Mover, way: &Move) -> Option<Answer> {
-        let path = Path::of(way);
-        let path = path.as_ref()?;
-        if let Some((piece, hit)) = self.enclosed(body, way) {
-            return Some(self.blocked(piece, &hit));
-        }
-        let passage = Passage::new(self, body, path, way);
-        Some(match passage.contact(Wanted::First) {
-            None => Answer::Clear,
-            Some(found) => self.blocked(found.element, &found.hit(&passage)),
-        })
+        let answer = mover.asked(|body| self.ask::<FirstContact>(body, way));
+        answer.unwrap_or(UNDECIDABLE)
     }
 
     /// Some element within the margin at some time of the move; `None` is proof that there is none.
     pub fn any_hit(&self, mover: &impl Moving, way: &Move) -> Option<ElementKey> {
-        let answer = mover.asked(|body| match self.at_rest::<Whether>(body, way) {
-            Rested::Clear => Some(None),
-            Rested::Met(piece, ()) => Some(Some(self.owner(piece))),
-            Rested::Unsaid => self.any_on_the_way(body, way),
-        });
-        answer.flatten().unwrap_or(Some(ElementKey::UNDECIDABLE))
-    }
-
-    fn any_on_the_way(&self, body: &Mover, way: &Move) -> Option<Option<ElementKey>> {
-        let path = Path::of(way);
-        let path = path.as_ref()?;
-        let piece = match self.enclosed(body, way) {
-            Some((piece, _)) => Some(piece),
-            None => {
-                let passage = Passage::new(self, body, path, way);
-                passage.contact(Wanted::Any).map(|found| found.element)
-            }
-        };
-        Some(piece.map(|piece| self.owner(piece)))
+        let answer = mover.asked(|body| self.ask::<AnyHit>(body, way));
+        answer.unwrap_or(Some(ElementKey::UNDECIDABLE))
     }
 
     /// Least distance over the move up to `range_mm`; `None` when it is larger.
@@ -102,17 +71,6 @@ impl Model {
         self.pieces.at(piece).owner
     }
 
-    #[inline]
-    fn blocked(&self, piece: u32, hit: &Hit) -> Answer {
-        Answer::Blocked(Contact {
-            t_stop: (hit.t * (1.0 - 4.0 * f64::EPSILON)).clamp(0.0, 1.0),
-            blocker: self.owner(piece),
-            at: hit.gap.on_element,
-            normal: hit.gap.normal,
-            distance_mm: hit.gap.lower.max(0.0),
-        })
-    }
-
     /// A piece of an element that holds the mover, or is held by it, without touching.
     #[inline]
     fn enclosed(&self, body: &Mover, way: &Move) -> Option<(u32, Hit)> {
@@ -141,12 +99,81 @@ impl Model {
     }
 }
 
-fn undecidable() -> Answer {
+/// Is anything met, and by whom?
+struct AnyHit;
+
+impl Question for AnyHit {
+    type Answer = Option<ElementKey>;
+    const CLEAR: Option<ElementKey> = None;
+
+    #[inline(always)]
+    fn met(owner: ElementKey, _: &Prism, _: &Prism, _: Vec3) -> Option<ElementKey> {
+        Some(owner)
+    }
+
+    #[inline(never)]
+    fn on_the_way(model: &Model, body: &Mover, way: &Move) -> Option<ElementKey> {
+        let path = Path::of(way);
+        let Some(path) = &path else {
+            return Some(ElementKey::UNDECIDABLE);
+        };
+        let piece = match model.enclosed(body, way) {
+            Some((piece, _)) => piece,
+            None => {
+                let passage = Passage::new(model, body, path, way);
+                passage.contact(Wanted::Any)?.element
+            }
+        };
+        Some(model.owner(piece))
+    }
+}
+
+/// What is met first, when and where?
+struct FirstContact;
+
+impl Question for FirstContact {
+    type Answer = Answer;
+    const CLEAR: Answer = Answer::Clear;
+
+    #[inline(always)]
+    fn met(owner: ElementKey, element: &Prism, mover: &Prism, apart: Vec3) -> Answer {
+        let gap = touch(element, mover, apart);
+        blocked(owner, &Hit { t: 0.0, gap })
+    }
+
+    #[inline(never)]
+    fn on_the_way(model: &Model, body: &Mover, way: &Move) -> Answer {
+        let path = Path::of(way);
+        let Some(path) = &path else {
+            return UNDECIDABLE;
+        };
+        if let Some((piece, hit)) = model.enclosed(body, way) {
+            return blocked(model.owner(piece), &hit);
+        }
+        let passage = Passage::new(model, body, path, way);
+        match passage.contact(Wanted::First) {
+            None => Answer::Clear,
+            Some(found) => blocked(model.owner(found.element), &found.hit(&passage)),
+        }
+    }
+}
+
+/// The answer about what cannot be judged.
+const UNDECIDABLE: Answer = Answer::Blocked(Contact {
+    t_stop: 0.0,
+    blocker: ElementKey::UNDECIDABLE,
+    at: [0.0; 3],
+    normal: [0.0, 0.0, 1.0],
+    distance_mm: 0.0,
+});
+
+#[inline]
+fn blocked(blocker: ElementKey, hit: &Hit) -> Answer {
     Answer::Blocked(Contact {
-        t_stop: 0.0,
-        blocker: ElementKey::UNDECIDABLE,
-        at: [0.0; 3],
-        normal: [0.0, 0.0, 1.0],
-        distance_mm: 0.0,
+        t_stop: (hit.t * (1.0 - 4.0 * f64::EPSILON)).clamp(0.0, 1.0),
+        blocker,
+        at: hit.gap.on_element,
+        normal: hit.gap.normal,
+        distance_mm: hit.gap.lower.max(0.0),
     })
 }

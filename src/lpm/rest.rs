@@ -5,8 +5,7 @@
 //! the slack of [`meeting`](super::meeting), for the reason that stands there. Where something is tilted, holds
 //! space or has to keep a margin nothing is said here: those are questions about a way, of no length.
 
-use super::answer::Move;
-use super::distance::Gap;
+use super::answer::{ElementKey, Move};
 use super::meeting::slack;
 use super::model::Model;
 use super::mover::{Group, Mover, Orientation, Whereabouts};
@@ -15,65 +14,48 @@ use super::pose::Yaw;
 use super::prism::Prism;
 use super::space::LANES;
 use super::standing::Stands;
-use super::touch::{lie_apart, touch};
+use super::touch::lie_apart;
 use super::vector::{Vec3, add, reach, sub};
 
-/// What closed forms say about a body at rest.
-pub(crate) enum Rested<A> {
-    /// Proven: nothing is met.
-    Clear,
-    /// This piece, by its number, may be met; and what was to be told of it.
-    Met(u32, A),
-    /// Nothing that stands here.
-    Unsaid,
-}
-
-/// What is wanted of a contact.
-pub(crate) trait Telling {
-    type Told;
-    /// Of an element and a piece of the mover whose centre lies `apart` from it.
-    fn tell(element: &Prism, mover: &Prism, apart: Vec3) -> Self::Told;
-}
-
-/// That it is.
-pub(crate) struct Whether;
-
-impl Telling for Whether {
-    type Told = ();
-    #[inline(always)]
-    fn tell(_: &Prism, _: &Prism, _: Vec3) {}
-}
-
-/// Where it is.
-pub(crate) struct Where;
-
-impl Telling for Where {
-    type Told = Gap;
-    #[inline(always)]
-    fn tell(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
-        touch(element, mover, apart)
-    }
+/// A question that has a short answer for a body at rest. (Answers are returned as they are made: one that is
+/// taken out of another is copied, and a copy waits until it has been written.)
+pub(crate) trait Question {
+    type Answer;
+    /// Nothing is met.
+    const CLEAR: Self::Answer;
+    /// An element may be met, in a piece from which the centre of a piece of the mover lies `apart`.
+    fn met(owner: ElementKey, element: &Prism, mover: &Prism, apart: Vec3) -> Self::Answer;
+    /// The answer for any body and any way.
+    fn on_the_way(model: &Model, body: &Mover, way: &Move) -> Self::Answer;
 }
 
 impl Model {
-    /// A contact of a body that stays where it is.
+    /// Answers at once where a body stays where it is and closed forms say enough.
     #[inline(always)]
-    pub(crate) fn at_rest<T: Telling>(&self, body: &Mover, way: &Move) -> Rested<T::Told> {
-        let is_plain = self.hollow.is_empty() & !body.is_hollow() & (way.margin_mm == 0.0);
-        if !(is_plain && way.goes_nowhere() && way.from.is_sound()) {
-            return Rested::Unsaid;
-        }
+    pub(crate) fn ask<Q: Question>(&self, body: &Mover, way: &Move) -> Q::Answer {
         let rest = Rest {
             model: self,
             body,
             way,
         };
-        match way.from.rotation {
-            [_, 0.0, 0.0, 0.0] => rest.unturned::<T>(),
-            [w, 0.0, 0.0, z] => rest.yawed::<T>(Yaw::of(w, z)),
-            _ => Rested::Unsaid,
+        let is_plain = self.hollow.is_empty() & !body.is_hollow() & (way.margin_mm == 0.0);
+        if is_plain && way.goes_nowhere() && way.from.is_sound() {
+            match way.from.rotation {
+                [_, 0.0, 0.0, 0.0] => return rest.unturned::<Q>(),
+                [w, 0.0, 0.0, z] => return rest.yawed::<Q>(Yaw::of(w, z)),
+                _ => {}
+            }
         }
+        Q::on_the_way(self, body, way)
     }
+}
+
+/// What is known of a standing piece.
+enum Judged<A> {
+    Clear,
+    Met(A),
+    /// Not upright: nothing that is known here.
+    Unsaid,
 }
 
 /// A body where its way begins.
@@ -86,17 +68,17 @@ struct Rest<'a> {
 impl Rest<'_> {
     /// (Apart from the other one, so that it carries no yaw.)
     #[inline(never)]
-    fn unturned<T: Telling>(&self) -> Rested<T::Told> {
-        self.among::<T>(None)
+    fn unturned<Q: Question>(&self) -> Q::Answer {
+        self.among::<Q>(None)
     }
 
     #[inline(never)]
-    fn yawed<T: Telling>(&self, yaw: Yaw) -> Rested<T::Told> {
-        self.among::<T>(Some(yaw))
+    fn yawed<Q: Question>(&self, yaw: Yaw) -> Q::Answer {
+        self.among::<Q>(Some(yaw))
     }
 
     #[inline(always)]
-    fn among<T: Telling>(&self, yaw: Option<Yaw>) -> Rested<T::Told> {
+    fn among<Q: Question>(&self, yaw: Option<Yaw>) -> Q::Answer {
         let at = Whereabouts {
             origin: self.way.from.position,
             orientation: yaw.map_or(Orientation::Unturned, Orientation::Yawed),
@@ -122,62 +104,65 @@ impl Rest<'_> {
                     if places == 0 {
                         continue;
                     }
-                    let number = bundle.piece(lane);
-                    match self.judged::<T>(number, (group, places), yaw) {
-                        Rested::Clear => {}
-                        Rested::Unsaid => is_said = false,
-                        met @ Rested::Met(..) => return met,
+                    match self.judged::<Q>(bundle.piece(lane), (group, places), yaw) {
+                        Judged::Clear => {}
+                        Judged::Unsaid => is_said = false,
+                        Judged::Met(answer) => return answer,
                     }
                 }
             }
         }
         if is_said {
-            Rested::Clear
+            Q::CLEAR
         } else {
-            Rested::Unsaid
+            Q::on_the_way(self.model, self.body, self.way)
         }
     }
 
     /// Some pieces of a group and a standing piece whose boxes they meet.
     #[inline(always)]
-    fn judged<T: Telling>(
+    fn judged<Q: Question>(
         &self,
         number: u32,
         (group, mut places): (&Group, u32),
         yaw: Option<Yaw>,
-    ) -> Rested<T::Told> {
+    ) -> Judged<Q::Answer> {
         let element = self.model.pieces.at(number);
         if !self.way.ignore.is_empty() && self.way.ignore.contains(&element.owner) {
-            return Rested::Clear;
+            return Judged::Clear;
         }
         while places != 0 {
             let local = group.first + places.trailing_zeros() as usize;
             places &= places - 1;
             let (Stands::Upright(standing), Some(own)) = (&element.form, &self.body.prisms[local])
             else {
-                return Rested::Unsaid;
+                return Judged::Unsaid;
             };
-            let told = match yaw {
-                None => self.told::<T>(standing, own),
-                Some(yaw) => self.told::<T>(standing, &own.yawed(yaw)),
+            let turned;
+            let own = match yaw {
+                None => own,
+                Some(yaw) => {
+                    turned = own.yawed(yaw);
+                    &turned
+                }
             };
-            if let Some(told) = told {
-                return Rested::Met(number, told);
+            if let Some(apart) = self.sharing(standing, own) {
+                return Judged::Met(Q::met(element.owner, standing, own, apart));
             }
         }
-        Rested::Clear
+        Judged::Clear
     }
 
-    /// `None` is proof that two upright pieces share no point; that of the mover is turned, but not at its
-    /// place yet.
+    /// From the centre of one upright piece to that of the other, when they may share a point: `None` is
+    /// proof that they do not. That of the mover is turned, but not at its place yet.
     #[inline(always)]
-    fn told<T: Telling>(&self, element: &Prism, mover: &Prism) -> Option<T::Told> {
+    fn sharing(&self, element: &Prism, mover: &Prism) -> Option<Vec3> {
         let origin = self.way.from.position;
         let apart = sub(add(mover.centre, origin), element.centre);
         let placed = NOISE * (reach(origin) + reach(mover.centre));
         let grown = placed + slack(element, mover, apart);
         let above = apart[2].abs() - element.half[2] - mover.half[2];
         let is_apart = (above > grown) | lie_apart(element, mover, apart, grown);
-        (!is_apart).then(|| T::tell(element, mover, apart))
+        (!is_apart).then_some(apart)
     }
 }

@@ -40,95 +40,101 @@ pub(crate) fn lie_apart(element: &Prism, mover: &Prism, apart: Vec3, by: f64) ->
 /// Whether both are rectangles without a common axis.
 #[inline(always)]
 fn are_askew(element: &Prism, mover: &Prism) -> bool {
-    element.radius + mover.radius == 0.0 && element.axis != mover.axis
+    let differ = (element.axis[0] != mover.axis[0]) | (element.axis[1] != mover.axis[1]);
+    (element.radius + mover.radius == 0.0) & differ
 }
 
-/// The contact of two pieces whose centres lie `apart`, from the element to the mover.
-#[inline]
+/// The contact of two pieces whose centres lie `apart`, from the element to the mover. (What is chosen here
+/// is chosen by arithmetic: which side it will be cannot be guessed.)
+#[inline(always)]
 pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
     let side = side(element, mover, apart);
     let height = shared(element.half[2], mover.half[2], apart[2]);
+    let up = 1.0f64.copysign(apart[2]);
     let above = apart[2].abs() - element.half[2] - mover.half[2];
-    let (normal, z) = if above > side.beyond {
-        let up = 1.0f64.copysign(apart[2]);
-        ([0.0, 0.0, up], element.half[2] * up)
-    } else {
-        ([side.normal[0], side.normal[1], 0.0], height)
-    };
+    let is_above = above > side.beyond;
+    let level = |axis: usize| either(is_above, 0.0, side.normal[axis]);
+    let z = either(is_above, element.half[2] * up, height);
     Gap {
         lower: 0.0,
-        normal,
+        normal: [level(0), level(1), either(is_above, up, 0.0)],
         on_element: add(element.centre, [side.at[0], side.at[1], z]),
     }
+}
+
+/// The first if it is so, else the second, without a branch.
+#[inline(always)]
+fn either(is_so: bool, a: f64, b: f64) -> f64 {
+    let mask = u64::from(is_so).wrapping_neg();
+    f64::from_bits(a.to_bits() & mask | b.to_bits() & !mask)
 }
 
 #[inline(always)]
 fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     if are_askew(element, mover) {
-        askew(element, mover, apart)
-    } else if element.radius > 0.0 {
-        rounded(element, mover, mover, apart)
-    } else {
-        rounded(element, mover, element, apart)
+        return askew(element, mover, apart);
     }
+    let framed = if element.radius > 0.0 { mover } else { element };
+    rounded(element, mover, framed, apart)
 }
 
 /// Rectangles with common axes, discs, or one of each; `framed` gives the axes.
 #[inline(always)]
 fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side {
-    let p = framed.along(apart);
+    let p = into(framed, [apart[0], apart[1]]);
     let radius = element.radius + mover.radius;
     let over = |axis: usize| p[axis].abs() - element.half[axis] - mover.half[axis];
     let over = [over(0), over(1)];
-    let (beyond, normal) = if over[0] > 0.0 && over[1] > 0.0 {
+    let (beyond, normal) = if (over[0] > 0.0) & (over[1] > 0.0) {
         let size = (over[0] * over[0] + over[1] * over[1]).sqrt();
         let normal = |axis: usize| (over[axis] / size).copysign(p[axis]);
-        (size - radius, [normal(0), normal(1)])
-    } else if over[0] >= over[1] {
-        (over[0] - radius, [1.0f64.copysign(p[0]), 0.0])
+        (size, [normal(0), normal(1)])
     } else {
-        (over[1] - radius, [0.0, 1.0f64.copysign(p[1])])
+        let is_across = over[1] > over[0];
+        let normal = [
+            either(is_across, 0.0, 1.0f64.copysign(p[0])),
+            either(is_across, 1.0f64.copysign(p[1]), 0.0),
+        ];
+        (larger(over[1], over[0]), normal)
     };
     let at = |axis: usize| {
         let middle = shared(element.half[axis], mover.half[axis], p[axis]);
         middle + element.radius * normal[axis]
     };
     Side {
-        beyond,
+        beyond: beyond - radius,
         normal: out_of(framed, normal),
         at: out_of(framed, [at(0), at(1)]),
     }
 }
 
 /// Two rectangles that are turned against each other: four sides may be the last.
+#[inline(always)]
 fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
-    let own = deepest(element, mover, apart);
-    let other = deepest(mover, element, apart);
-    let (beyond, normal) = if own.0 >= other.0 { own } else { other };
-    // The corner of the mover that comes first, as far as it lies over the element.
+    let [a, b] = over_sides(element, mover, apart);
+    let [c, d] = over_sides(mover, element, apart);
+    let (own, other) = (larger(b, a), larger(d, c));
+    let is_other = other > own;
+    let is_second = either(is_other, d - c, b - a) > 0.0;
+    let axis = |member: usize| either(is_other, mover.axis[member], element.axis[member]);
+    let [u, v] = [axis(0), axis(1)];
+    let (x, y) = (either(is_second, -v, u), either(is_second, u, v));
+    // From the element to the mover, whosever side it is.
+    let sign = 1.0f64.copysign(x * apart[0] + y * apart[1]);
+    let normal = [x * sign, y * sign];
+    // A corner of the mover on a side of the element, as far as it lies over that; or a corner of the element.
     let corner = support(mover, [-normal[0], -normal[1]]);
-    let tip = element.along([apart[0] + corner[0], apart[1] + corner[1], 0.0]);
-    let at = if own.0 >= other.0 {
-        let within = [0, 1].map(|axis: usize| {
-            let half = element.half[axis];
-            tip[axis].clamp(-half, half)
-        });
-        out_of(element, within)
-    } else {
-        support(element, normal)
+    let tip = into(element, [apart[0] + corner[0], apart[1] + corner[1]]);
+    let outward = into(element, normal);
+    let at = |axis: usize| {
+        let half = element.half[axis];
+        let on_side = smaller(larger(tip[axis], -half), half);
+        either(is_other, half.copysign(outward[axis]), on_side)
     };
-    Side { beyond, normal, at }
-}
-
-/// Of the sides of `framed`: how far beyond them `other` lies, and the normal from the element to the
-/// mover. (The centres lie `apart`; a side of the mover counts the other way round, which is the same.)
-fn deepest(framed: &Prism, other: &Prism, apart: Vec3) -> (f64, [f64; 2]) {
-    let p = framed.along(apart);
-    let over = over_sides(framed, other, apart);
-    if over[0] >= over[1] {
-        (over[0], out_of(framed, [1.0f64.copysign(p[0]), 0.0]))
-    } else {
-        (over[1], out_of(framed, [0.0, 1.0f64.copysign(p[1])]))
+    Side {
+        beyond: larger(other, own),
+        normal,
+        at: out_of(element, [at(0), at(1)]),
     }
 }
 
@@ -146,25 +152,41 @@ fn over_sides(framed: &Prism, other: &Prism, apart: Vec3) -> [f64; 2] {
 }
 
 /// The corner of a rectangle that lies farthest along `n`, from its centre.
+#[inline(always)]
 fn support(of: &Prism, n: [f64; 2]) -> [f64; 2] {
-    let local = of.along([n[0], n[1], 0.0]);
-    out_of(
-        of,
-        [0, 1].map(|axis: usize| of.half[axis].copysign(local[axis])),
-    )
+    let local = into(of, n);
+    let corner = |axis: usize| of.half[axis].copysign(local[axis]);
+    out_of(of, [corner(0), corner(1)])
 }
 
 /// The middle of what two intervals about 0 and about `apart` share, or the end of the first next to
 /// the second.
-#[inline]
+#[inline(always)]
 fn shared(half: f64, other: f64, apart: f64) -> f64 {
-    let low = (-half).max(apart - other);
-    let high = half.min(apart + other);
-    ((low + high) / 2.0).clamp(-half, half)
+    let low = larger(-half, apart - other);
+    let high = smaller(half, apart + other);
+    smaller(larger((low + high) / 2.0, -half), half)
+}
+
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// Into the axes of a footprint.
+#[inline(always)]
+fn into(framed: &Prism, v: [f64; 2]) -> [f64; 2] {
+    let [x, y] = framed.axis;
+    [v[0] * x + v[1] * y, v[1] * x - v[0] * y]
 }
 
 /// From the axes of a footprint into the common frame.
-#[inline]
+#[inline(always)]
 fn out_of(framed: &Prism, local: [f64; 2]) -> [f64; 2] {
     let [x, y] = framed.axis;
     [local[0] * x - local[1] * y, local[0] * y + local[1] * x]
