@@ -25,13 +25,15 @@ struct Side {
 #[inline(always)]
 pub(crate) fn lie_apart(element: &Prism, mover: &Prism, apart: Vec3, by: f64) -> bool {
     if are_askew(element, mover) {
-        let [a, b] = over_sides(element, mover, apart);
-        let [c, d] = over_sides(mover, element, apart);
+        let Askew {
+            over_element: [a, b],
+            over_mover: [c, d],
+            ..
+        } = Askew::of(element, mover, apart);
         return (a > by) | (b > by) | (c > by) | (d > by);
     }
     let framed = if element.radius > 0.0 { mover } else { element };
-    let [x, y] = framed.axis;
-    let p = [apart[0] * x + apart[1] * y, apart[1] * x - apart[0] * y];
+    let p = into(framed, [apart[0], apart[1]]);
     let over = |axis: usize| (p[axis].abs() - element.half[axis] - mover.half[axis]).max(0.0);
     let within = element.radius + mover.radius + by;
     over(0) * over(0) + over(1) * over(1) > within * within
@@ -111,52 +113,95 @@ fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side 
 /// Two rectangles that are turned against each other: four sides may be the last.
 #[inline(always)]
 fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
-    let [a, b] = over_sides(element, mover, apart);
-    let [c, d] = over_sides(mover, element, apart);
-    let (own, other) = (larger(b, a), larger(d, c));
-    let is_other = other > own;
-    let is_second = either(is_other, d - c, b - a) > 0.0;
-    let axis = |member: usize| either(is_other, mover.axis[member], element.axis[member]);
-    let [u, v] = [axis(0), axis(1)];
-    let (x, y) = (either(is_second, -v, u), either(is_second, u, v));
-    // From the element to the mover, whosever side it is.
-    let sign = 1.0f64.copysign(x * apart[0] + y * apart[1]);
-    let normal = [x * sign, y * sign];
-    // A corner of the mover on a side of the element, as far as it lies over that; or a corner of the element.
-    let corner = support(mover, [-normal[0], -normal[1]]);
-    let tip = into(element, [apart[0] + corner[0], apart[1] + corner[1]]);
-    let outward = into(element, normal);
-    let at = |axis: usize| {
-        let half = element.half[axis];
-        let on_side = smaller(larger(tip[axis], -half), half);
-        either(is_other, half.copysign(outward[axis]), on_side)
+    let seen = Askew::of(element, mover, apart);
+    let (own, other) = (seen.over_element, seen.over_mover);
+    let is_own = larger(own[0], own[1]) >= larger(other[0], other[1]);
+    let (beyond, normal, at) = if is_own {
+        seen.on_a_side(element, mover)
+    } else {
+        seen.on_a_corner(element)
     };
     Side {
-        beyond: larger(other, own),
-        normal,
-        at: out_of(element, [at(0), at(1)]),
+        beyond,
+        normal: out_of(element, normal),
+        at: out_of(element, at),
     }
 }
 
-/// How far beyond the sides of one rectangle another one lies, along its axes, mm.
-#[inline(always)]
-fn over_sides(framed: &Prism, other: &Prism, apart: Vec3) -> [f64; 2] {
-    let [x, y] = framed.axis;
-    let [u, v] = other.axis;
-    let (cos, sin) = ((u * x + v * y).abs(), (v * x - u * y).abs());
-    let [a, b, _] = other.half;
-    [
-        (apart[0] * x + apart[1] * y).abs() - framed.half[0] - a * cos - b * sin,
-        (apart[1] * x - apart[0] * y).abs() - framed.half[1] - a * sin - b * cos,
-    ]
+/// A rectangle and one that is turned against it.
+struct Askew {
+    /// From the element to the mover, in the axes of the element, and of the mover, mm.
+    in_element: [f64; 2],
+    in_mover: [f64; 2],
+    /// First axis of the mover in those of the element.
+    cos: f64,
+    sin: f64,
+    /// How far beyond the sides of the element the mover lies, and the other way round, mm.
+    over_element: [f64; 2],
+    over_mover: [f64; 2],
 }
 
-/// The corner of a rectangle that lies farthest along `n`, from its centre.
-#[inline(always)]
-fn support(of: &Prism, n: [f64; 2]) -> [f64; 2] {
-    let local = into(of, n);
-    let corner = |axis: usize| of.half[axis].copysign(local[axis]);
-    out_of(of, [corner(0), corner(1)])
+impl Askew {
+    #[inline(always)]
+    fn of(element: &Prism, mover: &Prism, apart: Vec3) -> Askew {
+        let ([a, b, _], [c, d, _]) = (element.half, mover.half);
+        let apart = [apart[0], apart[1]];
+        let (p, q) = (into(element, apart), into(mover, apart));
+        let [cos, sin] = into(element, mover.axis);
+        let (wide, narrow) = (cos.abs(), sin.abs());
+        Askew {
+            in_element: p,
+            in_mover: q,
+            cos,
+            sin,
+            over_element: [
+                p[0].abs() - a - (c * wide + d * narrow),
+                p[1].abs() - b - (c * narrow + d * wide),
+            ],
+            over_mover: [
+                q[0].abs() - c - (a * wide + b * narrow),
+                q[1].abs() - d - (a * narrow + b * wide),
+            ],
+        }
+    }
+
+    /// A corner of the mover touches a side of the element: depth, normal and point in the axes of the element.
+    #[inline(always)]
+    fn on_a_side(&self, element: &Prism, mover: &Prism) -> (f64, [f64; 2], [f64; 2]) {
+        let [a, b, _] = element.half;
+        let [first, second] = self.over_element;
+        // How far the corner that comes first lies from the centre of the mover along the side.
+        let corner = |sign: f64, towards: [f64; 2], along: [f64; 2]| {
+            let of = |axis: usize| along[axis] * mover.half[axis].copysign(sign * towards[axis]);
+            -(of(0) + of(1))
+        };
+        if first >= second {
+            let sign = 1.0f64.copysign(self.in_element[0]);
+            let tip =
+                self.in_element[1] + corner(sign, [self.cos, -self.sin], [self.sin, self.cos]);
+            (first, [sign, 0.0], [a * sign, within(tip, b)])
+        } else {
+            let sign = 1.0f64.copysign(self.in_element[1]);
+            let tip =
+                self.in_element[0] + corner(sign, [self.sin, self.cos], [self.cos, -self.sin]);
+            (second, [0.0, sign], [within(tip, a), b * sign])
+        }
+    }
+
+    /// A corner of the element touches a side of the mover, likewise.
+    #[inline(always)]
+    fn on_a_corner(&self, element: &Prism) -> (f64, [f64; 2], [f64; 2]) {
+        let [first, second] = self.over_mover;
+        let (beyond, outward) = if first >= second {
+            let sign = 1.0f64.copysign(self.in_mover[0]);
+            (first, [self.cos * sign, self.sin * sign])
+        } else {
+            let sign = 1.0f64.copysign(self.in_mover[1]);
+            (second, [-self.sin * sign, self.cos * sign])
+        };
+        let corner = |axis: usize| element.half[axis].copysign(outward[axis]);
+        (beyond, outward, [corner(0), corner(1)])
+    }
 }
 
 /// The middle of what two intervals about 0 and about `apart` share, or the end of the first next to
@@ -165,7 +210,13 @@ fn support(of: &Prism, n: [f64; 2]) -> [f64; 2] {
 fn shared(half: f64, other: f64, apart: f64) -> f64 {
     let low = larger(-half, apart - other);
     let high = smaller(half, apart + other);
-    smaller(larger((low + high) / 2.0, -half), half)
+    within((low + high) / 2.0, half)
+}
+
+/// Not farther from 0 than `half`.
+#[inline(always)]
+fn within(x: f64, half: f64) -> f64 {
+    smaller(larger(x, -half), half)
 }
 
 #[inline(always)]

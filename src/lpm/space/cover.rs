@@ -3,21 +3,18 @@
 use super::four::Four;
 use crate::lpm::vector::Vec3;
 
-/// More than half a unit in the last place of an f32, relative.
-const ULP: f64 = 1.2e-7;
-/// Below this an f32 loses digits (denormal), mm.
-const TINY_MM: f64 = 1e-37;
+/// Two units in the last place of an f32, relative: more than the nearest one and the step away from it lose.
+const ULP: f32 = 2.0 * f32::EPSILON;
 
-/// An f32 that is below `x`.
-#[inline]
-pub(crate) fn below(x: f64) -> f32 {
-    (x - (x.abs() * ULP + TINY_MM)) as f32
-}
+/// Four units likewise, and the least number of full precision, mm: below it an f32 loses digits (denormal).
+const SINGLE: f32 = 4.0 * f32::EPSILON;
+const TINY: f32 = f32::MIN_POSITIVE;
 
 /// An f32 that is above `x`.
 #[inline]
 pub(crate) fn above(x: f64) -> f32 {
-    (x + (x.abs() * ULP + TINY_MM)) as f32
+    let nearest = x as f32;
+    nearest + (nearest.abs() * ULP + TINY)
 }
 
 /// The smaller one, `b` when they cannot be compared.
@@ -32,10 +29,6 @@ pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// Four units in the last place of an f32, relative, and its least whole-digit number, mm.
-const SINGLE: f32 = 4.0 * f32::EPSILON;
-const TINY: f32 = f32::MIN_POSITIVE;
-
 /// A box of single precision that holds a box of double precision. (The fourth members are 0: four numbers
 /// are one register.)
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,9 +41,14 @@ pub(crate) struct Cover {
 impl Cover {
     #[inline]
     pub(crate) fn of((low, high): (Vec3, Vec3)) -> Cover {
+        let (low, high) = (Four::rounded(&low), Four::rounded(&high));
+        let outward = |nearest: Four| {
+            let step = nearest.abs().times(Four::all(ULP));
+            step.plus(Four::all(TINY))
+        };
         Cover {
-            low: [below(low[0]), below(low[1]), below(low[2]), 0.0],
-            high: [above(high[0]), above(high[1]), above(high[2]), 0.0],
+            low: low.minus(outward(low)).numbers(),
+            high: high.plus(outward(high)).numbers(),
         }
     }
 
@@ -101,11 +99,16 @@ mod tests {
         let mut dice = Dice(7);
         for exponent in -45..7 {
             for _ in 0..200 {
-                let x = dice.signed() * 10f64.powi(exponent);
-                assert!(f64::from(below(x)) < x && x < f64::from(above(x)), "{x:e}");
+                let at = dice.vector().map(|member| member * 10f64.powi(exponent));
+                let cover = Cover::of((at, at));
+                for (axis, x) in at.into_iter().enumerate() {
+                    let (low, high) = (f64::from(cover.low[axis]), f64::from(cover.high[axis]));
+                    assert!(low < x && x < high && x < f64::from(above(x)), "{x:e}");
+                }
             }
         }
-        assert!(f64::from(below(0.0)) < 0.0 && f64::from(above(-0.0)) > 0.0);
+        let origin = Cover::of(([0.0; 3], [-0.0; 3]));
+        assert!(origin.low[0] < 0.0 && origin.high[0] > 0.0);
     }
 
     #[test]

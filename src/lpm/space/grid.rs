@@ -12,8 +12,6 @@ use super::cover::Cover;
 use super::pool::{Cell, Chain, Pool};
 use super::silhouettes::{Bundle, Lane, NONE};
 
-/// Pieces over more cells than this are kept in the open cell (the baseplate).
-const MOST_CELLS_OF_A_PIECE: i64 = 128;
 /// Largest grid, in cells; pieces farther out are kept in the open cell.
 const MOST_CELLS: i64 = 1 << 18;
 
@@ -51,7 +49,7 @@ impl Grid {
     /// Enters a piece wherever its silhouette lies.
     pub(crate) fn put(&mut self, piece: u32, cover: &Cover, seat: &Seat) {
         let (area, lane) = (&seat.area, Lane::of(piece, cover, seat));
-        if is_small(area) && self.reach_over(area) {
+        if seat.is_small && self.reach_over(area) {
             self.each_cell(area, |pool, cell| pool.put(cell, &lane));
         } else {
             self.in_the_open(|pool, cell| pool.put(cell, &lane));
@@ -59,10 +57,10 @@ impl Grid {
     }
 
     /// Takes a piece out again.
-    pub(crate) fn take(&mut self, piece: u32, area: &Area) {
+    pub(crate) fn take(&mut self, piece: u32, seat: &Seat) {
         let mut known = false;
-        if is_small(area) && self.area.holds(area) {
-            self.each_cell(area, |pool, cell| known = pool.take(cell, piece));
+        if seat.is_small && self.area.holds(&seat.area) {
+            self.each_cell(&seat.area, |pool, cell| known = pool.take(cell, piece));
         }
         // What stood too far out when it came is in the open cell, however large the grid is now.
         if !known {
@@ -211,13 +209,13 @@ impl Grid {
     /// A grid with pieces numbered from 0: the same as [`Grid::put`] for one after the other. Squares
     /// are counted first, so that every cell gets all its bundles at once.
     pub(super) fn filled(covers: &[Cover], seats: &[Seat]) -> Grid {
-        let with_squares = |(_, seat): &(&Cover, &Seat)| is_small(&seat.area);
+        let with_squares = |(_, seat): &(&Cover, &Seat)| seat.is_small;
         let small = covers.iter().zip(seats).filter(with_squares);
         let whole = small.map(|(cover, _)| *cover).reduce(Cover::around);
         let whole = whole.map(|whole| Area::of(&whole));
         let fitting = whole.filter(|whole| whole.cells() <= MOST_CELLS);
         let mut grid = fitting.map_or_else(Grid::default, Grid::over);
-        let reserved = |seat: &Seat| fitting.is_some() && is_small(&seat.area);
+        let reserved = |seat: &Seat| fitting.is_some() && seat.is_small;
         let mut lanes = grid.reserve(seats.iter().filter(|seat| reserved(seat)));
         for (number, (cover, seat)) in covers.iter().zip(seats).enumerate() {
             let number = number as u32;
@@ -266,12 +264,6 @@ impl Grid {
             }
         }
     }
-}
-
-/// Whether a piece gets squares, not the open cell.
-#[inline]
-fn is_small(area: &Area) -> bool {
-    area.cells() <= MOST_CELLS_OF_A_PIECE
 }
 
 /// The numbers of the cells of `area` in a grid that begins at `low`, row by row.

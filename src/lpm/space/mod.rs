@@ -37,6 +37,9 @@ use grid::Grid;
 use layers::{Layers, Reach};
 use walk::Walk;
 
+/// Pieces over more cells than this are kept in the open cell (the baseplate).
+const MOST_CELLS_OF_A_PIECE: i64 = 128;
+
 /// Everything that stands, by its silhouettes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Space {
@@ -52,7 +55,7 @@ impl Space {
     pub(crate) fn remove(&mut self, piece: u32) {
         let seat = &self.seats[piece as usize];
         self.layers.leave(seat.reach);
-        self.grid.take(piece, &seat.area);
+        self.grid.take(piece, seat);
     }
 
     /// Heap in use, bytes.
@@ -89,14 +92,18 @@ impl Space {
 pub(crate) struct Seat {
     area: Area,
     reach: Reach,
+    /// Few enough squares to be entered in each.
+    is_small: bool,
 }
 
 impl Seat {
     #[inline]
     fn of(cover: &Cover) -> Seat {
+        let area = Area::of(cover);
         Seat {
-            area: Area::of(cover),
+            area,
             reach: Reach::of(cover.low[2], cover.high[2]),
+            is_small: area.cells() <= MOST_CELLS_OF_A_PIECE,
         }
     }
 }
