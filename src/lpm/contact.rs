@@ -73,39 +73,43 @@ impl Found {
 }
 
 impl Passage<'_> {
-    /// A contact within the margin; `None` is proof that there is none.
-    pub(crate) fn contact(&self, wanted: Wanted) -> Option<Found> {
-        let mut found = Findings {
-            wanted,
-            best: None,
-            pending: Vec::new(),
-            run: None,
-        };
+    /// Looks for a contact within the margin; when there is none in the end, that is proof.
+    pub(crate) fn contact<'a>(&'a self, found: &mut Findings<'a>) {
         for group in &self.body.groups {
             let hull = group.hull(&self.whereabouts(self.way.margin_mm));
             let sweep = Sweep::new(hull, self.path.displacement);
             let until = found.until();
-            let mut search = Search::new(self, group, &mut found, &sweep);
+            let mut search = Search::new(self, group, found, &sweep);
             self.model.space.walk(&sweep, until, &mut search);
             if found.until() < 0.0 {
-                return found.best;
+                return;
             }
         }
-        self.searches(&mut found);
-        found.best
+        self.searches(found);
     }
 }
 
 /// What is found so far.
 pub(crate) struct Findings<'a> {
     wanted: Wanted,
-    best: Option<Found>,
+    pub(crate) best: Option<Found>,
     pub(crate) pending: Vec<Pending>,
     /// When it was wanted before.
     run: Option<Run<'a>>,
 }
 
 impl Findings<'_> {
+    /// Nothing yet.
+    #[inline]
+    pub(crate) fn wanted(wanted: Wanted) -> Self {
+        Findings {
+            wanted,
+            best: None,
+            pending: Vec::new(),
+            run: None,
+        }
+    }
+
     /// The part of the way that still matters; below 0: nothing does.
     #[inline]
     pub(crate) fn until(&self) -> f64 {

@@ -1,7 +1,7 @@
 //! The three questions asked of the model: any hit (the gate), first contact, clearance.
 
 use super::answer::{Answer, Clearance, Contact, ElementKey, Move};
-use super::contact::Wanted;
+use super::contact::{Findings, Wanted};
 use super::model::Model;
 use super::mover::{Mover, Moving};
 use super::passage::Passage;
@@ -121,7 +121,9 @@ impl Question for AnyHit {
             Some((piece, _)) => piece,
             None => {
                 let passage = Passage::new(model, body, path, way);
-                passage.contact(Wanted::Any)?.element
+                let mut found = Findings::wanted(Wanted::Any);
+                passage.contact(&mut found);
+                found.best.as_ref()?.element
             }
         };
         Some(model.owner(piece))
@@ -151,7 +153,9 @@ impl Question for FirstContact {
             return blocked(model.owner(piece), &hit);
         }
         let passage = Passage::new(model, body, path, way);
-        match passage.contact(Wanted::First) {
+        let mut found = Findings::wanted(Wanted::First);
+        passage.contact(&mut found);
+        match &found.best {
             None => Answer::Clear,
             Some(found) => blocked(model.owner(found.element), &found.hit(&passage)),
         }

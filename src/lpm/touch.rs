@@ -232,6 +232,10 @@ fn larger(a: f64, b: f64) -> f64 {
 /// Into the axes of a footprint.
 #[inline(always)]
 fn into(framed: &Prism, v: [f64; 2]) -> [f64; 2] {
+    // Most are, and that can be guessed.
+    if framed.is_straight() {
+        return v;
+    }
     let [x, y] = framed.axis;
     [v[0] * x + v[1] * y, v[1] * x - v[0] * y]
 }
@@ -239,6 +243,9 @@ fn into(framed: &Prism, v: [f64; 2]) -> [f64; 2] {
 /// From the axes of a footprint into the common frame.
 #[inline(always)]
 fn out_of(framed: &Prism, local: [f64; 2]) -> [f64; 2] {
+    if framed.is_straight() {
+        return local;
+    }
     let [x, y] = framed.axis;
     [local[0] * x - local[1] * y, local[0] * y + local[1] * x]
 }
