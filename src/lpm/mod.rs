@@ -53,7 +53,7 @@
 //! | `meeting::GRAZED_MM` | 1e-7 mm | by how much a graze may come early before that is asked |
 //! | `meeting::ROUND_MM` | 1e-3 mm | how far from the end of a round corner that is sound |
 //! | `distance::RESOLUTION_MM` | 1e-9 mm | where a search for a plane stops |
-//! | `space::sweep::SLACK_MM` | 1e-6 mm | places along the way in the broad phase; costs candidates, no answers |
+//! | `space::sweep::SLACK_MM` | 1e-5 mm | places along the way in the broad phase; costs candidates, no answers |
 //! | `space::cover::ULP` | 1.2e-7, relative | rounding outward to f32, likewise |
 //! | `mover::SINGLE`, `space::boxes::EARLIER` | 1e-6, relative | boxes of the mover and their times in f32, likewise |
 //! | `space::sweep::SLOWEST_MM` | 1e-9 mm | what counts as rest on an axis, likewise |

@@ -61,9 +61,12 @@ impl Area {
     pub(super) fn among(cover: &Cover, ends: &Ends) -> Area {
         let corners = Four::of(&cover.low).first_two(Four::of(&cover.high));
         let squares = corners.times(Four::all(1.0 / PITCH_MM as f32));
+        // The square whose middle is nearest. What lies on a line belongs to either side, which may be: covers are
+        // rounded outward, so nothing covered lies on their bounds. (So may what lies within 2e-6 mm below 0.)
         // All of this is monotone, so covering areas stay covering.
-        let within = squares.within(Four::of(&ends.low), Four::of(&ends.high));
-        let [left, front, right, back] = within.floor();
+        let middles = squares.minus(Four::all(0.5));
+        let within = middles.within(Four::of(&ends.low), Four::of(&ends.high));
+        let [left, front, right, back] = within.nearest();
         Area {
             low: [left, front],
             high: [right, back],

@@ -76,10 +76,10 @@ impl Four {
         Four(machine::first_two(self.0, other.0))
     }
 
-    /// The greatest whole numbers that are not above these, each of at most 2^23.
+    /// The nearest whole numbers of these, each of at most 2^23; of two as near the even one.
     #[inline(always)]
-    pub(crate) fn floor(self) -> [i32; 4] {
-        machine::floor(self.0)
+    pub(crate) fn nearest(self) -> [i32; 4] {
+        machine::nearest(self.0)
     }
 
     /// Bit k: number k is at most that of `other`. (What is no number is at most nothing.)
@@ -160,16 +160,10 @@ mod sse {
     }
 
     #[inline(always)]
-    pub(super) fn floor(a: Numbers) -> [i32; 4] {
+    pub(super) fn nearest(a: Numbers) -> [i32; 4] {
         let mut whole = [0; 4];
         // SAFETY: as above; four numbers may be written.
-        unsafe {
-            let nearest = _mm_cvtps_epi32(a);
-            // All bits, which is -1, where that is too much.
-            let above = _mm_cmplt_ps(a, _mm_cvtepi32_ps(nearest));
-            let floor = _mm_add_epi32(nearest, _mm_castps_si128(above));
-            _mm_storeu_si128(whole.as_mut_ptr().cast(), floor);
-        }
+        unsafe { _mm_storeu_si128(whole.as_mut_ptr().cast(), _mm_cvtps_epi32(a)) };
         whole
     }
 
@@ -224,8 +218,8 @@ mod one_by_one {
         [a[0], a[1], b[0], b[1]]
     }
 
-    pub(super) fn floor(a: Numbers) -> [i32; 4] {
-        a.map(|number| number.floor() as i32)
+    pub(super) fn nearest(a: Numbers) -> [i32; 4] {
+        a.map(|number| number.round_ties_even() as i32)
     }
 
     pub(super) fn bits(a: Numbers) -> u32 {
@@ -287,13 +281,18 @@ mod tests {
     }
 
     #[test]
-    fn what_is_rounded_down_is_its_floor() {
+    fn what_is_rounded_is_the_nearest_whole_number() {
         let mut dice = Dice(12);
         for exponent in -30..22 {
             for _ in 0..100 {
                 let x = (dice.signed() * 2f64.powi(exponent)) as f32;
-                let four = [x, x.round(), x.round().next_down(), x.round().next_up()];
-                assert_eq!(sse::floor(sse::of(&four)), one_by_one::floor(four), "{x:e}");
+                let half = x.round() + 0.5;
+                let four = [x, half, half.next_down(), half.next_up()];
+                assert_eq!(
+                    sse::nearest(sse::of(&four)),
+                    one_by_one::nearest(four),
+                    "{x:e}"
+                );
             }
         }
     }

@@ -22,9 +22,9 @@ const SHORT: usize = 8;
 /// over them shares no layer with them.
 const STEP_MM: f32 = 8.0;
 
-/// Layers below the top of the baseplate; whatever lies lower belongs to the lowest layer, what lies above all
-/// steps (448 mm) to the highest.
-const STEPS_BELOW: f32 = 8.0;
+/// Layers below the top of the baseplate, less the half that rounding to the nearest adds; whatever lies
+/// lower belongs to the lowest layer, what lies above all steps (440 mm) to the highest.
+const STEPS_BELOW: f32 = 7.5;
 
 /// The layers that a piece reaches into: the lowest and the highest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +48,7 @@ impl Reach {
         let steps = steps.plus(Four::all(STEPS_BELOW));
         // All of this is monotone, which is all that safety needs.
         let within = steps.within(Four::all(0.0), Four::all(LAYERS as f32 - 1.0));
-        let [low, high, ..] = within.floor();
+        let [low, high, ..] = within.nearest();
         Reach {
             low: low as u8,
             high: high as u8,

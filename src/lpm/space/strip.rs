@@ -133,7 +133,15 @@ mod tests {
         let (mut passed, mut spared) = (0, 0);
         for _ in 0..400 {
             let [x, y, z] = dice.vector().map(|member| 40.0 * member.abs());
-            let at = dice.vector().map(|member| 500.0 * member);
+            let mut at = dice.vector().map(|member| 500.0 * member);
+            if dice.pick(2) == 0 {
+                // Next to a line, on either side.
+                let line = PITCH_MM * dice.pick(3) as f64 - PITCH_MM;
+                (at[0], at[1]) = (
+                    line - x + 3e-6 * dice.signed(),
+                    line - y + 3e-6 * dice.signed(),
+                );
+            }
             let start = Cover::of((at, [at[0] + x, at[1] + y, at[2] + z]));
             let long = (500.0 + 1500.0 * dice.signed().abs()).copysign(dice.signed());
             let sweep = Sweep::new(start, [long, 0.9 * long.abs() * dice.signed(), 3.0]);

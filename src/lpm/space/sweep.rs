@@ -3,9 +3,9 @@
 use super::cover::Cover;
 use crate::lpm::vector::Vec3;
 
-/// Slack of a place along the way, mm: the rounding of slopes and products, at most 2e-9 mm within 3e6 mm,
-/// many times over.
-pub(crate) const SLACK_MM: f64 = 1e-6;
+/// Slack of a place along the way, mm: the rounding of slopes and products, at most 2e-9 mm within 3e6 mm, and
+/// what [`Area`](super::area::Area) loses next to 0 by taking half a square off, at most 2e-6 mm, many times over.
+pub(crate) const SLACK_MM: f64 = 1e-5;
 
 /// Ways shorter than this on an axis, mm, are counted as rest; every box on a way is widened by it.
 pub(crate) const SLOWEST_MM: f64 = 1e-9;
