@@ -93,10 +93,10 @@ impl Rest<'_> {
             };
             let mut placed = None;
             for (bundle, mut lanes) in around {
-                if placed.is_none() {
-                    placed = Some(group.boxes(&at));
-                }
-                let Some(boxes) = &placed else { continue };
+                let boxes = match &placed {
+                    Some(boxes) => boxes,
+                    None => &*placed.insert(group.boxes(&at)),
+                };
                 while lanes != 0 {
                     let lane = lanes.trailing_zeros() as usize % LANES;
                     lanes &= lanes - 1;

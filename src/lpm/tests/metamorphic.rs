@@ -233,6 +233,16 @@ fn a_body_at_rest_is_judged_like_the_beginning_of_its_way() {
             assert_eq!(rests, begins, "{from:?} {margin_mm}");
             let first = model.first_contact(&hand, &asked(from));
             assert_eq!(first != Answer::Clear, begins, "{from:?} {margin_mm}");
+            // The same pose in other words: no way either, but not bit by bit.
+            let negated = from.rotation.map(|member| -member);
+            let reworded = model.any_hit(
+                &hand,
+                &asked(Pose {
+                    rotation: negated,
+                    ..from
+                }),
+            );
+            assert_eq!(reworded.is_some(), begins, "{from:?} {margin_mm}");
             met += u32::from(rests);
             clear += u32::from(!rests);
         }
