@@ -41,8 +41,8 @@ impl Model {
         let is_plain = self.hollow.is_empty() & !body.is_hollow() & (way.margin_mm == 0.0);
         if is_plain && way.goes_nowhere() && way.from.is_sound() {
             match way.from.rotation {
-                [_, 0.0, 0.0, 0.0] => return rest.unturned::<Q>(),
-                [w, 0.0, 0.0, z] => return rest.yawed::<Q>(Yaw::of(w, z)),
+                [_, 0.0, 0.0, 0.0] => return rest.among::<Q>(None),
+                [w, 0.0, 0.0, z] => return rest.among::<Q>(Some(Yaw::of(w, z))),
                 _ => {}
             }
         }
@@ -66,17 +66,7 @@ struct Rest<'a> {
 }
 
 impl Rest<'_> {
-    /// (Apart from the other one, so that it carries no yaw.)
-    #[inline(never)]
-    fn unturned<Q: Question>(&self) -> Q::Answer {
-        self.among::<Q>(None)
-    }
-
-    #[inline(never)]
-    fn yawed<Q: Question>(&self, yaw: Yaw) -> Q::Answer {
-        self.among::<Q>(Some(yaw))
-    }
-
+    /// (Once for each of both, so that what is not turned carries no yaw.)
     #[inline(always)]
     fn among<Q: Question>(&self, yaw: Option<Yaw>) -> Q::Answer {
         let at = Whereabouts {
