@@ -1,9 +1,9 @@
 //! Contact of the probes at the pins of the coil, from the voltage of its source.
 //!
 //! The sense wires keep it out of the coil's resistance. Thresholds are told in volts of the supply: each ohm in series lifts
-//! them by its share of the coil's, 20 mV of 8 V at 400 ohm. What the trend shows beyond what golden parts have seen is a term of their budgets: it is not
-//! taken off, since a part's own pins may be better or worse than those before. Nothing else would tell before the
-//! Kelvin bits open at 5 ohm a pin.
+//! them by its share of the coil's, 20 mV of 8 V at 400 ohm. What the trend shows beyond what golden parts have seen is
+//! a term of their budgets: it is not taken off, since a part's own pins may be better or worse than those before.
+//! Nothing else would tell before the Kelvin bits open at 5 ohm a pin.
 //! The supply was calibrated on the reference resistor, on the board and without probes. What the pins get less than
 //! it was asked for is lost in the force wires: divided by the current, the resistance of both contacts in series.
 //!
