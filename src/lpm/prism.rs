@@ -37,23 +37,23 @@ impl Prism {
     /// Of a block or a cylinder alone, when it stands upright at `pose`.
     #[inline]
     pub(crate) fn standing(shape: &Shape, pose: &Pose) -> Option<Prism> {
-        let (form, span) = match shape {
-            Shape::Block { half } => (Form::Block(*half), reach(*half)),
-            Shape::Cylinder { radius, height } => (
-                Form::Cylinder {
-                    radius: *radius,
-                    half: height / 2.0,
-                },
-                2.0 * radius + height,
-            ),
+        let (half, radius, span) = match shape {
+            Shape::Block { half } => (*half, 0.0, reach(*half)),
+            Shape::Cylinder { radius, height } => {
+                ([0.0, 0.0, height / 2.0], *radius, 2.0 * radius + height)
+            }
             Shape::Compound(_) | Shape::Mesh(_) => return None,
         };
-        let [_, x, y, _] = pose.rotation;
-        if x != 0.0 || y != 0.0 {
+        let [w, x, y, z] = pose.rotation;
+        if (x != 0.0) | (y != 0.0) {
             return None;
         }
-        let axis = Frame::of(pose.rotation).x;
-        let (half, radius, axis) = footprint(form, [axis[0], axis[1]]);
+        let (half, axis) = if (z == 0.0) | (radius > 0.0) {
+            (half, [1.0, 0.0])
+        } else {
+            let yaw = Yaw::of(w, z);
+            beside_x(half, [yaw.cos, yaw.sin])
+        };
         Some(Prism {
             centre: pose.position,
             half,

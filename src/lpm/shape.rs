@@ -104,8 +104,8 @@ impl Shape {
     pub fn check(&self) -> Result<(), Flaw> {
         match self {
             // Words are made only where there is something to complain of.
-            Shape::Block { half } if half.iter().all(is_size) => Ok(()),
-            Shape::Cylinder { radius, height } if is_size(radius) && is_size(height) => Ok(()),
+            Shape::Block { half: [a, b, c] } if is_size(a) & is_size(b) & is_size(c) => Ok(()),
+            Shape::Cylinder { radius, height } if is_size(radius) & is_size(height) => Ok(()),
             _ => check_shape(self, "", 0),
         }
     }
@@ -206,7 +206,7 @@ fn check_mesh(mesh: &Mesh, path: &str) -> Result<(), Flaw> {
 
 #[inline]
 fn is_size(found: &f64) -> bool {
-    *found > 0.0 && *found <= LARGEST_COORDINATE_MM
+    (*found > 0.0) & (*found <= LARGEST_COORDINATE_MM)
 }
 
 fn check_size(found: f64, path: impl Fn() -> String) -> Result<(), Flaw> {

@@ -98,18 +98,27 @@ impl Layers {
     /// Of many pieces at once.
     pub(super) fn of(seats: &[Seat], covers: &[Cover]) -> Layers {
         let mut layers = Layers::default();
+        let mut within = [0u32; LAYERS];
         for (Seat { reach, .. }, cover) in seats.iter().zip(covers) {
-            layers.enclose(*reach, cover.low[2], cover.high[2]);
-            // Where passing begins and where it ends; the sums follow.
-            let first = usize::from(reach.low) + 1;
-            let beyond = first.max(usize::from(reach.high));
-            layers.passing[first] = layers.passing[first].wrapping_add(1);
-            layers.passing[beyond] = layers.passing[beyond].wrapping_sub(1);
+            let (low, high) = (
+                usize::from(reach.low) % LAYERS,
+                usize::from(reach.high) % LAYERS,
+            );
+            layers.beginning[low] += 1;
+            layers.ending[high] += 1;
+            layers.h1[low] = smaller(layers.h1[low], cover.low[2]);
+            layers.h2[high] = larger(layers.h2[high], cover.high[2]);
+            if low == high {
+                within[low] += 1;
+            }
         }
-        let mut passing = 0u32;
-        for count in &mut layers.passing {
-            passing = passing.wrapping_add(*count);
-            *count = passing;
+        layers.bottom = layers.h1.into_iter().fold(f32::INFINITY, smaller);
+        layers.top = layers.h2.into_iter().fold(f32::NEG_INFINITY, larger);
+        let (mut begun, mut ended) = (0, 0);
+        for layer in 0..LAYERS {
+            ended += layers.ending[layer] - within[layer];
+            layers.passing[layer] = begun - ended;
+            begun += layers.beginning[layer] - within[layer];
         }
         layers
     }
