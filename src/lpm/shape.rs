@@ -111,6 +111,10 @@ impl Shape {
     }
 }
 
+/// Squared lengths of quaternions between these, above the first: outside them digits are lost to under- or
+/// overflow.
+const SQUARED: [f64; 2] = [1e-200, 1e200];
+
 impl Pose {
     /// Accepts finite positions within 1e6 mm and any non-zero quaternion.
     ///
@@ -130,9 +134,7 @@ impl Pose {
     pub(crate) fn is_sound(&self) -> bool {
         let [w, x, y, z] = self.rotation;
         let squared = w * w + x * x + y * y + z * z;
-        // Outside this range the squared length has lost its digits to under- or overflow; what is
-        // not finite is outside, too.
-        self.is_placed() & (squared > 1e-200) & (squared < 1e200)
+        self.is_placed() & is_between(squared, SQUARED)
     }
 
     /// The same of the position alone.
@@ -204,9 +206,17 @@ fn check_mesh(mesh: &Mesh, path: &str) -> Result<(), Flaw> {
     Ok(())
 }
 
-#[inline]
+#[inline(always)]
 fn is_size(found: &f64) -> bool {
-    (*found > 0.0) & (*found <= LARGEST_COORDINATE_MM)
+    is_between(*found, [0.0, LARGEST_COORDINATE_MM])
+}
+
+/// Above the first number, which is not negative, and at most the second, by one comparison: bits of numbers are in the
+/// order of the numbers, and those of negative ones and of what is no number come after all others.
+#[inline(always)]
+fn is_between(found: f64, [above, most]: [f64; 2]) -> bool {
+    let first = above.to_bits() + 1;
+    found.to_bits().wrapping_sub(first) <= most.to_bits() - first
 }
 
 fn check_size(found: f64, path: impl Fn() -> String) -> Result<(), Flaw> {

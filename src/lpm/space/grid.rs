@@ -101,15 +101,6 @@ impl Grid {
         (row - self.area.low[1]) as usize * self.columns + (column - self.area.low[0]) as usize
     }
 
-    /// The cells of an area of two by two, or fewer, and which of them differ (bit k: that at place k).
-    #[inline(always)]
-    pub(super) fn few(&self, area: &Area) -> ([usize; 4], u32) {
-        let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
-        let first = self.place(area.low[0], area.low[1]);
-        let next = first + deep * self.columns;
-        ([first, first + wide, next, next + wide], area.different())
-    }
-
     /// From the number of a cell to that of the next column (axis 0) or row (1).
     #[inline]
     pub(crate) fn stride(&self, axis: usize) -> usize {
@@ -236,20 +227,17 @@ impl Grid {
             let word = seat.reach.word();
             // Two by two squares at most: how many cannot be guessed, so four are counted, some by nothing.
             if seat.area.is_few() {
-                let (places, used) = self.few(&seat.area);
+                let (places, used) = few(self.area.low, self.columns, &seat.area);
                 for (square, place) in places.into_iter().enumerate() {
                     counts[place] += used >> square & 1;
                     self.layers[place] |= word;
                 }
                 continue;
             }
-            for row in rows(self.area.low, self.columns, &seat.area) {
-                let cells = counts[row.clone()].iter_mut();
-                for (count, layers) in cells.zip(&mut self.layers[row]) {
-                    *count += 1;
-                    *layers |= word;
-                }
-            }
+            each_place(self.area.low, self.columns, &seat.area, |place| {
+                counts[place] += 1;
+                self.layers[place] |= word;
+            });
         }
         self.pool.reserve(&mut self.heads, &mut counts);
         counts
@@ -257,13 +245,45 @@ impl Grid {
 
     #[inline]
     fn put_reserved(&mut self, lanes: &mut [u32], lane: &Lane, area: &Area) {
-        for row in rows(self.area.low, self.columns, area) {
-            for at in &mut lanes[row] {
-                self.pool.put_reserved(*at, lane);
-                *at += 1;
+        let pool = &mut self.pool;
+        each_place(self.area.low, self.columns, area, |place| {
+            let at = &mut lanes[place];
+            pool.put_reserved(*at, lane);
+            *at += 1;
+        });
+    }
+}
+
+/// Shows the number of each cell of `area` in a grid that begins at `low`. (Most areas are two by two cells or fewer;
+/// how often one loop within another goes round is guessed wrong more often than whether they are wide and deep.)
+#[inline(always)]
+fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(usize)) {
+    let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
+    let first = (area.low[1] - low[1]) as usize * columns + (area.low[0] - low[0]) as usize;
+    if area.is_few() {
+        show(first);
+        if wide == 1 {
+            show(first + 1);
+        }
+        if deep == 1 {
+            show(first + columns);
+            if wide == 1 {
+                show(first + columns + 1);
             }
         }
+        return;
     }
+    rows(low, columns, area).for_each(|row| row.for_each(&mut show));
+}
+
+/// The numbers of the cells of an area of two by two, or fewer, in a grid that begins at `low`, and which of them
+/// differ (bit k: that at place k).
+#[inline(always)]
+fn few(low: [i32; 2], columns: usize, area: &Area) -> ([usize; 4], u32) {
+    let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
+    let first = (area.low[1] - low[1]) as usize * columns + (area.low[0] - low[0]) as usize;
+    let next = first + deep * columns;
+    ([first, first + wide, next, next + wide], area.different())
 }
 
 /// The numbers of the cells of `area` in a grid that begins at `low`, row by row.
