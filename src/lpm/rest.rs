@@ -41,8 +41,11 @@ impl Model {
         let is_plain = self.hollow.is_empty() & !body.is_hollow() & (way.margin_mm == 0.0);
         if is_plain && way.goes_nowhere() && way.from.is_sound() {
             match way.from.rotation {
-                [_, 0.0, 0.0, 0.0] => return rest.among::<Q>(None),
-                [w, 0.0, 0.0, z] => return rest.among::<Q>(Some(Yaw::of(w, z))),
+                [_, 0.0, 0.0, 0.0] => return rest.among::<Q>(Orientation::Unturned, None),
+                [w, 0.0, 0.0, z] => {
+                    let boxes = Orientation::Yawed(Yaw::roughly(w, z));
+                    return rest.among::<Q>(boxes, Some(Yaw::of(w, z)));
+                }
                 _ => {}
             }
         }
@@ -66,12 +69,12 @@ struct Rest<'a> {
 }
 
 impl Rest<'_> {
-    /// (Once for each of both, so that what is not turned carries no yaw.)
+    /// `orientation` is for boxes, `yaw` for pieces. (Once for each of both, so that what is not turned carries no yaw.)
     #[inline(always)]
-    fn among<Q: Question>(&self, yaw: Option<Yaw>) -> Q::Answer {
+    fn among<Q: Question>(&self, orientation: Orientation, yaw: Option<Yaw>) -> Q::Answer {
         let at = Whereabouts {
             origin: self.way.from.position,
-            orientation: yaw.map_or(Orientation::Unturned, Orientation::Yawed),
+            orientation,
             run: [0.0; 3],
             margin_mm: 0.0,
         };
