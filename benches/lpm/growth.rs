@@ -1,6 +1,6 @@
 //! How the cost of the core grows with the number of elements at the same density.
 
-use super::timing::{rounds, warm};
+use super::timing::{Rounds, TURNS, warm};
 use super::world::{KINDS, gripper, moves, world};
 use super::{QUERIES, RANGE_MM, SIZES, built, mover, stop};
 
@@ -16,7 +16,9 @@ pub fn report(clock: f64) {
         let world = world(size);
         let model = built(&world);
         let times = if size > 5_000 { 5 } else { 51 };
-        let whole = rounds(times, || (), |()| built(&world)).median;
+        let mut whole = Rounds::new(times);
+        (0..TURNS).for_each(|_| whole.turn(|| (), |()| built(&world)));
+        let whole = whole.spread().median;
         note("build, ns an element".to_owned(), whole / size as f64);
         let bytes = model.heap_bytes() as f64 / size as f64;
         note("memory, bytes an element".to_owned(), bytes);

@@ -11,10 +11,8 @@ mod peer;
 mod timing;
 mod world;
 
-use std::cell::RefCell;
-
 use relayrig::lpm::{Answer, Model, Move, Mover, Pose, Shape};
-use timing::{Spread, clock_ns, cold, rounds, warm};
+use timing::{Rounds, Spread, TURNS, Timed, clock_ns, cold, warm};
 use world::{KINDS, World, gripper, moves, world};
 
 /// Numbers of elements.
@@ -139,36 +137,53 @@ impl Bench {
             .filter(|way| model.any_hit(mover, way).is_some())
             .count();
         let share = format!("{:.0}%", 100.0 * hits as f64 / ways.len() as f64);
-        let one = warm(ways, *clock, |way| double.compound(way));
-        let single_one = warm(ways, *clock, |way| single.compound(way));
-        let any = warm(ways, *clock, |way| model.any_hit(mover, way));
-        let pairs = warm(ways, *clock, |way| double.pairs_any(way));
-        let single_any = warm(ways, *clock, |way| single.pairs_any(way));
+        let timed = || Timed::new(ways, *clock);
+        let (mut any, mut first, mut least) = (timed(), timed(), timed());
+        let (mut one, mut pairs_any, mut pairs_first) = (timed(), timed(), timed());
+        let (mut single_one, mut single_any, mut single_first) = (timed(), timed(), timed());
+        for _ in 0..TURNS {
+            any.turn(|way| model.any_hit(mover, way));
+            first.turn(|way| stop(model, mover, way));
+            one.turn(|way| double.compound(way));
+            pairs_any.turn(|way| double.pairs_any(way));
+            pairs_first.turn(|way| double.pairs_first(way));
+            single_one.turn(|way| single.compound(way));
+            single_any.turn(|way| single.pairs_any(way));
+            single_first.turn(|way| single.pairs_first(way));
+            least.turn(|way| model.clearance(mover, way, RANGE_MM));
+        }
+        let (one, single_one) = (one.spread(), single_one.spread());
+        let any = any.spread();
         row(
             kind,
             &share,
             "any hit",
             &any,
-            &[one, pairs, best(single_one, single_any)],
+            &[
+                one,
+                pairs_any.spread(),
+                best(single_one, single_any.spread()),
+            ],
         );
         missed::of_question(self, ways, &one, &any, &|mover, way| {
             model.any_hit(mover, way).is_some()
         });
-        let first = warm(ways, *clock, |way| stop(model, mover, way));
-        let pairs = warm(ways, *clock, |way| double.pairs_first(way));
-        let single_first = warm(ways, *clock, |way| single.pairs_first(way));
+        let first = first.spread();
         row(
             kind,
             &share,
             "first contact",
             &first,
-            &[one, pairs, best(single_one, single_first)],
+            &[
+                one,
+                pairs_first.spread(),
+                best(single_one, single_first.spread()),
+            ],
         );
         missed::of_question(self, ways, &one, &first, &|mover, way| {
             stop(model, mover, way).is_some()
         });
-        let least = warm(ways, *clock, |way| model.clearance(mover, way, RANGE_MM));
-        row(kind, &share, "clearance", &least, &[]);
+        row(kind, &share, "clearance", &least.spread(), &[]);
     }
 
     /// First contact with half a millimetre to be kept: both sides search then.
@@ -176,9 +191,19 @@ impl Bench {
         for kind in ["jog5", "descend", "local300"] {
             let mut ways = moves(world, kind, QUERIES);
             ways.iter_mut().for_each(|way| way.margin_mm = MARGIN_MM);
-            let first = warm(&ways, self.clock, |way| stop(&self.model, &self.mover, way));
-            let pairs = warm(&ways, self.clock, |way| self.double.pairs_first(way));
-            row(kind, "", "within 0.5 mm", &first, &[pairs]);
+            let mut first = Timed::new(&ways, self.clock);
+            let mut pairs = Timed::new(&ways, self.clock);
+            for _ in 0..TURNS {
+                first.turn(|way| stop(&self.model, &self.mover, way));
+                pairs.turn(|way| self.double.pairs_first(way));
+            }
+            row(
+                kind,
+                "",
+                "within 0.5 mm",
+                &first.spread(),
+                &[pairs.spread()],
+            );
         }
     }
 
@@ -213,9 +238,16 @@ impl Bench {
     fn edits(&self, world: &World) {
         let count = world.elements.len();
         let times = if count > 5_000 { 9 } else { 201 };
-        let ours = rounds(times, || (), |()| built(world));
-        let rebuild = self.double.building(&world.elements, times);
-        let single = self.single.building(&world.elements, times);
+        let bodies = peer::double::Peer::bodies(&world.elements);
+        let single_bodies = peer::single::Peer::bodies(&world.elements);
+        let [mut ours, mut rebuild, mut single, mut copy] = [(); 4].map(|()| Rounds::new(times));
+        for _ in 0..TURNS {
+            ours.turn(|| (), |()| built(world));
+            peer::double::Peer::build(&bodies, &mut rebuild);
+            peer::single::Peer::build(&single_bodies, &mut single);
+            copy.turn(|| (), |()| self.model.clone());
+        }
+        let (ours, rebuild, single) = (ours.spread(), rebuild.spread(), single.spread());
         row(
             "build",
             "",
@@ -223,25 +255,30 @@ impl Bench {
             &ours,
             &[rebuild, rebuild, single],
         );
-        missed::of_build(self, times, &ours, &rebuild);
+        missed::of_build(&copy.spread(), &ours, &rebuild);
         let picked: Vec<usize> = (0..QUERIES)
             .map(|index| 1 + index * 7919 % (count - 1))
             .collect();
-        let model = RefCell::new(self.model.clone());
-        let ours = warm(&picked, self.clock, |index| {
-            let (shape, pose) = &world.elements[*index];
-            let mut model = model.borrow_mut();
-            let key = model.insert("element", shape, pose);
-            model.remove(key.expect("a body of the scene"))
-        });
-        let double = self.double.editing(&picked, self.clock);
-        let single = self.single.editing(&picked, self.clock);
+        let mut model = self.model.clone();
+        let (mut double, mut single) = (self.double.editor(), self.single.editor());
+        let timed = || Timed::new(&picked, self.clock);
+        let (mut ours, mut double_edit, mut single_edit) = (timed(), timed(), timed());
+        for _ in 0..TURNS {
+            ours.turn(|index| {
+                let (shape, pose) = &world.elements[*index];
+                let key = model.insert("element", shape, pose);
+                model.remove(key.expect("a body of the scene"))
+            });
+            double_edit.turn(&mut double);
+            single_edit.turn(&mut single);
+        }
+        let ours = ours.spread();
         row(
             "edit",
             "",
             "insert, remove",
             &ours,
-            &[rebuild, double, single],
+            &[rebuild, double_edit.spread(), single_edit.spread()],
         );
         println!(
             "(edit: against a rebuild of the compound, and against insert and remove of a leaf of the raw tree)"

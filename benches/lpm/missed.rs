@@ -2,7 +2,7 @@
 
 use relayrig::lpm::{Move, Mover};
 
-use super::timing::{Spread, rounds, warm};
+use super::timing::{Spread, warm};
 use super::world::specks;
 use super::{BAR, Bench, mover, row};
 
@@ -50,9 +50,8 @@ pub fn of_question(
 
 /// A copy of the model: all that is kept written once, into memory of the same pieces. Where the system takes
 /// memory back between two models, both pay for it. Building cannot be faster.
-pub fn of_build(bench: &Bench, times: usize, ours: &Spread, peer: &Spread) {
-    let copy = rounds(times, || (), |()| bench.model.clone());
-    row("build", "", "copy of it", &copy, &[*peer]);
+pub fn of_build(copy: &Spread, ours: &Spread, peer: &Spread) {
+    row("build", "", "copy of it", copy, &[*peer]);
     if peer.mean < BAR * ours.mean {
         println!(
             "  (bar of {BAR}: {:.0} ns; a copy {:.2} of the bar)",

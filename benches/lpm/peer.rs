@@ -9,9 +9,8 @@
 macro_rules! peer {
     ($name:ident, $library:ident, $real:ty) => {
         pub mod $name {
-            use crate::timing::{Spread, rounds, warm};
+            use crate::timing::Rounds;
             use relayrig::lpm;
-            use std::cell::RefCell;
             use $library::bounding_volume::{Aabb, BoundingVolume};
             use $library::math::{Pose, Rot3, Vector};
             use $library::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
@@ -20,7 +19,8 @@ macro_rules! peer {
             };
             use $library::shape::{Compound, SharedShape};
 
-            type Placed = (Pose, SharedShape);
+            /// A body as the library has it, and its place.
+            pub type Placed = (Pose, SharedShape);
 
             pub struct Peer {
                 scene: Compound,
@@ -69,26 +69,25 @@ macro_rules! peer {
                     }
                 }
 
-                /// Builds the whole compound; the shapes are made and shared beforehand.
-                pub fn building(
-                    &self,
-                    elements: &[(lpm::Shape, lpm::Pose)],
-                    times: usize,
-                ) -> Spread {
-                    let bodies: Vec<Placed> = elements.iter().map(placed).collect();
-                    rounds(times, || bodies.clone(), Compound::new)
+                /// The shapes, made and shared beforehand.
+                pub fn bodies(elements: &[(lpm::Shape, lpm::Pose)]) -> Vec<Placed> {
+                    elements.iter().map(placed).collect()
+                }
+
+                /// Builds the whole compound.
+                pub fn build(bodies: &[Placed], rounds: &mut Rounds) {
+                    rounds.turn(|| bodies.to_vec(), Compound::new);
                 }
 
                 /// Puts one leaf into the raw tree and takes it out; its bounds are known beforehand.
-                pub fn editing(&self, picked: &[usize], clock_ns: f64) -> Spread {
+                pub fn editor(&self) -> impl FnMut(&usize) {
                     let bounds = self.scene.aabbs();
                     let spare = bounds.len() as u32;
-                    let tree = RefCell::new(Bvh::from_leaves(BvhBuildStrategy::Binned, bounds));
-                    warm(picked, clock_ns, |index| {
-                        let mut tree = tree.borrow_mut();
+                    let mut tree = Bvh::from_leaves(BvhBuildStrategy::Binned, bounds);
+                    move |index| {
                         tree.insert(bounds[*index], spare);
                         tree.remove(spare);
-                    })
+                    }
                 }
 
                 /// First contact by one call; a start that overlaps counts as 0.

@@ -1,11 +1,19 @@
 //! How a query is timed: alone, the cost of the clock taken off, the best of several warm passes;
 //! then mean, median and 99th percentile over the queries.
+//!
+//! Contestants take turns, several passes each, so that all of them meet the machine in its moods: on a shared one
+//! everything may take half as long again for seconds, and a ratio of two figures that were taken one after the other
+//! says more about that than about either. Warm is everything then: caches, and what the processor has learned about
+//! the order of these very questions.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-/// Passes over all queries; the first ones also warm the caches.
+/// Turns of each contestant, and passes over all queries in a turn; the first ones also warm the caches.
+pub const TURNS: usize = 4;
 const PASSES: usize = 7;
+/// Queries of the clock alone.
+const EMPTY: usize = 2_000;
 /// Bytes written before each cold query: more than any cache level of the machines in use.
 const FLUSHED_BYTES: usize = 48 << 20;
 
@@ -29,28 +37,51 @@ impl Spread {
     }
 }
 
-/// What reading the clock twice costs, ns: the median of many empty measurements.
+/// What reading the clock costs, ns: a query that asks nothing, timed like all others. (A clock with steps makes the
+/// best of several readings small; of this one as of the others.)
 pub fn clock_ns() -> f64 {
-    let empty = (0..10_001).map(|_| {
-        let start = Instant::now();
-        black_box(());
-        start.elapsed().as_nanos() as f64
-    });
-    Spread::of(empty.collect()).median
+    warm(&[(); EMPTY], 0.0, |()| ()).mean
 }
 
-/// Each query alone, its best of [`PASSES`].
-pub fn warm<Q, A>(queries: &[Q], clock_ns: f64, ask: impl Fn(&Q) -> A) -> Spread {
-    let mut best = vec![f64::INFINITY; queries.len()];
-    for _ in 0..PASSES {
-        for (query, best) in queries.iter().zip(&mut best) {
-            let start = Instant::now();
-            black_box(ask(black_box(query)));
-            let spent = start.elapsed().as_nanos() as f64 - clock_ns;
-            *best = best.min(spent.max(0.5));
+/// The queries of one contestant.
+pub struct Timed<'a, Q> {
+    queries: &'a [Q],
+    clock_ns: f64,
+    best: Vec<f64>,
+}
+
+impl<'a, Q> Timed<'a, Q> {
+    pub fn new(queries: &'a [Q], clock_ns: f64) -> Timed<'a, Q> {
+        Timed {
+            queries,
+            clock_ns,
+            best: vec![f64::INFINITY; queries.len()],
         }
     }
-    Spread::of(best)
+
+    /// Some passes.
+    pub fn turn<A>(&mut self, mut ask: impl FnMut(&Q) -> A) {
+        for _ in 0..PASSES {
+            for (query, best) in self.queries.iter().zip(&mut self.best) {
+                let start = Instant::now();
+                black_box(ask(black_box(query)));
+                let spent = start.elapsed().as_nanos() as f64 - self.clock_ns;
+                *best = best.min(spent.max(0.5));
+            }
+        }
+    }
+
+    /// Of the best of each query.
+    pub fn spread(self) -> Spread {
+        Spread::of(self.best)
+    }
+}
+
+/// One contestant alone.
+pub fn warm<Q, A>(queries: &[Q], clock_ns: f64, mut ask: impl FnMut(&Q) -> A) -> Spread {
+    let mut timed = Timed::new(queries, clock_ns);
+    (0..TURNS).for_each(|_| timed.turn(&mut ask));
+    timed.spread()
 }
 
 /// Each query once, with every cache full of something else.
@@ -69,23 +100,37 @@ pub fn cold<Q, A>(queries: &[Q], clock_ns: f64, ask: impl Fn(&Q) -> A) -> Spread
     Spread::of(times.collect())
 }
 
-/// Runs of which the best counts, of something large.
-const TRIES: usize = 3;
+/// Tries of a round in each turn.
+const TRIES: usize = 2;
 
-/// Distribution of `rounds` measurements of something large, each the best of [`TRIES`], ns.
-pub fn rounds<S, A>(
-    rounds: usize,
-    mut ready: impl FnMut() -> S,
-    mut run: impl FnMut(S) -> A,
-) -> Spread {
-    let mut once = || {
-        let state = ready();
-        let start = Instant::now();
-        let made = black_box(run(state));
-        let spent = start.elapsed().as_nanos() as f64;
-        drop(made);
-        spent
-    };
-    let best = |once: &mut dyn FnMut() -> f64| (0..TRIES).map(|_| once()).fold(f64::MAX, f64::min);
-    Spread::of((0..rounds).map(|_| best(&mut once)).collect())
+/// Rounds of something large, each the best of all turns, ns.
+pub struct Rounds {
+    best: Vec<f64>,
+}
+
+impl Rounds {
+    pub fn new(rounds: usize) -> Rounds {
+        Rounds {
+            best: vec![f64::INFINITY; rounds],
+        }
+    }
+
+    /// All rounds; what is made `ready` for them is not counted, nor is it what they leave behind.
+    pub fn turn<S, A>(&mut self, mut ready: impl FnMut() -> S, mut run: impl FnMut(S) -> A) {
+        for best in &mut self.best {
+            for _ in 0..TRIES {
+                let state = ready();
+                let start = Instant::now();
+                let made = black_box(run(state));
+                let spent = start.elapsed().as_nanos() as f64;
+                drop(made);
+                *best = best.min(spent);
+            }
+        }
+    }
+
+    /// Of the best of each round.
+    pub fn spread(self) -> Spread {
+        Spread::of(self.best)
+    }
 }
