@@ -20,19 +20,21 @@ pub struct Model {
     pub(crate) hollow: Vec<u32>,
 }
 
-#[derive(Debug, Clone, Default)]
+/// Where an element stands, or has stood.
+#[derive(Debug, Clone)]
 struct Slot {
     generation: u32,
-    element: Option<Element>,
-}
-
-#[derive(Debug, Clone)]
-struct Element {
-    id: Name,
-    /// First of its pieces.
+    /// First of its pieces, [`NONE`] where nobody stands.
     first: u32,
+    id: Name,
     /// Of elements with a mesh.
     interior: Option<Box<Interior>>,
+}
+
+impl Slot {
+    fn is_taken(&self) -> bool {
+        self.first != NONE
+    }
 }
 
 impl Model {
@@ -48,13 +50,18 @@ impl Model {
     pub fn insert(&mut self, id: &str, shape: &Shape, pose: &Pose) -> Result<ElementKey, Flaw> {
         shape.check()?;
         pose.check()?;
-        let slot = self.free.pop().unwrap_or(self.slots.len() as u32);
-        if slot as usize == self.slots.len() {
-            self.slots.push(Slot::default());
-        }
-        let key = self.key(slot);
+        let number = self.free.pop().unwrap_or(self.slots.len() as u32);
+        let generation = self.slots.get(number as usize);
+        let key = ElementKey {
+            slot: number,
+            generation: generation.map_or(0, |slot| slot.generation),
+        };
         let first = self.pieces.stand(&mut self.space, shape, pose, key);
-        self.slots[slot as usize].element = Some(self.element(id, shape, pose, slot, first));
+        let slot = self.slot(id, shape, pose, key, first);
+        match self.slots.get_mut(number as usize) {
+            Some(known) => *known = slot,
+            None => self.slots.push(slot),
+        }
         Ok(key)
     }
 
@@ -74,31 +81,28 @@ impl Model {
             let flawed = |flaw| (number, flaw);
             shape.check().map_err(flawed)?;
             pose.check().map_err(flawed)?;
-            let slot = number as u32;
             let key = ElementKey {
-                slot,
+                slot: number as u32,
                 generation: 0,
             };
             let first = model.pieces.stand(&mut filling, shape, pose, key);
-            let element = model.element(id, shape, pose, slot, first);
-            model.slots.push(Slot {
-                generation: 0,
-                element: Some(element),
-            });
+            let slot = model.slot(id, shape, pose, key, first);
+            model.slots.push(slot);
         }
         model.space = filling.space();
         Ok(model)
     }
 
     #[inline]
-    fn element(&mut self, id: &str, shape: &Shape, pose: &Pose, slot: u32, first: u32) -> Element {
+    fn slot(&mut self, id: &str, shape: &Shape, pose: &Pose, key: ElementKey, first: u32) -> Slot {
         let interior = match shape {
             Shape::Block { .. } | Shape::Cylinder { .. } => None,
-            Shape::Compound(_) | Shape::Mesh(_) => self.interior(shape, pose, slot),
+            Shape::Compound(_) | Shape::Mesh(_) => self.interior(shape, pose, key.slot),
         };
-        Element {
-            id: self.names.keep(id),
+        Slot {
+            generation: key.generation,
             first,
+            id: self.names.keep(id),
             interior,
         }
     }
@@ -116,21 +120,18 @@ impl Model {
         let Some(slot) = self.slots.get_mut(key.slot as usize) else {
             return false;
         };
-        if slot.generation != key.generation {
+        if slot.generation != key.generation || !slot.is_taken() {
             return false;
         }
-        let Some(element) = slot.element.take() else {
-            return false;
-        };
         slot.generation += 1;
-        self.names.leave(&element.id);
-        let mut number = element.first;
+        self.names.leave(&slot.id);
+        let mut number = std::mem::replace(&mut slot.first, NONE);
+        if slot.interior.take().is_some() {
+            self.hollow.retain(|known| *known != key.slot);
+        }
         while number != NONE {
             self.space.remove(number);
             number = self.pieces.let_go(number);
-        }
-        if element.interior.is_some() {
-            self.hollow.retain(|known| *known != key.slot);
         }
         self.free.push(key.slot);
         if self.names.is_mostly_gaps() {
@@ -141,12 +142,8 @@ impl Model {
 
     fn rewrite_names(&mut self) {
         let mut fresh = Names::default();
-        for element in self
-            .slots
-            .iter_mut()
-            .filter_map(|slot| slot.element.as_mut())
-        {
-            element.id = fresh.keep(self.names.text(&element.id));
+        for slot in self.slots.iter_mut().filter(|slot| slot.is_taken()) {
+            slot.id = fresh.keep(self.names.text(&slot.id));
         }
         self.names = fresh;
     }
@@ -156,12 +153,9 @@ impl Model {
         if key == ElementKey::UNDECIDABLE {
             return "(undecidable)";
         }
-        let slot = self
-            .slots
-            .get(key.slot as usize)
-            .filter(|slot| slot.generation == key.generation);
-        slot.and_then(|slot| slot.element.as_ref())
-            .map_or("(removed)", |element| self.names.text(&element.id))
+        let slot = self.slots.get(key.slot as usize);
+        slot.filter(|slot| slot.generation == key.generation && slot.is_taken())
+            .map_or("(removed)", |slot| self.names.text(&slot.id))
     }
 
     /// Number of elements.
@@ -190,7 +184,7 @@ impl Model {
     }
 
     pub(crate) fn standing_slots(&self) -> impl Iterator<Item = u32> + '_ {
-        let standing = |slot: &u32| self.slots[*slot as usize].element.is_some();
+        let standing = |slot: &u32| self.slots[*slot as usize].is_taken();
         (0..self.slots.len() as u32).filter(standing)
     }
 
@@ -203,25 +197,22 @@ impl Model {
 
     /// One of the pieces of the element in a slot.
     pub(crate) fn a_piece(&self, slot: u32) -> u32 {
-        let element = self.slots[slot as usize].element.as_ref();
-        element
-            .expect("only slots of standing elements are asked about")
-            .first
+        self.slots[slot as usize].first
     }
 
     /// A point of the element in a slot, or of `other`, that lies inside the other one although no
     /// surfaces need to meet.
     pub(crate) fn shared_point(&self, slot: u32, other: &Interior) -> Option<[f64; 3]> {
-        let element = self.slots[slot as usize].element.as_ref()?;
-        match &element.interior {
+        let slot = &self.slots[slot as usize];
+        match &slot.interior {
             Some(interior) => interior.shared_with(other),
-            None => Interior::around(self.centres(element)).shared_with(other),
+            None => Interior::around(self.centres(slot)).shared_with(other),
         }
     }
 
-    fn centres(&self, element: &Element) -> Vec<[f64; 3]> {
+    fn centres(&self, slot: &Slot) -> Vec<[f64; 3]> {
         let known = |number: u32| (number != NONE).then_some(number);
-        let chain = std::iter::successors(known(element.first), |number| {
+        let chain = std::iter::successors(known(slot.first), |number| {
             known(self.pieces.at(*number).sibling)
         });
         chain
