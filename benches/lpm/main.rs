@@ -112,6 +112,9 @@ impl Bench {
         }
         self.margins(world);
         self.far_above(world);
+        for kind in KINDS {
+            self.unlearned_kind(kind, &moves(world, kind, QUERIES));
+        }
         println!(
             "\n{:<10} {:>5} {:<14} {:>22}   {:>19} {:>19}",
             "cold", "", "question", "ours, ns", "f64 one call", "f64 over pairs"
@@ -216,6 +219,19 @@ impl Bench {
         let one = warm(&ways, self.clock, |way| self.double.compound(way));
         let pairs = warm(&ways, self.clock, |way| self.double.pairs_any(way));
         row("far above", "0%", "any hit", &poses, &[one, pairs]);
+    }
+
+    /// In another order in each pass.
+    fn unlearned_kind(&self, kind: &str, ways: &[Move]) {
+        let timed = || Timed::unlearned(ways, self.clock);
+        let (mut any, mut one, mut pairs) = (timed(), timed(), timed());
+        for _ in 0..TURNS {
+            any.turn(|way| self.model.any_hit(&self.mover, way));
+            one.turn(|way| self.double.compound(way));
+            pairs.turn(|way| self.double.pairs_any(way));
+        }
+        let peers = [one.spread(), pairs.spread()];
+        row(kind, "", "any, no order", &any.spread(), &peers);
     }
 
     fn cold_kind(&self, kind: &str, ways: &[Move]) {

@@ -9,6 +9,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use super::world::Dice;
+
 /// Turns of each contestant, and passes over all queries in a turn; the first ones also warm the caches.
 pub const TURNS: usize = 4;
 const PASSES: usize = 7;
@@ -48,6 +50,9 @@ pub struct Timed<'a, Q> {
     queries: &'a [Q],
     clock_ns: f64,
     best: Vec<f64>,
+    /// Numbers of the queries as they are asked, and what puts them in another order before each pass.
+    order: Vec<usize>,
+    dice: Option<Dice>,
 }
 
 impl<'a, Q> Timed<'a, Q> {
@@ -56,13 +61,27 @@ impl<'a, Q> Timed<'a, Q> {
             queries,
             clock_ns,
             best: vec![f64::INFINITY; queries.len()],
+            order: (0..queries.len()).collect(),
+            dice: None,
+        }
+    }
+
+    /// The same in another order in each pass: what comes next has not been learned by anybody.
+    pub fn unlearned(queries: &'a [Q], clock_ns: f64) -> Timed<'a, Q> {
+        Timed {
+            dice: Some(Dice(7)),
+            ..Timed::new(queries, clock_ns)
         }
     }
 
     /// Some passes.
     pub fn turn<A>(&mut self, mut ask: impl FnMut(&Q) -> A) {
         for _ in 0..PASSES {
-            for (query, best) in self.queries.iter().zip(&mut self.best) {
+            if let Some(dice) = &mut self.dice {
+                dice.shuffle(&mut self.order);
+            }
+            for number in &self.order {
+                let (query, best) = (&self.queries[*number], &mut self.best[*number]);
                 let start = Instant::now();
                 black_box(ask(black_box(query)));
                 let spent = start.elapsed().as_nanos() as f64 - self.clock_ns;

@@ -31,6 +31,13 @@ impl Dice {
     fn below(&mut self, count: u64) -> u64 {
         self.next() % count
     }
+
+    /// Puts things in another order.
+    pub fn shuffle<T>(&mut self, things: &mut [T]) {
+        for last in (1..things.len()).rev() {
+            things.swap(last, self.below(last as u64 + 1) as usize);
+        }
+    }
 }
 
 /// What stands.
