@@ -12,6 +12,7 @@ use super::mover::{Group, Mover, Orientation, Whereabouts};
 use super::piece::NOISE;
 use super::pose::Yaw;
 use super::prism::Prism;
+use super::shape::is_turn;
 use super::space::LANES;
 use super::standing::Stands;
 use super::touch::lie_apart;
@@ -39,10 +40,12 @@ impl Model {
             way,
         };
         let is_plain = self.hollow.is_empty() & !body.is_hollow() & (way.margin_mm == 0.0);
-        if is_plain && way.goes_nowhere() && way.from.is_sound() {
+        if is_plain && way.goes_nowhere() && way.from.is_placed() {
             match way.from.rotation {
-                [_, 0.0, 0.0, 0.0] => return rest.among::<Q>(Orientation::Unturned, None),
-                [w, 0.0, 0.0, z] => {
+                [w, 0.0, 0.0, 0.0] if is_turn(w * w) => {
+                    return rest.among::<Q>(Orientation::Unturned, None);
+                }
+                [w, 0.0, 0.0, z] if is_turn(w * w + z * z) => {
                     let boxes = Orientation::Yawed(Yaw::roughly(w, z));
                     return rest.among::<Q>(boxes, Some(Yaw::of(w, z)));
                 }

@@ -111,10 +111,6 @@ impl Shape {
     }
 }
 
-/// Squared lengths of quaternions between these, above the first: outside them digits are lost to under- or
-/// overflow.
-const SQUARED: [f64; 2] = [1e-200, 1e200];
-
 impl Pose {
     /// Accepts finite positions within 1e6 mm and any non-zero quaternion.
     ///
@@ -133,8 +129,7 @@ impl Pose {
     #[inline]
     pub(crate) fn is_sound(&self) -> bool {
         let [w, x, y, z] = self.rotation;
-        let squared = w * w + x * x + y * y + z * z;
-        self.is_placed() & is_between(squared, SQUARED)
+        self.is_placed() & is_turn(w * w + x * x + y * y + z * z)
     }
 
     /// The same of the position alone.
@@ -204,6 +199,13 @@ fn check_mesh(mesh: &Mesh, path: &str) -> Result<(), Flaw> {
         }
     }
     Ok(())
+}
+
+/// Whether a quaternion of this squared length is a turn: outside this range it has lost its digits to under- or
+/// overflow; what is not finite is outside, too.
+#[inline(always)]
+pub(crate) fn is_turn(squared: f64) -> bool {
+    is_between(squared, [1e-200, 1e200])
 }
 
 #[inline(always)]

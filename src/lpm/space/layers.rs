@@ -98,6 +98,7 @@ impl Layers {
     /// Of many pieces at once.
     pub(super) fn of(seats: &[Seat], covers: &[Cover]) -> Layers {
         let mut layers = Layers::default();
+        // Pieces that begin and end in the same layer.
         let mut within = [0u32; LAYERS];
         for (Seat { reach, .. }, cover) in seats.iter().zip(covers) {
             let (low, high) = (
@@ -114,11 +115,12 @@ impl Layers {
         }
         layers.bottom = layers.h1.into_iter().fold(f32::INFINITY, smaller);
         layers.top = layers.h2.into_iter().fold(f32::NEG_INFINITY, larger);
+        // Those that have begun below a layer and do not end below or in it; but for those of one layer.
         let (mut begun, mut ended) = (0, 0);
-        for layer in 0..LAYERS {
-            ended += layers.ending[layer] - within[layer];
+        for (layer, within) in within.into_iter().enumerate() {
+            ended += layers.ending[layer] - within;
             layers.passing[layer] = begun - ended;
-            begun += layers.beginning[layer] - within[layer];
+            begun += layers.beginning[layer] - within;
         }
         layers
     }
@@ -243,6 +245,28 @@ mod tests {
                     "{bottom} {top} {low} {high}"
                 );
             }
+        }
+    }
+
+    #[test]
+    fn layers_of_many_pieces_at_once_are_those_of_one_after_the_other() {
+        let mut dice = Dice(29);
+        for count in [0, 1, 7, 400] {
+            let covers: Vec<Cover> = (0..count)
+                .map(|_| {
+                    let bottom = 300.0 * dice.signed() + 150.0;
+                    // Many end in the layer in which they begin.
+                    let tall = [3.0, 60.0, 700.0][dice.pick(3) as usize] * dice.signed().abs();
+                    Cover::of(([0.0, 0.0, bottom], [1.0, 1.0, bottom + tall]))
+                })
+                .collect();
+            let seats: Vec<Seat> = covers.iter().map(Seat::of).collect();
+            let mut single = Layers::default();
+            for cover in &covers {
+                joined(&mut single, cover.low[2], cover.high[2]);
+            }
+            let at_once = Layers::of(&seats, &covers);
+            assert_eq!(format!("{at_once:?}"), format!("{single:?}"), "{count}");
         }
     }
 
