@@ -61,8 +61,9 @@ pub(crate) enum Orientation<'a> {
     Turning,
 }
 
-/// Relative error allowed for the boxes of a group at their place: fewer than ten roundings to
-/// single precision, of magnitudes that sum up to those of group and way along the axis.
+/// Relative error allowed for the boxes of a group at their place: fewer than ten roundings to single precision, of
+/// magnitudes that sum up to those of group and way along the axis, and the 2e-9 of a rough yaw
+/// ([`Yaw::roughly`]).
 const SINGLE: f64 = 1e-6;
 
 impl Mover {
