@@ -81,15 +81,14 @@ impl Pieces {
         owner: ElementKey,
         sibling: u32,
     ) -> u32 {
-        let next = self.standing.len() as u32;
-        let number = self.free.last().copied().unwrap_or(next);
-        space.enter(number, cover);
         let standing = Standing {
             form,
             owner,
             sibling,
         };
-        kept(&mut self.standing, &mut self.free, standing)
+        let number = kept(&mut self.standing, &mut self.free, standing);
+        space.enter(number, cover);
+        number
     }
 
     /// Forgets a piece and says which is the next one of its element.
