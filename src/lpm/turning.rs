@@ -79,7 +79,9 @@ impl Turning<'_> {
 
     /// Least distance over the move as `(t, distance)` to within 2e-4 mm, `None` above `cutoff`.
     ///
-    /// A good guess first, then one sweep that proves that nothing is lower (or finds it).
+    /// A good guess first, then one sweep that proves that nothing is lower than that by the resolution. Whatever comes
+    /// half as near as that to being lower is taken for the guess from then on: so every plane has the other half to
+    /// go on with.
     pub(crate) fn least(&self, cutoff: f64) -> Option<(f64, f64)> {
         let rho = self.rho();
         let resolution = LEAST_RESOLUTION_MM.max(band_mm(self.turn, rho));
@@ -91,13 +93,13 @@ impl Turning<'_> {
             if !(gap.lower > 0.0) {
                 return Some((t, 0.0));
             }
-            if gap.lower < best.1 - resolution {
+            if gap.lower < best.1.min(cutoff + resolution) - resolution / 2.0 {
                 best = self.descended(t - SAMPLE, t + SAMPLE, (t, gap.lower));
             }
             if best.1 <= 0.0 {
                 return Some(best);
             }
-            let threshold = (best.1 - resolution).min(cutoff).max(0.0);
+            let threshold = (best.1.min(cutoff + resolution) - resolution).max(0.0);
             let stretch = self.stretch(&mover, &gap, rho, t, threshold);
             if t + stretch > 1.0 {
                 return (best.1 <= cutoff).then_some(best);

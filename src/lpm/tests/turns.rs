@@ -159,6 +159,39 @@ fn the_clearance_of_a_turn_is_no_larger_than_any_sample_and_is_really_reached() 
 }
 
 #[test]
+fn a_turn_with_two_valleys_of_nearly_the_same_depth_has_the_clearance_of_the_deeper_one() {
+    // The samples find the other one, 14.92486 mm. On the slope of this one stands a moment that is lower by just
+    // what is resolved, 2e-4 mm, where a search for more than that has no way to go on.
+    let model = standing(&Shape::Block { half: [3.0; 3] }, Pose::IDENTITY);
+    let block = Shape::Block { half: [5.0; 3] };
+    let swung = Shape::Compound(vec![(Pose::at([5.0, 0.0, 0.0]), block)]);
+    let from = Pose {
+        position: [15.858059743240645, -1.1727218118222495, 37.514833948496076],
+        rotation: [
+            -1.2305917950416343,
+            2.1655820996120987,
+            2.027566346173307,
+            -0.4326471016116851,
+        ],
+    };
+    let to = Pose {
+        position: [-33.90752309280117, -52.90991954304864, -10.256143184496771],
+        rotation: [
+            -0.5166633180814252,
+            0.09840390704769587,
+            0.4260378141827282,
+            -0.6687123696163187,
+        ],
+    };
+    let found = model.clearance(&swung, &way(from, to), 100.0).unwrap();
+    assert!((found.distance_mm - 14.92425).abs() < 1e-5, "{found:?}");
+    // As near as the range asks, and just beyond.
+    let at = |range_mm: f64| model.clearance(&swung, &way(from, to), range_mm);
+    assert!(at(found.distance_mm + 1e-3).is_some());
+    assert!(at(found.distance_mm - 1e-3).is_none());
+}
+
+#[test]
 fn a_turn_there_and_back_has_one_verdict() {
     for seed in 900..1_050 {
         let turned = Turned::drawn(seed);
