@@ -35,7 +35,8 @@
 //! 4. A pair that the broad phase drops has boxes, rounded outward by the same bound and then to
 //!    single precision, that never overlap during the way. All that the broad phase computes along
 //!    the way carries `space::sweep::SLACK_MM`, and steps of height are monotone.
-//! 5. A body inside a closed mesh is found by `solid`, where doubt means inside.
+//! 5. A body inside a closed mesh is found by `solid`, where doubt means inside; what is closed, however untidy the
+//!    file, by `closed`.
 //! 6. NaN compares false: every comparison is written so that false means blocked. Iteration limits,
 //!    invalid moves and bodies are blocked ([`ElementKey::UNDECIDABLE`]).
 //!
@@ -58,6 +59,7 @@
 //! | `mover::SINGLE`, `space::boxes::EARLIER` | 1e-6, relative | boxes of the mover and their times in f32, likewise |
 //! | `pose::Yaw::roughly` | 2e-9, relative | how a body is turned for its boxes, and for nothing else; within `mover::SINGLE` |
 //! | `space::sweep::SLOWEST_MM` | 1e-9 mm | what counts as rest on an axis, likewise |
+//! | `closed::WELD_MM` | 1e-6 mm | corners that are one when it is asked what a mesh closes |
 //! | `turning::band_mm` | 1e-7 to 5e-4 mm | how near to the margin a turning move counts as contact |
 //! | `turning::LEAST_RESOLUTION_MM` | 2e-4 mm | least distance of turning moves |
 //!
@@ -79,10 +81,12 @@
 
 mod answer;
 mod candidates;
+mod closed;
 mod contact;
 mod distance;
 pub mod exact;
 mod grazing;
+mod interior;
 mod meeting;
 mod model;
 mod mover;

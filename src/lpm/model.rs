@@ -1,10 +1,10 @@
 //! The model of the standing elements: who stands where. What is asked of it: [`question`](super::question).
 
 use super::answer::ElementKey;
+use super::interior::Interior;
 use super::name::{Name, Names};
 use super::pose::{Frame, Pose};
 use super::shape::{Flaw, Shape};
-use super::solid::Interior;
 use super::space::{Filling, Space};
 use super::standing::{NONE, Pieces};
 

@@ -1,10 +1,10 @@
 //! Bodies that move: taken apart once, asked about often.
 
+use super::interior::Interior;
 use super::piece::{Piece, pieces_of};
 use super::pose::{Frame, Pose, Yaw};
 use super::prism::Prism;
 use super::shape::{Flaw, Shape};
-use super::solid::Interior;
 use super::space::{Boxes, Cover, Four, SLOWEST_MM};
 use super::vector::{Vec3, add, length, reach};
 

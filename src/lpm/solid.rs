@@ -4,14 +4,15 @@
 //! (or around it) escapes those, and then it stays there as long as no surfaces meet; so one point
 //! of each connected piece, asked once at the start of a move, is enough.
 //!
-//! The answer counts crossings of a ray (parity does not depend on the winding of the file). A
-//! ray that passes an edge or a corner within rounding is thrown away for another direction; when
-//! every direction fails the point counts as inside.
+//! The answer counts how often a ray crosses each closed surface of the mesh ([`closed_surfaces`]). What is inside of
+//! one is inside the mesh, but for holes: a surface that lies within another and is turned the other way. Of a surface
+//! with walls in it crossings tell nothing; there only what a ray escapes from is outside. A ray that passes an edge or
+//! a corner within rounding is thrown away for another direction; when every direction fails the point counts as inside.
 
-use super::pose::{Frame, Pose};
-use super::shape::{Mesh, Shape};
+use super::closed::{Surface, closed_surfaces};
+use super::pose::Frame;
+use super::shape::Mesh;
 use super::vector::{Vec3, add, cross, dot, reach, sub};
-use std::collections::HashMap;
 
 /// Directions of rays, chosen without any symmetry a machine part might share.
 const RAYS: [Vec3; 6] = [
@@ -26,16 +27,90 @@ const RAYS: [Vec3; 6] = [
 /// Relative rounding of one signed volume (five products and sums of differences).
 const VOLUME_NOISE: f64 = 32.0 * f64::EPSILON;
 
-/// A closed surface, in the frame of its body or placed.
+/// The closed surfaces of one mesh, in the frame of its body or placed.
 #[derive(Debug, Clone)]
 pub(crate) struct Solid {
+    shells: Vec<Shell>,
+}
+
+/// One of them.
+#[derive(Debug, Clone)]
+struct Shell {
     triangles: Vec<[Vec3; 3]>,
     low: Vec3,
     high: Vec3,
+    /// As in [`Surface`].
+    is_even: bool,
+    is_oriented: bool,
+    is_hole: bool,
 }
 
 impl Solid {
-    fn of(triangles: Vec<[Vec3; 3]>) -> Solid {
+    /// None, if nothing is closed.
+    pub(crate) fn of(mesh: &Mesh) -> Option<Solid> {
+        let corner = |vertex: usize| mesh.vertices[vertex];
+        let shell = |surface: Surface| Shell {
+            is_even: surface.is_even,
+            is_oriented: surface.is_oriented,
+            ..Shell::of(
+                surface
+                    .triangles
+                    .into_iter()
+                    .map(|corners| corners.map(corner))
+                    .collect(),
+            )
+        };
+        let shells = closed_surfaces(mesh).into_iter().map(shell);
+        let mut sized: Vec<(f64, Shell)> = shells.map(|shell| (shell.volume(), shell)).collect();
+        // The larger ones first: what surrounds a shell comes before it.
+        sized.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+        for inner in 1..sized.len() {
+            let (larger, rest) = sized.split_at_mut(inner);
+            let (volume, shell) = &mut rest[0];
+            let around = larger
+                .iter()
+                .rev()
+                .find(|it| it.0 * *volume < 0.0 && it.1.surrounds(shell));
+            let is_plain = |shell: &Shell| shell.is_even && shell.is_oriented;
+            shell.is_hole =
+                is_plain(shell) && around.is_some_and(|(_, it)| is_plain(it) && !it.is_hole);
+        }
+        let shells: Vec<Shell> = sized.into_iter().map(|(_, shell)| shell).collect();
+        (!shells.is_empty()).then_some(Solid { shells })
+    }
+
+    pub(crate) fn placed(&self, frame: &Frame, position: Vec3) -> Solid {
+        let place = |corner: Vec3| add(frame.apply(corner), position);
+        let shell = |shell: &Shell| {
+            let triangles = shell.triangles.iter().map(|corners| corners.map(place));
+            Shell {
+                is_even: shell.is_even,
+                is_oriented: shell.is_oriented,
+                is_hole: shell.is_hole,
+                ..Shell::of(triangles.collect())
+            }
+        };
+        Solid {
+            shells: self.shells.iter().map(shell).collect(),
+        }
+    }
+
+    /// Whether the solid holds `point`; points nearer to the surface than rounding count as inside.
+    pub(crate) fn holds(&self, point: Vec3) -> bool {
+        let (mut around, mut holes) = (0, 0);
+        for shell in &self.shells {
+            if shell.is_hole {
+                holes += u32::from(shell.surely_holds(point));
+            } else {
+                around += u32::from(shell.may_hold(point));
+            }
+        }
+        around > holes
+    }
+}
+
+impl Shell {
+    fn of(triangles: Vec<[Vec3; 3]>) -> Shell {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
         for corner in triangles.iter().flatten() {
@@ -44,41 +119,60 @@ impl Solid {
                 high[axis] = high[axis].max(corner[axis]);
             }
         }
-        Solid {
+        Shell {
             triangles,
             low,
             high,
+            is_even: true,
+            is_oriented: true,
+            is_hole: false,
         }
     }
 
-    pub(crate) fn placed(&self, frame: &Frame, position: Vec3) -> Solid {
-        let place = |corner: Vec3| add(frame.apply(corner), position);
-        Solid::of(
-            self.triangles
-                .iter()
-                .map(|corners| corners.map(place))
-                .collect(),
-        )
+    /// Six times the volume; below 0 where triangles are turned inside.
+    fn volume(&self) -> f64 {
+        let origin = self.low;
+        let cone = |corners: &[Vec3; 3]| {
+            let [a, b, c] = corners.map(|corner| sub(corner, origin));
+            dot(cross(a, b), c)
+        };
+        self.triangles.iter().map(cone).sum()
     }
 
-    /// Whether the solid holds `point`; points nearer to the surface than rounding count as inside.
-    pub(crate) fn holds(&self, point: Vec3) -> bool {
-        let outside =
-            (0..3).any(|axis| point[axis] < self.low[axis] || point[axis] > self.high[axis]);
-        if outside {
-            return false;
+    /// Whether all of another shell lies inside.
+    fn surrounds(&self, other: &Shell) -> bool {
+        let mut corners = other.triangles.iter().flatten();
+        corners.all(|corner| self.surely_holds(*corner))
+    }
+
+    fn may_hold(&self, point: Vec3) -> bool {
+        self.is_around(point) && self.is_inside(point).unwrap_or(true)
+    }
+
+    fn surely_holds(&self, point: Vec3) -> bool {
+        self.is_around(point) && self.is_inside(point).unwrap_or(false)
+    }
+
+    fn is_around(&self, point: Vec3) -> bool {
+        (0..3).all(|axis| point[axis] >= self.low[axis] && point[axis] <= self.high[axis])
+    }
+
+    /// None, if no ray says anything.
+    fn is_inside(&self, point: Vec3) -> Option<bool> {
+        let mut crossings = RAYS.iter().filter_map(|ray| self.crossings(point, *ray));
+        let first = crossings.next()?;
+        if self.is_even {
+            return Some(first % 2 == 1);
         }
-        RAYS.iter()
-            .find_map(|ray| self.odd_crossings(point, *ray))
-            .unwrap_or(true)
+        Some(first > 0 && crossings.all(|count| count > 0))
     }
 
-    fn odd_crossings(&self, point: Vec3, ray: Vec3) -> Option<bool> {
-        let mut odd = false;
+    fn crossings(&self, point: Vec3, ray: Vec3) -> Option<usize> {
+        let mut count = 0;
         for corners in &self.triangles {
-            odd ^= crosses(corners.map(|corner| sub(corner, point)), ray)?;
+            count += usize::from(crosses(corners.map(|corner| sub(corner, point)), ray)?);
         }
-        Some(odd)
+        Some(count)
     }
 }
 
@@ -107,155 +201,4 @@ fn crosses([a, b, c]: [Vec3; 3], ray: Vec3) -> Option<bool> {
     } else {
         Some(ahead > 0.0)
     }
-}
-
-/// What a body needs besides its pieces.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Interior {
-    /// Closed surfaces of the body.
-    pub(crate) solids: Vec<Solid>,
-    /// One point of each connected piece.
-    pub(crate) witnesses: Vec<Vec3>,
-}
-
-impl Interior {
-    /// Of a checked shape, in its own frame. `None` without a mesh: then the centres of the pieces
-    /// are witnesses enough ([`Interior::around`]).
-    pub(crate) fn of(shape: &Shape) -> Option<Interior> {
-        if !has_mesh(shape) {
-            return None;
-        }
-        let mut interior = Interior::default();
-        interior.collect(shape, &Frame::IDENTITY, [0.0; 3]);
-        Some(interior)
-    }
-
-    /// Of a body without a mesh, by the centres of its pieces.
-    pub(crate) fn around(witnesses: Vec<Vec3>) -> Interior {
-        Interior {
-            solids: Vec::new(),
-            witnesses,
-        }
-    }
-
-    pub(crate) fn placed(&self, frame: &Frame, position: Vec3) -> Interior {
-        Interior {
-            solids: self
-                .solids
-                .iter()
-                .map(|solid| solid.placed(frame, position))
-                .collect(),
-            witnesses: self
-                .witnesses
-                .iter()
-                .map(|point| add(frame.apply(*point), position))
-                .collect(),
-        }
-    }
-
-    /// A point that lies inside the other body although no surfaces need to meet.
-    pub(crate) fn shared_with(&self, other: &Interior) -> Option<Vec3> {
-        let inside = |solids: &[Solid], points: &[Vec3]| {
-            let held = |point: &&Vec3| solids.iter().any(|solid| solid.holds(**point));
-            if solids.is_empty() {
-                None
-            } else {
-                points.iter().find(held).copied()
-            }
-        };
-        inside(&self.solids, &other.witnesses).or_else(|| inside(&other.solids, &self.witnesses))
-    }
-
-    fn collect(&mut self, shape: &Shape, frame: &Frame, origin: Vec3) {
-        match shape {
-            Shape::Block { .. } | Shape::Cylinder { .. } => self.witnesses.push(origin),
-            Shape::Compound(parts) => {
-                for (Pose { position, rotation }, part) in parts {
-                    let place = add(frame.apply(*position), origin);
-                    self.collect(part, &frame.then(&Frame::of(*rotation)), place);
-                }
-            }
-            Shape::Mesh(mesh) => {
-                let place = |vertex: usize| add(frame.apply(mesh.vertices[vertex]), origin);
-                let (welded, closed) = weld(mesh);
-                self.witnesses
-                    .extend(connected(mesh, &welded).into_iter().map(place));
-                if closed {
-                    let area =
-                        |corners: &&[usize; 3]| !shrunk(corners.map(|vertex| welded[vertex]));
-                    let proper = mesh.triangles.iter().filter(area);
-                    self.solids.push(Solid::of(
-                        proper.map(|corners| corners.map(place)).collect(),
-                    ));
-                }
-            }
-        }
-    }
-}
-
-fn has_mesh(shape: &Shape) -> bool {
-    match shape {
-        Shape::Block { .. } | Shape::Cylinder { .. } => false,
-        Shape::Compound(parts) => parts.iter().any(|(_, part)| has_mesh(part)),
-        Shape::Mesh(_) => true,
-    }
-}
-
-/// Gives equal positions one number, and tells whether every edge is shared by an even number of
-/// triangles (those shrunk to a segment or a point do not count).
-fn weld(mesh: &Mesh) -> (Vec<usize>, bool) {
-    let mut first = HashMap::new();
-    let key = |vertex: &Vec3| vertex.map(|member| (member + 0.0).to_bits());
-    let welded: Vec<usize> = mesh
-        .vertices
-        .iter()
-        .enumerate()
-        .map(|(index, vertex)| *first.entry(key(vertex)).or_insert(index))
-        .collect();
-    let mut edges: HashMap<(usize, usize), usize> = HashMap::new();
-    for corners in &mesh.triangles {
-        let [a, b, c] = corners.map(|vertex| welded[vertex]);
-        if shrunk([a, b, c]) {
-            continue;
-        }
-        for (p, q) in [(a, b), (b, c), (c, a)] {
-            *edges.entry((p.min(q), p.max(q))).or_default() += 1;
-        }
-    }
-    let closed = !edges.is_empty() && edges.values().all(|uses| uses % 2 == 0);
-    (welded, closed)
-}
-
-/// A triangle that is only a segment or a point: it closes nothing.
-fn shrunk([a, b, c]: [usize; 3]) -> bool {
-    a == b || b == c || c == a
-}
-
-/// One vertex of each connected set of triangles.
-fn connected(mesh: &Mesh, welded: &[usize]) -> Vec<usize> {
-    let mut parent: Vec<usize> = (0..mesh.vertices.len()).collect();
-    for corners in &mesh.triangles {
-        let [a, b, c] = corners.map(|vertex| welded[vertex]);
-        for other in [b, c] {
-            let (p, q) = (root(&mut parent, a), root(&mut parent, other));
-            parent[p] = q;
-        }
-    }
-    let used = mesh
-        .triangles
-        .iter()
-        .flatten()
-        .map(|vertex| welded[*vertex]);
-    let mut roots: Vec<usize> = used.map(|vertex| root(&mut parent, vertex)).collect();
-    roots.sort_unstable();
-    roots.dedup();
-    roots
-}
-
-fn root(parent: &mut [usize], mut vertex: usize) -> usize {
-    while parent[vertex] != vertex {
-        parent[vertex] = parent[parent[vertex]];
-        vertex = parent[vertex];
-    }
-    vertex
 }

@@ -3,6 +3,7 @@
 use super::*;
 
 mod built_pairs;
+mod closed_meshes;
 mod hard_cases;
 mod mesh_files;
 mod meshes_and_turns;

@@ -1,0 +1,125 @@
+//! What a body encloses, and points of it that another body may enclose.
+//!
+//! Surfaces that meet are found by their triangles; this is for a body that lies wholly inside a closed mesh.
+
+use super::closed::weld;
+use super::pose::{Frame, Pose};
+use super::shape::{Mesh, Shape};
+use super::solid::Solid;
+use super::vector::{Vec3, add};
+
+/// What a body needs besides its pieces.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Interior {
+    /// Closed surfaces of the body.
+    pub(crate) solids: Vec<Solid>,
+    /// One point of each connected piece.
+    pub(crate) witnesses: Vec<Vec3>,
+}
+
+impl Interior {
+    /// Of a checked shape, in its own frame. `None` without a mesh: then the centres of the pieces
+    /// are witnesses enough ([`Interior::around`]).
+    pub(crate) fn of(shape: &Shape) -> Option<Interior> {
+        if !has_mesh(shape) {
+            return None;
+        }
+        let mut interior = Interior::default();
+        interior.collect(shape, &Frame::IDENTITY, [0.0; 3]);
+        Some(interior)
+    }
+
+    /// Of a body without a mesh, by the centres of its pieces.
+    pub(crate) fn around(witnesses: Vec<Vec3>) -> Interior {
+        Interior {
+            solids: Vec::new(),
+            witnesses,
+        }
+    }
+
+    pub(crate) fn placed(&self, frame: &Frame, position: Vec3) -> Interior {
+        Interior {
+            solids: self
+                .solids
+                .iter()
+                .map(|solid| solid.placed(frame, position))
+                .collect(),
+            witnesses: self
+                .witnesses
+                .iter()
+                .map(|point| add(frame.apply(*point), position))
+                .collect(),
+        }
+    }
+
+    /// A point that lies inside the other body although no surfaces need to meet.
+    pub(crate) fn shared_with(&self, other: &Interior) -> Option<Vec3> {
+        let inside = |solids: &[Solid], points: &[Vec3]| {
+            let held = |point: &&Vec3| solids.iter().any(|solid| solid.holds(**point));
+            if solids.is_empty() {
+                None
+            } else {
+                points.iter().find(held).copied()
+            }
+        };
+        inside(&self.solids, &other.witnesses).or_else(|| inside(&other.solids, &self.witnesses))
+    }
+
+    fn collect(&mut self, shape: &Shape, frame: &Frame, origin: Vec3) {
+        match shape {
+            Shape::Block { .. } | Shape::Cylinder { .. } => self.witnesses.push(origin),
+            Shape::Compound(parts) => {
+                for (Pose { position, rotation }, part) in parts {
+                    let place = add(frame.apply(*position), origin);
+                    self.collect(part, &frame.then(&Frame::of(*rotation)), place);
+                }
+            }
+            Shape::Mesh(mesh) => {
+                let place = |vertex: usize| add(frame.apply(mesh.vertices[vertex]), origin);
+                self.witnesses
+                    .extend(connected(mesh).into_iter().map(place));
+                let solid = Solid::of(mesh);
+                self.solids
+                    .extend(solid.map(|solid| solid.placed(frame, origin)));
+            }
+        }
+    }
+}
+
+fn has_mesh(shape: &Shape) -> bool {
+    match shape {
+        Shape::Block { .. } | Shape::Cylinder { .. } => false,
+        Shape::Compound(parts) => parts.iter().any(|(_, part)| has_mesh(part)),
+        Shape::Mesh(_) => true,
+    }
+}
+
+/// One vertex of each connected set of triangles.
+fn connected(mesh: &Mesh) -> Vec<usize> {
+    let welded = weld(&mesh.vertices);
+    let mut parent: Vec<usize> = (0..mesh.vertices.len()).collect();
+    for corners in &mesh.triangles {
+        let [a, b, c] = corners.map(|vertex| welded[vertex]);
+        for other in [b, c] {
+            let (p, q) = (root(&mut parent, a), root(&mut parent, other));
+            parent[p] = q;
+        }
+    }
+    let used = mesh
+        .triangles
+        .iter()
+        .flatten()
+        .map(|vertex| welded[*vertex]);
+    let mut roots: Vec<usize> = used.map(|vertex| root(&mut parent, vertex)).collect();
+    roots.sort_unstable();
+    roots.dedup();
+    roots
+}
+
+fn root(parent: &mut [usize], mut vertex: usize) -> usize {
+    while parent[vertex] != vertex {
+        parent[vertex] = parent[parent[vertex]];
+        vertex = parent[vertex];
+    }
+    vertex
+}
