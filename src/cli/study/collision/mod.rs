@@ -13,7 +13,7 @@
 
 mod outline;
 mod paper;
-#[cfg(feature = "study")]
+#[cfg(any(feature = "study", test))]
 mod peer;
 mod report;
 mod score;

@@ -4,7 +4,7 @@ use super::outline::Outline;
 use super::paper::Stepping;
 use super::score::quantile;
 use super::small_world::{Judged, judged};
-use super::world::{Way, World};
+use super::world::{Way, World, thinner};
 use super::*;
 use crate::cli::study::scatter::Point;
 use crate::lpm::exact::{Body, first_contact};
@@ -129,9 +129,8 @@ fn a_plot_of_speed_and_error_marks_who_was_wrong_and_keeps_zero_on_the_bottom_li
 }
 
 /// Single pairs on a coarse grid, where touching is common, asked of the peer and of the truth.
-#[cfg(feature = "study")]
 #[test]
-fn every_disagreement_with_the_peer_is_decided_by_the_exact_truth_for_us() {
+fn the_peer_disagrees_about_touches_alone_and_the_exact_truth_decides_them_for_us() {
     let mut disagreements = 0;
     for code in 0..1_200_i64 {
         let digit = |place: u32, base: i64| code * 7_919 / 13_i64.pow(place) % base;
@@ -154,16 +153,30 @@ fn every_disagreement_with_the_peer_is_decided_by_the_exact_truth_for_us() {
             truth.is_some(),
             "{element:?} {mover:?} {asked:?}"
         );
-        let peer = peer::double::Peer::new(&[element], &[mover]).first_contact(&asked);
-        disagreements += usize::from(peer.is_some() != ours.is_some());
-        if let (Some(peer), Some(ours)) = (peer, ours) {
-            let apart_mm = (peer - ours).abs() * asked.length_mm();
-            assert!(
-                apart_mm < 0.01,
-                "{apart_mm} mm: {element:?} {mover:?} {asked:?}"
-            );
+        let double = peer::double::Peer::new(&[element], &[mover]).first_contact(&asked);
+        let single = peer::single::Peer::new(&[element], &[mover]).first_contact(&asked);
+        for (peer, allowed_mm) in [(double, 0.01), (single, 0.1)] {
+            if peer.is_some() != ours.is_some() {
+                disagreements += 1;
+                // A mover thinner by 1 um passes freely: they only touch, and the peer sees nothing.
+                let thin = first_contact(&element, &thinner(&mover.moved(from)), run);
+                assert_eq!(
+                    (peer, thin),
+                    (None, None),
+                    "{element:?} {mover:?} {asked:?}"
+                );
+            }
+            if let (Some(peer), Some(ours)) = (peer, ours) {
+                let apart_mm = (peer - ours).abs() * asked.length_mm();
+                assert!(
+                    apart_mm < allowed_mm,
+                    "{apart_mm} mm: {element:?} {mover:?} {asked:?}"
+                );
+            }
         }
     }
-    // Both answers were held against the truth: where they differ, the peer is wrong.
-    assert!(disagreements < 60, "{disagreements} of 1,200");
+    assert!(
+        (1..120).contains(&disagreements),
+        "{disagreements} of 2,400"
+    );
 }

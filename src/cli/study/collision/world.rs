@@ -178,7 +178,7 @@ impl World {
 }
 
 /// Less by one unit in radius or half extents.
-fn thinner(body: &Body) -> Body {
+pub fn thinner(body: &Body) -> Body {
     let form = match body.form {
         Form::Block { half, rotation } => Form::Block {
             half: half.map(|it| it - 1),
