@@ -62,6 +62,7 @@
 //! | `closed::WELD_MM` | 1e-6 mm | corners that are one when it is asked what a mesh closes |
 //! | `turning::band_mm` | 1e-7 to 5e-4 mm | how near to the margin a turning move counts as contact |
 //! | `turning::LEAST_RESOLUTION_MM` | 2e-4 mm | least distance of turning moves |
+//! | `scene::face::FLAT` | 1e-4, relative to the face | how flat and convex a face of more than three corners in a file must be |
 //!
 //! # What a false blocked costs
 //! A contact that only grazes a round side is reported early by the root of twice the radius times the

@@ -8,10 +8,13 @@
 //! Keys that only the rig reads (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`) are accepted and left alone.
 
 mod body;
+mod face;
 mod field;
 mod mesh_file;
 mod moves;
 mod node;
+mod obj;
+mod stl;
 #[cfg(test)]
 mod tests;
 

@@ -2,6 +2,10 @@
 use super::*;
 use crate::lpm::scene::{Format, Scene, read_scene};
 
+mod accepted;
+mod faces;
+mod refused;
+
 /// Corners and triangles of a box of half extents 3, 4, 5; closed unless the lid is left out.
 fn box_triangles(lid: bool) -> Vec<[[f64; 3]; 3]> {
     let corner = |index: usize| {
