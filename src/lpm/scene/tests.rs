@@ -84,3 +84,13 @@ fn moves_are_complained_about_with_their_line() {
     );
     assert!(wrong("{").starts_with("line 1: not readable"));
 }
+
+#[test]
+fn a_number_of_many_digits_is_read_to_its_last_place() {
+    let long =
+        complaint(r#"{"elements":[{"id":"b","kind":"block","half":[1,1785118.2603991725,1]}]}"#);
+    assert!(
+        long.starts_with("elements[0].half[1]: found 1785118.2603991725, expected"),
+        "{long}"
+    );
+}
