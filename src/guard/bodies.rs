@@ -96,5 +96,5 @@ fn body_of(piece: &Piece, path: &str) -> Result<(Pose, Shape), GuardError> {
         (Kind::Compound, _, _, _) => return Err(lacking("compound", "parts")),
     };
     let PoseSettings { position, rotation } = piece.pose;
-    Ok((Pose { position, rotation }, shape))
+    Ok((Pose { position, rotation }.rescaled(), shape))
 }

@@ -65,7 +65,7 @@ pub enum Flaw {
     },
     /// A quaternion has no direction.
     #[error(
-        "{path}: rotation {found:?} is no rotation, expected a finite non-zero quaternion [w, x, y, z]"
+        "{path}: rotation {found:?} is no rotation, expected a finite non-zero quaternion [w, x, y, z], its squared length above 1e-200 and at most 1e200"
     )]
     Rotation {
         /// Member of the pose.
@@ -112,7 +112,8 @@ impl Shape {
 }
 
 impl Pose {
-    /// Accepts finite positions within 1e6 mm and any non-zero quaternion.
+    /// Accepts positions within 1e6 mm and quaternions with a squared length above 1e-200 and at most 1e200:
+    /// [`Pose::rescaled`] brings any other that is finite and not zero there.
     ///
     /// # Errors
     /// [`Flaw::Coordinate`] or [`Flaw::Rotation`].
@@ -122,6 +123,24 @@ impl Pose {
             Ok(())
         } else {
             check_pose(self, "")
+        }
+    }
+
+    /// The same pose; a quaternion that is too long or too short for [`Pose::check`] is scaled, by a power of two: it
+    /// turns everything exactly as before. Zero and what is not finite stay what they are.
+    #[must_use]
+    pub fn rescaled(self) -> Pose {
+        let [w, x, y, z] = self.rotation;
+        if is_turn(w * w + x * x + y * y + z * z) {
+            return self;
+        }
+        let largest = self.rotation.map(f64::abs).into_iter().fold(0.0, f64::max);
+        // Exponents are counted from 1023 on: this one makes the largest member 1 to 4 (a subnormal one at least 2^-51).
+        let exponent = (2046 - (largest.to_bits() >> 52).min(2046)).max(1);
+        let scale = f64::from_bits(exponent << 52);
+        Pose {
+            rotation: self.rotation.map(|member| member * scale),
+            ..self
         }
     }
 

@@ -126,3 +126,15 @@ fn every_point_of_the_slide_is_one_that_the_guard_knows() {
     let unknown: Vec<f64> = x_mm.filter(|x| !points.contains(x)).collect();
     assert_eq!(unknown, [0.0; 0]);
 }
+
+#[test]
+fn a_quaternion_of_any_length_but_zero_is_taken() {
+    let mut settings = scene_settings();
+    settings.elements[0].pose.rotation = [1e120, 0.0, 0.0, 0.0];
+    settings.elements[1].pose.rotation = [1e-120, 0.0, 0.0, 0.0];
+    Guard::build(&settings).unwrap();
+    assert_eq!(
+        flaw_of(|s| s.elements[0].pose.rotation = [0.0; 4]),
+        "elements[0]: not a body"
+    );
+}

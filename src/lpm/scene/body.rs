@@ -100,6 +100,7 @@ pub(super) fn pose(field: &Field) -> Result<Pose, SceneError> {
     if let Some(rotation) = table.optional("rotation") {
         pose.rotation = rotation.numbers()?;
     }
+    let pose = pose.rescaled();
     located(pose.check(), field)?;
     Ok(pose)
 }

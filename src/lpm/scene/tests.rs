@@ -1,6 +1,7 @@
 //! Facts about scene files.
 #![allow(clippy::unwrap_used)]
 use super::*;
+use crate::lpm::pose::Frame;
 
 fn scene(text: &str) -> Result<Scene, SceneError> {
     read_scene(text, Format::Json, &mut |_| Err("no files here".into()))
@@ -83,6 +84,33 @@ fn moves_are_complained_about_with_their_line() {
             .starts_with("line 1: to.position[1]: found 2000000")
     );
     assert!(wrong("{").starts_with("line 1: not readable"));
+}
+
+#[test]
+fn a_quaternion_of_any_length_is_its_turn_and_only_zero_is_none() {
+    let quarter = std::f64::consts::FRAC_1_SQRT_2;
+    let unit = [quarter, 0.0, 0.0, quarter.next_down()];
+    let read = |rotation: [f64; 4]| {
+        let body = format!(
+            r#"{{"elements":[{{"id":"b","kind":"block","half":[1,1,1],"pose":{{"rotation":{rotation:?}}}}}]}}"#
+        );
+        scene(&body).map(|scene| scene.elements[0].pose)
+    };
+    for exponent in [-1000, -700, -336, -332, 0, 332, 333, 700, 1023] {
+        let long = unit.map(|member| member * 2.0_f64.powi(exponent));
+        let pose = read(long).unwrap();
+        assert_eq!(Frame::of(pose.rotation), Frame::of(unit), "2^{exponent}");
+    }
+    for long in [5e-324, 1e-320, 1e-101, 1e100, 1.7e308] {
+        let pose = read([long, long, -long, long]).unwrap();
+        assert_eq!(
+            Frame::of(pose.rotation),
+            Frame::of([1.0, 1.0, -1.0, 1.0]),
+            "{long:e}"
+        );
+    }
+    assert_eq!(read(unit).unwrap().rotation, unit);
+    assert!(read([0.0, -0.0, 0.0, 0.0]).is_err());
 }
 
 #[test]
