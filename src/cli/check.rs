@@ -82,13 +82,19 @@ pub fn run(args: CheckArgs) -> anyhow::Result<i32> {
 }
 
 fn load_scene(path: &Path) -> anyhow::Result<Scene> {
-    let format = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("toml") => Format::Toml,
-        Some("json") => Format::Json,
-        _ => bail!(
+    let is = |known: &str| {
+        path.extension()
+            .is_some_and(|it| it.eq_ignore_ascii_case(known))
+    };
+    let format = if is("toml") {
+        Format::Toml
+    } else if is("json") {
+        Format::Json
+    } else {
+        bail!(
             "{}: found no known extension, expected .toml or .json",
             path.display()
-        ),
+        )
     };
     let text = read_text(path)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();

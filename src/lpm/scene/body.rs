@@ -2,6 +2,7 @@
 
 use super::field::{Field, SceneError, Table, refuse};
 use super::mesh_file::{self, MeshFiles};
+use super::node::shown;
 use crate::lpm::{Flaw, LARGEST_COORDINATE_MM, Mesh, Pose, Shape};
 
 const KINDS: &str = "\"block\", \"cylinder\", \"compound\" or \"mesh\"";
@@ -111,12 +112,12 @@ pub(super) fn located(checked: Result<(), Flaw>, field: &Field) -> Result<(), Sc
     let (path, found, expected) = match flaw {
         Flaw::Size { path, found } => (
             path,
-            found.to_string(),
+            shown(found),
             "a size above 0 and at most 1e6 mm".to_owned(),
         ),
         Flaw::Coordinate { path, found } => (
             path,
-            found.to_string(),
+            shown(found),
             format!("a coordinate within +-{LARGEST_COORDINATE_MM} mm"),
         ),
         Flaw::Rotation { path, found } => (

@@ -34,7 +34,12 @@ pub(super) struct Field<'a> {
 
 impl<'a> Field<'a> {
     pub(super) fn refuse<T>(&self, expected: impl Into<String>) -> Result<T, SceneError> {
-        refuse(self.path.clone(), self.node.to_string(), expected)
+        let path = match self.path.as_str() {
+            "" => "the whole file".to_owned(),
+            line if line.ends_with(": ") => format!("{line}the whole line"),
+            path => path.to_owned(),
+        };
+        refuse(path, self.node.to_string(), expected)
     }
 
     /// The keys of a table, every one of them known.
@@ -131,6 +136,16 @@ impl<'a> Table<'a> {
             None => refuse(self.field.below(key), "nothing".into(), expected),
         }
     }
+}
+
+/// What a name should have been: `the id of a mover of the scene (gripper, jaw)`, with a dozen of them at most.
+pub(super) fn expected_id(one: &str, many: &str, ids: &[&str]) -> String {
+    if ids.is_empty() {
+        return format!("the id of {one}; the scene has no {many}");
+    }
+    let more = if ids.len() > 12 { ", ..." } else { "" };
+    let first = ids[..ids.len().min(12)].join(", ");
+    format!("the id of {one} ({first}{more})")
 }
 
 pub(super) fn refuse<T>(

@@ -73,6 +73,7 @@ impl Named {
 /// # Errors
 /// The first [`SceneError`] in the order of the file.
 pub fn read_scene(text: &str, format: Format, files: &mut MeshFiles) -> Result<Scene, SceneError> {
+    let text = without_mark(text);
     let read = match format {
         Format::Toml => node::from_toml(text),
         Format::Json => node::from_json(text),
@@ -100,6 +101,11 @@ pub fn read_scene(text: &str, format: Format, files: &mut MeshFiles) -> Result<S
         .optional("movers")
         .map_or(Ok(Vec::new()), |list| named(&list, files))?;
     Ok(Scene { elements, movers })
+}
+
+/// Some editors begin a file with a byte order mark.
+fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
 fn named(list: &Field, files: &mut MeshFiles) -> Result<Vec<Named>, SceneError> {

@@ -1,8 +1,8 @@
 //! Move files: one JSON object per line, blank lines allowed.
 
-use super::field::{Field, SceneError, Table, refuse};
-use super::node::{self, Node};
-use super::{Named, Scene, body};
+use super::field::{Field, SceneError, Table, expected_id, refuse};
+use super::node;
+use super::{Named, Scene, body, without_mark};
 use crate::lpm::{LARGEST_COORDINATE_MM, Pose};
 use std::collections::HashSet;
 
@@ -30,14 +30,15 @@ pub struct MoveOrder {
 pub fn read_moves(text: &str, scene: &Scene) -> Result<Vec<MoveOrder>, SceneError> {
     let mut known = HashSet::new();
     let mut orders = Vec::new();
-    for (index, line) in text.lines().enumerate() {
+    for (index, line) in without_mark(text).lines().enumerate() {
         if line.trim().is_empty() {
             continue;
         }
         let place = format!("line {}: ", index + 1);
         let node = node::from_json(line).map_err(|cause| SceneError::Syntax {
             place: place.clone(),
-            cause,
+            // The reader of JSON has seen nothing but this line.
+            cause: cause.replace(" at line 1 column ", " at column "),
         })?;
         let order = order(
             &Field {
@@ -61,7 +62,7 @@ fn order(line: &Field, scene: &Scene) -> Result<MoveOrder, SceneError> {
     let mover = known(
         &table.required("mover", "the id of a mover")?,
         &scene.movers,
-        "a mover",
+        ["a mover of the scene", "movers"],
     )?;
     let from = body::pose(&table.required("from", "a pose {position, rotation}")?)?;
     let to = body::pose(&table.required("to", "a pose {position, rotation}")?)?;
@@ -85,11 +86,11 @@ fn ignored(table: &Table, scene: &Scene) -> Result<Vec<usize>, SceneError> {
     };
     list.list()?
         .iter()
-        .map(|id| known(id, &scene.elements, "an element"))
+        .map(|id| known(id, &scene.elements, ["an element of the scene", "elements"]))
         .collect()
 }
 
-fn distance(field: &Field) -> Result<f64, SceneError> {
+pub(super) fn distance(field: &Field) -> Result<f64, SceneError> {
     let number = field.number()?;
     if (0.0..=LARGEST_COORDINATE_MM).contains(&number) {
         Ok(number)
@@ -98,27 +99,11 @@ fn distance(field: &Field) -> Result<f64, SceneError> {
     }
 }
 
-fn known(field: &Field, bodies: &[Named], what: &str) -> Result<usize, SceneError> {
+fn known(field: &Field, bodies: &[Named], [one, many]: [&str; 2]) -> Result<usize, SceneError> {
     let id = field.text()?;
-    match bodies.iter().position(|body| body.id == id) {
-        Some(index) => Ok(index),
-        None => {
-            let node = Node::Text(id.to_owned());
-            let ids: Vec<&str> = bodies
-                .iter()
-                .take(12)
-                .map(|body| body.id.as_str())
-                .collect();
-            let more = if bodies.len() > ids.len() {
-                ", ..."
-            } else {
-                ""
-            };
-            refuse(
-                field.path.clone(),
-                node.to_string(),
-                format!("the id of {what} of the scene ({}{more})", ids.join(", ")),
-            )
-        }
+    if let Some(index) = bodies.iter().position(|body| body.id == id) {
+        return Ok(index);
     }
+    let ids: Vec<&str> = bodies.iter().map(|body| body.id.as_str()).collect();
+    field.refuse(expected_id(one, many, &ids))
 }

@@ -5,6 +5,8 @@ use std::fmt;
 
 /// Prefix of a text that stands for a JSON number which is not finite.
 const NOT_FINITE: char = '\u{1}';
+/// Characters of a value that a message repeats.
+const LONGEST_QUOTE: usize = 120;
 
 /// A value of a scene or move file.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,10 +24,10 @@ impl fmt::Display for Node {
         match self {
             Node::Null => f.write_str("null"),
             Node::Flag(flag) => write!(f, "{flag}"),
-            Node::Number(number) => write!(f, "{number}"),
+            Node::Number(number) => f.write_str(&shown(*number)),
             Node::Text(text) => match text.strip_prefix(NOT_FINITE) {
-                Some(token) => f.write_str(token),
-                None => write!(f, "\"{text}\""),
+                Some(token) => f.write_str(&shortened(token)),
+                None => write!(f, "\"{}\"", shortened(text)),
             },
             Node::List(members) => write!(f, "a list of {}", members.len()),
             Node::Table(_) => f.write_str("a table"),
@@ -76,7 +78,10 @@ impl<'de> Visitor<'de> for Reader {
         let mut members: Vec<(String, Node)> = Vec::new();
         while let Some((key, value)) = map.next_entry::<String, Node>()? {
             if members.iter().any(|(known, _)| *known == key) {
-                return Err(A::Error::custom(format!("key \"{key}\" is given twice")));
+                return Err(A::Error::custom(format!(
+                    "key \"{}\" is given twice",
+                    shortened(&key)
+                )));
             }
             members.push((key, value));
         }
@@ -84,9 +89,34 @@ impl<'de> Visitor<'de> for Reader {
     }
 }
 
-/// Reads TOML.
+/// A number as a person reads it: no row of zeros.
+pub(super) fn shown(number: f64) -> String {
+    let is_plain = number == 0.0 || (1e-5..=1e15).contains(&number.abs());
+    if is_plain || !number.is_finite() {
+        number.to_string()
+    } else {
+        format!("{number:e}")
+    }
+}
+
+/// The text, or its beginning: a message is read by a person.
+fn shortened(text: &str) -> String {
+    match text.char_indices().nth(LONGEST_QUOTE) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// Reads TOML. The message is one line, of the same form as that for JSON.
 pub(super) fn from_toml(text: &str) -> Result<Node, String> {
-    toml::from_str(text).map_err(|error| error.to_string().trim_end().to_owned())
+    toml::from_str(text).map_err(|error| {
+        let at = error.span().map_or(0, |span| span.start);
+        let before = text.get(..at).unwrap_or(text);
+        let line = before.matches('\n').count() + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+        let problem = error.message().lines().collect::<Vec<_>>().join(", ");
+        format!("{} at line {line} column {column}", shortened(&problem))
+    })
 }
 
 /// Reads JSON. `NaN`, `Infinity` and numbers beyond f64, which many programs write although JSON

@@ -114,6 +114,58 @@ fn a_quaternion_of_any_length_is_its_turn_and_only_zero_is_none() {
 }
 
 #[test]
+fn a_message_names_its_place_once_and_stays_short() {
+    assert_eq!(
+        complaint("null"),
+        "the whole file: found null, expected a table"
+    );
+    let number = complaint(r#"{"elements":[{"id":"b","kind":"block","half":[1,1e300,3]}]}"#);
+    assert!(number.starts_with("elements[0].half[1]: found 1e300, expected"));
+    let number = complaint(r#"{"elements":[{"id":"b","kind":"block","half":[1,-1e-9,3]}]}"#);
+    assert!(number.starts_with("elements[0].half[1]: found -1e-9, expected"));
+    assert!(complaint(&format!(r#"{{"units":"{}"}}"#, "m".repeat(9_000))).len() < 200);
+    let toml = format!("units = \"mm\"\nelements = [{}", "[1, 2], ".repeat(9_000));
+    let said = read_scene(&toml, Format::Toml, &mut |_| Err(String::new())).unwrap_err();
+    let said = said.to_string();
+    assert!(
+        said.len() < 200 && said.lines().count() == 1 && said.contains("at line 2 column"),
+        "{said}"
+    );
+
+    let scene = scene(PIN).unwrap();
+    let wrong = |text: &str| read_moves(text, &scene).unwrap_err().to_string();
+    assert_eq!(
+        wrong("[]"),
+        "line 1: the whole line: found a list of 0, expected a table"
+    );
+    assert_eq!(
+        wrong("\n{\"id\""),
+        "line 2: not readable: EOF while parsing an object at column 5"
+    );
+    let empty = read_moves(
+        r#"{"id":"a","mover":"jaw","from":{},"to":{}}"#,
+        &Scene::default(),
+    );
+    assert!(
+        empty
+            .unwrap_err()
+            .to_string()
+            .ends_with("; the scene has no movers")
+    );
+}
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_the_text() {
+    let read = scene(&format!("\u{feff}{PIN}")).unwrap();
+    let toml = read_scene("\u{feff}units = \"mm\"", Format::Toml, &mut |_| {
+        Err(String::new())
+    });
+    assert_eq!(toml.unwrap(), Scene::default());
+    let moves = "\u{feff}{\"id\":\"a\",\"mover\":\"jaw\",\"from\":{},\"to\":{}}";
+    assert_eq!(read_moves(moves, &read).unwrap().len(), 1);
+}
+
+#[test]
 fn a_number_of_many_digits_is_read_to_its_last_place() {
     let long =
         complaint(r#"{"elements":[{"id":"b","kind":"block","half":[1,1785118.2603991725,1]}]}"#);
