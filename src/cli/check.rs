@@ -2,7 +2,8 @@
 //!
 //! Exit status: 0 every move is clear, 1 a move is blocked, 2 bad input (one message, nothing on stdout).
 
-use crate::lpm::scene::{Format, MoveOrder, Scene, read_moves, read_scene};
+use crate::guard::{Actuator, part_names};
+use crate::lpm::scene::{Elsewhere, Format, MoveOrder, Scene, read_moves, read_scene_of_rig};
 use crate::lpm::{Answer, ElementKey, Model, Move, Mover};
 use anyhow::{Context, anyhow, bail};
 use serde::Serialize;
@@ -11,14 +12,20 @@ use std::path::{Path, PathBuf};
 
 /// Collision answers for a scene and its moves, without a rig.
 #[derive(Debug, clap::Args)]
-#[command(after_help = "Examples:
-  relayrig check --scene config/scene.toml --moves moves.jsonl
+#[command(after_help = r#"Examples:
+  echo '{"elements": [{"id": "pin", "kind": "cylinder", "radius": 4, "height": 30}],
+         "movers": [{"id": "jaw", "kind": "block", "half": [1, 2, 3]}]}' > scene.json
+  echo '{"id": "m1", "mover": "jaw", "from": {"position": [-20, 0, 0]}, "to": {}}' > moves.jsonl
+  relayrig check --scene scene.json --moves moves.jsonl
   relayrig check --scene scene.json --moves - --json < moves.jsonl
 
-A stop is never late. It is early by less than 1e-6 mm; by up to 1e-4 mm, within a metre, where a round body that is
-turned, tilted or kept with a margin is only grazed; by up to 1e-3 mm on a turning move.
+Rules of pairs and strokes of actuators are the guard's: they are checked, and not applied here.
 
-Exit status: 0 every move is clear, 1 a move is blocked, 2 bad input.")]
+A stop is never late. It is early by less than 1e-6 mm; by up to 1e-4 mm, within a metre, where a
+round body that is turned, tilted or kept with a margin is only grazed; by up to 1e-3 mm on a
+turning move.
+
+Exit status: 0 every move is clear, 1 a move is blocked, 2 bad input."#)]
 pub struct CheckArgs {
     /// Scene, TOML or JSON by its extension
     #[arg(long, value_name = "FILE")]
@@ -100,7 +107,13 @@ fn load_scene(path: &Path) -> anyhow::Result<Scene> {
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let mut files =
         |name: &str| std::fs::read(folder.join(name)).map_err(|error| error.to_string());
-    read_scene(&text, format, &mut files).with_context(|| path.display().to_string())
+    let actuators = [Actuator::names().as_slice(), &Actuator::OTHER_NAMES].concat();
+    let elsewhere = Elsewhere {
+        actuators: &actuators,
+        bodies: &part_names(),
+    };
+    read_scene_of_rig(&text, format, &mut files, &elsewhere)
+        .with_context(|| path.display().to_string())
 }
 
 fn read_text(path: &Path) -> anyhow::Result<String> {

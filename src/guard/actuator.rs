@@ -43,6 +43,9 @@ impl Actuator {
         Actuator::Gripper,
     ];
 
+    /// What a scene may also call a jaw.
+    pub const OTHER_NAMES: [&'static str; 2] = ["clamp_left", "clamp_right"];
+
     /// The id in `scene.toml`.
     pub const fn name(self) -> &'static str {
         match self {

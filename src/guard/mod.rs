@@ -70,6 +70,11 @@ use scene::Scene;
 use space::Space;
 use sweep::Finding;
 
+/// What a scene calls the part, by where it is.
+pub fn part_names() -> [&'static str; 5] {
+    part::Role::ALL.map(part::Role::id)
+}
+
 /// The guard of one rig.
 #[derive(Debug, Clone)]
 pub struct Guard {

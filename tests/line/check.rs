@@ -99,6 +99,31 @@ const SCENES: &[(&str, &str, &str)] = &[
     ),
     ("\"movers\"", "\"mover\"", "mover: found an unknown key"),
     (
+        "\"units\": \"mm\"",
+        "\"units\": \"mm\", \"pair\": \"garbage\", \"mate\": null, \"guard\": []",
+        "pair: found \"garbage\", expected a list",
+    ),
+    (
+        "\"units\": \"mm\"",
+        "\"units\": \"mm\", \"actuator\": [{\"id\": \"z\", \"axis\": [0, 0, 1], \"stroke_mm\": -5}]",
+        "actuator[0].stroke_mm: found -5",
+    ),
+    (
+        "\"units\": \"mm\"",
+        "\"units\": \"mm\", \"pair\": [{\"a\": \"pin\", \"b\": \"nope\", \"rule\": \"ignore\"}]",
+        "pair[0].b: found \"nope\"",
+    ),
+    (
+        "\"units\": \"mm\"",
+        "\"units\": \"mm\", \"pair\": [{\"a\": \"pin\", \"b\": \"part_*\", \"rule\": \"kiss\"}]",
+        "pair[0].rule: found \"kiss\"",
+    ),
+    (
+        "\"height\": 30",
+        "\"height\": 30, \"rides\": \"zz\"",
+        "elements[0].rides: found \"zz\"",
+    ),
+    (
         "[100, 0, 0]",
         "[100, 0]",
         "elements[1].pose.position: found",
@@ -330,4 +355,48 @@ fn an_answer_has_every_key_in_both_verdicts() {
     assert!(answers[1]["clearance_mm"].is_null() && answers[1]["t_stop"].is_null());
     assert_eq!(answers[2]["verdict"].as_str(), Some("blocked"));
     assert!((answers[2]["clearance_mm"].as_f64().unwrap() - 4.0).abs() < 1e-9);
+}
+
+#[test]
+fn the_examples_of_the_help_work_as_they_stand() {
+    let workshop = Workshop::new("check-help");
+    let help = workshop.run("check --help").with_status(0).stdout;
+    // echo 'TEXT' > FILE
+    for example in help.split("echo '").skip(1) {
+        let (text, rest) = example.split_once("' > ").unwrap();
+        workshop.write(rest.lines().next().unwrap(), text);
+    }
+    let said = workshop.run("check --scene scene.json --moves moves.jsonl");
+    assert!(help.contains("relayrig check --scene scene.json --moves moves.jsonl\n"));
+    assert_eq!((said.status, said.stderr.as_str()), (1, ""), "{said}");
+    assert!(
+        said.stdout.starts_with("m1  blocked by pin at 0.75"),
+        "{said}"
+    );
+}
+
+#[test]
+fn the_scene_of_the_rig_is_taken_as_it_is_written() {
+    let workshop = Workshop::new("check-rig");
+    let rig = include_str!("../../config/scene.toml");
+    // The capitals and the mark come from editors of another world.
+    workshop.write(
+        "SCENE.TOML",
+        &format!("\u{feff}{rig}\n[[movers]]\nid = \"jaw\"\nkind = \"block\"\nhalf = [1, 2, 3]\n"),
+    );
+    workshop.write("moves.jsonl", &format!("\u{feff}{GOOD}"));
+    let said = workshop
+        .run("check --scene SCENE.TOML --moves moves.jsonl")
+        .with_status(1);
+    assert!(said.stdout.starts_with("m1  blocked by "), "{said}");
+    // Scenes may say that they belong to a rig without describing it.
+    let riding = SCENE.replacen(
+        "\"height\": 30",
+        "\"height\": 30, \"rides\": \"clamp_left\"",
+        1,
+    );
+    workshop.write("scene.json", &riding);
+    workshop
+        .run("check --scene scene.json --moves moves.jsonl")
+        .with_status(1);
 }

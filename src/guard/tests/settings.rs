@@ -128,6 +128,15 @@ fn every_point_of_the_slide_is_one_that_the_guard_knows() {
 }
 
 #[test]
+fn every_name_that_a_scene_may_give_an_actuator_is_read_as_one() {
+    for name in Actuator::names().iter().chain(&Actuator::OTHER_NAMES) {
+        let text = format!("id = \"{name}\"\naxis = [1.0, 0.0, 0.0]");
+        let read: ActuatorSettings = toml::from_str(&text).unwrap();
+        assert!(read.id.name() == *name || name.starts_with("clamp_"));
+    }
+}
+
+#[test]
 fn a_quaternion_of_any_length_but_zero_is_taken() {
     let mut settings = scene_settings();
     settings.elements[0].pose.rotation = [1e120, 0.0, 0.0, 0.0];

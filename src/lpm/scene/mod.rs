@@ -5,7 +5,7 @@
 //! (`elements[0].half[1]`, in move files behind the number of the line), what was found and what was
 //! expected. No file is opened here: mesh files come through a callback.
 //!
-//! Keys that only the rig reads (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`) are accepted and left alone.
+//! What only the rig needs (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`, `[guard]`) is checked and not applied.
 
 mod body;
 mod face;
@@ -14,6 +14,7 @@ mod mesh_file;
 mod moves;
 mod node;
 mod obj;
+mod rig;
 mod stl;
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,7 @@ mod tests;
 pub use field::SceneError;
 pub use mesh_file::MeshFiles;
 pub use moves::{MoveOrder, read_moves};
+pub use rig::Elsewhere;
 
 use super::{Pose, Shape};
 use field::{Field, refuse};
@@ -68,11 +70,24 @@ impl Named {
     }
 }
 
-/// Reads and checks a whole scene.
+/// Reads and checks a whole scene that names nothing but what it describes.
 ///
 /// # Errors
-/// The first [`SceneError`] in the order of the file.
+/// The first [`SceneError`]: bodies in the order of the file, then what the rig needs.
 pub fn read_scene(text: &str, format: Format, files: &mut MeshFiles) -> Result<Scene, SceneError> {
+    read_scene_of_rig(text, format, files, &Elsewhere::default())
+}
+
+/// The same of a scene that may also name what its rig has `elsewhere`.
+///
+/// # Errors
+/// As [`read_scene`].
+pub fn read_scene_of_rig(
+    text: &str,
+    format: Format,
+    files: &mut MeshFiles,
+    elsewhere: &Elsewhere,
+) -> Result<Scene, SceneError> {
     let text = without_mark(text);
     let read = match format {
         Format::Toml => node::from_toml(text),
@@ -100,7 +115,9 @@ pub fn read_scene(text: &str, format: Format, files: &mut MeshFiles) -> Result<S
     let movers = table
         .optional("movers")
         .map_or(Ok(Vec::new()), |list| named(&list, files))?;
-    Ok(Scene { elements, movers })
+    let scene = Scene { elements, movers };
+    rig::check(&table, &scene, elsewhere)?;
+    Ok(scene)
 }
 
 /// Some editors begin a file with a byte order mark.

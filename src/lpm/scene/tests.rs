@@ -86,6 +86,167 @@ fn moves_are_complained_about_with_their_line() {
     assert!(wrong("{").starts_with("line 1: not readable"));
 }
 
+/// What a scene adds for the rig, all of it as it should be.
+const FOR_THE_RIG: &str = r#"{"units":"mm",
+    "elements":[{"id":"pin","kind":"cylinder","radius":4,"height":30,"rides":"slide"},
+                {"id":"finger","kind":"block","half":[1,1,1],"rides":"slide"}],
+    "movers":[{"id":"jaw","kind":"block","half":[1,2,3]}],
+    "actuator":[{"id":"lift","axis":[0,0,1],"stroke_mm":12},
+                {"id":"slide","axis":[1,0,0],"points_mm":[0,75],"rides":"lift","opposed":["finger"]}],
+    "pair":[{"a":"pin","b":"jaw","rule":"forbidden","margin_mm":0.5},
+            {"a":"fin*","b":"pin","rule":"may_touch","depth_mm":0.1,"by":["slide"]}],
+    "mate":[{"of":"its reader"}],
+    "guard":{"default_margin_mm":0.5,"nest":[0,0,1]}}"#;
+
+#[test]
+fn what_a_scene_adds_for_the_rig_is_checked_though_it_is_not_applied() {
+    scene(FOR_THE_RIG).unwrap();
+    for (from, to, says) in [
+        (
+            r#""rides":"slide""#,
+            r#""rides":"zz""#,
+            r#"elements[0].rides: found "zz", expected the id of an actuator"#,
+        ),
+        (
+            r#""half":[1,2,3]"#,
+            r#""half":[1,2,3],"rides":"zz""#,
+            r#"movers[0].rides: found "zz""#,
+        ),
+        (
+            r#""id":"lift""#,
+            r#""id":"slide""#,
+            r#"actuator[1].id: found "slide" again"#,
+        ),
+        (
+            r#""axis":[0,0,1]"#,
+            r#""axis":[0,0,0]"#,
+            "actuator[0].axis: found [0, 0, 0], expected a direction",
+        ),
+        (
+            r#""axis":[0,0,1]"#,
+            r#""axis":[0,NaN,1]"#,
+            "actuator[0].axis[1]: found NaN",
+        ),
+        (
+            r#""stroke_mm":12"#,
+            r#""stroke_mm":-5"#,
+            "actuator[0].stroke_mm: found -5, expected a stroke above 0",
+        ),
+        (
+            r#","stroke_mm":12"#,
+            "",
+            "actuator[0].stroke_mm: found nothing",
+        ),
+        (
+            r#""stroke_mm":12"#,
+            r#""stroke_mm":12,"speed":3"#,
+            "actuator[0].speed: found an unknown key",
+        ),
+        (
+            r#""points_mm":[0,75]"#,
+            r#""points_mm":[0,Infinity]"#,
+            "actuator[1].points_mm[1]: found Infinity",
+        ),
+        (
+            r#""points_mm":[0,75]"#,
+            r#""points_mm":[0,75],"stroke_mm":75"#,
+            "actuator[1].points_mm: found a list of 2, expected either",
+        ),
+        (
+            r#""rides":"lift""#,
+            r#""rides":"left""#,
+            r#"actuator[1].rides: found "left""#,
+        ),
+        (
+            r#"["finger"]"#,
+            r#"["thumb"]"#,
+            r#"actuator[1].opposed[0]: found "thumb", expected the id of a body"#,
+        ),
+        (
+            r#""b":"jaw""#,
+            r#""b":"nope""#,
+            r#"pair[0].b: found "nope", expected the id of a body"#,
+        ),
+        (r#""b":"jaw","#, "", "pair[0].b: found nothing"),
+        (
+            r#""a":"fin*""#,
+            r#""a":"fan*""#,
+            r#"pair[1].a: found "fan*""#,
+        ),
+        (
+            r#""rule":"forbidden""#,
+            r#""rule":"kiss""#,
+            r#"pair[0].rule: found "kiss", expected "forbidden", "may_touch" or "ignore""#,
+        ),
+        (
+            r#""margin_mm":0.5}"#,
+            r#""margin_mm":-3}"#,
+            "pair[0].margin_mm: found -3, expected a distance",
+        ),
+        (
+            r#""depth_mm":0.1"#,
+            r#""depth_mm":"0.1""#,
+            r#"pair[1].depth_mm: found "0.1""#,
+        ),
+        (
+            r#""by":["slide"]"#,
+            r#""by":["glide"]"#,
+            r#"pair[1].by[0]: found "glide""#,
+        ),
+        (
+            r#"[{"of":"its reader"}]"#,
+            "null",
+            "mate: found null, expected a list",
+        ),
+        (
+            r#"{"of":"its reader"}"#,
+            "3",
+            "mate[0]: found 3, expected a table",
+        ),
+        (
+            r#""default_margin_mm":0.5"#,
+            r#""default_margin_mm":-1"#,
+            "guard.default_margin_mm: found -1",
+        ),
+        (
+            r#"[0,0,1]}}"#,
+            r#"[0,0]}}"#,
+            "guard.nest: found a list of 2",
+        ),
+    ] {
+        let text = FOR_THE_RIG.replacen(from, to, 1);
+        assert_ne!(text, FOR_THE_RIG, "{from:?} is not in the scene");
+        let said = complaint(&text);
+        assert!(said.starts_with(says), "{says}\n{said}");
+    }
+    for (whole, says) in [
+        (r#"{"actuator":7}"#, "actuator: found 7, expected a list"),
+        (
+            r#"{"pair":"garbage"}"#,
+            r#"pair: found "garbage", expected a list"#,
+        ),
+        (
+            r#"{"guard":[]}"#,
+            "guard: found a list of 0, expected a table",
+        ),
+    ] {
+        assert!(complaint(whole).starts_with(says), "{}", complaint(whole));
+    }
+}
+
+#[test]
+fn a_scene_may_name_what_its_rig_has_elsewhere() {
+    let text = r#"{"elements":[{"id":"jaw","kind":"block","half":[1,1,1],"rides":"clamp_left"}],
+        "pair":[{"a":"part_*","b":"jaw","rule":"may_touch","by":["clamp_left"]}]}"#;
+    assert!(complaint(text).starts_with("elements[0].rides: found \"clamp_left\", expected the id of an actuator of the scene or its rig; the scene has no actuators"));
+    let elsewhere = Elsewhere {
+        actuators: &["clamp_left"],
+        bodies: &["part_nest"],
+    };
+    let mut files = |_: &str| Err(String::new());
+    read_scene_of_rig(text, Format::Json, &mut files, &elsewhere).unwrap();
+}
+
 #[test]
 fn a_quaternion_of_any_length_is_its_turn_and_only_zero_is_none() {
     let quarter = std::f64::consts::FRAC_1_SQRT_2;
