@@ -1,7 +1,7 @@
 //! Speed of the collision core against its peers, in one run: `cargo bench --bench lpm`.
 //!
 //! Printed are nanoseconds and ratios (how many times the peer needs) of mean and 99th percentile,
-//! warm and cold, and how many answers differ; below a missed bar, what it is made of ([`missed`]).
+//! warm, in an order that nobody can learn, and cold, and how many answers differ; below a missed bar, what it is made of ([`missed`]).
 //! `-- --quick` stops at 1,000 elements, `-- --bar` is 1,000 alone, `-- --growth` asks the core alone
 //! how its cost grows from 10 to 100,000 elements.
 
@@ -12,7 +12,7 @@ mod timing;
 mod world;
 
 use relayrig::lpm::{Answer, Model, Move, Mover, Pose, Shape};
-use timing::{Rounds, Spread, TURNS, Timed, clock_ns, cold, warm};
+use timing::{Rounds, Spread, TURNS, Timed, clock_ns, cold};
 use world::{KINDS, World, gripper, moves, world};
 
 /// Numbers of elements.
@@ -31,7 +31,7 @@ const RANGE_MM: f64 = 25.0;
 fn main() {
     let clock = clock_ns();
     println!(
-        "one query alone, best of several passes, ns; cost of the clock taken off: {clock} ns"
+        "one query alone, best of several passes, ns; cost of the clock taken off: {clock:.1} ns"
     );
     let asked = |name: &str| std::env::args().any(|argument| argument == name);
     if asked("--growth") {
@@ -213,25 +213,28 @@ impl Bench {
     /// A question far above everything: what taking poses costs.
     fn far_above(&self, world: &World) {
         let ways = missed::lifted(&moves(world, "disc_yaw0", QUERIES));
-        let poses = warm(&ways, self.clock, |way| {
-            self.model.any_hit(&self.mover, way)
-        });
-        let one = warm(&ways, self.clock, |way| self.double.compound(way));
-        let pairs = warm(&ways, self.clock, |way| self.double.pairs_any(way));
-        row("far above", "0%", "any hit", &poses, &[one, pairs]);
+        self.any_row("far above", "any hit", || Timed::new(&ways, self.clock));
     }
 
     /// In another order in each pass.
     fn unlearned_kind(&self, kind: &str, ways: &[Move]) {
-        let timed = || Timed::unlearned(ways, self.clock);
+        self.any_row(kind, "any, no order", || Timed::unlearned(ways, self.clock));
+    }
+
+    fn any_row<'a>(&self, kind: &str, question: &str, timed: impl Fn() -> Timed<'a, Move<'a>>) {
         let (mut any, mut one, mut pairs) = (timed(), timed(), timed());
         for _ in 0..TURNS {
             any.turn(|way| self.model.any_hit(&self.mover, way));
             one.turn(|way| self.double.compound(way));
             pairs.turn(|way| self.double.pairs_any(way));
         }
-        let peers = [one.spread(), pairs.spread()];
-        row(kind, "", "any, no order", &any.spread(), &peers);
+        row(
+            kind,
+            "",
+            question,
+            &any.spread(),
+            &[one.spread(), pairs.spread()],
+        );
     }
 
     fn cold_kind(&self, kind: &str, ways: &[Move]) {

@@ -1,18 +1,23 @@
 //! How a query is timed: alone, the cost of the clock taken off, the best of several warm passes;
 //! then mean, median and 99th percentile over the queries.
 //!
-//! Contestants take turns, several passes each, so that all of them meet the machine in its moods: on a shared one
-//! everything may take half as long again for seconds, and a ratio of two figures that were taken one after the other
-//! says more about that than about either. Warm is everything then: caches, and what the processor has learned about
-//! the order of these very questions.
+//! In the warm rows contestants take turns, several passes each, so that all of them meet the machine in its moods: on a
+//! shared one everything may take half as long again for seconds, and a ratio of two figures that were taken one after
+//! the other (those of the cold rows, of growth, and below a missed bar) says as much about that. Warm is everything
+//! then: caches, and what the processor has learned about the order of these very questions. The rows without an order
+//! ask in another one in each pass, and there the median of the passes counts.
+//!
+//! A clock that goes by steps shows less than was spent, the best of several readings most of all: with steps of 10 ns
+//! some 2 ns of a question of 50, more than of an empty one.
 
 use std::hint::black_box;
 use std::time::Instant;
 
 use super::world::Dice;
 
-/// Turns of each contestant, and passes over all queries in a turn; the first ones also warm the caches.
+/// Turns of each contestant.
 pub const TURNS: usize = 4;
+/// Passes over all queries in a turn; the first ones also warm the caches.
 const PASSES: usize = 7;
 /// Queries of the clock alone.
 const EMPTY: usize = 2_000;
@@ -39,8 +44,7 @@ impl Spread {
     }
 }
 
-/// What reading the clock costs, ns: a query that asks nothing, timed like all others. (A clock with steps makes the
-/// best of several readings small; of this one as of the others.)
+/// What reading the clock costs, ns: a query that asks nothing, timed like all others.
 pub fn clock_ns() -> f64 {
     warm(&[(); EMPTY], 0.0, |()| ()).mean
 }
@@ -49,9 +53,11 @@ pub fn clock_ns() -> f64 {
 pub struct Timed<'a, Q> {
     queries: &'a [Q],
     clock_ns: f64,
-    best: Vec<f64>,
-    /// Numbers of the queries as they are asked, and what puts them in another order before each pass.
+    /// What was read of each query.
+    readings: Vec<Vec<f64>>,
+    /// Numbers of the queries as they are asked.
     order: Vec<usize>,
+    /// Puts them in another order before each pass.
     dice: Option<Dice>,
 }
 
@@ -60,7 +66,7 @@ impl<'a, Q> Timed<'a, Q> {
         Timed {
             queries,
             clock_ns,
-            best: vec![f64::INFINITY; queries.len()],
+            readings: vec![Vec::with_capacity(TURNS * PASSES); queries.len()],
             order: (0..queries.len()).collect(),
             dice: None,
         }
@@ -81,18 +87,27 @@ impl<'a, Q> Timed<'a, Q> {
                 dice.shuffle(&mut self.order);
             }
             for number in &self.order {
-                let (query, best) = (&self.queries[*number], &mut self.best[*number]);
+                let query = &self.queries[*number];
                 let start = Instant::now();
                 black_box(ask(black_box(query)));
                 let spent = start.elapsed().as_nanos() as f64 - self.clock_ns;
-                *best = best.min(spent.max(0.5));
+                self.readings[*number].push(spent.max(0.5));
             }
         }
     }
 
-    /// Of the best of each query.
-    pub fn spread(self) -> Spread {
-        Spread::of(self.best)
+    /// Of the best of each query; where nothing was to be learned, of the median.
+    pub fn spread(mut self) -> Spread {
+        let which = if self.dice.is_some() {
+            TURNS * PASSES / 2
+        } else {
+            0
+        };
+        let each = self.readings.iter_mut().map(|readings| {
+            readings.sort_by(f64::total_cmp);
+            readings[which]
+        });
+        Spread::of(each.collect())
     }
 }
 
@@ -134,7 +149,7 @@ impl Rounds {
         }
     }
 
-    /// All rounds; what is made `ready` for them is not counted, nor is it what they leave behind.
+    /// All rounds; what is made `ready` for them is not counted, nor is what they leave behind.
     pub fn turn<S, A>(&mut self, mut ready: impl FnMut() -> S, mut run: impl FnMut(S) -> A) {
         for best in &mut self.best {
             for _ in 0..TRIES {
@@ -148,7 +163,7 @@ impl Rounds {
         }
     }
 
-    /// Of the best of each round.
+    /// Of the best of each round: the same work every time, so its percentiles are those of the machine.
     pub fn spread(self) -> Spread {
         Spread::of(self.best)
     }

@@ -57,7 +57,7 @@
 //! | `space::sweep::SLACK_MM` | 1e-5 mm | places along the way in the broad phase; costs candidates, no answers |
 //! | `space::cover::ULP` | 1.2e-7, relative | rounding outward to f32, likewise |
 //! | `mover::SINGLE`, `space::boxes::EARLIER` | 1e-6, relative | boxes of the mover and their times in f32, likewise |
-//! | `pose::Yaw::roughly` | 2e-9, relative | how a body is turned for its boxes, and for nothing else; within `mover::SINGLE` |
+//! | `pose::NEARLY_UNIT` | 1e-9 | squared length of a quaternion whose yaw is taken without a quotient for boxes; within `mover::SINGLE` |
 //! | `space::sweep::SLOWEST_MM` | 1e-9 mm | what counts as rest on an axis, likewise |
 //! | `closed::WELD_MM` | 1e-6 mm | corners that are one when it is asked what a mesh closes |
 //! | `turning::band_mm` | 1e-7 to 5e-4 mm | how near to the margin a turning move counts as contact |

@@ -50,17 +50,17 @@ impl Model {
     pub fn insert(&mut self, id: &str, shape: &Shape, pose: &Pose) -> Result<ElementKey, Flaw> {
         shape.check()?;
         pose.check()?;
-        let number = self.free.pop().unwrap_or(self.slots.len() as u32);
-        let generation = self.slots.get(number as usize);
+        let slot = self.free.pop().unwrap_or(self.slots.len() as u32);
+        let left = self.slots.get(slot as usize);
         let key = ElementKey {
-            slot: number,
-            generation: generation.map_or(0, |slot| slot.generation),
+            slot,
+            generation: left.map_or(0, |left| left.generation),
         };
         let first = self.pieces.stand(&mut self.space, shape, pose, key);
-        let slot = self.slot(id, shape, pose, key, first);
-        match self.slots.get_mut(number as usize) {
-            Some(known) => *known = slot,
-            None => self.slots.push(slot),
+        let taken = self.taken(id, shape, pose, key, first);
+        match self.slots.get_mut(slot as usize) {
+            Some(left) => *left = taken,
+            None => self.slots.push(taken),
         }
         Ok(key)
     }
@@ -86,15 +86,16 @@ impl Model {
                 generation: 0,
             };
             let first = model.pieces.stand(&mut filling, shape, pose, key);
-            let slot = model.slot(id, shape, pose, key, first);
-            model.slots.push(slot);
+            let taken = model.taken(id, shape, pose, key, first);
+            model.slots.push(taken);
         }
         model.space = filling.space();
         Ok(model)
     }
 
+    /// The slot of an element that stands by its pieces: keeps its name and what it encloses.
     #[inline]
-    fn slot(&mut self, id: &str, shape: &Shape, pose: &Pose, key: ElementKey, first: u32) -> Slot {
+    fn taken(&mut self, id: &str, shape: &Shape, pose: &Pose, key: ElementKey, first: u32) -> Slot {
         let interior = match shape {
             Shape::Block { .. } | Shape::Cylinder { .. } => None,
             Shape::Compound(_) | Shape::Mesh(_) => self.interior(shape, pose, key.slot),
@@ -125,13 +126,13 @@ impl Model {
         }
         slot.generation += 1;
         self.names.leave(&slot.id);
-        let mut number = std::mem::replace(&mut slot.first, NONE);
+        let mut piece = std::mem::replace(&mut slot.first, NONE);
         if slot.interior.take().is_some() {
             self.hollow.retain(|known| *known != key.slot);
         }
-        while number != NONE {
-            self.space.remove(number);
-            number = self.pieces.let_go(number);
+        while piece != NONE {
+            self.space.remove(piece);
+            piece = self.pieces.let_go(piece);
         }
         self.free.push(key.slot);
         if self.names.is_mostly_gaps() {
@@ -195,7 +196,7 @@ impl Model {
         }
     }
 
-    /// One of the pieces of the element in a slot.
+    /// One of the pieces of the element in a slot, where one stands.
     pub(crate) fn a_piece(&self, slot: u32) -> u32 {
         self.slots[slot as usize].first
     }

@@ -2,7 +2,7 @@
 
 use super::interior::Interior;
 use super::piece::{Piece, pieces_of};
-use super::pose::{Frame, Pose, Yaw};
+use super::pose::{Frame, Pose, RoughYaw};
 use super::prism::Prism;
 use super::shape::{Flaw, Shape};
 use super::space::{Boxes, Cover, Four, SLOWEST_MM};
@@ -55,15 +55,14 @@ pub(crate) struct Whereabouts<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Orientation<'a> {
     Unturned,
-    Yawed(Yaw),
+    Yawed(RoughYaw),
     Tilted(&'a Frame),
     /// Another one from instant to instant.
     Turning,
 }
 
 /// Relative error allowed for the boxes of a group at their place: fewer than ten roundings to single precision, of
-/// magnitudes that sum up to those of group and way along the axis, and the 2e-9 of a rough yaw
-/// ([`Yaw::roughly`]).
+/// magnitudes that sum up to those of group and way along the axis, and what a [`RoughYaw`] is off.
 const SINGLE: f64 = 1e-6;
 
 impl Mover {
@@ -207,8 +206,8 @@ impl Group {
     }
 
     #[inline(always)]
-    fn yawed_hull(&self, yaw: Yaw) -> (Four, Four) {
-        let (cos, sin) = (yaw.cos as f32, yaw.sin as f32);
+    fn yawed_hull(&self, yaw: RoughYaw) -> (Four, Four) {
+        let RoughYaw { cos, sin } = yaw;
         let ([x, y, z, _], [a, b, c, _]) = (self.centre, self.half);
         let centre = [x * cos - y * sin, x * sin + y * cos, z, 0.0];
         let (cos, sin) = (cos.abs(), sin.abs());
@@ -229,8 +228,8 @@ impl Group {
 
 /// Centres, as seen from the origin, and half extents along the axes of the parent frame, member by member.
 #[inline(always)]
-fn yawed(yaw: Yaw, [x, y, z]: [Four; 3], [a, b, c]: [Four; 3]) -> ([Four; 3], [Four; 3]) {
-    let (cos, sin) = (Four::all(yaw.cos as f32), Four::all(yaw.sin as f32));
+fn yawed(yaw: RoughYaw, [x, y, z]: [Four; 3], [a, b, c]: [Four; 3]) -> ([Four; 3], [Four; 3]) {
+    let (cos, sin) = (Four::all(yaw.cos), Four::all(yaw.sin));
     let across = x.times(cos).minus(y.times(sin));
     let centres = [across, x.times(sin).plus(y.times(cos)), z];
     let (cos, sin) = (cos.abs(), sin.abs());

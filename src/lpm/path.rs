@@ -81,9 +81,9 @@ impl Path {
         match (&self.turn, &self.turned) {
             (Some(_), _) => Orientation::Turning,
             (None, None) => Orientation::Unturned,
-            (None, Some(frame)) => frame
-                .yaw()
-                .map_or(Orientation::Tilted(frame), Orientation::Yawed),
+            (None, Some(frame)) => frame.yaw().map_or(Orientation::Tilted(frame), |yaw| {
+                Orientation::Yawed(yaw.rough())
+            }),
         }
     }
 

@@ -10,7 +10,7 @@ use super::meeting::slack;
 use super::model::Model;
 use super::mover::{Group, Mover, Orientation, Whereabouts};
 use super::piece::NOISE;
-use super::pose::Yaw;
+use super::pose::{RoughYaw, Yaw};
 use super::prism::Prism;
 use super::shape::is_turn;
 use super::space::LANES;
@@ -42,12 +42,9 @@ impl Model {
         let is_plain = self.hollow.is_empty() & !body.is_hollow() & (way.margin_mm == 0.0);
         if is_plain && way.goes_nowhere() && way.from.is_placed() {
             match way.from.rotation {
-                [w, 0.0, 0.0, 0.0] if is_turn(w * w) => {
-                    return rest.among::<Q>(Orientation::Unturned, None);
-                }
+                [w, 0.0, 0.0, 0.0] if is_turn(w * w) => return rest.among::<Q>(None),
                 [w, 0.0, 0.0, z] if is_turn(w * w + z * z) => {
-                    let boxes = Orientation::Yawed(Yaw::roughly(w, z));
-                    return rest.among::<Q>(boxes, Some(Yaw::of(w, z)));
+                    return rest.among::<Q>(Some((w, z)));
                 }
                 _ => {}
             }
@@ -72,12 +69,16 @@ struct Rest<'a> {
 }
 
 impl Rest<'_> {
-    /// `orientation` is for boxes, `yaw` for pieces. (Once for each of both, so that what is not turned carries no yaw.)
+    /// The answer for a body turned by the quaternion `[w, 0, 0, z]`, or not at all. (Compiled once for turned bodies
+    /// and once for others, which carry no yaw.)
     #[inline(always)]
-    fn among<Q: Question>(&self, orientation: Orientation, yaw: Option<Yaw>) -> Q::Answer {
+    fn among<Q: Question>(&self, turn: Option<(f64, f64)>) -> Q::Answer {
+        let yaw = turn.map(|(w, z)| Yaw::of(w, z));
         let at = Whereabouts {
             origin: self.way.from.position,
-            orientation,
+            orientation: turn.map_or(Orientation::Unturned, |(w, z)| {
+                Orientation::Yawed(RoughYaw::of(w, z))
+            }),
             run: [0.0; 3],
             margin_mm: 0.0,
         };

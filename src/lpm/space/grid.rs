@@ -98,7 +98,7 @@ impl Grid {
     /// next number.
     #[inline]
     pub(crate) fn place(&self, column: i32, row: i32) -> usize {
-        (row - self.area.low[1]) as usize * self.columns + (column - self.area.low[0]) as usize
+        number(self.area.low, self.columns, [column, row])
     }
 
     /// From the number of a cell to that of the next column (axis 0) or row (1).
@@ -234,10 +234,10 @@ impl Grid {
                 }
                 continue;
             }
-            each_place(self.area.low, self.columns, &seat.area, |place| {
+            for place in rows(self.area.low, self.columns, &seat.area).flatten() {
                 counts[place] += 1;
                 self.layers[place] |= word;
-            });
+            }
         }
         self.pool.reserve(&mut self.heads, &mut counts);
         counts
@@ -254,12 +254,18 @@ impl Grid {
     }
 }
 
+/// The number of the cell of a column and a row in a grid that begins at `low`.
+#[inline(always)]
+fn number(low: [i32; 2], columns: usize, [column, row]: [i32; 2]) -> usize {
+    (row - low[1]) as usize * columns + (column - low[0]) as usize
+}
+
 /// Shows the number of each cell of `area` in a grid that begins at `low`. (Most areas are two by two cells or fewer;
 /// how often one loop within another goes round is guessed wrong more often than whether they are wide and deep.)
 #[inline(always)]
 fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(usize)) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
-    let first = (area.low[1] - low[1]) as usize * columns + (area.low[0] - low[0]) as usize;
+    let first = number(low, columns, area.low);
     if area.is_few() {
         show(first);
         if wide == 1 {
@@ -281,7 +287,7 @@ fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(u
 #[inline(always)]
 fn few(low: [i32; 2], columns: usize, area: &Area) -> ([usize; 4], u32) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
-    let first = (area.low[1] - low[1]) as usize * columns + (area.low[0] - low[0]) as usize;
+    let first = number(low, columns, area.low);
     let next = first + deep * columns;
     ([first, first + wide, next, next + wide], area.different())
 }
@@ -290,6 +296,6 @@ fn few(low: [i32; 2], columns: usize, area: &Area) -> ([usize; 4], u32) {
 #[inline]
 fn rows(low: [i32; 2], columns: usize, area: &Area) -> impl Iterator<Item = Range<usize>> {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize + 1);
-    let first = (area.low[1] - low[1]) as usize * columns + (area.low[0] - low[0]) as usize;
+    let first = number(low, columns, area.low);
     (0..deep).map(move |row| first + row * columns..first + row * columns + wide)
 }

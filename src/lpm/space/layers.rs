@@ -101,21 +101,15 @@ impl Layers {
         // Pieces that begin and end in the same layer.
         let mut within = [0u32; LAYERS];
         for (Seat { reach, .. }, cover) in seats.iter().zip(covers) {
-            let (low, high) = (
-                usize::from(reach.low) % LAYERS,
-                usize::from(reach.high) % LAYERS,
-            );
-            layers.beginning[low] += 1;
-            layers.ending[high] += 1;
-            layers.h1[low] = smaller(layers.h1[low], cover.low[2]);
-            layers.h2[high] = larger(layers.h2[high], cover.high[2]);
-            if low == high {
-                within[low] += 1;
+            layers.enclose(*reach, cover.low[2], cover.high[2]);
+            if reach.low == reach.high {
+                within[usize::from(reach.low) % LAYERS] += 1;
             }
         }
         layers.bottom = layers.h1.into_iter().fold(f32::INFINITY, smaller);
         layers.top = layers.h2.into_iter().fold(f32::NEG_INFINITY, larger);
-        // Those that have begun below a layer and do not end below or in it; but for those of one layer.
+        // Those that have begun below a layer and do not end below or in it; but for those of one layer. (Nobody ends
+        // before it begins.)
         let (mut begun, mut ended) = (0, 0);
         for (layer, within) in within.into_iter().enumerate() {
             ended += layers.ending[layer] - within;
@@ -129,18 +123,19 @@ impl Layers {
     #[inline]
     pub(crate) fn join(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
         self.enclose(reach, bottom_mm, top_mm);
+        self.bottom = smaller(self.bottom, bottom_mm);
+        self.top = larger(self.top, top_mm);
         self.pass(reach, 1);
     }
 
+    /// Where a piece begins and ends. (No reach goes beyond the layers; saying so spares a check.)
     #[inline]
     fn enclose(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
-        let (low, high) = (usize::from(reach.low), usize::from(reach.high));
+        let [low, high] = [reach.low, reach.high].map(|layer| usize::from(layer) % LAYERS);
         self.beginning[low] += 1;
         self.ending[high] += 1;
         self.h1[low] = smaller(self.h1[low], bottom_mm);
         self.h2[high] = larger(self.h2[high], top_mm);
-        self.bottom = smaller(self.bottom, bottom_mm);
-        self.top = larger(self.top, top_mm);
     }
 
     /// Counts a piece in the layers between its lowest and its highest: 1 more, or with `u32::MAX` 1 less.
