@@ -46,6 +46,7 @@ impl Cycle {
                 distance_mm: blocked.distance_mm,
                 margin_mm: blocked.margin_mm,
                 at: blocked.at,
+                last_clear_mm: blocked.last_clear_mm,
                 text,
             },
             Refusal::OutOfStroke { .. } | Refusal::PartSize { .. } => RefusedView {

@@ -40,6 +40,8 @@ pub struct RefusedView {
     pub margin_mm: f64,
     /// Where, mm.
     pub at: [f64; 3],
+    /// How far the stroke is clear, mm from its rest end: the pose to go back to. None, if it is blocked where it begins.
+    pub last_clear_mm: Option<f64>,
     /// The whole sentence, with what would help.
     pub text: String,
 }

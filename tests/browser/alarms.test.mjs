@@ -101,7 +101,7 @@ test("after clear and reset the machine is moved by hand, and a motion into anot
   await page.waitForSelector("#mimic .swept", { state: "attached" });
   assert.equal(await page.$$eval("#mimic .mover", (all) => all.length), 2, "in both views");
   assert.equal(await page.$$eval("#mimic .blocker", (all) => all.length), 2, "in both views");
-  await shown(page, "#refused", "mm");
+  await shown(page, "#refused", "clear up to");
   await looks(page, "collision-1280");
   await leave(page);
 });
