@@ -4,8 +4,8 @@
 //! middle, a corner that is not written down by the neighbour on the other side of an edge. A body inside such a mesh
 //! touches nothing, so whatever is closed has to be found in spite of all that:
 //! 1. Corners nearer than [`WELD_MM`] are one. What is shrunk to a segment or a point closes nothing.
-//! 2. A triangle that comes again is one. One that comes again turned over is a wall between two spaces and is left
-//!    out, unless everything comes twice.
+//! 2. A triangle that comes again is one. Of what hangs together one that comes again turned over is a wall between two
+//!    spaces and is left out, unless everything comes twice.
 //! 3. An edge that is free although corners of other free edges lie on it is cut there.
 //! 4. Triangles with a free edge are taken away until there are none: what is left is closed.
 //! 5. What hangs together by edges is a surface of its own.
@@ -43,12 +43,17 @@ pub(crate) fn closed_surfaces(mesh: &Mesh) -> Vec<Surface> {
     let proper: Vec<Corners> = triangles
         .filter(|[a, b, c]| a != b && b != c && c != a)
         .collect();
-    let single = once_each(&proper);
-    let closed = without_twins(&single)
-        .map(|kept| joined(&mesh.vertices, kept))
+    let parts = touching(&once_each(&proper));
+    let closed = parts.iter().map(|part| closed_part(&mesh.vertices, part));
+    closed.flat_map(|part| surfaces(&part)).collect()
+}
+
+/// What is closed of triangles that hang together.
+fn closed_part(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
+    without_twins(part)
+        .map(|kept| joined(vertices, kept))
         .filter(|kept| !kept.is_empty() && free_edges(kept).is_empty())
-        .unwrap_or_else(|| peeled(joined(&mesh.vertices, one_of_twins(&single))));
-    surfaces(&closed)
+        .unwrap_or_else(|| peeled(joined(vertices, one_of_twins(part))))
 }
 
 /// For each vertex the first one that is nearer to it than [`WELD_MM`].
@@ -88,6 +93,28 @@ fn turned([a, b, c]: Corners) -> Corners {
 
 fn once_each(triangles: &[Corners]) -> BTreeSet<Corners> {
     triangles.iter().copied().map(turned).collect()
+}
+
+/// What hangs together by corners.
+fn touching(triangles: &BTreeSet<Corners>) -> Vec<BTreeSet<Corners>> {
+    let mut around: BTreeMap<usize, Vec<Corners>> = BTreeMap::new();
+    for corners in triangles {
+        for vertex in corners {
+            around.entry(*vertex).or_default().push(*corners);
+        }
+    }
+    let mut parts: Vec<BTreeSet<Corners>> = Vec::new();
+    while let Some((_, first)) = around.pop_first() {
+        let (mut part, mut left) = (BTreeSet::new(), first);
+        while let Some(corners) = left.pop() {
+            if part.insert(corners) {
+                let beside = corners.iter().filter_map(|vertex| around.remove(vertex));
+                left.extend(beside.flatten());
+            }
+        }
+        parts.push(part);
+    }
+    parts
 }
 
 /// The same seen from the other side.

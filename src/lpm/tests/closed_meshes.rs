@@ -116,6 +116,10 @@ fn a_surface_that_comes_more_than_once_is_solid() {
         &cube.clone().with(cube.clone().turned_over()),
         MIDDLE
     ));
+    // One part of a mesh from both sides, another from one.
+    let other = Soup::cuboid([30.0; 3], [40.0; 3]);
+    let both = cube.clone().with(cube.clone().turned_over()).with(other);
+    assert!(is_inside(&both, MIDDLE) && is_inside(&both, [35.0; 3]));
     assert!(is_inside(&cube.turned_over(), MIDDLE));
 }
 
