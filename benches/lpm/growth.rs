@@ -1,35 +1,46 @@
 //! How the cost of the core grows with the number of elements at the same density.
 
-use super::timing::{Rounds, TURNS, warm};
+use super::timing::{Rounds, TURNS, Timed};
 use super::world::{KINDS, gripper, moves, world};
 use super::{QUERIES, RANGE_MM, SIZES, built, mover, stop};
 
-/// Prints means, ns, for every size, and how many times the smallest world's the largest one's are.
+/// Prints means, ns, for every size, and how many times the smallest world's the largest one's are. The sizes take
+/// turns, as contestants do.
 pub fn report(clock: f64) {
     let mover = mover(gripper());
+    let worlds = SIZES.map(world);
+    let models = worlds.each_ref().map(built);
     let mut table: Vec<(String, Vec<f64>)> = Vec::new();
-    let mut note = |name: String, figure: f64| match table.iter_mut().find(|row| row.0 == name) {
-        Some((_, figures)) => figures.push(figure),
-        None => table.push((name, vec![figure])),
-    };
-    for size in SIZES {
-        let world = world(size);
-        let model = built(&world);
-        let times = if size > 5_000 { 5 } else { 51 };
-        let mut whole = Rounds::new(times);
-        (0..TURNS).for_each(|_| whole.turn(|| (), |()| built(&world)));
-        let whole = whole.spread().median;
-        note("build, ns an element".to_owned(), whole / size as f64);
-        let bytes = model.heap_bytes() as f64 / size as f64;
-        note("memory, bytes an element".to_owned(), bytes);
-        for kind in KINDS {
-            let ways = moves(&world, kind, QUERIES);
-            let any = warm(&ways, clock, |way| model.any_hit(&mover, way));
-            note(format!("{kind}, any hit"), any.mean);
-            let first = warm(&ways, clock, |way| stop(&model, &mover, way));
-            note(format!("{kind}, first contact"), first.mean);
-            let least = warm(&ways, clock, |way| model.clearance(&mover, way, RANGE_MM));
-            note(format!("{kind}, clearance"), least.mean);
+    let mut whole = SIZES.map(|size| Rounds::new(if size > 5_000 { 5 } else { 51 }));
+    for _ in 0..TURNS {
+        for (whole, world) in whole.iter_mut().zip(&worlds) {
+            whole.turn(|| (), |()| built(world));
+        }
+    }
+    let whole = whole.into_iter().zip(SIZES);
+    let spent = whole.map(|(whole, size)| whole.spread().median / size as f64);
+    table.push(("build, ns an element".to_owned(), spent.collect()));
+    let bytes = models.iter().zip(SIZES);
+    let bytes = bytes.map(|(model, size)| model.heap_bytes() as f64 / size as f64);
+    table.push(("memory, bytes an element".to_owned(), bytes.collect()));
+    for kind in KINDS {
+        let ways = worlds.each_ref().map(|world| moves(world, kind, QUERIES));
+        let timed = || ways.each_ref().map(|ways| Timed::new(ways, clock));
+        let (mut any, mut first, mut least) = (timed(), timed(), timed());
+        for _ in 0..TURNS {
+            for (at, model) in models.iter().enumerate() {
+                any[at].turn(|way| model.any_hit(&mover, way));
+                first[at].turn(|way| stop(model, &mover, way));
+                least[at].turn(|way| model.clearance(&mover, way, RANGE_MM));
+            }
+        }
+        for (question, timed) in [
+            ("any hit", any),
+            ("first contact", first),
+            ("clearance", least),
+        ] {
+            let means = timed.into_iter().map(|timed| timed.spread().mean);
+            table.push((format!("{kind}, {question}"), means.collect()));
         }
     }
     print!("{:<26}", "mean, ns; n =");

@@ -3,7 +3,7 @@
 //!
 //! In the warm rows contestants take turns, several passes each, so that all of them meet the machine in its moods: on a
 //! shared one everything may take half as long again for seconds, and a ratio of two figures that were taken one after
-//! the other (those of the cold rows, of growth, and below a missed bar) says as much about that. Warm is everything
+//! the other (those of the cold rows and below a missed bar) says as much about that. Warm is everything
 //! then: caches, and what the processor has learned about the order of these very questions. The rows without an order
 //! ask in another one in each pass, and there the median of the passes counts.
 //!
