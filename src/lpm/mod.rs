@@ -8,7 +8,9 @@
 //! After Peng and others (2010), section 3 and 4: a checking space Omega over the baseplate whose
 //! top follows its elements, cut into layers `{h1, h2, V, B}`; elements are put in and taken out one
 //! by one; the broad phase asks for layer, silhouette and oriented box in this order and stops at the
-//! first no. Layout of `V`, choice of layers and everything behind the broad phase are ours.
+//! first no. Layout of `V`, choice of layers and everything behind the broad phase are ours; the oriented box is
+//! no step of its own here: what would be asked of it is asked of the piece itself, in closed form (`meeting`, `touch`)
+//! or by a plane that is found for it (`distance`).
 //! `space` is the broad phase: `layers` holds Omega and `{h1, h2}`, `grid` `V`, `silhouettes` `B`.
 //!
 //! # Beyond it: continuous and exact
