@@ -24,7 +24,7 @@ const MOST_CUTS: usize = 16;
 const MOST_FREE: usize = 2_000;
 
 /// Numbers of three vertices.
-type Corners = [usize; 3];
+pub(crate) type Corners = [usize; 3];
 
 /// What closes a space.
 pub(crate) struct Surface {
@@ -35,29 +35,40 @@ pub(crate) struct Surface {
     pub(crate) is_oriented: bool,
 }
 
-/// The closed surfaces of a mesh.
-pub(crate) fn closed_surfaces(mesh: &Mesh) -> Vec<Surface> {
+/// What hangs together by corners, each part by its triangles; corners that are one have the same number.
+pub(crate) fn parts(mesh: &Mesh) -> Vec<BTreeSet<Corners>> {
     let welded = weld(&mesh.vertices);
-    let named = |corners: &Corners| corners.map(|vertex| welded[vertex]);
-    let triangles = mesh.triangles.iter().map(named);
-    let proper: Vec<Corners> = triangles
-        .filter(|[a, b, c]| a != b && b != c && c != a)
-        .collect();
-    let parts = touching(&once_each(&proper));
-    let closed = parts.iter().map(|part| closed_part(&mesh.vertices, part));
-    closed.flat_map(|part| surfaces(&part)).collect()
+    let named = |corners: &Corners| turned(corners.map(|vertex| welded[vertex]));
+    touching(&mesh.triangles.iter().map(named).collect())
 }
 
-/// What is closed of triangles that hang together.
-fn closed_part(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
-    without_twins(part)
-        .map(|kept| joined(vertices, kept))
-        .filter(|kept| !kept.is_empty() && free_edges(kept).is_empty())
-        .unwrap_or_else(|| peeled(joined(vertices, one_of_twins(part))))
+/// The closed surfaces of a part.
+pub(crate) fn closed_surfaces(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Surface> {
+    let proper = part
+        .iter()
+        .filter(|[a, b, c]| a != b && b != c && c != a)
+        .copied();
+    let proper: BTreeSet<Corners> = proper.collect();
+    surfaces(&closed(vertices, &proper))
+}
+
+/// What is left of a part without all that is open. Walls are left out where what they divide is closed without them;
+/// not, where they close a space of their own.
+fn closed(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
+    let has_twin = |corners: &Corners| part.contains(&twin(*corners));
+    let (twins, alone): (Vec<Corners>, Vec<Corners>) = part.iter().partition(|it| has_twin(it));
+    let walls: Vec<Corners> = twins.into_iter().filter(|it| *it < twin(*it)).collect();
+    if !walls.is_empty() && peeled(walls.clone()).is_empty() {
+        let around = joined(vertices, alone.clone());
+        if !around.is_empty() && free_edges(&around).is_empty() {
+            return around;
+        }
+    }
+    peeled(joined(vertices, [alone, walls].concat()))
 }
 
 /// For each vertex the first one that is nearer to it than [`WELD_MM`].
-pub(crate) fn weld(vertices: &[Vec3]) -> Vec<usize> {
+fn weld(vertices: &[Vec3]) -> Vec<usize> {
     let mut exact = HashMap::new();
     let mut near: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
     let mut welded = Vec::with_capacity(vertices.len());
@@ -91,11 +102,6 @@ fn turned([a, b, c]: Corners) -> Corners {
     }
 }
 
-fn once_each(triangles: &[Corners]) -> BTreeSet<Corners> {
-    triangles.iter().copied().map(turned).collect()
-}
-
-/// What hangs together by corners.
 fn touching(triangles: &BTreeSet<Corners>) -> Vec<BTreeSet<Corners>> {
     let mut around: BTreeMap<usize, Vec<Corners>> = BTreeMap::new();
     for corners in triangles {
@@ -122,22 +128,14 @@ fn twin([a, b, c]: Corners) -> Corners {
     turned([a, c, b])
 }
 
-/// None, if there are no twins.
-fn without_twins(triangles: &BTreeSet<Corners>) -> Option<Vec<Corners>> {
-    let alone = |corners: &&Corners| !triangles.contains(&twin(**corners));
-    let kept: Vec<Corners> = triangles.iter().filter(alone).copied().collect();
-    (kept.len() < triangles.len()).then_some(kept)
-}
-
-fn one_of_twins(triangles: &BTreeSet<Corners>) -> Vec<Corners> {
-    let first =
-        |corners: &&Corners| **corners < twin(**corners) || !triangles.contains(&twin(**corners));
-    triangles.iter().filter(first).copied().collect()
+/// The way round a triangle.
+fn sides([a, b, c]: Corners) -> [(usize, usize); 3] {
+    [(a, b), (b, c), (c, a)]
 }
 
 /// The edges of a triangle, each from its lower corner.
-fn edges([a, b, c]: Corners) -> [(usize, usize); 3] {
-    [(a, b), (b, c), (c, a)].map(|(p, q)| (p.min(q), p.max(q)))
+fn edges(corners: Corners) -> [(usize, usize); 3] {
+    sides(corners).map(|(p, q)| (p.min(q), p.max(q)))
 }
 
 fn uses(triangles: &[Corners]) -> BTreeMap<(usize, usize), usize> {
@@ -221,8 +219,7 @@ fn surfaces(triangles: &[Corners]) -> Vec<Surface> {
     let mut beside: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     let mut forward: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for (index, corners) in triangles.iter().enumerate() {
-        let [a, b, c] = *corners;
-        for (p, q) in [(a, b), (b, c), (c, a)] {
+        for (p, q) in sides(*corners) {
             *forward.entry((p, q)).or_default() += 1;
             beside.entry((p.min(q), p.max(q))).or_default().push(index);
         }

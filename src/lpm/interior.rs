@@ -2,9 +2,11 @@
 //!
 //! Surfaces that meet are found by their triangles; this is for a body that lies wholly inside a closed mesh.
 
-use super::closed::weld;
+use std::collections::BTreeSet;
+
+use super::closed::parts;
 use super::pose::{Frame, Pose};
-use super::shape::{Mesh, Shape};
+use super::shape::Shape;
 use super::solid::Solid;
 use super::vector::{Vec3, add};
 
@@ -76,9 +78,11 @@ impl Interior {
             }
             Shape::Mesh(mesh) => {
                 let place = |vertex: usize| add(frame.apply(mesh.vertices[vertex]), origin);
+                let parts = parts(mesh);
+                let witnesses = parts.iter().filter_map(BTreeSet::first);
                 self.witnesses
-                    .extend(connected(mesh).into_iter().map(place));
-                let solid = Solid::of(mesh);
+                    .extend(witnesses.map(|[vertex, ..]| place(*vertex)));
+                let solid = Solid::of(&mesh.vertices, &parts);
                 self.solids
                     .extend(solid.map(|solid| solid.placed(frame, origin)));
             }
@@ -92,34 +96,4 @@ fn has_mesh(shape: &Shape) -> bool {
         Shape::Compound(parts) => parts.iter().any(|(_, part)| has_mesh(part)),
         Shape::Mesh(_) => true,
     }
-}
-
-/// One vertex of each connected set of triangles.
-fn connected(mesh: &Mesh) -> Vec<usize> {
-    let welded = weld(&mesh.vertices);
-    let mut parent: Vec<usize> = (0..mesh.vertices.len()).collect();
-    for corners in &mesh.triangles {
-        let [a, b, c] = corners.map(|vertex| welded[vertex]);
-        for other in [b, c] {
-            let (p, q) = (root(&mut parent, a), root(&mut parent, other));
-            parent[p] = q;
-        }
-    }
-    let used = mesh
-        .triangles
-        .iter()
-        .flatten()
-        .map(|vertex| welded[*vertex]);
-    let mut roots: Vec<usize> = used.map(|vertex| root(&mut parent, vertex)).collect();
-    roots.sort_unstable();
-    roots.dedup();
-    roots
-}
-
-fn root(parent: &mut [usize], mut vertex: usize) -> usize {
-    while parent[vertex] != vertex {
-        parent[vertex] = parent[parent[vertex]];
-        vertex = parent[vertex];
-    }
-    vertex
 }

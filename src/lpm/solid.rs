@@ -9,9 +9,10 @@
 //! with walls in it crossings tell nothing; there only what a ray escapes from is outside. A ray that passes an edge or
 //! a corner within rounding is thrown away for another direction; when every direction fails the point counts as inside.
 
-use super::closed::{Surface, closed_surfaces};
+use std::collections::BTreeSet;
+
+use super::closed::{Corners, Surface, closed_surfaces};
 use super::pose::Frame;
-use super::shape::Mesh;
 use super::vector::{Vec3, add, cross, dot, reach, sub};
 
 /// Directions of rays, chosen without any symmetry a machine part might share.
@@ -47,8 +48,8 @@ struct Shell {
 
 impl Solid {
     /// None, if nothing is closed.
-    pub(crate) fn of(mesh: &Mesh) -> Option<Solid> {
-        let corner = |vertex: usize| mesh.vertices[vertex];
+    pub(crate) fn of(vertices: &[Vec3], parts: &[BTreeSet<Corners>]) -> Option<Solid> {
+        let corner = |vertex: usize| vertices[vertex];
         let shell = |surface: Surface| Shell {
             is_even: surface.is_even,
             is_oriented: surface.is_oriented,
@@ -60,7 +61,10 @@ impl Solid {
                     .collect(),
             )
         };
-        let shells = closed_surfaces(mesh).into_iter().map(shell);
+        let surfaces = parts
+            .iter()
+            .flat_map(|part| closed_surfaces(vertices, part));
+        let shells = surfaces.map(shell);
         let mut sized: Vec<(f64, Shell)> = shells.map(|shell| (shell.volume(), shell)).collect();
         // The larger ones first: what surrounds a shell comes before it.
         sized.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));

@@ -120,6 +120,14 @@ fn a_surface_that_comes_more_than_once_is_solid() {
     let other = Soup::cuboid([30.0; 3], [40.0; 3]);
     let both = cube.clone().with(cube.clone().turned_over()).with(other);
     assert!(is_inside(&both, MIDDLE) && is_inside(&both, [35.0; 3]));
+    // The same with a corner in common.
+    let mut hinged = both;
+    let first = hinged.vertices[7];
+    hinged.vertices[16..]
+        .iter_mut()
+        .for_each(|it| *it = it.map(|member| member - 20.0));
+    assert_eq!(hinged.vertices[16], first);
+    assert!(is_inside(&hinged, MIDDLE) && is_inside(&hinged, [15.0; 3]));
     assert!(is_inside(&cube.turned_over(), MIDDLE));
 }
 
