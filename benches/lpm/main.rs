@@ -5,6 +5,7 @@
 //! `-- --quick` stops at 1,000 elements, `-- --bar` is 1,000 alone, `-- --growth` asks the core alone
 //! how its cost grows from 10 to 100,000 elements.
 
+mod answers;
 mod growth;
 mod missed;
 mod peer;
@@ -123,7 +124,7 @@ impl Bench {
             self.cold_kind(kind, &moves(world, kind, COLD_QUERIES));
         }
         for kind in KINDS {
-            self.differences(kind, &moves(world, kind, QUERIES));
+            answers::differences(self, kind, &moves(world, kind, QUERIES));
         }
     }
 
@@ -305,47 +306,6 @@ impl Bench {
         let bytes = self.model.heap_bytes() as f64 / count as f64;
         println!("memory: {bytes:.0} bytes per element");
     }
-
-    /// Verdicts that differ from the peer's, and the largest differences of the time of contact.
-    fn differences(&self, kind: &str, ways: &[Move]) {
-        let (mut verdicts, mut later, mut earlier) = (Vec::new(), 0.0_f64, 0.0_f64);
-        for (index, way) in ways.iter().enumerate() {
-            let length = distance(way.from.position, way.to.position);
-            match (
-                stop(&self.model, &self.mover, way),
-                self.double.pairs_first(way),
-            ) {
-                (Some(ours), Some(theirs)) => {
-                    later = later.max((ours - theirs) * length);
-                    earlier = earlier.max((theirs - ours) * length);
-                }
-                (None, None) => {}
-                (ours, theirs) => verdicts.push((index, ours, theirs)),
-            }
-        }
-        println!(
-            "answers of {kind}: {} verdicts of {} differ from parry f64; contacts at most {later:.1e} mm later, {earlier:.1e} mm earlier",
-            verdicts.len(),
-            ways.len()
-        );
-        for (index, ours, theirs) in verdicts {
-            let least = self
-                .model
-                .clearance(&self.mover, &ways[index], RANGE_MM)
-                .map(|least| least.distance_mm);
-            println!(
-                "  #{index}: ours {ours:?} with least distance {least:?} mm, theirs {theirs:?}"
-            );
-        }
-    }
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b) * (a - b))
-        .sum::<f64>()
-        .sqrt()
 }
 
 fn best(a: Spread, b: Spread) -> Spread {
