@@ -11,7 +11,8 @@ use std::path::Path;
 #[command(after_help = "Examples:
   relayrig demo
   relayrig demo --listen 127.0.0.1:9000 --fault fall
-  relayrig demo --speed 5")]
+  relayrig demo --speed 5
+  relayrig demo --pace real")]
 pub struct DemoArgs {
     /// Where the page listens
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:8080")]
@@ -19,9 +20,12 @@ pub struct DemoArgs {
     /// Fault of the simulated rig, see `relayrig sim --faults`
     #[arg(long, value_name = "NAME[=VALUE]")]
     pub fault: Vec<String>,
-    /// In virtual time at X times the speed of the wall clock, instead of through pseudo-terminals
-    #[arg(long, value_name = "X", value_parser = rig::speed)]
-    pub speed: Option<f64>,
+    /// How the simulated rig keeps time
+    #[arg(long, value_enum, default_value = "held")]
+    pub pace: DemoPace,
+    /// Speed of the held rig, in multiples of the wall clock (0.1 to 100)
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = rig::speed)]
+    pub speed: f64,
     /// Draws rig and lot
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -30,12 +34,24 @@ pub struct DemoArgs {
     pub count: Option<u64>,
 }
 
+/// How the simulated rig of a demo keeps time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum DemoPace {
+    /// Virtual time held to the wall clock: a busy computer slows the rig down and never stops it
+    Held,
+    /// Pseudo-terminals in real time, as a rig at serial ports: a busy computer is late and an alarm ends the lot
+    Real,
+}
+
 /// Runs the command; the result is the exit status.
 pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
     let rig = RigArgs {
         sim: true,
-        pace: PaceArg::Real,
-        speed: args.speed,
+        pace: match args.pace {
+            DemoPace::Held => PaceArg::Virtual,
+            DemoPace::Real => PaceArg::Real,
+        },
+        speed: (args.pace == DemoPace::Held).then_some(args.speed),
         seed: args.seed,
         world: None,
         fault: args.fault.clone(),

@@ -18,6 +18,7 @@
 //! - `storm`: random transactions under every fault of a line at once, judged by the fingerprint of each value.
 //! - `tempest`: the whole program under faults of world and line, orders and kills, judged by the simulated rig.
 //! - `unplugged`: a port that vanishes over pseudo-terminals.
+//! - [`rows`]: four recipes, five seeds, forty parts each, compared with what was recorded.
 //! - `serve`: lots started, refused and continued at the page.
 //! - [`troubles`]: faults of the rig by name, and the alarm each must end in.
 
@@ -48,6 +49,8 @@ mod picture;
 mod program;
 #[cfg(feature = "sim")]
 mod protocol;
+#[cfg(feature = "sim")]
+mod rows;
 #[cfg(all(feature = "sim", unix))]
 mod serve;
 #[cfg(feature = "sim")]
