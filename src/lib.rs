@@ -8,14 +8,16 @@
 //! - [`lpm`]: the collision core: layers, projections, exact sweeps.
 //! - [`guard`]: every motion passes it and comes out cleared or refused with numbers.
 //! - [`rig`]: named points instead of addresses; process image; drive.
-//! - [`gauge`]: from a sample to a value with uncertainty to a verdict.
+//! - [`gauge`]: readings with their uncertainty.
+//! - [`instrument`]: acts on the measuring line, and what was read.
+//! - [`dut`]: a kind of device is one folder: recipe, calibration, procedure, verdict.
 //! - [`station`]: the sequence: feed, clamp, test, sort; parts and trouble.
 //! - [`cycle`]: one turn of the rig, top to bottom.
 //! - [`history`]: SQLite; [`quality`]: statistics that stay right.
 //! - [`report`]: print, spreadsheet, process card, charts.
 //! - [`inquiry`]: what may be asked of the history, answered alike everywhere.
 //! - [`view`]: what a screen may know; [`hmi`]: the page, its events and orders.
-//! - [`config`]: files to settings, with the line of every mistake.
+//! - [`form`]: what a configuration file may hold; [`config`]: files to settings, with the line of every mistake.
 //! - [`cli`]: one file per command; the only place that names the simulator.
 
 pub mod bus;
@@ -23,11 +25,14 @@ pub mod cli;
 pub mod config;
 pub mod cycle;
 pub mod dcon;
+pub mod dut;
+pub mod form;
 pub mod gauge;
 pub mod guard;
 pub mod history;
 pub mod hmi;
 pub mod inquiry;
+pub mod instrument;
 pub mod lpm;
 pub mod quality;
 pub mod report;

@@ -10,7 +10,7 @@ mod compare;
 use super::rig::RigArgs;
 use super::run::{self, Controls, Orders, RunArgs};
 use crate::config::{Plant, load_recipe};
-use crate::gauge::Calibration;
+use crate::dut::em_relay::Calibration;
 use crate::history::{CalibrationRecord, Identity, Store, snapshot_hash};
 use anyhow::{Context, bail};
 pub(super) use compare::K_OF_ALL;

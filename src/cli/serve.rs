@@ -28,7 +28,7 @@ use super::run::{self, Controls, Orders, RunArgs, assemble};
 use super::run::{Stage, lines::simulated};
 use super::{DONE, RIG_TROUBLE, STOPPED, lot};
 use crate::config::{Plant, load_recipe, recipe_names};
-use crate::gauge::Recipe;
+use crate::dut::Recipe;
 use crate::history::{Decision, Identity, Store};
 use crate::hmi;
 use crate::station::packml::State;

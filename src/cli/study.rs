@@ -54,7 +54,7 @@ mod variant;
 mod verification;
 
 use crate::config::load_recipe;
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use fleet::Order;

@@ -4,9 +4,9 @@
 //! decided here but by the module that owns the setting, which answers with a [`Fault`].
 
 use super::error::ConfigError;
-use super::form::{Form, Key, Range};
 use super::nearest::nearest;
 use super::tree::{Node, Value};
+use crate::form::{Form, Key, Range};
 use crate::rig::fault::Fault;
 use std::path::PathBuf;
 

@@ -20,7 +20,6 @@ mod card;
 pub mod check;
 mod edit;
 pub mod error;
-pub mod form;
 pub mod keys;
 mod lot;
 pub mod nearest;

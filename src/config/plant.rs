@@ -2,12 +2,15 @@
 
 use super::check::File;
 use super::error::ConfigError;
-use super::form::Key;
 use super::keys;
 use super::lot::load_lot;
 use super::tree::{Node, NotToml, not_toml};
-use crate::gauge::settings::{AccuracySettings, CalibrationSettings, GoldenSet, ReferenceSettings};
-use crate::gauge::{Recipe, feasible};
+use crate::dut::Recipe;
+use crate::dut::em_relay::feasible;
+use crate::dut::em_relay::settings::{
+    AccuracySettings, CalibrationSettings, GoldenSet, ReferenceSettings,
+};
+use crate::form::Key;
 use crate::guard::{Actuator, Guard, GuardSettings};
 use crate::rig::fault::Fault;
 use crate::rig::settings::RigSettings;

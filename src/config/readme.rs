@@ -1,6 +1,6 @@
 //! The tables of `config/README.md`, written from [`keys`](super::keys) so that they cannot drift.
 
-use super::form::{Form, Key};
+use crate::form::{Form, Key};
 use std::fmt::Write;
 
 /// One table row for each key of a file, tables before what is in them.

@@ -3,7 +3,7 @@
 use super::check::File;
 use super::error::ConfigError;
 use super::keys;
-use crate::gauge::recipe::Recipe;
+use crate::dut::recipe::Recipe;
 use crate::rig::fault::Fault;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};

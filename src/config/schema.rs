@@ -1,6 +1,6 @@
 //! JSON schema (draft 2020-12) of a configuration file, from the same description that loading checks.
 
-use super::form::{Form, Key, Range};
+use crate::form::{Form, Key, Range};
 use serde_json::{Map, Value, json};
 
 /// The schema of a file with these keys.

@@ -1,8 +1,8 @@
 //! A recipe as a sheet to be filled in: every key with its unit and range, and the value it has.
 
-use super::form::{Form, Key, Range};
 use super::keys;
 use super::tree::{Node, Value};
+use crate::form::{Form, Key, Range};
 use serde::Serialize;
 use serde_json::json;
 

@@ -8,7 +8,7 @@ use super::check::File;
 use super::error::ConfigError;
 use super::keys;
 use super::recipes::parse_recipe;
-use crate::gauge::recipe::Recipe;
+use crate::dut::recipe::Recipe;
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::Wiring;
 use std::path::PathBuf;

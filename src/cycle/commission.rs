@@ -4,9 +4,9 @@
 use super::traffic::{Purpose, Traffic};
 use crate::bus::Pace;
 use crate::dcon::{Command, Common};
+use crate::dut::em_relay::reference;
 use crate::rig::commission::{Mismatch, judge, verification};
 use crate::rig::wiring::{ModuleId, Wiring};
-use crate::station::reference;
 use crate::station::trouble::Alarm;
 use std::collections::BTreeMap;
 

@@ -1,6 +1,6 @@
 //! What a run leaves for the history.
 
-use crate::gauge::Calibration;
+use crate::dut::em_relay::Calibration;
 use crate::station::annunciator::Standing;
 use crate::station::gates::Uses;
 use crate::station::inside::Inside;

@@ -1,7 +1,7 @@
 //! The view of the machine, made from station, image and outputs; and orders in words for the station.
 
 use super::Cycle;
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::guard::{Actuator, Position};
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::Station;

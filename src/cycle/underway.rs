@@ -1,7 +1,7 @@
 //! A measuring job under way: its transactions, and the lost writes that it waits for.
 
+use crate::instrument::act::JobDone;
 use crate::rig::wiring::ModuleId;
-use crate::station::act::JobDone;
 use crate::units::RigTime;
 
 /// Done when its last transaction is.

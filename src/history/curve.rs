@@ -8,7 +8,7 @@
 //!    of the steps since the last number, the first one since 0.
 //!
 //! So a sample takes 2 to 12 bytes (gaps below nine hours, changes below 2^47 steps), some 4 in a test of the
-//! default recipe; a part takes at most 12 kB, since no more than [`MOST`](crate::station::trace::MOST)
+//! default recipe; a part takes at most 12 kB, since no more than [`MOST`](crate::instrument::trace::MOST)
 //! looks of a test are kept.
 
 use super::Moment;
@@ -183,7 +183,7 @@ impl Archive {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::station::trace::MOST;
+    use crate::instrument::trace::MOST;
 
     /// Bytes of a sample at the most: a gap below 2^35 us and a change of less than 2^47 steps.
     const WORST: usize = 5 + 7;

@@ -11,9 +11,9 @@
 //! temperature.
 
 use super::Curve;
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
+use crate::instrument::trace::Signal;
 use crate::rig::point::AnalogOut;
-use crate::station::trace::Signal;
 
 /// Copper 5 K from the reference (2 %), tolerance of the supply and a poll of the board.
 const DOUBT: f64 = 0.03;

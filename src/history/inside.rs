@@ -3,7 +3,7 @@
 use super::Store;
 use super::error::{Doing, Result};
 use super::store::source;
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::station::inside::Inside;
 use rusqlite::{OptionalExtension, Transaction, params};
 

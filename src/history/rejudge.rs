@@ -11,9 +11,11 @@
 
 use super::evidence::{above, at_least};
 use super::{Curve, Part};
-use crate::gauge::coil::to_reference;
-use crate::gauge::verdict::{Reason, Side, failed_with, judge, of_part};
-use crate::gauge::{Bin, Budget, Judgement, Parameter, Reading, Recipe, Verdict};
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::coil::to_reference;
+use crate::dut::verdict::{Reason, Side, failed_with, judge, of_part};
+use crate::dut::{Bin, Judgement, Recipe, Verdict};
+use crate::gauge::{Budget, Reading};
 use crate::units::Celsius;
 
 /// What the stored values refer to: of the recipe that was in force.

@@ -1,7 +1,7 @@
 //! What another recipe would have said of the parts of a lot. The history stays as it is.
 
 use super::{InquiryError, Result, checks};
-use crate::gauge::Recipe;
+use crate::dut::Recipe;
 use crate::history::{Archive, Basis, Filter, Part, rejudged};
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -7,8 +7,8 @@
 
 use super::page::{Format, page};
 use super::words::{Language, figure};
-use crate::gauge::Parameter;
-use crate::gauge::recipe::{Clamp, Recipe, Rule};
+use crate::dut::em_relay::Parameter;
+use crate::dut::recipe::{Clamp, Recipe, Rule};
 use maud::{Markup, html};
 use serde::Deserialize;
 use std::collections::BTreeMap;

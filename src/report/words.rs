@@ -1,6 +1,6 @@
 //! The words of the pages in both languages, in one place.
 
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use serde::Deserialize;
 
 /// Language of a page.

@@ -1,7 +1,7 @@
 //! Names of places, bins, motions and steps in Chinese, for texts of alarms; the words are those of the screen.
 
 use super::moves::Move;
-use crate::gauge::Bin;
+use crate::dut::Bin;
 use crate::rig::axis::AxisStation;
 
 /// A place of the ledger, a bin, an actuator or a step; anything else, a module of the plant say, keeps its name.

@@ -6,14 +6,14 @@
 //! Jaws close while the pusher goes back; probes rise only after it is back. The fingers close while the
 //! probes go down, the jaws open only when both are done, and the part changes hands when z is up.
 
-use super::act::{Doing, JobDone};
 use super::moves::Move;
 use super::sort::Sort;
-use super::test::{Bench, Progress, Stop, Test};
 use super::trouble::Alarm;
 use super::turn::Turn;
 use super::wants::{Judged, Left};
-use crate::gauge::verdict::Bin;
+use crate::dut::em_relay::measure::{Bench, Progress, Stop, Test};
+use crate::dut::verdict::Bin;
+use crate::instrument::act::{Doing, JobDone};
 use crate::rig::point::DigitalIn;
 use crate::station::ledger::Kind;
 use crate::units::{RigTime, Second};

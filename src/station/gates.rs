@@ -12,13 +12,13 @@
 //!   mean over the last parts is beyond its limit.
 
 use super::Station;
-use super::golden;
 use super::ledger::Kind;
 use super::trouble::Alarm;
 use super::wants::{Checked, Judged, Wants};
-use crate::gauge::probe_contact::Trend;
-use crate::gauge::settings::GoldenPart;
-use crate::gauge::verdict::Verdict;
+use crate::dut::em_relay::golden;
+use crate::dut::em_relay::probe_contact::Trend;
+use crate::dut::em_relay::settings::GoldenPart;
+use crate::dut::verdict::Verdict;
 use crate::units::{Ohm, RigTime, Span};
 use serde::Deserialize;
 use std::collections::VecDeque;

@@ -7,7 +7,7 @@
 use super::ledger::Ledger;
 use super::recovery::Seen;
 use super::trouble::Alarm;
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 
 /// Places that held a part when they were written down last.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

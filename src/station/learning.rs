@@ -1,17 +1,18 @@
 //! What the station learns before and during a lot: factors from the references, lags from golden parts,
 //! and from every good part where the next fine ramp goes.
 
-use super::act::Runner;
+use super::Station;
 use super::gates::Told;
 use super::ledger::Kind;
-use super::test::bench::UNTAUGHT_FINE_V;
 use super::trouble::Alarm;
 use super::wants::{Judged, Wants};
-use super::{Station, golden, reference};
-use crate::gauge::Calibration;
-use crate::gauge::calibration::Lags;
-use crate::gauge::settings::GoldenPart;
-use crate::gauge::verdict::Verdict;
+use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::calibration::Lags;
+use crate::dut::em_relay::measure::bench::UNTAUGHT_FINE_V;
+use crate::dut::em_relay::settings::GoldenPart;
+use crate::dut::em_relay::{golden, reference};
+use crate::dut::verdict::Verdict;
+use crate::instrument::act::Runner;
 use crate::units::RigTime;
 use std::collections::VecDeque;
 use std::sync::Arc;

@@ -18,7 +18,6 @@
 //! ([`Plan::stays`] is false) an alarm that would need one ends the run, too. The station resets and starts a lot by
 //! itself; between lots ([`Plan::between_lots`]) it does nothing unless it is asked.
 
-pub mod act;
 pub mod annunciator;
 mod asked;
 pub mod catalogue;
@@ -26,7 +25,6 @@ mod chinese;
 pub mod clamp;
 pub mod feed;
 pub mod gates;
-pub mod golden;
 pub mod inside;
 mod lamps;
 mod learning;
@@ -39,30 +37,28 @@ mod panel;
 mod patience;
 mod produce;
 pub mod recovery;
-pub mod reference;
 mod safety;
 pub mod sort;
 mod states;
-pub mod supply;
-pub mod test;
-pub mod trace;
 pub mod trouble;
 pub mod turn;
 pub mod wants;
 mod watch;
 
-use crate::gauge::lag::LagLaw;
-use crate::gauge::settings::GoldenPart;
+use crate::dut::em_relay::golden::GoldenRun;
+use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::measure::bench::untaught;
+use crate::dut::em_relay::settings::GoldenPart;
 use crate::guard::{PartPlaces, Situation};
+use crate::instrument::act::Runner;
 use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
 use crate::units::RigTime;
-use act::Runner;
 use annunciator::Annunciator;
 use clamp::Clamp;
 use feed::Feed;
 use gates::{Gates, LotSettings, Uses};
-use golden::GoldenRun;
 use inside::Inside;
 use lamps::Lamps;
 use ledger::Ledger;
@@ -74,8 +70,6 @@ use patience::Patience;
 use recovery::Recovery;
 use sort::Sort;
 use std::collections::VecDeque;
-use test::Bench;
-use test::bench::untaught;
 use turn::Turn;
 use wants::{Inputs, Wants};
 
@@ -390,4 +384,4 @@ impl Station {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

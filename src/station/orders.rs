@@ -74,7 +74,7 @@ impl Refused {
 
 /// Motions that may be jogged, with their names in orders.
 pub const JOGS: [(&str, Move); 15] = {
-    use crate::gauge::verdict::Bin;
+    use crate::dut::verdict::Bin;
     use crate::rig::axis::AxisStation;
     [
         ("escapement_release", Move::EscapementRelease),

@@ -1,13 +1,13 @@
 //! Feed, nest and sorter, once each per turn, and when they are through.
 
 use super::Station;
-use super::act::JobDone;
 use super::clamp::{Beside, Clamp};
 use super::feed::Feed;
 use super::mechanism::DEBOUNCE;
 use super::packml::Mode;
 use super::sort::Sort;
 use super::wants::{Inputs, Wants};
+use crate::instrument::act::JobDone;
 use crate::units::RigTime;
 
 impl Station {

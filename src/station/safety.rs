@@ -11,7 +11,7 @@ use super::packml::{self, Command, On, State};
 use super::sort::{self, Sort};
 use super::trouble::Alarm;
 use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
-use crate::gauge::verdict::{Bin, Verdict};
+use crate::dut::verdict::{Bin, Verdict};
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};

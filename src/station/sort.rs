@@ -14,7 +14,7 @@ use super::moves::Move;
 use super::trouble::Alarm;
 use super::turn::Turn;
 use super::wants::Landed;
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::rig::axis::{AxisStation, AxisTable};
 use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};

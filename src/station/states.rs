@@ -1,6 +1,5 @@
 //! What each state of the outer machine does in a turn, and how it is left.
 
-use super::act::{Doing, Runner};
 use super::catalogue::Stops;
 use super::moves::Move;
 use super::packml::{self, Command, On, State};
@@ -9,8 +8,10 @@ use super::safety::{FIRST_SCAN, safety_was_read};
 use super::sort::Sort;
 use super::trouble::Alarm;
 use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
-use super::{Start, Station, reference};
-use crate::gauge::verdict::Bin;
+use super::{Start, Station};
+use crate::dut::em_relay::reference;
+use crate::dut::verdict::Bin;
+use crate::instrument::act::{Doing, Runner};
 use crate::units::{RigTime, Span};
 
 /// Outputs that did not confirm their safe value in this time are told, and the abort goes on without.

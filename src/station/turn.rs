@@ -5,7 +5,7 @@ use super::mechanism::{Mechanism, SENSOR_AGE};
 use super::moves::Move;
 use super::trouble::Alarm;
 use super::wants::Wants;
-use crate::gauge::settings::GoldenPart;
+use crate::dut::em_relay::settings::GoldenPart;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use crate::units::RigTime;

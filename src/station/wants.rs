@@ -1,14 +1,14 @@
 //! What one turn of the station asks for, and what it is told.
 
-use super::act::{Job, JobDone};
 use super::ledger::Part;
 use super::moves::Move;
 use super::orders::{Order, Refused};
 use super::packml::Command;
-use super::test::{Bench, Findings};
 use super::trouble::Alarm;
-use crate::gauge::verdict::{Bin, Judgement, Verdict};
-use crate::gauge::{Calibration, Parameter};
+use crate::dut::em_relay::measure::{Bench, Findings};
+use crate::dut::em_relay::{Calibration, Parameter};
+use crate::dut::verdict::{Bin, Judgement, Verdict};
+use crate::instrument::act::{Job, JobDone};
 use crate::rig::image::Image;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::units::{RigTime, Second};

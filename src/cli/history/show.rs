@@ -3,7 +3,7 @@
 use super::output::{Format, FormatArgs, Output, Table, figure, text};
 use super::{lots, orders};
 use crate::history::{Archive, Curve, Filter, LotSummary, Part};
-use crate::station::trace::Signal;
+use crate::instrument::trace::Signal;
 use clap::Args;
 use std::io::Write;
 

@@ -3,7 +3,7 @@
 use super::RunArgs;
 use crate::cli::calibrate;
 use crate::config::{ConfigError, Plant, load_recipe};
-use crate::gauge::Recipe;
+use crate::dut::Recipe;
 use crate::history::{
     AlarmRecord, Archive, HistoryError, Identity, LOT_NAME, LotRecord, LotStanding, LotState,
     Store, is_lot_name,

@@ -7,7 +7,7 @@
 
 use super::{Controls, Orders, RunArgs, run_with};
 use crate::cli::rig::RigArgs;
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use crate::history::{Archive, Filter};
 use crate::quality::average_range::average_and_range;
 use crate::quality::gauge_rr::{GaugeRr, Reading, anova};

@@ -2,7 +2,7 @@
 
 use super::Controls;
 use super::recorder::Setup;
-use crate::gauge::Calibration;
+use crate::dut::em_relay::Calibration;
 use crate::history::{AlarmLeft, Store};
 use crate::station::gates::Uses;
 use crate::station::inside::Inside;

@@ -15,8 +15,9 @@ use super::{Controls, RunArgs, rows, screen, summary};
 use crate::bus::LineLog;
 use crate::config::Plant;
 use crate::cycle::{Event, Profile};
-use crate::gauge::verdict::{Bin, Verdict};
-use crate::gauge::{Calibration, Recipe};
+use crate::dut::Recipe;
+use crate::dut::em_relay::Calibration;
+use crate::dut::verdict::{Bin, Verdict};
 use crate::history::{
     CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
     snapshot_hash,

@@ -1,12 +1,12 @@
 //! A judged part as rows of the history and as a JSON object.
 
 use super::recorder::Setup;
-use crate::gauge::Parameter;
-use crate::gauge::verdict::{Judgement, Verdict};
+use crate::dut::em_relay::Parameter;
+use crate::dut::verdict::{Judgement, Verdict};
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
+use crate::instrument::trace::Trace;
 use crate::rig::point::{AnalogIn, Counter};
 use crate::station::ledger::Kind;
-use crate::station::trace::Trace;
 use crate::station::wants::Judged;
 use crate::units::RigTime;
 use serde_json::{Map, Value, json};

@@ -1,7 +1,7 @@
 //! Results and bins at the end of a run, for a person.
 
 use super::counts::Counts;
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use crate::quality::Spread;
 use crate::station::wants::Judged;
 use serde_json::Value;

@@ -10,7 +10,7 @@ use super::fleet::Order;
 use super::lot::Lot;
 use super::output::Report;
 use super::parameters;
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 
 /// Greatest rms error that is good enough, in the unit of [`unit`].
 pub const fn allowed(parameter: Parameter) -> f64 {

@@ -11,7 +11,7 @@ use super::lot::Lot;
 use super::method::{self, BAUDS, Paid};
 use super::output::Report;
 use super::variant::{Change, Variant};
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use crate::quality::Spread;
 
 const STAGES: &[&str] = &["nc_contact", "timed_operate", "timed_release"];

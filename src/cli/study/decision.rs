@@ -17,7 +17,7 @@ use super::method::{self, BAUDS};
 use super::output::Report;
 use super::variant::Variant;
 use crate::config::load_recipe;
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use crate::quality::Spread;
 use crate::quality::spread::median;
 use std::ops::RangeInclusive;

@@ -5,7 +5,7 @@
 //! without an uncertainty covers nothing.
 
 use super::lot::{Lot, Part, Reading};
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use crate::quality::Spread;
 use crate::quality::spread::median;
 

@@ -9,7 +9,7 @@ use super::figure::{Bar, Figure};
 use super::fleet::{Folder, Order};
 use super::output::Report;
 use crate::cli::history::{GenerateArgs, generate};
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use crate::history::{Archive, Filter, Identity, LotRecord, Moment, Row, Store};
 use crate::inquiry::figures::figures;
 use crate::quality::Ordered;

@@ -4,7 +4,7 @@
 //! object per line. They are joined by `seq`. Keys that are not known are passed over, so that either file
 //! may grow.
 
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use anyhow::{Context, bail};
 use serde::Deserialize;
 use serde_json::Value;

@@ -10,7 +10,7 @@ use super::fleet::Order;
 use super::lot::{Lot, Part};
 use super::output::Report;
 use super::variant::Variant;
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use crate::quality::Spread;
 
 /// Baud rates that are compared; bars are those of the first.

@@ -1,6 +1,6 @@
 //! Keys of `card.toml`.
 
-use crate::config::form::{Form, Key, from_to, key, whole};
+use crate::form::{Form, Key, from_to, key, whole};
 
 const QUOTA: &[Key] = &[
     key(

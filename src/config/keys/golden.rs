@@ -1,6 +1,6 @@
 //! Keys of `golden.toml`.
 
-use crate::config::form::{Form, Key, above_zero, from_to, key};
+use crate::form::{Form, Key, above_zero, from_to, key};
 
 const VOLTAGE: &[Key] = &[
     key("value", above_zero(20.0, "V"), "gauge", "certified value"),

@@ -1,6 +1,6 @@
 //! Keys of `lot.toml`.
 
-use crate::config::form::{Form, Key, above_zero, optional, whole};
+use crate::form::{Form, Key, above_zero, optional, whole};
 
 const GOLDEN_CHECK: &[Key] = &[
     optional(

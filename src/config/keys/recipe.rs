@@ -1,8 +1,8 @@
 //! Keys of `recipes/NAME.toml`.
 
-use crate::config::form::{Form, Key, Range, above_zero, from_to, key, optional, whole};
-use crate::gauge::Strategy;
-use crate::gauge::sampling::Polarities;
+use crate::dut::em_relay::Strategy;
+use crate::dut::em_relay::sampling::Polarities;
+use crate::form::{Form, Key, Range, above_zero, from_to, key, optional, whole};
 
 const LENGTH: Range = Range {
     unit: "mm",

@@ -4,7 +4,7 @@ mod measuring;
 mod modules;
 mod points;
 
-use crate::config::form::{Form, Key, key};
+use crate::form::{Form, Key, key};
 use crate::rig::axis::Bin;
 use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Temperature};
 use measuring::{ACCURACY, CALIBRATION, REFERENCE};

@@ -2,7 +2,7 @@
 
 use super::super::*;
 use crate::config::load_recipe;
-use crate::gauge::{Bin, Recipe, Verdict};
+use crate::dut::{Bin, Recipe, Verdict};
 use std::path::Path;
 
 fn recipe() -> Recipe {

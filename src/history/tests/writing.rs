@@ -1,7 +1,7 @@
 //! What the writer keeps, and what it refuses.
 
 use super::*;
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::station::inside::Inside;
 
 #[test]

@@ -1,8 +1,8 @@
 //! What measurements lean on: dates, uncertainties, golden parts.
 
 use super::*;
-use crate::gauge::Calibration;
-use crate::gauge::calibration::{Factor, InputLine, OutputLine};
+use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::calibration::{Factor, InputLine, OutputLine};
 use crate::history::{
     CalibrationRecord, GoldenCheckRecord, Identity, LotRecord, MeasurementRecord, PartRecord, Row,
     Store, snapshot_hash,

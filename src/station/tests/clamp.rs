@@ -1,10 +1,10 @@
 //! The nest takes a part, has it tested and hands it to the gripper, never letting it loose in between.
 
 use super::{Shop, bench};
-use crate::gauge::verdict::{Bin, Verdict};
+use crate::dut::verdict::{Bin, Verdict};
+use crate::instrument::act::{Job, JobDone};
 use crate::rig::axis::AxisStation;
 use crate::rig::point::{DigitalIn, DigitalOut};
-use crate::station::act::{Job, JobDone};
 use crate::station::clamp::{Beside, Clamp};
 use crate::station::moves::Move;
 use crate::station::sort::Sort;

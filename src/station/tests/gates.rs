@@ -2,16 +2,16 @@
 
 use super::instruments::golden_parts;
 use super::machine::{Machine, Specimen};
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::golden::check;
+use crate::dut::em_relay::measure::Findings;
+use crate::dut::em_relay::settings::GoldenPart;
 use crate::gauge::budget::{Budget, Reading};
-use crate::gauge::settings::GoldenPart;
 use crate::rig::sample::Sample;
 use crate::station::gates::{CheckSettings, LotSettings, Uses, WearSettings};
-use crate::station::golden::check;
 use crate::station::ledger::Kind;
 use crate::station::orders::Order;
 use crate::station::packml::{Command, State};
-use crate::station::test::Findings;
 use crate::station::wants::Ending;
 
 const BAD: Specimen = Specimen::OpenCoil;

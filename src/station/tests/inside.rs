@@ -1,7 +1,7 @@
 //! What a run before left inside is where it was, or farther on, or told.
 
 use super::Shop;
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::rig::point::DigitalIn;
 use crate::station::inside::Inside;
 use crate::station::ledger::Ledger;

@@ -1,12 +1,12 @@
 //! Recipe, golden parts and instruments that err by nothing.
 
 use super::RIG;
-use crate::gauge::Calibration;
-use crate::gauge::calibration::{Factor, InputLine, Lag, Lags, OutputLine};
-use crate::gauge::lag::LagLaw;
-use crate::gauge::recipe::Recipe;
-use crate::gauge::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
-use crate::station::test::Bench;
+use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::calibration::{Factor, InputLine, Lag, Lags, OutputLine};
+use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
+use crate::dut::recipe::Recipe;
 use serde::Deserialize;
 use std::sync::Arc;
 

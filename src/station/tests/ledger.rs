@@ -1,6 +1,6 @@
 //! Every part is in exactly one place, and the places add up.
 
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::station::ledger::{Kind, Ledger};
 use crate::units::RigTime;
 

@@ -3,11 +3,11 @@
 use super::instruments::golden_parts;
 use super::shop::mechanism;
 use super::{Shop, bench};
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
+use crate::instrument::act::{Job, JobDone, Read};
 use crate::rig::axis::AxisStation;
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogIn, Counter, DigitalIn, DigitalOut};
-use crate::station::act::{Job, JobDone, Read};
 use crate::station::gates::{LotSettings, Uses};
 use crate::station::inside::Inside;
 use crate::station::moves::Move;

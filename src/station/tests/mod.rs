@@ -1,12 +1,10 @@
 //! Facts about the sequence, on the default rig with sensors set by hand.
 #![allow(clippy::unwrap_used)]
 
-mod act;
 mod annunciator;
 mod clamp;
 mod feed;
 mod gates;
-mod golden;
 mod graph;
 mod inside;
 mod instruments;
@@ -21,11 +19,10 @@ mod run;
 mod safety;
 mod shop;
 mod sort;
-mod supply;
 mod trouble;
 
-pub(in crate::station) use instruments::{bench, golden_parts};
-pub(in crate::station) use shop::Shop;
+pub(crate) use instruments::{bench, golden_parts};
+pub(crate) use shop::Shop;
 
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::Wiring;

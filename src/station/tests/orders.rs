@@ -1,7 +1,7 @@
 //! Orders at a screen: what is taken, what is refused and why, and what a person can bring about.
 
 use super::machine::{Machine, Specimen};
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, Mode, State};

@@ -1,7 +1,7 @@
 //! Homing in an order that can be proved clear; parts are where they are seen.
 
 use super::Shop;
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::ledger::{Kind, Ledger};

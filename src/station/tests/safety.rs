@@ -1,7 +1,7 @@
 //! Trouble makes everything safe, ends the run and voids the part inside.
 
 use super::machine::{Machine, Specimen};
-use crate::gauge::verdict::{Bin, Verdict};
+use crate::dut::verdict::{Bin, Verdict};
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Wants};

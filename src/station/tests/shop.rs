@@ -2,7 +2,7 @@
 
 use super::wiring;
 use crate::dcon::{Bits, Command, Reply};
-use crate::gauge::settings::GoldenPart;
+use crate::dut::em_relay::settings::GoldenPart;
 use crate::guard::{Actuator, PartSize};
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};

@@ -1,7 +1,7 @@
 //! A part is let go only over its bin, when it is recorded, and its beam must see it: once.
 
 use super::Shop;
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
 use crate::station::moves::Move;

@@ -1,6 +1,6 @@
 //! The catalogue knows every alarm, in both languages, once.
 
-use crate::gauge::Bin;
+use crate::dut::Bin;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
 use crate::station::catalogue::{entry, every};

@@ -1,11 +1,13 @@
 //! Values of made-up parts: the lot of the default world, one draw after the other.
 
-use crate::gauge::recipe::Recipe;
-use crate::gauge::verdict::{judge, of_part};
-use crate::gauge::{Budget, Judgement, Parameter, Reading, Verdict};
+use crate::dut::em_relay::Parameter;
+use crate::dut::recipe::Recipe;
+use crate::dut::verdict::{judge, of_part};
+use crate::dut::{Judgement, Verdict};
+use crate::gauge::{Budget, Reading};
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
+use crate::instrument::trace::Signal;
 use crate::rig::point::AnalogIn;
-use crate::station::trace::Signal;
 
 /// Share of parts with a defect, as in the default world.
 const DEFECTS: f64 = 0.04;
@@ -143,7 +145,7 @@ impl Scatter {
     fn record(
         &self,
         value: f64,
-        limit: crate::gauge::recipe::Limit,
+        limit: crate::dut::recipe::Limit,
         judgement: Judgement,
         attempt: u32,
     ) -> MeasurementRecord {

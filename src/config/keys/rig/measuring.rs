@@ -1,6 +1,6 @@
 //! References, promised accuracies, calibration.
 
-use crate::config::form::{Form, Key, above_zero, from_to, key, optional};
+use crate::form::{Form, Key, above_zero, from_to, key, optional};
 
 pub(super) const REFERENCE: &[Key] = &[
     key(

@@ -1,6 +1,6 @@
 //! Lines, modules, and what holds on every line.
 
-use crate::config::form::{Form, Key, above_zero, from_to, key, optional, whole};
+use crate::form::{Form, Key, above_zero, from_to, key, optional, whole};
 use crate::rig::model::Model;
 
 pub(super) const LINE: &[Key] = &[

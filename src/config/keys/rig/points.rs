@@ -1,6 +1,6 @@
 //! Points, actuators, the axis and the bins.
 
-use crate::config::form::{Form, Key, above_zero, from_to, key, whole};
+use crate::form::{Form, Key, above_zero, from_to, key, whole};
 
 pub(super) const ANALOG_IN: &[Key] = &[
     key("module", Form::Text, "rig", "name of the module"),

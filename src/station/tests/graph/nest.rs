@@ -1,13 +1,13 @@
 //! The nest: eight states, ten inputs.
 
 use super::{Graph, SEEN, show, truths};
-use crate::gauge::verdict::Bin;
+use crate::dut::em_relay::measure::{Bench, Test};
+use crate::dut::verdict::Bin;
+use crate::instrument::act::JobDone;
 use crate::rig::point::DigitalIn;
-use crate::station::act::JobDone;
 use crate::station::clamp::{Beside, Clamp};
 use crate::station::ledger::Ledger;
 use crate::station::sort::Sort;
-use crate::station::test::{Bench, Test};
 use crate::station::tests::{Shop, bench};
 
 const STATES: [&str; 9] = [

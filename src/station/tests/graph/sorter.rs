@@ -1,7 +1,7 @@
 //! The sorter: nine states, eleven inputs, and what falls.
 
 use super::{Graph, SEEN, Seen, show, truths};
-use crate::gauge::verdict::Bin;
+use crate::dut::verdict::Bin;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
 use crate::station::ledger::Ledger;

@@ -4,7 +4,7 @@
 use super::Case;
 use super::bodies::owners;
 use crate::cli::study::bins::bin_of;
-use crate::gauge::Parameter;
+use crate::dut::em_relay::Parameter;
 use crate::history::Part;
 use rigsim::truth::PartTruth;
 use serde_json::Value;

@@ -1,0 +1,234 @@
+//! What the stages of a test have found: results, the bytes they came from, and why it ended early.
+
+use super::ramp::Expected;
+use super::search::Search;
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::threshold::Direction;
+use crate::dut::verdict::{Bin, Judgement, Reason};
+use crate::gauge::budget::Reading;
+use crate::gauge::repetition::mean;
+use crate::instrument::act::Spent;
+use crate::instrument::trace::Trace;
+use crate::rig::sample::{CountSample, Origin, Sample};
+use crate::units::{Celsius, Ohm, Span, Volt};
+use std::collections::BTreeMap;
+
+/// What a result was made from: line, module, channel and raw text lead back to the bytes.
+pub trait Evidence {
+    /// Where it came from.
+    fn origin(&self) -> &Origin;
+}
+
+impl Evidence for Sample {
+    fn origin(&self) -> &Origin {
+        &self.origin
+    }
+}
+
+impl Evidence for CountSample {
+    fn origin(&self) -> &Origin {
+        &self.origin
+    }
+}
+
+/// Why a test ends before its last stage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Stop {
+    /// The part is bad.
+    Fail(Reason),
+    /// It cannot be judged.
+    Void(String),
+    /// The rig was in trouble: what it has said of the part so far, good or bad, proves nothing.
+    Trouble(String),
+}
+
+/// A ramp as it was seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ramp {
+    /// What the part had shown when the coarse ramp was read, its indication among it.
+    pub coarse: Shown,
+    /// Indicated voltage of the fine ramp.
+    pub fine: Option<Volt>,
+}
+
+impl Ramp {
+    /// A fine ramp that no coarse one has placed.
+    pub fn fine_only(seen: Volt) -> Self {
+        Self {
+            coarse: Shown::NOTHING,
+            fine: Some(seen),
+        }
+    }
+}
+
+/// Results so far.
+#[derive(Debug, Clone, Default)]
+pub struct Findings {
+    readings: Vec<(Parameter, Reading)>,
+    evidence: Vec<(Parameter, Origin)>,
+    stop: Option<Stop>,
+    /// What was seen, sample by sample.
+    pub trace: Trace,
+    /// Where the time went.
+    pub spent: Spent,
+    /// Force contacts of the coil in series, once it was measured.
+    pub probe_contact: Option<Ohm>,
+    /// Temperature of the magazine track when the test began.
+    pub track: Option<Celsius>,
+    /// Terminal voltage of the contact drop without current.
+    pub drop_zero: Option<Volt>,
+    /// NC drops of the closures read so far, free of offset.
+    pub nc_drops: Vec<Volt>,
+    /// Where the ramp under way began.
+    pub ramp_start: Option<Volt>,
+    /// Length of the ramp under way.
+    pub ramp_span: Option<Volt>,
+    /// Both counters were read behind an ARM whose window nothing has opened since, and the supply is at nominal.
+    pub counted: bool,
+    /// No contact moves at nominal voltage, and which; the coil, which may be the cause, is still to be measured.
+    pub unmoved: Option<&'static str>,
+    /// The armature is still operated from the stage before, at the instant that stage has marked.
+    pub operated: bool,
+    /// The drive went off in the stage before, at the instant it has marked or earlier.
+    pub released: bool,
+    /// Coil free, supply where the next part begins: nothing is left for the last stage but to see it.
+    pub rested: bool,
+    /// How long after that mark a ramp goes on that nobody waits for.
+    pub still_ramping: Span,
+    /// Ramp mode and ARM are set, and nothing has moved since.
+    pub armed: bool,
+    /// The search by levels under way.
+    pub search: Option<Search>,
+    /// Limits that were proven without a value.
+    pub proven: Vec<(Parameter, Judgement)>,
+    /// Rig time by what it was spent on.
+    pub stages: BTreeMap<&'static str, Span>,
+    /// Longest time of the ramp under way.
+    pub ramp_takes: Span,
+    /// Where the next fine operate ramp looks for its event.
+    pub expected_operate: Option<Expected>,
+    /// The same for release.
+    pub expected_release: Option<Expected>,
+    /// Operate ramps.
+    pub operate: Option<Ramp>,
+    /// Release ramps.
+    pub release: Option<Ramp>,
+}
+
+impl Findings {
+    /// Where the next fine ramp of this direction looks for its event.
+    pub fn expected(&mut self, direction: Direction) -> &mut Option<Expected> {
+        match direction {
+            Direction::Rising => &mut self.expected_operate,
+            Direction::Falling => &mut self.expected_release,
+        }
+    }
+
+    /// Books the time of a stage.
+    pub fn took(&mut self, what: &'static str, time: Span) {
+        *self.stages.entry(what).or_default() += time;
+    }
+
+    /// Adds one result of a stage with the replies it was made from.
+    pub fn found<'a, S: Evidence + 'a>(
+        &mut self,
+        parameter: Parameter,
+        reading: Reading,
+        samples: impl IntoIterator<Item = &'a S>,
+    ) {
+        self.readings.push((parameter, reading));
+        self.evidence.extend(
+            samples
+                .into_iter()
+                .map(|sample| (parameter, sample.origin().clone())),
+        );
+    }
+
+    /// Takes back the results of a parameter, which a later reading of more closures replaces.
+    pub fn forget(&mut self, parameter: Parameter) {
+        self.readings.retain(|(known, _)| *known != parameter);
+    }
+
+    /// Each result of a parameter, in the order they came.
+    pub fn each(&self, parameter: Parameter) -> impl Iterator<Item = &Reading> {
+        self.readings
+            .iter()
+            .filter(move |(known, _)| *known == parameter)
+            .map(|(_, reading)| reading)
+    }
+
+    /// Result of a parameter: the mean of its repetitions, which lie apart as far as the part scatters.
+    pub fn result(&self, parameter: Parameter) -> Option<Reading> {
+        let repetitions: Vec<Reading> = self.each(parameter).cloned().collect();
+        mean(&repetitions, parameter.spoken_of())
+    }
+
+    /// What the part has shown when its coarse ramp has just indicated so many volts.
+    pub fn shown(&self, indicated: Volt, direction: Direction) -> Shown {
+        let value = |parameter| {
+            self.result(parameter)
+                .map_or(f64::NAN, |reading| reading.value)
+        };
+        Shown {
+            indicated,
+            operate: match direction {
+                Direction::Rising => indicated,
+                Direction::Falling => self
+                    .operate
+                    .map_or(Volt(f64::NAN), |ramp| ramp.coarse.indicated),
+            },
+            operate_ms: value(Parameter::OperateTime),
+            release_ms: value(Parameter::ReleaseTime),
+            coil_ohm: value(Parameter::CoilResistance),
+        }
+    }
+
+    /// How often a parameter was measured.
+    pub fn attempts(&self, parameter: Parameter) -> usize {
+        self.each(parameter).count()
+    }
+
+    /// Replies behind a parameter, in the order they came.
+    pub fn evidence(&self, parameter: Parameter) -> impl Iterator<Item = &Origin> {
+        self.evidence
+            .iter()
+            .filter(move |(known, _)| *known == parameter)
+            .map(|(_, e)| e)
+    }
+
+    /// Ends the test early; the first cause stays.
+    pub fn stop(&mut self, why: Stop) {
+        self.stop.get_or_insert(why);
+    }
+
+    /// Ends the test early because the part is bad.
+    pub fn fail(&mut self, text: &str, bin: Bin) {
+        self.stop(Stop::Fail(Reason {
+            text: text.to_string(),
+            bin,
+        }));
+    }
+
+    /// Ends the test early because it cannot be judged.
+    pub fn void(&mut self, why: impl Into<String>) {
+        self.stop(Stop::Void(why.into()));
+    }
+
+    /// Ends the test early because the rig is in trouble, whatever the part has ended it by before.
+    pub fn trouble(&mut self, why: String) {
+        if !matches!(self.stop, Some(Stop::Trouble(_))) {
+            self.stop = Some(Stop::Trouble(why));
+        }
+    }
+
+    /// True once the test has ended early.
+    pub fn stopped(&self) -> bool {
+        self.stop.is_some()
+    }
+
+    /// Why it ended early.
+    pub fn why_stopped(&self) -> Option<&Stop> {
+        self.stop.as_ref()
+    }
+}

@@ -1,0 +1,304 @@
+//! The test of one part: the order of stages, and what each leaves behind.
+//!
+//! ```text
+//! kelvin -> NC contact -> timed operate + NO contact -> timed release + NC contact -> coil
+//!        -> operate coarse -> release coarse -> operate fine -> release fine -> off -> verdict
+//! ```
+//! Each release follows on the operation before it, so that a part operates three times and not five.
+//! The times come first: a relay that is late on a step is late on a ramp, and what its times and its coil tell of
+//! that ([`crate::dut::em_relay::lag`]) places the fine ramps. A contact that does not move at nominal voltage is so found
+//! before any ramp; the coil is still measured, since it may be the cause.
+//! What needs no waiting (arming, counters, selections) is done while something else settles or converts;
+//! a mark therefore outlives the stage that set it, and so does the last reading of the counters.
+//! The board takes the source off by itself, 2 ms ahead of a change of drive, selection or direction;
+//! whoever makes such a change allows for it ([`INTERLOCK`]).
+//!
+//! How a threshold is found is the recipe's ([`crate::dut::em_relay::strategy`]): the line above is that of
+//! `coarse_fine`, a [`search`] takes the place of the ramps.
+//!
+//! A stage that finds the part unfit for the rest (open coil, contact that does not move) says why
+//! and the test goes straight to `off`. Results inside the guard band are measured again by the slow
+//! strategy: the same stage `slow_repeats` times, averaged. What is then still conditional fails.
+
+pub mod bench;
+mod coil;
+mod contact;
+pub mod findings;
+mod indication;
+mod kelvin;
+mod operate;
+mod operate_fine;
+mod pace;
+pub mod ramp;
+mod release;
+pub mod search;
+mod stage;
+mod timing;
+
+use super::supply::Supply;
+use crate::dut::em_relay::Parameter;
+use crate::dut::verdict::{Judgement, Verdict, failed_with, judge, of_part};
+use crate::instrument::act::{Act, Doing, JobDone, Runner};
+use crate::rig::image::Image;
+use crate::rig::point::DigitalOut;
+use crate::rig::sample::CountSample;
+use crate::units::{RigTime, Span};
+pub use bench::Bench;
+pub use findings::{Evidence, Findings, Ramp, Stop};
+pub use stage::Stage;
+use stage::{acts, order};
+use std::collections::VecDeque;
+
+/// Release, bounce and the swing of the armature are over after this long without drive.
+const OFF: Span = Span::ms(12);
+/// A change of drive, selection or direction comes so late while the source is on.
+const INTERLOCK: Span = Span::ms(2);
+
+/// Stages of the slow strategy in the order of the test.
+const SLOW: [Stage; 5] = [
+    Stage::TimedOperate,
+    Stage::TimedRelease,
+    Stage::Coil,
+    Stage::OperateFine(0),
+    Stage::ReleaseFine(0),
+];
+
+/// A fine ramp that was placed anew takes 0.3 s, also on its way back.
+const CUT_OFF: Span = Span::ms(400);
+
+/// What the test wants from its surroundings.
+#[derive(Debug)]
+pub enum Progress {
+    /// As the runner of the present stage says.
+    Doing(Doing),
+    /// The part is judged.
+    Judged,
+}
+
+/// A test under way.
+#[derive(Debug)]
+pub struct Test {
+    bench: Bench,
+    supply: Supply,
+    stages: VecDeque<Stage>,
+    stage: Stage,
+    runner: Runner,
+    slow_done: bool,
+    gates: Option<[CountSample; 2]>,
+    began: RigTime,
+    /// Tests of this part so far, this one included.
+    number: u8,
+    /// What has been found so far.
+    pub findings: Findings,
+}
+
+impl Test {
+    /// Begins with the Kelvin check; the probes are up.
+    pub fn begin(bench: Bench, now: RigTime) -> Self {
+        let mut supply = Supply::new(&bench.calibration);
+        let mut findings = Findings::default();
+        let runner = Runner::new(acts(Stage::Kelvin, &bench, &mut supply, &mut findings), now);
+        Self {
+            stages: order(&bench),
+            bench,
+            supply,
+            began: now,
+            number: 1,
+            stage: Stage::Kelvin,
+            runner,
+            slow_done: false,
+            gates: None,
+            findings,
+        }
+    }
+
+    /// The same as another test of a part that was tested just now: a ramp that was cut off may still run.
+    pub fn another(mut self, number: u8) -> Self {
+        self.number = number;
+        self.findings.still_ramping = CUT_OFF;
+        self
+    }
+
+    /// Tests of this part so far, this one included.
+    pub fn number(&self) -> u8 {
+        self.number
+    }
+
+    /// Stage under way, for screens.
+    pub fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// Goes on as far as it can.
+    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
+        let mut done = done;
+        loop {
+            match self.runner.step(now, done.take(), image) {
+                Doing::Done => {}
+                Doing::Trouble(why) => {
+                    let seen = std::mem::take(&mut self.runner.readings.trace);
+                    self.findings.trace.append(seen);
+                    self.findings.trouble(why);
+                    if self.stage == Stage::Off {
+                        return Progress::Judged;
+                    }
+                    self.enter(Stage::Off, now);
+                    self.stages.clear();
+                    continue;
+                }
+                other @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
+                    return Progress::Doing(other);
+                }
+            }
+            self.conclude(now);
+            if self.stages.front() == Some(&Stage::Off) {
+                self.add_closure();
+            }
+            if self.stages.front() == Some(&Stage::Off) {
+                self.add_slow_repeats();
+            }
+            let Some(stage) = self.stages.pop_front() else {
+                return Progress::Judged;
+            };
+            self.enter(stage, now);
+        }
+    }
+
+    fn enter(&mut self, stage: Stage, now: RigTime) {
+        self.stage = stage;
+        self.findings.rested &= stage == Stage::Off;
+        let acts = acts(stage, &self.bench, &mut self.supply, &mut self.findings);
+        self.runner = Runner::after(acts, now, &self.runner, self.gates.clone());
+    }
+
+    /// Draws the conclusions of the stage that has just ended.
+    fn conclude(&mut self, now: RigTime) {
+        self.findings.spent.add(self.runner.spent());
+        self.findings
+            .took(self.stage.measures(), now.since(self.began));
+        self.began = now;
+        let mut readings = std::mem::take(&mut self.runner.readings);
+        let seen = std::mem::take(&mut readings.trace);
+        self.findings.trace.append(seen);
+        self.gates = readings.gates.last().cloned().or(self.gates.take());
+        let (bench, findings) = (&self.bench, &mut self.findings);
+        let again = match self.stage {
+            Stage::Kelvin => kelvin::conclude(bench, &readings, findings),
+            Stage::NcContact => contact::conclude_nc(bench, &readings, findings),
+            Stage::Coil => coil::conclude(bench, &readings, findings),
+            Stage::Search(direction) => search::conclude(bench, &readings, findings, direction),
+            Stage::OperateCoarse => operate::conclude_coarse(bench, &readings, findings),
+            Stage::OperateFine(attempt) => {
+                operate_fine::conclude(bench, &readings, findings, attempt)
+            }
+            Stage::TimedOperate => timing::conclude_operate(bench, &readings, findings),
+            Stage::TimedRelease => timing::conclude_release(bench, &readings, findings),
+            Stage::ReleaseCoarse => release::conclude_coarse(bench, &readings, findings),
+            Stage::ReleaseFine(attempt) => {
+                release::conclude_fine(bench, &readings, findings, attempt)
+            }
+            Stage::Off => coil::conclude_off(&readings, findings),
+        };
+        if findings.stopped() && self.stage != Stage::Off {
+            self.stages = VecDeque::from([Stage::Off]);
+        } else if let Some(stage) = again {
+            if matches!(self.stage, Stage::Search(_)) {
+                // The ramp that the search has placed is the one that was to come anyway.
+                self.stages.retain(|waiting| {
+                    stage.is_fine().is_none() || waiting.is_fine() != stage.is_fine()
+                });
+            }
+            self.stages.push_front(stage);
+        }
+    }
+
+    /// Another timed closure of both contacts, while the recipe asks for one.
+    fn add_closure(&mut self) {
+        let (findings, recipe) = (&self.findings, &self.bench.recipe);
+        let sampling = recipe.test.strategy.contact;
+        let closures = findings.attempts(Parameter::ContactResistanceNo) as u64;
+        if self.slow_done || findings.stopped() || closures >= sampling.closures.into() {
+            return;
+        }
+        let clear = |parameter| contact::is_clear(&self.bench, findings, parameter);
+        if sampling.stops_early
+            && clear(Parameter::ContactResistanceNo)
+            && clear(Parameter::ContactResistanceNc)
+        {
+            return;
+        }
+        self.stages.push_front(Stage::TimedRelease);
+        self.stages.push_front(Stage::TimedOperate);
+    }
+
+    /// Repeats the stages whose results lie inside the guard band (of a thorough test: all), once per test.
+    fn add_slow_repeats(&mut self) {
+        if self.slow_done || self.findings.stopped() {
+            return;
+        }
+        self.slow_done = true;
+        let doubtful = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
+        let again: Vec<Stage> = self
+            .judgements()
+            .iter()
+            .filter(|(_, judgement)| self.bench.thorough || doubtful(judgement))
+            .map(|(parameter, _)| Stage::of(*parameter))
+            .collect();
+        // In the order of the test: a fine release ramp right after the timed operation would start from
+        // another flux than the one its lag was learned from.
+        for _ in 0..self.bench.recipe.decision.slow_repeats {
+            let round = SLOW.iter().rev().filter(|stage| again.contains(stage));
+            round.for_each(|stage| self.stages.push_front(*stage));
+        }
+    }
+
+    /// Each result against its limit.
+    pub fn judgements(&self) -> Vec<(Parameter, Judgement)> {
+        let recipe = &self.bench.recipe;
+        let one = |parameter: &Parameter| {
+            let reading = self.findings.result(*parameter)?;
+            Some((
+                *parameter,
+                judge(
+                    &reading,
+                    &recipe.limits.of(*parameter),
+                    recipe.decision.rule,
+                ),
+            ))
+        };
+        let proven = self.findings.proven.iter().copied();
+        let measured = Parameter::ALL.iter().filter_map(one);
+        let unmeasured =
+            |(parameter, _): &(Parameter, Judgement)| self.findings.attempts(*parameter) == 0;
+        measured.chain(proven.filter(unmeasured)).collect()
+    }
+
+    /// Verdict of the part. A proven failure outweighs whatever ended the test early, but for trouble of the rig.
+    pub fn verdict(&self) -> Verdict {
+        let judged = self.judgements();
+        let Some(stop) = self.findings.why_stopped() else {
+            return of_part(&judged);
+        };
+        let failed: Vec<(Parameter, Judgement)> = judged
+            .into_iter()
+            .filter(|(_, judgement)| matches!(judgement, Judgement::Fail(_)))
+            .collect();
+        match (stop, of_part(&failed)) {
+            (Stop::Trouble(why), _) => Verdict::Void(vec![why.clone()]),
+            (Stop::Fail(reason), Verdict::Fail(reasons)) => failed_with(reason, reasons),
+            (Stop::Fail(reason), Verdict::Pass | Verdict::Void(_)) => {
+                Verdict::Fail(vec![reason.clone()])
+            }
+            (Stop::Void(_), Verdict::Fail(reasons)) => Verdict::Fail(reasons),
+            (Stop::Void(why), Verdict::Pass | Verdict::Void(_)) => Verdict::Void(vec![why.clone()]),
+        }
+    }
+}
+
+/// One write of the interface board.
+fn board(outputs: &[(DigitalOut, bool)]) -> Act {
+    Act::Board(outputs.to_vec())
+}
+
+#[cfg(test)]
+mod tests;

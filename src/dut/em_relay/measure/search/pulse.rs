@@ -1,0 +1,34 @@
+//! Go / no-go: one step to the limit, less what the level, the probes and the temperature may be off. A contact that
+//! changes proves the limit kept; one that does not proves nothing, and ramps measure it.
+
+use super::{Next, parameter};
+use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
+use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::threshold::Direction;
+use crate::units::{Celsius, Volt};
+
+/// A step picks up so much below the quasi-static threshold, of its level: the armature swings over.
+const KINDER: f64 = 0.0035;
+
+/// Level of the pulse; the expected threshold where the recipe sets no limit.
+pub(super) fn level(bench: &Bench, direction: Direction, part: Celsius) -> Volt {
+    let (recipe, sign) = (&bench.recipe, direction.sign());
+    let limit = recipe.limits.of(parameter(direction));
+    let (limit, expected) = match direction {
+        Direction::Rising => (limit.high, recipe.test.expected_operate_v),
+        Direction::Falling => (limit.low, recipe.test.expected_release_v),
+    };
+    let limit = limit.unwrap_or(expected);
+    let reference = bench.reference_temperature();
+    let at_part = limit / to_reference(part, reference);
+    let u = at_part * bench.accuracy.part_minus_track_k * relative_per_kelvin(part)
+        + at_part * (bench.calibration.level.gain.u + bench.contact_share())
+        + bench.calibration.level.offset_v.u
+        + bench.operation_v();
+    Volt(at_part - sign * (2.0 * u + at_part * KINDER))
+}
+
+/// One bit.
+pub(super) fn next(changed: bool) -> Next {
+    if changed { Next::Proven } else { Next::Ramp }
+}

@@ -1,0 +1,137 @@
+//! The stages of a test and their order.
+
+use super::{
+    Bench, Findings, coil, contact, kelvin, operate, operate_fine, release, search, timing,
+};
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::supply::Supply;
+use crate::dut::em_relay::threshold::Direction;
+use crate::instrument::act::Act;
+use std::collections::VecDeque;
+
+/// One stage of the test.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Five Kelvin bits and the resting contacts.
+    Kelvin,
+    /// NC contact at rest, both polarities.
+    NcContact,
+    /// Coil resistance at the pre-bias.
+    Coil,
+    /// One trial of a search by levels, towards operate or release.
+    Search(Direction),
+    /// Coarse ramp from the pre-bias.
+    OperateCoarse,
+    /// Fine ramp from just below the coarse estimate; the number of the attempt widens it.
+    OperateFine(u8),
+    /// Step to nominal with both gates, and NO contact on that closure.
+    TimedOperate,
+    /// Drive off with both gates, and NC contact on that closure.
+    TimedRelease,
+    /// Coarse falling ramp from a sealed armature.
+    ReleaseCoarse,
+    /// Fine falling ramp; the number of the attempt widens it.
+    ReleaseFine(u8),
+    /// Everything off, coil current gone.
+    Off,
+}
+
+/// Stages of a good part: what comes before the strategies, what they ask for, what comes after.
+pub(super) fn order(bench: &Bench) -> VecDeque<Stage> {
+    let (operate, release) = (
+        bench.strategy(Parameter::OperateVoltage),
+        bench.strategy(Parameter::ReleaseVoltage),
+    );
+    let mut stages = VecDeque::from([
+        Stage::NcContact,
+        Stage::TimedOperate,
+        Stage::TimedRelease,
+        Stage::Coil,
+    ]);
+    stages.push_back(match operate.ramps() {
+        true => Stage::OperateCoarse,
+        false => Stage::Search(Direction::Rising),
+    });
+    stages.push_back(match release.ramps() {
+        true => Stage::ReleaseCoarse,
+        false => Stage::Search(Direction::Falling),
+    });
+    stages.extend(operate.always_fine().then_some(Stage::OperateFine(0)));
+    stages.extend(release.always_fine().then_some(Stage::ReleaseFine(0)));
+    stages.push_back(Stage::Off);
+    stages
+}
+
+impl Stage {
+    /// The direction of a fine ramp.
+    pub(super) fn is_fine(self) -> Option<Direction> {
+        match self {
+            Self::OperateFine(_) => Some(Direction::Rising),
+            Self::ReleaseFine(_) => Some(Direction::Falling),
+            Self::Kelvin
+            | Self::NcContact
+            | Self::Coil
+            | Self::Search(_)
+            | Self::OperateCoarse
+            | Self::TimedOperate
+            | Self::TimedRelease
+            | Self::ReleaseCoarse
+            | Self::Off => None,
+        }
+    }
+
+    /// What its time is booked on.
+    pub fn measures(self) -> &'static str {
+        match self {
+            Self::Kelvin => "kelvin",
+            Self::NcContact => "nc_contact",
+            Self::Coil => "coil",
+            Self::OperateCoarse | Self::OperateFine(_) | Self::Search(Direction::Rising) => {
+                "operate"
+            }
+            Self::ReleaseCoarse | Self::ReleaseFine(_) | Self::Search(Direction::Falling) => {
+                "release"
+            }
+            Self::TimedOperate => "timed_operate",
+            Self::TimedRelease => "timed_release",
+            Self::Off => "off",
+        }
+    }
+
+    /// Stage that measures a parameter once more.
+    pub(super) fn of(parameter: Parameter) -> Self {
+        match parameter {
+            Parameter::CoilResistance => Stage::Coil,
+            Parameter::OperateVoltage => Stage::OperateFine(0),
+            Parameter::ReleaseVoltage => Stage::ReleaseFine(0),
+            Parameter::OperateTime | Parameter::OperateBounce | Parameter::ContactResistanceNo => {
+                Stage::TimedOperate
+            }
+            Parameter::ReleaseTime | Parameter::ReleaseBounce | Parameter::ContactResistanceNc => {
+                Stage::TimedRelease
+            }
+        }
+    }
+}
+
+/// What is done in a stage, written down before it begins.
+pub(super) fn acts(
+    stage: Stage,
+    bench: &Bench,
+    supply: &mut Supply,
+    findings: &mut Findings,
+) -> Vec<Act> {
+    match stage {
+        Stage::Kelvin => kelvin::acts(),
+        Stage::NcContact => contact::acts_nc(bench, supply, findings),
+        Stage::Coil => coil::acts(bench, supply, findings),
+        Stage::Search(direction) => search::acts(bench, supply, findings, direction),
+        Stage::OperateCoarse => operate::acts_coarse(bench, supply, findings),
+        Stage::OperateFine(_) => operate_fine::acts(bench, supply, findings),
+        Stage::TimedOperate => timing::acts_operate(bench, supply, findings),
+        Stage::TimedRelease => timing::acts_release(bench, supply, findings),
+        Stage::ReleaseCoarse => release::acts_coarse(bench, supply, findings),
+        Stage::ReleaseFine(_) => release::acts_fine(bench, supply, findings),
+        Stage::Off => coil::acts_off(bench, supply, findings),
+    }
+}

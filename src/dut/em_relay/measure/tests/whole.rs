@@ -1,0 +1,300 @@
+//! The acts of all stages against the rules of the interface board, and how a test ends early.
+
+use super::super::{Findings, Progress, Stage, Test, acts, order};
+use super::{at_23_c, bench};
+use crate::dut::em_relay::measure::ramp::Expected;
+use crate::dut::em_relay::supply::Supply;
+use crate::dut::em_relay::{Parameter, parameter};
+use crate::dut::verdict::{Bin, Reason, Verdict};
+use crate::gauge::budget::{Budget, Reading};
+use crate::instrument::act::{Act, Doing, Job, JobDone, Read};
+use crate::rig::point::{AnalogOut, DigitalOut};
+use crate::rig::sample::Sample;
+use crate::station::tests::Shop;
+use crate::units::{Span, Volt};
+
+/// Acts of every stage in the order of a good part.
+fn all_acts() -> Vec<(Stage, Vec<Act>)> {
+    let bench = bench();
+    let mut supply = Supply::new(&bench.calibration);
+    let mut findings = at_23_c();
+    std::iter::once(Stage::Kelvin)
+        .chain(order(&bench))
+        .map(|stage| {
+            findings.expected_operate = Some(Expected::new(Volt(7.88), 0.01));
+            findings.expected_release = Some(Expected::new(Volt(2.35), 0.01));
+            findings.operated = matches!(
+                stage,
+                Stage::ReleaseCoarse | Stage::ReleaseFine(_) | Stage::TimedRelease
+            );
+            findings.released = matches!(stage, Stage::OperateFine(_) | Stage::TimedOperate);
+            (stage, acts(stage, &bench, &mut supply, &mut findings))
+        })
+        .collect()
+}
+
+#[test]
+fn a_test_leaves_source_arm_and_drive_off() {
+    let all: Vec<Act> = all_acts().into_iter().flat_map(|(_, acts)| acts).collect();
+    for point in [
+        DigitalOut::SourceOn,
+        DigitalOut::SourceReverse,
+        DigitalOut::CoilDrive,
+        DigitalOut::Arm,
+    ] {
+        let mut writes = all.iter().filter_map(|act| match act {
+            Act::Board(outputs) => outputs.iter().find(|(known, _)| *known == point),
+            _ => None,
+        });
+        assert_eq!(writes.next_back(), Some(&(point, false)));
+    }
+}
+
+/// How long a board write is followed by waiting, up to the next act that looks at something.
+fn waits_after(acts: &[Act]) -> Span {
+    let mut waited = Span(0);
+    for act in acts {
+        match act {
+            Act::Wait(span)
+            | Act::WaitSinceMark(span)
+            | Act::RampSinceMark(span)
+            | Act::ConvertSinceMark(span) => waited += *span,
+            Act::Mark | Act::Board(_) | Act::Supply(_) | Act::CoilMask(_) => {}
+            Act::Read(Read::Drop | Read::Coil) | Act::Until { .. } => break,
+            Act::Read(_) => {}
+        }
+    }
+    waited
+}
+
+#[test]
+fn whoever_switches_under_a_live_source_waits_for_the_board_to_take_it_off_first() {
+    let watched = [
+        DigitalOut::CoilDrive,
+        DigitalOut::SelectNo,
+        DigitalOut::SourceReverse,
+    ];
+    let (mut live, mut seen) = (false, 0);
+    for (stage, acts) in all_acts() {
+        for (at, act) in acts.iter().enumerate() {
+            let Act::Board(outputs) = act else { continue };
+            let changes = outputs.iter().any(|(point, _)| watched.contains(point));
+            if changes && live && stage != Stage::TimedRelease && stage != Stage::Off {
+                assert!(waits_after(&acts[at..]) >= Span::ms(2), "{stage:?}");
+                seen += 1;
+            }
+            if let Some((_, on)) = outputs.iter().find(|(it, _)| *it == DigitalOut::SourceOn) {
+                live = *on;
+            }
+        }
+    }
+    assert!(seen > 2, "{seen}");
+}
+
+#[test]
+fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
+    // Between the word that takes the source off and the one that drops the drive lies at least one
+    // transaction, 3 ms at the highest baud rate: the source is off and the selection has changed by then.
+    let (_, acts) = all_acts()
+        .into_iter()
+        .find(|(stage, _)| *stage == Stage::TimedRelease)
+        .unwrap();
+    let boards: Vec<&Vec<(DigitalOut, bool)>> = acts
+        .iter()
+        .filter_map(|act| match act {
+            Act::Board(outputs) => Some(outputs),
+            _ => None,
+        })
+        .collect();
+    assert!(boards[0].contains(&(DigitalOut::SourceOn, false)));
+    assert!(boards[0].contains(&(DigitalOut::Arm, true)));
+    assert!(boards[1].contains(&(DigitalOut::CoilDrive, false)));
+    assert!(
+        !boards[0]
+            .iter()
+            .any(|(point, _)| *point == DigitalOut::CoilDrive)
+    );
+}
+
+#[test]
+fn between_two_events_the_counters_are_read_and_before_a_timed_one_both() {
+    let (mut one, mut both) = (false, false);
+    for (stage, acts) in all_acts() {
+        for act in acts {
+            match act {
+                Act::Read(Read::Gates) => (one, both) = (true, true),
+                Act::Read(Read::Gate) => one = true,
+                Act::Until { .. } => {
+                    let timed = matches!(stage, Stage::TimedOperate | Stage::TimedRelease);
+                    assert!(if timed { both } else { one }, "{stage:?}");
+                    (one, both) = (false, false);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn no_stage_of_a_part_changes_the_channel_mask() {
+    for (stage, acts) in all_acts() {
+        let masks = acts.iter().any(|act| matches!(act, Act::CoilMask(_)));
+        assert!(!masks, "{stage:?} would write an EEPROM");
+    }
+}
+
+#[test]
+fn every_supply_output_asked_for_is_one_that_it_can_give() {
+    for (stage, acts) in all_acts() {
+        for act in acts {
+            if let Act::Supply(outputs) = act {
+                for (point, volts) in outputs {
+                    let can = (0.0..=15.0).contains(&volts.0);
+                    assert!(can, "{stage:?}: {point} {volts}");
+                }
+            }
+        }
+    }
+}
+
+/// Steps a test through good answers up to a job, then lets that job fail.
+fn fails_at(job: &Job) -> Test {
+    let mut shop = Shop::at_rest();
+    shop.track(23.0);
+    let mut test = Test::begin(bench(), shop.now);
+    let mut done = None;
+    for _ in 0..200 {
+        match test.step(shop.now, done.take().as_ref(), &shop.image) {
+            Progress::Doing(Doing::Job(asked)) => {
+                shop.after(4);
+                let trouble = (asked == *job).then(|| "module answers ?AA".to_string());
+                done = Some(JobDone {
+                    at: shop.now,
+                    trouble,
+                });
+            }
+            Progress::Doing(Doing::Wait(until)) => {
+                shop.now = until;
+                shop.scan();
+            }
+            Progress::Doing(other) => panic!("{other:?}"),
+            Progress::Judged => return test,
+        }
+    }
+    panic!("the test does not end");
+}
+
+#[test]
+fn a_rig_in_trouble_has_proven_no_part_bad() {
+    let mut test = fails_at(&Job::Read(Read::Resets));
+    let mut findings = Findings::default();
+    findings.fail(
+        "operate_voltage_v high: above the coarse ramp",
+        Bin::Voltage,
+    );
+    test.findings = findings.clone();
+    assert_eq!(test.verdict().name(), "fail");
+    findings.trouble("module answers ?AA".into());
+    findings.trouble("and again".into());
+    test.findings = findings;
+    assert_eq!(
+        test.verdict(),
+        Verdict::Void(vec!["module answers ?AA".into()])
+    );
+}
+
+#[test]
+fn the_level_is_written_anew_after_a_test_that_ended_early() {
+    let bench = bench();
+    let writes = |ends: fn(&mut Findings)| {
+        let mut supply = Supply::new(&bench.calibration);
+        supply.step_to(Volt(bench.recipe.test.prebias_v));
+        let mut findings = Findings::default();
+        ends(&mut findings);
+        let acts = acts(Stage::Off, &bench, &mut supply, &mut findings);
+        let level = |act: &&Act| matches!(act, Act::Supply(to) if to.iter().any(|(it, _)| *it == AnalogOut::SupplyLevel));
+        acts.iter().filter(level).count()
+    };
+    assert_eq!(writes(|_| {}), 1, "which is none where it stands already");
+    assert_eq!(writes(|it| it.void("nothing came")), 2, "down and up");
+}
+
+#[test]
+fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
+    // No Kelvin bit is set, so the test goes from the pins straight to off.
+    let test = fails_at(&Job::Read(Read::Board));
+    let why = Verdict::Void(vec!["module answers ?AA".into()]);
+    assert_eq!(test.verdict(), why);
+    assert_eq!(test.verdict().bin(), Bin::Retest);
+    let restarted = fails_at(&Job::Read(Read::Resets));
+    assert_eq!(restarted.verdict().name(), "void");
+    assert_eq!(restarted.stage(), Stage::Off);
+}
+
+#[test]
+fn the_first_cause_of_an_early_end_stays() {
+    let mut findings = at_23_c();
+    findings.fail("coil open", Bin::Coil);
+    findings.void("coil current not gone after the test");
+    let mut test = Test::begin(bench(), Shop::at_rest().now);
+    test.findings = findings;
+    let reason = Reason {
+        text: "coil open".into(),
+        bin: Bin::Coil,
+    };
+    assert_eq!(test.verdict(), Verdict::Fail(vec![reason]));
+}
+
+fn measured(values: &[(Parameter, f64)]) -> Test {
+    let mut test = Test::begin(bench(), Shop::at_rest().now);
+    for (parameter, value) in values {
+        let reading = Reading {
+            value: *value,
+            budget: Budget::default().with("test", 0.005),
+        };
+        test.findings.found::<Sample>(*parameter, reading, []);
+    }
+    test
+}
+
+/// A good part.
+const GOOD: [(Parameter, f64); 9] = [
+    (Parameter::CoilResistance, 400.0),
+    (Parameter::OperateVoltage, 7.88),
+    (Parameter::ReleaseVoltage, 2.35),
+    (Parameter::OperateTime, 4.7),
+    (Parameter::ReleaseTime, 2.9),
+    (Parameter::OperateBounce, 0.6),
+    (Parameter::ReleaseBounce, 0.8),
+    (Parameter::ContactResistanceNo, 18.0),
+    (Parameter::ContactResistanceNc, 22.0),
+];
+
+#[test]
+fn a_part_passes_with_all_nine_results_and_is_void_without_one() {
+    assert_eq!(GOOD.len(), parameter::Parameter::ALL.len());
+    assert_eq!(measured(&GOOD).verdict(), Verdict::Pass);
+    for missing in 0..GOOD.len() {
+        let mut values = GOOD.to_vec();
+        let (parameter, _) = values.remove(missing);
+        let verdict = measured(&values).verdict();
+        let why = format!("{parameter} not measured");
+        assert_eq!(verdict, Verdict::Void(vec![why]));
+    }
+}
+
+#[test]
+fn only_results_inside_the_guard_band_are_measured_again_and_only_once() {
+    let slow = |value: f64| {
+        let mut values = GOOD;
+        values[1].1 = value;
+        let mut test = measured(&values);
+        test.stages.clear();
+        test.add_slow_repeats();
+        test.add_slow_repeats();
+        test.stages.into_iter().collect::<Vec<_>>()
+    };
+    assert_eq!(slow(8.9), []);
+    assert_eq!(slow(9.1), []);
+    assert_eq!(slow(8.995), [Stage::OperateFine(0); 3]);
+}

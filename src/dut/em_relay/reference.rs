@@ -1,0 +1,397 @@
+//! Calibration against the references on the interface board: 5.000 V, 400 ohm, 50 mOhm, 1.000 ms.
+//!
+//! Runs with an empty nest and the probes up (drive and source need the probe-up chain). What it finds:
+//! the coil converter's line, ohms per ratio on both current channels, milliohms per volt of drop, gate
+//! delay, gain and offset of the three supply outputs, and the slope of the fine ramp against the
+//! host's clock. The slope of the coarse ramp stays the maker's: it only places the fine one.
+
+use crate::dut::em_relay::calibration::{Calibration, Factor, InputLine, OutputLine};
+use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::timing::counts;
+use crate::gauge::budget::rectangular;
+use crate::instrument::act::{Act, CoilScan, Read, Readings};
+use crate::rig::point::AnalogOut::{SupplyCoarse, SupplyFine, SupplyLevel};
+use crate::rig::point::DigitalOut::{
+    Arm, CoilDrive, KelvinTest, RampMode, ReferenceCoil, ReferenceContact, SourceOn, SourceReverse,
+};
+use crate::rig::sample::{Quality, Sample};
+use crate::units::{Span, Volt};
+
+/// Channels 1, 5, 6 and 7 of the coil converter.
+pub const MASK: u8 = 0b1110_0010;
+const CHANNELS: usize = 4;
+/// Scans per level: averages 2.8 mV of one reading to 0.8 mV.
+const SCANS: usize = 12;
+/// Scans along the fine ramp.
+const RAMP_SCANS: usize = 44;
+/// Levels at the coil, volts: both within the fine channels with 400 ohm.
+const LOW_V: f64 = 1.5;
+const HIGH_V: f64 = 5.7;
+/// Only readings so far inside both ends of the fine ramp tell its slope.
+const SLOPE_MARGIN_V: f64 = 0.3;
+/// Drops read per polarity.
+const DROPS: usize = 8;
+/// Gate pulses: their fractions of a count add up, so one count of error is spread over all.
+const PULSES: u32 = 25;
+
+/// The acts, in the order [`conclude`] expects.
+pub fn acts(bench: &Bench) -> Vec<Act> {
+    let mut acts = vec![
+        Act::CoilMask(MASK),
+        all_off(),
+        Act::Supply(vec![
+            (SupplyLevel, Volt(0.0)),
+            (SupplyCoarse, Volt(0.0)),
+            (SupplyFine, Volt(0.0)),
+        ]),
+        Act::Wait(Span::ms(200) + bench.fresh(CHANNELS)),
+    ];
+    scans(bench, SCANS, &mut acts);
+    acts.push(Act::Board(vec![(ReferenceCoil, true), (CoilDrive, true)]));
+    let span = Volt(HIGH_V - LOW_V);
+    for step in [
+        vec![(SupplyLevel, Volt(LOW_V))],
+        vec![(SupplyLevel, Volt(HIGH_V))],
+        vec![(SupplyLevel, Volt(LOW_V)), (SupplyCoarse, span)],
+    ] {
+        acts.extend([
+            Act::Supply(step),
+            Act::Wait(Span::ms(60) + bench.fresh(CHANNELS)),
+        ]);
+        scans(bench, SCANS, &mut acts);
+    }
+    acts.extend([
+        Act::Supply(vec![(SupplyCoarse, Volt(0.0))]),
+        Act::Wait(Span::ms(100)),
+        Act::Supply(vec![(SupplyFine, span)]),
+        Act::Wait(Span::ms(100) + bench.fresh(CHANNELS)),
+    ]);
+    scans(bench, RAMP_SCANS, &mut acts);
+    acts.push(Act::Wait(Span::ms(1500)));
+    scans(bench, SCANS, &mut acts);
+    acts.extend([
+        Act::Supply(vec![(SupplyFine, Volt(0.0))]),
+        all_off(),
+        Act::Wait(Span::ms(5)),
+    ]);
+    contact(bench, &mut acts);
+    pulses(&mut acts);
+    acts.extend([
+        all_off(),
+        Act::CoilMask(bench.coil_mask()),
+        Act::Supply(vec![(SupplyLevel, Volt(bench.recipe.test.prebias_v))]),
+        Act::Wait(Span::ms(2000)),
+    ]);
+    acts
+}
+
+fn all_off() -> Act {
+    let off = [
+        CoilDrive,
+        SourceOn,
+        SourceReverse,
+        ReferenceCoil,
+        ReferenceContact,
+        Arm,
+        RampMode,
+        KelvinTest,
+    ];
+    Act::Board(off.map(|output| (output, false)).to_vec())
+}
+
+fn scans(bench: &Bench, n: usize, acts: &mut Vec<Act>) {
+    for _ in 0..n {
+        acts.extend([Act::Read(Read::Coil), Act::Wait(bench.round(CHANNELS))]);
+    }
+}
+
+fn contact(bench: &Bench, acts: &mut Vec<Act>) {
+    acts.extend([
+        Act::Board(vec![(ReferenceContact, true)]),
+        Act::Wait(Span::ms(10)),
+    ]);
+    for reverse in [false, true] {
+        acts.extend([
+            Act::Board(vec![(SourceReverse, reverse)]),
+            Act::Board(vec![(SourceOn, true)]),
+            Act::Wait(Span::ms(8) + bench.fresh(1)),
+        ]);
+        for _ in 0..DROPS {
+            acts.extend([Act::Read(Read::Drop), Act::Wait(bench.round(1))]);
+        }
+        acts.extend([Act::Board(vec![(SourceOn, false)]), Act::Wait(Span::ms(3))]);
+    }
+    acts.push(Act::Board(vec![(SourceReverse, false)]));
+}
+
+fn pulses(acts: &mut Vec<Act>) {
+    let pulse = [
+        Act::Board(vec![(Arm, true)]),
+        Act::Wait(Span::ms(2)),
+        Act::Board(vec![(Arm, false)]),
+    ];
+    // The first one closes a window that may still stand open from the switching before.
+    acts.extend(pulse.clone());
+    acts.push(Act::Read(Read::Gates));
+    for _ in 0..PULSES {
+        acts.extend(pulse.clone());
+    }
+    acts.push(Act::Read(Read::Gates));
+}
+
+/// Mean of one channel over scans, or which channel did not read.
+fn mean(
+    scans: &[CoilScan],
+    channel: fn(&CoilScan) -> &Option<Sample>,
+    name: &str,
+) -> Result<f64, String> {
+    let mut sum = 0.0;
+    for scan in scans {
+        match channel(scan) {
+            Some(sample)
+                if sample.quality == Quality::Good && sample.terminal_volts.is_finite() =>
+            {
+                sum += sample.terminal_volts;
+            }
+            Some(sample) => {
+                return Err(format!(
+                    "{name} reads {} ({:?})",
+                    sample.origin.raw, sample.quality
+                ));
+            }
+            None => return Err(format!("{name} is not enabled")),
+        }
+    }
+    if scans.is_empty() {
+        Err(format!("{name} was not read"))
+    } else {
+        Ok(sum / scans.len() as f64)
+    }
+}
+
+/// One level: terminal volts of voltage, fine current, wide current and reference.
+struct Level {
+    voltage: f64,
+    fine: f64,
+    wide: f64,
+    reference: f64,
+}
+
+fn level(scans: &[CoilScan]) -> Result<Level, String> {
+    Ok(Level {
+        voltage: mean(scans, |scan| &scan.voltage_fine, "coil voltage")?,
+        fine: mean(scans, |scan| &scan.current_fine, "coil current (fine)")?,
+        wide: mean(scans, |scan| &scan.current_wide, "coil current (wide)")?,
+        reference: mean(scans, |scan| &scan.reference, "reference voltage")?,
+    })
+}
+
+/// Draws the factors from what [`acts`] has read. `made_at_us`: microseconds since 1970 UTC.
+pub fn conclude(
+    bench: &Bench,
+    readings: &Readings,
+    made_at_us: i64,
+    valid_us: i64,
+    voltage_gain: f64,
+) -> Result<Calibration, String> {
+    let expected = 4 * SCANS + RAMP_SCANS + SCANS;
+    if readings.coil.len() != expected
+        || readings.drops.len() != 2 * DROPS
+        || readings.gates.len() != 2
+    {
+        return Err(format!(
+            "{} scans where {expected} were expected",
+            readings.coil.len()
+        ));
+    }
+    let part = |from: usize, n: usize| &readings.coil[from..from + n];
+    let zero = level(part(0, SCANS))?;
+    let low = level(part(SCANS, SCANS))?;
+    let high = level(part(2 * SCANS, SCANS))?;
+    let coarse = level(part(3 * SCANS, SCANS))?;
+    let fine = level(part(4 * SCANS + RAMP_SCANS, SCANS))?;
+    let u_read = bench.reading_u_v() / (SCANS as f64).sqrt();
+
+    let offset = (zero.voltage + zero.fine + zero.wide) / 3.0;
+    let reference = [&zero, &low, &high, &coarse, &fine]
+        .iter()
+        .map(|l| l.reference)
+        .sum::<f64>()
+        / 5.0;
+    let known = &bench.reference;
+    let coil_input = InputLine {
+        gain: Factor::new(
+            (reference - offset) / known.voltage_v,
+            (rectangular(known.voltage_tolerance_pct / 100.0)).hypot(u_read / known.voltage_v),
+        ),
+        offset_v: Factor::new(offset, u_read / 3f64.sqrt()),
+    };
+    check_gain(bench, &coil_input)?;
+
+    let volts = |terminal: f64| coil_input.correct(Volt(terminal)).0 / voltage_gain;
+    let ohm = |current: fn(&Level) -> f64| {
+        let ratio = (current(&high) - offset) / (high.voltage - offset);
+        let u = (u_read / (high.voltage - offset)).hypot(u_read / (current(&high) - offset));
+        let value = known.coil_ohm * ratio;
+        Factor::new(
+            value,
+            value * u.hypot(rectangular(known.coil_tolerance_pct / 100.0)),
+        )
+    };
+    let span = HIGH_V - LOW_V;
+    let gain = |to: &Level| {
+        let u = 2f64.sqrt() * u_read / voltage_gain / span;
+        Factor::new(
+            (volts(to.voltage) - volts(low.voltage)) / span,
+            u.hypot(coil_input.gain.u),
+        )
+    };
+    let level_gain = gain(&high);
+    let output = |gain: Factor| OutputLine {
+        gain,
+        offset_v: Factor::new(0.0, 0.0),
+    };
+    Ok(Calibration {
+        made_at_us,
+        due_at_us: made_at_us + valid_us,
+        simulated: false,
+        nominal_v: bench.recipe.part.nominal_v,
+        level: OutputLine {
+            gain: level_gain,
+            offset_v: Factor::new(
+                volts(low.voltage) - level_gain.value * LOW_V,
+                u_read / voltage_gain,
+            ),
+        },
+        coarse: output(gain(&coarse)),
+        fine: output(gain(&fine)),
+        coarse_v_per_s: Factor::new(
+            bench.nominal_v_per_s[0],
+            bench.nominal_v_per_s[0] * rectangular(bench.accuracy.ao_slope_pct / 100.0),
+        ),
+        fine_v_per_s: slope(
+            bench,
+            part(4 * SCANS, RAMP_SCANS),
+            &coil_input,
+            voltage_gain,
+        )?,
+        ohm_fine: ohm(|level| level.fine),
+        ohm_wide: ohm(|level| level.wide),
+        contact_mohm_per_v: contact_factor(bench, &readings.drops)?,
+        gate_delay_us: [
+            gate_delay(bench, readings, 0)?,
+            gate_delay(bench, readings, 1)?,
+        ],
+        coil_input,
+        lags: None,
+        probe_contact_ohm: 0.0,
+    })
+}
+
+/// A converter outside its promise by half is not calibrated away but reported.
+fn check_gain(bench: &Bench, line: &InputLine) -> Result<(), String> {
+    let promised = bench.accuracy.ai_gain_pct / 100.0;
+    let found = line.gain.value - 1.0;
+    if found.abs() > 1.5 * promised + 2.0 * line.gain.u {
+        return Err(format!(
+            "coil converter gain is off by {:.3} %, promised {:.3} %",
+            found * 100.0,
+            promised * 100.0
+        ));
+    }
+    Ok(())
+}
+
+/// Slope of the fine ramp by least squares against the arrival of the replies. Conversions lag the
+/// replies by a constant on average, which does not tilt the line.
+fn slope(
+    bench: &Bench,
+    scans: &[CoilScan],
+    line: &InputLine,
+    voltage_gain: f64,
+) -> Result<Factor, String> {
+    let points: Vec<(f64, f64)> = scans
+        .iter()
+        .filter_map(|scan| scan.voltage_fine.as_ref())
+        .filter(|sample| sample.quality == Quality::Good)
+        .map(|sample| {
+            (
+                sample.origin.at.0 as f64 / 1e6,
+                line.correct(Volt(sample.terminal_volts)).0 / voltage_gain,
+            )
+        })
+        .filter(|(_, volts)| (LOW_V + SLOPE_MARGIN_V..HIGH_V - SLOPE_MARGIN_V).contains(volts))
+        .collect();
+    if points.len() < 10 {
+        return Err(format!("only {} readings on the fine ramp", points.len()));
+    }
+    let n = points.len() as f64;
+    let (mt, mv) = (
+        points.iter().map(|p| p.0).sum::<f64>() / n,
+        points.iter().map(|p| p.1).sum::<f64>() / n,
+    );
+    let stt = points.iter().map(|p| (p.0 - mt).powi(2)).sum::<f64>();
+    let stv = points.iter().map(|p| (p.0 - mt) * (p.1 - mv)).sum::<f64>();
+    let value = stv / stt;
+    let rest = points
+        .iter()
+        .map(|p| (p.1 - mv - value * (p.0 - mt)).powi(2))
+        .sum::<f64>()
+        / (n - 2.0);
+    let u = (rest / stt).sqrt().hypot(value * line.gain.u);
+    let nominal = bench.nominal_v_per_s[1];
+    if !value.is_finite() || (value / nominal - 1.0).abs() > 0.02 {
+        return Err(format!(
+            "slope of the fine ramp is {value:.4} V/s where {nominal} V/s was expected"
+        ));
+    }
+    Ok(Factor::new(value, u))
+}
+
+fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, String> {
+    let mean = |samples: &[Sample]| -> Result<f64, String> {
+        let bad = samples
+            .iter()
+            .find(|s| s.quality != Quality::Good || !s.terminal_volts.is_finite());
+        if let Some(bad) = bad {
+            return Err(format!(
+                "drop of the reference contact reads {} ({:?})",
+                bad.origin.raw, bad.quality
+            ));
+        }
+        Ok(samples
+            .iter()
+            .map(|sample| sample.terminal_volts)
+            .sum::<f64>()
+            / samples.len() as f64)
+    };
+    let drop = (mean(&drops[..DROPS])? - mean(&drops[DROPS..])?) / 2.0;
+    let expected = bench.reference.contact_mohm * 1e-3 * 50.0;
+    if !(0.8 * expected..1.2 * expected).contains(&drop) {
+        return Err(format!(
+            "reference contact drops {drop:.3} V where {expected:.3} V was expected"
+        ));
+    }
+    let value = bench.reference.contact_mohm / drop;
+    let u_drop = bench.reading_u_v() / ((2 * DROPS) as f64).sqrt() / drop;
+    Ok(Factor::new(
+        value,
+        value * u_drop.hypot(rectangular(bench.reference.contact_tolerance_pct / 100.0)),
+    ))
+}
+
+fn gate_delay(bench: &Bench, readings: &Readings, gate: usize) -> Result<Factor, String> {
+    let (Some(before), Some(after)) = (readings.gates.first(), readings.gates.last()) else {
+        return Err("gate counters not read".into());
+    };
+    let total = f64::from(counts(before[gate].count, after[gate].count));
+    let each_us = total / f64::from(PULSES) / bench.reference.counter_clock_hz * 1e6;
+    let delay = each_us - bench.reference.gate_pulse_ms * 1e3;
+    if delay.abs() > 5.0 * bench.accuracy.gate_delay_us {
+        return Err(format!(
+            "a pulse of 1.000 ms at gate {gate} counts {each_us:.1} us"
+        ));
+    }
+    let count_us = 1e6 / bench.reference.counter_clock_hz / 6f64.sqrt();
+    Ok(Factor::new(delay, count_us / f64::from(PULSES).sqrt()))
+}
