@@ -51,7 +51,7 @@ pub struct CalibrateArgs {
 /// Runs the command; the result is the exit status.
 pub fn run(config: &Path, db: &Path, args: &CalibrateArgs) -> anyhow::Result<i32> {
     let plant = Plant::load(config)?;
-    let nominal_v = load_recipe(config, &args.recipe)?.part.nominal_v;
+    let nominal_v = load_recipe(config, &args.recipe)?.nominal_v();
     if plant.golden.of_nominal(nominal_v).next().is_none() {
         bail!(
             "{}: found no golden part of {nominal_v} V, expected at least 3",

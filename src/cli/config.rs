@@ -104,17 +104,17 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
     let recipe = load_recipe(dir, name)?;
     plant.admit(&recipe)?;
     let file = dir.join("recipes").join(format!("{name}.toml"));
-    let golden = match plant.golden.of_nominal(recipe.part.nominal_v).count() {
+    let golden = match plant.golden.of_nominal(recipe.nominal_v()).count() {
         0 => "NO GOLDEN PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
         count => format!("{count} golden parts"),
     };
+    let all = recipe.kind().characteristics().len();
     let judged = recipe
-        .limits
-        .iter()
+        .limits()
         .filter(|(_, limit)| limit.low.is_some() || limit.high.is_some())
         .count();
     Ok(format!(
-        "{}: {judged} of 9 parameters judged, {golden}, sha256 {}",
+        "{}: {judged} of {all} parameters judged, {golden}, sha256 {}",
         file.display(),
         &recipe.hash[..12]
     ))

@@ -6,7 +6,6 @@ use super::keys;
 use super::lot::load_lot;
 use super::tree::{Node, NotToml, not_toml};
 use crate::dut::Recipe;
-use crate::dut::em_relay::feasible;
 use crate::dut::em_relay::settings::{
     AccuracySettings, CalibrationSettings, GoldenSet, ReferenceSettings,
 };
@@ -85,13 +84,15 @@ impl Plant {
     /// # Errors
     /// The first fault, with file, line, key and the module that stands against it.
     pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
-        feasible::check(recipe, &self.wiring, &self.accuracy).or_else(|fault| {
-            let path = self
-                .dir
-                .join("recipes")
-                .join(format!("{}.toml", recipe.name));
-            Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
-        })
+        recipe
+            .feasible(&self.wiring, &self.accuracy)
+            .or_else(|fault| {
+                let path = self
+                    .dir
+                    .join("recipes")
+                    .join(format!("{}.toml", recipe.name));
+                Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
+            })
     }
 }
 

@@ -1,10 +1,42 @@
 //! Devices under test: what a part is, how it is measured and judged.
 //!
-//! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Verdict`] and [`Judgement`], never a kind.
+//! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Characteristic`], [`Judgement`], [`Reason`]
+//! and [`Verdict`], never a kind.
 
+pub mod characteristic;
 pub mod em_relay;
+pub mod reason;
 pub mod recipe;
 pub mod verdict;
 
+pub use crate::gauge::Judgement;
+pub use characteristic::Characteristic;
+pub use reason::Reason;
 pub use recipe::Recipe;
-pub use verdict::{Bin, Judgement, Verdict};
+pub use verdict::{Bin, Verdict};
+
+/// A kind of device under test.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// Electromagnetic relay: coil, armature, changeover contact.
+    EmRelay,
+}
+
+impl Kind {
+    /// Every kind.
+    pub const ALL: [Self; 1] = [Self::EmRelay];
+
+    /// Its name in recipes.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::EmRelay => "em_relay",
+        }
+    }
+
+    /// What is measured on it, in the order of reports.
+    pub fn characteristics(self) -> Vec<Characteristic> {
+        match self {
+            Self::EmRelay => em_relay::Parameter::ALL.map(Characteristic::from).to_vec(),
+        }
+    }
+}

@@ -3,72 +3,37 @@
 //! One file of `config/recipes/` each. The text it was read from stays with it, with its SHA-256, so that
 //! a lot can store the very recipe it was judged by.
 
-use super::em_relay::parameter::Parameter;
-use super::em_relay::sampling::{CoilSampling, ContactSampling};
-use super::em_relay::strategy::Strategy;
+use super::Kind;
+use super::characteristic::Characteristic;
+use super::em_relay;
+use super::em_relay::recipe::RelayRecipe;
+use super::em_relay::settings::AccuracySettings;
+use crate::gauge::{Limit, Rule};
 use crate::rig::fault::Fault;
+use crate::rig::wiring::Wiring;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What kind of relay a recipe describes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Kind {
-    /// Electromagnetic relay: coil, armature, changeover contact.
-    EmRelay,
-}
-
-/// The part itself.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PartData {
-    /// Nominal coil voltage, V.
-    pub nominal_v: f64,
-    /// Nominal coil resistance at the reference temperature, ohm.
-    pub nominal_coil_ohm: f64,
-    /// Body along x, y, z as it lies in the nest, mm.
-    pub body_mm: [f64; 3],
-    /// Length of the pins below the body, mm.
-    pub pin_length_mm: f64,
-    /// Temperature that all results are converted to, degrees Celsius.
-    pub reference_temperature_c: f64,
-}
-
-/// Limits of one parameter in its own unit, inclusive; a missing side is not judged.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Limit {
-    /// Least good value.
-    pub low: Option<f64>,
-    /// Greatest good value.
-    pub high: Option<f64>,
-}
-
-/// The limits of a recipe by parameter.
+/// The limits of a recipe by characteristic.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Limits(BTreeMap<Parameter, Limit>);
+pub struct Limits(BTreeMap<Characteristic, Limit>);
 
 impl Limits {
-    /// The limits of a parameter; both sides open when the recipe names none.
-    pub fn of(&self, parameter: Parameter) -> Limit {
-        self.0.get(&parameter).copied().unwrap_or_default()
+    /// The limits of a characteristic; both sides open when the recipe names none.
+    pub fn of(&self, characteristic: impl Into<Characteristic>) -> Limit {
+        self.0
+            .get(&characteristic.into())
+            .copied()
+            .unwrap_or_default()
     }
 
-    /// Every parameter with its limits, in the order of [`Parameter::ALL`].
-    pub fn iter(&self) -> impl Iterator<Item = (Parameter, Limit)> + '_ {
-        Parameter::ALL
-            .into_iter()
-            .map(|parameter| (parameter, self.of(parameter)))
+    /// Every limit that the recipe names.
+    pub fn named(&self) -> impl Iterator<Item = (Characteristic, Limit)> + '_ {
+        self.0
+            .iter()
+            .map(|(characteristic, limit)| (*characteristic, *limit))
     }
-}
-
-/// How the uncertainty enters a decision.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Rule {
-    /// The limit is moved inwards by the expanded uncertainty (k = 2).
-    GuardBand,
-    /// The bare value is compared.
-    Simple,
 }
 
 /// How results become verdicts.
@@ -80,74 +45,21 @@ pub struct Decision {
     pub slow_repeats: u32,
 }
 
-/// Which channels measure the coil.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CoilChannels {
-    /// `coil_voltage_fine` and `coil_current_fine`.
-    Fine,
-    /// `coil_voltage_fine` and `coil_current`: a coil of low resistance draws too much for the fine current.
-    CoarseCurrent,
-}
-
-/// What takes the coil's energy at switching off.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Clamp {
-    /// 60 V zener: quick release.
-    Zener,
-    /// Plain diode: slow release.
-    Diode,
-}
-
-/// How the part is measured.
+/// What a kind of device adds to a recipe: the part and how it is measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct TestPlan {
-    /// Operations before the first measurement.
-    pub conditioning_operations: u32,
-    /// Coil resistance is measured here and the operate ramp starts here, V.
-    pub prebias_v: f64,
-    /// Height of the coarse ramp, V.
-    pub coarse_span_v: f64,
-    /// Which channels measure the coil.
-    pub coil_channels: CoilChannels,
-    /// Operate threshold expected of the lot, V.
-    pub expected_operate_v: f64,
-    /// Its standard deviation, V.
-    pub expected_operate_sd_v: f64,
-    /// Release threshold expected of the lot, V.
-    pub expected_release_v: f64,
-    /// Its standard deviation, V.
-    pub expected_release_sd_v: f64,
-    /// Coil suppression during the timed release.
-    pub clamp: Clamp,
-    /// How the thresholds are found.
-    #[serde(default)]
-    pub strategy: Strategies,
+#[serde(tag = "kind", rename_all = "snake_case")]
+pub enum DeviceRecipe {
+    /// Electromagnetic relay.
+    EmRelay(RelayRecipe),
 }
 
-/// A strategy per threshold, one that is not named is `coarse_fine`; and how often the rest is looked at.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Strategies {
-    /// Of the operate threshold.
-    pub operate_voltage_v: Strategy,
-    /// Of the release threshold.
-    pub release_voltage_v: Strategy,
-    /// Of the coil resistance.
-    pub coil: CoilSampling,
-    /// Of both contacts.
-    pub contact: ContactSampling,
-}
-
-impl Strategies {
-    /// Each threshold with its own.
-    pub fn each(&self) -> [(Parameter, Strategy); 2] {
-        [
-            (Parameter::OperateVoltage, self.operate_voltage_v),
-            (Parameter::ReleaseVoltage, self.release_voltage_v),
-        ]
-    }
+/// Outside of a part as it lies in the nest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Body along x, y, z, mm.
+    pub size_mm: [f64; 3],
+    /// Length of the pins below the body, mm.
+    pub pin_length_mm: f64,
 }
 
 /// A checked recipe with the text it came from.
@@ -155,20 +67,17 @@ impl Strategies {
 pub struct Recipe {
     /// Its name, equal to the name of its file.
     pub name: String,
-    /// Kind of relay.
-    pub kind: Kind,
     /// Title in English.
     pub title_en: String,
     /// Title in Chinese.
     pub title_zh: String,
-    /// The part.
-    pub part: PartData,
-    /// What is demanded of it.
+    /// What is demanded of the part.
     pub limits: Limits,
     /// How results become verdicts.
     pub decision: Decision,
-    /// How it is measured.
-    pub test: TestPlan,
+    /// The part and how it is measured, by kind.
+    #[serde(flatten)]
+    pub device: DeviceRecipe,
     /// The file, byte for byte.
     #[serde(default)]
     pub source_text: String,
@@ -178,40 +87,63 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// Refuses what contradicts itself: a limit whose low side is above its high side, a pre-bias at which the relay would already operate, an operate
-    /// threshold expected below release.
-    pub fn check(&self) -> Result<(), Fault> {
-        for (parameter, limit) in &self.limits.0 {
-            check_limit(&format!("limits.{parameter}"), *limit)?;
+    /// The kind of device it describes.
+    pub fn kind(&self) -> Kind {
+        match self.device {
+            DeviceRecipe::EmRelay(_) => Kind::EmRelay,
         }
-        let test = &self.test;
-        let ordered = [
-            (
-                "expected_release_v",
-                test.expected_release_v,
-                "expected_operate_v",
-                test.expected_operate_v,
-            ),
-            (
-                "prebias_v",
-                test.prebias_v,
-                "expected_operate_v",
-                test.expected_operate_v,
-            ),
-            (
-                "expected_operate_v",
-                test.expected_operate_v,
-                "nominal_v",
-                self.part.nominal_v,
-            ),
-        ];
-        for (low, low_v, high, high_v) in ordered {
-            if low_v >= high_v {
-                let expected = format!("less than {high}, {high_v} V");
-                return Err(Fault::new(format!("test.{low}"), low_v, expected));
+    }
+
+    /// The outside of the part.
+    pub fn body(&self) -> Body {
+        match &self.device {
+            DeviceRecipe::EmRelay(relay) => relay.part.body(),
+        }
+    }
+
+    /// Nominal voltage that a calibration and its reference parts must share with the recipe, V.
+    pub fn nominal_v(&self) -> f64 {
+        match &self.device {
+            DeviceRecipe::EmRelay(relay) => relay.part.nominal_v,
+        }
+    }
+
+    /// Temperature that results are converted to, degrees Celsius.
+    pub fn reference_temperature_c(&self) -> f64 {
+        match &self.device {
+            DeviceRecipe::EmRelay(relay) => relay.part.reference_temperature_c,
+        }
+    }
+
+    /// Every characteristic of the kind with its limit, in the order of reports.
+    pub fn limits(&self) -> impl Iterator<Item = (Characteristic, Limit)> + '_ {
+        let all = self.kind().characteristics().into_iter();
+        all.map(|characteristic| (characteristic, self.limits.of(characteristic)))
+    }
+
+    /// Checks that the recipe does not contradict itself.
+    ///
+    /// # Errors
+    /// Names the first key whose value contradicts another one: a low limit above its high one, or what the kind refuses.
+    pub fn check(&self) -> Result<(), Fault> {
+        for (characteristic, limit) in self.limits.named() {
+            check_limit(&format!("limits.{characteristic}"), limit)?;
+        }
+        match &self.device {
+            DeviceRecipe::EmRelay(relay) => relay.check(),
+        }
+    }
+
+    /// Checks that the modules of this rig can perform the recipe, and that their uncertainty leaves something to judge.
+    ///
+    /// # Errors
+    /// Names the first key that asks too much and the module that stands against it.
+    pub fn feasible(&self, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<(), Fault> {
+        match &self.device {
+            DeviceRecipe::EmRelay(relay) => {
+                em_relay::feasible::check(relay, &self.limits, wiring, accuracy)
             }
         }
-        Ok(())
     }
 }
 

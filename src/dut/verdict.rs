@@ -1,92 +1,14 @@
-//! Verdicts: a result against its limit with a guard band, a part from its results, a bin from both.
+//! The verdict of a part from its results, and its bin.
 //!
-//! Rule `guard_band` (ISO 14253-1, ILAC-G8 with w = U): pass when the value lies inside the limit by
-//! at least U, fail when it lies outside by at least U, conditional in between. Rule `simple` judges
-//! the bare value. A result that is not usable is void, never pass. Several failures go to the bin
-//! of the first in the order coil, contact, voltage, time.
+//! Several failures go to the bin of the first in the order coil, contact, voltage, time.
 
-use super::em_relay::parameter::Parameter;
-use super::recipe::{Limit, Rule};
-use crate::gauge::budget::Reading;
+use super::characteristic::Characteristic;
+use super::reason::{Code, Reason};
+use crate::gauge::Judgement;
 pub use crate::rig::axis::Bin;
-use serde::Serialize;
-use std::fmt;
-
-/// Side of a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Side {
-    /// Below the lower limit.
-    Low,
-    /// Above the upper limit.
-    High,
-}
-
-impl fmt::Display for Side {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Side::Low => "low",
-            Side::High => "high",
-        })
-    }
-}
-
-/// One result against its limit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Judgement {
-    /// Proven inside.
-    Pass,
-    /// Proven outside.
-    Fail(Side),
-    /// Within U of the limit: to be measured again by the slow strategy.
-    Conditional(Side),
-    /// No usable number.
-    Void,
-}
-
-/// Holds one result against its limit; without a limit every usable result passes.
-pub fn judge(reading: &Reading, limit: &Limit, rule: Rule) -> Judgement {
-    if !reading.is_usable() {
-        return Judgement::Void;
-    }
-    let band = match rule {
-        Rule::GuardBand => reading.expanded(),
-        Rule::Simple => 0.0,
-    };
-    let inside_low = limit.low.map_or(f64::INFINITY, |low| reading.value - low);
-    let inside_high = limit
-        .high
-        .map_or(f64::INFINITY, |high| high - reading.value);
-    let (inside, side) = if inside_low < inside_high {
-        (inside_low, Side::Low)
-    } else {
-        (inside_high, Side::High)
-    };
-    if inside >= band {
-        Judgement::Pass
-    } else if inside < -band || band == 0.0 {
-        Judgement::Fail(side)
-    } else {
-        Judgement::Conditional(side)
-    }
-}
-
-/// Bin of a part that fails `parameter`.
-pub fn bin_of(parameter: Parameter) -> Bin {
-    match parameter {
-        Parameter::CoilResistance => Bin::Coil,
-        Parameter::OperateVoltage | Parameter::ReleaseVoltage => Bin::Voltage,
-        Parameter::OperateTime
-        | Parameter::ReleaseTime
-        | Parameter::OperateBounce
-        | Parameter::ReleaseBounce => Bin::Time,
-        Parameter::ContactResistanceNo | Parameter::ContactResistanceNc => Bin::Contact,
-    }
-}
 
 /// Rank when several limits fail: the smallest wins.
-fn rank(bin: Bin) -> u8 {
+pub(super) fn rank(bin: Bin) -> u8 {
     match bin {
         Bin::Coil => 0,
         Bin::Contact => 1,
@@ -97,15 +19,6 @@ fn rank(bin: Bin) -> u8 {
     }
 }
 
-/// Why a part fails, and the bin this alone would send it to.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Reason {
-    /// `operate_voltage_v high`, `coil open`.
-    pub text: String,
-    /// Bin of this cause.
-    pub bin: Bin,
-}
-
 /// What is said of a part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
@@ -114,169 +27,107 @@ pub enum Verdict {
     /// At least one reason, worst first.
     Fail(Vec<Reason>),
     /// Not judged, with the reasons.
-    Void(Vec<String>),
+    Void(Vec<Reason>),
 }
 
 impl Verdict {
+    /// A failure found outside the limits together with those against limits, worst bin first.
+    pub fn failed(reason: Reason, mut others: Vec<Reason>) -> Self {
+        others.push(reason);
+        others.sort_by_key(|reason| rank(reason.bin()));
+        Self::Fail(others)
+    }
+
+    /// Returns the verdict of a part of which `expected` was to be measured; conditional results have had their second
+    /// chance. A proven failure outweighs a void: the part is bad whatever else could not be seen.
+    pub fn of(expected: &[Characteristic], judged: &[(Characteristic, Judgement)]) -> Self {
+        let mut failed: Vec<Reason> = judged
+            .iter()
+            .filter_map(|(characteristic, judgement)| match judgement {
+                Judgement::Fail(side) => Some(Reason::outside(*characteristic, *side)),
+                Judgement::Conditional(side) => Some(Reason::not_proven(*characteristic, *side)),
+                Judgement::Pass | Judgement::Void => None,
+            })
+            .collect();
+        if !failed.is_empty() {
+            failed.sort_by_key(|reason| rank(reason.bin()));
+            return Self::Fail(failed);
+        }
+        let passes = |it: &&Characteristic| judged.contains(&(**it, Judgement::Pass));
+        let missing: Vec<Reason> = expected
+            .iter()
+            .filter(|it| !passes(it))
+            .map(|it| Reason::of(Code::NotMeasured(*it)))
+            .collect();
+        if missing.is_empty() {
+            Self::Pass
+        } else {
+            Self::Void(missing)
+        }
+    }
+
     /// `pass`, `fail` or `void`.
     pub fn name(&self) -> &'static str {
         match self {
-            Verdict::Pass => "pass",
-            Verdict::Fail(_) => "fail",
-            Verdict::Void(_) => "void",
+            Self::Pass => "pass",
+            Self::Fail(_) => "fail",
+            Self::Void(_) => "void",
         }
     }
 
     /// Where the part belongs.
     pub fn bin(&self) -> Bin {
         match self {
-            Verdict::Pass => Bin::Pass,
-            Verdict::Fail(reasons) => reasons
+            Self::Pass => Bin::Pass,
+            Self::Fail(reasons) => reasons
                 .iter()
-                .map(|reason| reason.bin)
+                .map(Reason::bin)
                 .min_by_key(|bin| rank(*bin))
                 .unwrap_or(Bin::Retest),
-            Verdict::Void(_) => Bin::Retest,
+            Self::Void(_) => Bin::Retest,
         }
     }
 
-    /// Reasons as text; none for a pass.
-    pub fn reasons(&self) -> Vec<String> {
+    /// Why it is not a pass; empty for a pass.
+    pub fn reasons(&self) -> &[Reason] {
         match self {
-            Verdict::Pass => Vec::new(),
-            Verdict::Fail(reasons) => reasons.iter().map(|reason| reason.text.clone()).collect(),
-            Verdict::Void(reasons) => reasons.clone(),
+            Self::Pass => &[],
+            Self::Fail(reasons) | Self::Void(reasons) => reasons,
         }
     }
-}
 
-/// A failure found outside the limits together with those against limits, worst bin first.
-pub fn failed_with(reason: &Reason, others: Vec<Reason>) -> Verdict {
-    let mut reasons = others;
-    reasons.push(reason.clone());
-    reasons.sort_by_key(|reason| rank(reason.bin));
-    Verdict::Fail(reasons)
-}
-
-/// Verdict of a part whose nine results were judged; conditional results have had their second chance.
-///
-/// A proven failure outweighs a void: the part is bad whatever else could not be seen.
-pub fn of_part(judged: &[(Parameter, Judgement)]) -> Verdict {
-    let mut reasons: Vec<Reason> = judged
-        .iter()
-        .filter_map(|(parameter, judgement)| {
-            let text = match judgement {
-                Judgement::Fail(side) => format!("{} {side}", parameter.name()),
-                Judgement::Conditional(side) => format!("{} {side} not proven", parameter.name()),
-                Judgement::Pass | Judgement::Void => return None,
-            };
-            Some(Reason {
-                text,
-                bin: bin_of(*parameter),
-            })
-        })
-        .collect();
-    if !reasons.is_empty() {
-        reasons.sort_by_key(|reason| rank(reason.bin));
-        return Verdict::Fail(reasons);
-    }
-    let void: Vec<String> = Parameter::ALL
-        .iter()
-        .filter(|parameter| {
-            !judged
-                .iter()
-                .any(|(known, judgement)| known == *parameter && *judgement == Judgement::Pass)
-        })
-        .map(|parameter| format!("{} not measured", parameter.name()))
-        .collect();
-    if void.is_empty() {
-        Verdict::Pass
-    } else {
-        Verdict::Void(void)
+    /// The reasons as the texts of rows and of `run --json`.
+    pub fn texts(&self) -> Vec<String> {
+        self.reasons().iter().map(Reason::to_string).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gauge::budget::Budget;
+    use crate::dut::em_relay::Parameter;
+    use crate::gauge::Side;
 
-    fn reading(value: f64, u: f64) -> Reading {
-        Reading {
-            value,
-            budget: Budget::default().with("test", u),
-        }
-    }
-
-    fn high(high: f64) -> Limit {
-        Limit {
-            low: None,
-            high: Some(high),
-        }
+    fn all() -> Vec<Characteristic> {
+        Parameter::ALL.map(Characteristic::EmRelay).to_vec()
     }
 
     #[test]
-    fn a_guard_band_moves_the_limit_inwards_by_u() {
-        let rule = Rule::GuardBand;
-        assert_eq!(
-            judge(&reading(8.97, 0.01), &high(9.0), rule),
-            Judgement::Pass
-        );
-        assert_eq!(
-            judge(&reading(8.99, 0.01), &high(9.0), rule),
-            Judgement::Conditional(Side::High)
-        );
-        assert_eq!(
-            judge(&reading(9.01, 0.01), &high(9.0), rule),
-            Judgement::Conditional(Side::High)
-        );
-        assert_eq!(
-            judge(&reading(9.03, 0.01), &high(9.0), rule),
-            Judgement::Fail(Side::High)
-        );
+    fn a_part_passes_only_when_every_result_passes() {
+        let judged: Vec<_> = all().into_iter().map(|it| (it, Judgement::Pass)).collect();
+        assert_eq!(Verdict::of(&all(), &judged), Verdict::Pass);
+        assert_eq!(Verdict::of(&all(), &judged[1..]).bin(), Bin::Retest);
     }
 
     #[test]
-    fn the_simple_rule_judges_the_bare_value() {
-        let rule = Rule::Simple;
-        assert_eq!(judge(&reading(9.0, 0.5), &high(9.0), rule), Judgement::Pass);
-        assert_eq!(
-            judge(&reading(9.0001, 0.5), &high(9.0), rule),
-            Judgement::Fail(Side::High)
-        );
-    }
-
-    #[test]
-    fn what_is_not_a_number_is_void_and_never_passes() {
-        let rule = Rule::GuardBand;
-        assert_eq!(
-            judge(&reading(f64::NAN, 0.01), &high(9.0), rule),
-            Judgement::Void
-        );
-        assert_eq!(
-            judge(&reading(1.0, f64::NAN), &high(9.0), rule),
-            Judgement::Void
-        );
-    }
-
-    #[test]
-    fn a_part_passes_only_when_all_nine_results_pass() {
-        let all: Vec<_> = Parameter::ALL
-            .iter()
-            .map(|p| (*p, Judgement::Pass))
-            .collect();
-        assert_eq!(of_part(&all), Verdict::Pass);
-        assert_eq!(of_part(&all[1..]).bin(), Bin::Retest);
-    }
-
-    #[test]
-    fn several_failures_go_to_coil_then_contact_then_voltage_then_time() {
+    fn several_failures_go_to_coil_contact_voltage_time() {
         let failed = [
-            (Parameter::OperateTime, Judgement::Fail(Side::High)),
-            (Parameter::OperateVoltage, Judgement::Fail(Side::High)),
-            (Parameter::ContactResistanceNo, Judgement::Fail(Side::High)),
-        ];
-        assert_eq!(of_part(&failed).bin(), Bin::Contact);
-        assert_eq!(of_part(&failed[..2]).bin(), Bin::Voltage);
+            Parameter::OperateTime,
+            Parameter::OperateVoltage,
+            Parameter::ContactResistanceNo,
+        ]
+        .map(|it| (Characteristic::EmRelay(it), Judgement::Fail(Side::High)));
+        assert_eq!(Verdict::of(&all(), &failed).bin(), Bin::Contact);
+        assert_eq!(Verdict::of(&all(), &failed[..2]).bin(), Bin::Voltage);
     }
 }

@@ -13,9 +13,10 @@ use super::evidence::{above, at_least};
 use super::{Curve, Part};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::coil::to_reference;
-use crate::dut::verdict::{Reason, Side, failed_with, judge, of_part};
-use crate::dut::{Bin, Judgement, Recipe, Verdict};
+use crate::dut::{Characteristic, Reason};
+use crate::dut::{Judgement, Recipe, Verdict};
 use crate::gauge::{Budget, Reading};
+use crate::gauge::{Side, judge};
 use crate::units::Celsius;
 
 /// What the stored values refer to: of the recipe that was in force.
@@ -45,21 +46,21 @@ impl Basis {
     /// Of a recipe that is loaded.
     pub fn of_recipe(recipe: &Recipe) -> Self {
         Self {
-            nominal_v: recipe.part.nominal_v,
-            reference: Celsius(recipe.part.reference_temperature_c),
+            nominal_v: recipe.nominal_v(),
+            reference: Celsius(recipe.reference_temperature_c()),
         }
     }
 
     /// Whether values on this basis can be judged by `recipe`.
     pub fn fits(&self, recipe: &Recipe) -> bool {
-        (self.nominal_v - recipe.part.nominal_v).abs() < 1e-6 * self.nominal_v
+        (self.nominal_v - recipe.nominal_v()).abs() < 1e-6 * self.nominal_v
     }
 
     /// Factor from a stored value to the one that `recipe` would have stored.
     fn factor(&self, parameter: Parameter, recipe: &Recipe) -> f64 {
         match parameter {
             Parameter::CoilResistance | Parameter::OperateVoltage | Parameter::ReleaseVoltage => {
-                let wanted = Celsius(recipe.part.reference_temperature_c);
+                let wanted = Celsius(recipe.reference_temperature_c());
                 to_reference(self.reference, wanted)
             }
             Parameter::OperateTime
@@ -74,44 +75,39 @@ impl Basis {
 
 /// The verdict of `recipe` over what was measured on `part` under a recipe of `basis`, and seen of it.
 pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) -> Verdict {
-    let judged: Vec<(Parameter, Judgement)> = recipe
-        .limits
-        .iter()
-        .map(|(parameter, limit)| {
+    let nominal_v = recipe.nominal_v();
+    let judged: Vec<(Characteristic, Judgement)> = recipe
+        .limits()
+        .map(|(characteristic, limit)| {
+            let Characteristic::EmRelay(parameter) = characteristic;
             let reading = stored(part, parameter, basis.factor(parameter, recipe));
-            let seen = |high| above(curves, parameter, high, recipe.part.nominal_v);
+            let seen = |high| above(curves, parameter, high, nominal_v);
             let judgement = match judge(&reading, &limit, recipe.decision.rule) {
                 Judgement::Void if limit.high.is_some_and(seen) => Judgement::Fail(Side::High),
                 judgement => judgement,
             };
-            (parameter, judgement)
+            (characteristic, judgement)
         })
         .collect();
-    let by_values = of_part(&judged);
-    let seen = |parameter| at_least(curves, parameter, recipe.part.nominal_v).is_some();
-    let others: Vec<&String> = part
+    let by_values = Verdict::of(&recipe.kind().characteristics(), &judged);
+    let seen = |parameter| at_least(curves, parameter, nominal_v).is_some();
+    let others: Vec<Reason> = part
         .reasons
         .iter()
         .filter(|it| !of_a_limit(it, seen))
+        .map(|text| Reason::from_text(text))
         .collect();
     match (part.verdict.as_str(), others.as_slice()) {
         ("fail", [first, ..]) => {
-            let bin = part.bin.as_deref().and_then(Bin::from_name);
-            let reason = Reason {
-                text: (*first).clone(),
-                bin: bin.unwrap_or(Bin::Retest),
-            };
             let limits = match by_values {
                 Verdict::Fail(reasons) => reasons,
                 Verdict::Pass | Verdict::Void(_) => Vec::new(),
             };
-            failed_with(&reason, limits)
+            Verdict::failed(first.clone(), limits)
         }
         ("void", [_, ..]) => match by_values {
             Verdict::Fail(reasons) => Verdict::Fail(reasons),
-            Verdict::Pass | Verdict::Void(_) => {
-                Verdict::Void(others.into_iter().cloned().collect())
-            }
+            Verdict::Pass | Verdict::Void(_) => Verdict::Void(others),
         },
         _ => by_values,
     }
@@ -145,6 +141,6 @@ fn of_a_limit(reason: &str, seen: impl Fn(Parameter) -> bool) -> bool {
         "high not proven",
         "not measured",
     ];
-    let parameter = Parameter::from_name(key);
+    let parameter = Characteristic::from_key(key).map(|Characteristic::EmRelay(it)| it);
     parameter.is_some_and(|it| said.contains(&rest) || rest.starts_with("high: ") && seen(it))
 }

@@ -90,7 +90,7 @@ impl Rejudging {
                 continue;
             };
             if !basis.fits(&recipe) {
-                let (nominal_v, measured_v) = (recipe.part.nominal_v, basis.nominal_v);
+                let (nominal_v, measured_v) = (recipe.nominal_v(), basis.nominal_v);
                 let reason = format!(
                     "the coil of {} has {nominal_v} V, run {} of lot {:?} was measured at {measured_v} V",
                     recipe.name, run.run, run.lot
@@ -148,7 +148,7 @@ impl Rejudging {
             recipe: self.recipe.name.clone(),
             verdict: verdict.name(),
             bin: verdict.bin().name(),
-            reasons: verdict.reasons(),
+            reasons: verdict.texts(),
             verdict_was: part.verdict,
         })
     }

@@ -8,7 +8,9 @@
 use super::page::{Format, page};
 use super::words::{Language, figure};
 use crate::dut::em_relay::Parameter;
-use crate::dut::recipe::{Clamp, Recipe, Rule};
+use crate::dut::em_relay::recipe::Clamp;
+use crate::dut::recipe::{DeviceRecipe, Recipe};
+use crate::gauge::Rule;
 use maud::{Markup, html};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -80,7 +82,8 @@ pub fn card(language: Language, recipe: &Recipe, plant: &CardSettings, made: &st
 
 fn header(language: Language, recipe: &Recipe, plant: &CardSettings) -> Markup {
     let of = |en, zh| language.of(en, zh);
-    let (part, quota) = (&recipe.part, total(plant));
+    let DeviceRecipe::EmRelay(relay) = &recipe.device;
+    let (part, quota) = (&relay.part, total(plant));
     let [x, y, z] = part.body_mm;
     html! {
         table.card {
@@ -164,7 +167,8 @@ fn steps(language: Language, recipe: &Recipe, plant: &CardSettings) -> Markup {
 fn step(language: Language, recipe: &Recipe, name: &str) -> Step {
     let of = |en: &'static str, zh: &'static str| language.of(en, zh);
     let demand = |parameters: &[Parameter]| demands(language, recipe, parameters);
-    let (nominal, test) = (figure(Some(recipe.part.nominal_v)), &recipe.test);
+    let DeviceRecipe::EmRelay(relay) = &recipe.device;
+    let (nominal, test) = (figure(Some(relay.part.nominal_v)), &relay.test);
     let number = |value: f64| figure(Some(value));
     let none = String::new();
     let (what, tooling, drive, demand) = match name {
@@ -302,6 +306,7 @@ fn demands(language: Language, recipe: &Recipe, parameters: &[Parameter]) -> Str
 }
 
 fn remarks(language: Language, recipe: &Recipe) -> String {
+    let DeviceRecipe::EmRelay(relay) = &recipe.device;
     let decision = &recipe.decision;
     let rule = match decision.rule {
         Rule::GuardBand => language.of(
@@ -316,7 +321,7 @@ fn remarks(language: Language, recipe: &Recipe) -> String {
     format!(
         "{rule}; {repeats} {}; {conditioning} {}; {recipe_text} {}",
         decision.slow_repeats,
-        recipe.test.conditioning_operations,
+        relay.test.conditioning_operations,
         recipe.hash.get(..16).unwrap_or(&recipe.hash)
     )
 }

@@ -1,6 +1,6 @@
 //! The words of the pages in both languages, in one place.
 
-use crate::dut::em_relay::Parameter;
+use crate::dut::Characteristic;
 use serde::Deserialize;
 
 /// Language of a page.
@@ -32,27 +32,17 @@ impl Language {
 
     /// Name of a parameter with its unit; the key itself for one that only a recipe knows.
     pub fn parameter(self, key: &str) -> String {
-        let Some(parameter) = Parameter::from_name(key) else {
+        let Some(known) = Characteristic::from_key(key) else {
             return key.to_owned();
         };
-        let (en, zh) = match parameter {
-            Parameter::CoilResistance => ("Coil resistance", "线圈电阻"),
-            Parameter::OperateVoltage => ("Operate voltage", "动作电压"),
-            Parameter::ReleaseVoltage => ("Release voltage", "释放电压"),
-            Parameter::OperateTime => ("Operate time", "动作时间"),
-            Parameter::ReleaseTime => ("Release time", "释放时间"),
-            Parameter::OperateBounce => ("Operate bounce", "动作回跳"),
-            Parameter::ReleaseBounce => ("Release bounce", "释放回跳"),
-            Parameter::ContactResistanceNo => ("Contact resistance NO", "常开触点电阻"),
-            Parameter::ContactResistanceNc => ("Contact resistance NC", "常闭触点电阻"),
-        };
-        format!("{} / {}", self.of(en, zh), unit(parameter))
+        let name = self.of(known.definition().name_en, known.definition().name_zh);
+        format!("{name} / {}", unit(known.unit()))
     }
 
     /// Why a part did not pass; a text that only the history knows as it stands there.
     pub fn reason(self, text: &str) -> String {
         let (key, side) = text.split_once(' ').unwrap_or((text, ""));
-        if Parameter::from_name(key).is_none() {
+        if Characteristic::from_key(key).is_none() {
             return self.of(text, found(text)).to_owned();
         }
         let side = match side {
@@ -127,8 +117,8 @@ pub(super) fn unbroken(name: &str) -> String {
 }
 
 /// As printed: with the sign for ohm.
-fn unit(parameter: Parameter) -> &'static str {
-    match parameter.unit() {
+fn unit(unit: &str) -> &str {
+    match unit {
         "ohm" => "Ω",
         "mOhm" => "mΩ",
         unit => unit,

@@ -180,7 +180,7 @@ fn worth_another(turn: &Turn, test: &Test) -> Option<Alarm> {
     let (Stop::Void(why) | Stop::Trouble(why)) = test.findings.why_stopped()? else {
         return None;
     };
-    (test.number() < GOLDEN_TESTS).then(|| Alarm::golden_repeated(serial, why))
+    (test.number() < GOLDEN_TESTS).then(|| Alarm::golden_repeated(serial, &why.to_string()))
 }
 
 fn judged(turn: &mut Turn, bench: &Bench, test: Test) {

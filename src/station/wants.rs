@@ -5,9 +5,9 @@ use super::moves::Move;
 use super::orders::{Order, Refused};
 use super::packml::Command;
 use super::trouble::Alarm;
+use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::measure::{Bench, Findings};
-use crate::dut::em_relay::{Calibration, Parameter};
-use crate::dut::verdict::{Bin, Judgement, Verdict};
+use crate::dut::{Bin, Characteristic, Judgement, Reason, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::image::Image;
 use crate::rig::point::{DigitalIn, DigitalOut};
@@ -44,7 +44,7 @@ pub struct Judged {
     /// What is said of it.
     pub verdict: Verdict,
     /// Each result against its limit.
-    pub judgements: Vec<(Parameter, Judgement)>,
+    pub judgements: Vec<(Characteristic, Judgement)>,
     /// Results and the replies they came from.
     pub findings: Findings,
     /// What it was judged by.
@@ -58,7 +58,7 @@ impl Judged {
     pub fn interrupted(part: Part, why: &str, bench: &Bench, at: RigTime) -> Self {
         Self {
             part,
-            verdict: Verdict::Void(vec![format!("interrupted: {why}")]),
+            verdict: Verdict::Void(vec![Reason::interrupted(why)]),
             judgements: Vec::new(),
             findings: Findings::default(),
             bench: bench.clone(),

@@ -11,6 +11,7 @@ use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::{Factor, InputLine, OutputLine};
 use crate::dut::em_relay::feasible::nominal_v_per_s;
 use crate::dut::em_relay::measure::Bench;
+use crate::dut::recipe::DeviceRecipe;
 use crate::guard::{Actuator, Guard, PartSize};
 use crate::history::AlarmLeft;
 use crate::rig::axis::AxisStation;
@@ -53,7 +54,8 @@ pub fn cycle(
             .map(|at| (at, wiring.axis.point(at).x_mm))
             .collect::<Vec<(AxisStation, f64)>>(),
     };
-    let golden = plant.golden.of_nominal(recipe.part.nominal_v);
+    let DeviceRecipe::EmRelay(relay) = &setup.recipe.device;
+    let golden = plant.golden.of_nominal(relay.part.nominal_v);
     let plan = Plan {
         stays: controls.stays,
         between_lots: controls.between_lots,
@@ -72,7 +74,8 @@ pub fn cycle(
         left,
     };
     let bench = Bench {
-        calibration: Arc::new(calibration.unwrap_or_else(|| uncalibrated(recipe.part.nominal_v))),
+        relay: Arc::new(relay.clone()),
+        calibration: Arc::new(calibration.unwrap_or_else(|| uncalibrated(relay.part.nominal_v))),
         recipe,
         reference: plant.reference,
         accuracy: plant.accuracy,
@@ -108,8 +111,8 @@ fn inherit(station: &mut Station, left: AlarmLeft, epoch_us: i64) {
 
 fn size_of(recipe: &Recipe) -> PartSize {
     PartSize {
-        body_mm: recipe.part.body_mm,
-        pin_length_mm: recipe.part.pin_length_mm,
+        body_mm: recipe.body().size_mm,
+        pin_length_mm: recipe.body().pin_length_mm,
     }
 }
 

@@ -150,7 +150,7 @@ fn pass_gates(
     recipe: &Recipe,
     args: &RunArgs,
 ) -> Result<(), NotAdmitted> {
-    let nominal_v = recipe.part.nominal_v;
+    let nominal_v = recipe.nominal_v();
     if plant.lot.golden_check.any() && plant.golden.of_nominal(nominal_v).next().is_none() {
         return Err(NotAdmitted::NoGoldenPart {
             file: plant.dir.join("lot.toml"),
@@ -188,7 +188,7 @@ pub fn uncalibrated(db: &Path, recipe: &Recipe, args: &RunArgs) -> anyhow::Resul
     if args.rig.sim {
         return Ok(None);
     }
-    calibrate::why_not(db, recipe.part.nominal_v)
+    calibrate::why_not(db, recipe.nominal_v())
 }
 
 /// Alarm of a rig that takes no lot before it was calibrated again.

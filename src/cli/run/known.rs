@@ -57,7 +57,7 @@ fn worn(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
 
 /// The stored calibration, provided it is not overdue.
 fn valid_calibration(store: &Store, setup: &Setup) -> anyhow::Result<Option<Calibration>> {
-    let Some(record) = store.latest_calibration_of(false, setup.recipe.part.nominal_v)? else {
+    let Some(record) = store.latest_calibration_of(false, setup.recipe.nominal_v())? else {
         return Ok(None);
     };
     let calibration: Calibration =

@@ -17,7 +17,7 @@ use crate::config::Plant;
 use crate::cycle::{Event, Profile};
 use crate::dut::Recipe;
 use crate::dut::em_relay::Calibration;
-use crate::dut::verdict::{Bin, Verdict};
+use crate::dut::{Bin, Reason, Verdict};
 use crate::history::{
     CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
     snapshot_hash,
@@ -248,8 +248,8 @@ impl<'a> Recorder<'a> {
             return;
         };
         let (seq, kind) = rows::number(&part.judged.part.kind, part.golden);
-        let reason = format!("interrupted: {}", interrupted.why);
-        let mut reasons = part.judged.verdict.reasons();
+        let reason = Reason::interrupted(&interrupted.why);
+        let mut reasons = part.judged.verdict.reasons().to_vec();
         reasons.push(reason.clone());
         let before = std::mem::replace(&mut part.judged.verdict, Verdict::Void(reasons));
         part.judged.part.bin = Some(Bin::Retest);
@@ -263,7 +263,7 @@ impl<'a> Recorder<'a> {
             lot: self.setup.args.lot.clone(),
             kind: kind.into(),
             seq,
-            reason,
+            reason: reason.to_string(),
         }));
     }
 

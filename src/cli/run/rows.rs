@@ -2,7 +2,7 @@
 
 use super::recorder::Setup;
 use crate::dut::em_relay::Parameter;
-use crate::dut::verdict::{Judgement, Verdict};
+use crate::dut::{Judgement, Verdict};
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
 use crate::instrument::trace::Trace;
 use crate::rig::point::{AnalogIn, Counter};
@@ -35,7 +35,7 @@ pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
             .part
             .bin
             .map_or_else(String::new, |bin| bin.name().to_string()),
-        reasons: judged.verdict.reasons(),
+        reasons: judged.verdict.texts(),
         judged_at_us: at(judged.at),
         test_s: judged.part.test.map_or(f64::NAN, |test| test.0),
         cycle_s: None,
@@ -78,7 +78,7 @@ fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<M
     let judgement = judged
         .judgements
         .iter()
-        .find(|(known, _)| *known == parameter)
+        .find(|(known, _)| *known == parameter.into())
         .map(|(_, j)| *j);
     let sample = |origin: &crate::rig::sample::Origin| SampleRecord {
         line: setup.plant.wiring.line(origin.line).name.clone(),
@@ -158,7 +158,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
         "recipe": setup.recipe.name,
         "verdict": judged.verdict.name(),
         "bin": bin,
-        "reasons": judged.verdict.reasons(),
+        "reasons": judged.verdict.texts(),
         "values": values,
         "uncertainty": uncertainty,
         "test_s": judged.part.test.map(|test| rounded(test.0)),

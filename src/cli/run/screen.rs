@@ -13,7 +13,7 @@ const RECENT: usize = 20;
 
 /// The lot and the limits it is judged by.
 pub fn begun(view: &mut View, setup: &Setup) {
-    let limits = setup.recipe.limits.iter();
+    let limits = setup.recipe.limits();
     *view = View {
         simulated: setup.args.rig.sim,
         lot: setup.args.lot.clone(),
@@ -21,7 +21,7 @@ pub fn begun(view: &mut View, setup: &Setup) {
         recipe: setup.recipe.name.clone(),
         count: setup.args.count,
         limits: limits
-            .map(|(parameter, limit)| (parameter.name().to_owned(), [limit.low, limit.high]))
+            .map(|(parameter, limit)| (parameter.key().to_owned(), [limit.low, limit.high]))
             .collect(),
         at_us: view.at_us,
         alarms: std::mem::take(&mut view.alarms),
@@ -60,7 +60,7 @@ pub fn judged(
         seq: rows::number(&judged.part.kind, 0).0,
         verdict: judged.verdict.name().into(),
         bin: judged.part.bin.map_or("", |bin| bin.name()).into(),
-        reasons: judged.verdict.reasons(),
+        reasons: judged.verdict.texts(),
         values: numbers("values"),
         uncertainty: numbers("uncertainty"),
     };

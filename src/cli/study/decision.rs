@@ -129,7 +129,7 @@ fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
         return Ok(Vec::new());
     };
     let mean = limits.end() - usual.sd;
-    let of_lot = LOT_V / load_recipe(&order.config, &order.recipe)?.part.nominal_v;
+    let of_lot = LOT_V / load_recipe(&order.config, &order.recipe)?.nominal_v();
     let variant = Variant {
         exact: false,
         world: vec![("lot.operate_v_mean", (mean * of_lot).into())],

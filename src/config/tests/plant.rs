@@ -44,8 +44,7 @@ fn the_whole_plant_is_loaded_from_its_folder() {
     assert_eq!(
         load_recipe(copy.0.path(), "jzc-22f-012")
             .unwrap()
-            .part
-            .nominal_v,
+            .nominal_v(),
         12.0
     );
 }

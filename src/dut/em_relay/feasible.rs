@@ -4,9 +4,11 @@
 //! channels that are converted; a limit needs an uncertainty that leaves something of it.
 
 use super::coil::relative_per_kelvin;
+use super::recipe::RelayRecipe;
 use super::settings::AccuracySettings;
 use super::{Parameter, Strategy};
-use crate::dut::recipe::{Limit, Recipe};
+use crate::dut::recipe::Limits;
+use crate::gauge::Limit;
 use crate::gauge::budget::COVERAGE_FACTOR;
 use crate::rig::fault::Fault;
 use crate::rig::point::{AnalogIn, AnalogOut, Counter};
@@ -26,7 +28,12 @@ const COUNTS: u8 = 0x50;
 ///
 /// # Errors
 /// The first fault.
-pub fn check(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<(), Fault> {
+pub fn check(
+    recipe: &RelayRecipe,
+    limits: &Limits,
+    wiring: &Wiring,
+    accuracy: &AccuracySettings,
+) -> Result<(), Fault> {
     for (key, strategy) in recipe.test.strategy.each() {
         let key = format!("test.strategy.{key}");
         if let Some(why) = hindrance(strategy, wiring, accuracy) {
@@ -42,7 +49,7 @@ pub fn check(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> R
             Parameter::ContactResistanceNo,
             Parameter::ContactResistanceNc,
         ] {
-            if recipe.limits.of(parameter) == Limit::default() {
+            if limits.of(parameter) == Limit::default() {
                 let expected = format!("a limit of {parameter} to be clear of, or no early stop");
                 return Err(Fault::new(
                     "test.strategy.contact.stops_early",
@@ -52,7 +59,8 @@ pub fn check(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> R
             }
         }
     }
-    for (parameter, limit) in recipe.limits.iter() {
+    for parameter in Parameter::ALL {
+        let limit = limits.of(parameter);
         let (Some(low), Some(high)) = (limit.low, limit.high) else {
             continue;
         };
@@ -142,7 +150,7 @@ pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOut) -> f64 {
 
 /// Expanded uncertainty to expect of a parameter, from what the makers promise: the terms that no
 /// strategy takes away. Zero where it is far below any limit one would write.
-fn expected_u(parameter: Parameter, recipe: &Recipe, accuracy: &AccuracySettings) -> f64 {
+fn expected_u(parameter: Parameter, recipe: &RelayRecipe, accuracy: &AccuracySettings) -> f64 {
     let per_kelvin = relative_per_kelvin(Celsius(recipe.part.reference_temperature_c));
     let threshold = |volts: f64| {
         let kelvin = volts * per_kelvin * accuracy.part_minus_track_k;

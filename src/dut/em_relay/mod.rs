@@ -3,6 +3,8 @@
 //! | question | file |
 //! |---|---|
 //! | what is measured, in which unit | [`parameter`] |
+//! | what the part is, how it is measured | [`recipe`] |
+//! | what a test finds beside figures | [`finding`] |
 //! | the order of a test, a file per stage | [`measure`] |
 //! | how a threshold is found, and whether modules and uncertainty allow it | [`strategy`], [`feasible`] |
 //! | how often coil and contacts are read | [`sampling`] |
@@ -18,11 +20,13 @@ pub mod calibration;
 pub mod coil;
 pub mod contact;
 pub mod feasible;
+pub mod finding;
 pub mod golden;
 pub mod lag;
 pub mod measure;
 pub mod parameter;
 pub mod probe_contact;
+pub mod recipe;
 pub mod reference;
 pub mod sampling;
 pub mod settings;
@@ -32,5 +36,9 @@ pub mod threshold;
 pub mod timing;
 
 pub use calibration::Calibration;
+pub use finding::Finding;
 pub use parameter::Parameter;
 pub use strategy::Strategy;
+
+#[cfg(test)]
+pub(crate) mod tests;

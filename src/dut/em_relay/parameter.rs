@@ -1,38 +1,30 @@
-//! The nine quantities measured on every part. Their keys are the same in recipes, rows, files and API.
+//! The nine characteristics of a relay, as data.
 
+use crate::dut::characteristic::{Characteristic, Definition};
+use crate::dut::verdict::Bin;
 use crate::gauge::repetition::SpokenOf;
-use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// One measured quantity. The order is that of reports and of every table kept per parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Parameter {
     /// DC coil resistance at the recipe's reference temperature.
-    #[serde(rename = "coil_resistance_ohm")]
     CoilResistance,
     /// Quasi-static must-operate threshold at the reference temperature.
-    #[serde(rename = "operate_voltage_v")]
     OperateVoltage,
     /// Quasi-static must-release threshold at the reference temperature.
-    #[serde(rename = "release_voltage_v")]
     ReleaseVoltage,
     /// Nominal coil voltage applied to first make of NO, bounce excluded.
-    #[serde(rename = "operate_time_ms")]
     OperateTime,
     /// Nominal coil voltage removed to first make of NC, bounce excluded.
-    #[serde(rename = "release_time_ms")]
     ReleaseTime,
     /// Total open time of NO after its first make.
-    #[serde(rename = "operate_bounce_ms")]
     OperateBounce,
     /// Total open time of NC after its first make.
-    #[serde(rename = "release_bounce_ms")]
     ReleaseBounce,
     /// Four-wire resistance of the closed NO contact, thermal EMF removed.
-    #[serde(rename = "contact_resistance_no_mohm")]
     ContactResistanceNo,
     /// Four-wire resistance of the closed NC contact, thermal EMF removed.
-    #[serde(rename = "contact_resistance_nc_mohm")]
     ContactResistanceNc,
 }
 
@@ -49,57 +41,102 @@ impl Parameter {
         Self::ContactResistanceNo,
         Self::ContactResistanceNc,
     ];
-    /// The keys of [`Self::ALL`].
-    pub const NAMES: [&'static str; 9] = [
-        "coil_resistance_ohm",
-        "operate_voltage_v",
-        "release_voltage_v",
-        "operate_time_ms",
-        "release_time_ms",
-        "operate_bounce_ms",
-        "release_bounce_ms",
-        "contact_resistance_no_mohm",
-        "contact_resistance_nc_mohm",
-    ];
+
+    /// What is fixed about it.
+    pub const fn definition(self) -> &'static Definition {
+        &TABLE[self as usize]
+    }
 
     /// The key, with the unit as suffix.
     pub const fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-
-    /// The unit in which values and limits are written.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::CoilResistance => "ohm",
-            Self::OperateVoltage | Self::ReleaseVoltage => "V",
-            Self::OperateTime | Self::ReleaseTime | Self::OperateBounce | Self::ReleaseBounce => {
-                "ms"
-            }
-            Self::ContactResistanceNo | Self::ContactResistanceNc => "mOhm",
-        }
-    }
-
-    /// What a row with a mean of several readings speaks of.
-    pub const fn spoken_of(self) -> SpokenOf {
-        match self {
-            Self::CoilResistance | Self::OperateVoltage | Self::ReleaseVoltage => SpokenOf::Part,
-            Self::OperateTime | Self::ReleaseTime | Self::OperateBounce | Self::ReleaseBounce => {
-                SpokenOf::Operation
-            }
-            Self::ContactResistanceNo | Self::ContactResistanceNc => SpokenOf::Closures,
-        }
-    }
-
-    /// The parameter of this key.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|parameter| parameter.name() == name)
+        self.definition().key
     }
 
     /// Position in [`Self::ALL`].
     pub const fn index(self) -> usize {
         self as usize
+    }
+}
+
+/// In the order of [`Parameter::ALL`].
+static TABLE: [Definition; Parameter::ALL.len()] = [
+    Definition {
+        key: "coil_resistance_ohm",
+        unit: "ohm",
+        name_en: "Coil resistance",
+        name_zh: "线圈电阻",
+        spoken_of: SpokenOf::Part,
+        bin: Bin::Coil,
+    },
+    Definition {
+        key: "operate_voltage_v",
+        unit: "V",
+        name_en: "Operate voltage",
+        name_zh: "动作电压",
+        spoken_of: SpokenOf::Part,
+        bin: Bin::Voltage,
+    },
+    Definition {
+        key: "release_voltage_v",
+        unit: "V",
+        name_en: "Release voltage",
+        name_zh: "释放电压",
+        spoken_of: SpokenOf::Part,
+        bin: Bin::Voltage,
+    },
+    Definition {
+        key: "operate_time_ms",
+        unit: "ms",
+        name_en: "Operate time",
+        name_zh: "动作时间",
+        spoken_of: SpokenOf::Operation,
+        bin: Bin::Time,
+    },
+    Definition {
+        key: "release_time_ms",
+        unit: "ms",
+        name_en: "Release time",
+        name_zh: "释放时间",
+        spoken_of: SpokenOf::Operation,
+        bin: Bin::Time,
+    },
+    Definition {
+        key: "operate_bounce_ms",
+        unit: "ms",
+        name_en: "Operate bounce",
+        name_zh: "动作回跳",
+        spoken_of: SpokenOf::Operation,
+        bin: Bin::Time,
+    },
+    Definition {
+        key: "release_bounce_ms",
+        unit: "ms",
+        name_en: "Release bounce",
+        name_zh: "释放回跳",
+        spoken_of: SpokenOf::Operation,
+        bin: Bin::Time,
+    },
+    Definition {
+        key: "contact_resistance_no_mohm",
+        unit: "mOhm",
+        name_en: "Contact resistance NO",
+        name_zh: "常开触点电阻",
+        spoken_of: SpokenOf::Closures,
+        bin: Bin::Contact,
+    },
+    Definition {
+        key: "contact_resistance_nc_mohm",
+        unit: "mOhm",
+        name_en: "Contact resistance NC",
+        name_zh: "常闭触点电阻",
+        spoken_of: SpokenOf::Closures,
+        bin: Bin::Contact,
+    },
+];
+
+impl From<Parameter> for Characteristic {
+    fn from(parameter: Parameter) -> Self {
+        Self::EmRelay(parameter)
     }
 }
 
@@ -111,18 +148,17 @@ impl fmt::Display for Parameter {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]
-    fn a_key_is_the_same_in_code_and_in_files() {
-        for parameter in Parameter::ALL {
-            assert_eq!(Parameter::from_name(parameter.name()), Some(parameter));
-            assert_eq!(
-                serde_json::to_string(&parameter).unwrap(),
-                format!("\"{parameter}\"")
-            );
-            assert_eq!(Parameter::ALL[parameter.index()], parameter);
+    fn the_table_is_in_the_order_of_the_enum() {
+        for (place, parameter) in Parameter::ALL.into_iter().enumerate() {
+            assert_eq!(parameter.index(), place);
         }
+        assert_eq!(Parameter::CoilResistance.name(), "coil_resistance_ohm");
+        assert_eq!(
+            Parameter::ContactResistanceNc.name(),
+            "contact_resistance_nc_mohm"
+        );
     }
 }

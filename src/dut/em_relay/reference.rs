@@ -79,7 +79,7 @@ pub fn acts(bench: &Bench) -> Vec<Act> {
     acts.extend([
         all_off(),
         Act::CoilMask(bench.coil_mask()),
-        Act::Supply(vec![(SupplyLevel, Volt(bench.recipe.test.prebias_v))]),
+        Act::Supply(vec![(SupplyLevel, Volt(bench.relay.test.prebias_v))]),
         Act::Wait(Span::ms(2000)),
     ]);
     acts
@@ -255,7 +255,7 @@ pub fn conclude(
         made_at_us,
         due_at_us: made_at_us + valid_us,
         simulated: false,
-        nominal_v: bench.recipe.part.nominal_v,
+        nominal_v: bench.relay.part.nominal_v,
         level: OutputLine {
             gain: level_gain,
             offset_v: Factor::new(

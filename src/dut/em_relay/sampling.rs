@@ -8,7 +8,7 @@
 //! another closure only while `|mean - limit| <= 3 sqrt(u^2 + s^2 / n)`: u is what all closures share, s their
 //! scatter, never believed to be below what the recipe expects of a film.
 
-use crate::dut::recipe::Limit;
+use crate::gauge::Limit;
 use serde::{Deserialize, Serialize};
 
 /// How far from a limit a mean must lie before it is left at that, in standard deviations: 0.13 % of parts at the

@@ -16,7 +16,7 @@ use crate::units::{Celsius, Second, Volt};
 pub const WINDOW_V: Volt = Volt(0.050);
 
 /// Which way the supply moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Towards operate.
     Rising,

@@ -2,7 +2,9 @@
 
 use super::super::*;
 use crate::config::load_recipe;
-use crate::dut::{Bin, Recipe, Verdict};
+use crate::dut::em_relay::recipe::RelayRecipe;
+use crate::dut::recipe::DeviceRecipe;
+use crate::dut::{Bin, Reason, Recipe, Verdict};
 use std::path::Path;
 
 fn recipe() -> Recipe {
@@ -31,6 +33,11 @@ fn part(operate_v: f64, verdict: &str, reasons: &[&str]) -> Part {
     part
 }
 
+fn relay(recipe: &mut Recipe) -> &mut RelayRecipe {
+    let DeviceRecipe::EmRelay(relay) = &mut recipe.device;
+    relay
+}
+
 fn by_values(part: &Part, recipe: &Recipe) -> Verdict {
     rejudged(part, &[], Basis::of_recipe(recipe), recipe)
 }
@@ -44,11 +51,11 @@ fn the_limits_of_the_other_recipe_decide_with_the_stored_uncertainty() {
     );
     let bad = by_values(&part(9.1, "pass", &[]), &recipe);
     assert_eq!(
-        (bad.bin(), bad.reasons()),
+        (bad.bin(), bad.texts()),
         (Bin::Voltage, vec!["operate_voltage_v high".to_owned()])
     );
     let doubtful = by_values(&part(8.99, "pass", &[]), &recipe);
-    assert_eq!(doubtful.reasons(), ["operate_voltage_v high not proven"]);
+    assert_eq!(doubtful.texts(), ["operate_voltage_v high not proven"]);
 }
 
 #[test]
@@ -58,11 +65,14 @@ fn what_no_value_says_stays() {
     open.bin = Some("coil".into());
     let again = by_values(&open, &recipe);
     assert_eq!(
-        (again.bin(), again.reasons()),
+        (again.bin(), again.texts()),
         (Bin::Coil, vec!["coil open".to_owned()])
     );
     let void = by_values(&part(8.0, "void", &["reply refused"]), &recipe);
-    assert_eq!(void, Verdict::Void(vec!["reply refused".into()]));
+    assert_eq!(
+        void,
+        Verdict::Void(vec![Reason::unclassified("reply refused")])
+    );
 }
 
 #[test]
@@ -72,7 +82,7 @@ fn a_value_that_was_never_had_is_void_and_never_passes() {
     let again = by_values(&part, &recipe());
     assert_eq!(
         again,
-        Verdict::Void(vec!["operate_time_ms not measured".into()])
+        Verdict::Void(vec![Reason::from_text("operate_time_ms not measured")])
     );
 }
 
@@ -81,13 +91,9 @@ fn values_are_brought_to_the_reference_temperature_of_the_other_recipe() {
     let mut recipe = recipe();
     let stored = part(8.9, "pass", &[]);
     let at_23_c = Basis::of_recipe(&recipe);
-    recipe.part.reference_temperature_c = 33.0;
+    relay(&mut recipe).part.reference_temperature_c = 33.0;
     let warmer = rejudged(&stored, &[], at_23_c, &recipe);
-    assert_eq!(
-        warmer.reasons(),
-        ["operate_voltage_v high"],
-        "9.25 V at 33 C"
-    );
+    assert_eq!(warmer.texts(), ["operate_voltage_v high"], "9.25 V at 33 C");
 }
 
 #[test]
@@ -96,7 +102,7 @@ fn a_recipe_of_another_coil_voltage_does_not_fit() {
     let basis = Basis::of(&recipe.source_text).unwrap();
     assert_eq!(basis, Basis::of_recipe(&recipe));
     assert!(basis.fits(&recipe));
-    recipe.part.nominal_v = 24.0;
+    relay(&mut recipe).part.nominal_v = 24.0;
     assert!(!basis.fits(&recipe));
     assert_eq!(Basis::of("name = \"old\""), None);
 }
@@ -143,13 +149,13 @@ fn a_part_without_a_value_fails_where_its_curves_prove_it_and_is_void_where_they
     let basis = Basis::of_recipe(&recipe);
     let strict = rejudged(&high, &never_made(), basis, &recipe);
     assert_eq!(
-        (strict.bin(), strict.reasons()),
+        (strict.bin(), strict.texts()),
         (Bin::Voltage, vec!["operate_voltage_v high".to_owned()])
     );
     let generous = rejudged(&high, &never_made(), basis, &generous());
     assert_eq!(
         generous,
-        Verdict::Void(vec!["operate_voltage_v not measured".into()])
+        Verdict::Void(vec![Reason::from_text("operate_voltage_v not measured")])
     );
     let blind = rejudged(&high, &[], basis, &recipe);
     assert_eq!(blind.name(), "fail", "nothing was kept of it, so it stays");

@@ -1,7 +1,7 @@
 //! The nest takes a part, has it tested and hands it to the gripper, never letting it loose in between.
 
 use super::{Shop, bench};
-use crate::dut::verdict::{Bin, Verdict};
+use crate::dut::{Bin, Reason, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::axis::AxisStation;
 use crate::rig::point::{DigitalIn, DigitalOut};
@@ -113,7 +113,7 @@ fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
     let clamp = nest.judged();
     assert!(matches!(clamp, Clamp::Judged));
     let judged = &nest.shop.wants.judged[0];
-    let why = Verdict::Void(vec!["measure 05: silent".into()]);
+    let why = Verdict::Void(vec![Reason::rig_trouble("measure 05: silent")]);
     assert_eq!(
         (&judged.verdict, judged.part.bin),
         (&why, Some(Bin::Retest))

@@ -1,7 +1,7 @@
 //! One part at a time from the track into the pocket, and into a nest that is free in every respect.
 
 use super::Shop;
-use super::instruments::golden_parts;
+use super::golden_parts;
 use crate::rig::point::DigitalIn;
 use crate::station::feed::Feed;
 use crate::station::ledger::Kind;

@@ -1,6 +1,6 @@
 //! What opens and closes the gates of a lot.
 
-use super::instruments::golden_parts;
+use super::golden_parts;
 use super::machine::{Machine, Specimen};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::golden::check;

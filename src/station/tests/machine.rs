@@ -1,6 +1,6 @@
 //! A machine whose actuators always arrive and whose parts are bad in a known way, with its station.
 
-use super::instruments::golden_parts;
+use super::golden_parts;
 use super::shop::mechanism;
 use super::{Shop, bench};
 use crate::dut::verdict::Bin;

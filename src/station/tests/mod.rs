@@ -7,7 +7,6 @@ mod feed;
 mod gates;
 mod graph;
 mod inside;
-mod instruments;
 mod ledger;
 mod machine;
 mod mechanism;
@@ -21,7 +20,7 @@ mod shop;
 mod sort;
 mod trouble;
 
-pub(crate) use instruments::{bench, golden_parts};
+pub(crate) use crate::dut::em_relay::tests::{bench, golden_parts};
 pub(crate) use shop::Shop;
 
 use crate::rig::settings::RigSettings;

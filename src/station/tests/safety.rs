@@ -1,7 +1,7 @@
 //! Trouble makes everything safe, ends the run and voids the part inside.
 
 use super::machine::{Machine, Specimen};
-use crate::dut::verdict::{Bin, Verdict};
+use crate::dut::{Bin, Reason, Verdict};
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Wants};
@@ -39,7 +39,7 @@ fn an_open_safety_input_makes_everything_safe_and_voids_the_part_inside() {
         let wants = machine.turn();
         assert_safe(&wants, code);
         let judged = &wants.judged[0];
-        let why = Verdict::Void(vec![format!("interrupted: {code}")]);
+        let why = Verdict::Void(vec![Reason::interrupted(code)]);
         assert_eq!(
             (&judged.verdict, judged.part.bin),
             (&why, Some(Bin::Retest))

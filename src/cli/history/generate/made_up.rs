@@ -1,9 +1,11 @@
 //! Values of made-up parts: the lot of the default world, one draw after the other.
 
+use crate::dut::Kind;
 use crate::dut::em_relay::Parameter;
+use crate::dut::recipe::DeviceRecipe;
 use crate::dut::recipe::Recipe;
-use crate::dut::verdict::{judge, of_part};
 use crate::dut::{Judgement, Verdict};
+use crate::gauge::judge;
 use crate::gauge::{Budget, Reading};
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
 use crate::instrument::trace::Signal;
@@ -83,9 +85,9 @@ impl Line {
                     .is_some_and(|before: &MeasurementRecord| before.key == it.parameter.name()),
             );
             measurements.push(it.record(value, limit, judgement, attempt));
-            judged.push((it.parameter, judgement));
+            judged.push((it.parameter.into(), judgement));
         }
-        let verdict = of_part(&judged);
+        let verdict = Verdict::of(&Kind::EmRelay.characteristics(), &judged);
         if verdict != Verdict::Pass {
             for it in &mut measurements {
                 it.samples = vec![reply(at_us), reply(at_us + 3_000)];
@@ -98,7 +100,7 @@ impl Line {
             serial: None,
             verdict: verdict.name().to_owned(),
             bin: bin.to_owned(),
-            reasons: verdict.reasons(),
+            reasons: verdict.texts(),
             judged_at_us: at_us,
             test_s: 0.95 + 0.02 * draws.normal(),
             cycle_s: Some(cycle_us as f64 / 1e6),
@@ -145,7 +147,7 @@ impl Scatter {
     fn record(
         &self,
         value: f64,
-        limit: crate::dut::recipe::Limit,
+        limit: crate::gauge::Limit,
         judgement: Judgement,
         attempt: u32,
     ) -> MeasurementRecord {
@@ -169,7 +171,8 @@ impl Scatter {
 }
 
 fn scatter(recipe: &Recipe, parameter: Parameter) -> Scatter {
-    let (test, part) = (&recipe.test, &recipe.part);
+    let DeviceRecipe::EmRelay(relay) = &recipe.device;
+    let (test, part) = (&relay.test, &relay.part);
     let (mean, sd, logarithmic, u) = match parameter {
         Parameter::CoilResistance => {
             let nominal = part.nominal_coil_ohm;

@@ -3,8 +3,9 @@
 
 use super::super::settings::AccuracySettings;
 use super::super::{Parameter, Strategy};
-use super::{check, hindrance, nominal_v_per_s};
+use super::{hindrance, nominal_v_per_s};
 use crate::dut::Recipe;
+use crate::dut::recipe::DeviceRecipe;
 use crate::rig::point::AnalogOut;
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::{Module, Wiring};
@@ -28,8 +29,9 @@ fn plant() -> (Wiring, AccuracySettings) {
 fn recipe(strategy: Strategy) -> Recipe {
     let mut recipe: Recipe =
         toml::from_str(include_str!("../../../../config/recipes/jzc-22f-012.toml")).unwrap();
-    recipe.test.strategy.operate_voltage_v = strategy;
-    recipe.test.strategy.release_voltage_v = strategy;
+    let DeviceRecipe::EmRelay(relay) = &mut recipe.device;
+    relay.test.strategy.operate_voltage_v = strategy;
+    relay.test.strategy.release_voltage_v = strategy;
     recipe
 }
 
@@ -42,7 +44,7 @@ fn module<'a>(wiring: &'a mut Wiring, name: &str) -> &'a mut Module {
 fn refused(strategy: Strategy, change: impl Fn(&mut Wiring)) -> [String; 3] {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);
-    let fault = check(&recipe(strategy), &wiring, &accuracy).unwrap_err();
+    let fault = recipe(strategy).feasible(&wiring, &accuracy).unwrap_err();
     [fault.key, fault.found, fault.expected]
 }
 
@@ -65,7 +67,7 @@ fn the_default_plant_performs_every_strategy() {
     assert_eq!(hindered(|_| {}), []);
     let (wiring, accuracy) = plant();
     for strategy in Strategy::ALL {
-        check(&recipe(strategy), &wiring, &accuracy).unwrap();
+        recipe(strategy).feasible(&wiring, &accuracy).unwrap();
     }
     assert_eq!(nominal_v_per_s(&wiring, AnalogOut::SupplyCoarse), 96.0);
     assert_eq!(nominal_v_per_s(&wiring, AnalogOut::SupplyFine), 1.5);
@@ -141,10 +143,11 @@ fn a_converter_out_of_fast_mode_is_refused_unless_nobody_counts_on_it() {
 fn closures_cannot_stop_early_where_no_limit_says_when() {
     let (wiring, accuracy) = plant();
     let mut recipe = recipe(Strategy::CoarseFine);
-    recipe.test.strategy.contact.stops_early = true;
-    check(&recipe, &wiring, &accuracy).unwrap();
+    let DeviceRecipe::EmRelay(relay) = &mut recipe.device;
+    relay.test.strategy.contact.stops_early = true;
+    recipe.feasible(&wiring, &accuracy).unwrap();
     recipe.limits = toml::from_str("[contact_resistance_no_mohm]\nhigh = 100.0\n").unwrap();
-    let fault = check(&recipe, &wiring, &accuracy).unwrap_err();
+    let fault = recipe.feasible(&wiring, &accuracy).unwrap_err();
     assert_eq!(fault.key, "test.strategy.contact.stops_early");
     assert!(fault.expected.contains("contact_resistance_nc_mohm"));
 }
@@ -171,7 +174,7 @@ fn limits_that_the_guard_bands_fill_are_refused_with_what_they_leave() {
         );
         let mut recipe = recipe(Strategy::CoarseFine);
         recipe.limits = toml::from_str(&table).unwrap();
-        check(&recipe, &wiring, &accuracy)
+        recipe.feasible(&wiring, &accuracy)
     };
     // 0.18 K of thermometer and part are 0.28 ohm of a 400 ohm coil: 2 U are 1.12 ohm.
     around(400.0, 1.3).unwrap();

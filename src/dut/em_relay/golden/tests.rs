@@ -6,10 +6,10 @@ use crate::dut::em_relay::lag::Shown;
 use crate::dut::em_relay::measure::bench::untaught;
 use crate::dut::em_relay::measure::{Findings, Ramp};
 use crate::dut::em_relay::settings::GoldenPart;
+use crate::dut::em_relay::tests::bench;
+use crate::dut::em_relay::tests::golden_parts;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
-use crate::station::tests::bench;
-use crate::station::tests::golden_parts;
 use crate::units::{Celsius, Volt};
 
 const REFERENCE: Celsius = Celsius(23.0);

@@ -1,13 +1,14 @@
 //! What a test needs to know beside the part: recipe, calibration and what the makers promise.
 
+use crate::dut::Recipe;
 use crate::dut::em_relay::calibration::{Calibration, Lag};
 use crate::dut::em_relay::coil::ScanDoubt;
 use crate::dut::em_relay::golden::interim;
 use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, ReferenceSettings};
 use crate::dut::em_relay::timing::Clock;
 use crate::dut::em_relay::{Parameter, Strategy};
-use crate::dut::recipe::{CoilChannels, Recipe};
 use crate::units::{Celsius, Ohm, Span};
 use std::sync::Arc;
 
@@ -26,6 +27,8 @@ pub const UNTAUGHT_FINE_V: (f64, f64) = (0.03, -0.02);
 pub struct Bench {
     /// What the part must do.
     pub recipe: Arc<Recipe>,
+    /// The part, and how it is measured: what the recipe says of this kind.
+    pub relay: Arc<RelayRecipe>,
     /// What the instruments do.
     pub calibration: Arc<Calibration>,
     /// References on the interface board.
@@ -56,7 +59,7 @@ impl Bench {
 
     /// Channel mask of the coil converter that the recipe asks for.
     pub fn coil_mask(&self) -> u8 {
-        match self.recipe.test.coil_channels {
+        match self.relay.test.coil_channels {
             CoilChannels::Fine => 0b0110_0000,
             CoilChannels::CoarseCurrent => 0b0010_0010,
         }
@@ -78,7 +81,7 @@ impl Bench {
 
     /// Scatter of a threshold of this part from operation to operation, volts (1 sd).
     pub fn operation_v(&self) -> f64 {
-        self.accuracy.operation_v(self.recipe.part.nominal_v)
+        self.accuracy.operation_v(self.relay.part.nominal_v)
     }
 
     /// What the probes may have lifted or lowered a threshold by since the golden parts taught its lag, relative (1 sd):
@@ -86,7 +89,7 @@ impl Bench {
     pub fn contact_share(&self) -> f64 {
         let then_ohm = self.calibration.probe_contact_ohm;
         let changed = self.probe_contact.map_or(0.0, |Ohm(now)| now - then_ohm);
-        changed.abs() / self.recipe.part.nominal_coil_ohm
+        changed.abs() / self.relay.part.nominal_coil_ohm
     }
 
     /// Clock of the gated counters.
@@ -99,7 +102,7 @@ impl Bench {
 
     /// Reference temperature of the recipe.
     pub fn reference_temperature(&self) -> Celsius {
-        Celsius(self.recipe.part.reference_temperature_c)
+        Celsius(self.relay.part.reference_temperature_c)
     }
 
     /// How a threshold is found. Golden parts always get both ramps: they teach the lags; and so do the first
@@ -116,7 +119,7 @@ impl Bench {
             | Parameter::ContactResistanceNo
             | Parameter::ContactResistanceNc => self.operate_lag(),
         };
-        let mut each = self.recipe.test.strategy.each().into_iter();
+        let mut each = self.relay.test.strategy.each().into_iter();
         match each.find(|(known, _)| *known == parameter) {
             Some(_) if self.thorough => Strategy::CoarseFine,
             Some((_, Strategy::Adaptive)) if !lag.judges => Strategy::CoarseFine,

@@ -2,12 +2,12 @@
 //! also where the operate ramp starts, so the coil stays on.
 
 use super::{Bench, Findings, INTERLOCK, OFF, Stage, board};
+use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::coil::{resistance, to_reference};
 use crate::dut::em_relay::probe_contact::in_series;
+use crate::dut::em_relay::recipe::CoilChannels;
 use crate::dut::em_relay::supply::Supply;
-use crate::dut::recipe::CoilChannels;
-use crate::dut::verdict::Bin;
 use crate::instrument::act::{Act, CoilScan, Read, Readings};
 use crate::rig::point::AnalogIn;
 use crate::rig::point::DigitalOut::{
@@ -41,8 +41,8 @@ const IDLE: [(DigitalOut, bool); 8] = [
 /// The board is prepared for the operate ramp while the coil is converted: nothing moves the supply
 /// between arming and the ramp.
 pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let prebias = Volt(bench.recipe.test.prebias_v);
-    let sampling = bench.recipe.test.strategy.coil;
+    let prebias = Volt(bench.relay.test.prebias_v);
+    let sampling = bench.relay.test.strategy.coil;
     let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
     let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
     let repeated = findings.attempts(Parameter::CoilResistance) > 0;
@@ -103,19 +103,19 @@ pub(super) fn acts_off(bench: &Bench, supply: &mut Supply, findings: &Findings) 
 pub(super) fn rest(bench: &Bench, supply: &mut Supply) -> [Act; 4] {
     let (coarse, _) = supply.ramp_coarse(Volt(0.0));
     let (fine, _) = supply.ramp_fine(Volt(0.0));
-    let level = supply.step_to(Volt(bench.recipe.test.prebias_v));
+    let level = supply.step_to(Volt(bench.relay.test.prebias_v));
     [coarse, fine, level, Act::Read(Read::Resets)]
 }
 
 fn current_of(bench: &Bench, scan: &CoilScan) -> Option<Sample> {
-    match bench.recipe.test.coil_channels {
+    match bench.relay.test.coil_channels {
         CoilChannels::Fine => scan.current_fine.clone(),
         CoilChannels::CoarseCurrent => scan.current_wide.clone(),
     }
 }
 
 fn current_channel(bench: &Bench) -> AnalogIn {
-    match bench.recipe.test.coil_channels {
+    match bench.relay.test.coil_channels {
         CoilChannels::Fine => AnalogIn::CoilCurrentFine,
         CoilChannels::CoarseCurrent => AnalogIn::CoilCurrent,
     }
@@ -132,22 +132,19 @@ pub(super) fn conclude(
     for scan in &readings.coil {
         let (Some(voltage), Some(current)) = (scan.voltage_fine.clone(), current_of(bench, scan))
         else {
-            findings.void("coil converter gave no voltage or current");
+            findings.stop(Finding::CoilNotRead);
             return None;
         };
         if voltage.quality != Quality::Good {
-            findings.void("coil voltage not readable");
+            findings.stop(Finding::CoilVoltageNotReadable);
             return None;
         }
-        if voltage.value < LEAST_PREBIAS * bench.recipe.test.prebias_v {
-            findings.void(format!(
-                "coil supply gives {:.2} V at the pre-bias",
-                voltage.value
-            ));
+        if voltage.value < LEAST_PREBIAS * bench.relay.test.prebias_v {
+            findings.stop(Finding::CoilSupplyLow.with(format!("{:.2} V", voltage.value)));
             return None;
         }
         if current.quality == Quality::OverRange {
-            findings.fail("coil_resistance_ohm low: current over range", Bin::Coil);
+            findings.stop(Finding::CoilCurrentOverRange);
             return None;
         }
         let offset = Volt(calibration.coil_input.offset_v.value);
@@ -157,12 +154,12 @@ pub(super) fn conclude(
         ));
         samples.extend([voltage, current]);
     }
-    let ohm = match bench.recipe.test.coil_channels {
+    let ohm = match bench.relay.test.coil_channels {
         CoilChannels::Fine => calibration.ohm_fine,
         CoilChannels::CoarseCurrent => calibration.ohm_wide,
     };
     if scans.iter().all(|(_, current)| current.abs() < NO_CURRENT) {
-        findings.fail("coil open", Bin::Coil);
+        findings.stop(Finding::CoilOpen);
         return None;
     }
     let part = findings.track?;
@@ -173,10 +170,10 @@ pub(super) fn conclude(
             findings.probe_contact = probe_contact(bench, &readings.coil, coil);
             findings.found(Parameter::CoilResistance, reading, &samples);
         }
-        None => findings.fail("coil open", Bin::Coil),
+        None => findings.stop(Finding::CoilOpen),
     }
     if let Some(unmoved) = findings.unmoved.take() {
-        findings.fail(unmoved, Bin::Contact);
+        findings.stop(unmoved);
     }
     None
 }
@@ -194,7 +191,7 @@ fn probe_contact(bench: &Bench, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
     };
     let volts = scans.iter().map(at_pins).sum::<Option<f64>>()? / scans.len() as f64;
     Some(in_series(
-        Volt(bench.recipe.test.prebias_v),
+        Volt(bench.relay.test.prebias_v),
         Volt(volts),
         coil,
     ))
@@ -203,7 +200,7 @@ fn probe_contact(bench: &Bench, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
 pub(super) fn conclude_off(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
     match readings.currents.first() {
         Some(sample) if sample.quality == Quality::Good && sample.value.abs() < OFF_CURRENT_A => {}
-        Some(_) | None => findings.void("coil current not gone after the test"),
+        Some(_) | None => findings.stop(Finding::CoilCurrentRemains),
     }
     None
 }

@@ -4,9 +4,9 @@
 use super::{Bench, Findings, INTERLOCK, Stage, board};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::contact::{Closure, resistance, u_with_later_v};
+use crate::dut::em_relay::finding::{Contact, Finding};
 use crate::dut::em_relay::sampling::Polarities;
 use crate::dut::em_relay::supply::Supply;
-use crate::dut::verdict::Bin;
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalOut::{Arm, KelvinTest, SourceOn, SourceReverse};
 use crate::rig::sample::{Quality, Sample};
@@ -32,7 +32,7 @@ fn turned(bench: &Bench, reverse: bool) -> [Act; 4] {
 /// The readings after a first forward one; the source stays on, the way it was driven last.
 pub(super) fn reversed(bench: &Bench) -> Vec<Act> {
     let mut acts = turned(bench, true).to_vec();
-    match bench.recipe.test.strategy.contact.polarities {
+    match bench.relay.test.strategy.contact.polarities {
         Polarities::PlusMinus => {}
         Polarities::PlusMinusMinusPlus => {
             acts.extend([
@@ -56,7 +56,7 @@ pub(super) fn acts_nc(bench: &Bench, supply: &mut Supply, findings: &mut Finding
         Act::Read(Read::Track),
         Act::Read(Read::Board),
         Act::Read(Read::Gates),
-        supply.step_to(Volt(bench.recipe.part.nominal_v)),
+        supply.step_to(Volt(bench.relay.part.nominal_v)),
         Act::ConvertSinceMark(SOURCE_SETTLES + bench.fresh(1)),
         Act::Read(Read::Drop),
     ];
@@ -88,15 +88,11 @@ pub(super) enum Unread {
 }
 
 impl Unread {
-    pub(super) fn tell(self, which: &str, findings: &mut Findings) {
+    pub(super) fn of(self, contact: Contact) -> Finding {
         match self {
-            Unread::Missing => findings.void(format!("{which} drop not readable")),
-            Unread::OverRange => {
-                findings.fail(&format!("{which} resistance over range"), Bin::Contact)
-            }
-            Unread::OpenContact => {
-                findings.fail(&format!("{which} open or far too high"), Bin::Contact)
-            }
+            Unread::Missing => Finding::DropNotReadable(contact),
+            Unread::OverRange => Finding::ContactOverRange(contact),
+            Unread::OpenContact => Finding::ContactOpen(contact),
         }
     }
 }
@@ -109,7 +105,7 @@ pub(super) fn closure(bench: &Bench, readings: &Readings) -> Result<Closure, Unr
         .iter()
         .map(|sample| drop_of(Some(sample), compliance))
         .collect();
-    let polarities = bench.recipe.test.strategy.contact.polarities;
+    let polarities = bench.relay.test.strategy.contact.polarities;
     Closure::of(&drops?, polarities).ok_or(Unread::Missing)
 }
 
@@ -122,7 +118,7 @@ pub(super) fn conclude_nc(
         Some(track) if track.quality == Quality::Good && track.value.is_finite() => {
             findings.track = Some(Celsius(track.value));
         }
-        Some(_) | None => findings.void("track temperature not readable"),
+        Some(_) | None => findings.stop(Finding::TrackNotReadable),
     }
     match closure(bench, readings) {
         Ok(closure) => {
@@ -130,18 +126,17 @@ pub(super) fn conclude_nc(
             findings.released = true;
             add_nc(bench, closure.drop, &readings.drops, findings);
         }
-        Err(unread) => unread.tell("NC contact", findings),
+        Err(unread) => findings.stop(unread.of(Contact::Nc)),
     }
     None
 }
 
 /// Voids a resistance that no contact has: the source was off, or a reply was not its own.
-pub(super) fn is_implausible(which: &str, mohm: f64, findings: &mut Findings) -> bool {
+pub(super) fn is_implausible(contact: Contact, mohm: f64, findings: &mut Findings) -> bool {
     let implausible = mohm.is_nan() || mohm < LEAST_MOHM;
     if implausible {
-        findings.void(format!(
-            "{which} reads {mohm:.2} mOhm: no contact does, check the 1 A source"
-        ));
+        let detail = format!("{mohm:.2} mOhm");
+        findings.stop(Finding::ContactImplausible(contact).with(detail));
     }
     implausible
 }
@@ -164,18 +159,18 @@ pub(super) fn is_clear(bench: &Bench, findings: &Findings, parameter: Parameter)
     let u = findings
         .result(parameter)
         .map_or(f64::INFINITY, |reading| reading.budget.combined());
-    let sampling = recipe.test.strategy.contact;
+    let sampling = bench.relay.test.strategy.contact;
     sampling.is_clear(&values, u, &recipe.limits.of(parameter))
 }
 
 /// Adds one NC closure; the result is the mean of all closures read.
 pub(super) fn add_nc(bench: &Bench, drop: Volt, samples: &[Sample], findings: &mut Findings) {
     findings.nc_drops.push(drop);
-    let first = bench.recipe.test.strategy.contact.polarities.signs().len();
+    let first = bench.relay.test.strategy.contact.polarities.signs().len();
     let later = findings.nc_drops.len() - 1;
     let u = u_with_later_v(first, later, bench.reading_u_v(), EMF_MOVES_V);
     if let Some(reading) = resistance(&findings.nc_drops, bench.calibration.contact_mohm_per_v, u) {
-        if is_implausible("NC contact", reading.value, findings) {
+        if is_implausible(Contact::Nc, reading.value, findings) {
             return;
         }
         findings.forget(Parameter::ContactResistanceNc);

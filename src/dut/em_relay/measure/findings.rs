@@ -2,10 +2,12 @@
 
 use super::ramp::Expected;
 use super::search::Search;
+use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::lag::Shown;
 use crate::dut::em_relay::threshold::Direction;
-use crate::dut::verdict::{Bin, Judgement, Reason};
+use crate::dut::reason::{Code, Reason};
+use crate::gauge::Judgement;
 use crate::gauge::budget::Reading;
 use crate::gauge::repetition::mean;
 use crate::instrument::act::Spent;
@@ -38,9 +40,9 @@ pub enum Stop {
     /// The part is bad.
     Fail(Reason),
     /// It cannot be judged.
-    Void(String),
+    Void(Reason),
     /// The rig was in trouble: what it has said of the part so far, good or bad, proves nothing.
-    Trouble(String),
+    Trouble(Reason),
 }
 
 /// A ramp as it was seen.
@@ -87,7 +89,7 @@ pub struct Findings {
     /// Both counters were read behind an ARM whose window nothing has opened since, and the supply is at nominal.
     pub counted: bool,
     /// No contact moves at nominal voltage, and which; the coil, which may be the cause, is still to be measured.
-    pub unmoved: Option<&'static str>,
+    pub unmoved: Option<Finding>,
     /// The armature is still operated from the stage before, at the instant that stage has marked.
     pub operated: bool,
     /// The drive went off in the stage before, at the instant it has marked or earlier.
@@ -161,7 +163,7 @@ impl Findings {
     /// Result of a parameter: the mean of its repetitions, which lie apart as far as the part scatters.
     pub fn result(&self, parameter: Parameter) -> Option<Reading> {
         let repetitions: Vec<Reading> = self.each(parameter).cloned().collect();
-        mean(&repetitions, parameter.spoken_of())
+        mean(&repetitions, parameter.definition().spoken_of)
     }
 
     /// What the part has shown when its coarse ramp has just indicated so many volts.
@@ -197,28 +199,26 @@ impl Findings {
             .map(|(_, e)| e)
     }
 
-    /// Ends the test early; the first cause stays.
-    pub fn stop(&mut self, why: Stop) {
-        self.stop.get_or_insert(why);
-    }
-
-    /// Ends the test early because the part is bad.
-    pub fn fail(&mut self, text: &str, bin: Bin) {
-        self.stop(Stop::Fail(Reason {
-            text: text.to_string(),
-            bin,
-        }));
-    }
-
-    /// Ends the test early because it cannot be judged.
-    pub fn void(&mut self, why: impl Into<String>) {
-        self.stop(Stop::Void(why.into()));
+    /// Ends the test early by what a stage has found; the first finding stays.
+    pub fn stop(&mut self, found: impl Into<Reason>) {
+        let reason = found.into();
+        let stop = match reason.code {
+            Code::EmRelay(finding) if finding.bin().is_some() => Stop::Fail(reason),
+            Code::EmRelay(_)
+            | Code::OutsideLimit(_)
+            | Code::NotProven(_)
+            | Code::NotMeasured(_)
+            | Code::Interrupted
+            | Code::RigTrouble
+            | Code::Unclassified => Stop::Void(reason),
+        };
+        self.stop.get_or_insert(stop);
     }
 
     /// Ends the test early because the rig is in trouble, whatever the part has ended it by before.
     pub fn trouble(&mut self, why: String) {
         if !matches!(self.stop, Some(Stop::Trouble(_))) {
-            self.stop = Some(Stop::Trouble(why));
+            self.stop = Some(Stop::Trouble(Reason::rig_trouble(why)));
         }
     }
 

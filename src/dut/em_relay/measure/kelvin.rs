@@ -7,7 +7,7 @@
 //! | five good, NC open or NO closed | a contact that does not rest: fail, contact |
 
 use super::{Bench, Findings, Stage, board};
-use crate::dut::verdict::Bin;
+use crate::dut::em_relay::Finding;
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalOut::KelvinTest;
 use crate::units::Span;
@@ -25,26 +25,23 @@ pub(super) fn acts() -> Vec<Act> {
 
 pub(super) fn conclude(_: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
     let Some(seen) = readings.boards.first() else {
-        findings.void("interface board not read");
+        findings.stop(Finding::BoardNotRead);
         return None;
     };
     if !seen.probe_chain {
-        findings.void("probe-up chain open");
+        findings.stop(Finding::ProbeChainOpen);
         return None;
     }
     let open: Vec<usize> = (0..5).filter(|pin| !seen.kelvin[*pin]).collect();
     match open.as_slice() {
         [] if seen.nc_closed && !seen.no_closed => {}
-        [] if seen.no_closed => findings.fail("contact stuck: NO closed at rest", Bin::Contact),
-        [] => findings.fail("contact stuck: NC open at rest", Bin::Contact),
-        [COM] => findings.void("part turned or COM probe without contact"),
-        [pin] => findings.void(format!(
-            "no Kelvin contact at {}: missing pin or dirty probe",
-            PINS[*pin]
-        )),
+        [] if seen.no_closed => findings.stop(Finding::NoClosedAtRest),
+        [] => findings.stop(Finding::NcOpenAtRest),
+        [COM] => findings.stop(Finding::Misoriented),
+        [pin] => findings.stop(Finding::PinOpen.with(PINS[*pin])),
         several => {
             let names: Vec<&str> = several.iter().map(|pin| PINS[*pin]).collect();
-            findings.void(format!("no Kelvin contact at {}", names.join(", ")));
+            findings.stop(Finding::PinsOpen.with(names.join(", ")));
         }
     }
     None

@@ -37,7 +37,8 @@ mod timing;
 
 use super::supply::Supply;
 use crate::dut::em_relay::Parameter;
-use crate::dut::verdict::{Judgement, Verdict, failed_with, judge, of_part};
+use crate::dut::{Characteristic, Verdict};
+use crate::gauge::{Judgement, judge};
 use crate::instrument::act::{Act, Doing, JobDone, Runner};
 use crate::rig::image::Image;
 use crate::rig::point::DigitalOut;
@@ -214,8 +215,8 @@ impl Test {
 
     /// Another timed closure of both contacts, while the recipe asks for one.
     fn add_closure(&mut self) {
-        let (findings, recipe) = (&self.findings, &self.bench.recipe);
-        let sampling = recipe.test.strategy.contact;
+        let findings = &self.findings;
+        let sampling = self.bench.relay.test.strategy.contact;
         let closures = findings.attempts(Parameter::ContactResistanceNo) as u64;
         if self.slow_done || findings.stopped() || closures >= sampling.closures.into() {
             return;
@@ -242,7 +243,9 @@ impl Test {
             .judgements()
             .iter()
             .filter(|(_, judgement)| self.bench.thorough || doubtful(judgement))
-            .map(|(parameter, _)| Stage::of(*parameter))
+            .filter_map(|(characteristic, _)| match characteristic {
+                Characteristic::EmRelay(parameter) => Some(Stage::of(*parameter)),
+            })
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from
         // another flux than the one its lag was learned from.
@@ -253,39 +256,40 @@ impl Test {
     }
 
     /// Each result against its limit.
-    pub fn judgements(&self) -> Vec<(Parameter, Judgement)> {
+    pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
         let recipe = &self.bench.recipe;
         let one = |parameter: &Parameter| {
             let reading = self.findings.result(*parameter)?;
-            Some((
-                *parameter,
-                judge(
-                    &reading,
-                    &recipe.limits.of(*parameter),
-                    recipe.decision.rule,
-                ),
-            ))
+            let limit = recipe.limits.of(*parameter);
+            let judgement = judge(&reading, &limit, recipe.decision.rule);
+            Some((*parameter, judgement))
         };
         let proven = self.findings.proven.iter().copied();
         let measured = Parameter::ALL.iter().filter_map(one);
         let unmeasured =
             |(parameter, _): &(Parameter, Judgement)| self.findings.attempts(*parameter) == 0;
-        measured.chain(proven.filter(unmeasured)).collect()
+        let all = measured.chain(proven.filter(unmeasured));
+        all.map(|(parameter, judgement)| (parameter.into(), judgement))
+            .collect()
     }
 
     /// Verdict of the part. A proven failure outweighs whatever ended the test early, but for trouble of the rig.
     pub fn verdict(&self) -> Verdict {
         let judged = self.judgements();
+        let expected = Parameter::ALL.map(Characteristic::from);
         let Some(stop) = self.findings.why_stopped() else {
-            return of_part(&judged);
+            return Verdict::of(&expected, &judged);
         };
-        let failed: Vec<(Parameter, Judgement)> = judged
-            .into_iter()
-            .filter(|(_, judgement)| matches!(judgement, Judgement::Fail(_)))
-            .collect();
-        match (stop, of_part(&failed)) {
+        let proven = |(_, judgement): &(Characteristic, Judgement)| match judgement {
+            Judgement::Fail(_) => true,
+            Judgement::Pass | Judgement::Conditional(_) | Judgement::Void => false,
+        };
+        let failed: Vec<_> = judged.into_iter().filter(proven).collect();
+        match (stop, Verdict::of(&expected, &failed)) {
             (Stop::Trouble(why), _) => Verdict::Void(vec![why.clone()]),
-            (Stop::Fail(reason), Verdict::Fail(reasons)) => failed_with(reason, reasons),
+            (Stop::Fail(reason), Verdict::Fail(reasons)) => {
+                Verdict::failed(reason.clone(), reasons)
+            }
             (Stop::Fail(reason), Verdict::Pass | Verdict::Void(_)) => {
                 Verdict::Fail(vec![reason.clone()])
             }

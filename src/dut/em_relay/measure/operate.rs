@@ -3,9 +3,9 @@
 use super::indication::gate0;
 use super::ramp::{after_coarse, stopped_at};
 use super::{Bench, Findings, INTERLOCK, OFF, Ramp, Stage, board};
+use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::supply::{RAMP_MARGIN, Supply};
 use crate::dut::em_relay::threshold::{Direction, indicated};
-use crate::dut::verdict::Bin;
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalIn;
 use crate::rig::point::DigitalOut::{
@@ -24,7 +24,7 @@ pub(super) const LATE: Span = Span::ms(25);
 
 /// Height of the coarse output at which the release ramp begins.
 pub(super) fn release_start(bench: &Bench) -> Volt {
-    let test = &bench.recipe.test;
+    let test = &bench.relay.test;
     let above = test.expected_release_v + 4.0 * test.expected_release_sd_v + RELEASE_HEADROOM_V;
     Volt(above.min(test.coarse_span_v))
 }
@@ -38,8 +38,8 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
         prepared(bench, supply, findings)
     };
     findings.ramp_start = Some(supply.total());
-    findings.ramp_span = Some(Volt(bench.recipe.test.coarse_span_v) - supply.coarse());
-    let (ramp, takes) = supply.ramp_coarse(Volt(bench.recipe.test.coarse_span_v));
+    findings.ramp_span = Some(Volt(bench.relay.test.coarse_span_v) - supply.coarse());
+    let (ramp, takes) = supply.ramp_coarse(Volt(bench.relay.test.coarse_span_v));
     let (turn, _) = supply.ramp_coarse(release_start(bench));
     acts.extend([
         ramp,
@@ -61,7 +61,7 @@ fn prepared(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<
     let takes = takes.max(std::mem::take(&mut findings.still_ramping));
     acts.extend([
         coarse,
-        supply.step_to(Volt(bench.recipe.test.prebias_v)),
+        supply.step_to(Volt(bench.relay.test.prebias_v)),
         board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
         Act::RampSinceMark(OFF.max(takes)),
         board(&[(CoilDrive, true)]),
@@ -82,18 +82,15 @@ pub(super) fn conclude_coarse(
         // It has operated at nominal voltage.
         match readings.boards.last() {
             Some(board) if board.no_closed => {
-                findings.void("coarse operate ramp: contact made outside the window");
+                findings.stop(Finding::MadeOutsideWindow);
             }
-            Some(_) => findings.fail(
-                "operate_voltage_v high: above the coarse ramp",
-                Bin::Voltage,
-            ),
-            None => findings.void("interface board not read"),
+            Some(_) => findings.stop(Finding::AboveCoarseRamp),
+            None => findings.stop(Finding::BoardNotRead),
         }
         return None;
     }
     let Some(gate) = gate0(bench, readings) else {
-        findings.void("gate counters not read");
+        findings.stop(Finding::GatesNotRead);
         return None;
     };
     let seen = indicated(
@@ -123,7 +120,7 @@ pub(super) fn conclude_coarse(
 fn turning(bench: &Bench, climbed: Volt) -> Span {
     let per_s = bench.calibration.coarse_v_per_s.value;
     let over = climbed.0 + per_s * TURNS.as_seconds();
-    let back = over.min(bench.recipe.test.coarse_span_v) - release_start(bench).0;
+    let back = over.min(bench.relay.test.coarse_span_v) - release_start(bench).0;
     TURNS + Span::seconds(back.abs() / per_s) + RAMP_MARGIN
 }
 

@@ -92,7 +92,7 @@ fn make_room(bench: &Bench, supply: &mut Supply, falls: Span, start: Volt) -> Ve
         acts.push(fine);
         wait = falls + takes;
     }
-    let room = (start.0 * APPROACH - 0.3).clamp(0.0, bench.recipe.test.coarse_span_v);
+    let room = (start.0 * APPROACH - 0.3).clamp(0.0, bench.relay.test.coarse_span_v);
     if supply.coarse().0 > room + 0.05 {
         let (coarse, takes) = supply.ramp_coarse(Volt(room));
         acts.push(coarse);

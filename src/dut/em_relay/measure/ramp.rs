@@ -6,6 +6,7 @@ use super::findings::Findings;
 use super::indication::{coarse_reading, gate0};
 use super::pace::Pace;
 use super::search::parameter;
+use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::calibration::Lag;
 use crate::dut::em_relay::coil::to_reference;
 use crate::dut::em_relay::lag::Shown;
@@ -163,7 +164,7 @@ pub(super) fn meet(
 ) -> Option<Met> {
     let (start, expected) = (findings.ramp_start?, (*findings.expected(direction))?);
     let (Some(gate), Some(_)) = (gate0(bench, readings), findings.track) else {
-        findings.void("gate counters not read");
+        findings.stop(Finding::GatesNotRead);
         return None;
     };
     let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, direction);
@@ -197,10 +198,7 @@ pub(super) fn meet(
     if attempt + 1 < ATTEMPTS {
         return Some(Met::Again);
     }
-    let which = if operated { "operate" } else { "release" };
-    findings.void(format!(
-        "{which} threshold not found in {ATTEMPTS} fine ramps"
-    ));
+    findings.stop(Finding::ThresholdNotFound(direction).with(ATTEMPTS.to_string()));
     None
 }
 

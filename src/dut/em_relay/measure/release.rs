@@ -36,7 +36,7 @@ const LATE: Span = Span::ms(12);
 fn seal(bench: &Bench, supply: &mut Supply, findings: &mut Findings, start: Volt) -> Vec<Act> {
     let operated = std::mem::take(&mut findings.operated);
     findings.released = false;
-    let seal = supply.step_to(Volt(SEAL * bench.recipe.part.nominal_v));
+    let seal = supply.step_to(Volt(SEAL * bench.relay.part.nominal_v));
     // No current: the contact that the ramp breaks was read before, if at all.
     let falling = [
         (SourceOn, false),
@@ -117,7 +117,7 @@ pub(super) fn conclude_coarse(
     readings: &Readings,
     findings: &mut Findings,
 ) -> Option<Stage> {
-    let (start, test) = (findings.ramp_start?, &bench.recipe.test);
+    let (start, test) = (findings.ramp_start?, &bench.relay.test);
     let coarse_v_per_s = bench.calibration.coarse_v_per_s.value;
     let seen = readings.seen.first() == Some(&true);
     let floor_v = coarse_v_per_s * LAST_REFRESHES * bench.accuracy.ao_refresh_ms * 1e-3;

@@ -9,12 +9,12 @@ mod whole;
 
 use super::{Findings, Stop};
 use crate::dcon::Channel;
+use crate::dut::em_relay::tests::bench;
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{BoardInputs, CoilScan, Readings};
 use crate::rig::point::{AnalogIn, Counter};
 use crate::rig::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
 use crate::rig::wiring::{LineId, ModuleId};
-use crate::station::tests::bench;
 use crate::units::{Celsius, RigTime};
 
 fn origin() -> Origin {
@@ -111,8 +111,8 @@ fn at_23_c() -> Findings {
 /// Bin that an early end sends the part to, and why; `None` while nothing ended the test.
 fn ended(findings: &Findings) -> Option<(Bin, String)> {
     findings.why_stopped().map(|stop| match stop {
-        Stop::Fail(reason) => (reason.bin, reason.text.clone()),
-        Stop::Void(why) | Stop::Trouble(why) => (Bin::Retest, why.clone()),
+        Stop::Fail(reason) => (reason.bin(), reason.to_string()),
+        Stop::Void(why) | Stop::Trouble(why) => (Bin::Retest, why.to_string()),
     })
 }
 

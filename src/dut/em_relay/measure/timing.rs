@@ -7,9 +7,9 @@ use super::operate::dropped;
 use super::{Bench, Findings, OFF, Stage, board};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::contact::resistance;
+use crate::dut::em_relay::finding::{Contact, Finding};
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::timing::{bounce_ms, counts, gate_ms};
-use crate::dut::verdict::Bin;
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalIn;
 use crate::rig::point::DigitalOut::{
@@ -46,7 +46,7 @@ pub(super) fn acts_operate(
     ])]);
     if !std::mem::take(&mut findings.counted) {
         acts.extend([
-            supply.step_to(Volt(bench.recipe.part.nominal_v)),
+            supply.step_to(Volt(bench.relay.part.nominal_v)),
             Act::Read(Read::Gates),
         ]);
     }
@@ -72,7 +72,7 @@ pub(super) fn acts_release(
         acts.extend([
             // Nobody reads this closure: no current is to leave its mark on the contact.
             board(&[(RampMode, false), (EventNoBreak, false), (SourceOn, false)]),
-            supply.step_to(Volt(bench.recipe.part.nominal_v)),
+            supply.step_to(Volt(bench.relay.part.nominal_v)),
             board(&[(CoilDrive, true), (SelectNo, true)]),
             Act::Wait(Span::ms(40)),
         ]);
@@ -129,7 +129,7 @@ fn time_and_bounce(
     findings: &mut Findings,
 ) {
     let [.., before, after] = readings.gates.as_slice() else {
-        findings.void("gate counters not read");
+        findings.stop(Finding::GatesNotRead);
         return;
     };
     let gate0 = counts(before[0].count, after[0].count);
@@ -138,9 +138,8 @@ fn time_and_bounce(
     // No contact moves within a count: a counter that shows none has restarted since its gate.
     let still = gate0 == 0;
     if still || f64::from(gate0.max(gate1)) > longest || gate1 + GATE_SKEW < gate0 {
-        findings.void(format!(
-            "gate counters implausible: {gate0} and {gate1} counts"
-        ));
+        let detail = format!("{gate0} and {gate1} counts");
+        findings.stop(Finding::GatesImplausible.with(detail));
         return;
     }
     let samples: Vec<_> = before.iter().chain(after).collect();
@@ -178,12 +177,12 @@ pub(super) fn conclude_operate(
             let u = closure.u_v(bench.reading_u_v());
             if let Some(reading) =
                 resistance(&[closure.drop], bench.calibration.contact_mohm_per_v, u)
-                && !is_implausible("NO contact", reading.value, findings)
+                && !is_implausible(Contact::No, reading.value, findings)
             {
                 findings.found(Parameter::ContactResistanceNo, reading, &readings.drops);
             }
         }
-        Err(unread) => unread.tell("NO contact", findings),
+        Err(unread) => findings.stop(unread.of(Contact::No)),
     }
     None
 }
@@ -193,15 +192,13 @@ pub(super) fn conclude_operate(
 fn not_made(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
     findings.unmoved = match readings.boards.last() {
         Some(board) if board.no_closed => {
-            findings.fail("operate_time_ms high: NO makes too late", Bin::Time);
+            findings.stop(Finding::OperatesTooLate);
             None
         }
-        Some(board) if board.nc_closed => {
-            Some("contact stuck: NC does not open at nominal voltage")
-        }
-        Some(_) => Some("contact stuck: NO does not make at nominal voltage"),
+        Some(board) if board.nc_closed => Some(Finding::NcDoesNotOpen),
+        Some(_) => Some(Finding::NoDoesNotMake),
         None => {
-            findings.void("interface board not read");
+            findings.stop(Finding::BoardNotRead);
             None
         }
     };
@@ -214,10 +211,7 @@ pub(super) fn conclude_release(
     findings: &mut Findings,
 ) -> Option<Stage> {
     if readings.seen.first() != Some(&true) {
-        findings.fail(
-            "release_time_ms high: NC does not make after switch-off",
-            Bin::Time,
-        );
+        findings.stop(Finding::ReleasesTooLate);
         return None;
     }
     time_and_bounce(
@@ -234,8 +228,8 @@ pub(super) fn conclude_release(
         findings.drop_zero,
     ) {
         (Ok(drop), Some(zero)) => add_nc(bench, drop - zero, &readings.drops, findings),
-        (Ok(_), None) => findings.void("NC drop without its zero"),
-        (Err(unread), _) => unread.tell("NC contact", findings),
+        (Ok(_), None) => findings.stop(Finding::DropWithoutZero),
+        (Err(unread), _) => findings.stop(unread.of(Contact::Nc)),
     }
     None
 }

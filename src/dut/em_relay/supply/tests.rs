@@ -3,9 +3,9 @@
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::{Factor, OutputLine};
 use crate::dut::em_relay::supply::Supply;
+use crate::dut::em_relay::tests::bench;
 use crate::instrument::act::Act;
 use crate::rig::point::AnalogOut;
-use crate::station::tests::bench;
 use crate::units::{Span, Volt};
 
 /// Outputs that err by as much as their makers allow, each its own way.

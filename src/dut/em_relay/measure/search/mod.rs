@@ -69,7 +69,7 @@ pub enum Next {
 impl Search {
     /// Over the interval that the lot leaves open.
     fn new(bench: &Bench, strategy: Strategy, direction: Direction, part: Celsius) -> Self {
-        let test = &bench.recipe.test;
+        let test = &bench.relay.test;
         let (centre, sd) = match direction {
             Direction::Rising => (test.expected_operate_v, test.expected_operate_sd_v),
             Direction::Falling => (test.expected_release_v, test.expected_release_sd_v),
@@ -167,7 +167,7 @@ fn overshot(bench: &Bench, findings: &Findings, direction: Direction) -> Option<
 
 /// Far to both sides of the lot; no release threshold is looked for near nothing.
 fn far(bench: &Bench, direction: Direction) -> (Volt, Volt) {
-    let test = &bench.recipe.test;
+    let test = &bench.relay.test;
     let (centre, sd) = match direction {
         Direction::Rising => (test.expected_operate_v, test.expected_operate_sd_v),
         Direction::Falling => (test.expected_release_v, test.expected_release_sd_v),
@@ -175,7 +175,7 @@ fn far(bench: &Bench, direction: Direction) -> (Volt, Volt) {
     let near = Volt(centre - WIDE * sd * direction.sign());
     let end = match direction {
         Direction::Rising => Volt(centre + WIDE * sd),
-        Direction::Falling => Volt(LOWEST * bench.recipe.part.nominal_v),
+        Direction::Falling => Volt(LOWEST * bench.relay.part.nominal_v),
     };
     (near, end)
 }
@@ -191,7 +191,7 @@ pub(super) fn parameter(direction: Direction) -> Parameter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::station::tests::bench;
+    use crate::dut::em_relay::tests::bench;
 
     /// Levels tried against a threshold, and what came of it.
     fn run(strategy: Strategy, direction: Direction, threshold: f64) -> (Vec<Volt>, Next) {
@@ -228,7 +228,7 @@ mod tests {
             panic!("{next:?}")
         };
         assert_eq!(tried.len(), 7);
-        let interval = 2.0 * REACH * bench().recipe.test.expected_operate_sd_v;
+        let interval = 2.0 * REACH * bench().relay.test.expected_operate_sd_v;
         assert!((step.0 - interval / 128.0).abs() < 1e-9);
         assert!((volts.0 - 7.913).abs() <= step.0 / 2.0 + 1e-9);
     }

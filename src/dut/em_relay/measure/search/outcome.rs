@@ -1,11 +1,12 @@
 //! What a trial leads to: another one, a value, a proof, or ramps after all.
 
 use super::{AFTER_SEARCH, Next, parameter};
+use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Bench, Findings, Stage};
 use crate::dut::em_relay::threshold::Direction;
-use crate::dut::verdict::Judgement;
+use crate::gauge::Judgement;
 use crate::gauge::budget::{Budget, Reading, resolution};
 use crate::instrument::act::Readings;
 use crate::rig::sample::CountSample;
@@ -18,7 +19,7 @@ pub(in crate::dut::em_relay::measure) fn conclude(
     direction: Direction,
 ) -> Option<Stage> {
     let (Some(seen), Some(mut search)) = (readings.boards.last(), findings.search) else {
-        findings.void("interface board not read");
+        findings.stop(Finding::BoardNotRead);
         return None;
     };
     let rising = direction == Direction::Rising;
@@ -55,10 +56,7 @@ fn placed(
     next: Next,
 ) -> Option<Stage> {
     let Next::Found(volts, step) = next else {
-        findings.void(format!(
-            "{}: no threshold between the ends of the search",
-            parameter(direction)
-        ));
+        findings.stop(Finding::SearchWithoutThreshold(direction));
         return None;
     };
     *findings.expected(direction) = Some(near(bench, direction, volts, step));

@@ -15,8 +15,8 @@ pub(super) fn level(bench: &Bench, direction: Direction, part: Celsius) -> Volt 
     let (recipe, sign) = (&bench.recipe, direction.sign());
     let limit = recipe.limits.of(parameter(direction));
     let (limit, expected) = match direction {
-        Direction::Rising => (limit.high, recipe.test.expected_operate_v),
-        Direction::Falling => (limit.low, recipe.test.expected_release_v),
+        Direction::Rising => (limit.high, bench.relay.test.expected_operate_v),
+        Direction::Falling => (limit.low, bench.relay.test.expected_release_v),
     };
     let limit = limit.unwrap_or(expected);
     let reference = bench.reference_temperature();

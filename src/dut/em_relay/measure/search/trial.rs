@@ -35,7 +35,7 @@ pub(in crate::dut::em_relay::measure) fn acts(
         Search::new(bench, bench.strategy(parameter(direction)), direction, part)
     });
     findings.search = Some(search);
-    let test = &bench.recipe.test;
+    let test = &bench.relay.test;
     let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);
     let mut acts = Vec::new();
     if search.begins_anew() {
@@ -93,7 +93,7 @@ fn from_sealed(
     acts.extend([
         // What still falls would seal at more than nominal.
         Act::Wait(still_ramping),
-        supply.step_to(Volt(SEAL * bench.recipe.part.nominal_v)),
+        supply.step_to(Volt(SEAL * bench.relay.part.nominal_v)),
         board(&[
             (SourceOn, false),
             (SourceReverse, false),

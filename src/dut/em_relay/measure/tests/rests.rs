@@ -4,7 +4,7 @@ use super::super::{coil, contact, kelvin};
 use super::{PULLED, RESTING, assert_ends, at_23_c, bench, drop_of, ended, good, scan};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::measure::Findings;
-use crate::dut::recipe::CoilChannels;
+use crate::dut::em_relay::recipe::CoilChannels;
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{BoardInputs, CoilScan, Readings};
 use crate::rig::sample::{Quality, Sample};
@@ -216,9 +216,7 @@ fn open_shorted_and_unreadable_coils_are_told_apart() {
 #[test]
 fn a_coil_of_low_resistance_is_read_on_the_wide_channel() {
     let mut bench = bench();
-    let mut recipe = (*bench.recipe).clone();
-    recipe.test.coil_channels = CoilChannels::CoarseCurrent;
-    bench.recipe = Arc::new(recipe);
+    Arc::make_mut(&mut bench.relay).test.coil_channels = CoilChannels::CoarseCurrent;
     let scan = CoilScan {
         current_wide: Some(good(0.03, 200.0)),
         current_fine: None,

@@ -4,9 +4,9 @@ use super::super::{Stage, Test, acts};
 use super::{at_23_c, bench, good, scan};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::measure::{Bench, coil};
+use crate::dut::em_relay::recipe::Strategies;
 use crate::dut::em_relay::sampling::Polarities;
 use crate::dut::em_relay::supply::Supply;
-use crate::dut::recipe::Strategies;
 use crate::gauge::budget::{Budget, Reading};
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalOut::{SourceOn, SourceReverse};
@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// The default recipe with other samplings.
 fn with(change: impl Fn(&mut Strategies)) -> Bench {
     let mut bench = bench();
-    change(&mut Arc::make_mut(&mut bench.recipe).test.strategy);
+    change(&mut Arc::make_mut(&mut bench.relay).test.strategy);
     bench
 }
 

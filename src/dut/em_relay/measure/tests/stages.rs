@@ -280,7 +280,7 @@ fn on_the_ramp() -> Bench {
         law.learn(&shown, shown.indicated - lag);
     }
     let mut bench = bench();
-    let strategy = &mut Arc::make_mut(&mut bench.recipe).test.strategy;
+    let strategy = &mut Arc::make_mut(&mut bench.relay).test.strategy;
     strategy.operate_voltage_v = Strategy::Ramp;
     let lags = Arc::make_mut(&mut bench.calibration).lags.as_mut().unwrap();
     lags.operate.coarse = law;

@@ -2,10 +2,12 @@
 
 use super::super::{Findings, Progress, Stage, Test, acts, order};
 use super::{at_23_c, bench};
+use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::{Parameter, parameter};
-use crate::dut::verdict::{Bin, Reason, Verdict};
+use crate::dut::reason::{Code, Reason};
+use crate::dut::verdict::{Bin, Verdict};
 use crate::gauge::budget::{Budget, Reading};
 use crate::instrument::act::{Act, Doing, Job, JobDone, Read};
 use crate::rig::point::{AnalogOut, DigitalOut};
@@ -188,10 +190,7 @@ fn fails_at(job: &Job) -> Test {
 fn a_rig_in_trouble_has_proven_no_part_bad() {
     let mut test = fails_at(&Job::Read(Read::Resets));
     let mut findings = Findings::default();
-    findings.fail(
-        "operate_voltage_v high: above the coarse ramp",
-        Bin::Voltage,
-    );
+    findings.stop(Finding::NoDoesNotMake);
     test.findings = findings.clone();
     assert_eq!(test.verdict().name(), "fail");
     findings.trouble("module answers ?AA".into());
@@ -199,7 +198,7 @@ fn a_rig_in_trouble_has_proven_no_part_bad() {
     test.findings = findings;
     assert_eq!(
         test.verdict(),
-        Verdict::Void(vec!["module answers ?AA".into()])
+        Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")])
     );
 }
 
@@ -208,7 +207,7 @@ fn the_level_is_written_anew_after_a_test_that_ended_early() {
     let bench = bench();
     let writes = |ends: fn(&mut Findings)| {
         let mut supply = Supply::new(&bench.calibration);
-        supply.step_to(Volt(bench.recipe.test.prebias_v));
+        supply.step_to(Volt(bench.relay.test.prebias_v));
         let mut findings = Findings::default();
         ends(&mut findings);
         let acts = acts(Stage::Off, &bench, &mut supply, &mut findings);
@@ -216,14 +215,18 @@ fn the_level_is_written_anew_after_a_test_that_ended_early() {
         acts.iter().filter(level).count()
     };
     assert_eq!(writes(|_| {}), 1, "which is none where it stands already");
-    assert_eq!(writes(|it| it.void("nothing came")), 2, "down and up");
+    assert_eq!(
+        writes(|it| it.stop(Finding::BoardNotRead)),
+        2,
+        "down and up"
+    );
 }
 
 #[test]
 fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
     // No Kelvin bit is set, so the test goes from the pins straight to off.
     let test = fails_at(&Job::Read(Read::Board));
-    let why = Verdict::Void(vec!["module answers ?AA".into()]);
+    let why = Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")]);
     assert_eq!(test.verdict(), why);
     assert_eq!(test.verdict().bin(), Bin::Retest);
     let restarted = fails_at(&Job::Read(Read::Resets));
@@ -234,14 +237,11 @@ fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
 #[test]
 fn the_first_cause_of_an_early_end_stays() {
     let mut findings = at_23_c();
-    findings.fail("coil open", Bin::Coil);
-    findings.void("coil current not gone after the test");
+    findings.stop(Finding::CoilOpen);
+    findings.stop(Finding::CoilCurrentRemains);
     let mut test = Test::begin(bench(), Shop::at_rest().now);
     test.findings = findings;
-    let reason = Reason {
-        text: "coil open".into(),
-        bin: Bin::Coil,
-    };
+    let reason = Finding::CoilOpen.into();
     assert_eq!(test.verdict(), Verdict::Fail(vec![reason]));
 }
 
@@ -278,7 +278,7 @@ fn a_part_passes_with_all_nine_results_and_is_void_without_one() {
         let mut values = GOOD.to_vec();
         let (parameter, _) = values.remove(missing);
         let verdict = measured(&values).verdict();
-        let why = format!("{parameter} not measured");
+        let why = Reason::of(Code::NotMeasured(parameter.into()));
         assert_eq!(verdict, Verdict::Void(vec![why]));
     }
 }

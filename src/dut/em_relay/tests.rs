@@ -1,14 +1,15 @@
 //! Recipe, golden parts and instruments that err by nothing.
 
-use super::RIG;
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::{Factor, InputLine, Lag, Lags, OutputLine};
 use crate::dut::em_relay::lag::LagLaw;
 use crate::dut::em_relay::measure::Bench;
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
-use crate::dut::recipe::Recipe;
+use crate::dut::recipe::{DeviceRecipe, Recipe};
 use serde::Deserialize;
 use std::sync::Arc;
+
+const RIG: &str = include_str!("../../../config/rig.toml");
 
 #[derive(Deserialize)]
 struct Instruments {
@@ -21,7 +22,9 @@ pub fn bench() -> Bench {
     let recipe: Recipe =
         toml::from_str(include_str!("../../../config/recipes/jzc-22f-012.toml")).unwrap();
     let instruments: Instruments = toml::from_str(RIG).unwrap();
+    let DeviceRecipe::EmRelay(relay) = &recipe.device;
     Bench {
+        relay: Arc::new(relay.clone()),
         recipe: Arc::new(recipe),
         calibration: Arc::new(calibration()),
         reference: instruments.reference,

@@ -1,0 +1,149 @@
+//! What a recipe says of a relay: the part, and how it is measured.
+
+use super::parameter::Parameter;
+use super::sampling::{CoilSampling, ContactSampling};
+use super::strategy::Strategy;
+use crate::dut::recipe::Body;
+use crate::rig::fault::Fault;
+use serde::{Deserialize, Serialize};
+
+/// The sections `[part]` and `[test]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RelayRecipe {
+    /// The part.
+    pub part: PartData,
+    /// How it is measured.
+    pub test: TestPlan,
+}
+
+impl RelayRecipe {
+    /// Checks that pre-bias and expected thresholds lie in their order below the nominal voltage.
+    ///
+    /// # Errors
+    /// Names the first key that does not.
+    pub fn check(&self) -> Result<(), Fault> {
+        let test = &self.test;
+        let ordered = [
+            (
+                "expected_release_v",
+                test.expected_release_v,
+                "expected_operate_v",
+                test.expected_operate_v,
+            ),
+            (
+                "prebias_v",
+                test.prebias_v,
+                "expected_operate_v",
+                test.expected_operate_v,
+            ),
+            (
+                "expected_operate_v",
+                test.expected_operate_v,
+                "nominal_v",
+                self.part.nominal_v,
+            ),
+        ];
+        for (low, low_v, high, high_v) in ordered {
+            if low_v >= high_v {
+                let expected = format!("less than {high}, {high_v} V");
+                return Err(Fault::new(format!("test.{low}"), low_v, expected));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The part itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PartData {
+    /// Nominal coil voltage, V.
+    pub nominal_v: f64,
+    /// Nominal coil resistance at the reference temperature, ohm.
+    pub nominal_coil_ohm: f64,
+    /// Body along x, y, z as it lies in the nest, mm.
+    pub body_mm: [f64; 3],
+    /// Length of the pins below the body, mm.
+    pub pin_length_mm: f64,
+    /// Temperature that all results are converted to, degrees Celsius.
+    pub reference_temperature_c: f64,
+}
+
+impl PartData {
+    /// Its outside.
+    pub fn body(&self) -> Body {
+        Body {
+            size_mm: self.body_mm,
+            pin_length_mm: self.pin_length_mm,
+        }
+    }
+}
+
+/// Which channels measure the coil.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CoilChannels {
+    /// `coil_voltage_fine` and `coil_current_fine`.
+    Fine,
+    /// `coil_voltage_fine` and `coil_current`: a coil of low resistance draws too much for the fine current.
+    CoarseCurrent,
+}
+
+/// What takes the coil's energy at switching off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Clamp {
+    /// 60 V zener: quick release.
+    Zener,
+    /// Plain diode: slow release.
+    Diode,
+}
+
+/// How the part is measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestPlan {
+    /// Operations before the first measurement.
+    pub conditioning_operations: u32,
+    /// Coil resistance is measured here and the operate ramp starts here, V.
+    pub prebias_v: f64,
+    /// Height of the coarse ramp, V.
+    pub coarse_span_v: f64,
+    /// Which channels measure the coil.
+    pub coil_channels: CoilChannels,
+    /// Operate threshold expected of the lot, V.
+    pub expected_operate_v: f64,
+    /// Its standard deviation, V.
+    pub expected_operate_sd_v: f64,
+    /// Release threshold expected of the lot, V.
+    pub expected_release_v: f64,
+    /// Its standard deviation, V.
+    pub expected_release_sd_v: f64,
+    /// Coil suppression during the timed release.
+    pub clamp: Clamp,
+    /// How the thresholds are found.
+    #[serde(default)]
+    pub strategy: Strategies,
+}
+
+/// A strategy per threshold, one that is not named is `coarse_fine`; and how often the rest is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Strategies {
+    /// Of the operate threshold.
+    pub operate_voltage_v: Strategy,
+    /// Of the release threshold.
+    pub release_voltage_v: Strategy,
+    /// Of the coil resistance.
+    pub coil: CoilSampling,
+    /// Of both contacts.
+    pub contact: ContactSampling,
+}
+
+impl Strategies {
+    /// Each threshold with its own.
+    pub fn each(&self) -> [(Parameter, Strategy); 2] {
+        [
+            (Parameter::OperateVoltage, self.operate_voltage_v),
+            (Parameter::ReleaseVoltage, self.release_voltage_v),
+        ]
+    }
+}

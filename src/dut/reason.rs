@@ -1,0 +1,206 @@
+//! Why a part is not a pass: a code with its side and detail.
+//!
+//! Programs compare codes. [`Reason`] prints as the string of rows, files and API, for example `operate_voltage_v high`;
+//! nothing reads that string back but the migration of histories written before reasons had codes.
+
+use super::characteristic::Characteristic;
+use super::em_relay;
+use super::verdict::Bin;
+use crate::gauge::Side;
+use std::fmt;
+
+/// What was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Code {
+    /// The value lies outside its limit by more than its uncertainty.
+    OutsideLimit(Characteristic),
+    /// The value lies within its uncertainty of the limit, after the slow strategy too.
+    NotProven(Characteristic),
+    /// No usable value.
+    NotMeasured(Characteristic),
+    /// The sequence was cut off; detail: by what.
+    Interrupted,
+    /// A line or module failed in the middle of the test; detail: which, and how.
+    RigTrouble,
+    /// What the test of an electromagnetic relay has found.
+    EmRelay(em_relay::Finding),
+    /// A text that has no code: imported, or older than this program knows; detail: the text.
+    Unclassified,
+}
+
+/// One reason.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reason {
+    /// What was found.
+    pub code: Code,
+    /// Side of the limit it speaks of, if it speaks of one.
+    pub side: Option<Side>,
+    /// What the text says beside the code: a figure, a pin, a module; may be empty.
+    pub detail: String,
+}
+
+impl Reason {
+    /// A reason that its code says whole.
+    pub fn of(code: Code) -> Self {
+        Self::detailed(code, "")
+    }
+
+    fn detailed(code: Code, detail: impl Into<String>) -> Self {
+        Self {
+            code,
+            side: None,
+            detail: detail.into(),
+        }
+    }
+
+    /// A value proven outside its limit.
+    pub fn outside(characteristic: Characteristic, side: Side) -> Self {
+        Self {
+            side: Some(side),
+            ..Self::of(Code::OutsideLimit(characteristic))
+        }
+    }
+
+    /// A value that neither lies inside its limit nor outside by its uncertainty.
+    pub fn not_proven(characteristic: Characteristic, side: Side) -> Self {
+        Self {
+            side: Some(side),
+            ..Self::of(Code::NotProven(characteristic))
+        }
+    }
+
+    /// The sequence was cut off by `why`.
+    pub fn interrupted(why: &str) -> Self {
+        Self::detailed(Code::Interrupted, why)
+    }
+
+    /// A line or module failed: `why` names it.
+    pub fn rig_trouble(why: impl Into<String>) -> Self {
+        Self::detailed(Code::RigTrouble, why)
+    }
+
+    /// A text without a code.
+    pub fn unclassified(text: impl Into<String>) -> Self {
+        Self::detailed(Code::Unclassified, text)
+    }
+
+    /// Bin that this reason alone sends a part to.
+    pub fn bin(&self) -> Bin {
+        match self.code {
+            Code::OutsideLimit(characteristic) | Code::NotProven(characteristic) => {
+                characteristic.bin()
+            }
+            Code::EmRelay(finding) => finding.bin().unwrap_or(Bin::Retest),
+            Code::NotMeasured(_) | Code::Interrupted | Code::RigTrouble | Code::Unclassified => {
+                Bin::Retest
+            }
+        }
+    }
+
+    /// The characteristic it speaks of, if it speaks of one.
+    pub fn characteristic(&self) -> Option<Characteristic> {
+        match self.code {
+            Code::OutsideLimit(it) | Code::NotProven(it) | Code::NotMeasured(it) => Some(it),
+            Code::EmRelay(finding) => finding.proves().map(Characteristic::EmRelay),
+            Code::Interrupted | Code::RigTrouble | Code::Unclassified => None,
+        }
+    }
+
+    /// Reads a text of a history that kept no codes; what has none stays [`Code::Unclassified`].
+    pub fn from_text(text: &str) -> Self {
+        if let Some(why) = text.strip_prefix(INTERRUPTED) {
+            return Self::interrupted(why);
+        }
+        if let Some((finding, detail)) = em_relay::Finding::from_text(text) {
+            return finding.with(detail);
+        }
+        Self::of_characteristic(text).unwrap_or_else(|| Self::unclassified(text))
+    }
+
+    fn of_characteristic(text: &str) -> Option<Self> {
+        let (key, said) = text.split_once(' ')?;
+        let characteristic = Characteristic::from_key(key)?;
+        Some(match said {
+            "low" => Self::outside(characteristic, Side::Low),
+            "high" => Self::outside(characteristic, Side::High),
+            "low not proven" => Self::not_proven(characteristic, Side::Low),
+            "high not proven" => Self::not_proven(characteristic, Side::High),
+            "not measured" => Self::of(Code::NotMeasured(characteristic)),
+            _ => return None,
+        })
+    }
+}
+
+const INTERRUPTED: &str = "interrupted: ";
+
+impl Code {
+    /// Its name in rows and exports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::OutsideLimit(_) => "outside_limit",
+            Self::NotProven(_) => "not_proven",
+            Self::NotMeasured(_) => "not_measured",
+            Self::Interrupted => "interrupted",
+            Self::RigTrouble => "rig_trouble",
+            Self::EmRelay(finding) => finding.code(),
+            Self::Unclassified => "unclassified",
+        }
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let side = self.side.map_or(String::new(), |side| format!(" {side}"));
+        match self.code {
+            Code::OutsideLimit(it) => write!(f, "{it}{side}"),
+            Code::NotProven(it) => write!(f, "{it}{side} not proven"),
+            Code::NotMeasured(it) => write!(f, "{it} not measured"),
+            Code::Interrupted => write!(f, "{INTERRUPTED}{}", self.detail),
+            Code::EmRelay(finding) => f.write_str(&finding.text(&self.detail)),
+            Code::RigTrouble | Code::Unclassified => f.write_str(&self.detail),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dut::em_relay::{Finding, Parameter};
+
+    const OPERATE: Characteristic = Characteristic::EmRelay(Parameter::OperateVoltage);
+
+    #[test]
+    fn a_reason_prints_as_the_interface_says() {
+        let said = [
+            (
+                Reason::outside(OPERATE, Side::High),
+                "operate_voltage_v high",
+            ),
+            (
+                Reason::not_proven(OPERATE, Side::Low),
+                "operate_voltage_v low not proven",
+            ),
+            (
+                Reason::of(Code::NotMeasured(OPERATE)),
+                "operate_voltage_v not measured",
+            ),
+            (Reason::interrupted("door_open"), "interrupted: door_open"),
+            (Finding::CoilOpen.into(), "coil open"),
+            (
+                Finding::PinOpen.with("COM"),
+                "no Kelvin contact at COM: missing pin or dirty probe",
+            ),
+        ];
+        for (reason, text) in said {
+            assert_eq!(reason.to_string(), text);
+            assert_eq!(Reason::from_text(text), reason);
+        }
+    }
+
+    #[test]
+    fn an_unknown_text_keeps_its_words() {
+        let reason = Reason::from_text("refused by the clerk");
+        assert_eq!(reason.code, Code::Unclassified);
+        assert_eq!(reason.to_string(), "refused by the clerk");
+    }
+}
