@@ -10,7 +10,7 @@ mod compare;
 use super::rig::RigArgs;
 use super::run::{self, Controls, Orders, RunArgs};
 use crate::config::{Plant, load_recipe};
-use crate::dut::em_relay::Calibration;
+use crate::dut::Calibration;
 use crate::history::{CalibrationRecord, Identity, Store, snapshot_hash};
 use anyhow::{Context, bail};
 pub(super) use compare::K_OF_ALL;
@@ -124,8 +124,8 @@ fn to_verify(
 fn keep(db: &Path, args: &CalibrateArgs, found: &Calibration) -> anyhow::Result<i32> {
     let body = serde_json::to_string(found)?;
     open(db)?.save_calibration(&CalibrationRecord {
-        made_at_us: found.made_at_us,
-        due_at_us: found.due_at_us,
+        made_at_us: found.made_at_us(),
+        due_at_us: found.due_at_us(),
         hash: snapshot_hash(&body),
         body,
         verified: true,
@@ -144,9 +144,9 @@ fn keep(db: &Path, args: &CalibrateArgs, found: &Calibration) -> anyhow::Result<
             )?;
         }
     }
-    let (made, due) = (date(found.made_at_us)?, date(found.due_at_us)?);
+    let (made, due) = (date(found.made_at_us())?, date(found.due_at_us())?);
     if args.json {
-        let it = json!({"type": "calibration", "made_at": made, "due_at": due, "simulated": found.simulated, "nominal_v": found.nominal_v, "k": K});
+        let it = json!({"type": "calibration", "made_at": made, "due_at": due, "simulated": found.is_simulated(), "nominal_v": found.nominal_v(), "k": K});
         writeln!(out, "{it}")?;
     } else {
         writeln!(out, "made {made}, due {due}; +- is U (k = {K})")?;

@@ -1,6 +1,6 @@
 //! What a run leaves for the history.
 
-use crate::dut::em_relay::Calibration;
+use crate::dut::Calibration;
 use crate::station::annunciator::Standing;
 use crate::station::gates::Uses;
 use crate::station::inside::Inside;

@@ -3,14 +3,20 @@
 //! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Characteristic`], [`Judgement`], [`Reason`]
 //! and [`Verdict`], never a kind.
 
+pub mod calibration;
 pub mod characteristic;
+pub mod device;
 pub mod em_relay;
+pub mod procedure;
 pub mod reason;
 pub mod recipe;
 pub mod verdict;
 
 pub use crate::gauge::Judgement;
+pub use calibration::Calibration;
 pub use characteristic::Characteristic;
+pub use device::Device;
+pub use procedure::Procedure;
 pub use reason::Reason;
 pub use recipe::Recipe;
 pub use verdict::{Bin, Verdict};

@@ -118,16 +118,16 @@ impl Reason {
     }
 
     fn of_characteristic(text: &str) -> Option<Self> {
-        let (key, said) = text.split_once(' ')?;
+        let (key, _) = text.split_once(' ')?;
         let characteristic = Characteristic::from_key(key)?;
-        Some(match said {
-            "low" => Self::outside(characteristic, Side::Low),
-            "high" => Self::outside(characteristic, Side::High),
-            "low not proven" => Self::not_proven(characteristic, Side::Low),
-            "high not proven" => Self::not_proven(characteristic, Side::High),
-            "not measured" => Self::of(Code::NotMeasured(characteristic)),
-            _ => return None,
-        })
+        let known = [
+            Self::outside(characteristic, Side::Low),
+            Self::outside(characteristic, Side::High),
+            Self::not_proven(characteristic, Side::Low),
+            Self::not_proven(characteristic, Side::High),
+            Self::of(Code::NotMeasured(characteristic)),
+        ];
+        known.into_iter().find(|reason| reason.to_string() == text)
     }
 }
 

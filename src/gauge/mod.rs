@@ -4,8 +4,10 @@
 //! part, a bus, a clock or a sequence.
 
 pub mod budget;
+pub mod factor;
 pub mod judgement;
 pub mod repetition;
 
 pub use budget::{Budget, Reading};
+pub use factor::Factor;
 pub use judgement::{Judgement, Limit, Rule, Side, judge};

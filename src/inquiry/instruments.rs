@@ -2,9 +2,9 @@
 //! read when they were measured last.
 
 use super::Result;
-use crate::dut::em_relay::Calibration;
-use crate::dut::em_relay::calibration::Named;
+use crate::dut::Calibration;
 use crate::dut::em_relay::settings::{Certified, GoldenPart};
+use crate::gauge::factor::Named;
 use crate::history::{Archive, CalibrationRecord, GoldenCheck, Moment, Part};
 use jiff::Timestamp;
 use serde::Serialize;

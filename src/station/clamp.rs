@@ -11,7 +11,9 @@ use super::sort::Sort;
 use super::trouble::Alarm;
 use super::turn::Turn;
 use super::wants::{Judged, Left};
-use crate::dut::em_relay::measure::{Bench, Progress, Stop, Test};
+use crate::dut::Device;
+use crate::dut::device::TestOrder;
+use crate::dut::procedure::{Procedure, Progress};
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{Doing, JobDone};
 use crate::rig::point::DigitalIn;
@@ -32,7 +34,7 @@ pub enum Clamp {
     /// Probes rise.
     Probing,
     /// The part is under test.
-    Testing(Box<Test>),
+    Testing(Procedure),
     /// Judged; waits for the gripper.
     Judged,
     /// Fingers close, probes go down.
@@ -48,7 +50,11 @@ pub struct Beside<'a> {
     /// Measuring line's answer, once.
     pub job: Option<JobDone>,
     /// What to test by.
-    pub bench: &'a Bench,
+    pub device: &'a Device,
+    /// The part is measured by confirmation measurements.
+    pub thorough: bool,
+    /// Serial number of the golden part in the nest while golden parts teach.
+    pub teaching: Option<&'a str>,
     /// State of the sorter.
     pub sort: &'a mut Sort,
     /// When the part before left the nest.
@@ -67,7 +73,7 @@ impl Clamp {
             Clamp::Clamping
                 if turn.arrived(Move::ClampClose) && turn.arrived(Move::PusherRetract) =>
             {
-                clamped(turn, beside)
+                clamped(turn)
             }
             Clamp::Clamping => Clamp::Clamping,
             Clamp::Probing if turn.arrived(Move::ProbesUp) => begin(turn, beside),
@@ -101,7 +107,7 @@ impl Clamp {
     }
 
     /// The test under way, for screens.
-    pub fn test(&self) -> Option<&Test> {
+    pub fn test(&self) -> Option<&Procedure> {
         match self {
             Clamp::Testing(test) => Some(test),
             Clamp::Empty
@@ -116,7 +122,7 @@ impl Clamp {
 }
 
 /// A part that was interrupted is not tested; it goes on to retest, with a row when it has none yet.
-fn clamped(turn: &mut Turn, beside: Beside) -> Clamp {
+fn clamped(turn: &mut Turn) -> Clamp {
     let interrupted = turn
         .ledger
         .nest
@@ -128,7 +134,7 @@ fn clamped(turn: &mut Turn, beside: Beside) -> Clamp {
     };
     if let Some(part) = turn.ledger.nest.as_mut().filter(|part| part.bin.is_none()) {
         part.bin = Some(Bin::Retest);
-        let judged = Judged::interrupted(part.clone(), &why, beside.bench, turn.now);
+        let judged = Judged::interrupted(part.clone(), &why, turn.now);
         turn.wants.judged.push(judged);
     }
     Clamp::Judged
@@ -138,22 +144,27 @@ fn begin(turn: &mut Turn, beside: Beside) -> Clamp {
     if let Some(part) = &mut turn.ledger.nest {
         part.probed_at = Some(turn.now);
     }
-    let test = Test::begin(beside.bench.clone(), turn.now);
-    begun(turn, beside, test)
+    begin_test(turn, beside, 1)
 }
 
-fn begun(turn: &mut Turn, beside: Beside, test: Test) -> Clamp {
+fn begin_test(turn: &mut Turn, beside: Beside, number: u8) -> Clamp {
+    let order = TestOrder {
+        thorough: beside.thorough,
+        teaching: beside.teaching,
+        number,
+    };
+    let test = beside.device.begin(&order, turn.now);
     testing(
         turn,
         Beside {
             job: None,
             ..beside
         },
-        Box::new(test),
+        test,
     )
 }
 
-fn testing(turn: &mut Turn, beside: Beside, mut test: Box<Test>) -> Clamp {
+fn testing(turn: &mut Turn, beside: Beside, mut test: Procedure) -> Clamp {
     match test.step(turn.now, beside.job.as_ref(), turn.image) {
         Progress::Doing(Doing::Job(job)) => turn.wants.job = Some(job),
         Progress::Doing(Doing::Wait(until)) => turn.wants.wake_at = Some(until),
@@ -161,10 +172,9 @@ fn testing(turn: &mut Turn, beside: Beside, mut test: Box<Test>) -> Clamp {
         Progress::Judged => {
             if let Some(again) = worth_another(turn, &test) {
                 turn.alarm(again);
-                let fresh = Test::begin(beside.bench.clone(), turn.now);
-                return begun(turn, beside, fresh.another(test.number() + 1));
+                return begin_test(turn, beside, test.number() + 1);
             }
-            judged(turn, beside.bench, *test);
+            judged(turn, test);
             return Clamp::Judged;
         }
     }
@@ -172,18 +182,16 @@ fn testing(turn: &mut Turn, beside: Beside, mut test: Box<Test>) -> Clamp {
 }
 
 /// What to tell before a golden part is tested again, if it is.
-fn worth_another(turn: &Turn, test: &Test) -> Option<Alarm> {
+fn worth_another(turn: &Turn, test: &Procedure) -> Option<Alarm> {
     let Kind::Golden(serial) = &turn.ledger.nest.as_ref()?.kind else {
         return None;
     };
     // What ran to its end proves nothing either while the lags are being taught, and is all that is wanted.
-    let (Stop::Void(why) | Stop::Trouble(why)) = test.findings.why_stopped()? else {
-        return None;
-    };
+    let why = test.why_void()?;
     (test.number() < GOLDEN_TESTS).then(|| Alarm::golden_repeated(serial, &why.to_string()))
 }
 
-fn judged(turn: &mut Turn, bench: &Bench, test: Test) {
+fn judged(turn: &mut Turn, test: Procedure) {
     let verdict = test.verdict();
     let judgements = test.judgements();
     let now = turn.now;
@@ -199,8 +207,7 @@ fn judged(turn: &mut Turn, bench: &Bench, test: Test) {
         part: part.clone(),
         verdict,
         judgements,
-        findings: test.findings,
-        bench: bench.clone(),
+        findings: test.into_record(),
         at: now,
     });
 }

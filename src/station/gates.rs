@@ -15,9 +15,6 @@ use super::Station;
 use super::ledger::Kind;
 use super::trouble::Alarm;
 use super::wants::{Checked, Judged, Wants};
-use crate::dut::em_relay::golden;
-use crate::dut::em_relay::probe_contact::Trend;
-use crate::dut::em_relay::settings::GoldenPart;
 use crate::dut::verdict::Verdict;
 use crate::units::{Ohm, RigTime, Span};
 use serde::Deserialize;
@@ -112,8 +109,6 @@ pub(super) struct Gates {
     worn: Vec<&'static str>,
     /// The limit of the probes' contact is passed, and was told.
     fouled: bool,
-    /// How well the probes have met the coils of this run.
-    probe_contact: Trend,
 }
 
 impl Gates {
@@ -156,7 +151,7 @@ impl Gates {
 impl Station {
     /// A golden part comes next: nothing else is judged before one has read as certified.
     pub(super) fn begin_check(&mut self) {
-        let next: VecDeque<GoldenPart> = self.plan.golden.first().cloned().into_iter().collect();
+        let next: VecDeque<String> = self.plan.golden.first().cloned().into_iter().collect();
         self.golden_planned += next.len().saturating_sub(self.golden_left.len()) as u64;
         self.gates.checking = !next.is_empty();
         self.golden_left = next;
@@ -165,7 +160,7 @@ impl Station {
     /// Looks whether a golden check is due while parts are being made.
     pub(super) fn look_for_check(&mut self, now: RigTime, wants: &mut Wants) {
         let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
-        if !self.is_calibrating() && self.bench.calibration.due_at_us <= at_us {
+        if !self.is_calibrating() && self.device.due_at_us() <= at_us {
             return wants.trouble.push(Alarm::calibration_overdue());
         }
         if self.gates.checking || self.is_calibrating() || !self.wants_more() {
@@ -186,13 +181,12 @@ impl Station {
     }
 
     fn next_serial(&self) -> Option<&str> {
-        self.golden_left.front().map(|part| part.serial.as_str())
+        self.golden_left.front().map(String::as_str)
     }
 
     /// Golden parts that teach the lags are still to come or have not taught them yet.
     pub(super) fn is_calibrating(&self) -> bool {
-        let lags = self.bench.calibration.lags;
-        !self.golden_left.is_empty() || lags.is_none_or(|lags| !lags.operate.fine_v.u.is_finite())
+        !self.golden_left.is_empty() || !self.device.is_calibrated()
     }
 
     /// The part in the nest is measured by the slow strategy.
@@ -209,20 +203,21 @@ impl Station {
         if judged.part.interrupted.is_some() {
             return self.begin_check();
         }
-        let part = self.plan.golden.iter().find(|part| part.serial == serial);
-        let read = part.map_or_else(
-            || Err(format!("golden part {serial} has no certificate")),
-            |part| golden::check(part, &judged.findings),
-        );
+        let read = self.device.check(serial, &judged.findings);
         wants.checked = Some(Checked {
             passed: read.is_ok(),
-            text: read.clone().err().unwrap_or_else(|| serial.to_owned()),
+            text: match &read {
+                Ok(()) => serial.to_owned(),
+                Err(why) => why.to_string(),
+            },
         });
         match read {
             Ok(()) => self.gates.good(judged.at, self.ledger.lot_parts()),
             Err(why) => {
                 self.begin_check();
-                wants.trouble.push(Alarm::golden_check_failed(&why));
+                wants
+                    .trouble
+                    .push(Alarm::golden_check_failed(&why.to_string()));
             }
         }
     }
@@ -246,22 +241,15 @@ impl Station {
         self.mechanism.uses()
     }
 
-    /// Resistance in series of both force contacts of the coil, mean over the last parts of the lot.
+    /// Resistance of the probes in series with the part, mean over the last parts of the lot.
     pub fn probe_contact(&self) -> Option<Ohm> {
-        self.gates.probe_contact.mean()
-    }
-
-    /// How well the probes have met this part.
-    pub(super) fn follow_probes(&mut self, judged: &Judged) {
-        if let Some(ohm) = judged.findings.probe_contact {
-            self.gates.probe_contact.add(ohm);
-        }
+        self.device.probe_contact()
     }
 
     /// The limit of the probes' contact is passed, told once until it is kept again.
     fn fouled(&mut self) -> Option<Alarm> {
         let limit_ohm = self.plan.lot.wear.probe_contact_ohm?;
-        let Ohm(mean) = self.gates.probe_contact.settled()?;
+        let Ohm(mean) = self.device.settled_probe_contact()?;
         let told = std::mem::replace(&mut self.gates.fouled, mean > limit_ohm);
         (self.gates.fouled && !told).then(|| Alarm::probe_contact(mean, limit_ohm))
     }

@@ -45,11 +45,7 @@ pub mod turn;
 pub mod wants;
 mod watch;
 
-use crate::dut::em_relay::golden::GoldenRun;
-use crate::dut::em_relay::lag::LagLaw;
-use crate::dut::em_relay::measure::Bench;
-use crate::dut::em_relay::measure::bench::untaught;
-use crate::dut::em_relay::settings::GoldenPart;
+use crate::dut::Device;
 use crate::guard::{PartPlaces, Situation};
 use crate::instrument::act::Runner;
 use crate::rig::axis::AxisTable;
@@ -70,6 +66,7 @@ use patience::Patience;
 use recovery::Recovery;
 use sort::Sort;
 use std::collections::VecDeque;
+use std::sync::Arc;
 use turn::Turn;
 use wants::{Inputs, Wants};
 
@@ -78,8 +75,8 @@ use wants::{Inputs, Wants};
 pub struct Plan {
     /// Parts of the lot; `None` goes on until stopped.
     pub count: Option<u64>,
-    /// Golden parts at the head of the magazine, used when there is no calibration.
-    pub golden: Vec<GoldenPart>,
+    /// Serial numbers of the golden parts at the head of the magazine, used when there is no calibration.
+    pub golden: Vec<String>,
     /// A calibration is at hand: neither references nor golden parts are run.
     pub calibrated: bool,
     /// Life of a calibration, microseconds.
@@ -88,8 +85,6 @@ pub struct Plan {
     pub epoch_us: i64,
     /// The rig is simulated.
     pub simulated: bool,
-    /// Volts at the terminal per volt of the coil, fine channel.
-    pub voltage_gain: f64,
     /// A person is at a screen: alarms and stops do not end the run.
     pub stays: bool,
     /// Between lots nothing begins by itself and no part is wanted; what is found inside is discharged. The machine
@@ -119,7 +114,8 @@ enum Start {
 #[derive(Debug)]
 pub struct Station {
     plan: Plan,
-    bench: Bench,
+    /// The kind under test, with what parts have taught.
+    device: Arc<Device>,
     table: AxisTable,
     state: State,
     entered: RigTime,
@@ -156,14 +152,10 @@ pub struct Station {
     asked_verify: bool,
     /// When the modules were found as they should be, of this clearing.
     verified: Option<RigTime>,
-    golden_left: VecDeque<GoldenPart>,
+    golden_left: VecDeque<String>,
     /// Golden parts that this run has asked for so far.
     golden_planned: u64,
     gates: Gates,
-    golden_run: GoldenRun,
-    coarse: (LagLaw, LagLaw),
-    /// The same of parts of this lot alone.
-    of_lot: (LagLaw, LagLaw),
     last_left: Option<RigTime>,
     lot_began: bool,
     /// Nobody has started anything yet: the first start is the program's own.
@@ -174,23 +166,18 @@ pub struct Station {
 
 impl Station {
     /// A station that knows nothing of its sensors yet.
-    pub fn new(plan: Plan, bench: Bench, table: AxisTable, mechanism: Mechanism) -> Self {
+    pub fn new(plan: Plan, device: Device, table: AxisTable, mechanism: Mechanism) -> Self {
         let golden_left = if plan.calibrated {
             VecDeque::new()
         } else {
             plan.golden.iter().cloned().collect()
         };
-        // What golden parts taught before a restart is not forgotten.
-        let known = bench.calibration.lags;
-        let known = known.map_or(untaught(), |lags| {
-            (lags.operate.coarse, lags.release.coarse)
-        });
         let ledger = Ledger::after(plan.left);
         let mut station = Self {
             fresh: true,
             state: plan.between_lots.unwrap_or(State::Stopped),
             plan,
-            bench,
+            device: Arc::new(device),
             table,
             entered: RigTime(0),
             mode: Mode::Production,
@@ -220,9 +207,6 @@ impl Station {
             golden_planned: golden_left.len() as u64,
             golden_left,
             gates: Gates::default(),
-            golden_run: GoldenRun::default(),
-            coarse: known,
-            of_lot: untaught(),
             last_left: None,
             lot_began: false,
             stopping: false,
@@ -288,7 +272,7 @@ impl Station {
             State::Resetting => "discharging".into(),
             State::Starting => "calibrating".into(),
             State::Execute | State::Completing => match self.clamp.test() {
-                Some(test) => format!("testing: {:?}", test.stage()),
+                Some(test) => format!("testing: {}", test.stage()),
                 None if self.lot_began => "running".into(),
                 None if self.golden_left.is_empty() => "running".into(),
                 None => "golden parts".into(),

@@ -9,6 +9,7 @@ use super::sort::Sort;
 use super::wants::{Inputs, Wants};
 use crate::instrument::act::JobDone;
 use crate::units::RigTime;
+use std::sync::Arc;
 
 impl Station {
     /// One turn of the sequence. `wanted`: further parts may leave the magazine; `push`: the part in the
@@ -26,22 +27,24 @@ impl Station {
         let test_running = matches!(self.clamp, Clamp::Testing(_) | Clamp::Judged);
         let was_empty = matches!(self.clamp, Clamp::Empty);
         let (feed, clamp) = (self.feed, std::mem::replace(&mut self.clamp, Clamp::Empty));
-        let (mut sort, mut last_left, mut bench) = (self.sort, self.last_left, self.bench.clone());
-        bench.thorough = self.is_thorough();
-        bench.probe_contact = self.probe_contact();
-        bench.golden = self.teaching().cloned();
+        let (mut sort, mut last_left) = (self.sort, self.last_left);
+        let (device, thorough) = (Arc::clone(&self.device), self.is_thorough());
+        let teaching = self.teaching().map(str::to_owned);
         let table = self.table.clone();
         let before = wants.motions.len();
         let mut turn = self.turn(now, &inputs, wants);
         sort = sort.step(&mut turn, &table, test_running);
         let beside = Beside {
             job,
-            bench: &bench,
+            device: &device,
+            thorough,
+            teaching: teaching.as_deref(),
             sort: &mut sort,
             last_left: &mut last_left,
         };
         let clamp = clamp.step(&mut turn, beside);
         let feed = feed.step(&mut turn, wanted, push);
+        drop(device);
         if was_empty && !matches!(clamp, Clamp::Empty) {
             self.mechanism.new_part();
         }
@@ -66,8 +69,7 @@ impl Station {
     }
 
     fn note_begin(&mut self, wants: &mut Wants) {
-        let lags = self.bench.calibration.lags;
-        let known = lags.is_some_and(|lags| lags.operate.fine_v.u.is_finite());
+        let known = self.device.is_calibrated();
         if !self.lot_began && self.golden_left.is_empty() && known {
             self.lot_began = true;
             wants.lot_began = true;

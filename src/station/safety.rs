@@ -280,9 +280,9 @@ impl Station {
                 wants.interrupted.push(Interrupted { ordinal, why });
                 continue;
             }
-            let mut judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
+            let mut judged = Judged::interrupted(part.clone(), &why, now);
             if let Clamp::Testing(test) = &self.clamp {
-                judged.findings = test.findings.clone();
+                judged.findings = test.record().clone();
                 judged.judgements = test.judgements();
             }
             debug_assert!(matches!(judged.verdict, Verdict::Void(_)));

@@ -9,7 +9,6 @@ use super::sort::Sort;
 use super::trouble::Alarm;
 use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
 use super::{Start, Station};
-use crate::dut::em_relay::reference;
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{Doing, Runner};
 use crate::units::{RigTime, Span};
@@ -220,7 +219,7 @@ impl Station {
             .get_or_insert_with(|| BY_A_RESET.into())
             .clone();
         if part.bin.replace(Bin::Retest).is_none() {
-            let judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
+            let judged = Judged::interrupted(part.clone(), &why, now);
             wants.judged.push(judged);
         } else if !told {
             let ordinal = part.ordinal;
@@ -242,7 +241,7 @@ impl Station {
                     .mechanism
                     .has_arrived(Move::ProbesUp, now, inputs.image);
                 self.start = if up {
-                    let acts = reference::acts(&self.bench);
+                    let acts = self.device.reference_acts();
                     Start::References(Box::new(Runner::new(acts, now)))
                 } else {
                     Start::Up
@@ -278,7 +277,7 @@ impl Station {
             Doing::Trouble(why) => wants.trouble.push(Alarm::calibration(&why)),
             Doing::Done => {
                 if let Err(why) = self.conclude_references(now, &runner) {
-                    wants.trouble.push(Alarm::calibration(&why));
+                    wants.trouble.push(Alarm::calibration(&why.to_string()));
                     return;
                 }
                 wants.motions.push(Move::ProbesDown);

@@ -5,7 +5,6 @@ use super::mechanism::{Mechanism, SENSOR_AGE};
 use super::moves::Move;
 use super::trouble::Alarm;
 use super::wants::Wants;
-use crate::dut::em_relay::settings::GoldenPart;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use crate::units::RigTime;
@@ -24,7 +23,7 @@ pub struct Turn<'a> {
     /// What this turn asks for.
     pub wants: &'a mut Wants,
     /// Golden parts still to come, in the order of the magazine.
-    pub golden: &'a mut VecDeque<GoldenPart>,
+    pub golden: &'a mut VecDeque<String>,
     /// Ordinal up to which parts are durably recorded.
     pub recorded: u64,
     /// The sequence goes to rest: nothing new begins.
@@ -69,6 +68,6 @@ impl Turn<'_> {
 
     /// Serial of the next part when it is a golden one.
     pub fn next_golden(&mut self) -> Option<String> {
-        self.golden.pop_front().map(|part| part.serial)
+        self.golden.pop_front()
     }
 }

@@ -5,9 +5,8 @@ use super::moves::Move;
 use super::orders::{Order, Refused};
 use super::packml::Command;
 use super::trouble::Alarm;
-use crate::dut::em_relay::Calibration;
-use crate::dut::em_relay::measure::{Bench, Findings};
-use crate::dut::{Bin, Characteristic, Judgement, Reason, Verdict};
+use crate::dut::em_relay::measure::Findings;
+use crate::dut::{Bin, Calibration, Characteristic, Judgement, Reason, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::image::Image;
 use crate::rig::point::{DigitalIn, DigitalOut};
@@ -47,21 +46,18 @@ pub struct Judged {
     pub judgements: Vec<(Characteristic, Judgement)>,
     /// Results and the replies they came from.
     pub findings: Findings,
-    /// What it was judged by.
-    pub bench: Bench,
     /// When it was judged.
     pub at: RigTime,
 }
 
 impl Judged {
     /// A part that was not tested to the end.
-    pub fn interrupted(part: Part, why: &str, bench: &Bench, at: RigTime) -> Self {
+    pub fn interrupted(part: Part, why: &str, at: RigTime) -> Self {
         Self {
             part,
             verdict: Verdict::Void(vec![Reason::interrupted(why)]),
             judgements: Vec::new(),
             findings: Findings::default(),
-            bench: bench.clone(),
             at,
         }
     }

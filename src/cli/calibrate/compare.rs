@@ -1,6 +1,6 @@
 //! The factors of a calibration by name, and whether those found again agree with those stored.
 
-use crate::dut::em_relay::Calibration;
+use crate::dut::Calibration;
 use std::fmt;
 
 /// Coverage factor of what is told: about 95 %.

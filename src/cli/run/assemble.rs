@@ -7,15 +7,10 @@ use crate::bus::Pace;
 use crate::config::Plant;
 use crate::cycle::{Cycle, LineEnds, Outside, mimic};
 use crate::dut::Recipe;
-use crate::dut::em_relay::Calibration;
-use crate::dut::em_relay::calibration::{Factor, InputLine, OutputLine};
-use crate::dut::em_relay::feasible::nominal_v_per_s;
-use crate::dut::em_relay::measure::Bench;
-use crate::dut::recipe::DeviceRecipe;
+use crate::dut::device::{Device, Rig};
 use crate::guard::{Actuator, Guard, PartSize};
 use crate::history::AlarmLeft;
 use crate::rig::axis::AxisStation;
-use crate::rig::point::{AnalogIn, AnalogOut};
 use crate::rig::wiring::StrokeLimits;
 use crate::station::catalogue;
 use crate::station::mechanism::Mechanism;
@@ -54,39 +49,32 @@ pub fn cycle(
             .map(|at| (at, wiring.axis.point(at).x_mm))
             .collect::<Vec<(AxisStation, f64)>>(),
     };
-    let DeviceRecipe::EmRelay(relay) = &setup.recipe.device;
-    let golden = plant.golden.of_nominal(relay.part.nominal_v);
+    let calibrated = calibration.is_some();
+    let rig = Rig {
+        wiring: &wiring,
+        reference: &plant.reference,
+        accuracy: &plant.accuracy,
+        reference_parts: &plant.golden,
+    };
+    let device = Device::new(Arc::clone(&recipe), &rig, calibration);
     let plan = Plan {
         stays: controls.stays,
         between_lots: controls.between_lots,
         count: setup.args.count,
         golden: match controls.between_lots {
             Some(_) => Vec::new(),
-            None => golden.cloned().collect(),
+            None => device.reference_serials(),
         },
-        calibrated: calibration.is_some(),
+        calibrated,
         valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
         epoch_us: setup.epoch_us,
         simulated: setup.args.rig.sim,
-        voltage_gain: wiring.analog_in(AnalogIn::CoilVoltageFine).gain,
         lot: plant.lot.clone(),
         worn,
         left,
     };
-    let bench = Bench {
-        relay: Arc::new(relay.clone()),
-        calibration: Arc::new(calibration.unwrap_or_else(|| uncalibrated(relay.part.nominal_v))),
-        recipe,
-        reference: plant.reference,
-        accuracy: plant.accuracy,
-        nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
-            .map(|output| nominal_v_per_s(&wiring, output)),
-        probe_contact: None,
-        thorough: false,
-        golden: None,
-    };
     let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), size_of(setup.recipe));
-    let mut station = Station::new(plan, bench, wiring.axis.clone(), mechanism);
+    let mut station = Station::new(plan, device, wiring.axis.clone(), mechanism);
     // Without a person nobody could see them.
     for left in alarms.into_iter().filter(|_| controls.stays) {
         inherit(&mut station, left, setup.epoch_us);
@@ -126,30 +114,4 @@ fn timeouts(limits: &StrokeLimits) -> Vec<(&'static str, Span)> {
         ("gripper", limits.gripper),
         ("axis", limits.axis),
     ]
-}
-
-/// Ideal factors of unknown quality: good enough to run the reference measurements, no more.
-fn uncalibrated(nominal_v: f64) -> Calibration {
-    let unknown = Factor::new(1.0, f64::INFINITY);
-    Calibration {
-        made_at_us: 0,
-        due_at_us: 0,
-        simulated: false,
-        nominal_v,
-        coil_input: InputLine {
-            gain: unknown,
-            offset_v: Factor::new(0.0, f64::INFINITY),
-        },
-        ohm_fine: unknown,
-        ohm_wide: unknown,
-        contact_mohm_per_v: unknown,
-        gate_delay_us: [Factor::new(0.0, f64::INFINITY); 2],
-        level: OutputLine::IDEAL,
-        coarse: OutputLine::IDEAL,
-        fine: OutputLine::IDEAL,
-        coarse_v_per_s: unknown,
-        fine_v_per_s: unknown,
-        lags: None,
-        probe_contact_ohm: 0.0,
-    }
 }

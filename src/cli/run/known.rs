@@ -2,7 +2,7 @@
 
 use super::Controls;
 use super::recorder::Setup;
-use crate::dut::em_relay::Calibration;
+use crate::dut::Calibration;
 use crate::history::{AlarmLeft, Store};
 use crate::station::gates::Uses;
 use crate::station::inside::Inside;
@@ -62,6 +62,6 @@ fn valid_calibration(store: &Store, setup: &Setup) -> anyhow::Result<Option<Cali
     };
     let calibration: Calibration =
         serde_json::from_str(&record.body).context("the stored calibration cannot be read")?;
-    let fits = calibration.lags.is_some() && calibration.made_at_us <= setup.epoch_us;
+    let fits = calibration.is_complete() && calibration.made_at_us() <= setup.epoch_us;
     Ok((record.verified && fits && record.due_at_us > setup.epoch_us).then_some(calibration))
 }

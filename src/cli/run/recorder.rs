@@ -16,8 +16,7 @@ use crate::bus::LineLog;
 use crate::config::Plant;
 use crate::cycle::{Event, Profile};
 use crate::dut::Recipe;
-use crate::dut::em_relay::Calibration;
-use crate::dut::{Bin, Reason, Verdict};
+use crate::dut::{Bin, Calibration, Reason, Verdict};
 use crate::history::{
     CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
     snapshot_hash,
@@ -231,7 +230,7 @@ impl<'a> Recorder<'a> {
                 }
             }
             Event::Calibrated(calibration) => {
-                rows.extend(self.diary.calibrated(calibration.made_at_us));
+                rows.extend(self.diary.calibrated(calibration.made_at_us()));
                 self.calibrated(&calibration)?;
             }
             Event::LotBegan(at) => {
@@ -350,8 +349,8 @@ impl<'a> Recorder<'a> {
         let store = self.store.as_mut().context("the history is closed")?;
         let hash = snapshot_hash(&body);
         store.save_calibration(&CalibrationRecord {
-            made_at_us: calibration.made_at_us,
-            due_at_us: calibration.due_at_us,
+            made_at_us: calibration.made_at_us(),
+            due_at_us: calibration.due_at_us(),
             hash: hash.clone(),
             body,
             verified: true,

@@ -7,24 +7,10 @@
 
 use super::lag::LagLaw;
 use super::threshold::Direction;
+use crate::gauge::Factor;
+use crate::gauge::factor::Named;
 use crate::units::Volt;
 use serde::{Deserialize, Serialize};
-
-/// A factor and how well it is known.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Factor {
-    /// Value in the unit its field names.
-    pub value: f64,
-    /// Standard uncertainty in the same unit.
-    pub u: f64,
-}
-
-impl Factor {
-    /// A value with its standard uncertainty.
-    pub fn new(value: f64, u: f64) -> Self {
-        Self { value, u }
-    }
-}
 
 /// Reading of an analog input as a straight line of the true terminal voltage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -174,18 +160,33 @@ pub struct Calibration {
     pub probe_contact_ohm: f64,
 }
 
-/// A factor with its name.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Named {
-    /// Name in tables.
-    pub name: &'static str,
-    /// Unit of value and uncertainty, `1` for a ratio.
-    pub unit: &'static str,
-    /// Value and standard uncertainty.
-    pub factor: Factor,
-}
-
 impl Calibration {
+    /// Ideal factors of unknown quality: good enough to measure the references, no more.
+    pub fn unknown(nominal_v: f64) -> Self {
+        let unknown = Factor::new(1.0, f64::INFINITY);
+        Self {
+            made_at_us: 0,
+            due_at_us: 0,
+            simulated: false,
+            nominal_v,
+            coil_input: InputLine {
+                gain: unknown,
+                offset_v: Factor::new(0.0, f64::INFINITY),
+            },
+            ohm_fine: unknown,
+            ohm_wide: unknown,
+            contact_mohm_per_v: unknown,
+            gate_delay_us: [Factor::new(0.0, f64::INFINITY); 2],
+            level: OutputLine::IDEAL,
+            coarse: OutputLine::IDEAL,
+            fine: OutputLine::IDEAL,
+            coarse_v_per_s: unknown,
+            fine_v_per_s: unknown,
+            lags: None,
+            probe_contact_ohm: 0.0,
+        }
+    }
+
     /// Every factor that was measured. The slope of the coarse ramp is the maker's and not among them.
     pub fn factors(&self) -> Vec<Named> {
         let named = |name, unit, factor| Named { name, unit, factor };

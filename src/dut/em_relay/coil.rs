@@ -4,7 +4,7 @@
 //! same two channels on the reference resistor, so gain errors cancel. Copper: `R(T1) / R(T2) =
 //! (234.5 + T1) / (234.5 + T2)`, temperatures in Celsius (IEC 60028 annealed copper).
 
-use super::calibration::Factor;
+use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
 use crate::units::{Celsius, Ohm, Volt};
 

@@ -4,8 +4,8 @@
 //! The reversal takes out the thermal EMF and the converter's offset; `K` was found on the 50 mOhm
 //! reference with the same source, amplifier and converter, so it holds the current and all gains.
 
-use super::calibration::Factor;
 use super::sampling::Polarities;
+use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
 use crate::units::Volt;
 

@@ -5,16 +5,83 @@
 
 use super::measure::{Findings, Ramp};
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::calibration::{Factor, Lag, Lags};
+use crate::dut::em_relay::calibration::{Lag, Lags};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
 use crate::dut::em_relay::lag::LagLaw;
 use crate::dut::em_relay::probe_contact::Trend;
 use crate::dut::em_relay::settings::{AccuracySettings, Certified, GoldenPart};
+use crate::gauge::Factor;
 use crate::gauge::Reading;
 use crate::units::{Celsius, Ohm};
+use thiserror::Error;
 
 /// A golden part whose fine indication lies further from the others' lag is out of its band, volts.
 const BAND_V: f64 = 0.060;
+
+/// Why a golden part does not calibrate the rig, or does not read as certified.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Misfit {
+    /// No certificate of this serial number.
+    #[error("golden part {serial} has no certificate")]
+    NoCertificate {
+        /// Its serial number.
+        serial: String,
+    },
+    /// Something was not measured.
+    #[error("golden part {serial}: no {what}")]
+    Without {
+        /// Its serial number.
+        serial: String,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// The coil is not the one of the certificate.
+    #[error(
+        "golden part {serial}: coil reads {ohm:.2} ohm, certificate {certified_ohm:.2} +- {allowed_ohm:.2}. Is it the part named?"
+    )]
+    OtherCoil {
+        /// Its serial number.
+        serial: String,
+        /// Resistance found.
+        ohm: f64,
+        /// Resistance certified.
+        certified_ohm: f64,
+        /// Difference allowed.
+        allowed_ohm: f64,
+    },
+    /// Too few were measured.
+    #[error("{measured} golden parts were measured, at least 3 are needed")]
+    TooFew {
+        /// How many.
+        measured: usize,
+    },
+    /// One overshoots differently.
+    #[error("golden part {serial} is {off_mv:+.1} mV away from the others")]
+    Outlier {
+        /// Its serial number.
+        serial: String,
+        /// Distance from the mean, mV.
+        off_mv: f64,
+    },
+    /// A check against the certificate failed.
+    #[error(
+        "golden part {serial}: {name} reads {found:.4} {unit}, certificate {certified:.4} +- {allowed:.4}"
+    )]
+    Reads {
+        /// Its serial number.
+        serial: String,
+        /// Key of the characteristic.
+        name: &'static str,
+        /// Value found, in `unit`.
+        found: f64,
+        /// Unit of the values.
+        unit: &'static str,
+        /// Value certified.
+        certified: f64,
+        /// Difference allowed.
+        allowed: f64,
+    },
+}
 
 /// Indications of one golden part in both directions, minus certificate, at the part's temperature.
 #[derive(Debug, Clone)]
@@ -40,17 +107,20 @@ impl GoldenRun {
         part: &GoldenPart,
         reference: Celsius,
         findings: &Findings,
-    ) -> Result<(), String> {
+    ) -> Result<(), Misfit> {
         let serial = &part.serial;
-        let why = |what: &str| format!("golden part {serial}: {what}");
-        let track = findings.track.ok_or_else(|| why("no temperature"))?;
+        let without = |what| Misfit::Without {
+            serial: serial.clone(),
+            what,
+        };
+        let track = findings.track.ok_or_else(|| without("temperature"))?;
         let fine = |ramp: Option<Ramp>| ramp.and_then(|ramp| ramp.fine);
         let over = |ramp: Option<Ramp>| {
             ramp.and_then(|it| Some((it.coarse.indicated - it.fine?).0))
                 .unwrap_or(f64::NAN)
         };
-        let operate = fine(findings.operate).ok_or_else(|| why("no operate voltage"))?;
-        let release = fine(findings.release).ok_or_else(|| why("no release voltage"))?;
+        let operate = fine(findings.operate).ok_or_else(|| without("operate voltage"))?;
+        let release = fine(findings.release).ok_or_else(|| without("release voltage"))?;
         check_coil(part, findings)?;
         findings
             .probe_contact
@@ -72,7 +142,7 @@ impl GoldenRun {
         sets: &[GoldenPart],
         accuracy: &AccuracySettings,
         coarse: (LagLaw, LagLaw),
-    ) -> Result<Lags, String> {
+    ) -> Result<Lags, Misfit> {
         let operate = self.fine(
             |shift| shift.operate,
             |part| part.operate_voltage_v,
@@ -130,13 +200,12 @@ impl GoldenRun {
         certified: fn(&GoldenPart) -> Certified,
         parts: &[GoldenPart],
         accuracy: &AccuracySettings,
-    ) -> Result<Factor, String> {
+    ) -> Result<Factor, Misfit> {
         let n = self.shifts.len() as f64;
         if self.shifts.len() < 3 {
-            return Err(format!(
-                "{} golden parts were measured, at least 3 are needed",
-                self.shifts.len()
-            ));
+            return Err(Misfit::TooFew {
+                measured: self.shifts.len(),
+            });
         }
         let mean = self.shifts.iter().map(shift).sum::<f64>() / n;
         if let Some(odd) = self
@@ -144,11 +213,10 @@ impl GoldenRun {
             .iter()
             .find(|one| (shift(one) - mean).abs() > BAND_V)
         {
-            let off = (shift(odd) - mean) * 1e3;
-            return Err(format!(
-                "golden part {} is {off:+.1} mV away from the others",
-                odd.serial
-            ));
+            return Err(Misfit::Outlier {
+                serial: odd.serial.clone(),
+                off_mv: (shift(odd) - mean) * 1e3,
+            });
         }
         let of_part = |part: &GoldenPart| {
             let value = certified(part);
@@ -165,18 +233,23 @@ fn mean(parts: &[GoldenPart], certified: fn(&GoldenPart) -> Certified) -> f64 {
     parts.iter().map(|part| certified(part).value).sum::<f64>() / parts.len().max(1) as f64
 }
 
-fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
+fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), Misfit> {
     let serial = &part.serial;
     let coil = findings
         .result(Parameter::CoilResistance)
-        .ok_or_else(|| format!("golden part {serial}: no coil resistance"))?;
+        .ok_or_else(|| Misfit::Without {
+            serial: serial.clone(),
+            what: "coil resistance",
+        })?;
     let certified = part.coil_resistance_ohm;
     let allowed = 2.0 * coil.budget.combined().hypot(certified.u) * 2.0;
     if (coil.value - certified.value).abs() > allowed {
-        return Err(format!(
-            "golden part {serial}: coil reads {:.2} ohm, certificate {:.2} +- {allowed:.2}. Is it the part named?",
-            coil.value, certified.value
-        ));
+        return Err(Misfit::OtherCoil {
+            serial: serial.clone(),
+            ohm: coil.value,
+            certified_ohm: certified.value,
+            allowed_ohm: allowed,
+        });
     }
     Ok(())
 }
@@ -186,7 +259,7 @@ fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
 const CHECK_K: f64 = 3.0;
 
 /// Compares what was measured on a golden part with its certificate; an error says what does not agree.
-pub fn check(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
+pub fn check(part: &GoldenPart, findings: &Findings) -> Result<(), Misfit> {
     let certified = [
         (Parameter::CoilResistance, part.coil_resistance_ohm, "ohm"),
         (Parameter::OperateVoltage, part.operate_voltage_v, "V"),
@@ -198,15 +271,22 @@ pub fn check(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
         let found = findings
             .result(parameter)
             .filter(Reading::is_usable)
-            .ok_or_else(|| format!("golden part {serial}: no {name}"))?;
+            .ok_or_else(|| Misfit::Without {
+                serial: serial.clone(),
+                what: name,
+            })?;
         let allowed = CHECK_K * found.budget.combined().hypot(certified.u);
         let off = found.value - certified.value;
         let within = off.abs() <= allowed;
         if !within {
-            return Err(format!(
-                "golden part {serial}: {name} reads {:.4} {unit}, certificate {:.4} +- {allowed:.4}",
-                found.value, certified.value
-            ));
+            return Err(Misfit::Reads {
+                serial: serial.clone(),
+                name,
+                found: found.value,
+                unit,
+                certified: certified.value,
+                allowed,
+            });
         }
     }
     Ok(())

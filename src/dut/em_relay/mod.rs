@@ -2,6 +2,7 @@
 //!
 //! | question | file |
 //! |---|---|
+//! | what outlives one part: recipe, factors, what parts have taught | [`device`] |
 //! | what is measured, in which unit | [`parameter`] |
 //! | what the part is, how it is measured | [`recipe`] |
 //! | what a test finds beside figures | [`finding`] |
@@ -19,6 +20,7 @@
 pub mod calibration;
 pub mod coil;
 pub mod contact;
+pub mod device;
 pub mod feasible;
 pub mod finding;
 pub mod golden;
@@ -36,6 +38,7 @@ pub mod threshold;
 pub mod timing;
 
 pub use calibration::Calibration;
+pub use device::Device;
 pub use finding::Finding;
 pub use parameter::Parameter;
 pub use strategy::Strategy;

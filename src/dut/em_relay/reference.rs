@@ -5,9 +5,10 @@
 //! delay, gain and offset of the three supply outputs, and the slope of the fine ramp against the
 //! host's clock. The slope of the coarse ramp stays the maker's: it only places the fine one.
 
-use crate::dut::em_relay::calibration::{Calibration, Factor, InputLine, OutputLine};
+use crate::dut::em_relay::calibration::{Calibration, InputLine, OutputLine};
 use crate::dut::em_relay::measure::Bench;
 use crate::dut::em_relay::timing::counts;
+use crate::gauge::Factor;
 use crate::gauge::budget::rectangular;
 use crate::instrument::act::{Act, CoilScan, Read, Readings};
 use crate::rig::point::AnalogOut::{SupplyCoarse, SupplyFine, SupplyLevel};
@@ -16,6 +17,7 @@ use crate::rig::point::DigitalOut::{
 };
 use crate::rig::sample::{Quality, Sample};
 use crate::units::{Span, Volt};
+use thiserror::Error;
 
 /// Channels 1, 5, 6 and 7 of the coil converter.
 pub const MASK: u8 = 0b1110_0010;
@@ -33,6 +35,92 @@ const SLOPE_MARGIN_V: f64 = 0.3;
 const DROPS: usize = 8;
 /// Gate pulses: their fractions of a count add up, so one count of error is spread over all.
 const PULSES: u32 = 25;
+
+/// Why the references do not calibrate the rig.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ReferenceFault {
+    /// A channel gave no number.
+    #[error("{name} reads {raw} ({quality:?})")]
+    Reads {
+        /// The channel.
+        name: &'static str,
+        /// The reply.
+        raw: String,
+        /// Why it is no number.
+        quality: Quality,
+    },
+    /// A channel is masked out.
+    #[error("{name} is not enabled")]
+    NotEnabled {
+        /// The channel.
+        name: &'static str,
+    },
+    /// A channel has no scan.
+    #[error("{name} was not read")]
+    NotRead {
+        /// The channel.
+        name: &'static str,
+    },
+    /// Scans are missing.
+    #[error("{found} scans where {expected} were expected")]
+    Scans {
+        /// Scans read.
+        found: usize,
+        /// Scans asked for.
+        expected: usize,
+    },
+    /// The converter is outside its promise by half.
+    #[error("coil converter gain is off by {off_pct:.3} %, promised {promised_pct:.3} %")]
+    Gain {
+        /// Found minus 1, %.
+        off_pct: f64,
+        /// Promised half width, %.
+        promised_pct: f64,
+    },
+    /// Too few readings between the ends of the fine ramp.
+    #[error("only {readings} readings on the fine ramp")]
+    FewOnRamp {
+        /// Readings that count.
+        readings: usize,
+    },
+    /// The fine ramp is not the one of its slew code.
+    #[error("slope of the fine ramp is {v_per_s:.4} V/s where {nominal_v_per_s} V/s was expected")]
+    Slope {
+        /// Slope found.
+        v_per_s: f64,
+        /// Slope of the slew code.
+        nominal_v_per_s: f64,
+    },
+    /// The source or the amplifier is not right.
+    #[error("reference contact drops {volts:.3} V where {expected_v:.3} V was expected")]
+    Drop {
+        /// Drop found, V at the terminal.
+        volts: f64,
+        /// Drop of the reference resistor.
+        expected_v: f64,
+    },
+    /// Counters were not read before and after the pulses.
+    #[error("gate counters not read")]
+    GatesNotRead,
+    /// A counter does not count the reference pulse.
+    #[error("a pulse of 1.000 ms at gate {gate} counts {each_us:.1} us")]
+    Pulse {
+        /// Which counter.
+        gate: usize,
+        /// What a pulse counts, us.
+        each_us: f64,
+    },
+}
+
+impl ReferenceFault {
+    fn reads(name: &'static str, sample: &Sample) -> Self {
+        Self::Reads {
+            name,
+            raw: sample.origin.raw.to_string(),
+            quality: sample.quality,
+        }
+    }
+}
 
 /// The acts, in the order [`conclude`] expects.
 pub fn acts(bench: &Bench) -> Vec<Act> {
@@ -143,8 +231,8 @@ fn pulses(acts: &mut Vec<Act>) {
 fn mean(
     scans: &[CoilScan],
     channel: fn(&CoilScan) -> &Option<Sample>,
-    name: &str,
-) -> Result<f64, String> {
+    name: &'static str,
+) -> Result<f64, ReferenceFault> {
     let mut sum = 0.0;
     for scan in scans {
         match channel(scan) {
@@ -154,16 +242,13 @@ fn mean(
                 sum += sample.terminal_volts;
             }
             Some(sample) => {
-                return Err(format!(
-                    "{name} reads {} ({:?})",
-                    sample.origin.raw, sample.quality
-                ));
+                return Err(ReferenceFault::reads(name, sample));
             }
-            None => return Err(format!("{name} is not enabled")),
+            None => return Err(ReferenceFault::NotEnabled { name }),
         }
     }
     if scans.is_empty() {
-        Err(format!("{name} was not read"))
+        Err(ReferenceFault::NotRead { name })
     } else {
         Ok(sum / scans.len() as f64)
     }
@@ -177,7 +262,7 @@ struct Level {
     reference: f64,
 }
 
-fn level(scans: &[CoilScan]) -> Result<Level, String> {
+fn level(scans: &[CoilScan]) -> Result<Level, ReferenceFault> {
     Ok(Level {
         voltage: mean(scans, |scan| &scan.voltage_fine, "coil voltage")?,
         fine: mean(scans, |scan| &scan.current_fine, "coil current (fine)")?,
@@ -193,16 +278,16 @@ pub fn conclude(
     made_at_us: i64,
     valid_us: i64,
     voltage_gain: f64,
-) -> Result<Calibration, String> {
+) -> Result<Calibration, ReferenceFault> {
     let expected = 4 * SCANS + RAMP_SCANS + SCANS;
     if readings.coil.len() != expected
         || readings.drops.len() != 2 * DROPS
         || readings.gates.len() != 2
     {
-        return Err(format!(
-            "{} scans where {expected} were expected",
-            readings.coil.len()
-        ));
+        return Err(ReferenceFault::Scans {
+            found: readings.coil.len(),
+            expected,
+        });
     }
     let part = |from: usize, n: usize| &readings.coil[from..from + n];
     let zero = level(part(0, SCANS))?;
@@ -289,15 +374,14 @@ pub fn conclude(
 }
 
 /// A converter outside its promise by half is not calibrated away but reported.
-fn check_gain(bench: &Bench, line: &InputLine) -> Result<(), String> {
+fn check_gain(bench: &Bench, line: &InputLine) -> Result<(), ReferenceFault> {
     let promised = bench.accuracy.ai_gain_pct / 100.0;
     let found = line.gain.value - 1.0;
     if found.abs() > 1.5 * promised + 2.0 * line.gain.u {
-        return Err(format!(
-            "coil converter gain is off by {:.3} %, promised {:.3} %",
-            found * 100.0,
-            promised * 100.0
-        ));
+        return Err(ReferenceFault::Gain {
+            off_pct: found * 100.0,
+            promised_pct: promised * 100.0,
+        });
     }
     Ok(())
 }
@@ -309,7 +393,7 @@ fn slope(
     scans: &[CoilScan],
     line: &InputLine,
     voltage_gain: f64,
-) -> Result<Factor, String> {
+) -> Result<Factor, ReferenceFault> {
     let points: Vec<(f64, f64)> = scans
         .iter()
         .filter_map(|scan| scan.voltage_fine.as_ref())
@@ -323,7 +407,8 @@ fn slope(
         .filter(|(_, volts)| (LOW_V + SLOPE_MARGIN_V..HIGH_V - SLOPE_MARGIN_V).contains(volts))
         .collect();
     if points.len() < 10 {
-        return Err(format!("only {} readings on the fine ramp", points.len()));
+        let readings = points.len();
+        return Err(ReferenceFault::FewOnRamp { readings });
     }
     let n = points.len() as f64;
     let (mt, mv) = (
@@ -341,23 +426,21 @@ fn slope(
     let u = (rest / stt).sqrt().hypot(value * line.gain.u);
     let nominal = bench.nominal_v_per_s[1];
     if !value.is_finite() || (value / nominal - 1.0).abs() > 0.02 {
-        return Err(format!(
-            "slope of the fine ramp is {value:.4} V/s where {nominal} V/s was expected"
-        ));
+        return Err(ReferenceFault::Slope {
+            v_per_s: value,
+            nominal_v_per_s: nominal,
+        });
     }
     Ok(Factor::new(value, u))
 }
 
-fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, String> {
-    let mean = |samples: &[Sample]| -> Result<f64, String> {
+fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, ReferenceFault> {
+    let mean = |samples: &[Sample]| -> Result<f64, ReferenceFault> {
         let bad = samples
             .iter()
             .find(|s| s.quality != Quality::Good || !s.terminal_volts.is_finite());
         if let Some(bad) = bad {
-            return Err(format!(
-                "drop of the reference contact reads {} ({:?})",
-                bad.origin.raw, bad.quality
-            ));
+            return Err(ReferenceFault::reads("drop of the reference contact", bad));
         }
         Ok(samples
             .iter()
@@ -368,9 +451,10 @@ fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, String> {
     let drop = (mean(&drops[..DROPS])? - mean(&drops[DROPS..])?) / 2.0;
     let expected = bench.reference.contact_mohm * 1e-3 * 50.0;
     if !(0.8 * expected..1.2 * expected).contains(&drop) {
-        return Err(format!(
-            "reference contact drops {drop:.3} V where {expected:.3} V was expected"
-        ));
+        return Err(ReferenceFault::Drop {
+            volts: drop,
+            expected_v: expected,
+        });
     }
     let value = bench.reference.contact_mohm / drop;
     let u_drop = bench.reading_u_v() / ((2 * DROPS) as f64).sqrt() / drop;
@@ -380,17 +464,15 @@ fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, String> {
     ))
 }
 
-fn gate_delay(bench: &Bench, readings: &Readings, gate: usize) -> Result<Factor, String> {
+fn gate_delay(bench: &Bench, readings: &Readings, gate: usize) -> Result<Factor, ReferenceFault> {
     let (Some(before), Some(after)) = (readings.gates.first(), readings.gates.last()) else {
-        return Err("gate counters not read".into());
+        return Err(ReferenceFault::GatesNotRead);
     };
     let total = f64::from(counts(before[gate].count, after[gate].count));
     let each_us = total / f64::from(PULSES) / bench.reference.counter_clock_hz * 1e6;
     let delay = each_us - bench.reference.gate_pulse_ms * 1e3;
     if delay.abs() > 5.0 * bench.accuracy.gate_delay_us {
-        return Err(format!(
-            "a pulse of 1.000 ms at gate {gate} counts {each_us:.1} us"
-        ));
+        return Err(ReferenceFault::Pulse { gate, each_us });
     }
     let count_us = 1e6 / bench.reference.counter_clock_hz / 6f64.sqrt();
     Ok(Factor::new(delay, count_us / f64::from(PULSES).sqrt()))

@@ -1,11 +1,13 @@
 //! Recipe, golden parts and instruments that err by nothing.
 
-use crate::dut::em_relay::Calibration;
-use crate::dut::em_relay::calibration::{Factor, InputLine, Lag, Lags, OutputLine};
+use crate::dut;
+use crate::dut::em_relay::calibration::{InputLine, Lag, Lags, OutputLine};
 use crate::dut::em_relay::lag::LagLaw;
 use crate::dut::em_relay::measure::Bench;
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
+use crate::dut::em_relay::{Calibration, Device};
 use crate::dut::recipe::{DeviceRecipe, Recipe};
+use crate::gauge::Factor;
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -34,6 +36,16 @@ pub fn bench() -> Bench {
         thorough: false,
         golden: None,
     }
+}
+
+/// The same as the station holds it, with the reference parts of the plant.
+pub fn device() -> dut::Device {
+    device_of(bench())
+}
+
+/// A device of this context.
+pub fn device_of(context: Bench) -> dut::Device {
+    dut::Device::EmRelay(Box::new(Device::of(context, 1.6, golden_parts())))
 }
 
 /// The golden parts of 12 V.

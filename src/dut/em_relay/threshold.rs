@@ -7,8 +7,9 @@
 //! 50 mV, the error of the level, the contact of the probes and the mean heating of the coil, all of which were there too.
 //! Pickup current does not depend on temperature, so the voltage scales like the coil (IEC 61810-7).
 
-use super::calibration::{Factor, Lag};
+use super::calibration::Lag;
 use super::coil::{relative_per_kelvin, to_reference};
+use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading, resolution};
 use crate::units::{Celsius, Second, Volt};
 

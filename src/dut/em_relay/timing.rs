@@ -6,7 +6,7 @@
 //! length with a random phase: unbiased, sd at most half a period. Bounces shorter than one period
 //! of the 50 kHz clock (20 us) stay unseen.
 
-use super::calibration::Factor;
+use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading, rectangular};
 
 /// The reference clock at both counters.

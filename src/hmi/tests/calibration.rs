@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::dut::em_relay::Calibration;
-use crate::dut::em_relay::calibration::{Factor, InputLine, OutputLine};
+use crate::dut::em_relay::calibration::{InputLine, OutputLine};
+use crate::gauge::Factor;
 use crate::history::{
     CalibrationRecord, GoldenCheckRecord, Identity, LotRecord, MeasurementRecord, PartRecord, Row,
     Store, snapshot_hash,

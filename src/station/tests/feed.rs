@@ -1,7 +1,7 @@
 //! One part at a time from the track into the pocket, and into a nest that is free in every respect.
 
 use super::Shop;
-use super::golden_parts;
+use super::device;
 use crate::rig::point::DigitalIn;
 use crate::station::feed::Feed;
 use crate::station::ledger::Kind;
@@ -159,7 +159,7 @@ fn a_pusher_at_an_empty_nest_is_an_alarm() {
 #[test]
 fn golden_parts_come_first_in_the_order_of_the_magazine() {
     let (feed, mut shop) = ready();
-    shop.golden = golden_parts().into_iter().collect();
+    shop.golden = device().reference_serials().into();
     let feed = step(feed, &mut shop, true);
     shop.set(DigitalIn::NestPresent, true);
     shop.carried_out(Move::PusherExtend);

@@ -1,8 +1,7 @@
 //! A machine whose actuators always arrive and whose parts are bad in a known way, with its station.
 
-use super::golden_parts;
 use super::shop::mechanism;
-use super::{Shop, bench};
+use super::{Shop, bench, device, device_of};
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{Job, JobDone, Read};
 use crate::rig::axis::AxisStation;
@@ -114,7 +113,6 @@ fn plan(count: Option<u64>) -> Plan {
         calibrated: true,
         valid_us: 0,
         epoch_us: 0,
-        voltage_gain: 1.6,
         lot: LotSettings::default(),
         worn: Uses::default(),
         left: Inside::default(),
@@ -123,7 +121,7 @@ fn plan(count: Option<u64>) -> Plan {
 
 fn of_plan(plan: Plan, shop: &Shop) -> Station {
     let mechanism = mechanism(&shop.wiring);
-    Station::new(plan, bench(), shop.wiring.axis.clone(), mechanism)
+    Station::new(plan, device(), shop.wiring.axis.clone(), mechanism)
 }
 
 impl Machine {
@@ -190,7 +188,7 @@ impl Machine {
         let plan = Plan {
             stays,
             lot,
-            golden: golden_parts(),
+            golden: device().reference_serials(),
             ..plan(count)
         };
         machine.station = of_plan(plan, &machine.shop);
@@ -199,8 +197,10 @@ impl Machine {
 
     /// The calibration may not be used any more from now on.
     pub fn calibration_runs_out(&mut self) {
-        let calibration = std::sync::Arc::make_mut(&mut self.station.bench.calibration);
-        calibration.due_at_us = i64::try_from(self.shop.now.0).unwrap();
+        let mut bench = bench();
+        std::sync::Arc::make_mut(&mut bench.calibration).due_at_us =
+            i64::try_from(self.shop.now.0).unwrap();
+        self.station.device = std::sync::Arc::new(device_of(bench));
     }
 
     /// What wears was used so often before.

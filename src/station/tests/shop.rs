@@ -2,7 +2,6 @@
 
 use super::wiring;
 use crate::dcon::{Bits, Command, Reply};
-use crate::dut::em_relay::settings::GoldenPart;
 use crate::guard::{Actuator, PartSize};
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
@@ -43,7 +42,7 @@ pub struct Shop {
     pub mechanism: Mechanism,
     pub ledger: Ledger,
     pub wants: Wants,
-    pub golden: VecDeque<GoldenPart>,
+    pub golden: VecDeque<String>,
     pub recorded: u64,
     on: BTreeSet<DigitalIn>,
 }

@@ -80,6 +80,7 @@ fn a_part_that_does_not_fit_the_others_is_named() {
     let why = run
         .lags(&golden_parts(), &bench().accuracy, untaught())
         .unwrap_err();
+    let why = why.to_string();
     assert!(why.contains("G-12-3"), "{why}");
 }
 
@@ -125,6 +126,7 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
     for (what, findings) in cases {
         let refused = GoldenRun::default().learn(&part, REFERENCE, &findings);
         let why = refused.unwrap_err();
+        let why = why.to_string();
         assert!(why.contains("G-12-2") && why.contains(what), "{why}");
     }
     let learned = GoldenRun::default().learn(&part, REFERENCE, &good());

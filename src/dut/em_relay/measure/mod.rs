@@ -37,6 +37,7 @@ mod timing;
 
 use super::supply::Supply;
 use crate::dut::em_relay::Parameter;
+use crate::dut::procedure::Progress;
 use crate::dut::{Characteristic, Verdict};
 use crate::gauge::{Judgement, judge};
 use crate::instrument::act::{Act, Doing, JobDone, Runner};
@@ -66,15 +67,6 @@ const SLOW: [Stage; 5] = [
 
 /// A fine ramp that was placed anew takes 0.3 s, also on its way back.
 const CUT_OFF: Span = Span::ms(400);
-
-/// What the test wants from its surroundings.
-#[derive(Debug)]
-pub enum Progress {
-    /// As the runner of the present stage says.
-    Doing(Doing),
-    /// The part is judged.
-    Judged,
-}
 
 /// A test under way.
 #[derive(Debug)]

@@ -1,9 +1,10 @@
 //! Three outputs add up to what was asked, whatever the outputs' own gain and offset.
 
 use crate::dut::em_relay::Calibration;
-use crate::dut::em_relay::calibration::{Factor, OutputLine};
+use crate::dut::em_relay::calibration::OutputLine;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::tests::bench;
+use crate::gauge::Factor;
 use crate::instrument::act::Act;
 use crate::rig::point::AnalogOut;
 use crate::units::{Span, Volt};

@@ -1,14 +1,15 @@
 //! The nest: eight states, ten inputs.
 
 use super::{Graph, SEEN, show, truths};
-use crate::dut::em_relay::measure::{Bench, Test};
+use crate::dut::device::TestOrder;
 use crate::dut::verdict::Bin;
+use crate::dut::{Device, Procedure};
 use crate::instrument::act::JobDone;
 use crate::rig::point::DigitalIn;
 use crate::station::clamp::{Beside, Clamp};
 use crate::station::ledger::Ledger;
 use crate::station::sort::Sort;
-use crate::station::tests::{Shop, bench};
+use crate::station::tests::{Shop, device};
 
 const STATES: [&str; 9] = [
     "Empty",
@@ -23,13 +24,13 @@ const STATES: [&str; 9] = [
 ];
 
 /// The state of this name; a test that is over has only its switching off before it.
-fn state(name: &str, shop: &Shop, bench: &Bench) -> Clamp {
+fn state(name: &str, shop: &Shop, device: &Device) -> Clamp {
     match name {
         "Empty" => Clamp::Empty,
         "Clamping" => Clamp::Clamping,
         "Probing" => Clamp::Probing,
-        "Testing" => Clamp::Testing(Box::new(Test::begin(bench.clone(), shop.now))),
-        "TestOver" => Clamp::Testing(Box::new(failed(shop, bench))),
+        "Testing" => Clamp::Testing(begun(shop, device)),
+        "TestOver" => Clamp::Testing(failed(shop, device)),
         "Judged" => Clamp::Judged,
         "Gripping" => Clamp::Gripping,
         "Unclamping" => Clamp::Unclamping,
@@ -38,8 +39,17 @@ fn state(name: &str, shop: &Shop, bench: &Bench) -> Clamp {
     }
 }
 
-fn failed(shop: &Shop, bench: &Bench) -> Test {
-    let mut test = Test::begin(bench.clone(), shop.now);
+fn begun(shop: &Shop, device: &Device) -> Procedure {
+    let order = TestOrder {
+        thorough: false,
+        teaching: None,
+        number: 1,
+    };
+    device.begin(&order, shop.now)
+}
+
+fn failed(shop: &Shop, device: &Device) -> Procedure {
+    let mut test = begun(shop, device);
     test.step(shop.now, None, &shop.image);
     test.step(shop.now, Some(&silent(shop)), &shop.image);
     test
@@ -83,7 +93,7 @@ fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
 fn the_nest_is_the_drawing() {
     let mut graph = Graph::default();
     let mut shop = Shop::at_rest();
-    let bench = bench();
+    let device = device();
     let jaws_open = [DigitalIn::JawLeftOpen, DigitalIn::JawRightOpen];
     let jaws_closed = [DigitalIn::JawLeftClosed, DigitalIn::JawRightClosed];
     for (jaws, probes) in SEEN.iter().flat_map(|one| SEEN.map(|other| (*one, other))) {
@@ -108,7 +118,7 @@ fn the_nest_is_the_drawing() {
                 shop.after(1);
                 for from in STATES {
                     for [part, interrupted, judged, around, resting] in truths() {
-                        let clamp = state(from, &shop, &bench);
+                        let clamp = state(from, &shop, &device);
                         let job = (from == "TestOver").then(|| silent(&shop));
                         shop.ledger = ledger(from, part, interrupted, judged);
                         let mut sort = if around { Sort::AtPart } else { Sort::OverNest };
@@ -116,7 +126,9 @@ fn the_nest_is_the_drawing() {
                         turn.resting = resting;
                         let beside = Beside {
                             job,
-                            bench: &bench,
+                            device: &device,
+                            thorough: false,
+                            teaching: None,
                             sort: &mut sort,
                             last_left: &mut None,
                         };

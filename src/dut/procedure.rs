@@ -1,0 +1,87 @@
+//! A running test of any kind: stages made of acts, then a verdict.
+
+use super::Characteristic;
+use super::em_relay::measure::{self, Findings};
+use super::reason::Reason;
+use super::verdict::Verdict;
+use crate::gauge::Judgement;
+use crate::instrument::act::{Doing, JobDone};
+use crate::rig::image::Image;
+use crate::units::RigTime;
+
+/// What a test wants from its surroundings.
+#[derive(Debug)]
+pub enum Progress {
+    /// As the runner of the present stage says.
+    Doing(Doing),
+    /// The part is judged.
+    Judged,
+}
+
+/// A test under way, by kind.
+#[derive(Debug)]
+pub enum Procedure {
+    /// Of an electromagnetic relay.
+    EmRelay(Box<measure::Test>),
+}
+
+impl Procedure {
+    /// Goes on as far as it can. `done` answers the job that it asked for before, once.
+    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
+        match self {
+            Self::EmRelay(test) => test.step(now, done, image),
+        }
+    }
+
+    /// Number of the test of this part, from 1.
+    pub fn number(&self) -> u8 {
+        match self {
+            Self::EmRelay(test) => test.number(),
+        }
+    }
+
+    /// The stage under way, for screens.
+    pub fn stage(&self) -> String {
+        match self {
+            Self::EmRelay(test) => format!("{:?}", test.stage()),
+        }
+    }
+
+    /// Why the test could not be carried through, if it was not: the rig was in trouble or the part could not be seen.
+    pub fn why_void(&self) -> Option<&Reason> {
+        match self {
+            Self::EmRelay(test) => match test.findings.why_stopped()? {
+                measure::Stop::Void(why) | measure::Stop::Trouble(why) => Some(why),
+                measure::Stop::Fail(_) => None,
+            },
+        }
+    }
+
+    /// Each result against its limit.
+    pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
+        match self {
+            Self::EmRelay(test) => test.judgements(),
+        }
+    }
+
+    /// Verdict of the part.
+    pub fn verdict(&self) -> Verdict {
+        match self {
+            Self::EmRelay(test) => test.verdict(),
+        }
+    }
+
+    /// What was found so far, with the replies behind it.
+    pub fn record(&self) -> &Findings {
+        match self {
+            Self::EmRelay(test) => &test.findings,
+        }
+    }
+
+    /// The same, once the part is judged.
+    pub fn into_record(self) -> Findings {
+        match self {
+            Self::EmRelay(test) => test.findings,
+        }
+    }
+}
