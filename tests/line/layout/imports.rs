@@ -63,7 +63,7 @@ const TABLE: &[(&str, &[&str])] = &[
             "units", "rig", "gauge", "dut", "station", "quality", "plan", "history",
         ],
     ),
-    ("inquiry", &["dut", "history", "report", "quality"]),
+    ("inquiry", &["gauge", "dut", "history", "report", "quality"]),
     (
         "hmi",
         &[
