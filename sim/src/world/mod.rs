@@ -3,7 +3,7 @@
 //! ```text
 //! terminals -> wiring -> signals -> board      (coil supply, gates, contact source, monitors)
 //!                                -> mechanism  (cylinders, axis, sensors; places and parts)
-//!                 board <-> probes <-> specimen of the part in the nest (a folder per kind: relay)
+//!                 board <-> probes <-> specimen of the part in the nest (a folder per kind: relay, resistor)
 //! ```
 //!
 //! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the
@@ -25,6 +25,7 @@ pub mod mechanism;
 pub mod places;
 pub mod probes;
 pub mod relay;
+pub mod resistor;
 pub mod signal;
 pub mod specimen;
 pub mod table;

@@ -11,6 +11,7 @@ use super::WorldOptions;
 use super::draw::Draw;
 use super::probes::{Change, Contact, Pins, Supply};
 use super::relay::{self, Relay};
+use super::resistor::{self, Resistor};
 use super::table::WorldTable;
 use crate::config::{ConfigError, content, read_text};
 use crate::truth::PartTruth;
@@ -59,6 +60,8 @@ pub enum LotKind {
     /// Electromagnetic relays with one changeover contact.
     #[default]
     EmRelay,
+    /// Dummies that hold one resistor, for a check of the fixture.
+    Resistor,
 }
 
 /// A specimen outside the magazine.
@@ -66,6 +69,8 @@ pub enum LotKind {
 pub enum Specimen {
     /// An electromagnetic relay.
     Relay(Box<Relay>),
+    /// A dummy that holds a resistor.
+    Resistor(Resistor),
 }
 
 impl Deref for Specimen {
@@ -74,6 +79,7 @@ impl Deref for Specimen {
     fn deref(&self) -> &Self::Target {
         match self {
             Self::Relay(relay) => relay.as_ref(),
+            Self::Resistor(resistor) => resistor,
         }
     }
 }
@@ -82,6 +88,7 @@ impl DerefMut for Specimen {
     fn deref_mut(&mut self) -> &mut Self::Target {
         match self {
             Self::Relay(relay) => relay.as_mut(),
+            Self::Resistor(resistor) => resistor,
         }
     }
 }
@@ -108,6 +115,8 @@ pub struct Arrival {
 pub enum Lot {
     /// Relays, with golden parts.
     Relay(Box<relay::Lot>),
+    /// Dummies; none of them has a certificate.
+    Resistor(resistor::Lot),
 }
 
 impl Lot {
@@ -118,6 +127,7 @@ impl Lot {
     pub fn read(options: &WorldOptions, world: &WorldTable) -> Result<Self, ConfigError> {
         Ok(match read_kind(options)? {
             LotKind::EmRelay => Self::Relay(Box::new(relay::Lot::read(options, world)?)),
+            LotKind::Resistor => Self::Resistor(resistor::Lot::new(world)),
         })
     }
 
@@ -125,6 +135,7 @@ impl Lot {
     pub fn golden(&self) -> u64 {
         match self {
             Self::Relay(lot) => lot.golden(),
+            Self::Resistor(_) => 0,
         }
     }
 
@@ -132,6 +143,7 @@ impl Lot {
     pub fn part(&self, seed: u64, index: u64, arrival: Arrival) -> Specimen {
         match self {
             Self::Relay(lot) => Specimen::Relay(Box::new(lot.part(seed, index, arrival))),
+            Self::Resistor(lot) => Specimen::Resistor(lot.part(seed, index, &arrival)),
         }
     }
 
@@ -147,6 +159,7 @@ impl Lot {
             Self::Relay(lot) => lot
                 .golden_part(seed, index, other_day, arrival)
                 .map(|relay| Specimen::Relay(Box::new(relay))),
+            Self::Resistor(_) => None,
         }
     }
 }

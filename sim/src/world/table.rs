@@ -9,6 +9,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::relay::table::{DefectTable, LotTable, RelayTable};
+use super::resistor::ResistorTable;
 use crate::config::{ConfigError, content, read_text};
 
 macro_rules! table {
@@ -67,7 +68,7 @@ table!(
     /// The whole file.
     WorldTable {
         devices: DeviceWorld, board: BoardTable, environment: EnvironmentTable, lot: LotTable,
-        relay: RelayTable, defects: DefectTable, mechanism: MechanismTable,
+        relay: RelayTable, defects: DefectTable, resistor: ResistorTable, mechanism: MechanismTable,
         fault: BTreeMap<String, FaultSpec>,
     }
 );

@@ -5,6 +5,7 @@ mod crashes;
 mod hand;
 mod line;
 mod magazine;
+mod resistor;
 
 use std::path::PathBuf;
 

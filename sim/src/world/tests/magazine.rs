@@ -54,7 +54,9 @@ fn on_another_day_the_golden_parts_are_the_same_bodies_with_other_temperatures()
         let world = read_world(&config_dir(), None).unwrap();
         let mut faults = Faults::resolve(&asked, &world.fault, &config_dir()).unwrap();
         let part = loaded(0).take(0, &mut faults).unwrap();
-        let Specimen::Relay(relay) = part.specimen;
+        let Specimen::Relay(relay) = part.specimen else {
+            unreachable!("a recipe for relays")
+        };
         (relay.drawn().operate_v, relay.drawn().offset_k)
     };
     let (bodies, kelvin): (Vec<f64>, Vec<f64>) =
