@@ -27,6 +27,9 @@ pub struct PartTruth {
     pub contact_resistance_no_mohm: Option<f64>,
     /// Mean over the closures of NC on which the source was on.
     pub contact_resistance_nc_mohm: Option<f64>,
+    /// Resistance of a dummy at the reference temperature; absent for an open one. Relays have no such key.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub resistance_ohm: Option<f64>,
     /// Name of the defect.
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.

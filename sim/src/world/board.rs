@@ -9,8 +9,9 @@ mod circuit;
 
 use super::draw::Draw;
 use super::gates::Gates;
-use super::relay::{Contact, Relay, Supply};
+use super::probes::{Contact, Supply};
 use super::signal::{Commands, In, Out, Source};
+use super::specimen::Specimen;
 use super::table::BoardTable;
 use crate::config::References;
 
@@ -100,42 +101,42 @@ impl Board {
         }
     }
 
-    /// Brings board and relay to `t_us`.
-    pub fn advance(&mut self, t_us: f64, mut relay: Option<&mut Relay>) {
+    /// Brings board and part to `t_us`.
+    pub fn advance(&mut self, t_us: f64, mut part: Option<&mut Specimen>) {
         loop {
             let due = self.next_us().filter(|&at| at <= t_us);
             let until = due.unwrap_or(t_us);
-            if let Some(relay) = relay.as_deref_mut()
-                && let Some(change) = relay.advance(until)
+            if let Some(part) = part.as_deref_mut()
+                && let Some(change) = part.advance(until)
             {
                 self.now_us = change.t_us;
-                self.contact_event(change.contact, change.closed, relay);
-                self.refresh(Some(relay));
+                self.contact_event(change.contact, change.closed, part);
+                self.refresh(Some(part));
                 continue;
             }
             self.now_us = until;
             if due.is_none() {
                 return;
             }
-            self.expire(relay.as_deref_mut());
+            self.expire(part.as_deref_mut());
         }
     }
 
     /// A source of the coil supply now stands at `volts`.
-    pub fn supply(&mut self, source: Source, volts: f64, relay: Option<&mut Relay>) {
+    pub fn supply(&mut self, source: Source, volts: f64, part: Option<&mut Specimen>) {
         self.volts[source as usize] = volts;
         let away = (self.supply_v() - self.arm_level_v).abs() * 1000.0 > self.table.ramp_start_mv;
         if away && !self.moved && self.commands.is_on(Out::RampMode) {
             self.gates.start(self.now_us);
         }
         self.moved = away;
-        self.refresh(relay);
+        self.refresh(part);
     }
 
     /// All commands of the controller as they now stand.
-    pub fn command(&mut self, commands: Commands, mut relay: Option<&mut Relay>) {
+    pub fn command(&mut self, commands: Commands, mut part: Option<&mut Specimen>) {
         let before = std::mem::replace(&mut self.commands, commands);
-        self.refresh(relay.as_deref_mut());
+        self.refresh(part.as_deref_mut());
         if commands.rises(before, Out::Arm) {
             self.arm_level_v = self.supply_v();
             self.moved = false;
@@ -151,18 +152,18 @@ impl Board {
             self.source_live = false;
             self.switch_at_us = Some(self.now_us + self.table.source_lead_ms * 1000.0);
         } else {
-            self.throw(relay);
+            self.throw(part);
         }
     }
 
     /// The probe block is up (`chain`) and on the pins of a part (`touching`).
-    pub fn probe(&mut self, chain: bool, touching: bool, relay: Option<&mut Relay>) {
+    pub fn probe(&mut self, chain: bool, touching: bool, part: Option<&mut Specimen>) {
         if touching && !self.touching {
             self.film_ohm += self.film_per_touch_ohm;
         }
         self.chain = chain;
         self.touching = touching;
-        self.refresh(relay);
+        self.refresh(part);
     }
 
     /// From now on each touch leaves so much film on both probes of the coil together.
@@ -181,11 +182,11 @@ impl Board {
     }
 
     /// A digital signal of the board; `None` where the signal is none of its own.
-    pub fn signal(&self, signal: In, relay: Option<&Relay>) -> Option<bool> {
+    pub fn signal(&self, signal: In, part: Option<&Specimen>) -> Option<bool> {
         let kelvin = |pin: usize| {
             let film_ohm = if pin < 2 { self.film_ohm / 2.0 } else { 0.0 };
             let clean = film_ohm < KELVIN_OHM;
-            let good = clean && relay.is_some_and(|r| r.specimen().kelvin[pin]);
+            let good = clean && part.is_some_and(|it| it.pins().kelvin[pin]);
             Some(self.commands.is_on(Out::KelvinTest) && self.touching && good)
         };
         match signal {
@@ -194,11 +195,11 @@ impl Board {
             In::KelvinCom => kelvin(2),
             In::KelvinNo => kelvin(3),
             In::KelvinNc => kelvin(4),
-            In::NoClosed => Some(self.sees(Contact::No, relay)),
-            In::NcClosed => Some(self.sees(Contact::Nc, relay)),
+            In::NoClosed => Some(self.sees(Contact::No, part)),
+            In::NcClosed => Some(self.sees(Contact::Nc, part)),
             In::Window => Some(self.gates.window()),
             In::Latch => Some(self.gates.latch()),
-            In::SourceCompliance => Some(self.source_limited(relay)),
+            In::SourceCompliance => Some(self.source_limited(part)),
             In::ProbeChain => Some(self.chain),
             _ => None,
         }
@@ -220,8 +221,8 @@ impl Board {
         }
     }
 
-    fn selected_closed(&self, relay: Option<&Relay>) -> bool {
-        self.commands.is_on(Out::ReferenceContact) || self.sees(self.selected(), relay)
+    fn selected_closed(&self, part: Option<&Specimen>) -> bool {
+        self.commands.is_on(Out::ReferenceContact) || self.sees(self.selected(), part)
     }
 
     /// Next instant at which the board does something by itself.
@@ -242,41 +243,37 @@ impl Board {
         Some((since + self.table.source_wait_ms * 1000.0).max(self.now_us))
     }
 
-    fn expire(&mut self, relay: Option<&mut Relay>) {
+    fn expire(&mut self, part: Option<&mut Specimen>) {
         let now = self.now_us;
         self.gates.expire(now);
         if self.switch_at_us.is_some_and(|at| at <= now) {
             self.switch_at_us = None;
-            self.throw(relay);
+            self.throw(part);
         } else if self.source_due_us().is_some_and(|at| at <= now) {
             self.source_live = true;
-            self.refresh(relay);
+            self.refresh(part);
         }
     }
 
     /// Drive, selection and direction take the wanted position.
-    fn throw(&mut self, relay: Option<&mut Relay>) {
+    fn throw(&mut self, part: Option<&mut Specimen>) {
         let before = self.switches;
         self.switches = self.wanted();
         if before.select_no != self.switches.select_no {
             self.closed_since_us = None;
         }
-        self.refresh(relay);
+        self.refresh(part);
     }
 
     /// The latch looks at contact events as the monitor sees them.
-    fn contact_event(&mut self, contact: Contact, closed: bool, relay: &Relay) {
-        let pins = relay.specimen().pins;
-        let met = match contact {
-            Contact::No => pins.no(),
-            Contact::Nc => pins.nc(),
-        };
-        if !met || !self.touching || self.commands.is_on(Out::ReferenceContact) {
+    fn contact_event(&mut self, contact: Contact, closed: bool, part: &Specimen) {
+        let met = part.pins().contact(contact) && self.touching;
+        if !met || self.commands.is_on(Out::ReferenceContact) {
             return;
         }
         let chosen = match self.commands.is_on(Out::EventNoBreak) {
             true => contact == Contact::No && !closed,
-            false => contact == self.selected() && closed && self.monitor_trips(relay, contact),
+            false => contact == self.selected() && closed && self.trips(part, contact),
         };
         if chosen {
             self.gates.event(self.now_us);
@@ -284,14 +281,15 @@ impl Board {
     }
 
     /// Everything that follows at once from commands, probes and contacts.
-    fn refresh(&mut self, mut relay: Option<&mut Relay>) {
+    fn refresh(&mut self, mut part: Option<&mut Specimen>) {
         let now = self.now_us;
-        self.select_clamp(relay.as_deref());
+        self.select_clamp(part.as_deref());
         self.edges_of_drive();
-        if let Some(relay) = relay.as_deref_mut() {
-            relay.drive(now, self.coil_supply(relay));
+        if let Some(part) = part.as_deref_mut() {
+            let supply = self.coil_supply(part);
+            part.drive(now, supply);
         }
-        let closed = self.selected_closed(relay.as_deref());
+        let closed = self.selected_closed(part.as_deref());
         match (closed, self.closed_since_us) {
             (true, None) => self.closed_since_us = Some(now),
             (false, Some(_)) => self.closed_since_us = None,
@@ -299,17 +297,17 @@ impl Board {
         }
         self.source_live &= closed && self.chain && self.commands.is_on(Out::SourceOn);
         self.gates.contact(now, closed);
-        if let Some(relay) = relay
+        if let Some(part) = part
             && self.source_live
             && !self.commands.is_on(Out::ReferenceContact)
         {
-            relay.record.source_on(self.selected());
+            part.source_on(self.selected());
         }
     }
 
-    fn select_clamp(&mut self, relay: Option<&Relay>) {
+    fn select_clamp(&mut self, part: Option<&Specimen>) {
         let wanted = self.commands.is_on(Out::ClampDiode);
-        let free = self.coil_a(relay).abs() * 1000.0 < self.table.clamp_select_below_ma;
+        let free = self.coil_a(part).abs() * 1000.0 < self.table.clamp_select_below_ma;
         if wanted != self.clamp_diode && free {
             self.clamp_diode = wanted;
         }
@@ -330,10 +328,10 @@ impl Board {
         }
     }
 
-    fn coil_supply(&self, relay: &Relay) -> Supply {
-        let meets = self.touching && relay.specimen().pins.coil();
+    fn coil_supply(&self, part: &Specimen) -> Supply {
+        let meets = self.touching && part.pins().input();
         if self.driving && meets && !self.commands.is_on(Out::ReferenceCoil) {
-            return Supply::Volts(self.behind_probes_v(relay.coil_ohm()));
+            return Supply::Volts(self.behind_probes_v(part.input_ohm()));
         }
         let clamp_v = if self.clamp_diode && meets {
             self.table.diode_v

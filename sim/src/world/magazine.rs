@@ -1,11 +1,7 @@
 //! The magazine track and every part that has left it. It may be emptied and filled anew while the rig runs.
 
-use std::path::Path;
-
 use super::draw::{Draw, Subject};
-use super::golden::{Certificate, read_golden, read_scale};
-use super::relay::{Contact, Relay};
-use super::specimen::{Scale, Specimen};
+use super::specimen::{Arrival, Lot, Specimen};
 use super::table::WorldTable;
 use super::{
     WorldOptions,
@@ -14,11 +10,14 @@ use super::{
 use crate::config::ConfigError;
 use crate::truth::{BodyTruth, PartTruth, Place};
 
+/// The pin that [`Fault::ProbeDirty`] takes: NO.
+const DIRTY_PIN: usize = 3;
+
 /// A part outside the magazine.
 #[derive(Debug, Clone)]
 pub struct Part {
-    /// The relay; its coil and contacts keep their history.
-    pub relay: Relay,
+    /// What the probes find; it keeps its history.
+    pub specimen: Specimen,
     /// Order of entering the nest, from 1; 0 before, and for golden parts always.
     pub seq: u64,
     /// Place in the lot from 1, none for golden parts: what `--fault` counts by.
@@ -32,25 +31,13 @@ pub struct Part {
 impl Part {
     /// What this part was.
     pub fn truth(&self) -> PartTruth {
-        let (spec, record) = (self.relay.specimen(), &self.relay.record);
-        let coil = spec.coil_ohm;
         PartTruth {
             seq: self.seq,
-            coil_resistance_ohm: coil.is_finite().then_some(coil),
-            operate_voltage_v: Some(spec.operate_v),
-            release_voltage_v: Some(spec.release_v),
-            operate_time_ms: record.time_ms(Contact::No),
-            release_time_ms: record.time_ms(Contact::Nc),
-            operate_bounce_ms: record.bounce_ms(Contact::No),
-            release_bounce_ms: record.bounce_ms(Contact::Nc),
-            contact_resistance_no_mohm: record.mean_mohm(Contact::No),
-            contact_resistance_nc_mohm: record.mean_mohm(Contact::Nc),
-            defect: spec.defect.map(super::defect::Defect::name),
             landed_in: match self.path.last() {
                 Some((_, Place::Bin(bin))) => Some(bin.clone()),
                 _ => None,
             },
-            levels: self.relay.levels(),
+            ..self.specimen.truth()
         }
     }
 
@@ -82,11 +69,10 @@ impl Part {
 /// Parts in the order in which they leave: golden ones first.
 #[derive(Debug, Clone)]
 pub struct Magazine {
-    world: WorldTable,
-    scale: Scale,
+    lot: Lot,
     seed: u64,
-    golden: Vec<Certificate>,
-    lot: Option<u64>,
+    /// Lot parts that lie in it, none for no end.
+    parts: Option<u64>,
     /// Lot parts between two golden ones, once the lot has begun.
     golden_every: Option<u64>,
     /// Golden and lot parts that have left.
@@ -109,19 +95,10 @@ impl Magazine {
         track_c: f64,
         ambient_c: f64,
     ) -> Result<Self, ConfigError> {
-        let dir: &Path = &options.config_dir;
-        let scale = read_scale(dir, &options.recipe)?;
-        let golden = match options.golden {
-            true => read_golden(dir, scale.nominal_v)?,
-            false => Vec::new(),
-        };
-        let (world, seed, lot) = (world.clone(), options.seed, options.parts);
         Ok(Self {
-            world,
-            scale,
-            seed,
-            golden,
-            lot,
+            lot: Lot::read(options, world)?,
+            seed: options.seed,
+            parts: options.parts,
             golden_every: faults
                 .values(Fault::GoldenEvery)
                 .next()
@@ -147,9 +124,9 @@ impl Magazine {
     /// Parts that still wait, `u64::MAX` for an endless lot.
     pub fn waiting(&self) -> u64 {
         let out = self.since_filled();
-        let ahead = (self.golden.len() as u64).saturating_sub(out.0);
-        let lot = |lot: u64| ahead + lot.saturating_sub(out.1);
-        self.lot.map_or(u64::MAX, lot)
+        let ahead = self.lot.golden().saturating_sub(out.0);
+        let lot = |parts: u64| ahead + parts.saturating_sub(out.1);
+        self.parts.map_or(u64::MAX, lot)
     }
 
     /// Place in the lot (from 1) of the part that leaves next; none when it is a golden one.
@@ -161,7 +138,7 @@ impl Magazine {
     fn golden_due(&self) -> u64 {
         let lot = self.since_filled().1;
         let again = self.golden_every.map_or(0, |every| lot / every);
-        match self.golden.len() as u64 {
+        match self.lot.golden() {
             0 => 0,
             first => first + again,
         }
@@ -173,60 +150,60 @@ impl Magazine {
             return None;
         }
         let number = self.next_number();
-        let (mut specimen, draw) = match number {
-            Some(n) => self.lot_part(n - 1, faults),
-            None => self.golden_part(self.out.0, faults),
+        let specimen = match number {
+            Some(n) => self.lot_part(n - 1, now_us, faults),
+            None => self.golden_part(self.out.0, now_us, faults)?,
         };
         match number {
             Some(_) => self.out.1 += 1,
             None => self.out.0 += 1,
         }
-        if faults.strikes(Fault::ProbeDirty, number) {
-            specimen.kelvin[3] = false;
-            specimen.pins.present[3] = false;
-        }
-        if faults.strikes(Fault::Turned, number) {
-            specimen.turn();
-        }
-        let double = faults.strikes(Fault::DoublePart, number);
-        let (track, air) = (self.track_c, self.ambient_c);
-        let relay = Relay::new(specimen, &self.world, draw, now_us as f64, track, air);
         Some(Part {
-            relay,
+            specimen,
             seq: 0,
             number,
-            double,
+            double: faults.strikes(Fault::DoublePart, number),
             path: vec![(now_us, Place::Pocket)],
         })
     }
 
     /// A part that is fed again is the same body, and operates anew.
-    fn lot_part(&self, index: u64, faults: &Faults) -> (Specimen, Draw) {
+    fn lot_part(&self, index: u64, now_us: u64, faults: &mut Faults) -> Specimen {
         let asked = |fault| faults.values(fault).next().map(|it| it as u64);
         let seed = asked(Fault::PartsSeed).unwrap_or(self.seed);
         let noise = faults.noise_seed().unwrap_or(self.seed);
         let body = asked(Fault::Refeed).map_or(index, |parts| index % parts.max(1));
-        let specimen = Specimen::of_lot(&self.world, self.scale, seed, body);
-        (specimen, Draw::new(noise, Subject::LotOperations, index))
+        let draw = Draw::new(noise, Subject::LotOperations, index);
+        let number = Some(index + 1);
+        let arrival = Arrival {
+            dirty_pin: faults
+                .strikes(Fault::ProbeDirty, number)
+                .then_some(DIRTY_PIN),
+            turned: faults.strikes(Fault::Turned, number),
+            ..self.arrival(now_us, draw)
+        };
+        self.lot.part(seed, body, arrival)
     }
 
-    /// On another day a golden part is the same body with another temperature.
-    fn golden_part(&self, index: u64, faults: &Faults) -> (Specimen, Draw) {
+    /// After the last one the first golden part comes again.
+    fn golden_part(&self, index: u64, now_us: u64, faults: &Faults) -> Option<Specimen> {
         let place = index - self.filled_at.0;
-        let body = if place < self.golden.len() as u64 {
-            place
-        } else {
-            0
-        };
-        let paper = &self.golden[body as usize];
-        let mut specimen =
-            Specimen::of_certificate(&self.world, self.scale, self.seed, body, paper);
+        let body = if place < self.lot.golden() { place } else { 0 };
         let noise = faults.noise_seed();
-        let mut draw = Draw::new(noise.unwrap_or(self.seed), Subject::GoldenOperations, index);
-        if noise.is_some() {
-            let sd_k = self.world.environment.part_minus_track_sd_k;
-            specimen.offset_k = draw.normal(0.0, sd_k);
+        let draw = Draw::new(noise.unwrap_or(self.seed), Subject::GoldenOperations, index);
+        let arrival = self.arrival(now_us, draw);
+        self.lot
+            .golden_part(self.seed, body, noise.is_some(), arrival)
+    }
+
+    fn arrival(&self, now_us: u64, draw: Draw) -> Arrival {
+        Arrival {
+            t_us: now_us as f64,
+            track_c: self.track_c,
+            ambient_c: self.ambient_c,
+            draw,
+            dirty_pin: None,
+            turned: false,
         }
-        (specimen, draw)
     }
 }

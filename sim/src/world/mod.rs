@@ -3,7 +3,7 @@
 //! ```text
 //! terminals -> wiring -> signals -> board      (coil supply, gates, contact source, monitors)
 //!                                -> mechanism  (cylinders, axis, sensors; places and parts)
-//!                 board <-> relay of the part in the nest (specimen, lumped model, thermal, record)
+//!                 board <-> probes <-> specimen of the part in the nest (a folder per kind: relay, resistor)
 //! ```
 //!
 //! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the
@@ -20,16 +20,15 @@ pub mod edges;
 pub mod environment;
 pub mod fault;
 pub mod gates;
-pub mod golden;
 pub mod magazine;
 pub mod mechanism;
 pub mod places;
-pub mod record;
+pub mod probes;
 pub mod relay;
+pub mod resistor;
 pub mod signal;
 pub mod specimen;
 pub mod table;
-pub mod thermal;
 pub mod wiring;
 
 use std::path::PathBuf;
@@ -47,8 +46,8 @@ use environment::Environment;
 use fault::{Fault, Faults, Kind};
 use magazine::{Magazine, Part};
 use mechanism::Mechanism;
-use relay::Relay;
 use signal::{Commands, In, Source};
+use specimen::Specimen;
 use table::WorldTable;
 use wiring::{Wire, Wiring};
 
@@ -213,18 +212,19 @@ impl World {
         Ok(())
     }
 
-    fn relay(&self) -> Option<&Relay> {
+    /// What lies in the nest.
+    fn specimen(&self) -> Option<&Specimen> {
         self.mechanism
             .places
             .nest
             .as_deref()
-            .map(|part| &part.relay)
+            .map(|part| &part.specimen)
     }
 
     /// A signal at this instant.
     fn signal(&self, signal: In) -> bool {
         let own = self.mechanism.signal(signal, self.now_us);
-        own.or_else(|| self.board.signal(signal, self.relay()))
+        own.or_else(|| self.board.signal(signal, self.specimen()))
             .unwrap_or(false)
     }
 
@@ -250,7 +250,7 @@ impl World {
             self.mechanism.probes_up(now),
             self.mechanism.probes_touch(now),
         );
-        self.board.probe(up, touch, nest_relay(&mut self.mechanism));
+        self.board.probe(up, touch, in_nest(&mut self.mechanism));
         for (wire, edges) in &mut self.edges {
             if let Some(present) = self.mechanism.signal(wire.signal, now) {
                 edges.level(present != wire.active_low, now);
@@ -272,14 +272,14 @@ impl Plant for World {
         while self.mechanism.next_us() <= t_us {
             self.now_us = self.mechanism.next_us().max(self.now_us);
             self.board
-                .advance(self.now_us as f64, nest_relay(&mut self.mechanism));
+                .advance(self.now_us as f64, in_nest(&mut self.mechanism));
             self.mechanism.process(self.now_us);
             self.mechanism_changed();
         }
         if t_us > self.now_us {
             self.now_us = t_us;
             self.board
-                .advance(t_us as f64, nest_relay(&mut self.mechanism));
+                .advance(t_us as f64, in_nest(&mut self.mechanism));
         }
     }
 
@@ -290,7 +290,7 @@ impl Plant for World {
         match wiring::at(&self.wiring.quantities, module, channel) {
             Some(wire) => self
                 .board
-                .clip(self.board.quantity(wire.signal, self.relay()) * wire.gain),
+                .clip(self.board.quantity(wire.signal, self.specimen()) * wire.gain),
             None => f64::NAN,
         }
     }
@@ -298,7 +298,7 @@ impl Plant for World {
     fn analog_out(&mut self, module: &str, volts: f64) {
         if let Some(wire) = wiring::at(&self.wiring.sources, module, 0) {
             self.board
-                .supply(wire.signal, volts, nest_relay(&mut self.mechanism));
+                .supply(wire.signal, volts, in_nest(&mut self.mechanism));
         }
     }
 
@@ -323,8 +323,7 @@ impl Plant for World {
         self.commands = commands;
         self.mechanism.command(commands, self.now_us);
         self.mechanism_changed();
-        self.board
-            .command(commands, nest_relay(&mut self.mechanism));
+        self.board.command(commands, in_nest(&mut self.mechanism));
     }
 
     fn edges(&mut self, module: &str, channel: u8) -> u64 {
@@ -346,12 +345,12 @@ impl Plant for World {
     }
 }
 
-fn nest_relay(mechanism: &mut Mechanism) -> Option<&mut Relay> {
+fn in_nest(mechanism: &mut Mechanism) -> Option<&mut Specimen> {
     mechanism
         .places
         .nest
         .as_deref_mut()
-        .map(|part: &mut Part| &mut part.relay)
+        .map(|part: &mut Part| &mut part.specimen)
 }
 
 /// Volts of supply per volt of each source; a source that is not wired gives none.

@@ -28,7 +28,7 @@ impl Places {
             part.seq = self.entered;
         }
         part.goes(now_us, Place::Nest);
-        while part.relay.advance(now_us as f64).is_some() {}
+        while part.specimen.advance(now_us as f64).is_some() {}
         self.nest = Some(part);
     }
 

@@ -1,310 +1,181 @@
-//! One relay as it really is, drawn from the lot or made to a certificate.
+//! A specimen of any kind: what a lot draws, and what the probes find on it.
+//!
+//! Nothing outside this file knows which kinds there are. A kind is a folder beside it with a lot that draws its
+//! parts and a part that answers on the probes; here stands one variant for each.
 
-use super::defect::{self, Defect};
-use super::draw::{Draw, Subject};
-use super::golden::Certificate;
-use super::relay::fit::{Pace, Wanted};
-use super::table::{LotTable, WorldTable};
+use std::ops::{Deref, DerefMut};
 
-/// Resistance of one contact, milliohm.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum ContactFilm {
-    /// Scatters about its median from closure to closure.
-    Steady {
-        /// Middle of the closures.
-        median_mohm: f64,
-        /// Deviation of the logarithm.
-        ln_sd: f64,
-    },
-    /// Every closure anywhere in the range.
-    Unstable([f64; 2]),
-}
+use serde::Deserialize;
 
-impl ContactFilm {
-    /// Resistance of the next closure, milliohm.
-    pub fn close(self, draw: &mut Draw) -> f64 {
-        match self {
-            Self::Steady { median_mohm, ln_sd } => draw.lognormal(median_mohm, ln_sd),
-            Self::Unstable(ends) => draw.between(ends),
-        }
-    }
-}
+use super::WorldOptions;
+use super::draw::Draw;
+use super::probes::{Change, Contact, Pins, Supply};
+use super::relay::{self, Relay};
+use super::resistor::{self, Resistor};
+use super::table::WorldTable;
+use crate::config::{ConfigError, content, read_text};
+use crate::truth::PartTruth;
 
-/// Which of the five pins meet their probes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Pins {
-    /// Coil a, coil b, common, NO, NC.
-    pub present: [bool; 5],
-}
+/// Temperature at which true values are stated, degrees Celsius.
+pub const REFERENCE_C: f64 = 23.0;
 
-impl Pins {
-    /// Every pin meets its probe.
-    pub const ALL: Self = Self { present: [true; 5] };
+/// What the interface board finds on the pins of a specimen. A kind without contacts leaves these out.
+pub trait OnProbes {
+    /// Pins that meet their probes.
+    fn pins(&self) -> Pins;
 
-    /// The coil can be driven.
-    pub fn coil(self) -> bool {
-        self.present[0] && self.present[1]
+    /// Resistance between the two input pins now, ohm; infinite when open.
+    fn input_ohm(&self) -> f64;
+
+    /// Current through the input pins now, ampere.
+    fn input_a(&self) -> f64;
+
+    /// Another supply at the input pins from now on; the specimen must have been advanced to `t_us`.
+    fn drive(&mut self, t_us: f64, supply: Supply);
+
+    /// Goes on to `t_us`, or to the first change of a contact before it.
+    fn advance(&mut self, t_us: f64) -> Option<Change>;
+
+    /// Resistance of a contact, milliohm; none while it is open.
+    fn contact_mohm(&self, _contact: Contact) -> Option<f64> {
+        None
     }
 
-    /// The NO contact can be seen.
-    pub fn no(self) -> bool {
-        self.present[2] && self.present[3]
-    }
+    /// The contact source flows through a contact.
+    fn source_on(&mut self, _contact: Contact) {}
 
-    /// The NC contact can be seen.
-    pub fn nc(self) -> bool {
-        self.present[2] && self.present[4]
-    }
-}
-
-/// A relay with its true values. Thresholds and coil at 23 C.
-#[derive(Debug, Clone)]
-pub struct Specimen {
-    /// Place in the lot, or in the list of certificates.
-    pub index: u64,
-    /// Has a certificate and is not part of the lot.
-    pub golden: bool,
-    /// What is wrong with it.
-    pub defect: Option<Defect>,
-    /// Nominal coil voltage.
-    pub nominal_v: f64,
-    /// Volts of this coil per volt of the 12 V part.
-    pub volt_scale: f64,
-    /// Ohms of this coil's design per ohm of the 12 V part.
-    pub ohm_scale: f64,
-    /// Turns of this coil per turn of the 12 V part.
-    pub turns: f64,
-    /// Where its times come from.
-    pub pace: Pace,
-    /// Winding, infinite when open.
-    pub coil_ohm: f64,
-    /// Quasi-static operate threshold.
-    pub operate_v: f64,
-    /// Quasi-static release threshold.
-    pub release_v: f64,
-    /// Drive on to first make of NO at nominal voltage.
-    pub operate_ms: f64,
-    /// Drive off from nominal voltage to first make of NC, into the zener.
-    pub release_ms: f64,
-    /// Bounce of NO, microseconds closed, open, closed ...
-    pub bounce_no_us: Vec<f64>,
-    /// Bounce of NC.
-    pub bounce_nc_us: Vec<f64>,
-    /// NO contact.
-    pub film_no: ContactFilm,
-    /// NC contact.
-    pub film_nc: ContactFilm,
-    /// Part minus track temperature.
-    pub offset_k: f64,
     /// Thermal EMF in the contact circuit, volts.
-    pub emf_v: f64,
-    /// Pins that meet probes.
-    pub pins: Pins,
-    /// Pins the Kelvin test finds good (a turned part meets the coil probes with other pins).
-    pub kelvin: [bool; 5],
-}
-
-/// Scale of a recipe against the 12 V part.
-#[derive(Debug, Clone, Copy)]
-pub struct Scale {
-    /// Nominal coil voltage of the recipe.
-    pub nominal_v: f64,
-    /// Nominal coil resistance of the recipe.
-    pub nominal_coil_ohm: f64,
-}
-
-impl Specimen {
-    /// The part at a place of the lot.
-    pub fn of_lot(world: &WorldTable, scale: Scale, seed: u64, index: u64) -> Self {
-        let mut draw = Draw::new(seed, Subject::LotPart, index);
-        let mut part = Self::good(world, scale, &mut draw);
-        part.index = index;
-        part.defect = defect::of_part(seed, index, world.defects.rate_pct);
-        if let Some(defect) = part.defect {
-            part.spoil(defect, world, &mut draw);
-        }
-        part
+    fn emf_v(&self) -> f64 {
+        0.0
     }
 
-    /// A part with a certificate: certified values with their uncertainty, the rest typical.
-    pub fn of_certificate(
-        world: &WorldTable,
-        scale: Scale,
+    /// True values so far, without order and place.
+    fn truth(&self) -> PartTruth;
+}
+
+/// Kind of a lot: key `kind` of its recipe; a recipe without the key is one for relays.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LotKind {
+    /// Electromagnetic relays with one changeover contact.
+    #[default]
+    EmRelay,
+    /// Dummies that hold one resistor, for a check of the fixture.
+    Resistor,
+}
+
+/// A specimen outside the magazine.
+#[derive(Debug, Clone)]
+pub enum Specimen {
+    /// An electromagnetic relay.
+    Relay(Box<Relay>),
+    /// A dummy that holds a resistor.
+    Resistor(Resistor),
+}
+
+impl Deref for Specimen {
+    type Target = dyn OnProbes;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::Relay(relay) => relay.as_ref(),
+            Self::Resistor(resistor) => resistor,
+        }
+    }
+}
+
+impl DerefMut for Specimen {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        match self {
+            Self::Relay(relay) => relay.as_mut(),
+            Self::Resistor(resistor) => resistor,
+        }
+    }
+}
+
+/// How a part comes out of the magazine.
+#[derive(Debug, Clone)]
+pub struct Arrival {
+    /// Instant, microseconds.
+    pub t_us: f64,
+    /// The magazine has soaked at this temperature.
+    pub track_c: f64,
+    /// Air around the nest.
+    pub ambient_c: f64,
+    /// Chance of what the part does from now on.
+    pub draw: Draw,
+    /// This pin of it misses its Kelvin probes.
+    pub dirty_pin: Option<usize>,
+    /// It lies the wrong way round.
+    pub turned: bool,
+}
+
+/// Parts of one recipe, drawn by seed and place.
+#[derive(Debug, Clone)]
+pub enum Lot {
+    /// Relays, with golden parts.
+    Relay(Box<relay::Lot>),
+    /// Dummies; none of them has a certificate.
+    Resistor(resistor::Lot),
+}
+
+impl Lot {
+    /// The lot of a recipe.
+    ///
+    /// # Errors
+    /// The recipe or what belongs to its kind cannot be read, or there is no such kind.
+    pub fn read(options: &WorldOptions, world: &WorldTable) -> Result<Self, ConfigError> {
+        Ok(match read_kind(options)? {
+            LotKind::EmRelay => Self::Relay(Box::new(relay::Lot::read(options, world)?)),
+            LotKind::Resistor => Self::Resistor(resistor::Lot::new(world)),
+        })
+    }
+
+    /// Number of golden parts.
+    pub fn golden(&self) -> u64 {
+        match self {
+            Self::Relay(lot) => lot.golden(),
+            Self::Resistor(_) => 0,
+        }
+    }
+
+    /// The lot part with this place under a seed.
+    pub fn part(&self, seed: u64, index: u64, arrival: Arrival) -> Specimen {
+        match self {
+            Self::Relay(lot) => Specimen::Relay(Box::new(lot.part(seed, index, arrival))),
+            Self::Resistor(lot) => Specimen::Resistor(lot.part(seed, index, &arrival)),
+        }
+    }
+
+    /// The golden part of this place, none past the last; on another day it is the same body with another temperature.
+    pub fn golden_part(
+        &self,
         seed: u64,
         index: u64,
-        paper: &Certificate,
-    ) -> Self {
-        let mut draw = Draw::new(seed, Subject::GoldenPart, index);
-        let mut part = Self::good(world, scale, &mut draw);
-        part.index = index;
-        part.golden = true;
-        part.operate_v = draw.normal(paper.operate_voltage_v.value, paper.operate_voltage_v.u);
-        part.release_v = draw.normal(paper.release_voltage_v.value, paper.release_voltage_v.u);
-        part.coil_ohm = draw.normal(paper.coil_resistance_ohm.value, paper.coil_resistance_ohm.u);
-        part
-    }
-
-    fn good(world: &WorldTable, scale: Scale, draw: &mut Draw) -> Self {
-        let lot = &world.lot;
-        let volt_scale = scale.nominal_v / lot.nominal_v;
-        let ohm_scale = scale.nominal_coil_ohm / lot.nominal_coil_ohm;
-        let operate = draw.normal(0.0, 1.0);
-        let follows = lot.operate_ms_follows_v;
-        let own = (1.0 - follows * follows).max(0.0).sqrt();
-        let slowness = follows * operate + own * draw.normal(0.0, 1.0);
-        Self {
-            index: 0,
-            golden: false,
-            defect: None,
-            nominal_v: scale.nominal_v,
-            volt_scale,
-            ohm_scale,
-            turns: ohm_scale / volt_scale,
-            pace: Pace::Drawn,
-            coil_ohm: ohm_scale * draw.normal(lot.coil_ohm_mean, lot.coil_ohm_sd),
-            operate_v: volt_scale * (lot.operate_v_mean + lot.operate_v_sd * operate),
-            release_v: volt_scale * draw.normal(lot.release_v_mean, lot.release_v_sd),
-            operate_ms: lot.operate_ms_mean + lot.operate_ms_sd * slowness,
-            release_ms: draw.normal(lot.release_ms_mean, lot.release_ms_sd),
-            bounce_no_us: bounce(
-                &world.relay.bounce_no_us,
-                draw.normal(lot.bounce_no_ms_mean, lot.bounce_no_ms_sd),
-            ),
-            bounce_nc_us: bounce(
-                &world.relay.bounce_nc_us,
-                draw.normal(lot.bounce_nc_ms_mean, lot.bounce_nc_ms_sd),
-            ),
-            film_no: film(lot, lot.contact_no_mohm_median, draw),
-            film_nc: film(lot, lot.contact_nc_mohm_median, draw),
-            offset_k: draw.normal(0.0, world.environment.part_minus_track_sd_k),
-            emf_v: draw.normal(0.0, lot.thermal_emf_sd_uv * 1e-6),
-            pins: Pins::ALL,
-            kelvin: [true; 5],
-        }
-    }
-
-    fn spoil(&mut self, defect: Defect, world: &WorldTable, draw: &mut Draw) {
-        let table = &world.defects;
-        let volts = |draw: &mut Draw, ends, scale: f64| scale * draw.between(ends);
-        match defect {
-            Defect::OpenCoil => self.coil_ohm = f64::INFINITY,
-            Defect::ShortedTurns => {
-                let left = draw.between(table.shorted_turns_coil_factor);
-                self.coil_ohm = self.nominal_ohm(world) * left;
-                self.turns *= left;
-                self.pace = Pace::Follows;
-            }
-            Defect::WrongCoil => self.rewind(draw.between(table.wrong_coil_factor), world),
-            Defect::WeakSpring => {
-                self.release_v = volts(draw, table.weak_spring_release_v, self.volt_scale);
-                self.operate_v = volts(draw, table.weak_spring_operate_v, self.volt_scale);
-            }
-            Defect::StiffSpring => {
-                self.operate_v = volts(draw, table.stiff_spring_operate_v, self.volt_scale);
-                self.release_v = volts(draw, table.stiff_spring_release_v, self.volt_scale);
-            }
-            Defect::Slow if draw.uniform() < 0.5 => {
-                self.operate_ms = draw.between(table.slow_operate_ms);
-                self.pace = Pace::Hinge;
-            }
-            Defect::Slow => {
-                self.release_ms = draw.between(table.slow_release_ms);
-                self.pace = Pace::Iron;
-            }
-            Defect::Bouncing if draw.uniform() < 0.5 => {
-                self.bounce_no_us =
-                    bounce(&world.relay.bounce_no_us, draw.between(table.bouncing_ms));
-            }
-            Defect::Bouncing => {
-                self.bounce_nc_us =
-                    bounce(&world.relay.bounce_nc_us, draw.between(table.bouncing_ms));
-            }
-            Defect::StuckNc | Defect::StuckNo => {}
-            Defect::HighContact => {
-                let median_mohm = match draw.uniform() < 0.25 {
-                    true => 1000.0 * draw.between(table.far_too_high_ohm),
-                    false => draw.between(table.high_contact_mohm),
-                };
-                self.spoil_contact(
-                    ContactFilm::Steady {
-                        median_mohm,
-                        ln_sd: 0.02,
-                    },
-                    draw,
-                );
-            }
-            Defect::UnstableContact => {
-                self.spoil_contact(ContactFilm::Unstable(table.unstable_contact_mohm), draw);
-            }
-            Defect::Turned => self.turn(),
-            Defect::MissingPin => {
-                let pin = draw.below(5) as usize;
-                self.pins.present[pin] = false;
-                self.kelvin[pin] = false;
-            }
-        }
-    }
-
-    /// The wrong way round.
-    pub fn turn(&mut self) {
-        self.defect = Some(Defect::Turned);
-        self.pins.present = [false; 5];
-        self.kelvin = [true, true, false, true, true];
-    }
-
-    fn nominal_ohm(&self, world: &WorldTable) -> f64 {
-        self.ohm_scale * world.lot.nominal_coil_ohm
-    }
-
-    /// Another winding of the same power: volts go with the root of the ohms.
-    fn rewind(&mut self, factor: f64, world: &WorldTable) {
-        self.coil_ohm = self.nominal_ohm(world) * factor;
-        self.turns *= factor.sqrt();
-        self.pace = Pace::Follows;
-        self.operate_v *= factor.sqrt();
-        self.release_v *= factor.sqrt();
-    }
-
-    fn spoil_contact(&mut self, film: ContactFilm, draw: &mut Draw) {
-        match draw.uniform() < 0.5 {
-            true => self.film_no = film,
-            false => self.film_nc = film,
-        }
-    }
-
-    /// What a relay has to show to be this specimen; a coil without a way through is as wound.
-    pub fn wanted(&self, world: &WorldTable) -> Wanted {
-        let wound = self.nominal_ohm(world);
-        Wanted {
-            coil_ohm: if self.coil_ohm.is_finite() {
-                self.coil_ohm
-            } else {
-                wound
-            },
-            turns: self.turns,
-            volts: [self.operate_v, self.release_v],
-            seconds: [self.operate_ms * 1e-3, self.release_ms * 1e-3],
-            nominal_v: self.nominal_v,
-            zener_v: world.board.zener_v,
-            pace: self.pace,
+        other_day: bool,
+        arrival: Arrival,
+    ) -> Option<Specimen> {
+        match self {
+            Self::Relay(lot) => lot
+                .golden_part(seed, index, other_day, arrival)
+                .map(|relay| Specimen::Relay(Box::new(relay))),
+            Self::Resistor(_) => None,
         }
     }
 }
 
-/// A bounce pattern stretched to a total open time, milliseconds.
-fn bounce(pattern: &[f64], open_ms: f64) -> Vec<f64> {
-    let open: f64 = pattern.iter().skip(1).step_by(2).sum();
-    let stretch = open_ms.max(0.0) * 1000.0 / open.max(1.0);
-    pattern
-        .iter()
-        .enumerate()
-        .map(|(i, &us)| if i % 2 == 1 { us * stretch } else { us })
-        .collect()
+#[derive(Deserialize)]
+struct RecipeFile {
+    #[serde(default)]
+    kind: LotKind,
 }
 
-fn film(lot: &LotTable, median: f64, draw: &mut Draw) -> ContactFilm {
-    ContactFilm::Steady {
-        median_mohm: draw.lognormal(median, lot.contact_ln_sd),
-        ln_sd: lot.closure_ln_sd,
-    }
+fn read_kind(options: &WorldOptions) -> Result<LotKind, ConfigError> {
+    let path = options
+        .config_dir
+        .join("recipes")
+        .join(format!("{}.toml", options.recipe));
+    let text = read_text(&path)?;
+    let file: RecipeFile = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
+    Ok(file.kind)
 }

@@ -1,19 +1,20 @@
 //! Ohm's law on the interface board: what every measuring point would show at this instant.
 
 use super::Board;
-use crate::world::relay::{Contact, Relay};
+use crate::world::probes::Contact;
 use crate::world::signal::{Out, Quantity};
+use crate::world::specimen::Specimen;
 
 impl Board {
     /// A quantity in its own unit, before the gain of its terminal.
-    pub fn quantity(&self, quantity: Quantity, relay: Option<&Relay>) -> f64 {
+    pub fn quantity(&self, quantity: Quantity, part: Option<&Specimen>) -> f64 {
         match quantity {
-            Quantity::CoilVoltage | Quantity::CoilVoltageFine => self.coil_v(relay) * self.divider,
-            Quantity::CoilCurrent | Quantity::CoilCurrentFine => self.coil_a(relay),
-            Quantity::ContactCurrent => self.contact_a(relay),
+            Quantity::CoilVoltage | Quantity::CoilVoltageFine => self.coil_v(part) * self.divider,
+            Quantity::CoilCurrent | Quantity::CoilCurrentFine => self.coil_a(part),
+            Quantity::ContactCurrent => self.contact_a(part),
             Quantity::SupplyVoltage => self.supply_v(),
             Quantity::ReferenceVoltage => self.reference_v,
-            Quantity::ContactDrop => self.contact_v(relay),
+            Quantity::ContactDrop => self.contact_v(part),
         }
     }
 
@@ -27,21 +28,17 @@ impl Board {
         sum.clamp(0.0, self.table.supply_max_v)
     }
 
-    pub(super) fn sees(&self, contact: Contact, relay: Option<&Relay>) -> bool {
+    pub(super) fn sees(&self, contact: Contact, part: Option<&Specimen>) -> bool {
         self.touching
-            && relay.is_some_and(|r| {
-                let pins = r.specimen().pins;
-                let met = match contact {
-                    Contact::No => pins.no(),
-                    Contact::Nc => pins.nc(),
-                };
-                met && r.is_closed(contact) && self.monitor_trips(r, contact)
-            })
+            && part.is_some_and(|it| it.pins().contact(contact) && self.trips(it, contact))
     }
 
-    pub(super) fn monitor_trips(&self, relay: &Relay, contact: Contact) -> bool {
-        let ohm = relay.record.contact_mohm(contact) * 1e-3;
-        ohm / (ohm + self.table.monitor_ohm) < self.table.monitor_threshold_pct / 100.0
+    /// A contact is closed, and low enough for the monitor.
+    pub(super) fn trips(&self, part: &Specimen, contact: Contact) -> bool {
+        part.contact_mohm(contact).is_some_and(|mohm| {
+            let ohm = mohm * 1e-3;
+            ohm / (ohm + self.table.monitor_ohm) < self.table.monitor_threshold_pct / 100.0
+        })
     }
 
     pub(super) fn limited_v(&self, ohm: f64) -> f64 {
@@ -55,7 +52,7 @@ impl Board {
         self.limited_v(coil_ohm + self.film_ohm) * share
     }
 
-    pub(super) fn coil_a(&self, relay: Option<&Relay>) -> f64 {
+    pub(super) fn coil_a(&self, part: Option<&Specimen>) -> f64 {
         if self.commands.is_on(Out::ReferenceCoil) {
             let volts = if self.driving {
                 self.limited_v(self.reference_coil_ohm)
@@ -64,15 +61,15 @@ impl Board {
             };
             return volts / self.reference_coil_ohm;
         }
-        let meets = |r: &&Relay| self.touching && r.specimen().pins.coil();
-        relay.filter(meets).map_or(0.0, Relay::coil_current_a)
+        let meets = |it: &&Specimen| self.touching && it.pins().input();
+        part.filter(meets).map_or(0.0, |it| it.input_a())
     }
 
-    pub(super) fn coil_v(&self, relay: Option<&Relay>) -> f64 {
-        let current = self.coil_a(relay);
+    pub(super) fn coil_v(&self, part: Option<&Specimen>) -> f64 {
+        let current = self.coil_a(part);
         match (self.driving, self.commands.is_on(Out::ReferenceCoil)) {
             (true, true) => current * self.reference_coil_ohm,
-            (true, false) => self.behind_probes_v(relay.map_or(f64::INFINITY, Relay::coil_ohm)),
+            (true, false) => self.behind_probes_v(part.map_or(f64::INFINITY, |it| it.input_ohm())),
             (false, _) if current <= 0.0 => 0.0,
             (false, _) if self.clamp_diode => -self.table.diode_v,
             (false, _) => -self.table.zener_v,
@@ -80,19 +77,19 @@ impl Board {
     }
 
     /// Resistance between the sense wires, `None` when open.
-    pub(super) fn contact_ohm(&self, relay: Option<&Relay>) -> Option<f64> {
+    pub(super) fn contact_ohm(&self, part: Option<&Specimen>) -> Option<f64> {
         if self.commands.is_on(Out::ReferenceContact) {
             return Some(self.reference_contact_ohm);
         }
         let contact = self.selected();
-        let closed = self.sees(contact, relay);
-        relay
-            .filter(|_| closed)
-            .map(|r| r.record.contact_mohm(contact) * 1e-3)
+        let closed = self.sees(contact, part);
+        part.filter(|_| closed)
+            .and_then(|it| it.contact_mohm(contact))
+            .map(|mohm| mohm * 1e-3)
     }
 
-    pub(super) fn contact_a(&self, relay: Option<&Relay>) -> f64 {
-        let ohm = self.contact_ohm(relay).unwrap_or(f64::INFINITY);
+    pub(super) fn contact_a(&self, part: Option<&Specimen>) -> f64 {
+        let ohm = self.contact_ohm(part).unwrap_or(f64::INFINITY);
         let size = match self.source_live {
             true => self.source_a.min(self.table.source_compliance_v / ohm),
             false => 0.0,
@@ -100,20 +97,20 @@ impl Board {
         if self.switches.reverse { -size } else { size }
     }
 
-    pub(super) fn source_limited(&self, relay: Option<&Relay>) -> bool {
-        self.source_live && self.contact_a(relay).abs() < self.source_a * 0.999
+    pub(super) fn source_limited(&self, part: Option<&Specimen>) -> bool {
+        self.source_live && self.contact_a(part).abs() < self.source_a * 0.999
     }
 
-    pub(super) fn contact_v(&self, relay: Option<&Relay>) -> f64 {
-        let Some(ohm) = self.contact_ohm(relay) else {
+    pub(super) fn contact_v(&self, part: Option<&Specimen>) -> f64 {
+        let Some(ohm) = self.contact_ohm(part) else {
             return self.table.monitor_v;
         };
         let reference = self.commands.is_on(Out::ReferenceContact);
-        let emf = relay
+        let emf = part
             .filter(|_| !reference)
-            .map_or(0.0, |r| r.specimen().emf_v + self.emf_drift_v());
+            .map_or(0.0, |it| it.emf_v() + self.emf_drift_v());
         let monitor_a = self.table.monitor_v / (self.table.monitor_ohm + ohm);
-        (self.contact_a(relay) + monitor_a) * ohm + emf
+        (self.contact_a(part) + monitor_a) * ohm + emf
     }
 
     /// What the EMF has moved by since the selected contact closed, volts.

@@ -5,7 +5,8 @@
 //! touch and break is passed on as it is, the flutter of a failing pulse for one.
 
 use super::lumped::{Event, Kind};
-use super::{Change, Contact, Relay, SETTLING_US};
+use super::{Relay, SETTLING_US};
+use crate::world::probes::{Change, Contact};
 
 impl Relay {
     /// A mode of the motion has changed.
@@ -59,8 +60,8 @@ impl Relay {
         self.bounce.clear();
         self.operation_v = self.draw.normal(0.0, self.scatter_v);
         let (film, pattern) = match contact {
-            Contact::No => (self.specimen.film_no, &self.specimen.bounce_no_us),
-            Contact::Nc => (self.specimen.film_nc, &self.specimen.bounce_nc_us),
+            Contact::No => (self.drawn.film_no, &self.drawn.bounce_no_us),
+            Contact::Nc => (self.drawn.film_nc, &self.drawn.bounce_nc_us),
         };
         self.record.close(contact, film.close(&mut self.draw));
         self.record.make(contact, t_us);

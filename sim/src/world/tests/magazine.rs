@@ -54,8 +54,10 @@ fn on_another_day_the_golden_parts_are_the_same_bodies_with_other_temperatures()
         let world = read_world(&config_dir(), None).unwrap();
         let mut faults = Faults::resolve(&asked, &world.fault, &config_dir()).unwrap();
         let part = loaded(0).take(0, &mut faults).unwrap();
-        let specimen = part.relay.specimen();
-        (specimen.operate_v, specimen.offset_k)
+        let Specimen::Relay(relay) = part.specimen else {
+            unreachable!("a recipe for relays")
+        };
+        (relay.drawn().operate_v, relay.drawn().offset_k)
     };
     let (bodies, kelvin): (Vec<f64>, Vec<f64>) =
         [on(None), on(Some(2.0)), on(Some(3.0))].into_iter().unzip();
@@ -65,4 +67,22 @@ fn on_another_day_the_golden_parts_are_the_same_bodies_with_other_temperatures()
         "{kelvin:?}"
     );
     assert_eq!(on(Some(2.0)), on(Some(2.0)));
+}
+
+#[test]
+fn the_magazine_gives_the_relays_that_it_always_gave() {
+    let recorded = [
+        393.939_916_647_943_96,
+        396.990_396_147_178_33,
+        400.027_266_584_083_6,
+        403.064_008_903_734_76,
+        406.062_275_600_925,
+        400.077_689_582_399_67,
+        396.387_549_121_208_9,
+    ];
+    let found = emptied(&mut loaded(2));
+    assert_eq!(found.len(), recorded.len());
+    for ((_, ohm), recorded) in found.iter().zip(recorded) {
+        assert!((ohm / recorded - 1.0).abs() < 1e-9, "{found:?}");
+    }
 }

@@ -1,13 +1,13 @@
 //! Laws of the relay and scatter of the lot.
 
+#![allow(clippy::unwrap_used)]
+
+use super::drawn::{ContactFilm, Scale};
+use super::fit::Pace;
 use super::*;
 use crate::config::read_world;
-use crate::world::defect;
-use crate::world::draw::{Draw, Subject};
-use crate::world::relay::fit::Pace;
-use crate::world::relay::{Contact, Relay, Supply};
-use crate::world::specimen::{ContactFilm, Scale, Specimen};
-use crate::world::table::WorldTable;
+use crate::world::draw::Subject;
+use crate::world::tests::config_dir;
 
 /// The default world without any scatter.
 fn still_world() -> WorldTable {
@@ -29,7 +29,7 @@ fn reference_relay(world: &WorldTable) -> Relay {
         nominal_v: 12.0,
         nominal_coil_ohm: 400.0,
     };
-    let mut specimen = Specimen::of_lot(world, scale, 1, 0);
+    let mut specimen = Drawn::of_lot(world, scale, 1, 0);
     specimen.defect = None;
     specimen.coil_ohm = 400.0;
     specimen.operate_v = 7.883_477_479_837_58;
@@ -205,7 +205,7 @@ fn a_pulse_that_ends_too_early_lets_nc_close_again_and_never_makes_no() {
 #[test]
 fn thresholds_and_resistance_follow_the_copper() {
     let world = still_world();
-    let specimen = reference_relay(&world).specimen().clone();
+    let specimen = reference_relay(&world).drawn().clone();
     let draw = Draw::new(1, Subject::LotOperations, 0);
     let mut relay = Relay::new(specimen, &world, draw, 0.0, 60.0, 60.0);
     assert!(
@@ -237,13 +237,7 @@ fn a_held_coil_warms_as_two_heat_stores_do() {
 fn the_record_holds_the_bounce_as_it_happened() {
     let world = still_world();
     let mut relay = reference_relay(&world);
-    let drawn: f64 = relay
-        .specimen()
-        .bounce_no_us
-        .iter()
-        .skip(1)
-        .step_by(2)
-        .sum();
+    let drawn: f64 = relay.drawn().bounce_no_us.iter().skip(1).step_by(2).sum();
     relay.drive(0.0, Supply::Volts(12.0));
     while relay.advance(40_000.0).is_some() {}
     assert!((relay.record.bounce_ms(Contact::No).unwrap() - drawn / 1000.0).abs() < 1e-6);
@@ -271,7 +265,7 @@ fn released(relay: &mut Relay, at_us: f64) -> (f64, f64) {
 #[test]
 fn the_record_holds_openings_that_come_after_the_bounce_list_has_ended() {
     let world = still_world();
-    let reference = reference_relay(&world).specimen().clone();
+    let reference = reference_relay(&world).drawn().clone();
     let mut latest_us = 0.0_f64;
     for step in 0..24 {
         let mut specimen = reference.clone();
@@ -357,7 +351,7 @@ fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
             nominal_v,
             nominal_coil_ohm,
         };
-        let lot = (0..650).map(|i| Specimen::of_lot(&world, scale, 7, i));
+        let lot = (0..650).map(|i| Drawn::of_lot(&world, scale, 7, i));
         let (good, bad): (Vec<_>, Vec<_>) = lot.partition(|s| s.defect.is_none());
         for part in good.iter().take(6).chain(&bad) {
             let wanted = part.wanted(&world);
@@ -390,16 +384,16 @@ fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
         nominal_v: 12.0,
         nominal_coil_ohm: 400.0,
     };
-    let lot: Vec<Specimen> = (0..2600)
-        .map(|i| Specimen::of_lot(&world, scale, 7, i))
+    let lot: Vec<Drawn> = (0..2600)
+        .map(|i| Drawn::of_lot(&world, scale, 7, i))
         .collect();
-    let good: Vec<&Specimen> = lot.iter().filter(|s| s.defect.is_none()).collect();
+    let good: Vec<&Drawn> = lot.iter().filter(|s| s.defect.is_none()).collect();
     assert_eq!(lot.len() - good.len(), 104, "4 % of 2600");
-    for &kind in defect::Defect::ALL {
+    for &kind in Defect::ALL {
         let count = lot.iter().filter(|s| s.defect == Some(kind)).count();
         assert_eq!(count, 8, "{kind:?}");
     }
-    let moments = |f: fn(&Specimen) -> f64| {
+    let moments = |f: fn(&Drawn) -> f64| {
         let n = good.len() as f64;
         let mean = good.iter().map(|s| f(s)).sum::<f64>() / n;
         (
@@ -408,7 +402,7 @@ fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
         )
     };
     for (f, mean, sd) in [
-        ((|s| s.operate_v) as fn(&Specimen) -> f64, 7.88, 0.26),
+        ((|s| s.operate_v) as fn(&Drawn) -> f64, 7.88, 0.26),
         (|s| s.release_v, 2.35, 0.10),
         (|s| s.coil_ohm, 400.0, 6.0),
         (|s| s.operate_ms, 4.7, 0.25),
@@ -430,7 +424,7 @@ fn a_relay_that_was_operated_and_released_carries_the_current_of_its_coil_again(
         nominal_coil_ohm: 400.0,
     };
     for i in 0..300 {
-        let specimen = Specimen::of_lot(&world, scale, 3, i);
+        let specimen = Drawn::of_lot(&world, scale, 3, i);
         if specimen.coil_ohm.is_infinite() {
             continue;
         }
@@ -456,4 +450,90 @@ fn a_relay_that_was_operated_and_released_carries_the_current_of_its_coil_again(
             "specimen {i}: {steps:?} A, expected {expected} at last"
         );
     }
+}
+
+#[test]
+fn a_seed_draws_the_relays_that_it_always_drew() {
+    let world = read_world(&config_dir(), None).unwrap();
+    let drawn = |seed, index, nominal_v, nominal_coil_ohm| {
+        let scale = Scale {
+            nominal_v,
+            nominal_coil_ohm,
+        };
+        Drawn::of_lot(&world, scale, seed, index)
+    };
+    let near = |found: &[f64], recorded: &[f64]| {
+        assert_eq!(found.len(), recorded.len());
+        for (one, other) in found.iter().zip(recorded) {
+            assert!(
+                (one / other - 1.0).abs() < 1e-9,
+                "{found:?}, recorded {recorded:?}"
+            );
+        }
+    };
+    for (part, recorded) in [
+        (
+            drawn(7, 0, 12.0, 400.0),
+            [
+                401.511_188_744_249_6,
+                7.967_415_220_424_96,
+                2.433_121_701_086_573,
+                4.666_511_589_636_086_5,
+                2.942_183_166_974_364_5,
+                224.787_348_413_739_58,
+                476.562_963_023_108_24,
+                0.008_331_520_656_415_613,
+                1.868_740_064_397_995_6e-6,
+            ],
+        ),
+        (
+            drawn(1, 0, 9.0, 225.0),
+            [
+                225.043_700_390_099_81,
+                5.863_349_987_004_486,
+                1.811_359_684_970_613,
+                4.574_565_416_007_003,
+                3.053_115_215_277_251,
+                186.408_768_336_615,
+                454.037_948_318_580_56,
+                -0.149_521_722_064_091_4,
+                1.538_452_732_939_932e-5,
+            ],
+        ),
+    ] {
+        let found = [
+            part.coil_ohm,
+            part.operate_v,
+            part.release_v,
+            part.operate_ms,
+            part.release_ms,
+            part.bounce_no_us[1],
+            part.bounce_nc_us[1],
+            part.offset_k,
+            part.emf_v,
+        ];
+        near(&found, &recorded);
+    }
+    let defects: Vec<(u64, &str)> = (0..230)
+        .filter_map(|i| Some((i, drawn(7, i, 12.0, 400.0).defect?.name())))
+        .collect();
+    let recorded = [
+        (11, "turned"),
+        (52, "open_coil"),
+        (134, "stuck_no"),
+        (172, "unstable_contact"),
+        (178, "stiff_spring"),
+        (188, "missing_pin"),
+        (200, "shorted_turns"),
+        (215, "high_contact"),
+        (226, "bouncing"),
+    ];
+    assert_eq!(defects, recorded);
+    let shorted = drawn(7, 200, 12.0, 400.0);
+    near(
+        &[shorted.coil_ohm, shorted.operate_v],
+        &[313.800_691_032_685_73, 7.926_989_756_170_821],
+    );
+    let pinless = drawn(7, 188, 12.0, 400.0);
+    assert_eq!(pinless.pins.present, [true, true, false, true, true]);
 }

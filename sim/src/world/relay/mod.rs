@@ -9,71 +9,37 @@
 //! remanence differs, and a volt of remanence is a volt less at the coil.
 
 mod contacts;
+pub mod defect;
+pub mod drawn;
 pub mod fit;
+pub mod golden;
+mod lot;
 pub mod lumped;
 mod motion;
+mod on_probes;
+pub mod record;
+pub mod table;
+mod thermal;
 
 use std::collections::VecDeque;
 
 use super::draw::Draw;
-use super::record::Record;
-use super::specimen::Specimen;
+use super::probes::{Change, Contact, Supply};
+use super::specimen::REFERENCE_C;
 use super::table::WorldTable;
-use super::thermal::Thermal;
-use crate::world::defect::Defect;
+use defect::Defect;
+use drawn::Drawn;
+pub use lot::Lot;
 use lumped::{Drive, Model};
 pub use motion::Levels;
 use motion::Motion;
-
-/// Temperature at which thresholds and coil resistance are stated, degrees Celsius.
-pub const REFERENCE_C: f64 = 23.0;
-
-/// One of the two contacts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Contact {
-    /// Normally open.
-    No,
-    /// Normally closed.
-    Nc,
-}
-
-/// A contact has opened or closed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Change {
-    /// Instant, microseconds.
-    pub t_us: f64,
-    /// Which contact.
-    pub contact: Contact,
-    /// Closed from now on.
-    pub closed: bool,
-}
-
-/// What stands at the coil.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Supply {
-    /// A source of so many volts.
-    Volts(f64),
-    /// Nothing but the clamp, volts across it while current flows.
-    Off {
-        /// Forward voltage of the clamp.
-        clamp_v: f64,
-    },
-}
-
-impl Supply {
-    /// Volts that a source applies.
-    pub fn volts(self) -> f64 {
-        match self {
-            Self::Volts(v) => v,
-            Self::Off { .. } => 0.0,
-        }
-    }
-}
+use record::Record;
+use thermal::Thermal;
 
 /// A relay whose coil and contacts somebody can touch.
 #[derive(Debug, Clone)]
 pub struct Relay {
-    specimen: Specimen,
+    drawn: Drawn,
     motion: Motion,
     copper_zero_c: f64,
     scatter_v: f64,
@@ -102,9 +68,9 @@ const SETTLING_US: f64 = 8_000.0;
 const NEW_OPERATION: f64 = 0.1;
 
 impl Relay {
-    /// Puts a specimen into the world at an instant; `draw` is the chance of its operations.
+    /// Puts a drawn relay into the world at an instant; `draw` is the chance of its operations.
     pub fn new(
-        mut specimen: Specimen,
+        mut drawn: Drawn,
         world: &WorldTable,
         mut draw: Draw,
         t_us: f64,
@@ -112,28 +78,24 @@ impl Relay {
         ambient_c: f64,
     ) -> Self {
         let table = &world.relay;
-        let welded = specimen.defect == Some(Defect::StuckNo);
-        let above = track_c + specimen.offset_k - ambient_c;
-        let film = if welded {
-            specimen.film_no
-        } else {
-            specimen.film_nc
-        };
+        let welded = drawn.defect == Some(Defect::StuckNo);
+        let above = track_c + drawn.offset_k - ambient_c;
+        let film = if welded { drawn.film_no } else { drawn.film_nc };
         let side = if welded { Contact::No } else { Contact::Nc };
-        let mut record = Record::new(&specimen);
+        let mut record = Record::new(&drawn);
         record.close(side, film.close(&mut draw));
-        let model = Model::new(&specimen.wanted(world).fit(&table.lumped));
-        specimen.operate_v = model.pickup().volts;
-        specimen.release_v = model.release().volts;
+        let model = Model::new(&drawn.wanted(world).fit(&table.lumped));
+        drawn.operate_v = model.pickup().volts;
+        drawn.release_v = model.release().volts;
         let supply = Supply::Off {
             clamp_v: world.board.zener_v,
         };
-        let stuck = specimen.coil_ohm.is_infinite()
-            || matches!(specimen.defect, Some(Defect::StuckNo | Defect::StuckNc));
+        let stuck = drawn.coil_ohm.is_infinite()
+            || matches!(drawn.defect, Some(Defect::StuckNo | Defect::StuckNc));
         let drive = Drive::Clamp {
             volts: world.board.zener_v,
         };
-        let scatter_v = world.lot.threshold_scatter_sd_mv * 1e-3 * specimen.volt_scale;
+        let scatter_v = world.lot.threshold_scatter_sd_mv * 1e-3 * drawn.volt_scale;
         let mut relay = Self {
             motion: Motion::new(model, t_us * 1e-6, drive, stuck, welded),
             copper_zero_c: table.copper_zero_c,
@@ -150,15 +112,15 @@ impl Relay {
             settled_us: t_us,
             bounce: VecDeque::new(),
             record,
-            specimen,
+            drawn,
         };
         relay.restart();
         relay
     }
 
-    /// The specimen behind it.
-    pub fn specimen(&self) -> &Specimen {
-        &self.specimen
+    /// What it was drawn as; its thresholds are those that it moves with.
+    pub fn drawn(&self) -> &Drawn {
+        &self.drawn
     }
 
     /// Rig time that its armature was held, and moved.
@@ -173,12 +135,12 @@ impl Relay {
 
     /// Coil resistance now, ohm.
     pub fn coil_ohm(&self) -> f64 {
-        self.specimen.coil_ohm * self.copper_ratio()
+        self.drawn.coil_ohm * self.copper_ratio()
     }
 
     /// Coil current now, ampere.
     pub fn coil_current_a(&self) -> f64 {
-        match self.specimen.coil_ohm.is_infinite() {
+        match self.drawn.coil_ohm.is_infinite() {
             true => 0.0,
             false => self.motion.current(self.supply.volts()),
         }
@@ -193,7 +155,7 @@ impl Relay {
         self.settle(t_us);
         self.supply = supply;
         self.restart();
-        if (new - old).abs() > NEW_OPERATION * self.specimen.nominal_v {
+        if (new - old).abs() > NEW_OPERATION * self.drawn.nominal_v {
             self.settled_us = self.settled_us.min(t_us);
         }
         self.record
@@ -238,7 +200,7 @@ impl Relay {
     /// Supply and copper as they now are reach the motion.
     fn restart(&mut self) {
         let drive = match self.supply {
-            Supply::Volts(_) if self.specimen.coil_ohm.is_infinite() => Drive::still(0.0),
+            Supply::Volts(_) if self.drawn.coil_ohm.is_infinite() => Drive::still(0.0),
             Supply::Volts(volts) => Drive::still(volts - self.operation_v),
             Supply::Off { clamp_v } => Drive::Clamp { volts: clamp_v },
         };
@@ -246,3 +208,6 @@ impl Relay {
         self.motion.set(drive, ohm);
     }
 }
+
+#[cfg(test)]
+mod tests;

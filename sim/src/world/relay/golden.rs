@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::specimen::Scale;
+use super::drawn::Scale;
 use crate::config::{ConfigError, content, read_text};
 
 /// A certified value with its standard uncertainty.

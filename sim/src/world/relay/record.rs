@@ -1,7 +1,7 @@
 //! What a relay has shown: the last full-voltage operation and release, and its contact closures.
 
-use super::relay::Contact;
-use super::specimen::Specimen;
+use super::drawn::Drawn;
+use crate::world::probes::Contact;
 
 /// Full voltage begins at this share of nominal.
 const FULL: f64 = 0.98;
@@ -37,9 +37,9 @@ pub struct Record {
 
 impl Record {
     /// Nothing seen yet.
-    pub fn new(specimen: &Specimen) -> Self {
+    pub fn new(drawn: &Drawn) -> Self {
         Self {
-            nominal_v: specimen.nominal_v,
+            nominal_v: drawn.nominal_v,
             closures: Default::default(),
             timing: Default::default(),
         }

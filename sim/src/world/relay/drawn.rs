@@ -1,0 +1,278 @@
+//! One relay as it really is, drawn from the lot or made to a certificate.
+
+use super::defect::Defect;
+use super::fit::{Pace, Wanted};
+use super::golden::Certificate;
+use super::table::LotTable;
+use crate::world::defect;
+use crate::world::draw::{Draw, Subject};
+use crate::world::probes::Pins;
+use crate::world::table::WorldTable;
+
+/// Resistance of one contact, milliohm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactFilm {
+    /// Scatters about its median from closure to closure.
+    Steady {
+        /// Middle of the closures.
+        median_mohm: f64,
+        /// Deviation of the logarithm.
+        ln_sd: f64,
+    },
+    /// Every closure anywhere in the range.
+    Unstable([f64; 2]),
+}
+
+impl ContactFilm {
+    /// Resistance of the next closure, milliohm.
+    pub fn close(self, draw: &mut Draw) -> f64 {
+        match self {
+            Self::Steady { median_mohm, ln_sd } => draw.lognormal(median_mohm, ln_sd),
+            Self::Unstable(ends) => draw.between(ends),
+        }
+    }
+}
+
+/// A relay with its true values. Thresholds and coil at 23 C.
+#[derive(Debug, Clone)]
+pub struct Drawn {
+    /// Place in the lot, or in the list of certificates.
+    pub index: u64,
+    /// Has a certificate and is not part of the lot.
+    pub golden: bool,
+    /// What is wrong with it.
+    pub defect: Option<Defect>,
+    /// Nominal coil voltage.
+    pub nominal_v: f64,
+    /// Volts of this coil per volt of the 12 V part.
+    pub volt_scale: f64,
+    /// Ohms of this coil's design per ohm of the 12 V part.
+    pub ohm_scale: f64,
+    /// Turns of this coil per turn of the 12 V part.
+    pub turns: f64,
+    /// Where its times come from.
+    pub pace: Pace,
+    /// Winding, infinite when open.
+    pub coil_ohm: f64,
+    /// Quasi-static operate threshold.
+    pub operate_v: f64,
+    /// Quasi-static release threshold.
+    pub release_v: f64,
+    /// Drive on to first make of NO at nominal voltage.
+    pub operate_ms: f64,
+    /// Drive off from nominal voltage to first make of NC, into the zener.
+    pub release_ms: f64,
+    /// Bounce of NO, microseconds closed, open, closed ...
+    pub bounce_no_us: Vec<f64>,
+    /// Bounce of NC.
+    pub bounce_nc_us: Vec<f64>,
+    /// NO contact.
+    pub film_no: ContactFilm,
+    /// NC contact.
+    pub film_nc: ContactFilm,
+    /// Part minus track temperature.
+    pub offset_k: f64,
+    /// Thermal EMF in the contact circuit, volts.
+    pub emf_v: f64,
+    /// Pins that meet probes.
+    pub pins: Pins,
+}
+
+/// Scale of a recipe against the 12 V part.
+#[derive(Debug, Clone, Copy)]
+pub struct Scale {
+    /// Nominal coil voltage of the recipe.
+    pub nominal_v: f64,
+    /// Nominal coil resistance of the recipe.
+    pub nominal_coil_ohm: f64,
+}
+
+impl Drawn {
+    /// The part at a place of the lot.
+    pub fn of_lot(world: &WorldTable, scale: Scale, seed: u64, index: u64) -> Self {
+        let mut draw = Draw::new(seed, Subject::LotPart, index);
+        let mut part = Self::good(world, scale, &mut draw);
+        part.index = index;
+        part.defect = defect::of_part(Defect::ALL, seed, index, world.defects.rate_pct);
+        if let Some(defect) = part.defect {
+            part.spoil(defect, world, &mut draw);
+        }
+        part
+    }
+
+    /// A part with a certificate: certified values with their uncertainty, the rest typical.
+    pub fn of_certificate(
+        world: &WorldTable,
+        scale: Scale,
+        seed: u64,
+        index: u64,
+        paper: &Certificate,
+    ) -> Self {
+        let mut draw = Draw::new(seed, Subject::GoldenPart, index);
+        let mut part = Self::good(world, scale, &mut draw);
+        part.index = index;
+        part.golden = true;
+        part.operate_v = draw.normal(paper.operate_voltage_v.value, paper.operate_voltage_v.u);
+        part.release_v = draw.normal(paper.release_voltage_v.value, paper.release_voltage_v.u);
+        part.coil_ohm = draw.normal(paper.coil_resistance_ohm.value, paper.coil_resistance_ohm.u);
+        part
+    }
+
+    fn good(world: &WorldTable, scale: Scale, draw: &mut Draw) -> Self {
+        let lot = &world.lot;
+        let volt_scale = scale.nominal_v / lot.nominal_v;
+        let ohm_scale = scale.nominal_coil_ohm / lot.nominal_coil_ohm;
+        let operate = draw.normal(0.0, 1.0);
+        let follows = lot.operate_ms_follows_v;
+        let own = (1.0 - follows * follows).max(0.0).sqrt();
+        let slowness = follows * operate + own * draw.normal(0.0, 1.0);
+        Self {
+            index: 0,
+            golden: false,
+            defect: None,
+            nominal_v: scale.nominal_v,
+            volt_scale,
+            ohm_scale,
+            turns: ohm_scale / volt_scale,
+            pace: Pace::Drawn,
+            coil_ohm: ohm_scale * draw.normal(lot.coil_ohm_mean, lot.coil_ohm_sd),
+            operate_v: volt_scale * (lot.operate_v_mean + lot.operate_v_sd * operate),
+            release_v: volt_scale * draw.normal(lot.release_v_mean, lot.release_v_sd),
+            operate_ms: lot.operate_ms_mean + lot.operate_ms_sd * slowness,
+            release_ms: draw.normal(lot.release_ms_mean, lot.release_ms_sd),
+            bounce_no_us: bounce(
+                &world.relay.bounce_no_us,
+                draw.normal(lot.bounce_no_ms_mean, lot.bounce_no_ms_sd),
+            ),
+            bounce_nc_us: bounce(
+                &world.relay.bounce_nc_us,
+                draw.normal(lot.bounce_nc_ms_mean, lot.bounce_nc_ms_sd),
+            ),
+            film_no: film(lot, lot.contact_no_mohm_median, draw),
+            film_nc: film(lot, lot.contact_nc_mohm_median, draw),
+            offset_k: draw.normal(0.0, world.environment.part_minus_track_sd_k),
+            emf_v: draw.normal(0.0, lot.thermal_emf_sd_uv * 1e-6),
+            pins: Pins::ALL,
+        }
+    }
+
+    fn spoil(&mut self, defect: Defect, world: &WorldTable, draw: &mut Draw) {
+        let table = &world.defects;
+        let volts = |draw: &mut Draw, ends, scale: f64| scale * draw.between(ends);
+        match defect {
+            Defect::OpenCoil => self.coil_ohm = f64::INFINITY,
+            Defect::ShortedTurns => {
+                let left = draw.between(table.shorted_turns_coil_factor);
+                self.coil_ohm = self.nominal_ohm(world) * left;
+                self.turns *= left;
+                self.pace = Pace::Follows;
+            }
+            Defect::WrongCoil => self.rewind(draw.between(table.wrong_coil_factor), world),
+            Defect::WeakSpring => {
+                self.release_v = volts(draw, table.weak_spring_release_v, self.volt_scale);
+                self.operate_v = volts(draw, table.weak_spring_operate_v, self.volt_scale);
+            }
+            Defect::StiffSpring => {
+                self.operate_v = volts(draw, table.stiff_spring_operate_v, self.volt_scale);
+                self.release_v = volts(draw, table.stiff_spring_release_v, self.volt_scale);
+            }
+            Defect::Slow if draw.uniform() < 0.5 => {
+                self.operate_ms = draw.between(table.slow_operate_ms);
+                self.pace = Pace::Hinge;
+            }
+            Defect::Slow => {
+                self.release_ms = draw.between(table.slow_release_ms);
+                self.pace = Pace::Iron;
+            }
+            Defect::Bouncing if draw.uniform() < 0.5 => {
+                self.bounce_no_us =
+                    bounce(&world.relay.bounce_no_us, draw.between(table.bouncing_ms));
+            }
+            Defect::Bouncing => {
+                self.bounce_nc_us =
+                    bounce(&world.relay.bounce_nc_us, draw.between(table.bouncing_ms));
+            }
+            Defect::StuckNc | Defect::StuckNo => {}
+            Defect::HighContact => {
+                let median_mohm = match draw.uniform() < 0.25 {
+                    true => 1000.0 * draw.between(table.far_too_high_ohm),
+                    false => draw.between(table.high_contact_mohm),
+                };
+                self.spoil_contact(
+                    ContactFilm::Steady {
+                        median_mohm,
+                        ln_sd: 0.02,
+                    },
+                    draw,
+                );
+            }
+            Defect::UnstableContact => {
+                self.spoil_contact(ContactFilm::Unstable(table.unstable_contact_mohm), draw);
+            }
+            Defect::Turned => self.turn(),
+            Defect::MissingPin => self.pins.lose(draw.below(5) as usize),
+        }
+    }
+
+    /// The wrong way round.
+    pub fn turn(&mut self) {
+        self.defect = Some(Defect::Turned);
+        self.pins = Pins::TURNED;
+    }
+
+    fn nominal_ohm(&self, world: &WorldTable) -> f64 {
+        self.ohm_scale * world.lot.nominal_coil_ohm
+    }
+
+    /// Another winding of the same power: volts go with the root of the ohms.
+    fn rewind(&mut self, factor: f64, world: &WorldTable) {
+        self.coil_ohm = self.nominal_ohm(world) * factor;
+        self.turns *= factor.sqrt();
+        self.pace = Pace::Follows;
+        self.operate_v *= factor.sqrt();
+        self.release_v *= factor.sqrt();
+    }
+
+    fn spoil_contact(&mut self, film: ContactFilm, draw: &mut Draw) {
+        match draw.uniform() < 0.5 {
+            true => self.film_no = film,
+            false => self.film_nc = film,
+        }
+    }
+
+    /// What a relay has to show to be the one drawn; a coil without a way through is as wound.
+    pub fn wanted(&self, world: &WorldTable) -> Wanted {
+        let wound = self.nominal_ohm(world);
+        Wanted {
+            coil_ohm: if self.coil_ohm.is_finite() {
+                self.coil_ohm
+            } else {
+                wound
+            },
+            turns: self.turns,
+            volts: [self.operate_v, self.release_v],
+            seconds: [self.operate_ms * 1e-3, self.release_ms * 1e-3],
+            nominal_v: self.nominal_v,
+            zener_v: world.board.zener_v,
+            pace: self.pace,
+        }
+    }
+}
+
+/// A bounce pattern stretched to a total open time, milliseconds.
+fn bounce(pattern: &[f64], open_ms: f64) -> Vec<f64> {
+    let open: f64 = pattern.iter().skip(1).step_by(2).sum();
+    let stretch = open_ms.max(0.0) * 1000.0 / open.max(1.0);
+    pattern
+        .iter()
+        .enumerate()
+        .map(|(i, &us)| if i % 2 == 1 { us * stretch } else { us })
+        .collect()
+}
+
+fn film(lot: &LotTable, median: f64, draw: &mut Draw) -> ContactFilm {
+    ContactFilm::Steady {
+        median_mohm: draw.lognormal(median, lot.contact_ln_sd),
+        ln_sd: lot.closure_ln_sd,
+    }
+}

@@ -1,0 +1,70 @@
+//! A lot of dummies.
+
+use super::{Defect, Resistor, ResistorTable};
+use crate::world::defect;
+use crate::world::draw::{Draw, Subject};
+use crate::world::probes::Pins;
+use crate::world::specimen::Arrival;
+use crate::world::table::WorldTable;
+
+/// A piece of wire has at least so much, ohm; the board divides by it.
+const LEAST_OHM: f64 = 1e-3;
+
+/// Dummies of the world file.
+#[derive(Debug, Clone)]
+pub struct Lot {
+    table: ResistorTable,
+    part_minus_track_sd_k: f64,
+}
+
+impl Lot {
+    /// The dummies of a world.
+    pub fn new(world: &WorldTable) -> Self {
+        Self {
+            table: world.resistor.clone(),
+            part_minus_track_sd_k: world.environment.part_minus_track_sd_k,
+        }
+    }
+
+    /// The lot part with this place under a seed.
+    pub fn part(&self, seed: u64, index: u64, arrival: &Arrival) -> Resistor {
+        let table = &self.table;
+        let mut draw = Draw::new(seed, Subject::LotPart, index);
+        let sd_ohm = table.nominal_ohm * table.tolerance_sd_pct / 100.0;
+        let good_ohm = draw.normal(table.nominal_ohm, sd_ohm);
+        let offset_k = draw.normal(0.0, self.part_minus_track_sd_k);
+        let defect = defect::of_part(Defect::OF_A_LOT, seed, index, table.defects_pct);
+        let mut part = Resistor {
+            resistance_ohm: defect.map_or(good_ohm, |it| self.spoilt_ohm(it, good_ohm, &mut draw)),
+            tcr_per_k: table.tcr_ppm_per_k * 1e-6,
+            celsius: arrival.track_c + offset_k,
+            defect,
+            pins: Pins::ALL,
+            supply_v: 0.0,
+        };
+        if let Some(pin) = arrival.dirty_pin {
+            part.pins.lose(pin);
+        }
+        if arrival.turned {
+            part.pins = Pins::TURNED;
+            part.defect = Some(Defect::Turned);
+        }
+        part
+    }
+
+    /// Resistance of a part with a defect, ohm.
+    fn spoilt_ohm(&self, defect: Defect, good_ohm: f64, draw: &mut Draw) -> f64 {
+        match defect {
+            Defect::Open => f64::INFINITY,
+            Defect::Short => draw.between(self.table.short_ohm).max(LEAST_OHM),
+            Defect::WrongValue => {
+                let factor = draw.between(self.table.wrong_value_factor);
+                match draw.uniform() < 0.5 {
+                    true => good_ohm * factor,
+                    false => good_ohm / factor,
+                }
+            }
+            Defect::Turned => good_ohm,
+        }
+    }
+}
