@@ -11,7 +11,7 @@ use super::sort::Sort;
 use super::trouble::Alarm;
 use super::turn::Turn;
 use super::wants::{Judged, Left};
-use crate::dut::em_relay::measure::{Bench, Progress, Stop, Test};
+use crate::dut::em_relay::measure::{Context, Progress, Stop, Test};
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{Doing, JobDone};
 use crate::rig::point::DigitalIn;
@@ -48,7 +48,7 @@ pub struct Beside<'a> {
     /// Measuring line's answer, once.
     pub job: Option<JobDone>,
     /// What to test by.
-    pub bench: &'a Bench,
+    pub bench: &'a Context,
     /// State of the sorter.
     pub sort: &'a mut Sort,
     /// When the part before left the nest.
@@ -177,13 +177,13 @@ fn worth_another(turn: &Turn, test: &Test) -> Option<Alarm> {
         return None;
     };
     // What ran to its end proves nothing either while the lags are being taught, and is all that is wanted.
-    let (Stop::Void(why) | Stop::Trouble(why)) = test.findings.why_stopped()? else {
+    let (Stop::Void(why) | Stop::Trouble(why)) = test.record.why_stopped()? else {
         return None;
     };
     (test.number() < GOLDEN_TESTS).then(|| Alarm::golden_repeated(serial, &why.to_string()))
 }
 
-fn judged(turn: &mut Turn, bench: &Bench, test: Test) {
+fn judged(turn: &mut Turn, bench: &Context, test: Test) {
     let verdict = test.verdict();
     let judgements = test.judgements();
     let now = turn.now;
@@ -199,7 +199,7 @@ fn judged(turn: &mut Turn, bench: &Bench, test: Test) {
         part: part.clone(),
         verdict,
         judgements,
-        findings: test.findings,
+        record: test.record,
         bench: bench.clone(),
         at: now,
     });

@@ -212,7 +212,7 @@ impl Station {
         let part = self.plan.golden.iter().find(|part| part.serial == serial);
         let read = part.map_or_else(
             || Err(format!("golden part {serial} has no certificate")),
-            |part| golden::check(part, &judged.findings),
+            |part| golden::check(part, &judged.record),
         );
         wants.checked = Some(Checked {
             passed: read.is_ok(),
@@ -253,7 +253,7 @@ impl Station {
 
     /// How well the probes have met this part.
     pub(super) fn follow_probes(&mut self, judged: &Judged) {
-        if let Some(ohm) = judged.findings.probe_contact {
+        if let Some(ohm) = judged.record.probe_contact {
             self.gates.probe_contact.add(ohm);
         }
     }

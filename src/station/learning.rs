@@ -8,7 +8,7 @@ use super::trouble::Alarm;
 use super::wants::{Judged, Wants};
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::Lags;
-use crate::dut::em_relay::measure::bench::UNTAUGHT_FINE_V;
+use crate::dut::em_relay::measure::context::UNTAUGHT_FINE_V;
 use crate::dut::em_relay::settings::GoldenPart;
 use crate::dut::em_relay::{golden, reference};
 use crate::dut::verdict::Verdict;
@@ -76,7 +76,7 @@ impl Station {
         calibrated: &mut Option<Calibration>,
         told: &mut Told,
     ) {
-        let findings = &judged.findings;
+        let findings = &judged.record;
         // A slow or sticking part would spoil the place of the ramp for all that follow.
         if judged.verdict == Verdict::Pass || matches!(judged.part.kind, Kind::Golden(_)) {
             let lot = matches!(judged.part.kind, Kind::Lot(_));

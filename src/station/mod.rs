@@ -47,8 +47,8 @@ mod watch;
 
 use crate::dut::em_relay::golden::GoldenRun;
 use crate::dut::em_relay::lag::LagLaw;
-use crate::dut::em_relay::measure::Bench;
-use crate::dut::em_relay::measure::bench::untaught;
+use crate::dut::em_relay::measure::Context;
+use crate::dut::em_relay::measure::context::untaught;
 use crate::dut::em_relay::settings::GoldenPart;
 use crate::guard::{PartPlaces, Situation};
 use crate::instrument::act::Runner;
@@ -119,7 +119,7 @@ enum Start {
 #[derive(Debug)]
 pub struct Station {
     plan: Plan,
-    bench: Bench,
+    bench: Context,
     table: AxisTable,
     state: State,
     entered: RigTime,
@@ -174,7 +174,7 @@ pub struct Station {
 
 impl Station {
     /// A station that knows nothing of its sensors yet.
-    pub fn new(plan: Plan, bench: Bench, table: AxisTable, mechanism: Mechanism) -> Self {
+    pub fn new(plan: Plan, bench: Context, table: AxisTable, mechanism: Mechanism) -> Self {
         let golden_left = if plan.calibrated {
             VecDeque::new()
         } else {

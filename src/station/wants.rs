@@ -6,7 +6,7 @@ use super::orders::{Order, Refused};
 use super::packml::Command;
 use super::trouble::Alarm;
 use crate::dut::em_relay::Calibration;
-use crate::dut::em_relay::measure::{Bench, Findings};
+use crate::dut::em_relay::measure::{Context, TestRecord};
 use crate::dut::{Bin, Characteristic, Judgement, Reason, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::image::Image;
@@ -46,21 +46,21 @@ pub struct Judged {
     /// Each result against its limit.
     pub judgements: Vec<(Characteristic, Judgement)>,
     /// Results and the replies they came from.
-    pub findings: Findings,
+    pub record: TestRecord,
     /// What it was judged by.
-    pub bench: Bench,
+    pub bench: Context,
     /// When it was judged.
     pub at: RigTime,
 }
 
 impl Judged {
     /// A part that was not tested to the end.
-    pub fn interrupted(part: Part, why: &str, bench: &Bench, at: RigTime) -> Self {
+    pub fn interrupted(part: Part, why: &str, bench: &Context, at: RigTime) -> Self {
         Self {
             part,
             verdict: Verdict::Void(vec![Reason::interrupted(why)]),
             judgements: Vec::new(),
-            findings: Findings::default(),
+            record: TestRecord::default(),
             bench: bench.clone(),
             at,
         }

@@ -10,7 +10,7 @@ use crate::dut::Recipe;
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::{Factor, InputLine, OutputLine};
 use crate::dut::em_relay::feasible::nominal_v_per_s;
-use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::measure;
 use crate::dut::recipe::DeviceRecipe;
 use crate::guard::{Actuator, Guard, PartSize};
 use crate::history::AlarmLeft;
@@ -73,7 +73,7 @@ pub fn cycle(
         worn,
         left,
     };
-    let bench = Bench {
+    let bench = measure::Context {
         relay: Arc::new(relay.clone()),
         calibration: Arc::new(calibration.unwrap_or_else(|| uncalibrated(relay.part.nominal_v))),
         recipe,

@@ -3,7 +3,7 @@
 //! The coarse lag goes on learning from every good part of the lot that has shown both ramps;
 //! the fine lag, which enters every result, comes from the certificates alone.
 
-use super::measure::{Findings, Ramp};
+use super::measure::{Ramp, TestRecord};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::calibration::{Factor, Lag, Lags};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
@@ -39,7 +39,7 @@ impl GoldenRun {
         &mut self,
         part: &GoldenPart,
         reference: Celsius,
-        findings: &Findings,
+        findings: &TestRecord,
     ) -> Result<(), String> {
         let serial = &part.serial;
         let why = |what: &str| format!("golden part {serial}: {what}");
@@ -165,7 +165,7 @@ fn mean(parts: &[GoldenPart], certified: fn(&GoldenPart) -> Certified) -> f64 {
     parts.iter().map(|part| certified(part).value).sum::<f64>() / parts.len().max(1) as f64
 }
 
-fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
+fn check_coil(part: &GoldenPart, findings: &TestRecord) -> Result<(), String> {
     let serial = &part.serial;
     let coil = findings
         .result(Parameter::CoilResistance)
@@ -186,7 +186,7 @@ fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
 const CHECK_K: f64 = 3.0;
 
 /// Compares what was measured on a golden part with its certificate; an error says what does not agree.
-pub fn check(part: &GoldenPart, findings: &Findings) -> Result<(), String> {
+pub fn check(part: &GoldenPart, findings: &TestRecord) -> Result<(), String> {
     let certified = [
         (Parameter::CoilResistance, part.coil_resistance_ohm, "ohm"),
         (Parameter::OperateVoltage, part.operate_voltage_v, "V"),

@@ -6,7 +6,7 @@
 //! host's clock. The slope of the coarse ramp stays the maker's: it only places the fine one.
 
 use crate::dut::em_relay::calibration::{Calibration, Factor, InputLine, OutputLine};
-use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::timing::counts;
 use crate::gauge::budget::rectangular;
 use crate::instrument::act::{Act, CoilScan, Read, Readings};
@@ -35,7 +35,7 @@ const DROPS: usize = 8;
 const PULSES: u32 = 25;
 
 /// The acts, in the order [`conclude`] expects.
-pub fn acts(bench: &Bench) -> Vec<Act> {
+pub fn acts(bench: &Context) -> Vec<Act> {
     let mut acts = vec![
         Act::CoilMask(MASK),
         all_off(),
@@ -99,13 +99,13 @@ fn all_off() -> Act {
     Act::Board(off.map(|output| (output, false)).to_vec())
 }
 
-fn scans(bench: &Bench, n: usize, acts: &mut Vec<Act>) {
+fn scans(bench: &Context, n: usize, acts: &mut Vec<Act>) {
     for _ in 0..n {
         acts.extend([Act::Read(Read::Coil), Act::Wait(bench.round(CHANNELS))]);
     }
 }
 
-fn contact(bench: &Bench, acts: &mut Vec<Act>) {
+fn contact(bench: &Context, acts: &mut Vec<Act>) {
     acts.extend([
         Act::Board(vec![(ReferenceContact, true)]),
         Act::Wait(Span::ms(10)),
@@ -188,7 +188,7 @@ fn level(scans: &[CoilScan]) -> Result<Level, String> {
 
 /// Draws the factors from what [`acts`] has read. `made_at_us`: microseconds since 1970 UTC.
 pub fn conclude(
-    bench: &Bench,
+    bench: &Context,
     readings: &Readings,
     made_at_us: i64,
     valid_us: i64,
@@ -289,7 +289,7 @@ pub fn conclude(
 }
 
 /// A converter outside its promise by half is not calibrated away but reported.
-fn check_gain(bench: &Bench, line: &InputLine) -> Result<(), String> {
+fn check_gain(bench: &Context, line: &InputLine) -> Result<(), String> {
     let promised = bench.accuracy.ai_gain_pct / 100.0;
     let found = line.gain.value - 1.0;
     if found.abs() > 1.5 * promised + 2.0 * line.gain.u {
@@ -305,7 +305,7 @@ fn check_gain(bench: &Bench, line: &InputLine) -> Result<(), String> {
 /// Slope of the fine ramp by least squares against the arrival of the replies. Conversions lag the
 /// replies by a constant on average, which does not tilt the line.
 fn slope(
-    bench: &Bench,
+    bench: &Context,
     scans: &[CoilScan],
     line: &InputLine,
     voltage_gain: f64,
@@ -348,7 +348,7 @@ fn slope(
     Ok(Factor::new(value, u))
 }
 
-fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, String> {
+fn contact_factor(bench: &Context, drops: &[Sample]) -> Result<Factor, String> {
     let mean = |samples: &[Sample]| -> Result<f64, String> {
         let bad = samples
             .iter()
@@ -380,7 +380,7 @@ fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, String> {
     ))
 }
 
-fn gate_delay(bench: &Bench, readings: &Readings, gate: usize) -> Result<Factor, String> {
+fn gate_delay(bench: &Context, readings: &Readings, gate: usize) -> Result<Factor, String> {
     let (Some(before), Some(after)) = (readings.gates.first(), readings.gates.last()) else {
         return Err("gate counters not read".into());
     };

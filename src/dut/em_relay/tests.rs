@@ -3,7 +3,7 @@
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::{Factor, InputLine, Lag, Lags, OutputLine};
 use crate::dut::em_relay::lag::LagLaw;
-use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
 use crate::dut::recipe::{DeviceRecipe, Recipe};
 use serde::Deserialize;
@@ -18,12 +18,12 @@ struct Instruments {
 }
 
 /// The default recipe on instruments that err by nothing, lags known.
-pub fn bench() -> Bench {
+pub fn context() -> Context {
     let recipe: Recipe =
         toml::from_str(include_str!("../../../config/recipes/jzc-22f-012.toml")).unwrap();
     let instruments: Instruments = toml::from_str(RIG).unwrap();
     let DeviceRecipe::EmRelay(relay) = &recipe.device;
-    Bench {
+    Context {
         relay: Arc::new(relay.clone()),
         recipe: Arc::new(recipe),
         calibration: Arc::new(calibration()),

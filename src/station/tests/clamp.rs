@@ -1,6 +1,6 @@
 //! The nest takes a part, has it tested and hands it to the gripper, never letting it loose in between.
 
-use super::{Shop, bench};
+use super::{Shop, context};
 use crate::dut::{Bin, Reason, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::axis::AxisStation;
@@ -35,7 +35,7 @@ impl Nest {
     }
 
     fn step(&mut self, clamp: Clamp, job: Option<JobDone>) -> Clamp {
-        let bench = bench();
+        let bench = context();
         let beside = Beside {
             job,
             bench: &bench,

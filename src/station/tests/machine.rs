@@ -2,7 +2,7 @@
 
 use super::golden_parts;
 use super::shop::mechanism;
-use super::{Shop, bench};
+use super::{Shop, context};
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{Job, JobDone, Read};
 use crate::rig::axis::AxisStation;
@@ -123,7 +123,7 @@ fn plan(count: Option<u64>) -> Plan {
 
 fn of_plan(plan: Plan, shop: &Shop) -> Station {
     let mechanism = mechanism(&shop.wiring);
-    Station::new(plan, bench(), shop.wiring.axis.clone(), mechanism)
+    Station::new(plan, context(), shop.wiring.axis.clone(), mechanism)
 }
 
 impl Machine {

@@ -1,14 +1,14 @@
 //! The nest: eight states, ten inputs.
 
 use super::{Graph, SEEN, show, truths};
-use crate::dut::em_relay::measure::{Bench, Test};
+use crate::dut::em_relay::measure::{Context, Test};
 use crate::dut::verdict::Bin;
 use crate::instrument::act::JobDone;
 use crate::rig::point::DigitalIn;
 use crate::station::clamp::{Beside, Clamp};
 use crate::station::ledger::Ledger;
 use crate::station::sort::Sort;
-use crate::station::tests::{Shop, bench};
+use crate::station::tests::{Shop, context};
 
 const STATES: [&str; 9] = [
     "Empty",
@@ -23,7 +23,7 @@ const STATES: [&str; 9] = [
 ];
 
 /// The state of this name; a test that is over has only its switching off before it.
-fn state(name: &str, shop: &Shop, bench: &Bench) -> Clamp {
+fn state(name: &str, shop: &Shop, bench: &Context) -> Clamp {
     match name {
         "Empty" => Clamp::Empty,
         "Clamping" => Clamp::Clamping,
@@ -38,7 +38,7 @@ fn state(name: &str, shop: &Shop, bench: &Bench) -> Clamp {
     }
 }
 
-fn failed(shop: &Shop, bench: &Bench) -> Test {
+fn failed(shop: &Shop, bench: &Context) -> Test {
     let mut test = Test::begin(bench.clone(), shop.now);
     test.step(shop.now, None, &shop.image);
     test.step(shop.now, Some(&silent(shop)), &shop.image);
@@ -83,7 +83,7 @@ fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
 fn the_nest_is_the_drawing() {
     let mut graph = Graph::default();
     let mut shop = Shop::at_rest();
-    let bench = bench();
+    let bench = context();
     let jaws_open = [DigitalIn::JawLeftOpen, DigitalIn::JawRightOpen];
     let jaws_closed = [DigitalIn::JawLeftClosed, DigitalIn::JawRightClosed];
     for (jaws, probes) in SEEN.iter().flat_map(|one| SEEN.map(|other| (*one, other))) {
