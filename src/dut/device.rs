@@ -146,7 +146,7 @@ impl Device {
     pub fn learn_reference(
         &mut self,
         serial: &str,
-        record: &em_relay::measure::Findings,
+        record: &em_relay::measure::TestRecord,
         last: bool,
     ) -> Result<Option<Calibration>, CalibrationFault> {
         match self {
@@ -168,7 +168,7 @@ impl Device {
     }
 
     /// Learns from a part of the lot that passed or not.
-    pub fn learn(&mut self, record: &em_relay::measure::Findings, pass: bool) {
+    pub fn learn(&mut self, record: &em_relay::measure::TestRecord, pass: bool) {
         match self {
             Self::EmRelay(relay) => relay.learn(record, pass),
         }
@@ -181,7 +181,7 @@ impl Device {
     pub fn check(
         &self,
         serial: &str,
-        record: &em_relay::measure::Findings,
+        record: &em_relay::measure::TestRecord,
     ) -> Result<(), CalibrationFault> {
         match self {
             Self::EmRelay(relay) => Ok(relay.check(serial, record)?),

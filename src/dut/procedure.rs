@@ -1,7 +1,7 @@
 //! A running test of any kind: stages made of acts, then a verdict.
 
 use super::Characteristic;
-use super::em_relay::measure::{self, Findings};
+use super::em_relay::measure::{self, TestRecord};
 use super::reason::Reason;
 use super::verdict::Verdict;
 use crate::gauge::Judgement;
@@ -50,7 +50,7 @@ impl Procedure {
     /// Why the test could not be carried through, if it was not: the rig was in trouble or the part could not be seen.
     pub fn why_void(&self) -> Option<&Reason> {
         match self {
-            Self::EmRelay(test) => match test.findings.why_stopped()? {
+            Self::EmRelay(test) => match test.record.why_stopped()? {
                 measure::Stop::Void(why) | measure::Stop::Trouble(why) => Some(why),
                 measure::Stop::Fail(_) => None,
             },
@@ -72,16 +72,16 @@ impl Procedure {
     }
 
     /// What was found so far, with the replies behind it.
-    pub fn record(&self) -> &Findings {
+    pub fn record(&self) -> &TestRecord {
         match self {
-            Self::EmRelay(test) => &test.findings,
+            Self::EmRelay(test) => &test.record,
         }
     }
 
     /// The same, once the part is judged.
-    pub fn into_record(self) -> Findings {
+    pub fn into_record(self) -> TestRecord {
         match self {
-            Self::EmRelay(test) => test.findings,
+            Self::EmRelay(test) => test.record,
         }
     }
 }

@@ -207,7 +207,7 @@ fn judged(turn: &mut Turn, test: Procedure) {
         part: part.clone(),
         verdict,
         judgements,
-        findings: test.into_record(),
+        record: test.into_record(),
         at: now,
     });
 }

@@ -203,7 +203,7 @@ impl Station {
         if judged.part.interrupted.is_some() {
             return self.begin_check();
         }
-        let read = self.device.check(serial, &judged.findings);
+        let read = self.device.check(serial, &judged.record);
         wants.checked = Some(Checked {
             passed: read.is_ok(),
             text: match &read {

@@ -52,13 +52,13 @@ impl Station {
                     let last = self.golden_left.is_empty();
                     let learned = self
                         .device_mut()
-                        .learn_reference(serial, &judged.findings, last);
+                        .learn_reference(serial, &judged.record, last);
                     calibrated(learned, &mut wants.calibrated, &mut told);
                 }
                 Kind::Lot(_) => {
                     self.count_discards(judged, &mut told);
                     let pass = judged.verdict == Verdict::Pass;
-                    self.device_mut().learn(&judged.findings, pass);
+                    self.device_mut().learn(&judged.record, pass);
                 }
             }
         }

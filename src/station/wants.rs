@@ -5,7 +5,7 @@ use super::moves::Move;
 use super::orders::{Order, Refused};
 use super::packml::Command;
 use super::trouble::Alarm;
-use crate::dut::em_relay::measure::Findings;
+use crate::dut::em_relay::measure::TestRecord;
 use crate::dut::{Bin, Calibration, Characteristic, Judgement, Reason, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::image::Image;
@@ -45,7 +45,7 @@ pub struct Judged {
     /// Each result against its limit.
     pub judgements: Vec<(Characteristic, Judgement)>,
     /// Results and the replies they came from.
-    pub findings: Findings,
+    pub record: TestRecord,
     /// When it was judged.
     pub at: RigTime,
 }
@@ -57,7 +57,7 @@ impl Judged {
             part,
             verdict: Verdict::Void(vec![Reason::interrupted(why)]),
             judgements: Vec::new(),
-            findings: Findings::default(),
+            record: TestRecord::default(),
             at,
         }
     }

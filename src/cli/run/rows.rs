@@ -48,7 +48,7 @@ pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
             .collect(),
         curves: match judged.verdict {
             Verdict::Pass => Vec::new(),
-            Verdict::Fail(_) | Verdict::Void(_) => curves(&judged.findings.trace, at),
+            Verdict::Fail(_) | Verdict::Void(_) => curves(&judged.record.trace, at),
         },
     }
 }
@@ -73,7 +73,7 @@ fn curves(trace: &Trace, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
 }
 
 fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<MeasurementRecord> {
-    let reading = judged.findings.result(parameter)?;
+    let reading = judged.record.result(parameter)?;
     let limit = setup.recipe.limits.of(parameter);
     let judgement = judged
         .judgements
@@ -100,9 +100,9 @@ fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<M
             Some(Judgement::Void) | None => "void",
         }
         .to_string(),
-        attempt: u32::try_from(judged.findings.attempts(parameter)).unwrap_or(u32::MAX),
+        attempt: u32::try_from(judged.record.attempts(parameter)).unwrap_or(u32::MAX),
         budget: budget(&reading),
-        samples: judged.findings.evidence(parameter).map(sample).collect(),
+        samples: judged.record.evidence(parameter).map(sample).collect(),
     })
 }
 
@@ -140,7 +140,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
     let mut uncertainty = Map::new();
     for parameter in Parameter::ALL {
         let Some(reading) = judged
-            .findings
+            .record
             .result(parameter)
             .filter(crate::gauge::Reading::is_usable)
         else {
@@ -150,7 +150,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
         uncertainty.insert(parameter.name().into(), json!(rounded(reading.expanded())));
     }
     let (seq, _) = number(&judged.part.kind, 0);
-    let spent = judged.findings.spent;
+    let spent = judged.record.spent;
     json!({
         "type": "part",
         "seq": seq,
@@ -163,7 +163,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
         "uncertainty": uncertainty,
         "test_s": judged.part.test.map(|test| rounded(test.0)),
         "cycle_s": cycle_s.map(rounded),
-        "stages": judged.findings.stages.iter().map(|(what, time)| ((*what).to_string(), json!(time.as_seconds()))).collect::<Map<String, Value>>(),
+        "stages": judged.record.stages.iter().map(|(what, time)| ((*what).to_string(), json!(time.as_seconds()))).collect::<Map<String, Value>>(),
         "spent": {
             "bus_s": spent.bus.as_seconds(),
             "settling_s": spent.settling.as_seconds(),

@@ -19,7 +19,7 @@ impl Table {
     pub fn add(&mut self, judged: &Judged) {
         for parameter in Parameter::ALL {
             if let Some(reading) = judged
-                .findings
+                .record
                 .result(parameter)
                 .filter(crate::gauge::Reading::is_usable)
             {

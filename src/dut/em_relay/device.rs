@@ -7,8 +7,8 @@ use super::calibration::{Calibration, Lags};
 use super::feasible::nominal_v_per_s;
 use super::golden::{self, GoldenRun, Misfit};
 use super::lag::LagLaw;
-use super::measure::bench::{UNTAUGHT_FINE_V, untaught};
-use super::measure::{Bench, Findings, Test};
+use super::measure::context::{UNTAUGHT_FINE_V, untaught};
+use super::measure::{Context, Test, TestRecord};
 use super::probe_contact::Trend;
 use super::recipe::RelayRecipe;
 use super::reference::{self, ReferenceFault};
@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// A relay recipe on a rig.
 #[derive(Debug, Clone)]
 pub struct Device {
-    context: Bench,
+    context: Context,
     /// Volts at the terminal per volt of the coil, fine channel.
     voltage_gain: f64,
     certificates: Vec<GoldenPart>,
@@ -45,7 +45,7 @@ impl Device {
     ) -> Self {
         let nominal_v = relay.part.nominal_v;
         let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v));
-        let context = Bench {
+        let context = Context {
             recipe,
             relay,
             calibration: Arc::new(calibration),
@@ -62,7 +62,7 @@ impl Device {
         Self::of(context, voltage_gain, certificates.collect())
     }
 
-    pub(super) fn of(context: Bench, voltage_gain: f64, certificates: Vec<GoldenPart>) -> Self {
+    pub(super) fn of(context: Context, voltage_gain: f64, certificates: Vec<GoldenPart>) -> Self {
         let coarse = context.calibration.lags.map_or(untaught(), |lags| {
             (lags.operate.coarse, lags.release.coarse)
         });
@@ -129,7 +129,7 @@ impl Device {
 
     /// Begins the test of the part in the nest; the probes are up.
     pub fn begin(&self, order: &TestOrder, now: RigTime) -> Test {
-        let context = Bench {
+        let context = Context {
             thorough: order.thorough,
             probe_contact: self.probe_contact.mean(),
             golden: order
@@ -152,7 +152,7 @@ impl Device {
     pub fn learn_reference(
         &mut self,
         serial: &str,
-        record: &Findings,
+        record: &TestRecord,
         last: bool,
     ) -> Result<Option<Calibration>, Misfit> {
         self.learn_ramps(record, false);
@@ -187,7 +187,7 @@ impl Device {
     }
 
     /// Learns from a part of the lot; one that did not `pass` would spoil the place of the ramp for all that follow.
-    pub fn learn(&mut self, record: &Findings, pass: bool) {
+    pub fn learn(&mut self, record: &TestRecord, pass: bool) {
         if let Some(ohm) = record.probe_contact {
             self.probe_contact.add(ohm);
         }
@@ -210,7 +210,7 @@ impl Device {
     ///
     /// # Errors
     /// Names what does not agree.
-    pub fn check(&self, serial: &str, record: &Findings) -> Result<(), Misfit> {
+    pub fn check(&self, serial: &str, record: &TestRecord) -> Result<(), Misfit> {
         match self.certificate(serial) {
             Some(part) => golden::check(part, record),
             None => Err(Misfit::NoCertificate {
@@ -233,7 +233,7 @@ impl Device {
         self.certificates.iter().find(|part| part.serial == serial)
     }
 
-    fn learn_ramps(&mut self, record: &Findings, of_lot: bool) {
+    fn learn_ramps(&mut self, record: &TestRecord, of_lot: bool) {
         let both = [
             (record.operate, &mut self.coarse.0, &mut self.of_lot.0),
             (record.release, &mut self.coarse.1, &mut self.of_lot.1),

@@ -3,7 +3,7 @@
 //! The coarse lag goes on learning from every good part of the lot that has shown both ramps;
 //! the fine lag, which enters every result, comes from the certificates alone.
 
-use super::measure::{Findings, Ramp};
+use super::measure::{Ramp, TestRecord};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::calibration::{Lag, Lags};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
@@ -106,23 +106,23 @@ impl GoldenRun {
         &mut self,
         part: &GoldenPart,
         reference: Celsius,
-        findings: &Findings,
+        record: &TestRecord,
     ) -> Result<(), Misfit> {
         let serial = &part.serial;
         let without = |what| Misfit::Without {
             serial: serial.clone(),
             what,
         };
-        let track = findings.track.ok_or_else(|| without("temperature"))?;
+        let track = record.track.ok_or_else(|| without("temperature"))?;
         let fine = |ramp: Option<Ramp>| ramp.and_then(|ramp| ramp.fine);
         let over = |ramp: Option<Ramp>| {
             ramp.and_then(|it| Some((it.coarse.indicated - it.fine?).0))
                 .unwrap_or(f64::NAN)
         };
-        let operate = fine(findings.operate).ok_or_else(|| without("operate voltage"))?;
-        let release = fine(findings.release).ok_or_else(|| without("release voltage"))?;
-        check_coil(part, findings)?;
-        findings
+        let operate = fine(record.operate).ok_or_else(|| without("operate voltage"))?;
+        let release = fine(record.release).ok_or_else(|| without("release voltage"))?;
+        check_coil(part, record)?;
+        record
             .probe_contact
             .into_iter()
             .for_each(|ohm| self.contact.add(ohm));
@@ -131,7 +131,7 @@ impl GoldenRun {
             serial: serial.clone(),
             operate: operate.0 - at_part(part.operate_voltage_v),
             release: release.0 - at_part(part.release_voltage_v),
-            coarse: [over(findings.operate), over(findings.release)],
+            coarse: [over(record.operate), over(record.release)],
         });
         Ok(())
     }
@@ -233,9 +233,9 @@ fn mean(parts: &[GoldenPart], certified: fn(&GoldenPart) -> Certified) -> f64 {
     parts.iter().map(|part| certified(part).value).sum::<f64>() / parts.len().max(1) as f64
 }
 
-fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), Misfit> {
+fn check_coil(part: &GoldenPart, record: &TestRecord) -> Result<(), Misfit> {
     let serial = &part.serial;
-    let coil = findings
+    let coil = record
         .result(Parameter::CoilResistance)
         .ok_or_else(|| Misfit::Without {
             serial: serial.clone(),
@@ -259,7 +259,7 @@ fn check_coil(part: &GoldenPart, findings: &Findings) -> Result<(), Misfit> {
 const CHECK_K: f64 = 3.0;
 
 /// Compares what was measured on a golden part with its certificate; an error says what does not agree.
-pub fn check(part: &GoldenPart, findings: &Findings) -> Result<(), Misfit> {
+pub fn check(part: &GoldenPart, record: &TestRecord) -> Result<(), Misfit> {
     let certified = [
         (Parameter::CoilResistance, part.coil_resistance_ohm, "ohm"),
         (Parameter::OperateVoltage, part.operate_voltage_v, "V"),
@@ -268,7 +268,7 @@ pub fn check(part: &GoldenPart, findings: &Findings) -> Result<(), Misfit> {
     let serial = &part.serial;
     for (parameter, certified, unit) in certified {
         let name = parameter.name();
-        let found = findings
+        let found = record
             .result(parameter)
             .filter(Reading::is_usable)
             .ok_or_else(|| Misfit::Without {

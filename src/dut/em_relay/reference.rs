@@ -6,7 +6,7 @@
 //! host's clock. The slope of the coarse ramp stays the maker's: it only places the fine one.
 
 use crate::dut::em_relay::calibration::{Calibration, InputLine, OutputLine};
-use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::timing::counts;
 use crate::gauge::Factor;
 use crate::gauge::budget::rectangular;
@@ -123,7 +123,7 @@ impl ReferenceFault {
 }
 
 /// The acts, in the order [`conclude`] expects.
-pub fn acts(bench: &Bench) -> Vec<Act> {
+pub fn acts(context: &Context) -> Vec<Act> {
     let mut acts = vec![
         Act::CoilMask(MASK),
         all_off(),
@@ -132,9 +132,9 @@ pub fn acts(bench: &Bench) -> Vec<Act> {
             (SupplyCoarse, Volt(0.0)),
             (SupplyFine, Volt(0.0)),
         ]),
-        Act::Wait(Span::ms(200) + bench.fresh(CHANNELS)),
+        Act::Wait(Span::ms(200) + context.fresh(CHANNELS)),
     ];
-    scans(bench, SCANS, &mut acts);
+    scans(context, SCANS, &mut acts);
     acts.push(Act::Board(vec![(ReferenceCoil, true), (CoilDrive, true)]));
     let span = Volt(HIGH_V - LOW_V);
     for step in [
@@ -144,30 +144,30 @@ pub fn acts(bench: &Bench) -> Vec<Act> {
     ] {
         acts.extend([
             Act::Supply(step),
-            Act::Wait(Span::ms(60) + bench.fresh(CHANNELS)),
+            Act::Wait(Span::ms(60) + context.fresh(CHANNELS)),
         ]);
-        scans(bench, SCANS, &mut acts);
+        scans(context, SCANS, &mut acts);
     }
     acts.extend([
         Act::Supply(vec![(SupplyCoarse, Volt(0.0))]),
         Act::Wait(Span::ms(100)),
         Act::Supply(vec![(SupplyFine, span)]),
-        Act::Wait(Span::ms(100) + bench.fresh(CHANNELS)),
+        Act::Wait(Span::ms(100) + context.fresh(CHANNELS)),
     ]);
-    scans(bench, RAMP_SCANS, &mut acts);
+    scans(context, RAMP_SCANS, &mut acts);
     acts.push(Act::Wait(Span::ms(1500)));
-    scans(bench, SCANS, &mut acts);
+    scans(context, SCANS, &mut acts);
     acts.extend([
         Act::Supply(vec![(SupplyFine, Volt(0.0))]),
         all_off(),
         Act::Wait(Span::ms(5)),
     ]);
-    contact(bench, &mut acts);
+    contact(context, &mut acts);
     pulses(&mut acts);
     acts.extend([
         all_off(),
-        Act::CoilMask(bench.coil_mask()),
-        Act::Supply(vec![(SupplyLevel, Volt(bench.relay.test.prebias_v))]),
+        Act::CoilMask(context.coil_mask()),
+        Act::Supply(vec![(SupplyLevel, Volt(context.relay.test.prebias_v))]),
         Act::Wait(Span::ms(2000)),
     ]);
     acts
@@ -187,13 +187,13 @@ fn all_off() -> Act {
     Act::Board(off.map(|output| (output, false)).to_vec())
 }
 
-fn scans(bench: &Bench, n: usize, acts: &mut Vec<Act>) {
+fn scans(context: &Context, n: usize, acts: &mut Vec<Act>) {
     for _ in 0..n {
-        acts.extend([Act::Read(Read::Coil), Act::Wait(bench.round(CHANNELS))]);
+        acts.extend([Act::Read(Read::Coil), Act::Wait(context.round(CHANNELS))]);
     }
 }
 
-fn contact(bench: &Bench, acts: &mut Vec<Act>) {
+fn contact(context: &Context, acts: &mut Vec<Act>) {
     acts.extend([
         Act::Board(vec![(ReferenceContact, true)]),
         Act::Wait(Span::ms(10)),
@@ -202,10 +202,10 @@ fn contact(bench: &Bench, acts: &mut Vec<Act>) {
         acts.extend([
             Act::Board(vec![(SourceReverse, reverse)]),
             Act::Board(vec![(SourceOn, true)]),
-            Act::Wait(Span::ms(8) + bench.fresh(1)),
+            Act::Wait(Span::ms(8) + context.fresh(1)),
         ]);
         for _ in 0..DROPS {
-            acts.extend([Act::Read(Read::Drop), Act::Wait(bench.round(1))]);
+            acts.extend([Act::Read(Read::Drop), Act::Wait(context.round(1))]);
         }
         acts.extend([Act::Board(vec![(SourceOn, false)]), Act::Wait(Span::ms(3))]);
     }
@@ -273,7 +273,7 @@ fn level(scans: &[CoilScan]) -> Result<Level, ReferenceFault> {
 
 /// Draws the factors from what [`acts`] has read. `made_at_us`: microseconds since 1970 UTC.
 pub fn conclude(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
     made_at_us: i64,
     valid_us: i64,
@@ -295,7 +295,7 @@ pub fn conclude(
     let high = level(part(2 * SCANS, SCANS))?;
     let coarse = level(part(3 * SCANS, SCANS))?;
     let fine = level(part(4 * SCANS + RAMP_SCANS, SCANS))?;
-    let u_read = bench.reading_u_v() / (SCANS as f64).sqrt();
+    let u_read = context.reading_u_v() / (SCANS as f64).sqrt();
 
     let offset = (zero.voltage + zero.fine + zero.wide) / 3.0;
     let reference = [&zero, &low, &high, &coarse, &fine]
@@ -303,7 +303,7 @@ pub fn conclude(
         .map(|l| l.reference)
         .sum::<f64>()
         / 5.0;
-    let known = &bench.reference;
+    let known = &context.reference;
     let coil_input = InputLine {
         gain: Factor::new(
             (reference - offset) / known.voltage_v,
@@ -311,7 +311,7 @@ pub fn conclude(
         ),
         offset_v: Factor::new(offset, u_read / 3f64.sqrt()),
     };
-    check_gain(bench, &coil_input)?;
+    check_gain(context, &coil_input)?;
 
     let volts = |terminal: f64| coil_input.correct(Volt(terminal)).0 / voltage_gain;
     let ohm = |current: fn(&Level) -> f64| {
@@ -340,7 +340,7 @@ pub fn conclude(
         made_at_us,
         due_at_us: made_at_us + valid_us,
         simulated: false,
-        nominal_v: bench.relay.part.nominal_v,
+        nominal_v: context.relay.part.nominal_v,
         level: OutputLine {
             gain: level_gain,
             offset_v: Factor::new(
@@ -351,21 +351,21 @@ pub fn conclude(
         coarse: output(gain(&coarse)),
         fine: output(gain(&fine)),
         coarse_v_per_s: Factor::new(
-            bench.nominal_v_per_s[0],
-            bench.nominal_v_per_s[0] * rectangular(bench.accuracy.ao_slope_pct / 100.0),
+            context.nominal_v_per_s[0],
+            context.nominal_v_per_s[0] * rectangular(context.accuracy.ao_slope_pct / 100.0),
         ),
         fine_v_per_s: slope(
-            bench,
+            context,
             part(4 * SCANS, RAMP_SCANS),
             &coil_input,
             voltage_gain,
         )?,
         ohm_fine: ohm(|level| level.fine),
         ohm_wide: ohm(|level| level.wide),
-        contact_mohm_per_v: contact_factor(bench, &readings.drops)?,
+        contact_mohm_per_v: contact_factor(context, &readings.drops)?,
         gate_delay_us: [
-            gate_delay(bench, readings, 0)?,
-            gate_delay(bench, readings, 1)?,
+            gate_delay(context, readings, 0)?,
+            gate_delay(context, readings, 1)?,
         ],
         coil_input,
         lags: None,
@@ -374,8 +374,8 @@ pub fn conclude(
 }
 
 /// A converter outside its promise by half is not calibrated away but reported.
-fn check_gain(bench: &Bench, line: &InputLine) -> Result<(), ReferenceFault> {
-    let promised = bench.accuracy.ai_gain_pct / 100.0;
+fn check_gain(context: &Context, line: &InputLine) -> Result<(), ReferenceFault> {
+    let promised = context.accuracy.ai_gain_pct / 100.0;
     let found = line.gain.value - 1.0;
     if found.abs() > 1.5 * promised + 2.0 * line.gain.u {
         return Err(ReferenceFault::Gain {
@@ -389,7 +389,7 @@ fn check_gain(bench: &Bench, line: &InputLine) -> Result<(), ReferenceFault> {
 /// Slope of the fine ramp by least squares against the arrival of the replies. Conversions lag the
 /// replies by a constant on average, which does not tilt the line.
 fn slope(
-    bench: &Bench,
+    context: &Context,
     scans: &[CoilScan],
     line: &InputLine,
     voltage_gain: f64,
@@ -424,7 +424,7 @@ fn slope(
         .sum::<f64>()
         / (n - 2.0);
     let u = (rest / stt).sqrt().hypot(value * line.gain.u);
-    let nominal = bench.nominal_v_per_s[1];
+    let nominal = context.nominal_v_per_s[1];
     if !value.is_finite() || (value / nominal - 1.0).abs() > 0.02 {
         return Err(ReferenceFault::Slope {
             v_per_s: value,
@@ -434,7 +434,7 @@ fn slope(
     Ok(Factor::new(value, u))
 }
 
-fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, ReferenceFault> {
+fn contact_factor(context: &Context, drops: &[Sample]) -> Result<Factor, ReferenceFault> {
     let mean = |samples: &[Sample]| -> Result<f64, ReferenceFault> {
         let bad = samples
             .iter()
@@ -449,31 +449,35 @@ fn contact_factor(bench: &Bench, drops: &[Sample]) -> Result<Factor, ReferenceFa
             / samples.len() as f64)
     };
     let drop = (mean(&drops[..DROPS])? - mean(&drops[DROPS..])?) / 2.0;
-    let expected = bench.reference.contact_mohm * 1e-3 * 50.0;
+    let expected = context.reference.contact_mohm * 1e-3 * 50.0;
     if !(0.8 * expected..1.2 * expected).contains(&drop) {
         return Err(ReferenceFault::Drop {
             volts: drop,
             expected_v: expected,
         });
     }
-    let value = bench.reference.contact_mohm / drop;
-    let u_drop = bench.reading_u_v() / ((2 * DROPS) as f64).sqrt() / drop;
+    let value = context.reference.contact_mohm / drop;
+    let u_drop = context.reading_u_v() / ((2 * DROPS) as f64).sqrt() / drop;
     Ok(Factor::new(
         value,
-        value * u_drop.hypot(rectangular(bench.reference.contact_tolerance_pct / 100.0)),
+        value * u_drop.hypot(rectangular(context.reference.contact_tolerance_pct / 100.0)),
     ))
 }
 
-fn gate_delay(bench: &Bench, readings: &Readings, gate: usize) -> Result<Factor, ReferenceFault> {
+fn gate_delay(
+    context: &Context,
+    readings: &Readings,
+    gate: usize,
+) -> Result<Factor, ReferenceFault> {
     let (Some(before), Some(after)) = (readings.gates.first(), readings.gates.last()) else {
         return Err(ReferenceFault::GatesNotRead);
     };
     let total = f64::from(counts(before[gate].count, after[gate].count));
-    let each_us = total / f64::from(PULSES) / bench.reference.counter_clock_hz * 1e6;
-    let delay = each_us - bench.reference.gate_pulse_ms * 1e3;
-    if delay.abs() > 5.0 * bench.accuracy.gate_delay_us {
+    let each_us = total / f64::from(PULSES) / context.reference.counter_clock_hz * 1e6;
+    let delay = each_us - context.reference.gate_pulse_ms * 1e3;
+    if delay.abs() > 5.0 * context.accuracy.gate_delay_us {
         return Err(ReferenceFault::Pulse { gate, each_us });
     }
-    let count_us = 1e6 / bench.reference.counter_clock_hz / 6f64.sqrt();
+    let count_us = 1e6 / context.reference.counter_clock_hz / 6f64.sqrt();
     Ok(Factor::new(delay, count_us / f64::from(PULSES).sqrt()))
 }

@@ -3,7 +3,7 @@
 use crate::dut;
 use crate::dut::em_relay::calibration::{InputLine, Lag, Lags, OutputLine};
 use crate::dut::em_relay::lag::LagLaw;
-use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
 use crate::dut::em_relay::{Calibration, Device};
 use crate::dut::recipe::{DeviceRecipe, Recipe};
@@ -20,12 +20,12 @@ struct Instruments {
 }
 
 /// The default recipe on instruments that err by nothing, lags known.
-pub fn bench() -> Bench {
+pub fn context() -> Context {
     let recipe: Recipe =
         toml::from_str(include_str!("../../../config/recipes/jzc-22f-012.toml")).unwrap();
     let instruments: Instruments = toml::from_str(RIG).unwrap();
     let DeviceRecipe::EmRelay(relay) = &recipe.device;
-    Bench {
+    Context {
         relay: Arc::new(relay.clone()),
         recipe: Arc::new(recipe),
         calibration: Arc::new(calibration()),
@@ -40,11 +40,11 @@ pub fn bench() -> Bench {
 
 /// The same as the station holds it, with the reference parts of the plant.
 pub fn device() -> dut::Device {
-    device_of(bench())
+    device_of(context())
 }
 
 /// A device of this context.
-pub fn device_of(context: Bench) -> dut::Device {
+pub fn device_of(context: Context) -> dut::Device {
     dut::Device::EmRelay(Box::new(Device::of(context, 1.6, golden_parts())))
 }
 

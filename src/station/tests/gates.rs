@@ -4,7 +4,7 @@ use super::golden_parts;
 use super::machine::{Machine, Specimen};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::golden::check;
-use crate::dut::em_relay::measure::Findings;
+use crate::dut::em_relay::measure::TestRecord;
 use crate::dut::em_relay::settings::GoldenPart;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
@@ -17,8 +17,8 @@ use crate::station::wants::Ending;
 const BAD: Specimen = Specimen::OpenCoil;
 
 /// What a test finds on a golden part that is so many standard deviations off in one parameter.
-fn read(part: &GoldenPart, off: Parameter, deviations: f64) -> Findings {
-    let mut findings = Findings::default();
+fn read(part: &GoldenPart, off: Parameter, deviations: f64) -> TestRecord {
+    let mut record = TestRecord::default();
     for (parameter, certified) in [
         (Parameter::CoilResistance, part.coil_resistance_ohm),
         (Parameter::OperateVoltage, part.operate_voltage_v),
@@ -30,9 +30,9 @@ fn read(part: &GoldenPart, off: Parameter, deviations: f64) -> Findings {
             value: certified.value + by * u.hypot(certified.u),
             budget: Budget::default().with("test", u),
         };
-        findings.found::<Sample>(parameter, reading, []);
+        record.found::<Sample>(parameter, reading, []);
     }
-    findings
+    record
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn a_golden_part_agrees_with_its_certificate_within_three_standard_deviations() 
             assert_eq!(found.is_ok(), agrees, "{parameter} {deviations}: {found:?}");
         }
     }
-    let nothing = check(part, &Findings::default());
+    let nothing = check(part, &TestRecord::default());
     assert!(nothing.is_err_and(|why| why.to_string().contains("coil_resistance_ohm")));
 }
 

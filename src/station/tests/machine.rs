@@ -1,7 +1,7 @@
 //! A machine whose actuators always arrive and whose parts are bad in a known way, with its station.
 
 use super::shop::mechanism;
-use super::{Shop, bench, device, device_of};
+use super::{Shop, context, device, device_of};
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{Job, JobDone, Read};
 use crate::rig::axis::AxisStation;
@@ -197,10 +197,10 @@ impl Machine {
 
     /// The calibration may not be used any more from now on.
     pub fn calibration_runs_out(&mut self) {
-        let mut bench = bench();
-        std::sync::Arc::make_mut(&mut bench.calibration).due_at_us =
+        let mut context = context();
+        std::sync::Arc::make_mut(&mut context.calibration).due_at_us =
             i64::try_from(self.shop.now.0).unwrap();
-        self.station.device = std::sync::Arc::new(device_of(bench));
+        self.station.device = std::sync::Arc::new(device_of(context));
     }
 
     /// What wears was used so often before.

@@ -20,7 +20,7 @@ mod shop;
 mod sort;
 mod trouble;
 
-pub(crate) use crate::dut::em_relay::tests::{bench, device, device_of, golden_parts};
+pub(crate) use crate::dut::em_relay::tests::{context, device, device_of, golden_parts};
 pub(crate) use shop::Shop;
 
 use crate::rig::settings::RigSettings;

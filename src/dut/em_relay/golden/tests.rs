@@ -3,10 +3,10 @@
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::golden::{GoldenRun, interim};
 use crate::dut::em_relay::lag::Shown;
-use crate::dut::em_relay::measure::bench::untaught;
-use crate::dut::em_relay::measure::{Findings, Ramp};
+use crate::dut::em_relay::measure::context::untaught;
+use crate::dut::em_relay::measure::{Ramp, TestRecord};
 use crate::dut::em_relay::settings::GoldenPart;
-use crate::dut::em_relay::tests::bench;
+use crate::dut::em_relay::tests::context;
 use crate::dut::em_relay::tests::golden_parts;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
@@ -15,25 +15,25 @@ use crate::units::{Celsius, Volt};
 const REFERENCE: Celsius = Celsius(23.0);
 
 /// What a test finds on a golden part whose ramps overshoot by so much, at 23 C.
-fn tested(part: &GoldenPart, operate_v: f64, release_v: f64, coil_off_ohm: f64) -> Findings {
+fn tested(part: &GoldenPart, operate_v: f64, release_v: f64, coil_off_ohm: f64) -> TestRecord {
     let fine = |volts: f64| Some(Ramp::fine_only(Volt(volts)));
-    let mut findings = Findings::default();
-    findings.track = Some(REFERENCE);
-    findings.operate = fine(part.operate_voltage_v.value + operate_v);
-    findings.release = fine(part.release_voltage_v.value + release_v);
+    let mut record = TestRecord::default();
+    record.track = Some(REFERENCE);
+    record.operate = fine(part.operate_voltage_v.value + operate_v);
+    record.release = fine(part.release_voltage_v.value + release_v);
     let reading = Reading {
         value: part.coil_resistance_ohm.value + coil_off_ohm,
         budget: Budget::default().with("test", 0.1),
     };
-    findings.found::<Sample>(Parameter::CoilResistance, reading, []);
-    findings
+    record.found::<Sample>(Parameter::CoilResistance, reading, []);
+    record
 }
 
 fn run_of(operate_mv: &[f64], release_mv: f64) -> GoldenRun {
     let mut run = GoldenRun::default();
     for (part, mv) in golden_parts().iter().zip(operate_mv) {
-        let findings = tested(part, mv / 1e3, release_mv / 1e3, 0.0);
-        run.learn(part, REFERENCE, &findings).unwrap();
+        let record = tested(part, mv / 1e3, release_mv / 1e3, 0.0);
+        run.learn(part, REFERENCE, &record).unwrap();
     }
     run
 }
@@ -42,7 +42,7 @@ fn run_of(operate_mv: &[f64], release_mv: f64) -> GoldenRun {
 fn the_fine_lag_is_the_mean_shift_from_the_certificates() {
     let run = run_of(&[12.0, 15.0, 13.0, 14.0, 16.0], -9.0);
     let lags = run
-        .lags(&golden_parts(), &bench().accuracy, untaught())
+        .lags(&golden_parts(), &context().accuracy, untaught())
         .unwrap();
     assert!((lags.operate.fine_v.value - 0.014).abs() < 1e-9);
     assert!((lags.release.fine_v.value + 0.009).abs() < 1e-9);
@@ -57,19 +57,19 @@ fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() 
     let warm = Celsius(28.0);
     for part in &parts {
         let scale = (234.5 + 28.0) / (234.5 + 23.0);
-        let mut findings = tested(part, 0.0, 0.0, 0.0);
-        findings.track = Some(warm);
-        findings.operate = Some(Ramp {
+        let mut record = tested(part, 0.0, 0.0, 0.0);
+        record.track = Some(warm);
+        record.operate = Some(Ramp {
             coarse: Shown::NOTHING,
             fine: Some(Volt(part.operate_voltage_v.value * scale + 0.012)),
         });
-        findings.release = Some(Ramp {
+        record.release = Some(Ramp {
             coarse: Shown::NOTHING,
             fine: Some(Volt(part.release_voltage_v.value * scale - 0.012)),
         });
-        run.learn(part, REFERENCE, &findings).unwrap();
+        run.learn(part, REFERENCE, &record).unwrap();
     }
-    let lags = run.lags(&parts, &bench().accuracy, untaught()).unwrap();
+    let lags = run.lags(&parts, &context().accuracy, untaught()).unwrap();
     assert!((lags.operate.fine_v.value - 0.012).abs() < 1e-9);
     assert!((lags.release.fine_v.value + 0.012).abs() < 1e-9);
 }
@@ -78,7 +78,7 @@ fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() 
 fn a_part_that_does_not_fit_the_others_is_named() {
     let run = run_of(&[12.0, 15.0, 130.0, 14.0, 16.0], -9.0);
     let why = run
-        .lags(&golden_parts(), &bench().accuracy, untaught())
+        .lags(&golden_parts(), &context().accuracy, untaught())
         .unwrap_err();
     let why = why.to_string();
     assert!(why.contains("G-12-3"), "{why}");
@@ -88,7 +88,7 @@ fn a_part_that_does_not_fit_the_others_is_named() {
 fn fewer_than_three_golden_parts_teach_no_lag() {
     for (n, usable) in [(0, false), (1, false), (2, false), (3, true), (5, true)] {
         let run = run_of(&vec![14.0; n], -9.0);
-        let lags = run.lags(&golden_parts(), &bench().accuracy, untaught());
+        let lags = run.lags(&golden_parts(), &context().accuracy, untaught());
         assert_eq!(lags.is_ok(), usable, "{n} parts");
     }
 }
@@ -97,7 +97,7 @@ fn fewer_than_three_golden_parts_teach_no_lag() {
 fn more_golden_parts_make_the_lag_surer() {
     let u = |n: usize| {
         let run = run_of(&vec![14.0; n], -9.0);
-        let lags = run.lags(&golden_parts(), &bench().accuracy, untaught());
+        let lags = run.lags(&golden_parts(), &context().accuracy, untaught());
         lags.unwrap().operate.fine_v.u
     };
     assert!((u(3) / u(5) - (5f64 / 3.0).sqrt()).abs() < 1e-9);
@@ -107,10 +107,10 @@ fn more_golden_parts_make_the_lag_surer() {
 fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
     let part = golden_parts()[1].clone();
     let good = || tested(&part, 0.014, -0.009, 0.0);
-    let spoilt = |spoil: fn(&mut Findings)| {
-        let mut findings = good();
-        spoil(&mut findings);
-        findings
+    let spoilt = |spoil: fn(&mut TestRecord)| {
+        let mut record = good();
+        spoil(&mut record);
+        record
     };
     let cases = [
         ("temperature", spoilt(|found| found.track = None)),
@@ -123,8 +123,8 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
         ("coil", tested(&part, 0.014, -0.009, 3.0)),
         ("coil", tested(&part, 0.014, -0.009, -3.0)),
     ];
-    for (what, findings) in cases {
-        let refused = GoldenRun::default().learn(&part, REFERENCE, &findings);
+    for (what, record) in cases {
+        let refused = GoldenRun::default().learn(&part, REFERENCE, &record);
         let why = refused.unwrap_err();
         let why = why.to_string();
         assert!(why.contains("G-12-2") && why.contains(what), "{why}");
@@ -137,5 +137,5 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
 fn while_golden_parts_run_the_fine_lag_proves_nothing() {
     let lag = interim(untaught().0, 0.0);
     assert_eq!((lag.fine_v.value, lag.fine_v.u), (0.0, f64::INFINITY));
-    assert_eq!(lag.coarse, bench().operate_lag().coarse);
+    assert_eq!(lag.coarse, context().operate_lag().coarse);
 }

@@ -1,7 +1,7 @@
 //! Coil resistance at the pre-bias, below pickup: the armature is open and L/R short. The pre-bias is
 //! also where the operate ramp starts, so the coil stays on.
 
-use super::{Bench, Findings, INTERLOCK, OFF, Stage, board};
+use super::{Context, INTERLOCK, OFF, Stage, TestRecord, board};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::coil::{resistance, to_reference};
@@ -40,16 +40,16 @@ const IDLE: [(DigitalOut, bool); 8] = [
 
 /// The board is prepared for the operate ramp while the coil is converted: nothing moves the supply
 /// between arming and the ramp.
-pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let prebias = Volt(bench.relay.test.prebias_v);
-    let sampling = bench.relay.test.strategy.coil;
+pub(super) fn acts(context: &Context, supply: &mut Supply, record: &mut TestRecord) -> Vec<Act> {
+    let prebias = Volt(context.relay.test.prebias_v);
+    let sampling = context.relay.test.strategy.coil;
     let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
     let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
-    let repeated = findings.attempts(Parameter::CoilResistance) > 0;
-    (findings.operated, findings.released, findings.armed) = (false, false, true);
+    let repeated = record.attempts(Parameter::CoilResistance) > 0;
+    (record.operated, record.released, record.armed) = (false, false, true);
     let mut acts = Vec::new();
     if repeated {
-        let falls = std::mem::take(&mut findings.still_ramping);
+        let falls = std::mem::take(&mut record.still_ramping);
         let down = OFF.max(coarse_takes).max(falls + fine_takes);
         acts.extend([coarse, fine, Act::Board(IDLE.to_vec()), Act::Wait(down)]);
     }
@@ -68,13 +68,13 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
         Act::Mark,
         board(&[(Arm, true)]),
         Act::Read(Read::Gates),
-        Act::ConvertSinceMark(bench.fresh(CHANNELS)),
+        Act::ConvertSinceMark(context.fresh(CHANNELS)),
         Act::Read(Read::Coil),
     ]);
     for _ in 1..sampling.scans {
         acts.extend([
             Act::Mark,
-            Act::ConvertSinceMark(bench.round(CHANNELS)),
+            Act::ConvertSinceMark(context.round(CHANNELS)),
             Act::Read(Read::Coil),
         ]);
     }
@@ -83,68 +83,68 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
 
 /// Everything off, and the supply where the next part begins. After a release the coil is free since its mark,
 /// or since the word that followed it.
-pub(super) fn acts_off(bench: &Bench, supply: &mut Supply, findings: &Findings) -> Vec<Act> {
+pub(super) fn acts_off(context: &Context, supply: &mut Supply, record: &TestRecord) -> Vec<Act> {
     let mut acts = vec![Act::Board(IDLE.to_vec())];
-    if !findings.rested {
-        acts.extend((!findings.released).then_some(Act::Mark));
+    if !record.rested {
+        acts.extend((!record.released).then_some(Act::Mark));
         // What stands already is not written: a module that ignores writes would be found out by the next part only.
-        acts.extend(findings.stopped().then(|| supply.step_to(Volt(0.0))));
-        acts.extend(rest(bench, supply));
+        acts.extend(record.stopped().then(|| supply.step_to(Volt(0.0))));
+        acts.extend(rest(context, supply));
     }
     acts.extend([
-        Act::ConvertSinceMark(FREED + bench.fresh(CHANNELS)),
-        Act::Read(Read::Current(current_channel(bench))),
+        Act::ConvertSinceMark(FREED + context.fresh(CHANNELS)),
+        Act::Read(Read::Current(current_channel(context))),
     ]);
     acts
 }
 
 /// The supply goes where the next part begins: pre-bias on the level, both ramps down. Then every module
 /// with outputs is asked whether it has restarted under this part.
-pub(super) fn rest(bench: &Bench, supply: &mut Supply) -> [Act; 4] {
+pub(super) fn rest(context: &Context, supply: &mut Supply) -> [Act; 4] {
     let (coarse, _) = supply.ramp_coarse(Volt(0.0));
     let (fine, _) = supply.ramp_fine(Volt(0.0));
-    let level = supply.step_to(Volt(bench.relay.test.prebias_v));
+    let level = supply.step_to(Volt(context.relay.test.prebias_v));
     [coarse, fine, level, Act::Read(Read::Resets)]
 }
 
-fn current_of(bench: &Bench, scan: &CoilScan) -> Option<Sample> {
-    match bench.relay.test.coil_channels {
+fn current_of(context: &Context, scan: &CoilScan) -> Option<Sample> {
+    match context.relay.test.coil_channels {
         CoilChannels::Fine => scan.current_fine.clone(),
         CoilChannels::CoarseCurrent => scan.current_wide.clone(),
     }
 }
 
-fn current_channel(bench: &Bench) -> AnalogIn {
-    match bench.relay.test.coil_channels {
+fn current_channel(context: &Context) -> AnalogIn {
+    match context.relay.test.coil_channels {
         CoilChannels::Fine => AnalogIn::CoilCurrentFine,
         CoilChannels::CoarseCurrent => AnalogIn::CoilCurrent,
     }
 }
 
 pub(super) fn conclude(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) -> Option<Stage> {
-    let calibration = &bench.calibration;
+    let calibration = &context.calibration;
     let mut scans = Vec::new();
     let mut samples = Vec::new();
     for scan in &readings.coil {
-        let (Some(voltage), Some(current)) = (scan.voltage_fine.clone(), current_of(bench, scan))
+        let (Some(voltage), Some(current)) = (scan.voltage_fine.clone(), current_of(context, scan))
         else {
-            findings.stop(Finding::CoilNotRead);
+            record.stop(Finding::CoilNotRead);
             return None;
         };
         if voltage.quality != Quality::Good {
-            findings.stop(Finding::CoilVoltageNotReadable);
+            record.stop(Finding::CoilVoltageNotReadable);
             return None;
         }
-        if voltage.value < LEAST_PREBIAS * bench.relay.test.prebias_v {
-            findings.stop(Finding::CoilSupplyLow.with(format!("{:.2} V", voltage.value)));
+        if voltage.value < LEAST_PREBIAS * context.relay.test.prebias_v {
+            record.stop(Finding::CoilSupplyLow.with(format!("{:.2} V", voltage.value)));
             return None;
         }
         if current.quality == Quality::OverRange {
-            findings.stop(Finding::CoilCurrentOverRange);
+            record.stop(Finding::CoilCurrentOverRange);
             return None;
         }
         let offset = Volt(calibration.coil_input.offset_v.value);
@@ -154,53 +154,53 @@ pub(super) fn conclude(
         ));
         samples.extend([voltage, current]);
     }
-    let ohm = match bench.relay.test.coil_channels {
+    let ohm = match context.relay.test.coil_channels {
         CoilChannels::Fine => calibration.ohm_fine,
         CoilChannels::CoarseCurrent => calibration.ohm_wide,
     };
     if scans.iter().all(|(_, current)| current.abs() < NO_CURRENT) {
-        findings.stop(Finding::CoilOpen);
+        record.stop(Finding::CoilOpen);
         return None;
     }
-    let part = findings.track?;
-    let reference = bench.reference_temperature();
-    match resistance(&scans, ohm, part, reference, bench.scan_doubt()) {
+    let part = record.track?;
+    let reference = context.reference_temperature();
+    match resistance(&scans, ohm, part, reference, context.scan_doubt()) {
         Some(reading) => {
             let coil = Ohm(reading.value / to_reference(part, reference));
-            findings.probe_contact = probe_contact(bench, &readings.coil, coil);
-            findings.found(Parameter::CoilResistance, reading, &samples);
+            record.probe_contact = probe_contact(context, &readings.coil, coil);
+            record.found(Parameter::CoilResistance, reading, &samples);
         }
-        None => findings.stop(Finding::CoilOpen),
+        None => record.stop(Finding::CoilOpen),
     }
-    if let Some(unmoved) = findings.unmoved.take() {
-        findings.stop(unmoved);
+    if let Some(unmoved) = record.unmoved.take() {
+        record.stop(unmoved);
     }
     None
 }
 
 /// What is lost between the supply and the pins of `coil`; the input is taken as it was calibrated, like the supply.
-fn probe_contact(bench: &Bench, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
+fn probe_contact(context: &Context, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
     let at_pins = |scan: &CoilScan| {
         let Sample {
             value,
             terminal_volts,
             ..
         } = *scan.voltage_fine.as_ref()?;
-        let corrected = bench.calibration.coil_input.correct(Volt(terminal_volts));
+        let corrected = context.calibration.coil_input.correct(Volt(terminal_volts));
         Some(value * corrected.0 / terminal_volts)
     };
     let volts = scans.iter().map(at_pins).sum::<Option<f64>>()? / scans.len() as f64;
     Some(in_series(
-        Volt(bench.relay.test.prebias_v),
+        Volt(context.relay.test.prebias_v),
         Volt(volts),
         coil,
     ))
 }
 
-pub(super) fn conclude_off(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+pub(super) fn conclude_off(readings: &Readings, record: &mut TestRecord) -> Option<Stage> {
     match readings.currents.first() {
         Some(sample) if sample.quality == Quality::Good && sample.value.abs() < OFF_CURRENT_A => {}
-        Some(_) | None => findings.stop(Finding::CoilCurrentRemains),
+        Some(_) | None => record.stop(Finding::CoilCurrentRemains),
     }
     None
 }

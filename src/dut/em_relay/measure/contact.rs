@@ -1,7 +1,7 @@
 //! Contact resistance of a closure: source on, the polarities of the recipe, each read from a conversion that
 //! began after the source had settled.
 
-use super::{Bench, Findings, INTERLOCK, Stage, board};
+use super::{Context, INTERLOCK, Stage, TestRecord, board};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::contact::{Closure, resistance, u_with_later_v};
 use crate::dut::em_relay::finding::{Contact, Finding};
@@ -20,27 +20,27 @@ const EMF_MOVES_V: f64 = 30e-6 * 50.0;
 pub(super) const SOURCE_SETTLES: Span = Span::ms(1);
 
 /// The source turned round, and a reading.
-fn turned(bench: &Bench, reverse: bool) -> [Act; 4] {
+fn turned(context: &Context, reverse: bool) -> [Act; 4] {
     [
         board(&[(SourceReverse, reverse)]),
         Act::Mark,
-        Act::ConvertSinceMark(INTERLOCK + SOURCE_SETTLES + bench.fresh(1)),
+        Act::ConvertSinceMark(INTERLOCK + SOURCE_SETTLES + context.fresh(1)),
         Act::Read(Read::Drop),
     ]
 }
 
 /// The readings after a first forward one; the source stays on, the way it was driven last.
-pub(super) fn reversed(bench: &Bench) -> Vec<Act> {
-    let mut acts = turned(bench, true).to_vec();
-    match bench.relay.test.strategy.contact.polarities {
+pub(super) fn reversed(context: &Context) -> Vec<Act> {
+    let mut acts = turned(context, true).to_vec();
+    match context.relay.test.strategy.contact.polarities {
         Polarities::PlusMinus => {}
         Polarities::PlusMinusMinusPlus => {
             acts.extend([
                 Act::Mark,
-                Act::ConvertSinceMark(bench.round(1)),
+                Act::ConvertSinceMark(context.round(1)),
                 Act::Read(Read::Drop),
             ]);
-            acts.extend(turned(bench, false));
+            acts.extend(turned(context, false));
         }
     }
     acts
@@ -48,19 +48,19 @@ pub(super) fn reversed(bench: &Bench) -> Vec<Act> {
 
 /// Both polarities at rest. While the first one is converted the temperature of the part is read, and the timed
 /// operation prepared: counters behind an ARM that nothing can answer, supply at nominal with the drive off.
-pub(super) fn acts_nc(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    findings.counted = true;
+pub(super) fn acts_nc(context: &Context, supply: &mut Supply, record: &mut TestRecord) -> Vec<Act> {
+    record.counted = true;
     let mut acts = vec![
         board(&[(KelvinTest, false), (SourceOn, true), (Arm, true)]),
         Act::Mark,
         Act::Read(Read::Track),
         Act::Read(Read::Board),
         Act::Read(Read::Gates),
-        supply.step_to(Volt(bench.relay.part.nominal_v)),
-        Act::ConvertSinceMark(SOURCE_SETTLES + bench.fresh(1)),
+        supply.step_to(Volt(context.relay.part.nominal_v)),
+        Act::ConvertSinceMark(SOURCE_SETTLES + context.fresh(1)),
         Act::Read(Read::Drop),
     ];
-    acts.extend(reversed(bench));
+    acts.extend(reversed(context));
     acts
 }
 
@@ -98,55 +98,55 @@ impl Unread {
 }
 
 /// The closure that a stage has read with the polarities of the recipe.
-pub(super) fn closure(bench: &Bench, readings: &Readings) -> Result<Closure, Unread> {
+pub(super) fn closure(context: &Context, readings: &Readings) -> Result<Closure, Unread> {
     let compliance = readings.boards.iter().any(|board| board.compliance);
     let drops: Result<Vec<Volt>, Unread> = readings
         .drops
         .iter()
         .map(|sample| drop_of(Some(sample), compliance))
         .collect();
-    let polarities = bench.relay.test.strategy.contact.polarities;
+    let polarities = context.relay.test.strategy.contact.polarities;
     Closure::of(&drops?, polarities).ok_or(Unread::Missing)
 }
 
 pub(super) fn conclude_nc(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) -> Option<Stage> {
     match readings.track.first() {
         Some(track) if track.quality == Quality::Good && track.value.is_finite() => {
-            findings.track = Some(Celsius(track.value));
+            record.track = Some(Celsius(track.value));
         }
-        Some(_) | None => findings.stop(Finding::TrackNotReadable),
+        Some(_) | None => record.stop(Finding::TrackNotReadable),
     }
-    match closure(bench, readings) {
+    match closure(context, readings) {
         Ok(closure) => {
-            findings.drop_zero = Some(closure.zero);
-            findings.released = true;
-            add_nc(bench, closure.drop, &readings.drops, findings);
+            record.drop_zero = Some(closure.zero);
+            record.released = true;
+            add_nc(context, closure.drop, &readings.drops, record);
         }
-        Err(unread) => findings.stop(unread.of(Contact::Nc)),
+        Err(unread) => record.stop(unread.of(Contact::Nc)),
     }
     None
 }
 
 /// Voids a resistance that no contact has: the source was off, or a reply was not its own.
-pub(super) fn is_implausible(contact: Contact, mohm: f64, findings: &mut Findings) -> bool {
+pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecord) -> bool {
     let implausible = mohm.is_nan() || mohm < LEAST_MOHM;
     if implausible {
         let detail = format!("{mohm:.2} mOhm");
-        findings.stop(Finding::ContactImplausible(contact).with(detail));
+        record.stop(Finding::ContactImplausible(contact).with(detail));
     }
     implausible
 }
 
 /// True when more closures would not change what is said of this contact.
-pub(super) fn is_clear(bench: &Bench, findings: &Findings, parameter: Parameter) -> bool {
-    let recipe = &bench.recipe;
-    let per_v = bench.calibration.contact_mohm_per_v.value;
+pub(super) fn is_clear(context: &Context, record: &TestRecord, parameter: Parameter) -> bool {
+    let recipe = &context.recipe;
+    let per_v = context.calibration.contact_mohm_per_v.value;
     let values: Vec<f64> = match parameter {
-        Parameter::ContactResistanceNc => findings.nc_drops.iter().map(|it| per_v * it.0).collect(),
+        Parameter::ContactResistanceNc => record.nc_drops.iter().map(|it| per_v * it.0).collect(),
         Parameter::ContactResistanceNo
         | Parameter::CoilResistance
         | Parameter::OperateVoltage
@@ -154,26 +154,26 @@ pub(super) fn is_clear(bench: &Bench, findings: &Findings, parameter: Parameter)
         | Parameter::OperateTime
         | Parameter::ReleaseTime
         | Parameter::OperateBounce
-        | Parameter::ReleaseBounce => findings.each(parameter).map(|it| it.value).collect(),
+        | Parameter::ReleaseBounce => record.each(parameter).map(|it| it.value).collect(),
     };
-    let u = findings
+    let u = record
         .result(parameter)
         .map_or(f64::INFINITY, |reading| reading.budget.combined());
-    let sampling = bench.relay.test.strategy.contact;
+    let sampling = context.relay.test.strategy.contact;
     sampling.is_clear(&values, u, &recipe.limits.of(parameter))
 }
 
 /// Adds one NC closure; the result is the mean of all closures read.
-pub(super) fn add_nc(bench: &Bench, drop: Volt, samples: &[Sample], findings: &mut Findings) {
-    findings.nc_drops.push(drop);
-    let first = bench.relay.test.strategy.contact.polarities.signs().len();
-    let later = findings.nc_drops.len() - 1;
-    let u = u_with_later_v(first, later, bench.reading_u_v(), EMF_MOVES_V);
-    if let Some(reading) = resistance(&findings.nc_drops, bench.calibration.contact_mohm_per_v, u) {
-        if is_implausible(Contact::Nc, reading.value, findings) {
+pub(super) fn add_nc(context: &Context, drop: Volt, samples: &[Sample], record: &mut TestRecord) {
+    record.nc_drops.push(drop);
+    let first = context.relay.test.strategy.contact.polarities.signs().len();
+    let later = record.nc_drops.len() - 1;
+    let u = u_with_later_v(first, later, context.reading_u_v(), EMF_MOVES_V);
+    if let Some(reading) = resistance(&record.nc_drops, context.calibration.contact_mohm_per_v, u) {
+        if is_implausible(Contact::Nc, reading.value, record) {
             return;
         }
-        findings.forget(Parameter::ContactResistanceNc);
-        findings.found(Parameter::ContactResistanceNc, reading, samples);
+        record.forget(Parameter::ContactResistanceNc);
+        record.found(Parameter::ContactResistanceNc, reading, samples);
     }
 }

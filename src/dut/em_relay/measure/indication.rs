@@ -1,6 +1,6 @@
 //! What the gate of a ramp says: the indicated voltage, and the threshold behind it.
 
-use super::{Bench, Ramp};
+use super::{Context, Ramp};
 use crate::dut::em_relay::calibration::Lag;
 use crate::dut::em_relay::coil::to_reference;
 use crate::dut::em_relay::lag::Shown;
@@ -13,13 +13,13 @@ use crate::instrument::act::Readings;
 use crate::units::{Celsius, Second, Volt};
 
 /// Length of gate 0 between the last two readings.
-pub(super) fn gate0(bench: &Bench, readings: &Readings) -> Option<Second> {
+pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     let [.., before, after] = readings.gates.as_slice() else {
         return None;
     };
-    let gate = f64::from(counts(before[0].count, after[0].count)) / bench.clock().hz;
+    let gate = f64::from(counts(before[0].count, after[0].count)) / context.clock().hz;
     Some(Second(
-        gate - bench.calibration.gate_delay_us[0].value * 1e-6,
+        gate - context.calibration.gate_delay_us[0].value * 1e-6,
     ))
 }
 
@@ -29,25 +29,25 @@ pub(super) fn gate0(bench: &Bench, readings: &Readings) -> Option<Second> {
 /// The scatter that was learned holds what a coarse ramp does not know of itself: resolution, repeatability, the
 /// error of its slope; each would otherwise be counted twice.
 pub(super) fn coarse_reading(
-    bench: &Bench,
+    context: &Context,
     (seen, lag): (Shown, Lag),
     part: Celsius,
     direction: Direction,
 ) -> Option<Reading> {
     let predicted = lag.coarse.of(&seen);
     // What was learned holds the operation of the fine ramp as well, which is none of this value's.
-    let operation_v = bench.operation_v();
+    let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let doubt = RampDoubt {
-        slope: bench.calibration.coarse_v_per_s,
+        slope: context.calibration.coarse_v_per_s,
         slope_known: true,
         operation_v: 0.0,
         refresh: Second(0.0),
         // The law follows the indication, and an error of gain with it.
         level: 0.0,
-        ..doubt(bench)
+        ..doubt(context)
     };
-    let reference = bench.reference_temperature();
+    let reference = context.reference_temperature();
     let own = lag.own_v(predicted.volts, direction);
     let as_fine = seen.indicated - Volt(predicted.volts);
     let mut reading = quasi_static((as_fine, own), Second(0.0), lag, part, reference, doubt);
@@ -57,23 +57,23 @@ pub(super) fn coarse_reading(
 
 /// Threshold from a fine ramp: less the lag of golden parts, or, by two rates, from both ramps.
 pub(super) fn fine_reading(
-    bench: &Bench,
+    context: &Context,
     (ramps, gate): (Ramp, Second),
     part: Celsius,
     direction: Direction,
 ) -> Reading {
     let (lag, parameter) = match direction {
-        Direction::Rising => (bench.operate_lag(), Parameter::OperateVoltage),
-        Direction::Falling => (bench.release_lag(), Parameter::ReleaseVoltage),
+        Direction::Rising => (context.operate_lag(), Parameter::OperateVoltage),
+        Direction::Falling => (context.release_lag(), Parameter::ReleaseVoltage),
     };
     let seen = ramps.fine.unwrap_or(Volt(f64::NAN));
-    let reference = bench.reference_temperature();
+    let reference = context.reference_temperature();
     let own = lag.own_v((ramps.coarse.indicated - seen).0, direction);
-    let mut reading = quasi_static((seen, own), gate, lag, part, reference, doubt(bench));
-    if bench.strategy(parameter) == Strategy::TwoRates && ramps.coarse.indicated.0.is_finite() {
+    let mut reading = quasi_static((seen, own), gate, lag, part, reference, doubt(context));
+    if context.strategy(parameter) == Strategy::TwoRates && ramps.coarse.indicated.0.is_finite() {
         let rates = [
-            bench.calibration.coarse_v_per_s.value,
-            bench.calibration.fine_v_per_s.value,
+            context.calibration.coarse_v_per_s.value,
+            context.calibration.fine_v_per_s.value,
         ];
         let sign = direction.sign();
         // The growth time from the lags of both rates on golden parts; their common offset stays out of it.
@@ -91,14 +91,14 @@ pub(super) fn fine_reading(
 }
 
 /// Doubts of a fine ramp beyond the golden parts' shift.
-fn doubt(bench: &Bench) -> RampDoubt {
+fn doubt(context: &Context) -> RampDoubt {
     RampDoubt {
-        slope: bench.calibration.fine_v_per_s,
+        slope: context.calibration.fine_v_per_s,
         slope_known: false,
-        operation_v: bench.operation_v(),
-        refresh: Second(bench.accuracy.ao_refresh_ms * 1e-3),
-        level: bench.calibration.level.gain.u,
-        contact: bench.contact_share(),
-        temperature_k: bench.accuracy.part_minus_track_k,
+        operation_v: context.operation_v(),
+        refresh: Second(context.accuracy.ao_refresh_ms * 1e-3),
+        level: context.calibration.level.gain.u,
+        contact: context.contact_share(),
+        temperature_k: context.accuracy.part_minus_track_k,
     }
 }

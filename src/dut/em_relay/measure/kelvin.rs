@@ -6,7 +6,7 @@
 //! | COM open, the other four good | a turned part, or a dirty COM probe: void |
 //! | five good, NC open or NO closed | a contact that does not rest: fail, contact |
 
-use super::{Bench, Findings, Stage, board};
+use super::{Context, Stage, TestRecord, board};
 use crate::dut::em_relay::Finding;
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalOut::KelvinTest;
@@ -23,25 +23,25 @@ pub(super) fn acts() -> Vec<Act> {
     ]
 }
 
-pub(super) fn conclude(_: &Bench, readings: &Readings, findings: &mut Findings) -> Option<Stage> {
+pub(super) fn conclude(_: &Context, readings: &Readings, record: &mut TestRecord) -> Option<Stage> {
     let Some(seen) = readings.boards.first() else {
-        findings.stop(Finding::BoardNotRead);
+        record.stop(Finding::BoardNotRead);
         return None;
     };
     if !seen.probe_chain {
-        findings.stop(Finding::ProbeChainOpen);
+        record.stop(Finding::ProbeChainOpen);
         return None;
     }
     let open: Vec<usize> = (0..5).filter(|pin| !seen.kelvin[*pin]).collect();
     match open.as_slice() {
         [] if seen.nc_closed && !seen.no_closed => {}
-        [] if seen.no_closed => findings.stop(Finding::NoClosedAtRest),
-        [] => findings.stop(Finding::NcOpenAtRest),
-        [COM] => findings.stop(Finding::Misoriented),
-        [pin] => findings.stop(Finding::PinOpen.with(PINS[*pin])),
+        [] if seen.no_closed => record.stop(Finding::NoClosedAtRest),
+        [] => record.stop(Finding::NcOpenAtRest),
+        [COM] => record.stop(Finding::Misoriented),
+        [pin] => record.stop(Finding::PinOpen.with(PINS[*pin])),
         several => {
             let names: Vec<&str> = several.iter().map(|pin| PINS[*pin]).collect();
-            findings.stop(Finding::PinsOpen.with(names.join(", ")));
+            record.stop(Finding::PinsOpen.with(names.join(", ")));
         }
     }
     None

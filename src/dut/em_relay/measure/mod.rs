@@ -20,16 +20,16 @@
 //! and the test goes straight to `off`. Results inside the guard band are measured again by the slow
 //! strategy: the same stage `slow_repeats` times, averaged. What is then still conditional fails.
 
-pub mod bench;
 mod coil;
 mod contact;
-pub mod findings;
+pub mod context;
 mod indication;
 mod kelvin;
 mod operate;
 mod operate_fine;
 mod pace;
 pub mod ramp;
+pub mod record;
 mod release;
 pub mod search;
 mod stage;
@@ -45,8 +45,8 @@ use crate::rig::image::Image;
 use crate::rig::point::DigitalOut;
 use crate::rig::sample::CountSample;
 use crate::units::{RigTime, Span};
-pub use bench::Bench;
-pub use findings::{Evidence, Findings, Ramp, Stop};
+pub use context::Context;
+pub use record::{Evidence, Ramp, Stop, TestRecord};
 pub use stage::Stage;
 use stage::{acts, order};
 use std::collections::VecDeque;
@@ -71,7 +71,7 @@ const CUT_OFF: Span = Span::ms(400);
 /// A test under way.
 #[derive(Debug)]
 pub struct Test {
-    bench: Bench,
+    context: Context,
     supply: Supply,
     stages: VecDeque<Stage>,
     stage: Stage,
@@ -82,18 +82,18 @@ pub struct Test {
     /// Tests of this part so far, this one included.
     number: u8,
     /// What has been found so far.
-    pub findings: Findings,
+    pub record: TestRecord,
 }
 
 impl Test {
     /// Begins with the Kelvin check; the probes are up.
-    pub fn begin(bench: Bench, now: RigTime) -> Self {
-        let mut supply = Supply::new(&bench.calibration);
-        let mut findings = Findings::default();
-        let runner = Runner::new(acts(Stage::Kelvin, &bench, &mut supply, &mut findings), now);
+    pub fn begin(context: Context, now: RigTime) -> Self {
+        let mut supply = Supply::new(&context.calibration);
+        let mut record = TestRecord::default();
+        let runner = Runner::new(acts(Stage::Kelvin, &context, &mut supply, &mut record), now);
         Self {
-            stages: order(&bench),
-            bench,
+            stages: order(&context),
+            context,
             supply,
             began: now,
             number: 1,
@@ -101,14 +101,14 @@ impl Test {
             runner,
             slow_done: false,
             gates: None,
-            findings,
+            record,
         }
     }
 
     /// The same as another test of a part that was tested just now: a ramp that was cut off may still run.
     pub fn another(mut self, number: u8) -> Self {
         self.number = number;
-        self.findings.still_ramping = CUT_OFF;
+        self.record.still_ramping = CUT_OFF;
         self
     }
 
@@ -130,8 +130,8 @@ impl Test {
                 Doing::Done => {}
                 Doing::Trouble(why) => {
                     let seen = std::mem::take(&mut self.runner.readings.trace);
-                    self.findings.trace.append(seen);
-                    self.findings.trouble(why);
+                    self.record.trace.append(seen);
+                    self.record.trouble(why);
                     if self.stage == Stage::Off {
                         return Progress::Judged;
                     }
@@ -159,40 +159,40 @@ impl Test {
 
     fn enter(&mut self, stage: Stage, now: RigTime) {
         self.stage = stage;
-        self.findings.rested &= stage == Stage::Off;
-        let acts = acts(stage, &self.bench, &mut self.supply, &mut self.findings);
+        self.record.rested &= stage == Stage::Off;
+        let acts = acts(stage, &self.context, &mut self.supply, &mut self.record);
         self.runner = Runner::after(acts, now, &self.runner, self.gates.clone());
     }
 
     /// Draws the conclusions of the stage that has just ended.
     fn conclude(&mut self, now: RigTime) {
-        self.findings.spent.add(self.runner.spent());
-        self.findings
+        self.record.spent.add(self.runner.spent());
+        self.record
             .took(self.stage.measures(), now.since(self.began));
         self.began = now;
         let mut readings = std::mem::take(&mut self.runner.readings);
         let seen = std::mem::take(&mut readings.trace);
-        self.findings.trace.append(seen);
+        self.record.trace.append(seen);
         self.gates = readings.gates.last().cloned().or(self.gates.take());
-        let (bench, findings) = (&self.bench, &mut self.findings);
+        let (context, record) = (&self.context, &mut self.record);
         let again = match self.stage {
-            Stage::Kelvin => kelvin::conclude(bench, &readings, findings),
-            Stage::NcContact => contact::conclude_nc(bench, &readings, findings),
-            Stage::Coil => coil::conclude(bench, &readings, findings),
-            Stage::Search(direction) => search::conclude(bench, &readings, findings, direction),
-            Stage::OperateCoarse => operate::conclude_coarse(bench, &readings, findings),
+            Stage::Kelvin => kelvin::conclude(context, &readings, record),
+            Stage::NcContact => contact::conclude_nc(context, &readings, record),
+            Stage::Coil => coil::conclude(context, &readings, record),
+            Stage::Search(direction) => search::conclude(context, &readings, record, direction),
+            Stage::OperateCoarse => operate::conclude_coarse(context, &readings, record),
             Stage::OperateFine(attempt) => {
-                operate_fine::conclude(bench, &readings, findings, attempt)
+                operate_fine::conclude(context, &readings, record, attempt)
             }
-            Stage::TimedOperate => timing::conclude_operate(bench, &readings, findings),
-            Stage::TimedRelease => timing::conclude_release(bench, &readings, findings),
-            Stage::ReleaseCoarse => release::conclude_coarse(bench, &readings, findings),
+            Stage::TimedOperate => timing::conclude_operate(context, &readings, record),
+            Stage::TimedRelease => timing::conclude_release(context, &readings, record),
+            Stage::ReleaseCoarse => release::conclude_coarse(context, &readings, record),
             Stage::ReleaseFine(attempt) => {
-                release::conclude_fine(bench, &readings, findings, attempt)
+                release::conclude_fine(context, &readings, record, attempt)
             }
-            Stage::Off => coil::conclude_off(&readings, findings),
+            Stage::Off => coil::conclude_off(&readings, record),
         };
-        if findings.stopped() && self.stage != Stage::Off {
+        if record.stopped() && self.stage != Stage::Off {
             self.stages = VecDeque::from([Stage::Off]);
         } else if let Some(stage) = again {
             if matches!(self.stage, Stage::Search(_)) {
@@ -207,13 +207,13 @@ impl Test {
 
     /// Another timed closure of both contacts, while the recipe asks for one.
     fn add_closure(&mut self) {
-        let findings = &self.findings;
-        let sampling = self.bench.relay.test.strategy.contact;
-        let closures = findings.attempts(Parameter::ContactResistanceNo) as u64;
-        if self.slow_done || findings.stopped() || closures >= sampling.closures.into() {
+        let record = &self.record;
+        let sampling = self.context.relay.test.strategy.contact;
+        let closures = record.attempts(Parameter::ContactResistanceNo) as u64;
+        if self.slow_done || record.stopped() || closures >= sampling.closures.into() {
             return;
         }
-        let clear = |parameter| contact::is_clear(&self.bench, findings, parameter);
+        let clear = |parameter| contact::is_clear(&self.context, record, parameter);
         if sampling.stops_early
             && clear(Parameter::ContactResistanceNo)
             && clear(Parameter::ContactResistanceNc)
@@ -226,7 +226,7 @@ impl Test {
 
     /// Repeats the stages whose results lie inside the guard band (of a thorough test: all), once per test.
     fn add_slow_repeats(&mut self) {
-        if self.slow_done || self.findings.stopped() {
+        if self.slow_done || self.record.stopped() {
             return;
         }
         self.slow_done = true;
@@ -234,14 +234,14 @@ impl Test {
         let again: Vec<Stage> = self
             .judgements()
             .iter()
-            .filter(|(_, judgement)| self.bench.thorough || doubtful(judgement))
+            .filter(|(_, judgement)| self.context.thorough || doubtful(judgement))
             .filter_map(|(characteristic, _)| match characteristic {
                 Characteristic::EmRelay(parameter) => Some(Stage::of(*parameter)),
             })
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from
         // another flux than the one its lag was learned from.
-        for _ in 0..self.bench.recipe.decision.slow_repeats {
+        for _ in 0..self.context.recipe.decision.slow_repeats {
             let round = SLOW.iter().rev().filter(|stage| again.contains(stage));
             round.for_each(|stage| self.stages.push_front(*stage));
         }
@@ -249,17 +249,17 @@ impl Test {
 
     /// Each result against its limit.
     pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
-        let recipe = &self.bench.recipe;
+        let recipe = &self.context.recipe;
         let one = |parameter: &Parameter| {
-            let reading = self.findings.result(*parameter)?;
+            let reading = self.record.result(*parameter)?;
             let limit = recipe.limits.of(*parameter);
             let judgement = judge(&reading, &limit, recipe.decision.rule);
             Some((*parameter, judgement))
         };
-        let proven = self.findings.proven.iter().copied();
+        let proven = self.record.proven.iter().copied();
         let measured = Parameter::ALL.iter().filter_map(one);
         let unmeasured =
-            |(parameter, _): &(Parameter, Judgement)| self.findings.attempts(*parameter) == 0;
+            |(parameter, _): &(Parameter, Judgement)| self.record.attempts(*parameter) == 0;
         let all = measured.chain(proven.filter(unmeasured));
         all.map(|(parameter, judgement)| (parameter.into(), judgement))
             .collect()
@@ -269,7 +269,7 @@ impl Test {
     pub fn verdict(&self) -> Verdict {
         let judged = self.judgements();
         let expected = Parameter::ALL.map(Characteristic::from);
-        let Some(stop) = self.findings.why_stopped() else {
+        let Some(stop) = self.record.why_stopped() else {
             return Verdict::of(&expected, &judged);
         };
         let proven = |(_, judgement): &(Characteristic, Judgement)| match judgement {

@@ -2,7 +2,7 @@
 
 use super::indication::gate0;
 use super::ramp::{after_coarse, stopped_at};
-use super::{Bench, Findings, INTERLOCK, OFF, Ramp, Stage, board};
+use super::{Context, INTERLOCK, OFF, Ramp, Stage, TestRecord, board};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::supply::{RAMP_MARGIN, Supply};
 use crate::dut::em_relay::threshold::{Direction, indicated};
@@ -23,24 +23,28 @@ const TURNS: Span = Span::ms(10);
 pub(super) const LATE: Span = Span::ms(25);
 
 /// Height of the coarse output at which the release ramp begins.
-pub(super) fn release_start(bench: &Bench) -> Volt {
-    let test = &bench.relay.test;
+pub(super) fn release_start(context: &Context) -> Volt {
+    let test = &context.relay.test;
     let above = test.expected_release_v + 4.0 * test.expected_release_sd_v + RELEASE_HEADROOM_V;
     Volt(above.min(test.coarse_span_v))
 }
 
 /// The board was armed while the coil was converted. Once the contact has made, the ramp turns round to
 /// where the release begins; the armature stays.
-pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let mut acts = if std::mem::take(&mut findings.armed) {
+pub(super) fn acts_coarse(
+    context: &Context,
+    supply: &mut Supply,
+    record: &mut TestRecord,
+) -> Vec<Act> {
+    let mut acts = if std::mem::take(&mut record.armed) {
         Vec::new()
     } else {
-        prepared(bench, supply, findings)
+        prepared(context, supply, record)
     };
-    findings.ramp_start = Some(supply.total());
-    findings.ramp_span = Some(Volt(bench.relay.test.coarse_span_v) - supply.coarse());
-    let (ramp, takes) = supply.ramp_coarse(Volt(bench.relay.test.coarse_span_v));
-    let (turn, _) = supply.ramp_coarse(release_start(bench));
+    record.ramp_start = Some(supply.total());
+    record.ramp_span = Some(Volt(context.relay.test.coarse_span_v) - supply.coarse());
+    let (ramp, takes) = supply.ramp_coarse(Volt(context.relay.test.coarse_span_v));
+    let (turn, _) = supply.ramp_coarse(release_start(context));
     acts.extend([
         ramp,
         Act::Until {
@@ -55,13 +59,13 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
 }
 
 /// From rest at the pre-bias, armed: what the coil stage leaves behind, when another stage came between.
-fn prepared(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let mut acts = dropped(findings);
+fn prepared(context: &Context, supply: &mut Supply, record: &mut TestRecord) -> Vec<Act> {
+    let mut acts = dropped(record);
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
-    let takes = takes.max(std::mem::take(&mut findings.still_ramping));
+    let takes = takes.max(std::mem::take(&mut record.still_ramping));
     acts.extend([
         coarse,
-        supply.step_to(Volt(bench.relay.test.prebias_v)),
+        supply.step_to(Volt(context.relay.test.prebias_v)),
         board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
         Act::RampSinceMark(OFF.max(takes)),
         board(&[(CoilDrive, true)]),
@@ -73,63 +77,63 @@ fn prepared(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<
 }
 
 pub(super) fn conclude_coarse(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) -> Option<Stage> {
-    let start = findings.ramp_start?;
+    let start = record.ramp_start?;
     if readings.seen.first() != Some(&true) {
         // It has operated at nominal voltage.
         match readings.boards.last() {
             Some(board) if board.no_closed => {
-                findings.stop(Finding::MadeOutsideWindow);
+                record.stop(Finding::MadeOutsideWindow);
             }
-            Some(_) => findings.stop(Finding::AboveCoarseRamp),
-            None => findings.stop(Finding::BoardNotRead),
+            Some(_) => record.stop(Finding::AboveCoarseRamp),
+            None => record.stop(Finding::BoardNotRead),
         }
         return None;
     }
-    let Some(gate) = gate0(bench, readings) else {
-        findings.stop(Finding::GatesNotRead);
+    let Some(gate) = gate0(context, readings) else {
+        record.stop(Finding::GatesNotRead);
         return None;
     };
     let seen = indicated(
         start,
-        bench.calibration.coarse_v_per_s.value,
+        context.calibration.coarse_v_per_s.value,
         gate,
         Direction::Rising,
     );
-    let coarse = findings
+    let coarse = record
         .ramp_span
         .and_then(|span| stopped_at(start, span, seen))
         .unwrap_or(seen);
-    let lag = bench.operate_lag();
-    let seen = findings.shown(coarse, Direction::Rising);
-    findings.operate = Some(Ramp {
+    let lag = context.operate_lag();
+    let seen = record.shown(coarse, Direction::Rising);
+    record.operate = Some(Ramp {
         coarse: seen,
         fine: None,
     });
-    findings.operated = true;
-    findings.still_ramping = turning(bench, coarse - start);
+    record.operated = true;
+    record.still_ramping = turning(context, coarse - start);
     let told = (seen, lag, Direction::Rising);
-    after_coarse(bench, readings, findings, told).then_some(Stage::OperateFine(0))
+    after_coarse(context, readings, record, told).then_some(Stage::OperateFine(0))
 }
 
 /// How long the coarse ramp needs from its event back down to [`release_start`]: it has gone on while the
 /// event was polled for and the turn written.
-fn turning(bench: &Bench, climbed: Volt) -> Span {
-    let per_s = bench.calibration.coarse_v_per_s.value;
+fn turning(context: &Context, climbed: Volt) -> Span {
+    let per_s = context.calibration.coarse_v_per_s.value;
     let over = climbed.0 + per_s * TURNS.as_seconds();
-    let back = over.min(bench.relay.test.coarse_span_v) - release_start(bench).0;
+    let back = over.min(context.relay.test.coarse_span_v) - release_start(context).0;
     TURNS + Span::seconds(back.abs() / per_s) + RAMP_MARGIN
 }
 
 /// Drive off, unless the stage before has switched it off already; [`OFF`] counts from the mark.
-pub(super) fn dropped(findings: &mut Findings) -> Vec<Act> {
-    if std::mem::take(&mut findings.released) {
+pub(super) fn dropped(record: &mut TestRecord) -> Vec<Act> {
+    if std::mem::take(&mut record.released) {
         return Vec::new();
     }
-    findings.operated = false;
+    record.operated = false;
     let off = [
         (SourceOn, false),
         (SourceReverse, false),

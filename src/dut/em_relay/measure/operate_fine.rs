@@ -8,7 +8,7 @@ use super::operate::{LATE, dropped};
 use super::pace::Pace;
 use super::ramp::{self, Expected, Met};
 use super::search::{AFTER_SEARCH, Search};
-use super::{Bench, Findings, OFF, Ramp, Stage, board};
+use super::{Context, OFF, Ramp, Stage, TestRecord, board};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::Direction;
@@ -24,20 +24,20 @@ pub(super) const APPROACH: f64 = 0.93;
 /// Scatter of a repeated fine ramp around the first, volts.
 pub(super) const REPEAT_SD_V: f64 = 0.008;
 
-pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let repeated = findings
+pub(super) fn acts(context: &Context, supply: &mut Supply, record: &mut TestRecord) -> Vec<Act> {
+    let repeated = record
         .operate
         .and_then(|ramp| ramp.fine)
         .map(|fine| Expected::new(fine, REPEAT_SD_V));
-    let Some(expected) = repeated.or(findings.expected_operate) else {
+    let Some(expected) = repeated.or(record.expected_operate) else {
         return Vec::new();
     };
-    findings.expected_operate = Some(expected);
-    let pace = Pace::of(findings);
-    let placed = expected.rising(pace.run_up(bench.calibration.fine_v_per_s.value));
-    let falls = falling(findings);
-    let mut acts = dropped(findings);
-    acts.extend(make_room(bench, supply, falls, placed.start));
+    record.expected_operate = Some(expected);
+    let pace = Pace::of(record);
+    let placed = expected.rising(pace.run_up(context.calibration.fine_v_per_s.value));
+    let falls = falling(record);
+    let mut acts = dropped(record);
+    acts.extend(make_room(context, supply, falls, placed.start));
     acts.extend([
         supply.step_to(placed.start * APPROACH),
         // At the first step the supply may still fall.
@@ -55,15 +55,15 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
         Act::Mark,
         board(&[(Arm, true)]),
     ]);
-    findings.ramp_start = Some(supply.total());
-    findings.ramp_span = Some(placed.span);
+    record.ramp_start = Some(supply.total());
+    record.ramp_span = Some(placed.span);
     acts.extend([
         supply.step_to(placed.start + ramp::JUMP),
         Act::Read(Read::Gates),
         Act::WaitSinceMark(pace.settles()),
     ]);
     let (ramp, takes) = supply.ramp_fine(supply.fine() + placed.span - ramp::JUMP);
-    findings.ramp_takes = takes;
+    record.ramp_takes = takes;
     acts.extend([
         ramp,
         Act::Until {
@@ -77,14 +77,14 @@ pub(super) fn acts(bench: &Bench, supply: &mut Supply, findings: &mut Findings) 
 }
 
 /// How long after the mark a ramp still falls that nobody has waited for; one that rises is turned round.
-fn falling(findings: &mut Findings) -> Span {
-    let left = std::mem::take(&mut findings.still_ramping);
-    if findings.released { left } else { Span(0) }
+fn falling(record: &mut TestRecord) -> Span {
+    let left = std::mem::take(&mut record.still_ramping);
+    if record.released { left } else { Span(0) }
 }
 
 /// Takes the ramps back when they stand higher than the approach needs, or the fine one stands at all: further down
 /// than where it `falls` to already.
-fn make_room(bench: &Bench, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
+fn make_room(context: &Context, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
     let mut acts = Vec::new();
     let mut wait = Span(0);
     if supply.fine() > Volt(0.02) {
@@ -92,7 +92,7 @@ fn make_room(bench: &Bench, supply: &mut Supply, falls: Span, start: Volt) -> Ve
         acts.push(fine);
         wait = falls + takes;
     }
-    let room = (start.0 * APPROACH - 0.3).clamp(0.0, bench.relay.test.coarse_span_v);
+    let room = (start.0 * APPROACH - 0.3).clamp(0.0, context.relay.test.coarse_span_v);
     if supply.coarse().0 > room + 0.05 {
         let (coarse, takes) = supply.ramp_coarse(Volt(room));
         acts.push(coarse);
@@ -105,41 +105,41 @@ fn make_room(bench: &Bench, supply: &mut Supply, falls: Span, start: Volt) -> Ve
 }
 
 pub(super) fn conclude(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
     attempt: u8,
 ) -> Option<Stage> {
-    let (seen, gate) = match ramp::meet(bench, readings, findings, Direction::Rising, attempt)? {
+    let (seen, gate) = match ramp::meet(context, readings, record, Direction::Rising, attempt)? {
         Met::At(seen, gate) => (seen, gate),
-        Met::Again => return Some(again(bench, findings, Direction::Rising, attempt)),
+        Met::Again => return Some(again(context, record, Direction::Rising, attempt)),
     };
-    findings.operated = true;
-    let part = findings.track?;
-    if findings.operate.is_none_or(|ramp| ramp.fine.is_none()) {
-        findings.forget(Parameter::OperateVoltage);
+    record.operated = true;
+    let part = record.track?;
+    if record.operate.is_none_or(|ramp| ramp.fine.is_none()) {
+        record.forget(Parameter::OperateVoltage);
     }
-    match &mut findings.operate {
+    match &mut record.operate {
         Some(ramp) => ramp.fine = Some(seen),
-        None => findings.operate = Some(Ramp::fine_only(seen)),
+        None => record.operate = Some(Ramp::fine_only(seen)),
     }
-    let ramps = findings.operate?;
-    let reading = fine_reading(bench, (ramps, gate), part, Direction::Rising);
+    let ramps = record.operate?;
+    let reading = fine_reading(context, (ramps, gate), part, Direction::Rising);
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
-    findings.found(Parameter::OperateVoltage, reading, samples);
+    record.found(Parameter::OperateVoltage, reading, samples);
     None
 }
 
 /// After a first miss the neighbour is tried; after a second, or when that is wide, the threshold is searched by halves.
 pub(super) fn again(
-    bench: &Bench,
-    findings: &mut Findings,
+    context: &Context,
+    record: &mut TestRecord,
     direction: Direction,
     attempt: u8,
 ) -> Stage {
-    let wide = findings.expected(direction).is_some_and(|it| it.is_wide());
+    let wide = record.expected(direction).is_some_and(|it| it.is_wide());
     if attempt + 1 == AFTER_SEARCH || attempt + 1 < AFTER_SEARCH && wide {
-        findings.search = Some(Search::placing(bench, findings, direction));
+        record.search = Some(Search::placing(context, record, direction));
         return Stage::Search(direction);
     }
     match direction {

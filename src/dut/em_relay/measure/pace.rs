@@ -6,7 +6,7 @@
 //! goes over early when the approach ends 45 mV before its threshold, and seven do at 30 mV, heavy ones; the run-up ends in
 //! between at the near end of an interval and further away everywhere else.
 
-use super::Findings;
+use super::TestRecord;
 use crate::dut::em_relay::Parameter;
 use crate::units::{Span, Volt};
 
@@ -24,8 +24,8 @@ pub(super) struct Pace {
 
 impl Pace {
     /// Of the part under test.
-    pub fn of(findings: &Findings) -> Self {
-        let shown = findings.result(Parameter::OperateTime);
+    pub fn of(record: &TestRecord) -> Self {
+        let shown = record.result(Parameter::OperateTime);
         let operate_ms = shown.map_or(UNKNOWN_MS, |reading| reading.value);
         Self {
             operate_ms: operate_ms.clamp(SHORTEST_MS, LONGEST_MS),

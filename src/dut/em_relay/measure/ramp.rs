@@ -1,10 +1,10 @@
 //! What operate and release share: a fine ramp is placed around an estimate, and placed anew when the
 //! contact changed before the window opened or not at all.
 
-use super::Bench;
-use super::findings::Findings;
+use super::Context;
 use super::indication::{coarse_reading, gate0};
 use super::pace::Pace;
+use super::record::TestRecord;
 use super::search::parameter;
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::calibration::Lag;
@@ -78,13 +78,13 @@ impl Expected {
     }
 
     /// Where the certificate of a golden part that teaches the lags says; the first of them is to tell the fine one.
-    pub fn certified(bench: &Bench, track: Celsius, direction: Direction) -> Option<Self> {
-        let golden = bench.golden.as_ref()?;
+    pub fn certified(context: &Context, track: Celsius, direction: Direction) -> Option<Self> {
+        let golden = context.golden.as_ref()?;
         let (certified, lag) = match direction {
-            Direction::Rising => (golden.operate_voltage_v, bench.operate_lag()),
-            Direction::Falling => (golden.release_voltage_v, bench.release_lag()),
+            Direction::Rising => (golden.operate_voltage_v, context.operate_lag()),
+            Direction::Falling => (golden.release_voltage_v, context.release_lag()),
         };
-        let at_part = certified.value / to_reference(track, bench.reference_temperature());
+        let at_part = certified.value / to_reference(track, context.reference_temperature());
         let sd_v = if lag.coarse.parts() == 0 {
             FINE_GUESS_SD_V
         } else {
@@ -150,36 +150,38 @@ pub(super) fn stopped_at(start: Volt, span: Volt, seen: Volt) -> Option<Volt> {
 pub(super) enum Met {
     /// The indicated voltage at the contact event, and the length of the gate.
     At(Volt, Second),
-    /// The event was missed; the next ramp looks where [`Findings::expected`] now says.
+    /// The event was missed; the next ramp looks where [`TestRecord::expected`] now says.
     Again,
 }
 
 /// Holds a fine ramp against its event; `None` once the test is void.
 pub(super) fn meet(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
     direction: Direction,
     attempt: u8,
 ) -> Option<Met> {
-    let (start, expected) = (findings.ramp_start?, (*findings.expected(direction))?);
-    let (Some(gate), Some(_)) = (gate0(bench, readings), findings.track) else {
-        findings.stop(Finding::GatesNotRead);
+    let (start, expected) = (record.ramp_start?, (*record.expected(direction))?);
+    let (Some(gate), Some(_)) = (gate0(context, readings), record.track) else {
+        record.stop(Finding::GatesNotRead);
         return None;
     };
-    let seen = indicated(start, bench.calibration.fine_v_per_s.value, gate, direction);
+    let seen = indicated(
+        start,
+        context.calibration.fine_v_per_s.value,
+        gate,
+        direction,
+    );
     let met = readings.seen.first() == Some(&true);
-    let stopped = findings
+    let stopped = record
         .ramp_span
         .and_then(|span| stopped_at(start, span, seen));
-    let left = findings
-        .ramp_takes
-        .0
-        .saturating_sub(Span::seconds(gate.0).0);
-    findings.still_ramping = Span(if met { left } else { 0 });
+    let left = record.ramp_takes.0.saturating_sub(Span::seconds(gate.0).0);
+    record.still_ramping = Span(if met { left } else { 0 });
     // Before the interval the ramp had hardly begun: what moved the armature was the step before it.
     let settled = match direction {
-        Direction::Rising => Pace::of(findings).run_up(bench.calibration.fine_v_per_s.value),
+        Direction::Rising => Pace::of(record).run_up(context.calibration.fine_v_per_s.value),
         Direction::Falling => SETTLED_DOWN,
     };
     let hasty = met && (seen - start).abs() < JUMP + settled;
@@ -191,35 +193,35 @@ pub(super) fn meet(
         .boards
         .last()
         .is_some_and(|board| board.no_closed == operated);
-    *findings.expected(direction) = Some(match stopped {
+    *record.expected(direction) = Some(match stopped {
         Some(end) if met => expected.around(end),
         Some(_) | None => expected.next(direction, early || hasty),
     });
     if attempt + 1 < ATTEMPTS {
         return Some(Met::Again);
     }
-    findings.stop(Finding::ThresholdNotFound(direction).with(ATTEMPTS.to_string()));
+    record.stop(Finding::ThresholdNotFound(direction).with(ATTEMPTS.to_string()));
     None
 }
 
 /// What follows from a coarse ramp: where the fine one looks, and the result where the recipe trusts this one. True if
 /// a fine one has to be put in that the recipe did not plan.
 pub fn after_coarse(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
     (seen, lag, direction): (Shown, Lag, Direction),
 ) -> bool {
-    let Some(part) = findings.track else {
+    let Some(part) = record.track else {
         return false;
     };
-    let certified = Expected::certified(bench, part, direction);
-    *findings.expected(direction) = certified.or(Some(Expected::after(&seen, &lag)));
+    let certified = Expected::certified(context, part, direction);
+    *record.expected(direction) = certified.or(Some(Expected::after(&seen, &lag)));
     let parameter = parameter(direction);
-    let strategy = bench.strategy(parameter);
-    match coarse_reading(bench, (seen, lag), part, direction) {
+    let strategy = context.strategy(parameter);
+    match coarse_reading(context, (seen, lag), part, direction) {
         Some(reading) if strategy.trusts_coarse() => {
-            findings.found(parameter, reading, readings.gates.iter().flatten());
+            record.found(parameter, reading, readings.gates.iter().flatten());
             false
         }
         Some(_) | None => !strategy.always_fine(),

@@ -8,7 +8,7 @@ use super::operate::{SETTLES, release_start};
 use super::operate_fine::{REPEAT_SD_V, again};
 use super::ramp::{self, Expected, Met};
 use super::search::Search;
-use super::{Bench, Findings, INTERLOCK, Ramp, Stage, board};
+use super::{Context, INTERLOCK, Ramp, Stage, TestRecord, board};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::{Direction, indicated};
@@ -33,10 +33,10 @@ const LATE: Span = Span::ms(12);
 
 /// Seals the armature, steps to where a falling ramp begins and arms it. An armature that is still operated from the stage
 /// before is sealed from there, once the ramp that may still run has ended.
-fn seal(bench: &Bench, supply: &mut Supply, findings: &mut Findings, start: Volt) -> Vec<Act> {
-    let operated = std::mem::take(&mut findings.operated);
-    findings.released = false;
-    let seal = supply.step_to(Volt(SEAL * bench.relay.part.nominal_v));
+fn seal(context: &Context, supply: &mut Supply, record: &mut TestRecord, start: Volt) -> Vec<Act> {
+    let operated = std::mem::take(&mut record.operated);
+    record.released = false;
+    let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
     // No current: the contact that the ramp breaks was read before, if at all.
     let falling = [
         (SourceOn, false),
@@ -63,14 +63,14 @@ fn seal(bench: &Bench, supply: &mut Supply, findings: &mut Findings, start: Volt
             Act::Mark,
         ]);
     }
-    let still_ramping = std::mem::take(&mut findings.still_ramping);
+    let still_ramping = std::mem::take(&mut record.still_ramping);
     acts.extend([
         Act::RampSinceMark(SEAL_TIME.max(still_ramping)),
         supply.step_to(start),
         Act::Mark,
         board(&[(Arm, true)]),
     ]);
-    findings.ramp_start = Some(supply.total());
+    record.ramp_start = Some(supply.total());
     acts
 }
 
@@ -97,14 +97,18 @@ fn until_break(takes: Span) -> [Act; 4] {
     ]
 }
 
-pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
+pub(super) fn acts_coarse(
+    context: &Context,
+    supply: &mut Supply,
+    record: &mut TestRecord,
+) -> Vec<Act> {
     let mut acts = Vec::new();
-    if supply.coarse() != release_start(bench) {
-        let (ramp, takes) = supply.ramp_coarse(release_start(bench));
+    if supply.coarse() != release_start(context) {
+        let (ramp, takes) = supply.ramp_coarse(release_start(context));
         acts.extend([ramp, Act::Wait(takes)]);
     }
     let start = supply.coarse() + supply.fine();
-    acts.extend(seal(bench, supply, findings, start));
+    acts.extend(seal(context, supply, record, start));
     acts.extend(settled(SETTLES));
     let (ramp, takes) = supply.ramp_coarse(Volt(0.0));
     acts.push(ramp);
@@ -113,95 +117,99 @@ pub(super) fn acts_coarse(bench: &Bench, supply: &mut Supply, findings: &mut Fin
 }
 
 pub(super) fn conclude_coarse(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) -> Option<Stage> {
-    let (start, test) = (findings.ramp_start?, &bench.relay.test);
-    let coarse_v_per_s = bench.calibration.coarse_v_per_s.value;
+    let (start, test) = (record.ramp_start?, &context.relay.test);
+    let coarse_v_per_s = context.calibration.coarse_v_per_s.value;
     let seen = readings.seen.first() == Some(&true);
-    let floor_v = coarse_v_per_s * LAST_REFRESHES * bench.accuracy.ao_refresh_ms * 1e-3;
+    let floor_v = coarse_v_per_s * LAST_REFRESHES * context.accuracy.ao_refresh_ms * 1e-3;
     let gate =
-        gate0(bench, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - floor_v);
-    findings.released = true;
+        gate0(context, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - floor_v);
+    record.released = true;
     let Some(gate) = gate else {
         // Below its floor the coarse ramp tells nothing: the threshold is far from the lot's.
         let expected = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
-        findings.expected_release = Some(expected);
-        findings.search = Some(Search::placing(bench, findings, Direction::Falling));
+        record.expected_release = Some(expected);
+        record.search = Some(Search::placing(context, record, Direction::Falling));
         return Some(Stage::Search(Direction::Falling));
     };
     let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
     let (seen, lag) = (
-        findings.shown(coarse, Direction::Falling),
-        bench.release_lag(),
+        record.shown(coarse, Direction::Falling),
+        context.release_lag(),
     );
-    findings.release = Some(Ramp {
+    record.release = Some(Ramp {
         coarse: seen,
         fine: None,
     });
     let told = (seen, lag, Direction::Falling);
-    ramp::after_coarse(bench, readings, findings, told).then_some(Stage::ReleaseFine(0))
+    ramp::after_coarse(context, readings, record, told).then_some(Stage::ReleaseFine(0))
 }
 
-pub(super) fn acts_fine(bench: &Bench, supply: &mut Supply, findings: &mut Findings) -> Vec<Act> {
-    let repeated = findings
+pub(super) fn acts_fine(
+    context: &Context,
+    supply: &mut Supply,
+    record: &mut TestRecord,
+) -> Vec<Act> {
+    let repeated = record
         .release
         .and_then(|ramp| ramp.fine)
         .map(|fine| Expected::new(fine, REPEAT_SD_V));
-    let Some(expected) = repeated.or(findings.expected_release) else {
+    let Some(expected) = repeated.or(record.expected_release) else {
         return Vec::new();
     };
-    findings.expected_release = Some(expected);
+    record.expected_release = Some(expected);
     let placed = expected.falling();
     let way = placed.span - ramp::JUMP;
     let mut acts = Vec::new();
     if supply.fine() < way {
         let (fine, takes) = supply.ramp_fine(way);
         // A ramp that rises goes on, one that falls turns round.
-        let rises = if findings.operated {
-            findings.still_ramping
+        let rises = if record.operated {
+            record.still_ramping
         } else {
             Span(0)
         };
-        findings.still_ramping = rises + takes;
+        record.still_ramping = rises + takes;
         acts.push(fine);
     }
     let least = supply.coarse() + supply.fine() + ramp::JUMP;
     let start = placed.start.0.max(least.0);
-    acts.extend(seal(bench, supply, findings, Volt(start)));
-    findings.ramp_span = Some(placed.span);
+    acts.extend(seal(context, supply, record, Volt(start)));
+    record.ramp_span = Some(placed.span);
     acts.push(supply.step_to(Volt(start) - ramp::JUMP));
     acts.extend(settled(FINE_SETTLES));
     let (ramp, takes) = supply.ramp_fine(supply.fine() - way);
-    findings.ramp_takes = takes;
+    record.ramp_takes = takes;
     acts.push(ramp);
     acts.extend(until_break(takes));
     acts
 }
 
 pub(super) fn conclude_fine(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
     attempt: u8,
 ) -> Option<Stage> {
-    findings.released = true;
-    let (seen, gate) = match ramp::meet(bench, readings, findings, Direction::Falling, attempt)? {
+    record.released = true;
+    let (seen, gate) = match ramp::meet(context, readings, record, Direction::Falling, attempt)? {
         Met::At(seen, gate) => (seen, gate),
-        Met::Again => return Some(again(bench, findings, Direction::Falling, attempt)),
+        Met::Again => return Some(again(context, record, Direction::Falling, attempt)),
     };
-    let part = findings.track?;
-    if findings.release.is_none_or(|ramp| ramp.fine.is_none()) {
-        findings.forget(Parameter::ReleaseVoltage);
+    let part = record.track?;
+    if record.release.is_none_or(|ramp| ramp.fine.is_none()) {
+        record.forget(Parameter::ReleaseVoltage);
     }
-    match &mut findings.release {
+    match &mut record.release {
         Some(ramp) => ramp.fine = Some(seen),
-        None => findings.release = Some(Ramp::fine_only(seen)),
+        None => record.release = Some(Ramp::fine_only(seen)),
     }
-    let ramps = findings.release?;
-    let reading = fine_reading(bench, (ramps, gate), part, Direction::Falling);
+    let ramps = record.release?;
+    let reading = fine_reading(context, (ramps, gate), part, Direction::Falling);
     let samples: Vec<_> = readings.gates.iter().flatten().collect();
-    findings.found(Parameter::ReleaseVoltage, reading, samples);
+    record.found(Parameter::ReleaseVoltage, reading, samples);
     None
 }

@@ -1,7 +1,7 @@
 //! The stages of a test and their order.
 
 use super::{
-    Bench, Findings, coil, contact, kelvin, operate, operate_fine, release, search, timing,
+    Context, TestRecord, coil, contact, kelvin, operate, operate_fine, release, search, timing,
 };
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::supply::Supply;
@@ -37,10 +37,10 @@ pub enum Stage {
 }
 
 /// Stages of a good part: what comes before the strategies, what they ask for, what comes after.
-pub(super) fn order(bench: &Bench) -> VecDeque<Stage> {
+pub(super) fn order(context: &Context) -> VecDeque<Stage> {
     let (operate, release) = (
-        bench.strategy(Parameter::OperateVoltage),
-        bench.strategy(Parameter::ReleaseVoltage),
+        context.strategy(Parameter::OperateVoltage),
+        context.strategy(Parameter::ReleaseVoltage),
     );
     let mut stages = VecDeque::from([
         Stage::NcContact,
@@ -117,21 +117,21 @@ impl Stage {
 /// What is done in a stage, written down before it begins.
 pub(super) fn acts(
     stage: Stage,
-    bench: &Bench,
+    context: &Context,
     supply: &mut Supply,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) -> Vec<Act> {
     match stage {
         Stage::Kelvin => kelvin::acts(),
-        Stage::NcContact => contact::acts_nc(bench, supply, findings),
-        Stage::Coil => coil::acts(bench, supply, findings),
-        Stage::Search(direction) => search::acts(bench, supply, findings, direction),
-        Stage::OperateCoarse => operate::acts_coarse(bench, supply, findings),
-        Stage::OperateFine(_) => operate_fine::acts(bench, supply, findings),
-        Stage::TimedOperate => timing::acts_operate(bench, supply, findings),
-        Stage::TimedRelease => timing::acts_release(bench, supply, findings),
-        Stage::ReleaseCoarse => release::acts_coarse(bench, supply, findings),
-        Stage::ReleaseFine(_) => release::acts_fine(bench, supply, findings),
-        Stage::Off => coil::acts_off(bench, supply, findings),
+        Stage::NcContact => contact::acts_nc(context, supply, record),
+        Stage::Coil => coil::acts(context, supply, record),
+        Stage::Search(direction) => search::acts(context, supply, record, direction),
+        Stage::OperateCoarse => operate::acts_coarse(context, supply, record),
+        Stage::OperateFine(_) => operate_fine::acts(context, supply, record),
+        Stage::TimedOperate => timing::acts_operate(context, supply, record),
+        Stage::TimedRelease => timing::acts_release(context, supply, record),
+        Stage::ReleaseCoarse => release::acts_coarse(context, supply, record),
+        Stage::ReleaseFine(_) => release::acts_fine(context, supply, record),
+        Stage::Off => coil::acts_off(context, supply, record),
     }
 }

@@ -7,9 +7,9 @@ mod sampling;
 mod stages;
 mod whole;
 
-use super::{Findings, Stop};
+use super::{Stop, TestRecord};
 use crate::dcon::Channel;
-use crate::dut::em_relay::tests::bench;
+use crate::dut::em_relay::tests::context;
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{BoardInputs, CoilScan, Readings};
 use crate::rig::point::{AnalogIn, Counter};
@@ -101,23 +101,23 @@ fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
     }
 }
 
-/// Findings of a part whose temperature is known.
-fn at_23_c() -> Findings {
-    let mut findings = Findings::default();
-    findings.track = Some(Celsius(23.0));
-    findings
+/// Record of a part whose temperature is known.
+fn at_23_c() -> TestRecord {
+    let mut record = TestRecord::default();
+    record.track = Some(Celsius(23.0));
+    record
 }
 
 /// Bin that an early end sends the part to, and why; `None` while nothing ended the test.
-fn ended(findings: &Findings) -> Option<(Bin, String)> {
-    findings.why_stopped().map(|stop| match stop {
+fn ended(record: &TestRecord) -> Option<(Bin, String)> {
+    record.why_stopped().map(|stop| match stop {
         Stop::Fail(reason) => (reason.bin(), reason.to_string()),
         Stop::Void(why) | Stop::Trouble(why) => (Bin::Retest, why.to_string()),
     })
 }
 
-fn assert_ends(findings: &Findings, bin: Bin, word: &str) {
-    let (found, why) = ended(findings).unwrap();
+fn assert_ends(record: &TestRecord, bin: Bin, word: &str) {
+    let (found, why) = ended(record).unwrap();
     assert_eq!(found, bin, "{why}");
     assert!(why.contains(word), "{why}");
 }

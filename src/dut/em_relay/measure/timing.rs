@@ -4,7 +4,7 @@
 use super::coil::rest;
 use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, reversed};
 use super::operate::dropped;
-use super::{Bench, Findings, OFF, Stage, board};
+use super::{Context, OFF, Stage, TestRecord, board};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::contact::resistance;
 use crate::dut::em_relay::finding::{Contact, Finding};
@@ -30,12 +30,12 @@ const SOURCE_FLOWS: Span = Span::ms(11);
 /// Counters are read after ARM, here unless the NC stage has done so: before ARM a window may still be open that an
 /// early end has left.
 pub(super) fn acts_operate(
-    bench: &Bench,
+    context: &Context,
     supply: &mut Supply,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) -> Vec<Act> {
-    let mut acts = dropped(findings);
-    let off = OFF.max(std::mem::take(&mut findings.still_ramping));
+    let mut acts = dropped(record);
+    let off = OFF.max(std::mem::take(&mut record.still_ramping));
     acts.extend([board(&[
         (SourceOn, false),
         (SourceReverse, false),
@@ -44,9 +44,9 @@ pub(super) fn acts_operate(
         (EventNoBreak, false),
         (Arm, true),
     ])]);
-    if !std::mem::take(&mut findings.counted) {
+    if !std::mem::take(&mut record.counted) {
         acts.extend([
-            supply.step_to(Volt(bench.relay.part.nominal_v)),
+            supply.step_to(Volt(context.relay.part.nominal_v)),
             Act::Read(Read::Gates),
         ]);
     }
@@ -55,29 +55,29 @@ pub(super) fn acts_operate(
         board(&[(CoilDrive, true), (SourceOn, true)]),
     ]);
     acts.extend(until_made());
-    acts.extend(drop_of_closure(bench));
-    acts.extend(reversed(bench));
+    acts.extend(drop_of_closure(context));
+    acts.extend(reversed(context));
     acts
 }
 
 /// After a timed operation its counters are taken over: the latch keeps both gates shut until ARM.
 pub(super) fn acts_release(
-    bench: &Bench,
+    context: &Context,
     supply: &mut Supply,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) -> Vec<Act> {
     let mut acts = Vec::new();
-    if !findings.operated {
-        acts.extend(dropped(findings));
+    if !record.operated {
+        acts.extend(dropped(record));
         acts.extend([
             // Nobody reads this closure: no current is to leave its mark on the contact.
             board(&[(RampMode, false), (EventNoBreak, false), (SourceOn, false)]),
-            supply.step_to(Volt(bench.relay.part.nominal_v)),
+            supply.step_to(Volt(context.relay.part.nominal_v)),
             board(&[(CoilDrive, true), (SelectNo, true)]),
             Act::Wait(Span::ms(40)),
         ]);
     }
-    let counted = std::mem::take(&mut findings.operated);
+    let counted = std::mem::take(&mut record.operated);
     acts.extend([board(&[
         (SourceOn, false),
         (SourceReverse, false),
@@ -88,8 +88,8 @@ pub(super) fn acts_release(
     acts.push(board(&[(CoilDrive, false), (SourceOn, true)]));
     acts.extend(until_made());
     // With the coil off the supply is free, and until the window closes so is the bus.
-    acts.extend(rest(bench, supply));
-    acts.extend(drop_of_closure(bench));
+    acts.extend(rest(context, supply));
+    acts.extend(drop_of_closure(context));
     acts
 }
 
@@ -109,127 +109,127 @@ fn until_made() -> [Act; 2] {
 /// Gates once the window has closed, then the forward drop. The source has been asked for before the
 /// contact made: the board lets it flow once the contact has been closed for 5 ms. It drives the same way
 /// as the contact monitor, so that gate 1 does not take it for an open contact.
-fn drop_of_closure(bench: &Bench) -> [Act; 6] {
+fn drop_of_closure(context: &Context) -> [Act; 6] {
     [
         Act::WaitSinceMark(WINDOW_AFTER_LATCH),
         Act::Read(Read::Gates),
         Act::Read(Read::Board),
         board(&[(Arm, false)]),
-        Act::ConvertSinceMark(SOURCE_FLOWS + SOURCE_SETTLES + bench.fresh(1)),
+        Act::ConvertSinceMark(SOURCE_FLOWS + SOURCE_SETTLES + context.fresh(1)),
         Act::Read(Read::Drop),
     ]
 }
 
 /// Both gates of a stage as time and bounce; `false` when the counters were not read twice.
 fn time_and_bounce(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
     time: Parameter,
     bounce: Parameter,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) {
     let [.., before, after] = readings.gates.as_slice() else {
-        findings.stop(Finding::GatesNotRead);
+        record.stop(Finding::GatesNotRead);
         return;
     };
     let gate0 = counts(before[0].count, after[0].count);
     let gate1 = counts(before[1].count, after[1].count);
-    let longest = (LONGEST + WINDOW_AFTER_LATCH).as_seconds() * bench.clock().hz;
+    let longest = (LONGEST + WINDOW_AFTER_LATCH).as_seconds() * context.clock().hz;
     // No contact moves within a count: a counter that shows none has restarted since its gate.
     let still = gate0 == 0;
     if still || f64::from(gate0.max(gate1)) > longest || gate1 + GATE_SKEW < gate0 {
         let detail = format!("{gate0} and {gate1} counts");
-        findings.stop(Finding::GatesImplausible.with(detail));
+        record.stop(Finding::GatesImplausible.with(detail));
         return;
     }
     let samples: Vec<_> = before.iter().chain(after).collect();
-    let delay = bench.calibration.gate_delay_us;
-    findings.found(
+    let delay = context.calibration.gate_delay_us;
+    record.found(
         time,
-        gate_ms(gate0, delay[0], bench.clock()),
+        gate_ms(gate0, delay[0], context.clock()),
         samples.clone(),
     );
-    findings.found(
+    record.found(
         bounce,
-        bounce_ms(gate0, gate1, delay, bench.clock()),
+        bounce_ms(gate0, gate1, delay, context.clock()),
         samples,
     );
 }
 
 pub(super) fn conclude_operate(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) -> Option<Stage> {
     if readings.seen.first() != Some(&true) {
-        return not_made(readings, findings);
+        return not_made(readings, record);
     }
     time_and_bounce(
-        bench,
+        context,
         readings,
         Parameter::OperateTime,
         Parameter::OperateBounce,
-        findings,
+        record,
     );
-    findings.operated = true;
-    match closure(bench, readings) {
+    record.operated = true;
+    match closure(context, readings) {
         Ok(closure) => {
-            let u = closure.u_v(bench.reading_u_v());
+            let u = closure.u_v(context.reading_u_v());
             if let Some(reading) =
-                resistance(&[closure.drop], bench.calibration.contact_mohm_per_v, u)
-                && !is_implausible(Contact::No, reading.value, findings)
+                resistance(&[closure.drop], context.calibration.contact_mohm_per_v, u)
+                && !is_implausible(Contact::No, reading.value, record)
             {
-                findings.found(Parameter::ContactResistanceNo, reading, &readings.drops);
+                record.found(Parameter::ContactResistanceNo, reading, &readings.drops);
             }
         }
-        Err(unread) => findings.stop(unread.of(Contact::No)),
+        Err(unread) => record.stop(unread.of(Contact::No)),
     }
     None
 }
 
 /// A relay that is late, or one whose contact does not move: that may lie at the coil, which is then measured
 /// before the part is judged.
-fn not_made(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
-    findings.unmoved = match readings.boards.last() {
+fn not_made(readings: &Readings, record: &mut TestRecord) -> Option<Stage> {
+    record.unmoved = match readings.boards.last() {
         Some(board) if board.no_closed => {
-            findings.stop(Finding::OperatesTooLate);
+            record.stop(Finding::OperatesTooLate);
             None
         }
         Some(board) if board.nc_closed => Some(Finding::NcDoesNotOpen),
         Some(_) => Some(Finding::NoDoesNotMake),
         None => {
-            findings.stop(Finding::BoardNotRead);
+            record.stop(Finding::BoardNotRead);
             None
         }
     };
-    findings.unmoved.map(|_| Stage::Coil)
+    record.unmoved.map(|_| Stage::Coil)
 }
 
 pub(super) fn conclude_release(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
 ) -> Option<Stage> {
     if readings.seen.first() != Some(&true) {
-        findings.stop(Finding::ReleasesTooLate);
+        record.stop(Finding::ReleasesTooLate);
         return None;
     }
     time_and_bounce(
-        bench,
+        context,
         readings,
         Parameter::ReleaseTime,
         Parameter::ReleaseBounce,
-        findings,
+        record,
     );
-    (findings.released, findings.rested) = (true, true);
+    (record.released, record.rested) = (true, true);
     let compliance = readings.boards.iter().any(|board| board.compliance);
     match (
         drop_of(readings.drops.first(), compliance),
-        findings.drop_zero,
+        record.drop_zero,
     ) {
-        (Ok(drop), Some(zero)) => add_nc(bench, drop - zero, &readings.drops, findings),
-        (Ok(_), None) => findings.stop(Finding::DropWithoutZero),
-        (Err(unread), _) => findings.stop(unread.of(Contact::Nc)),
+        (Ok(drop), Some(zero)) => add_nc(context, drop - zero, &readings.drops, record),
+        (Ok(_), None) => record.stop(Finding::DropWithoutZero),
+        (Err(unread), _) => record.stop(unread.of(Contact::Nc)),
     }
     None
 }

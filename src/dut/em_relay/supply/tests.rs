@@ -3,7 +3,7 @@
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::OutputLine;
 use crate::dut::em_relay::supply::Supply;
-use crate::dut::em_relay::tests::bench;
+use crate::dut::em_relay::tests::context;
 use crate::gauge::Factor;
 use crate::instrument::act::Act;
 use crate::rig::point::AnalogOut;
@@ -19,7 +19,7 @@ fn crooked() -> Calibration {
         level: line(1.0005, 0.003),
         coarse: line(0.9995, 0.0),
         fine: line(1.0004, -0.002),
-        ..(*bench().calibration).clone()
+        ..(*context().calibration).clone()
     }
 }
 
@@ -73,7 +73,7 @@ fn a_ramp_moves_the_sum_by_its_own_way_and_leaves_the_other_outputs() {
 
 #[test]
 fn no_output_is_ever_asked_to_go_below_zero() {
-    for calibration in [crooked(), (*bench().calibration).clone()] {
+    for calibration in [crooked(), (*context().calibration).clone()] {
         let mut supply = Supply::new(&calibration);
         let (coarse, _) = supply.ramp_coarse(Volt(-1.0));
         let (fine, _) = supply.ramp_fine(Volt(-0.5));

@@ -13,7 +13,7 @@ mod staircase;
 mod trial;
 
 use super::pace::Pace;
-use super::{Bench, Findings};
+use super::{Context, TestRecord};
 use crate::dut::em_relay::lag::Shown;
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::{Parameter, Strategy};
@@ -68,8 +68,8 @@ pub enum Next {
 
 impl Search {
     /// Over the interval that the lot leaves open.
-    fn new(bench: &Bench, strategy: Strategy, direction: Direction, part: Celsius) -> Self {
-        let test = &bench.relay.test;
+    fn new(context: &Context, strategy: Strategy, direction: Direction, part: Celsius) -> Self {
+        let test = &context.relay.test;
         let (centre, sd) = match direction {
             Direction::Rising => (test.expected_operate_v, test.expected_operate_sd_v),
             Direction::Falling => (test.expected_release_v, test.expected_release_sd_v),
@@ -85,7 +85,7 @@ impl Search {
             seen: [false; 2],
         };
         search.at = match strategy {
-            Strategy::Pulse => pulse::level(bench, direction, part),
+            Strategy::Pulse => pulse::level(context, direction, part),
             Strategy::Bisection => bisection::level(&search),
             Strategy::Staircase
             | Strategy::Ramp
@@ -97,9 +97,9 @@ impl Search {
     }
 
     /// A wide one by halves, to place a fine ramp where the coarse one has told nothing, or something wrong.
-    pub fn placing(bench: &Bench, findings: &Findings, direction: Direction) -> Self {
+    pub fn placing(context: &Context, record: &TestRecord, direction: Direction) -> Self {
         let (near, end) =
-            overshot(bench, findings, direction).unwrap_or_else(|| far(bench, direction));
+            overshot(context, record, direction).unwrap_or_else(|| far(context, direction));
         Self {
             strategy: Strategy::Bisection,
             direction,
@@ -154,10 +154,10 @@ impl Search {
 }
 
 /// Between the ends of what a coarse ramp may have overshot by, if there was one.
-fn overshot(bench: &Bench, findings: &Findings, direction: Direction) -> Option<(Volt, Volt)> {
+fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Option<(Volt, Volt)> {
     let (ramp, lag) = match direction {
-        Direction::Rising => (findings.operate, bench.operate_lag()),
-        Direction::Falling => (findings.release, bench.release_lag()),
+        Direction::Rising => (record.operate, context.operate_lag()),
+        Direction::Falling => (record.release, context.release_lag()),
     };
     let indicated = ramp?.coarse.indicated;
     let lag_v = lag.coarse.of(&Shown::NOTHING).volts;
@@ -166,8 +166,8 @@ fn overshot(bench: &Bench, findings: &Findings, direction: Direction) -> Option<
 }
 
 /// Far to both sides of the lot; no release threshold is looked for near nothing.
-fn far(bench: &Bench, direction: Direction) -> (Volt, Volt) {
-    let test = &bench.relay.test;
+fn far(context: &Context, direction: Direction) -> (Volt, Volt) {
+    let test = &context.relay.test;
     let (centre, sd) = match direction {
         Direction::Rising => (test.expected_operate_v, test.expected_operate_sd_v),
         Direction::Falling => (test.expected_release_v, test.expected_release_sd_v),
@@ -175,7 +175,7 @@ fn far(bench: &Bench, direction: Direction) -> (Volt, Volt) {
     let near = Volt(centre - WIDE * sd * direction.sign());
     let end = match direction {
         Direction::Rising => Volt(centre + WIDE * sd),
-        Direction::Falling => Volt(LOWEST * bench.relay.part.nominal_v),
+        Direction::Falling => Volt(LOWEST * context.relay.part.nominal_v),
     };
     (near, end)
 }
@@ -191,11 +191,11 @@ pub(super) fn parameter(direction: Direction) -> Parameter {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dut::em_relay::tests::bench;
+    use crate::dut::em_relay::tests::context;
 
     /// Levels tried against a threshold, and what came of it.
     fn run(strategy: Strategy, direction: Direction, threshold: f64) -> (Vec<Volt>, Next) {
-        let mut search = Search::new(&bench(), strategy, direction, Celsius(23.0));
+        let mut search = Search::new(&context(), strategy, direction, Celsius(23.0));
         let mut tried = Vec::new();
         loop {
             tried.push(search.at);
@@ -228,7 +228,7 @@ mod tests {
             panic!("{next:?}")
         };
         assert_eq!(tried.len(), 7);
-        let interval = 2.0 * REACH * bench().relay.test.expected_operate_sd_v;
+        let interval = 2.0 * REACH * context().relay.test.expected_operate_sd_v;
         assert!((step.0 - interval / 128.0).abs() < 1e-9);
         assert!((volts.0 - 7.913).abs() <= step.0 / 2.0 + 1e-9);
     }

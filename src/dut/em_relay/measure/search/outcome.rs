@@ -4,7 +4,7 @@ use super::{AFTER_SEARCH, Next, parameter};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
 use crate::dut::em_relay::measure::ramp::Expected;
-use crate::dut::em_relay::measure::{Bench, Findings, Stage};
+use crate::dut::em_relay::measure::{Context, Stage, TestRecord};
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::Judgement;
 use crate::gauge::budget::{Budget, Reading, resolution};
@@ -13,33 +13,33 @@ use crate::rig::sample::CountSample;
 use crate::units::{Span, Volt};
 
 pub(in crate::dut::em_relay::measure) fn conclude(
-    bench: &Bench,
+    context: &Context,
     readings: &Readings,
-    findings: &mut Findings,
+    record: &mut TestRecord,
     direction: Direction,
 ) -> Option<Stage> {
-    let (Some(seen), Some(mut search)) = (readings.boards.last(), findings.search) else {
-        findings.stop(Finding::BoardNotRead);
+    let (Some(seen), Some(mut search)) = (readings.boards.last(), record.search) else {
+        record.stop(Finding::BoardNotRead);
         return None;
     };
     let rising = direction == Direction::Rising;
     let next = search.after(seen.no_closed == rising);
-    findings.operated = rising && seen.no_closed;
-    findings.still_ramping = Span(0);
+    record.operated = rising && seen.no_closed;
+    record.still_ramping = Span(0);
     if let Next::Try(level) = next {
         search.at = level;
-        findings.search = Some(search);
+        record.search = Some(search);
         return Some(Stage::Search(direction));
     }
-    findings.search = None;
-    if bench.strategy(parameter(direction)).ramps() {
-        return placed(bench, findings, direction, next);
+    record.search = None;
+    if context.strategy(parameter(direction)).ramps() {
+        return placed(context, record, direction, next);
     }
     match next {
-        Next::Found(volts, step) => found(bench, findings, direction, volts, step, &readings.gates),
+        Next::Found(volts, step) => found(context, record, direction, volts, step, &readings.gates),
         Next::Proven => {
             let judgement = (parameter(direction), Judgement::Pass);
-            findings.proven.push(judgement);
+            record.proven.push(judgement);
         }
         Next::Ramp if rising => return Some(Stage::OperateCoarse),
         Next::Ramp => return Some(Stage::ReleaseCoarse),
@@ -50,16 +50,16 @@ pub(in crate::dut::em_relay::measure) fn conclude(
 
 /// The fine ramp goes where a search in its service has found the threshold.
 fn placed(
-    bench: &Bench,
-    findings: &mut Findings,
+    context: &Context,
+    record: &mut TestRecord,
     direction: Direction,
     next: Next,
 ) -> Option<Stage> {
     let Next::Found(volts, step) = next else {
-        findings.stop(Finding::SearchWithoutThreshold(direction));
+        record.stop(Finding::SearchWithoutThreshold(direction));
         return None;
     };
-    *findings.expected(direction) = Some(near(bench, direction, volts, step));
+    *record.expected(direction) = Some(near(context, direction, volts, step));
     Some(match direction {
         Direction::Rising => Stage::OperateFine(AFTER_SEARCH),
         Direction::Falling => Stage::ReleaseFine(AFTER_SEARCH),
@@ -67,35 +67,38 @@ fn placed(
 }
 
 /// Where a fine ramp will show a threshold that levels have found.
-fn near(bench: &Bench, direction: Direction, volts: Volt, step: Volt) -> Expected {
+fn near(context: &Context, direction: Direction, volts: Volt, step: Volt) -> Expected {
     let lag = match direction {
-        Direction::Rising => bench.operate_lag(),
-        Direction::Falling => bench.release_lag(),
+        Direction::Rising => context.operate_lag(),
+        Direction::Falling => context.release_lag(),
     };
     Expected::new(volts + Volt(lag.fine_v.value), step.0.abs().max(0.010))
 }
 
 fn found(
-    bench: &Bench,
-    findings: &mut Findings,
+    context: &Context,
+    record: &mut TestRecord,
     direction: Direction,
     volts: Volt,
     step: Volt,
     samples: &[[CountSample; 2]],
 ) {
-    let Some(part) = findings.track else { return };
-    *findings.expected(direction) = Some(near(bench, direction, volts, step));
-    let value = volts.0 * to_reference(part, bench.reference_temperature());
-    let (level, kelvin) = (bench.calibration.level, bench.accuracy.part_minus_track_k);
+    let Some(part) = record.track else { return };
+    *record.expected(direction) = Some(near(context, direction, volts, step));
+    let value = volts.0 * to_reference(part, context.reference_temperature());
+    let (level, kelvin) = (
+        context.calibration.level,
+        context.accuracy.part_minus_track_k,
+    );
     let budget = Budget::default()
         .with("level", (value * level.gain.u).hypot(level.offset_v.u))
         .with(
             "coil temperature",
             value * kelvin * relative_per_kelvin(part),
         )
-        .with("probe contact", value * bench.contact_share())
+        .with("probe contact", value * context.contact_share())
         .with("strategy", resolution(step.0))
-        .with_random("repeatability", bench.operation_v());
+        .with_random("repeatability", context.operation_v());
     let reading = Reading { value, budget };
-    findings.found(parameter(direction), reading, samples.iter().flatten());
+    record.found(parameter(direction), reading, samples.iter().flatten());
 }

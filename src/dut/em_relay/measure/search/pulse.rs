@@ -3,7 +3,7 @@
 
 use super::{Next, parameter};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
-use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::threshold::Direction;
 use crate::units::{Celsius, Volt};
 
@@ -11,20 +11,20 @@ use crate::units::{Celsius, Volt};
 const KINDER: f64 = 0.0035;
 
 /// Level of the pulse; the expected threshold where the recipe sets no limit.
-pub(super) fn level(bench: &Bench, direction: Direction, part: Celsius) -> Volt {
-    let (recipe, sign) = (&bench.recipe, direction.sign());
+pub(super) fn level(context: &Context, direction: Direction, part: Celsius) -> Volt {
+    let (recipe, sign) = (&context.recipe, direction.sign());
     let limit = recipe.limits.of(parameter(direction));
     let (limit, expected) = match direction {
-        Direction::Rising => (limit.high, bench.relay.test.expected_operate_v),
-        Direction::Falling => (limit.low, bench.relay.test.expected_release_v),
+        Direction::Rising => (limit.high, context.relay.test.expected_operate_v),
+        Direction::Falling => (limit.low, context.relay.test.expected_release_v),
     };
     let limit = limit.unwrap_or(expected);
-    let reference = bench.reference_temperature();
+    let reference = context.reference_temperature();
     let at_part = limit / to_reference(part, reference);
-    let u = at_part * bench.accuracy.part_minus_track_k * relative_per_kelvin(part)
-        + at_part * (bench.calibration.level.gain.u + bench.contact_share())
-        + bench.calibration.level.offset_v.u
-        + bench.operation_v();
+    let u = at_part * context.accuracy.part_minus_track_k * relative_per_kelvin(part)
+        + at_part * (context.calibration.level.gain.u + context.contact_share())
+        + context.calibration.level.offset_v.u
+        + context.operation_v();
     Volt(at_part - sign * (2.0 * u + at_part * KINDER))
 }
 

@@ -4,7 +4,7 @@ use super::{REACH, Search, parameter};
 use crate::dut::em_relay::measure::operate::dropped;
 use crate::dut::em_relay::measure::operate_fine::APPROACH;
 use crate::dut::em_relay::measure::pace::Pace;
-use crate::dut::em_relay::measure::{Bench, Findings, INTERLOCK, OFF, board};
+use crate::dut::em_relay::measure::{Context, INTERLOCK, OFF, TestRecord, board};
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::Direction;
 use crate::instrument::act::{Act, Read};
@@ -19,34 +19,37 @@ const SEALS: Span = Span::ms(25);
 const SEAL: f64 = 0.95;
 
 pub(in crate::dut::em_relay::measure) fn acts(
-    bench: &Bench,
+    context: &Context,
     supply: &mut Supply,
-    findings: &mut Findings,
+    record: &mut TestRecord,
     direction: Direction,
 ) -> Vec<Act> {
-    findings.armed = false;
-    let Some(part) = findings.track else {
+    record.armed = false;
+    let Some(part) = record.track else {
         return Vec::new();
     };
-    let known = findings
-        .search
-        .filter(|search| search.direction == direction);
+    let known = record.search.filter(|search| search.direction == direction);
     let search = known.unwrap_or_else(|| {
-        Search::new(bench, bench.strategy(parameter(direction)), direction, part)
+        Search::new(
+            context,
+            context.strategy(parameter(direction)),
+            direction,
+            part,
+        )
     });
-    findings.search = Some(search);
-    let test = &bench.relay.test;
+    record.search = Some(search);
+    let test = &context.relay.test;
     let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);
     let mut acts = Vec::new();
     if search.begins_anew() {
         acts.extend(match direction {
-            Direction::Rising => from_rest(supply, findings, search.at),
-            Direction::Falling => from_sealed(bench, supply, findings, near),
+            Direction::Rising => from_rest(supply, record, search.at),
+            Direction::Falling => from_sealed(context, supply, record, near),
         });
     }
     acts.extend([
         supply.step_to(search.at),
-        Act::Wait(search.dwell(Pace::of(findings))),
+        Act::Wait(search.dwell(Pace::of(record))),
         Act::Read(Read::Board),
         Act::Mark,
     ]);
@@ -55,11 +58,11 @@ pub(in crate::dut::em_relay::measure) fn acts(
 
 /// Off until the armature is back and both ramps are down, then two steps towards `at`: a single one from zero picks up
 /// some 30 mV below the threshold.
-fn from_rest(supply: &mut Supply, findings: &mut Findings, at: Volt) -> Vec<Act> {
-    let pace = Pace::of(findings);
-    let mut acts = dropped(findings);
+fn from_rest(supply: &mut Supply, record: &mut TestRecord, at: Volt) -> Vec<Act> {
+    let pace = Pace::of(record);
+    let mut acts = dropped(record);
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
-    let still_ramping = std::mem::take(&mut findings.still_ramping);
+    let still_ramping = std::mem::take(&mut record.still_ramping);
     acts.extend([
         coarse,
         Act::Wait(takes),
@@ -78,22 +81,22 @@ fn from_rest(supply: &mut Supply, findings: &mut Findings, at: Volt) -> Vec<Act>
 
 /// Operated and sealed at 0.95 of nominal.
 fn from_sealed(
-    bench: &Bench,
+    context: &Context,
     supply: &mut Supply,
-    findings: &mut Findings,
+    record: &mut TestRecord,
     near: Volt,
 ) -> Vec<Act> {
-    (findings.operated, findings.released) = (false, false);
-    let still_ramping = std::mem::take(&mut findings.still_ramping);
+    (record.operated, record.released) = (false, false);
+    let still_ramping = std::mem::take(&mut record.still_ramping);
     let mut acts = Vec::new();
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
-    if findings.operate.is_some() && findings.search.is_none_or(|search| search.trials == 0) {
+    if record.operate.is_some() && record.search.is_none_or(|search| search.trials == 0) {
         acts.extend([coarse, Act::Wait(takes)]);
     }
     acts.extend([
         // What still falls would seal at more than nominal.
         Act::Wait(still_ramping),
-        supply.step_to(Volt(SEAL * bench.relay.part.nominal_v)),
+        supply.step_to(Volt(SEAL * context.relay.part.nominal_v)),
         board(&[
             (SourceOn, false),
             (SourceReverse, false),

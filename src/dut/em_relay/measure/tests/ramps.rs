@@ -1,7 +1,7 @@
 //! One ramp after another: where the supply stands when the next one begins.
 
 use super::super::{Stage, operate_fine, release, search};
-use super::{PULLED, RESTING, at_23_c, bench, watched};
+use super::{PULLED, RESTING, at_23_c, context, watched};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::calibration::{Calibration, Lags};
 use crate::dut::em_relay::golden::interim;
@@ -42,16 +42,16 @@ fn until_armed(acts: &[Act]) -> Span {
 #[test]
 fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
     for (sd_v, gate_ms) in [(0.008, 75.0), (0.025, 75.0), (0.06, 80.0)] {
-        let bench = bench();
-        let mut supply = Supply::new(&bench.calibration);
-        let mut findings = at_23_c();
-        findings.expected_release = Some(Expected::new(Volt(0.7), sd_v));
-        findings.expected_operate = Some(Expected::new(Volt(6.7), 0.03));
-        let way = findings.expected_release.unwrap().falling();
-        release::acts_fine(&bench, &mut supply, &mut findings);
+        let context = context();
+        let mut supply = Supply::new(&context.calibration);
+        let mut record = at_23_c();
+        record.expected_release = Some(Expected::new(Volt(0.7), sd_v));
+        record.expected_operate = Some(Expected::new(Volt(6.7), 0.03));
+        let way = record.expected_release.unwrap().falling();
+        release::acts_fine(&context, &mut supply, &mut record);
         let event = watched(true, RESTING, gate_ms);
-        release::conclude_fine(&bench, &event, &mut findings, 0);
-        let acts = operate_fine::acts(&bench, &mut supply, &mut findings);
+        release::conclude_fine(&context, &event, &mut record, 0);
+        let acts = operate_fine::acts(&context, &mut supply, &mut record);
         let falls_ms = (way.span.0 - 0.045) / 1.5 * 1e3 - gate_ms;
         // The word that arms and the approach take longer; a ramp stands while they do.
         let armed_ms = until_armed(&acts).as_seconds() * 1e3;
@@ -62,15 +62,15 @@ fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
 
 #[test]
 fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
-    let bench = bench();
-    let mut supply = Supply::new(&bench.calibration);
-    let mut findings = at_23_c();
-    findings.expected_release = Some(Expected::new(Volt(1.9), 0.1));
-    release::acts_fine(&bench, &mut supply, &mut findings);
+    let context = context();
+    let mut supply = Supply::new(&context.calibration);
+    let mut record = at_23_c();
+    record.expected_release = Some(Expected::new(Volt(1.9), 0.1));
+    release::acts_fine(&context, &mut supply, &mut record);
     let missed = watched(true, RESTING, 10.0);
-    let next = release::conclude_fine(&bench, &missed, &mut findings, 0);
+    let next = release::conclude_fine(&context, &missed, &mut record, 0);
     assert_eq!(next, Some(Stage::Search(Direction::Falling)));
-    let acts = search::acts(&bench, &mut supply, &mut findings, Direction::Falling);
+    let acts = search::acts(&context, &mut supply, &mut record, Direction::Falling);
     let driven = |act: &Act| matches!(act, Act::Board(outputs) if outputs.contains(&(DigitalOut::CoilDrive, true)));
     let at = acts.iter().position(driven).unwrap();
     // 0.7 V at 1.5 V/s, of which 10 ms had passed.
@@ -80,19 +80,19 @@ fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
 #[test]
 fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
     let wait_ms = |rising: bool| {
-        let bench = bench();
-        let mut supply = Supply::new(&bench.calibration);
-        let mut findings = at_23_c();
-        findings.expected_release = Some(Expected::new(Volt(2.3), 0.03));
-        findings.expected_operate = Some(Expected::new(Volt(7.8), 0.02));
+        let context = context();
+        let mut supply = Supply::new(&context.calibration);
+        let mut record = at_23_c();
+        record.expected_release = Some(Expected::new(Volt(2.3), 0.03));
+        record.expected_operate = Some(Expected::new(Volt(7.8), 0.02));
         if rising {
-            operate_fine::acts(&bench, &mut supply, &mut findings);
-            operate_fine::conclude(&bench, &watched(true, PULLED, 60.0), &mut findings, 0);
+            operate_fine::acts(&context, &mut supply, &mut record);
+            operate_fine::conclude(&context, &watched(true, PULLED, 60.0), &mut record, 0);
         } else {
-            release::acts_fine(&bench, &mut supply, &mut findings);
-            release::conclude_fine(&bench, &watched(true, RESTING, 60.0), &mut findings, 0);
+            release::acts_fine(&context, &mut supply, &mut record);
+            release::conclude_fine(&context, &watched(true, RESTING, 60.0), &mut record, 0);
         }
-        until_armed(&release::acts_fine(&bench, &mut supply, &mut findings)).as_seconds() * 1e3
+        until_armed(&release::acts_fine(&context, &mut supply, &mut record)).as_seconds() * 1e3
     };
     // A repetition from nothing to 0.15 V at 1.5 V/s; to 0.28 V from 0.2 V, of which 74 ms were still to come.
     let (falling, rising) = (wait_ms(false), wait_ms(true));
@@ -102,20 +102,20 @@ fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
 
 #[test]
 fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
-    let mut bench = bench();
-    let learned = bench.operate_lag();
+    let mut context = context();
+    let learned = context.operate_lag();
     let mut half_width = |coarse: LagLaw| {
-        bench.golden = golden_parts().into_iter().next();
+        context.golden = golden_parts().into_iter().next();
         let lag = interim(coarse, 0.03);
         let lags = Lags {
             operate: lag,
             release: lag,
         };
-        bench.calibration = Arc::new(Calibration {
+        context.calibration = Arc::new(Calibration {
             lags: Some(lags),
-            ..(*bench.calibration).clone()
+            ..(*context.calibration).clone()
         });
-        let found = Expected::certified(&bench, Celsius(23.0), Direction::Rising).unwrap();
+        let found = Expected::certified(&context, Celsius(23.0), Direction::Rising).unwrap();
         assert!((found.centre.0 - 7.43).abs() < 1e-9, "{found:?}");
         found.half_width.0
     };
@@ -128,20 +128,20 @@ fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
 
 #[test]
 fn a_part_of_the_lot_has_no_certificate_to_be_looked_for_at() {
-    let found = Expected::certified(&bench(), Celsius(23.0), Direction::Falling);
+    let found = Expected::certified(&context(), Celsius(23.0), Direction::Falling);
     assert_eq!(found, None);
 }
 
 #[test]
 fn a_slow_armature_gets_more_time_and_a_longer_run_up() {
     let of = |operate_ms: f64| {
-        let mut findings = at_23_c();
+        let mut record = at_23_c();
         let reading = Reading {
             value: operate_ms,
             budget: Budget::default(),
         };
-        findings.found::<CountSample>(Parameter::OperateTime, reading, []);
-        Pace::of(&findings)
+        record.found::<CountSample>(Parameter::OperateTime, reading, []);
+        Pace::of(&record)
     };
     let (usual, slow) = (of(4.7), of(9.4));
     assert_eq!(

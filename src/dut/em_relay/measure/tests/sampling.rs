@@ -1,9 +1,9 @@
 //! How often coil and contacts are looked at, as the recipe asks.
 
 use super::super::{Stage, Test, acts};
-use super::{at_23_c, bench, good, scan};
+use super::{at_23_c, context, good, scan};
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::measure::{Bench, coil};
+use crate::dut::em_relay::measure::{Context, coil};
 use crate::dut::em_relay::recipe::Strategies;
 use crate::dut::em_relay::sampling::Polarities;
 use crate::dut::em_relay::supply::Supply;
@@ -16,15 +16,15 @@ use crate::units::Volt;
 use std::sync::Arc;
 
 /// The default recipe with other samplings.
-fn with(change: impl Fn(&mut Strategies)) -> Bench {
-    let mut bench = bench();
-    change(&mut Arc::make_mut(&mut bench.relay).test.strategy);
-    bench
+fn with(change: impl Fn(&mut Strategies)) -> Context {
+    let mut context = context();
+    change(&mut Arc::make_mut(&mut context.relay).test.strategy);
+    context
 }
 
-fn acts_of(stage: Stage, bench: &Bench) -> Vec<Act> {
-    let mut supply = Supply::new(&bench.calibration);
-    acts(stage, bench, &mut supply, &mut at_23_c())
+fn acts_of(stage: Stage, context: &Context) -> Vec<Act> {
+    let mut supply = Supply::new(&context.calibration);
+    acts(stage, context, &mut supply, &mut at_23_c())
 }
 
 /// The direction of the source at each reading of the drop.
@@ -47,7 +47,7 @@ fn directions(acts: &[Act]) -> Vec<bool> {
 fn a_contact_is_read_in_the_directions_of_its_recipe() {
     let four = with(|it| it.contact.polarities = Polarities::PlusMinusMinusPlus);
     for stage in [Stage::NcContact, Stage::TimedOperate] {
-        assert_eq!(directions(&acts_of(stage, &bench())), [false, true]);
+        assert_eq!(directions(&acts_of(stage, &context())), [false, true]);
         let acts = acts_of(stage, &four);
         assert_eq!(directions(&acts), [false, true, true, false]);
         let between = acts
@@ -64,31 +64,31 @@ fn a_contact_is_read_in_the_directions_of_its_recipe() {
 #[test]
 fn a_coil_is_scanned_as_often_as_its_recipe_says_and_the_mean_is_less_in_doubt() {
     let four = with(|it| it.coil.scans = 4);
-    let scans = |bench: &Bench| {
-        let acts = acts_of(Stage::Coil, bench);
+    let scans = |context: &Context| {
+        let acts = acts_of(Stage::Coil, context);
         acts.iter()
             .filter(|act| **act == Act::Read(Read::Coil))
             .count()
     };
-    assert_eq!([scans(&bench()), scans(&four)], [1, 4]);
+    assert_eq!([scans(&context()), scans(&four)], [1, 4]);
     let reading = |times: usize| {
-        let mut findings = at_23_c();
+        let mut record = at_23_c();
         let readings = Readings {
             coil: vec![scan(5.0, 0.0125); times],
             track: vec![good(23.0, 1.0)],
             ..Readings::default()
         };
-        coil::conclude(&four, &readings, &mut findings);
-        findings.result(Parameter::CoilResistance).unwrap()
+        coil::conclude(&four, &readings, &mut record);
+        record.result(Parameter::CoilResistance).unwrap()
     };
     let u = |reading: &Reading| reading.budget.0[0].u;
     assert!((u(&reading(1)) / u(&reading(4)) - 2.0).abs() < 1e-9);
 }
 
 /// A test at its end, with so many closures of NO and NC behind it.
-fn after(bench: Bench, closures: usize, mohm: f64) -> Test {
-    let per_v = bench.calibration.contact_mohm_per_v.value;
-    let mut test = Test::begin(bench, Shop::at_rest().now);
+fn after(context: Context, closures: usize, mohm: f64) -> Test {
+    let per_v = context.calibration.contact_mohm_per_v.value;
+    let mut test = Test::begin(context, Shop::at_rest().now);
     test.stages.clear();
     for parameter in [
         Parameter::ContactResistanceNo,
@@ -100,10 +100,10 @@ fn after(bench: Bench, closures: usize, mohm: f64) -> Test {
                 value: mohm,
                 budget,
             };
-            test.findings.found::<Sample>(parameter, reading, []);
+            test.record.found::<Sample>(parameter, reading, []);
         }
     }
-    test.findings.nc_drops = vec![Volt(mohm / per_v); closures + 1];
+    test.record.nc_drops = vec![Volt(mohm / per_v); closures + 1];
     test
 }
 
@@ -135,7 +135,7 @@ fn with_an_early_stop_only_contacts_near_their_limit_get_more_closures() {
 
 #[test]
 fn a_further_closure_begins_with_the_source_off_and_forward() {
-    let first = acts_of(Stage::TimedOperate, &bench());
+    let first = acts_of(Stage::TimedOperate, &context());
     let words = first.iter().filter_map(|act| match act {
         Act::Board(outputs) => Some(outputs),
         _ => None,

@@ -1,10 +1,10 @@
 //! Conclusions on a moving armature: ramps, timed operation and release.
 
 use super::super::{Ramp, Stage, coil, operate, operate_fine, release, timing};
-use super::{PULLED, RESTING, assert_ends, at_23_c, bench, drop_of, ended, gates, scan, watched};
+use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, gates, scan, watched};
 use crate::dut::em_relay::lag::{LagLaw, Shown};
 use crate::dut::em_relay::measure::ramp::Expected;
-use crate::dut::em_relay::measure::{Bench, Findings};
+use crate::dut::em_relay::measure::{Context, TestRecord};
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::{Parameter, Strategy};
@@ -15,25 +15,25 @@ use crate::rig::sample::Quality;
 use crate::units::Volt;
 use std::sync::Arc;
 
-fn ramp_from(start: f64, span: f64) -> Findings {
-    let mut findings = at_23_c();
-    findings.ramp_start = Some(Volt(start));
-    findings.ramp_span = Some(Volt(span));
-    findings.expected_operate = Some(Expected::new(Volt(7.9), 0.02));
-    findings.expected_release = findings.expected_operate;
-    findings
+fn ramp_from(start: f64, span: f64) -> TestRecord {
+    let mut record = at_23_c();
+    record.ramp_start = Some(Volt(start));
+    record.ramp_span = Some(Volt(span));
+    record.expected_operate = Some(Expected::new(Volt(7.9), 0.02));
+    record.expected_release = record.expected_operate;
+    record
 }
 
 #[test]
 fn the_coarse_ramp_places_the_fine_one_by_its_learned_lag() {
-    let mut findings = ramp_from(5.0, 6.0);
+    let mut record = ramp_from(5.0, 6.0);
     let readings = watched(true, PULLED, 40.0);
-    let next = operate::conclude_coarse(&bench(), &readings, &mut findings);
-    assert_eq!((next, ended(&findings)), (None, None));
+    let next = operate::conclude_coarse(&context(), &readings, &mut record);
+    assert_eq!((next, ended(&record)), (None, None));
     let seen = 5.0 + 0.05 + 96.0 * 0.04;
-    let coarse = findings.operate.unwrap().coarse.indicated;
+    let coarse = record.operate.unwrap().coarse.indicated;
     assert!((coarse.0 - seen).abs() < 1e-9);
-    let expected = findings.expected_operate.unwrap();
+    let expected = record.expected_operate.unwrap();
     assert!((expected.centre.0 - (seen - 0.85)).abs() < 1e-9);
 }
 
@@ -43,11 +43,11 @@ fn a_coarse_ramp_without_a_make_is_a_high_threshold_unless_the_contact_made_unse
         (RESTING, Bin::Voltage, "above the coarse ramp"),
         (PULLED, Bin::Retest, "outside the window"),
     ] {
-        let mut findings = ramp_from(5.0, 6.0);
+        let mut record = ramp_from(5.0, 6.0);
         let silent = watched(false, board, 0.0);
-        let next = operate::conclude_coarse(&bench(), &silent, &mut findings);
+        let next = operate::conclude_coarse(&context(), &silent, &mut record);
         assert_eq!(next, None);
-        assert_ends(&findings, bin, word);
+        assert_ends(&record, bin, word);
     }
 }
 
@@ -59,58 +59,58 @@ fn a_contact_that_does_not_move_at_nominal_voltage_is_stuck_unless_the_coil_is_t
     };
     for (board, word) in [(RESTING, "NC does not open"), (between, "NO does not make")] {
         for (ampere, bin, word) in [(0.0125, Bin::Contact, word), (0.0, Bin::Coil, "coil open")] {
-            let mut findings = at_23_c();
+            let mut record = at_23_c();
             let unmoved = watched(false, board, 0.0);
-            let next = timing::conclude_operate(&bench(), &unmoved, &mut findings);
-            assert_eq!((next, ended(&findings)), (Some(Stage::Coil), None));
+            let next = timing::conclude_operate(&context(), &unmoved, &mut record);
+            assert_eq!((next, ended(&record)), (Some(Stage::Coil), None));
             let readings = Readings {
                 coil: vec![scan(5.0, ampere)],
                 ..Readings::default()
             };
-            coil::conclude(&bench(), &readings, &mut findings);
-            assert_ends(&findings, bin, word);
+            coil::conclude(&context(), &readings, &mut record);
+            assert_ends(&record, bin, word);
         }
     }
-    let mut findings = at_23_c();
-    timing::conclude_operate(&bench(), &Readings::default(), &mut findings);
-    assert_ends(&findings, Bin::Retest, "not read");
+    let mut record = at_23_c();
+    timing::conclude_operate(&context(), &Readings::default(), &mut record);
+    assert_ends(&record, Bin::Retest, "not read");
 }
 
 #[test]
 fn a_fine_ramp_that_meets_its_event_gives_the_threshold() {
-    let mut findings = ramp_from(7.8, 0.2);
-    findings.operate = Some(Ramp {
-        coarse: findings.shown(Volt(8.8), Direction::Rising),
+    let mut record = ramp_from(7.8, 0.2);
+    record.operate = Some(Ramp {
+        coarse: record.shown(Volt(8.8), Direction::Rising),
         fine: None,
     });
     let readings = watched(true, PULLED, 40.0);
-    let next = operate_fine::conclude(&bench(), &readings, &mut findings, 0);
-    assert_eq!((next, ended(&findings)), (None, None));
-    let result = findings.result(Parameter::OperateVoltage).unwrap();
+    let next = operate_fine::conclude(&context(), &readings, &mut record, 0);
+    assert_eq!((next, ended(&record)), (None, None));
+    let result = record.result(Parameter::OperateVoltage).unwrap();
     assert!((result.value - 7.91).abs() < 1e-9 && result.expanded() < 0.02);
-    let mut findings = ramp_from(2.5, 0.2);
+    let mut record = ramp_from(2.5, 0.2);
     let readings = watched(true, RESTING, 60.0);
-    let next = release::conclude_fine(&bench(), &readings, &mut findings, 0);
-    assert_eq!((next, ended(&findings)), (None, None));
-    let result = findings.result(Parameter::ReleaseVoltage).unwrap();
+    let next = release::conclude_fine(&context(), &readings, &mut record, 0);
+    assert_eq!((next, ended(&record)), (None, None));
+    let result = record.result(Parameter::ReleaseVoltage).unwrap();
     assert!((result.value - 2.36).abs() < 1e-9 && result.expanded() < 0.02);
 }
 
 #[test]
 fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
     let miss = |readings: &Readings| {
-        let mut findings = ramp_from(7.8, 0.2);
+        let mut record = ramp_from(7.8, 0.2);
         for attempt in 0..4 {
-            let next = operate_fine::conclude(&bench(), readings, &mut findings, attempt);
+            let next = operate_fine::conclude(&context(), readings, &mut record, attempt);
             let searched = Some(Stage::Search(Direction::Rising));
             let again = Some(Stage::OperateFine(attempt + 1));
             assert_eq!(next, if attempt == 1 { searched } else { again });
-            assert_eq!(ended(&findings), None);
+            assert_eq!(ended(&record), None);
         }
-        let centre = findings.expected_operate.unwrap().centre;
-        let last = operate_fine::conclude(&bench(), readings, &mut findings, 4);
+        let centre = record.expected_operate.unwrap().centre;
+        let last = operate_fine::conclude(&context(), readings, &mut record, 4);
         assert_eq!(last, None);
-        assert_ends(&findings, Bin::Retest, "not found in 5 fine ramps");
+        assert_ends(&record, Bin::Retest, "not found in 5 fine ramps");
         centre
     };
     assert!(miss(&watched(false, RESTING, 30.0)) > Volt(7.9), "later");
@@ -119,36 +119,36 @@ fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
 
 #[test]
 fn an_event_before_the_searched_interval_is_that_of_the_step_and_looked_for_lower() {
-    let mut findings = ramp_from(7.8, 0.2);
+    let mut record = ramp_from(7.8, 0.2);
     let readings = watched(true, PULLED, 2.0);
-    let next = operate_fine::conclude(&bench(), &readings, &mut findings, 0);
+    let next = operate_fine::conclude(&context(), &readings, &mut record, 0);
     assert_eq!(next, Some(Stage::OperateFine(1)));
-    assert_eq!(findings.attempts(Parameter::OperateVoltage), 0);
-    let centre = findings.expected_operate.unwrap().centre;
+    assert_eq!(record.attempts(Parameter::OperateVoltage), 0);
+    let centre = record.expected_operate.unwrap().centre;
     assert!(centre < Volt(7.9), "{centre}");
 }
 
 #[test]
 fn a_release_that_came_too_early_is_looked_for_higher() {
     for (board, higher) in [(RESTING, true), (PULLED, false)] {
-        let mut findings = ramp_from(8.0, 0.2);
+        let mut record = ramp_from(8.0, 0.2);
         let readings = watched(false, board, 30.0);
-        let next = release::conclude_fine(&bench(), &readings, &mut findings, 0);
+        let next = release::conclude_fine(&context(), &readings, &mut record, 0);
         assert_eq!(next, Some(Stage::ReleaseFine(1)));
-        let centre = findings.expected_release.unwrap().centre;
+        let centre = record.expected_release.unwrap().centre;
         assert_eq!(centre > Volt(7.9), higher, "{centre}");
     }
 }
 
 #[test]
 fn an_event_after_the_ramp_has_stopped_is_looked_for_around_its_end() {
-    let mut findings = ramp_from(7.8, 0.1);
+    let mut record = ramp_from(7.8, 0.1);
     let readings = watched(true, PULLED, 80.0);
-    let next = operate_fine::conclude(&bench(), &readings, &mut findings, 0);
+    let next = operate_fine::conclude(&context(), &readings, &mut record, 0);
     assert_eq!(next, Some(Stage::OperateFine(1)));
-    let expected = findings.expected_operate.unwrap();
+    let expected = record.expected_operate.unwrap();
     assert!((expected.centre.0 - 7.9).abs() < 1e-9);
-    assert_eq!(findings.attempts(Parameter::OperateVoltage), 0);
+    assert_eq!(record.attempts(Parameter::OperateVoltage), 0);
 }
 
 #[test]
@@ -160,17 +160,17 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
         // It ends after 41.1 ms, and its last step may have been made.
         watched(true, RESTING, 40.6),
     ] {
-        let mut findings = ramp_from(4.0, 4.0);
-        let next = release::conclude_coarse(&bench(), &readings, &mut findings);
+        let mut record = ramp_from(4.0, 4.0);
+        let next = release::conclude_coarse(&context(), &readings, &mut record);
         assert_eq!(next, Some(Stage::Search(Direction::Falling)));
-        assert_eq!(findings.release, None);
+        assert_eq!(record.release, None);
     }
-    let mut findings = ramp_from(4.0, 4.0);
+    let mut record = ramp_from(4.0, 4.0);
     let readings = watched(true, RESTING, 25.0);
-    release::conclude_coarse(&bench(), &readings, &mut findings);
-    let coarse = findings.release.unwrap().coarse.indicated;
+    release::conclude_coarse(&context(), &readings, &mut record);
+    let coarse = record.release.unwrap().coarse.indicated;
     assert!((coarse.0 - (4.0 - 0.05 - 2.4)).abs() < 1e-9);
-    let expected = findings.expected_release.unwrap();
+    let expected = record.expected_release.unwrap();
     assert!((expected.centre.0 - (coarse.0 + 1.05)).abs() < 1e-9);
     let start = expected.falling().start;
     assert!(start > expected.centre);
@@ -178,9 +178,9 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
 
 #[test]
 fn a_coarse_release_of_a_coil_of_few_volts_is_told_down_to_the_last_step_of_its_ramp() {
-    let mut findings = ramp_from(4.0, 4.0);
-    release::conclude_coarse(&bench(), &watched(true, RESTING, 40.0), &mut findings);
-    let coarse = findings.release.unwrap().coarse.indicated;
+    let mut record = ramp_from(4.0, 4.0);
+    release::conclude_coarse(&context(), &watched(true, RESTING, 40.0), &mut record);
+    let coarse = record.release.unwrap().coarse.indicated;
     assert!((coarse.0 - 0.11).abs() < 1e-9);
 }
 
@@ -197,53 +197,53 @@ fn timed(seen: bool, counts: [u32; 2]) -> Readings {
 
 #[test]
 fn a_timed_operation_gives_time_bounce_and_the_contact_it_ends_on() {
-    let mut findings = at_23_c();
-    timing::conclude_operate(&bench(), &timed(true, [236, 252]), &mut findings);
-    assert_eq!(ended(&findings), None);
+    let mut record = at_23_c();
+    timing::conclude_operate(&context(), &timed(true, [236, 252]), &mut record);
+    assert_eq!(ended(&record), None);
     for (parameter, value) in [
         (Parameter::OperateTime, 4.72),
         (Parameter::OperateBounce, 0.32),
         (Parameter::ContactResistanceNo, 18.0),
     ] {
-        let found = findings.result(parameter).unwrap().value;
+        let found = record.result(parameter).unwrap().value;
         assert!((found - value).abs() < 1e-9, "{parameter}: {found}");
-        assert!(findings.evidence(parameter).count() > 0, "{parameter}");
+        assert!(record.evidence(parameter).count() > 0, "{parameter}");
     }
 }
 
 #[test]
 fn a_timed_release_adds_its_closure_to_the_nc_contact() {
-    let mut findings = at_23_c();
-    findings.drop_zero = Some(Volt(0.1));
-    findings.nc_drops = vec![Volt(1.2)];
-    timing::conclude_release(&bench(), &timed(true, [145, 150]), &mut findings);
-    assert_eq!(ended(&findings), None);
-    let time = findings.result(Parameter::ReleaseTime).unwrap().value;
+    let mut record = at_23_c();
+    record.drop_zero = Some(Volt(0.1));
+    record.nc_drops = vec![Volt(1.2)];
+    timing::conclude_release(&context(), &timed(true, [145, 150]), &mut record);
+    assert_eq!(ended(&record), None);
+    let time = record.result(Parameter::ReleaseTime).unwrap().value;
     assert!((time - 2.9).abs() < 1e-9);
-    let nc = findings.result(Parameter::ContactResistanceNc).unwrap();
+    let nc = record.result(Parameter::ContactResistanceNc).unwrap();
     assert!((nc.value - 20.0).abs() < 1e-9, "mean of 24 and 16");
 }
 
 #[test]
 fn a_contact_that_never_makes_fails_by_time_and_an_unread_counter_is_void() {
     type Conclude =
-        fn(&crate::dut::em_relay::measure::Bench, &Readings, &mut Findings) -> Option<Stage>;
+        fn(&crate::dut::em_relay::measure::Context, &Readings, &mut TestRecord) -> Option<Stage>;
     let stages: [(Conclude, &str); 2] = [
         (timing::conclude_operate, "operate_time_ms"),
         (timing::conclude_release, "release_time_ms"),
     ];
     for (conclude, word) in stages {
-        let mut findings = at_23_c();
-        conclude(&bench(), &timed(false, [3000, 3000]), &mut findings);
-        assert_ends(&findings, Bin::Time, word);
-        let mut findings = at_23_c();
+        let mut record = at_23_c();
+        conclude(&context(), &timed(false, [3000, 3000]), &mut record);
+        assert_ends(&record, Bin::Time, word);
+        let mut record = at_23_c();
         let mut unread = timed(true, [236, 252]);
         unread.gates.truncate(1);
-        conclude(&bench(), &unread, &mut findings);
-        assert_ends(&findings, Bin::Retest, "gate counters");
-        let mut findings = at_23_c();
-        conclude(&bench(), &timed(true, [0, 0]), &mut findings);
-        assert_ends(&findings, Bin::Retest, "0 and 0 counts");
+        conclude(&context(), &unread, &mut record);
+        assert_ends(&record, Bin::Retest, "gate counters");
+        let mut record = at_23_c();
+        conclude(&context(), &timed(true, [0, 0]), &mut record);
+        assert_ends(&record, Bin::Retest, "0 and 0 counts");
     }
 }
 
@@ -252,18 +252,18 @@ fn a_closure_with_the_source_in_compliance_fails_by_contact() {
     let mut readings = timed(true, [236, 252]);
     readings.boards[0].compliance = true;
     readings.drops[0] = drop_of(Quality::OverRange, 0.0);
-    let mut findings = at_23_c();
-    timing::conclude_operate(&bench(), &readings, &mut findings);
-    assert_ends(&findings, Bin::Contact, "NO contact");
-    let mut findings = at_23_c();
-    findings.drop_zero = Some(Volt(0.0));
-    timing::conclude_release(&bench(), &readings, &mut findings);
-    assert_ends(&findings, Bin::Contact, "NC contact");
+    let mut record = at_23_c();
+    timing::conclude_operate(&context(), &readings, &mut record);
+    assert_ends(&record, Bin::Contact, "NO contact");
+    let mut record = at_23_c();
+    record.drop_zero = Some(Volt(0.0));
+    timing::conclude_release(&context(), &readings, &mut record);
+    assert_ends(&record, Bin::Contact, "NC contact");
 }
 
-/// The default bench on the strategy `ramp`, with a law taught by parts of which each millisecond of operate time
+/// The default context on the strategy `ramp`, with a law taught by parts of which each millisecond of operate time
 /// showed 96 mV more.
-fn on_the_ramp() -> Bench {
+fn on_the_ramp() -> Context {
     let mut law = LagLaw::guess(0.85);
     for at in 0..40 {
         let turn = |by: f64| (f64::from(at) * by).fract() - 0.5;
@@ -279,36 +279,39 @@ fn on_the_ramp() -> Bench {
         };
         law.learn(&shown, shown.indicated - lag);
     }
-    let mut bench = bench();
-    let strategy = &mut Arc::make_mut(&mut bench.relay).test.strategy;
+    let mut context = context();
+    let strategy = &mut Arc::make_mut(&mut context.relay).test.strategy;
     strategy.operate_voltage_v = Strategy::Ramp;
-    let lags = Arc::make_mut(&mut bench.calibration).lags.as_mut().unwrap();
+    let lags = Arc::make_mut(&mut context.calibration)
+        .lags
+        .as_mut()
+        .unwrap();
     lags.operate.coarse = law;
-    bench
+    context
 }
 
 /// A coarse ramp after so many counts of operate time.
-fn coarse_after(bench: &Bench, counts: u32) -> (Findings, Option<Stage>) {
-    let mut findings = ramp_from(5.0, 6.0);
-    findings.drop_zero = Some(Volt(0.0));
-    timing::conclude_operate(bench, &timed(true, [counts, counts]), &mut findings);
-    timing::conclude_release(bench, &timed(true, [145, 150]), &mut findings);
+fn coarse_after(context: &Context, counts: u32) -> (TestRecord, Option<Stage>) {
+    let mut record = ramp_from(5.0, 6.0);
+    record.drop_zero = Some(Volt(0.0));
+    timing::conclude_operate(context, &timed(true, [counts, counts]), &mut record);
+    timing::conclude_release(context, &timed(true, [145, 150]), &mut record);
     let readings = Readings {
         coil: vec![scan(5.0, 0.0125)],
         ..Readings::default()
     };
-    coil::conclude(bench, &readings, &mut findings);
-    let next = operate::conclude_coarse(bench, &watched(true, PULLED, 40.0), &mut findings);
-    (findings, next)
+    coil::conclude(context, &readings, &mut record);
+    let next = operate::conclude_coarse(context, &watched(true, PULLED, 40.0), &mut record);
+    (record, next)
 }
 
 #[test]
 fn a_coarse_value_is_corrected_by_the_operate_time_of_the_same_part() {
-    let bench = on_the_ramp();
+    let context = on_the_ramp();
     for (counts, slower_ms) in [(235, 0.0), (245, 0.2)] {
-        let (findings, next) = coarse_after(&bench, counts);
-        assert_eq!((next, ended(&findings)), (None, None));
-        let corrected = findings.result(Parameter::OperateVoltage).unwrap();
+        let (record, next) = coarse_after(&context, counts);
+        assert_eq!((next, ended(&record)), (None, None));
+        let corrected = record.result(Parameter::OperateVoltage).unwrap();
         let expected = 8.89 - (0.85 + 0.096 * slower_ms);
         let off = corrected.value - expected;
         assert!(off.abs() < 2e-3, "{off} V");
@@ -318,13 +321,10 @@ fn a_coarse_value_is_corrected_by_the_operate_time_of_the_same_part() {
 
 #[test]
 fn a_part_unlike_those_that_taught_the_law_is_measured_by_the_fine_ramp() {
-    let (findings, next) = coarse_after(&on_the_ramp(), 420);
-    assert_eq!(
-        (next, ended(&findings)),
-        (Some(Stage::OperateFine(0)), None)
-    );
-    assert_eq!(findings.attempts(Parameter::OperateVoltage), 0);
-    let expected = findings.expected_operate.unwrap();
+    let (record, next) = coarse_after(&on_the_ramp(), 420);
+    assert_eq!((next, ended(&record)), (Some(Stage::OperateFine(0)), None));
+    assert_eq!(record.attempts(Parameter::OperateVoltage), 0);
+    let expected = record.expected_operate.unwrap();
     assert!(expected.half_width > Volt(0.01), "{expected:?}");
 }
 
@@ -347,15 +347,15 @@ fn source_before(switched: DigitalOut, acts: &[Act]) -> Option<bool> {
 
 #[test]
 fn a_closure_that_nobody_reads_carries_no_current() {
-    let bench = bench();
-    let mut supply = Supply::new(&bench.calibration);
+    let context = context();
+    let mut supply = Supply::new(&context.calibration);
     let mut after_a_release = at_23_c();
     after_a_release.released = true;
-    let timed = timing::acts_release(&bench, &mut supply, &mut after_a_release);
+    let timed = timing::acts_release(&context, &mut supply, &mut after_a_release);
     assert_eq!(source_before(DigitalOut::CoilDrive, &timed), Some(false));
     let mut after_an_operation = at_23_c();
     after_an_operation.operated = true;
     after_an_operation.expected_release = Some(Expected::new(Volt(2.3), 0.01));
-    let fine = release::acts_fine(&bench, &mut supply, &mut after_an_operation);
+    let fine = release::acts_fine(&context, &mut supply, &mut after_an_operation);
     assert_eq!(source_before(DigitalOut::RampMode, &fine), Some(false));
 }

@@ -1,7 +1,7 @@
 //! The acts of all stages against the rules of the interface board, and how a test ends early.
 
-use super::super::{Findings, Progress, Stage, Test, acts, order};
-use super::{at_23_c, bench};
+use super::super::{Progress, Stage, Test, TestRecord, acts, order};
+use super::{at_23_c, context};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::supply::Supply;
@@ -17,20 +17,20 @@ use crate::units::{Span, Volt};
 
 /// Acts of every stage in the order of a good part.
 fn all_acts() -> Vec<(Stage, Vec<Act>)> {
-    let bench = bench();
-    let mut supply = Supply::new(&bench.calibration);
-    let mut findings = at_23_c();
+    let context = context();
+    let mut supply = Supply::new(&context.calibration);
+    let mut record = at_23_c();
     std::iter::once(Stage::Kelvin)
-        .chain(order(&bench))
+        .chain(order(&context))
         .map(|stage| {
-            findings.expected_operate = Some(Expected::new(Volt(7.88), 0.01));
-            findings.expected_release = Some(Expected::new(Volt(2.35), 0.01));
-            findings.operated = matches!(
+            record.expected_operate = Some(Expected::new(Volt(7.88), 0.01));
+            record.expected_release = Some(Expected::new(Volt(2.35), 0.01));
+            record.operated = matches!(
                 stage,
                 Stage::ReleaseCoarse | Stage::ReleaseFine(_) | Stage::TimedRelease
             );
-            findings.released = matches!(stage, Stage::OperateFine(_) | Stage::TimedOperate);
-            (stage, acts(stage, &bench, &mut supply, &mut findings))
+            record.released = matches!(stage, Stage::OperateFine(_) | Stage::TimedOperate);
+            (stage, acts(stage, &context, &mut supply, &mut record))
         })
         .collect()
 }
@@ -163,7 +163,7 @@ fn every_supply_output_asked_for_is_one_that_it_can_give() {
 fn fails_at(job: &Job) -> Test {
     let mut shop = Shop::at_rest();
     shop.track(23.0);
-    let mut test = Test::begin(bench(), shop.now);
+    let mut test = Test::begin(context(), shop.now);
     let mut done = None;
     for _ in 0..200 {
         match test.step(shop.now, done.take().as_ref(), &shop.image) {
@@ -189,13 +189,13 @@ fn fails_at(job: &Job) -> Test {
 #[test]
 fn a_rig_in_trouble_has_proven_no_part_bad() {
     let mut test = fails_at(&Job::Read(Read::Resets));
-    let mut findings = Findings::default();
-    findings.stop(Finding::NoDoesNotMake);
-    test.findings = findings.clone();
+    let mut record = TestRecord::default();
+    record.stop(Finding::NoDoesNotMake);
+    test.record = record.clone();
     assert_eq!(test.verdict().name(), "fail");
-    findings.trouble("module answers ?AA".into());
-    findings.trouble("and again".into());
-    test.findings = findings;
+    record.trouble("module answers ?AA".into());
+    record.trouble("and again".into());
+    test.record = record;
     assert_eq!(
         test.verdict(),
         Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")])
@@ -204,13 +204,13 @@ fn a_rig_in_trouble_has_proven_no_part_bad() {
 
 #[test]
 fn the_level_is_written_anew_after_a_test_that_ended_early() {
-    let bench = bench();
-    let writes = |ends: fn(&mut Findings)| {
-        let mut supply = Supply::new(&bench.calibration);
-        supply.step_to(Volt(bench.relay.test.prebias_v));
-        let mut findings = Findings::default();
-        ends(&mut findings);
-        let acts = acts(Stage::Off, &bench, &mut supply, &mut findings);
+    let context = context();
+    let writes = |ends: fn(&mut TestRecord)| {
+        let mut supply = Supply::new(&context.calibration);
+        supply.step_to(Volt(context.relay.test.prebias_v));
+        let mut record = TestRecord::default();
+        ends(&mut record);
+        let acts = acts(Stage::Off, &context, &mut supply, &mut record);
         let level = |act: &&Act| matches!(act, Act::Supply(to) if to.iter().any(|(it, _)| *it == AnalogOut::SupplyLevel));
         acts.iter().filter(level).count()
     };
@@ -236,23 +236,23 @@ fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
 
 #[test]
 fn the_first_cause_of_an_early_end_stays() {
-    let mut findings = at_23_c();
-    findings.stop(Finding::CoilOpen);
-    findings.stop(Finding::CoilCurrentRemains);
-    let mut test = Test::begin(bench(), Shop::at_rest().now);
-    test.findings = findings;
+    let mut record = at_23_c();
+    record.stop(Finding::CoilOpen);
+    record.stop(Finding::CoilCurrentRemains);
+    let mut test = Test::begin(context(), Shop::at_rest().now);
+    test.record = record;
     let reason = Finding::CoilOpen.into();
     assert_eq!(test.verdict(), Verdict::Fail(vec![reason]));
 }
 
 fn measured(values: &[(Parameter, f64)]) -> Test {
-    let mut test = Test::begin(bench(), Shop::at_rest().now);
+    let mut test = Test::begin(context(), Shop::at_rest().now);
     for (parameter, value) in values {
         let reading = Reading {
             value: *value,
             budget: Budget::default().with("test", 0.005),
         };
-        test.findings.found::<Sample>(*parameter, reading, []);
+        test.record.found::<Sample>(*parameter, reading, []);
     }
     test
 }

@@ -24,7 +24,7 @@ pub const UNTAUGHT_FINE_V: (f64, f64) = (0.03, -0.02);
 
 /// Recipe, calibration and instrument data of a test.
 #[derive(Debug, Clone)]
-pub struct Bench {
+pub struct Context {
     /// What the part must do.
     pub recipe: Arc<Recipe>,
     /// The part, and how it is measured: what the recipe says of this kind.
@@ -45,7 +45,7 @@ pub struct Bench {
     pub golden: Option<GoldenPart>,
 }
 
-impl Bench {
+impl Context {
     /// How long until a conversion that begins from now on is surely readable on each of `channels`
     /// enabled channels: one round of all, one more conversion, and 3 % for the converter's clock.
     pub fn fresh(&self, channels: usize) -> Span {

@@ -66,7 +66,7 @@ impl Ramp {
 
 /// Results so far.
 #[derive(Debug, Clone, Default)]
-pub struct Findings {
+pub struct TestRecord {
     readings: Vec<(Parameter, Reading)>,
     evidence: Vec<(Parameter, Origin)>,
     stop: Option<Stop>,
@@ -118,7 +118,7 @@ pub struct Findings {
     pub release: Option<Ramp>,
 }
 
-impl Findings {
+impl TestRecord {
     /// Where the next fine ramp of this direction looks for its event.
     pub fn expected(&mut self, direction: Direction) -> &mut Option<Expected> {
         match direction {
