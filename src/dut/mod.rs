@@ -39,4 +39,11 @@ impl Kind {
             Self::EmRelay => em_relay::Parameter::ALL.map(Characteristic::from).to_vec(),
         }
     }
+
+    /// What only a test of this kind finds.
+    pub fn findings(self) -> Vec<reason::Code> {
+        match self {
+            Self::EmRelay => em_relay::Finding::ALL.map(reason::Code::EmRelay).to_vec(),
+        }
+    }
 }

@@ -263,7 +263,7 @@ impl<'a> Recorder<'a> {
             lot: self.setup.args.lot.clone(),
             kind: kind.into(),
             seq,
-            reason: reason.to_string(),
+            reason,
         }));
     }
 

@@ -35,7 +35,7 @@ pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
             .part
             .bin
             .map_or_else(String::new, |bin| bin.name().to_string()),
-        reasons: judged.verdict.texts(),
+        reasons: judged.verdict.reasons().to_vec(),
         judged_at_us: at(judged.at),
         test_s: judged.part.test.map_or(f64::NAN, |test| test.0),
         cycle_s: None,
@@ -159,6 +159,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
         "verdict": judged.verdict.name(),
         "bin": bin,
         "reasons": judged.verdict.texts(),
+        "reason_codes": judged.verdict.reasons(),
         "values": values,
         "uncertainty": uncertainty,
         "test_s": judged.part.test.map(|test| rounded(test.0)),
