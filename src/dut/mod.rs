@@ -5,6 +5,7 @@
 
 pub mod characteristic;
 pub mod em_relay;
+pub mod instruments;
 pub mod reason;
 pub mod recipe;
 pub mod verdict;
