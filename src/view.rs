@@ -12,6 +12,7 @@ pub use motion::{MotionView, RefusedView, StrokeView};
 pub use order::{Answered, By, LOT_ORDERS, NotTaken, ORDERS, Order};
 pub use traffic::{LineTraffic, Message};
 
+use crate::dut::Reason;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -82,6 +83,8 @@ pub struct LastPart {
     pub bin: String,
     /// Why, worst first.
     pub reasons: Vec<String>,
+    /// Their codes, in the same order.
+    pub reason_codes: Vec<Reason>,
     /// Results by parameter.
     pub values: BTreeMap<String, f64>,
     /// Expanded uncertainties (k = 2) by parameter.

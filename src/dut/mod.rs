@@ -7,6 +7,7 @@ pub mod calibration;
 pub mod characteristic;
 pub mod device;
 pub mod em_relay;
+pub mod instruments;
 pub mod procedure;
 pub mod reason;
 pub mod recipe;
@@ -43,6 +44,13 @@ impl Kind {
     pub fn characteristics(self) -> Vec<Characteristic> {
         match self {
             Self::EmRelay => em_relay::Parameter::ALL.map(Characteristic::from).to_vec(),
+        }
+    }
+
+    /// What only a test of this kind finds.
+    pub fn findings(self) -> Vec<reason::Code> {
+        match self {
+            Self::EmRelay => em_relay::Finding::ALL.map(reason::Code::EmRelay).to_vec(),
         }
     }
 }

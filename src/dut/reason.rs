@@ -1,12 +1,15 @@
 //! Why a part is not a pass: a code with its side and detail.
 //!
-//! Programs compare codes. [`Reason`] prints as the string of rows, files and API, for example `operate_voltage_v high`;
-//! nothing reads that string back but the migration of histories written before reasons had codes.
+//! Programs compare codes; a history keeps them, and JSON carries them as `{"code", "param", "side", "detail"}`. [`Reason`]
+//! prints as the string of rows, files and API, for example `operate_voltage_v high`. That string is read back in two places,
+//! once each: where a history from before codes is migrated, and where a file of another system is imported.
 
 use super::characteristic::Characteristic;
 use super::em_relay;
 use super::verdict::Bin;
 use crate::gauge::Side;
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// What was found.
@@ -106,7 +109,22 @@ impl Reason {
         }
     }
 
-    /// Reads a text of a history that kept no codes; what has none stays [`Code::Unclassified`].
+    /// The reason that a history keeps under the name of its code; none when the name belongs to no code, or needs a
+    /// characteristic that is not there.
+    pub fn stored(
+        code: &str,
+        characteristic: Option<Characteristic>,
+        side: Option<Side>,
+        detail: &str,
+    ) -> Option<Self> {
+        Some(Self {
+            code: Code::from_name(code, characteristic)?,
+            side,
+            detail: detail.to_owned(),
+        })
+    }
+
+    /// Reads a text that came without a code; what has none stays [`Code::Unclassified`].
     pub fn from_text(text: &str) -> Self {
         if let Some(why) = text.strip_prefix(INTERRUPTED) {
             return Self::interrupted(why);
@@ -145,6 +163,52 @@ impl Code {
             Self::EmRelay(finding) => finding.code(),
             Self::Unclassified => "unclassified",
         }
+    }
+
+    fn from_name(name: &str, characteristic: Option<Characteristic>) -> Option<Self> {
+        match name {
+            "outside_limit" => characteristic.map(Self::OutsideLimit),
+            "not_proven" => characteristic.map(Self::NotProven),
+            "not_measured" => characteristic.map(Self::NotMeasured),
+            "interrupted" => Some(Self::Interrupted),
+            "rig_trouble" => Some(Self::RigTrouble),
+            "unclassified" => Some(Self::Unclassified),
+            finding => em_relay::Finding::from_code(finding).map(Self::EmRelay),
+        }
+    }
+
+    /// What pages and paper say of a finding, after the name of its characteristic if it has one; none for codes that
+    /// every kind has, and for findings that are shown as [`Reason`] prints them.
+    pub fn words(self) -> Option<Words> {
+        match self {
+            Self::EmRelay(finding) => finding.words(),
+            Self::OutsideLimit(_)
+            | Self::NotProven(_)
+            | Self::NotMeasured(_)
+            | Self::Interrupted
+            | Self::RigTrouble
+            | Self::Unclassified => None,
+        }
+    }
+}
+
+/// One text in both languages of pages and paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Words {
+    /// English.
+    pub en: &'static str,
+    /// Simplified Chinese.
+    pub zh: &'static str,
+}
+
+impl Serialize for Reason {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Reason", 4)?;
+        object.serialize_field("code", self.code.name())?;
+        object.serialize_field("param", &self.characteristic())?;
+        object.serialize_field("side", &self.side)?;
+        object.serialize_field("detail", &self.detail)?;
+        object.end()
     }
 }
 
@@ -195,6 +259,26 @@ mod tests {
             assert_eq!(reason.to_string(), text);
             assert_eq!(Reason::from_text(text), reason);
         }
+    }
+
+    #[test]
+    fn a_reason_is_the_same_after_it_was_stored() {
+        let of_a_kind = Finding::ALL.map(|it| it.with("COM"));
+        let general = [
+            Reason::outside(OPERATE, Side::High),
+            Reason::not_proven(OPERATE, Side::Low),
+            Reason::of(Code::NotMeasured(OPERATE)),
+            Reason::interrupted("door_open"),
+            Reason::rig_trouble("module 03 silent"),
+            Reason::unclassified("refused by the clerk"),
+        ];
+        for reason in of_a_kind.into_iter().chain(general) {
+            let name = reason.code.name();
+            let back = Reason::stored(name, reason.characteristic(), reason.side, &reason.detail);
+            assert_eq!(back, Some(reason));
+        }
+        assert_eq!(Reason::stored("outside_limit", None, None, ""), None);
+        assert_eq!(Reason::stored("of tomorrow", None, None, ""), None);
     }
 
     #[test]

@@ -37,12 +37,26 @@ pub enum Side {
     High,
 }
 
+impl Side {
+    /// `low` or `high`, as in rows.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::High => "high",
+        }
+    }
+
+    /// The side of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Low, Self::High]
+            .into_iter()
+            .find(|it| it.name() == name)
+    }
+}
+
 impl fmt::Display for Side {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Side::Low => "low",
-            Side::High => "high",
-        })
+        f.write_str(self.name())
     }
 }
 

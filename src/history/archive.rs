@@ -1,6 +1,7 @@
 //! The reader: parts that a filter leaves, one part with everything down to the raw replies.
 
 use super::error::{Doing, Result};
+use super::reasons::texts;
 use super::{CalibrationRecord, Filter, Measurement, Moment, Part, Sample, filter, open, store};
 use rusqlite::{Connection, Row, params, params_from_iter};
 use std::path::{Path, PathBuf};
@@ -157,6 +158,7 @@ impl Archive {
         let id: i64 = row.get(0)?;
         let (lot, run, recipe) = self.run(row.get(1)?)?;
         let reasons: serde_json::Value = row.get(7)?;
+        let reasons: Vec<String> = texts(&reasons).map(str::to_owned).collect();
         let (values, uncertainty) = self.values_of(id)?;
         Ok(Part {
             tag: "part",
@@ -170,7 +172,8 @@ impl Archive {
             bin: row.get(6)?,
             landed_bin: row.get(11)?,
             landed_at: row.get::<_, Option<i64>>(12)?.map(Moment),
-            reasons: texts(&reasons),
+            reason_codes: self.reasons(id, &reasons)?,
+            reasons,
             time: Moment(row.get(8)?),
             test_s: row.get(9)?,
             cycle_s: row.get(10)?,
@@ -240,11 +243,3 @@ impl Archive {
 }
 
 type Map = serde_json::Map<String, serde_json::Value>;
-
-fn texts(array: &serde_json::Value) -> Vec<String> {
-    let texts = array.as_array().map(Vec::as_slice).unwrap_or_default();
-    texts
-        .iter()
-        .filter_map(|text| text.as_str().map(str::to_owned))
-        .collect()
-}

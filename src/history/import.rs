@@ -7,6 +7,7 @@
 
 use super::csv::{self, CsvError, Record};
 use super::{MeasurementRecord, Moment, PartRecord};
+use crate::dut::Reason;
 
 /// Columns of our own export that an import does not take.
 const PASSED_OVER: [&str; 9] = [
@@ -212,7 +213,7 @@ fn take(row: &mut ImportRow, column: &Column, name: &str, cell: &str) -> Result<
         Column::Bin => row.part.bin = csv::as_typed(cell).to_owned(),
         Column::Reasons => {
             let typed = csv::as_typed(cell).split("; ");
-            row.part.reasons = typed.map(str::to_owned).collect();
+            row.part.reasons = typed.map(Reason::from_text).collect();
         }
         Column::Parameter => row.part.measurements.push(measurement(name, cell)?),
         Column::PassedOver => {}

@@ -1,10 +1,11 @@
 //! One record into its rows. Always inside a transaction of [`Store`](super::Store).
 
-use super::curve;
 use super::error::{Doing, HistoryError, Result};
 use super::store::Known;
 use super::{LotRecord, MeasurementRecord, PartRecord, SampleRecord};
-use rusqlite::{OptionalExtension, Transaction, params};
+use super::{curve, reasons};
+use crate::dut::Reason;
+use rusqlite::{Connection, OptionalExtension, Transaction, params};
 
 /// Row and number of a new run; lot and recipe are made when they are new.
 pub(super) fn run(
@@ -59,7 +60,7 @@ pub(super) fn part(tx: &Transaction<'_>, known: &mut Known, part: &PartRecord) -
     const DOING: &str = "recording a part";
     let run = known.run(&part.lot)?;
     let seq = signed("part", part.seq)?;
-    let reasons = serde_json::Value::from(part.reasons.clone());
+    let texts: Vec<String> = part.reasons.iter().map(Reason::to_string).collect();
     let row = tx
         .prepare_cached(
             "INSERT INTO part (run_id, kind, seq, serial, verdict, bin, reasons, judged_at_us,
@@ -76,7 +77,7 @@ pub(super) fn part(tx: &Transaction<'_>, known: &mut Known, part: &PartRecord) -
                 part.serial,
                 part.verdict,
                 part.bin,
-                reasons,
+                serde_json::Value::from(texts),
                 part.judged_at_us,
                 part.test_s,
                 part.cycle_s,
@@ -89,6 +90,7 @@ pub(super) fn part(tx: &Transaction<'_>, known: &mut Known, part: &PartRecord) -
         .doing(DOING)?;
     match row {
         Some(row) => {
+            reasons::insert(tx, row, 1, &part.reasons).doing("recording reasons")?;
             measurements(tx, known, part, run, row)?;
             let mut curves = part.curves.iter();
             curves
@@ -203,27 +205,28 @@ fn sampled(
     Ok(())
 }
 
-/// Row of a parameter; a new one gets its column in the view `parts`.
 fn parameter(tx: &Transaction<'_>, known: &mut Known, key: &str) -> Result<i64> {
     if let Some(&row) = known.parameters.get(key) {
         return Ok(row);
     }
-    let row = look_up(tx, key).doing("naming a parameter")?;
+    let row = parameter_row(tx, key).doing("naming a parameter")?;
     known.parameters.insert(key.to_owned(), row);
     Ok(row)
 }
 
-fn look_up(tx: &Transaction<'_>, key: &str) -> rusqlite::Result<i64> {
-    let find = "SELECT id FROM parameter WHERE key = ?1";
-    if let Some(row) = tx.query_row(find, [key], |row| row.get(0)).optional()? {
+/// Row of a parameter; a new one gets its column in the view `parts`.
+pub(super) fn parameter_row(connection: &Connection, key: &str) -> rusqlite::Result<i64> {
+    let mut find = connection.prepare_cached("SELECT id FROM parameter WHERE key = ?1")?;
+    if let Some(row) = find.query_row([key], |row| row.get(0)).optional()? {
         return Ok(row);
     }
-    tx.execute(
+    drop(find);
+    connection.execute(
         "INSERT INTO parameter (key, meaning) VALUES (?1, 'named by a recipe')",
         [key],
     )?;
-    let row = tx.last_insert_rowid();
-    super::views::rebuild(tx)?;
+    let row = connection.last_insert_rowid();
+    super::views::rebuild(connection)?;
     Ok(row)
 }
 

@@ -3,6 +3,7 @@
 
 use super::error::{Doing, HistoryError, Result};
 use super::insert::signed;
+use super::reasons;
 use super::store::Known;
 use super::{AlarmRecord, InterruptedRecord, LandingRecord};
 use rusqlite::{OptionalExtension, Transaction, params};
@@ -44,23 +45,25 @@ pub(super) fn interrupted(
     const DOING: &str = "recording an interruption";
     let run = known.run(&it.lot)?;
     let seq = signed("part", it.seq)?;
-    tx.execute(
-        "UPDATE part SET verdict = 'void', bin = 'retest',
-           reasons = json_insert(reasons, '$[#]', ?4)
-         WHERE run_id = ?1 AND kind = ?2 AND seq = ?3 AND landed_bin IS NULL
-           AND NOT EXISTS (SELECT 1 FROM json_each(reasons) WHERE value = ?4)",
-        params![run, it.kind, seq, it.reason],
-    )
-    .and_then(|_| {
-        tx.execute(
-            "UPDATE measurement SET part_verdict = 'void' WHERE part_id =
-               (SELECT id FROM part WHERE run_id = ?1 AND kind = ?2 AND seq = ?3
-                  AND verdict = 'void')",
-            params![run, it.kind, seq],
+    let voided: Option<(i64, i64)> = tx
+        .query_row(
+            "UPDATE part SET verdict = 'void', bin = 'retest',
+               reasons = json_insert(reasons, '$[#]', ?4)
+             WHERE run_id = ?1 AND kind = ?2 AND seq = ?3 AND landed_bin IS NULL
+               AND NOT EXISTS (SELECT 1 FROM json_each(reasons) WHERE value = ?4)
+             RETURNING id, json_array_length(reasons)",
+            params![run, it.kind, seq, it.reason.to_string()],
+            |row| Ok((row.get(0)?, row.get(1)?)),
         )
-    })
-    .doing(DOING)?;
-    Ok(())
+        .optional()
+        .doing(DOING)?;
+    let Some((part, n)) = voided else {
+        return Ok(());
+    };
+    let void = "UPDATE measurement SET part_verdict = 'void' WHERE part_id = ?1";
+    tx.execute(void, [part])
+        .and_then(|_| reasons::insert(tx, part, n, std::slice::from_ref(&it.reason)))
+        .doing(DOING)
 }
 
 fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {

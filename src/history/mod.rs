@@ -11,7 +11,7 @@
 //!   pruned ([`Store::prune`]), nothing else is ever deleted.
 //! - Of a part that did not pass everything that was seen of it stays, as small blobs ([`Curve`]).
 //! - The file may be opened by hand: the tables carry a remark per column, and the views `lots`,
-//!   `parts`, `measurements`, `samples`, `curves` and `alarms` show local time and names instead of numbers.
+//!   `parts`, `reasons`, `measurements`, `samples`, `curves` and `alarms` show local time and names instead of numbers.
 //!
 //! Not here: deciding anything (gauge, station), statistics (quality), a clock.
 
@@ -38,6 +38,7 @@ mod moment;
 mod open;
 mod orders;
 mod part;
+mod reasons;
 mod record;
 mod rejudge;
 mod retention;

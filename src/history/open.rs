@@ -8,7 +8,7 @@
 //!    would else be planned anew for each of them, which takes longer than its answer.
 
 use super::error::{Doing, HistoryError, Result};
-use super::{series, views};
+use super::{reasons, series, views};
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, ErrorCode, OpenFlags};
 use std::path::Path;
@@ -18,7 +18,7 @@ use std::time::Duration;
 pub const APPLICATION_ID: i64 = 0x5252_6967;
 
 /// Step `n` brings schema `n` to `n + 1`. Steps are only ever added.
-pub(super) const MIGRATIONS: [&str; 7] = [
+pub(super) const MIGRATIONS: [&str; 8] = [
     include_str!("schema/v1.sql"),
     include_str!("schema/v2.sql"),
     include_str!("schema/v3.sql"),
@@ -26,6 +26,7 @@ pub(super) const MIGRATIONS: [&str; 7] = [
     include_str!("schema/v5.sql"),
     include_str!("schema/v6.sql"),
     include_str!("schema/v7.sql"),
+    include_str!("schema/v8.sql"),
 ];
 
 /// Latest schema this program knows.
@@ -33,6 +34,9 @@ pub const SCHEMA: i64 = MIGRATIONS.len() as i64;
 
 /// The schema that keeps values of closed runs side by side.
 const PACKS: i64 = 6;
+
+/// The schema that keeps reasons as codes.
+const CODES: i64 = 8;
 
 /// How long a locked file is waited for: longer than any batch, shorter than an operator's patience.
 const BUSY: Duration = Duration::from_secs(5);
@@ -150,6 +154,9 @@ fn steps(connection: &Connection) -> rusqlite::Result<()> {
     connection.pragma_update(None, "application_id", APPLICATION_ID)?;
     if (1..PACKS).contains(&from) {
         series::pack_all(connection)?;
+    }
+    if (1..CODES).contains(&from) {
+        reasons::read_texts(connection)?;
     }
     views::rebuild(connection)
 }

@@ -1,6 +1,7 @@
 //! A part with what was measured on it, as it leaves the history: what screens, sheets and `--json` show.
 
 use super::{Curve, Moment};
+use crate::dut::Reason;
 use serde::Serialize;
 
 /// A part as screens, sheets and `--json` show it.
@@ -31,6 +32,8 @@ pub struct Part {
     pub landed_at: Option<Moment>,
     /// Why it is not a pass.
     pub reasons: Vec<String>,
+    /// The codes of the reasons, in their order.
+    pub reason_codes: Vec<Reason>,
     /// When the verdict stood.
     pub time: Moment,
     /// Probes up to verdict, rig seconds.
@@ -93,6 +96,13 @@ pub struct Sample {
 
 #[cfg(test)]
 impl Part {
+    /// The same part, failed for these reasons.
+    pub(crate) fn because(mut self, reasons: Vec<Reason>) -> Self {
+        self.reasons = reasons.iter().map(Reason::to_string).collect();
+        self.reason_codes = reasons;
+        self
+    }
+
     /// A part of run 1 with nothing measured.
     pub(crate) fn of_paper(lot: &str, seq: u64, verdict: &str) -> Self {
         Self {
@@ -108,6 +118,7 @@ impl Part {
             landed_bin: None,
             landed_at: None,
             reasons: Vec::new(),
+            reason_codes: Vec::new(),
             time: Moment(1_000_000),
             test_s: None,
             cycle_s: None,

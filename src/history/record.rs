@@ -1,12 +1,13 @@
 //! Plain records that the cycle hands to the history.
 //!
-//! They know nothing of the station or the gauge: texts, numbers and integer microseconds UTC. A
+//! They know nothing of the station or of a kind of device: texts, numbers, reasons and integer microseconds UTC. A
 //! number that is not finite is stored as no number at all.
 
 use super::{
     AlarmChangeRecord, CurveRecord, GoldenCheckRecord, InsideRecord, LotStateRecord, OrderRecord,
     WearRecord,
 };
+use crate::dut::Reason;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -34,7 +35,7 @@ pub struct LotRecord {
 }
 
 /// One judged part with everything measured on it.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PartRecord {
     /// The open lot it belongs to.
     pub lot: String,
@@ -47,7 +48,7 @@ pub struct PartRecord {
     /// The bin the verdict asks for; empty when it is not to be sorted.
     pub bin: String,
     /// Why it is not a pass, the decisive reason first.
-    pub reasons: Vec<String>,
+    pub reasons: Vec<Reason>,
     /// When the verdict stood.
     pub judged_at_us: i64,
     /// Probes up to verdict, rig seconds; not a number when unknown (imports).
@@ -124,7 +125,7 @@ pub struct LandingRecord {
 }
 
 /// A part that was judged and then interrupted on its way: void, to retest; its values stay.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InterruptedRecord {
     /// The open lot it belongs to.
     pub lot: String,
@@ -133,7 +134,7 @@ pub struct InterruptedRecord {
     /// The part.
     pub seq: u64,
     /// Added to its reasons.
-    pub reason: String,
+    pub reason: Reason,
 }
 
 /// One occurrence of an alarm; recorded again with `cleared_at_us` when it goes.

@@ -13,6 +13,7 @@ use super::evidence::{above, at_least};
 use super::{Curve, Part};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::coil::to_reference;
+use crate::dut::reason::Code;
 use crate::dut::{Characteristic, Reason};
 use crate::dut::{Judgement, Recipe, Verdict};
 use crate::gauge::{Budget, Reading};
@@ -90,13 +91,9 @@ pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) ->
         })
         .collect();
     let by_values = Verdict::of(&recipe.kind().characteristics(), &judged);
-    let seen = |parameter| at_least(curves, parameter, nominal_v).is_some();
-    let others: Vec<Reason> = part
-        .reasons
-        .iter()
-        .filter(|it| !of_a_limit(it, seen))
-        .map(|text| Reason::from_text(text))
-        .collect();
+    let seen = |Characteristic::EmRelay(it)| at_least(curves, it, nominal_v).is_some();
+    let others = part.reason_codes.iter();
+    let others: Vec<Reason> = others.filter(|it| !of_a_limit(it, seen)).cloned().collect();
     match (part.verdict.as_str(), others.as_slice()) {
         ("fail", [first, ..]) => {
             let limits = match by_values {
@@ -128,19 +125,14 @@ fn stored(part: &Part, parameter: Parameter, factor: f64) -> Reading {
     }
 }
 
-/// Reasons that [`of_part`] gives: they are about a limit, or about a value that is missing. A test that
-/// ended because the contact did not move says so after a colon; that is about a limit too, where it was `seen`.
-fn of_a_limit(reason: &str, seen: impl Fn(Parameter) -> bool) -> bool {
-    let Some((key, rest)) = reason.split_once(' ') else {
-        return false;
-    };
-    let said = [
-        "low",
-        "high",
-        "low not proven",
-        "high not proven",
-        "not measured",
-    ];
-    let parameter = Characteristic::from_key(key).map(|Characteristic::EmRelay(it)| it);
-    parameter.is_some_and(|it| said.contains(&rest) || rest.starts_with("high: ") && seen(it))
+/// Whether a reason speaks of a limit, or of a value that is missing: then the other recipe says it anew. A test that ended
+/// because the contact did not move speaks of an upper limit too, where it was `seen`.
+fn of_a_limit(reason: &Reason, seen: impl Fn(Characteristic) -> bool) -> bool {
+    match reason.code {
+        Code::OutsideLimit(_) | Code::NotProven(_) | Code::NotMeasured(_) => true,
+        Code::EmRelay(_) => {
+            reason.side == Some(Side::High) && reason.characteristic().is_some_and(seen)
+        }
+        Code::Interrupted | Code::RigTrouble | Code::Unclassified => false,
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! - A run counts as copied when a backup holds it or an export wrote all of it; both tell
 //!   [`Store::copied`] after their file is on the disk. Only closed runs count: an open one still grows.
-//! - [`Store::prune`] deletes parts, measurements, raw replies, curves and alarms of copied runs that ended before
+//! - [`Store::prune`] deletes parts, reasons, measurements, raw replies, curves and alarms of copied runs that ended before
 //!   an instant, one transaction a run. Lot, run, recipe and the note of the copy stay, so that numbers
 //!   of runs go on and anyone can see where the parts went.
 
@@ -93,11 +93,12 @@ impl Store {
 }
 
 /// What goes of a run, rows that point elsewhere first.
-pub(super) const EMPTYING: [&str; 7] = [
+pub(super) const EMPTYING: [&str; 8] = [
     "DELETE FROM series WHERE run_id = ?1",
     "DELETE FROM curve WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
     "DELETE FROM sample WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
     "DELETE FROM measurement WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
+    "DELETE FROM reason WHERE part_id IN (SELECT id FROM part WHERE run_id = ?1)",
     "DELETE FROM part WHERE run_id = ?1",
     "DELETE FROM alarm_state WHERE alarm_id IN (SELECT id FROM alarm WHERE run_id = ?1)",
     "DELETE FROM alarm WHERE run_id = ?1",

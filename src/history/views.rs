@@ -32,6 +32,12 @@ CREATE VIEW samples AS
     strftime('%Y-%m-%d %H:%M:%f', s.at_us / 1e6, 'unixepoch', 'localtime') AS at
   FROM sample AS s JOIN part ON part.id = s.part_id JOIN run ON run.id = part.run_id
     JOIN lot ON lot.id = run.lot_id JOIN parameter ON parameter.id = s.parameter_id;
+DROP VIEW IF EXISTS reasons;
+CREATE VIEW reasons AS
+  SELECT lot.name AS lot, run.number AS run, part.kind, part.seq, reason.n, reason.code,
+    parameter.key AS parameter, reason.side, reason.detail
+  FROM reason JOIN part ON part.id = reason.part_id JOIN run ON run.id = part.run_id
+    JOIN lot ON lot.id = run.lot_id LEFT JOIN parameter ON parameter.id = reason.parameter_id;
 DROP VIEW IF EXISTS curves;
 CREATE VIEW curves AS
   SELECT lot.name AS lot, run.number AS run, part.kind, part.seq, curve.signal, curve.unit,

@@ -13,7 +13,11 @@ pub(super) async fn calibration(State(desk): State<Desk>) -> Result<Json<Instrum
     let dir = desk.shared.config.clone();
     let read = move |archive: &crate::history::Archive| {
         let plant = Plant::load(&dir)?;
-        Ok(instruments(archive, simulated, &plant.golden.parts)?)
+        Ok(instruments(
+            archive,
+            simulated,
+            &plant.golden.certificates(),
+        )?)
     };
     desk.readers.read(read).await.map(Json)
 }

@@ -3,6 +3,7 @@
 //! Texts, looks, words and scripts are put together once from the files in `page/`. The policy sent along lets
 //! the browser run just that script, by its hash, and talk to this rig only.
 
+mod kinds;
 mod policy;
 
 use axum::http::header::{CONTENT_SECURITY_POLICY, CONTENT_TYPE};
@@ -53,6 +54,7 @@ static PAGE: LazyLock<String> = LazyLock::new(|| {
         .replace("<!--pages-->", PAGES)
         .replace("/*look*/", LOOK)
         .replace("/*words*/", WORDS)
+        .replace("/*kinds*/", &kinds::json())
         .replace("/*script*/", SCRIPT)
 });
 static POLICY: LazyLock<String> = LazyLock::new(|| policy::of(LOOK, SCRIPT));

@@ -2,9 +2,8 @@
 //! read when they were measured last.
 
 use super::Result;
-use crate::dut::Calibration;
-use crate::dut::em_relay::settings::{Certified, GoldenPart};
-use crate::gauge::factor::Named;
+use crate::dut::Characteristic;
+use crate::dut::instruments::{Certificate, factors};
 use crate::history::{Archive, CalibrationRecord, GoldenCheck, Moment, Part};
 use jiff::Timestamp;
 use serde::Serialize;
@@ -26,7 +25,7 @@ pub struct Instruments {
 /// A calibration and whether it holds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Held {
-    /// Coil voltage whose golden parts it rests on, V.
+    /// Nominal voltage whose golden parts it rests on, V.
     pub nominal_v: Option<f64>,
     /// When the factors were found.
     pub made: Moment,
@@ -60,7 +59,7 @@ pub struct Told {
 pub struct Golden {
     /// Serial number.
     pub serial: String,
-    /// Coil voltage of the recipes that it serves, V.
+    /// Nominal voltage of the recipes that it serves, V.
     pub nominal_v: f64,
     /// When it was measured last; none when it never was.
     pub seen: Option<Moment>,
@@ -73,8 +72,8 @@ pub struct Golden {
 /// One quantity of a golden part.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Against {
-    /// Parameter key.
-    pub parameter: &'static str,
+    /// What it is.
+    pub parameter: Characteristic,
     /// Of the certificate.
     pub certified: f64,
     /// Expanded uncertainty of the certificate, k = 2.
@@ -92,7 +91,7 @@ pub struct Against {
 pub fn instruments(
     archive: &Archive,
     simulated: bool,
-    golden: &[GoldenPart],
+    golden: &[Certificate],
 ) -> Result<Instruments> {
     let now_us = Timestamp::now().as_microsecond();
     let stored = archive.calibrations(simulated)?;
@@ -108,14 +107,12 @@ pub fn instruments(
 fn held(record: CalibrationRecord, now_us: i64) -> Held {
     let body: serde_json::Value = serde_json::from_str(&record.body).unwrap_or_default();
     let nominal_v = body["nominal_v"].as_f64();
-    let read = serde_json::from_value::<Calibration>(body);
-    let factors = read.map_or_else(|_| Vec::new(), |it| it.factors());
-    let told = |it: Named| Told {
+    let factors = factors(body).into_iter().map(|it| Told {
         name: it.name,
         unit: it.unit,
         value: it.factor.value,
         uncertainty: K * it.factor.u,
-    };
+    });
     Held {
         nominal_v,
         made: Moment(record.made_at_us),
@@ -123,38 +120,34 @@ fn held(record: CalibrationRecord, now_us: i64) -> Held {
         overdue: record.due_at_us <= now_us,
         verified: record.verified,
         hash: record.hash,
-        factors: factors.into_iter().map(told).collect(),
+        factors: factors.collect(),
     }
 }
 
-fn of_golden(archive: &Archive, part: &GoldenPart) -> Result<Golden> {
+fn of_golden(archive: &Archive, part: &Certificate) -> Result<Golden> {
     let seen = archive.golden_part(&part.serial)?;
-    let certified = [
-        ("operate_voltage_v", part.operate_voltage_v),
-        ("release_voltage_v", part.release_voltage_v),
-        ("coil_resistance_ohm", part.coil_resistance_ohm),
-    ];
-    let against = |(parameter, certified): (&'static str, Certified)| {
-        let read = |part: &Part| {
-            let of =
-                |map: &serde_json::Map<String, serde_json::Value>| map.get(parameter)?.as_f64();
-            // What only teaches a lag has no uncertainty, and says nothing against a certificate.
-            Some((of(&part.values)?, of(&part.uncertainty)?))
-        };
-        let read = seen.as_ref().and_then(read);
+    let values = part.values.iter().map(|(parameter, certified)| {
+        let read = seen.as_ref().and_then(|it| read(it, *parameter));
         Against {
-            parameter,
+            parameter: *parameter,
             certified: certified.value,
             certified_uncertainty: K * certified.u,
             value: read.map(|it| it.0),
             uncertainty: read.map(|it| it.1),
         }
-    };
+    });
     Ok(Golden {
         serial: part.serial.clone(),
         nominal_v: part.nominal_v,
         seen: seen.as_ref().map(|it| it.time),
         run: seen.as_ref().map(|it| (it.lot.clone(), it.run)),
-        values: certified.map(against).to_vec(),
+        values: values.collect(),
     })
+}
+
+/// Value and expanded uncertainty; what has no uncertainty only teaches, and says nothing against a certificate.
+fn read(part: &Part, parameter: Characteristic) -> Option<(f64, f64)> {
+    let number =
+        |map: &serde_json::Map<String, serde_json::Value>| map.get(parameter.key())?.as_f64();
+    Some((number(&part.values)?, number(&part.uncertainty)?))
 }

@@ -1,7 +1,7 @@
 //! What another recipe would have said of the parts of a lot. The history stays as it is.
 
 use super::{InquiryError, Result, checks};
-use crate::dut::Recipe;
+use crate::dut::{Reason, Recipe};
 use crate::history::{Archive, Basis, Filter, Part, rejudged};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -28,6 +28,8 @@ pub struct Again {
     pub bin: &'static str,
     /// Why it is not a pass.
     pub reasons: Vec<String>,
+    /// Their codes, in the same order.
+    pub reason_codes: Vec<Reason>,
 }
 
 impl Again {
@@ -149,6 +151,7 @@ impl Rejudging {
             verdict: verdict.name(),
             bin: verdict.bin().name(),
             reasons: verdict.texts(),
+            reason_codes: verdict.reasons().to_vec(),
             verdict_was: part.verdict,
         })
     }

@@ -36,7 +36,7 @@ fn every_member_of_the_filter_has_its_name() {
 fn a_part_has_a_cell_under_every_column_and_none_is_named_twice() {
     let keys = ["operate_voltage_v".to_owned()];
     let mut part = Part::of_paper("批次", 7, "fail");
-    part.reasons = vec!["a".into(), "b".into()];
+    part = part.because(["a", "b"].map(crate::dut::Reason::unclassified).into());
     part.values.insert(keys[0].clone(), 7.5.into());
     part.uncertainty.insert(keys[0].clone(), 0.01.into());
     let names = header(&keys);

@@ -22,7 +22,7 @@ pub fn certificate(paper: &Paper, part: &Part, run: &LotSummary) -> String {
         (head(title, &format!("{} {number}", language.of("No.", "编号"))))
         (facts(&about(paper, part, run)))
         div class={ "verdict " (part.verdict) } { (language.verdict(&part.verdict)) }
-        @for reason in &part.reasons { p { (language.reason(reason)) } }
+        @for reason in &part.reason_codes { p { (language.reason(reason)) } }
         (results(language, part))
         p.note { (language.of(
             "U: expanded uncertainty, k = 2. Resistances and thresholds at the reference temperature of the recipe. \

@@ -7,6 +7,7 @@ use super::lot::{LotReport, ParameterValues};
 use super::spc::{Named, spc};
 use super::*;
 use crate::config::load_recipe;
+use crate::dut::Reason;
 use crate::history::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Shelf, Yield};
 use crate::quality::Limits;
 use crate::quality::chart::{individuals, shares};
@@ -158,8 +159,8 @@ fn a_part_that_failed_gets_a_record_and_no_certificate() {
 
 #[test]
 fn a_record_says_in_its_language_why_the_part_failed() {
-    let mut failed = part("fail");
-    failed.reasons = vec!["operate_voltage_v high".into(), "coil open".into()];
+    let why = ["operate_voltage_v high", "coil open"].map(Reason::from_text);
+    let failed = part("fail").because(why.into());
     for (language, words) in [
         (
             Language::En,

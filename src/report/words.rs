@@ -1,6 +1,8 @@
 //! The words of the pages in both languages, in one place.
 
-use crate::dut::Characteristic;
+use crate::dut::reason::Code;
+use crate::dut::{Characteristic, Reason};
+use crate::gauge::Side;
 use serde::Deserialize;
 
 /// Language of a page.
@@ -39,23 +41,39 @@ impl Language {
         format!("{name} / {}", unit(known.unit()))
     }
 
-    /// Why a part did not pass; a text that only the history knows as it stands there.
-    pub fn reason(self, text: &str) -> String {
-        let (key, side) = text.split_once(' ').unwrap_or((text, ""));
-        if Characteristic::from_key(key).is_none() {
-            return self.of(text, found(text)).to_owned();
-        }
-        let side = match side {
-            "high" => self.of("above the upper limit", "超出上限"),
-            "low" => self.of("below the lower limit", "低于下限"),
-            "high not proven" => self.of("not proven below the upper limit", "未能证明低于上限"),
-            "low not proven" => self.of("not proven above the lower limit", "未能证明高于下限"),
-            "not measured" => self.of("not measured", "未测得"),
-            "high: above the coarse ramp" => self.of("above the ramp", "超出扫描范围"),
-            "low: current over range" => self.of("too low: current over range", "过低：电流超量程"),
-            other => other,
+    /// Why a part did not pass; what has no words of its own stands there as the history says it.
+    pub fn reason(self, reason: &Reason) -> String {
+        let side = reason.side;
+        let said = match (reason.code, reason.code.words()) {
+            (_, Some(words)) => self.of(words.en, words.zh).to_owned(),
+            (Code::OutsideLimit(_), None) => self.outside(side).to_owned(),
+            (Code::NotProven(_), None) => self.not_proven(side).to_owned(),
+            (Code::NotMeasured(_), None) => self.of("not measured", "未测得").to_owned(),
+            (
+                Code::EmRelay(_) | Code::Interrupted | Code::RigTrouble | Code::Unclassified,
+                None,
+            ) => reason.to_string(),
         };
-        format!("{}{}{side}", self.parameter(key), self.of(": ", "："))
+        match reason.characteristic() {
+            None => said,
+            Some(it) => format!("{}{}{said}", self.parameter(it.key()), self.of(": ", "：")),
+        }
+    }
+
+    fn outside(self, side: Option<Side>) -> &'static str {
+        match side {
+            Some(Side::High) => self.of("above the upper limit", "超出上限"),
+            Some(Side::Low) => self.of("below the lower limit", "低于下限"),
+            None => self.of("outside its limits", "超出限值"),
+        }
+    }
+
+    fn not_proven(self, side: Option<Side>) -> &'static str {
+        match side {
+            Some(Side::High) => self.of("not proven below the upper limit", "未能证明低于上限"),
+            Some(Side::Low) => self.of("not proven above the lower limit", "未能证明高于下限"),
+            None => self.of("not proven", "未能证明"),
+        }
     }
 
     /// Name of a verdict.
@@ -90,24 +108,6 @@ impl Language {
             }
             Self::Zh => "未测项目：绝缘电阻、介质耐压、电气寿命与机械寿命。",
         }
-    }
-}
-
-/// What a test found without a figure, in Chinese.
-fn found(text: &str) -> &str {
-    match text {
-        "not proven" => "未能证明",
-        "coil open" => "线圈开路",
-        "contact stuck: NO closed at rest" => "触点粘连：静止时常开触点闭合",
-        "contact stuck: NC open at rest" => "触点故障：静止时常闭触点断开",
-        "contact stuck: NC does not open at nominal voltage" => {
-            "触点粘连：额定电压下常闭触点不断开"
-        }
-        "contact stuck: NO does not make at nominal voltage" => {
-            "触点故障：额定电压下常开触点不闭合"
-        }
-        "part turned or COM probe without contact" => "零件放反或公共端探针未接触",
-        other => other,
     }
 }
 

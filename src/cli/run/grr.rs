@@ -7,7 +7,8 @@
 
 use super::{Controls, Orders, RunArgs, run_with};
 use crate::cli::rig::RigArgs;
-use crate::dut::em_relay::Parameter;
+use crate::config::load_recipe;
+use crate::dut::Characteristic;
 use crate::history::{Archive, Filter};
 use crate::quality::average_range::average_and_range;
 use crate::quality::gauge_rr::{GaugeRr, Reading, anova};
@@ -53,7 +54,8 @@ pub fn run(config: &Path, db: &Path, args: &RunArgs) -> anyhow::Result<i32> {
             return Ok(status);
         }
     }
-    tell(&Archive::open(db)?, args, parts)?;
+    let measured = load_recipe(config, &args.recipe)?.kind().characteristics();
+    tell(&Archive::open(db)?, args, parts, measured)?;
     Ok(crate::cli::DONE)
 }
 
@@ -66,7 +68,7 @@ fn readings(
     archive: &Archive,
     args: &RunArgs,
     parts: u64,
-    parameter: Parameter,
+    characteristic: Characteristic,
 ) -> anyhow::Result<Vec<Reading>> {
     let mut readings = Vec::new();
     for operator in 1..=OPERATORS {
@@ -75,7 +77,7 @@ fn readings(
         for part in archive.query(&Filter { run, ..of(&lot) })? {
             let value = part
                 .values
-                .get(parameter.name())
+                .get(characteristic.key())
                 .and_then(serde_json::Value::as_f64);
             let place = part.seq - 1;
             readings.extend(value.map(|value| Reading {
@@ -96,7 +98,12 @@ fn of(lot: &str) -> Filter {
     }
 }
 
-fn tell(archive: &Archive, args: &RunArgs, parts: u64) -> anyhow::Result<()> {
+fn tell(
+    archive: &Archive,
+    args: &RunArgs,
+    parts: u64,
+    characteristics: Vec<Characteristic>,
+) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     if !args.json {
         writeln!(
@@ -105,31 +112,30 @@ fn tell(archive: &Archive, args: &RunArgs, parts: u64) -> anyhow::Result<()> {
             "parameter", "repeat sd", "rigs sd", "parts sd", "% grr", "ndc", "% by range"
         )?;
     }
-    for parameter in Parameter::ALL {
-        let readings = readings(archive, args, parts, parameter)?;
+    for characteristic in characteristics {
+        let readings = readings(archive, args, parts, characteristic)?;
         let (first, second) = (anova(&readings), average_and_range(&readings).ok());
         match (first, args.json) {
             (Ok(it), true) => {
-                let it = json!({"type": "grr", "param": parameter.name(), "anova": it, "average_range": second});
+                let it = json!({"type": "grr", "param": characteristic.key(), "anova": it, "average_range": second});
                 writeln!(out, "{it}")?;
             }
-            (Ok(it), false) => writeln!(out, "{}", line(parameter, &it, second.as_ref()))?,
+            (Ok(it), false) => writeln!(out, "{}", line(characteristic, &it, second.as_ref()))?,
             (Err(why), true) => {
-                let it =
-                    json!({"type": "grr", "param": parameter.name(), "why_not": why.to_string()});
+                let it = json!({"type": "grr", "param": characteristic.key(), "why_not": why.to_string()});
                 writeln!(out, "{it}")?;
             }
-            (Err(why), false) => writeln!(out, "{:<28} {why}", parameter.name())?,
+            (Err(why), false) => writeln!(out, "{:<28} {why}", characteristic.key())?,
         }
     }
     Ok(())
 }
 
-fn line(parameter: Parameter, it: &GaugeRr, by_range: Option<&GaugeRr>) -> String {
+fn line(characteristic: Characteristic, it: &GaugeRr, by_range: Option<&GaugeRr>) -> String {
     let percent = |it: Option<f64>| it.map_or("-".to_owned(), |it| format!("{it:.2}"));
     format!(
         "{:<28} {:>12.6} {:>12.6} {:>12.6} {:>8} {:>6} {:>10}",
-        parameter.name(),
+        characteristic.key(),
         it.repeatability,
         it.reproducibility,
         it.part,

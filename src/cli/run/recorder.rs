@@ -262,7 +262,7 @@ impl<'a> Recorder<'a> {
             lot: self.setup.args.lot.clone(),
             kind: kind.into(),
             seq,
-            reason: reason.to_string(),
+            reason,
         }));
     }
 
@@ -293,7 +293,7 @@ impl<'a> Recorder<'a> {
                 .verdicts
                 .entry(judged.verdict.name())
                 .or_insert(0) += 1;
-            self.table.add(&judged);
+            self.table.add(self.setup.recipe.kind(), &judged);
             if self.controls.between_lots.is_none() {
                 self.show(&judged);
             }

@@ -1,8 +1,9 @@
 //! A judged part as rows of the history and as a JSON object.
 
 use super::recorder::Setup;
-use crate::dut::em_relay::Parameter;
-use crate::dut::{Judgement, Verdict};
+use super::results::{attempts, evidence, result, usable};
+use crate::dut::{Characteristic, Judgement, Verdict};
+use crate::gauge::{Limit, Reading};
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
 use crate::instrument::trace::Trace;
 use crate::rig::point::{AnalogIn, Counter};
@@ -35,16 +36,17 @@ pub fn part(setup: &Setup, judged: &Judged, golden: u64) -> PartRecord {
             .part
             .bin
             .map_or_else(String::new, |bin| bin.name().to_string()),
-        reasons: judged.verdict.texts(),
+        reasons: judged.verdict.reasons().to_vec(),
         judged_at_us: at(judged.at),
         test_s: judged.part.test.map_or(f64::NAN, |test| test.0),
         cycle_s: None,
         landed_bin: None,
         landed_at_us: None,
         kind: kind.to_string(),
-        measurements: Parameter::ALL
-            .iter()
-            .filter_map(|parameter| measurement(setup, judged, *parameter))
+        measurements: setup
+            .recipe
+            .limits()
+            .filter_map(|of| measurement(setup, judged, of))
             .collect(),
         curves: match judged.verdict {
             Verdict::Pass => Vec::new(),
@@ -72,13 +74,16 @@ fn curves(trace: &Trace, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
     curves
 }
 
-fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<MeasurementRecord> {
-    let reading = judged.record.result(parameter)?;
-    let limit = setup.recipe.limits.of(parameter);
+fn measurement(
+    setup: &Setup,
+    judged: &Judged,
+    (characteristic, limit): (Characteristic, Limit),
+) -> Option<MeasurementRecord> {
+    let reading = result(judged, characteristic)?;
     let judgement = judged
         .judgements
         .iter()
-        .find(|(known, _)| *known == parameter.into())
+        .find(|(known, _)| *known == characteristic)
         .map(|(_, j)| *j);
     let sample = |origin: &crate::rig::sample::Origin| SampleRecord {
         line: setup.plant.wiring.line(origin.line).name.clone(),
@@ -89,7 +94,7 @@ fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<M
         at_us: setup.epoch_us + i64::try_from(origin.at.0).unwrap_or(i64::MAX),
     };
     Some(MeasurementRecord {
-        key: parameter.name().to_string(),
+        key: characteristic.key().to_string(),
         value: Some(reading.value).filter(|value| value.is_finite()),
         uncertainty: Some(reading.expanded()).filter(|u| u.is_finite()),
         low: limit.low,
@@ -100,9 +105,9 @@ fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<M
             Some(Judgement::Void) | None => "void",
         }
         .to_string(),
-        attempt: u32::try_from(judged.record.attempts(parameter)).unwrap_or(u32::MAX),
+        attempt: u32::try_from(attempts(judged, characteristic)).unwrap_or(u32::MAX),
         budget: budget(&reading),
-        samples: judged.record.evidence(parameter).map(sample).collect(),
+        samples: evidence(judged, characteristic).map(sample).collect(),
     })
 }
 
@@ -127,7 +132,7 @@ fn request(setup: &Setup, origin: &crate::rig::sample::Origin) -> String {
 }
 
 /// The budget as JSON; `None` while it holds a term that is not a number (JSON has no infinity).
-fn budget(reading: &crate::gauge::Reading) -> Option<String> {
+fn budget(reading: &Reading) -> Option<String> {
     if !reading.expanded().is_finite() {
         return None;
     }
@@ -138,16 +143,13 @@ fn budget(reading: &crate::gauge::Reading) -> Option<String> {
 pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> Value {
     let mut values = Map::new();
     let mut uncertainty = Map::new();
-    for parameter in Parameter::ALL {
-        let Some(reading) = judged
-            .record
-            .result(parameter)
-            .filter(crate::gauge::Reading::is_usable)
-        else {
+    for characteristic in setup.recipe.kind().characteristics() {
+        let Some(reading) = usable(judged, characteristic) else {
             continue;
         };
-        values.insert(parameter.name().into(), json!(rounded(reading.value)));
-        uncertainty.insert(parameter.name().into(), json!(rounded(reading.expanded())));
+        let key = characteristic.key();
+        values.insert(key.into(), json!(rounded(reading.value)));
+        uncertainty.insert(key.into(), json!(rounded(reading.expanded())));
     }
     let (seq, _) = number(&judged.part.kind, 0);
     let spent = judged.record.spent;
@@ -159,6 +161,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
         "verdict": judged.verdict.name(),
         "bin": bin,
         "reasons": judged.verdict.texts(),
+        "reason_codes": judged.verdict.reasons(),
         "values": values,
         "uncertainty": uncertainty,
         "test_s": judged.part.test.map(|test| rounded(test.0)),

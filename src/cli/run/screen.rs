@@ -61,6 +61,7 @@ pub fn judged(
         verdict: judged.verdict.name().into(),
         bin: judged.part.bin.map_or("", |bin| bin.name()).into(),
         reasons: judged.verdict.texts(),
+        reason_codes: judged.verdict.reasons().to_vec(),
         values: numbers("values"),
         uncertainty: numbers("uncertainty"),
     };

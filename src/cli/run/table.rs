@@ -1,32 +1,27 @@
 //! Results and bins at the end of a run, for a person.
 
 use super::counts::Counts;
-use crate::dut::em_relay::Parameter;
+use super::results::usable;
+use crate::dut::{Characteristic, Kind};
 use crate::quality::Spread;
 use crate::station::wants::Judged;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Values of the lot by parameter.
+/// Values of the lot by characteristic.
 #[derive(Debug, Default)]
 pub struct Table {
-    values: BTreeMap<Parameter, Vec<f64>>,
+    values: BTreeMap<Characteristic, Vec<f64>>,
 }
 
 impl Table {
-    /// Takes in one part.
-    pub fn add(&mut self, judged: &Judged) {
-        for parameter in Parameter::ALL {
-            if let Some(reading) = judged
-                .record
-                .result(parameter)
-                .filter(crate::gauge::Reading::is_usable)
-            {
-                self.values
-                    .entry(parameter)
-                    .or_default()
-                    .push(reading.value);
+    /// Takes in one part of this kind.
+    pub fn add(&mut self, kind: Kind, judged: &Judged) {
+        for characteristic in kind.characteristics() {
+            if let Some(reading) = usable(judged, characteristic) {
+                let values = self.values.entry(characteristic).or_default();
+                values.push(reading.value);
             }
         }
     }
@@ -39,14 +34,14 @@ impl Table {
             "{:<30} {:>6} {:>12} {:>12} {:>12} {:>12}",
             "parameter", "n", "mean", "sd", "min", "max"
         );
-        for (parameter, values) in &self.values {
+        for (characteristic, values) in &self.values {
             let spread = Spread::of(values);
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             let _ = writeln!(
                 text,
                 "{:<30} {:>6} {:>12.4} {:>12.4} {:>12.4} {:>12.4}",
-                parameter.name(),
+                characteristic.key(),
                 values.len(),
                 spread.mean().unwrap_or(f64::NAN),
                 spread.sd().unwrap_or(0.0),

@@ -2,7 +2,7 @@
 
 use super::Parameter;
 use super::threshold::Direction;
-use crate::dut::reason::{Code, Reason};
+use crate::dut::reason::{Code, Reason, Words};
 use crate::dut::verdict::Bin;
 use crate::gauge::Side;
 
@@ -87,6 +87,8 @@ struct Entry {
     bin: Option<Bin>,
     /// What it proves of a limit.
     proves: Option<(Parameter, Side)>,
+    /// What pages and paper say instead of the text.
+    words: Option<Words>,
 }
 
 impl Entry {
@@ -96,6 +98,7 @@ impl Entry {
             text,
             bin: Some(bin),
             proves: None,
+            words: None,
         }
     }
 
@@ -105,6 +108,7 @@ impl Entry {
             text,
             bin: None,
             proves: None,
+            words: None,
         }
     }
 
@@ -113,6 +117,19 @@ impl Entry {
             proves: Some((parameter, side)),
             ..self
         }
+    }
+
+    const fn said(self, en: &'static str, zh: &'static str) -> Self {
+        Self {
+            words: Some(Words { en, zh }),
+            ..self
+        }
+    }
+
+    /// In Chinese; in English as it stands in the text.
+    const fn zh(self, zh: &'static str) -> Self {
+        let en = self.text;
+        self.said(en, zh)
     }
 }
 
@@ -160,51 +177,62 @@ impl Finding {
         use Contact::{Nc, No};
         use Direction::{Falling, Rising};
         match self {
-            Self::CoilOpen => Entry::fail("coil_open", "coil open", Bin::Coil),
+            Self::CoilOpen => Entry::fail("coil_open", "coil open", Bin::Coil).zh("线圈开路"),
             Self::CoilCurrentOverRange => Entry::fail(
                 "coil_current_over_range",
                 "coil_resistance_ohm low: current over range",
                 Bin::Coil,
             )
-            .proves(Parameter::CoilResistance, Side::Low),
+            .proves(Parameter::CoilResistance, Side::Low)
+            .said("too low: current over range", "过低：电流超量程"),
             Self::NoClosedAtRest => Entry::fail(
                 "no_closed_at_rest",
                 "contact stuck: NO closed at rest",
                 Bin::Contact,
-            ),
+            )
+            .zh("触点粘连：静止时常开触点闭合"),
             Self::NcOpenAtRest => Entry::fail(
                 "nc_open_at_rest",
                 "contact stuck: NC open at rest",
                 Bin::Contact,
-            ),
+            )
+            .zh("触点故障：静止时常闭触点断开"),
             Self::NcDoesNotOpen => Entry::fail(
                 "nc_does_not_open",
                 "contact stuck: NC does not open at nominal voltage",
                 Bin::Contact,
-            ),
+            )
+            .zh("触点粘连：额定电压下常闭触点不断开"),
             Self::NoDoesNotMake => Entry::fail(
                 "no_does_not_make",
                 "contact stuck: NO does not make at nominal voltage",
                 Bin::Contact,
-            ),
+            )
+            .zh("触点故障：额定电压下常开触点不闭合"),
             Self::OperatesTooLate => Entry::fail(
                 "operates_too_late",
                 "operate_time_ms high: NO makes too late",
                 Bin::Time,
             )
-            .proves(Parameter::OperateTime, Side::High),
+            .proves(Parameter::OperateTime, Side::High)
+            .said("high: NO makes too late", "过高：常开触点闭合过迟"),
             Self::ReleasesTooLate => Entry::fail(
                 "releases_too_late",
                 "release_time_ms high: NC does not make after switch-off",
                 Bin::Time,
             )
-            .proves(Parameter::ReleaseTime, Side::High),
+            .proves(Parameter::ReleaseTime, Side::High)
+            .said(
+                "high: NC does not make after switch-off",
+                "过高：断电后常闭触点不闭合",
+            ),
             Self::AboveCoarseRamp => Entry::fail(
                 "above_coarse_ramp",
                 "operate_voltage_v high: above the coarse ramp",
                 Bin::Voltage,
             )
-            .proves(Parameter::OperateVoltage, Side::High),
+            .proves(Parameter::OperateVoltage, Side::High)
+            .said("above the ramp", "超出扫描范围"),
             Self::ContactOverRange(No) => Entry::fail(
                 "no_contact_over_range",
                 "NO contact resistance over range",
@@ -227,6 +255,7 @@ impl Finding {
             ),
             Self::Misoriented => {
                 Entry::void("misoriented", "part turned or COM probe without contact")
+                    .zh("零件放反或公共端探针未接触")
             }
             Self::PinOpen => Entry::void(
                 "pin_open",
@@ -319,6 +348,16 @@ impl Finding {
         self.entry().proves.map(|(parameter, _)| parameter)
     }
 
+    /// What pages and paper say, after the name of the characteristic that it proves; none where they show the text.
+    pub fn words(self) -> Option<Words> {
+        self.entry().words
+    }
+
+    /// The finding with this code.
+    pub fn from_code(code: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|it| it.code() == code)
+    }
+
     /// The text of rows and messages.
     pub fn text(self, detail: &str) -> String {
         self.entry().text.replacen("{}", detail, 1)
@@ -357,6 +396,13 @@ mod tests {
             (codes.len(), texts.len()),
             (Finding::ALL.len(), Finding::ALL.len())
         );
+    }
+
+    #[test]
+    fn what_follows_the_name_of_a_parameter_has_words() {
+        for finding in Finding::ALL {
+            assert!(finding.proves().is_none() || finding.words().is_some());
+        }
     }
 
     #[test]

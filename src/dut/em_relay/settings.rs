@@ -1,6 +1,8 @@
 //! What measuring relies on: references, promised accuracies, how long a calibration holds, golden parts.
 //! From `config/rig.toml` and `config/golden.toml`.
 
+use super::Parameter;
+use crate::dut::instruments::Certificate;
 use serde::{Deserialize, Serialize};
 
 /// References on the interface board. Tolerances are half widths.
@@ -105,6 +107,17 @@ pub struct GoldenPart {
     pub coil_resistance_ohm: Certified,
 }
 
+impl GoldenPart {
+    /// What is certified of it.
+    pub fn certified(&self) -> [(Parameter, Certified); 3] {
+        [
+            (Parameter::OperateVoltage, self.operate_voltage_v),
+            (Parameter::ReleaseVoltage, self.release_voltage_v),
+            (Parameter::CoilResistance, self.coil_resistance_ohm),
+        ]
+    }
+}
+
 /// All golden parts of the plant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GoldenSet {
@@ -116,6 +129,11 @@ pub struct GoldenSet {
 }
 
 impl GoldenSet {
+    /// The certificates of all parts.
+    pub fn certificates(&self) -> Vec<Certificate> {
+        self.parts.iter().map(Certificate::from).collect()
+    }
+
     /// The parts that serve recipes of this nominal coil voltage.
     pub fn of_nominal(&self, nominal_v: f64) -> impl Iterator<Item = &GoldenPart> {
         self.parts

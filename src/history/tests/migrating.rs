@@ -3,7 +3,16 @@
 use super::super::open::{MIGRATIONS, SCHEMA};
 use super::*;
 
-/// A file as the program of that schema left it: a closed run with one measured part.
+/// Texts of a part that failed and was interrupted, as programs before schema 8 left them.
+const TEXTS: [&str; 5] = [
+    "operate_voltage_v high not proven",
+    "coil_resistance_ohm low: current over range",
+    "no Kelvin contact at COM: missing pin or dirty probe",
+    "interrupted: door_open",
+    "refused by the clerk",
+];
+
+/// A file as the program of that schema left it: a closed run with a measured part and one that was void.
 fn of_schema(file: &File, schema: usize) {
     let by_hand = file.by_hand();
     for step in &MIGRATIONS[..schema] {
@@ -22,6 +31,13 @@ fn of_schema(file: &File, schema: usize) {
                population) VALUES (1, 2, 1, 7.5, 'pass', 1, 'pass', 'lot');"
         ))
         .unwrap();
+    by_hand
+        .execute(
+            "INSERT INTO part (id, run_id, kind, seq, verdict, bin, reasons, judged_at_us)
+             VALUES (2, 1, 'lot', 2, 'void', 'retest', ?1, 8)",
+            [serde_json::json!(TEXTS)],
+        )
+        .unwrap();
 }
 
 #[test]
@@ -31,7 +47,9 @@ fn a_file_of_every_earlier_schema_keeps_its_rows_and_can_be_written_on() {
         of_schema(&file, schema);
         let archive = file.archive();
         let parts = archive.query(&Filter::default()).unwrap();
-        assert_eq!(parts.len(), 1, "schema {schema}");
+        assert_eq!(parts.len(), 2, "schema {schema}");
+        assert_eq!(parts[1].reasons, TEXTS);
+        assert_eq!(parts[1].reason_codes, TEXTS.map(Reason::from_text));
         assert_eq!(
             (parts[0].lot.as_str(), &parts[0].values["operate_voltage_v"]),
             ("批次", &7.5.into())
@@ -51,8 +69,58 @@ fn a_file_of_every_earlier_schema_keeps_its_rows_and_can_be_written_on() {
             .record(&[Row::Part(part("批次", 1, "pass", 7.6))])
             .unwrap();
         assert_eq!(store.pragma("user_version"), SCHEMA.to_string());
-        assert_eq!(file.archive().how_many(&Filter::default()).unwrap(), 2);
+        assert_eq!(file.archive().how_many(&Filter::default()).unwrap(), 3);
     }
+}
+
+#[test]
+fn the_texts_of_a_file_without_codes_are_read_into_rows() {
+    let file = File::new();
+    of_schema(&file, 7);
+    file.archive();
+    let by_hand = file.by_hand();
+    let mut rows = by_hand
+        .prepare(
+            "SELECT seq, n, code, ifnull(parameter, ''), ifnull(side, ''), detail FROM reasons",
+        )
+        .unwrap();
+    let rows: Vec<(i64, i64, String, String, String, String)> = rows
+        .query_map([], |row| row.try_into())
+        .unwrap()
+        .collect::<rusqlite::Result<_>>()
+        .unwrap();
+    let row = |n, code: &str, parameter: &str, side: &str, detail: &str| {
+        let [code, parameter, side, detail] = [code, parameter, side, detail].map(str::to_owned);
+        (2, n, code, parameter, side, detail)
+    };
+    let expected = [
+        row(1, "not_proven", "operate_voltage_v", "high", ""),
+        row(
+            2,
+            "coil_current_over_range",
+            "coil_resistance_ohm",
+            "low",
+            "",
+        ),
+        row(3, "pin_open", "", "", "COM"),
+        row(4, "interrupted", "", "", "door_open"),
+        row(5, "unclassified", "", "", "refused by the clerk"),
+    ];
+    assert_eq!(rows, expected);
+}
+
+#[test]
+fn texts_of_more_parts_than_a_batch_are_all_read() {
+    let file = File::new();
+    of_schema(&file, 7);
+    let more =
+        "WITH RECURSIVE n (seq) AS (SELECT 3 UNION ALL SELECT seq + 1 FROM n WHERE seq < 2600)
+        INSERT INTO part (run_id, kind, seq, verdict, reasons, judged_at_us)
+        SELECT 1, 'lot', seq, 'fail', '[\"coil open\"]', 8 FROM n";
+    file.by_hand().execute(more, []).unwrap();
+    file.archive();
+    let read = 2600 - 2 + TEXTS.len() as i64;
+    assert_eq!(count(&file.by_hand(), "reason"), read);
 }
 
 #[test]

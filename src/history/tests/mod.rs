@@ -11,6 +11,7 @@ mod side_by_side;
 mod writing;
 
 use super::*;
+use crate::dut::Reason;
 use std::path::PathBuf;
 
 /// A file in a folder of its own, which goes with it.
@@ -70,7 +71,7 @@ fn part(lot: &str, seq: u64, verdict: &str, operate_v: f64) -> PartRecord {
         reasons: if verdict == "pass" {
             vec![]
         } else {
-            vec!["operate_voltage_v high".into()]
+            vec![Reason::from_text("operate_voltage_v high")]
         },
         judged_at_us: 1_000_000 * i64::try_from(seq).unwrap(),
         test_s: 0.61,

@@ -1,6 +1,6 @@
 //! Plans of the queries: each that may run on many rows finds them by an index.
 
-use super::super::{archive, curve, lots, retention, series, values};
+use super::super::{archive, curve, lots, reasons, retention, series, values};
 use super::reading::operate;
 use super::*;
 use rusqlite::StatementStatus;
@@ -122,7 +122,15 @@ fn parts_are_found_by_an_index_of_their_own() {
 }
 
 /// Tables that grow with the parts.
-const GROWING: [&str; 6] = ["part", "measurement", "sample", "curve", "series", "m"];
+const GROWING: [&str; 7] = [
+    "part",
+    "measurement",
+    "reason",
+    "sample",
+    "curve",
+    "series",
+    "m",
+];
 
 fn scans_a_growing_table(plan: &str) -> bool {
     let scans = |table: &str| {
@@ -190,6 +198,7 @@ fn what_is_read_or_deleted_part_by_part_is_found_by_its_key() {
         archive::VALUES,
         archive::MEASUREMENTS,
         archive::SAMPLES,
+        reasons::REASONS,
         curve::CURVES,
         lots::YIELD,
         lots::COUNTS,

@@ -29,8 +29,7 @@ fn part(operate_v: f64, verdict: &str, reasons: &[&str]) -> Part {
         part.values.insert(key.into(), value.into());
         part.uncertainty.insert(key.into(), 0.02.into());
     }
-    part.reasons = reasons.iter().map(|it| (*it).to_owned()).collect();
-    part
+    part.because(reasons.iter().map(|it| Reason::from_text(it)).collect())
 }
 
 fn relay(recipe: &mut Recipe) -> &mut RelayRecipe {

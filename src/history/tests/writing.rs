@@ -28,6 +28,10 @@ fn a_part_is_kept_down_to_the_raw_reply() {
         (shown.reasons.as_slice(), shown.serial.as_deref()),
         (&["operate_voltage_v high".to_owned()][..], Some("S-1"))
     );
+    assert_eq!(
+        shown.reason_codes,
+        [Reason::from_text("operate_voltage_v high")]
+    );
     assert_eq!(shown.values["operate_voltage_v"], 9.2);
     let measured = &shown.measurements[1];
     assert_eq!(
@@ -40,6 +44,30 @@ fn a_part_is_kept_down_to_the_raw_reply() {
         (sample.module.as_str(), sample.raw.as_str()),
         ("01", ">4C53")
     );
+}
+
+#[test]
+fn an_interruption_adds_its_code_once() {
+    let file = File::new();
+    let mut store = file.store();
+    store.begin_lot(&lot("A")).unwrap();
+    let interrupted = Row::Interrupted(InterruptedRecord {
+        lot: "A".into(),
+        kind: "lot".into(),
+        seq: 1,
+        reason: Reason::interrupted("door_open"),
+    });
+    let rows = [Row::Part(part("A", 1, "fail", 9.2)), interrupted.clone()];
+    store.record(&rows).unwrap();
+    store.record(&[interrupted]).unwrap();
+    let parts = file.archive().query(&Filter::default()).unwrap();
+    assert_eq!(
+        (parts[0].verdict.as_str(), parts[0].bin.as_deref()),
+        ("void", Some("retest"))
+    );
+    let texts = ["operate_voltage_v high", "interrupted: door_open"];
+    assert_eq!(parts[0].reasons, texts);
+    assert_eq!(parts[0].reason_codes, texts.map(Reason::from_text));
 }
 
 #[test]
@@ -354,7 +382,7 @@ fn quotes_chinese_and_sql_in_every_text_do_no_harm() {
     let mut record = part(nasty, 1, "fail", 7.0);
     record.serial = Some(nasty.into());
     record.bin = nasty.into();
-    record.reasons = vec![nasty.into()];
+    record.reasons = vec![Reason::unclassified(nasty)];
     record.measurements[0].key = format!("{nasty}_ohm");
     record.measurements[0].samples[0].raw = nasty.into();
     store.record(&[Row::Part(record)]).unwrap();

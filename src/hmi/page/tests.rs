@@ -5,7 +5,11 @@
 mod contrast;
 
 use super::*;
+use crate::dut::Characteristic;
+use crate::dut::reason::{Code, Reason};
+use crate::gauge::Side;
 use crate::report::Language;
+use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
 type Table = BTreeMap<String, BTreeMap<String, String>>;
@@ -32,18 +36,35 @@ fn every_word_is_there_in_both_languages() {
 }
 
 #[test]
-fn paper_can_say_in_chinese_what_the_page_can_say_of_a_part() {
-    for key in table().keys() {
-        if let Some(text) = key.strip_prefix("text.") {
-            assert_ne!(Language::Zh.reason(text), text);
-        }
-        if let Some(side) = key.strip_prefix("reason.") {
-            let said = Language::Zh.reason(&format!("operate_voltage_v {side}"));
-            assert!(
-                said.starts_with("动作电压") && !said.ends_with(side),
-                "{said}"
-            );
-        }
+fn every_reason_that_names_a_limit_has_words_on_page_and_paper() {
+    let table = table();
+    let operate = Characteristic::from_key("operate_voltage_v").unwrap();
+    let sides = [Side::Low, Side::High];
+    let limits = sides.map(|side| Reason::outside(operate, side));
+    let doubts = sides.map(|side| Reason::not_proven(operate, side));
+    let missing = [Reason::of(Code::NotMeasured(operate))];
+    for reason in limits.into_iter().chain(doubts).chain(missing) {
+        let side = reason.side.map_or(String::new(), |side| format!(".{side}"));
+        let word = format!("reason.{}{side}", reason.code.name());
+        assert!(table.contains_key(&word), "{word}");
+        assert!(Language::Zh.reason(&reason).starts_with("动作电压"));
+    }
+}
+
+#[test]
+fn every_quantity_and_finding_reaches_the_page_by_its_kind() {
+    let kinds: Value = serde_json::from_str(&kinds::json()).unwrap();
+    assert!(PAGE.contains(&kinds::json()));
+    let keys: Vec<&str> = kinds["characteristics"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|it| it["key"].as_str().unwrap())
+        .collect();
+    assert!(Characteristic::all().map(|it| it.key()).eq(keys));
+    assert_eq!(kinds["findings"]["coil_open"]["zh"], "线圈开路");
+    for text in [SCRIPT, WORDS] {
+        assert!(!Characteristic::all().any(|it| text.contains(it.key())));
     }
 }
 
@@ -81,10 +102,8 @@ fn every_word_in_the_table_is_used() {
         "stage",
         "verdict",
         "bin",
-        "key",
         "login",
         "reason",
-        "text",
         "actuator",
         "jog",
         "mode",
@@ -114,7 +133,7 @@ fn every_word_in_the_table_is_used() {
 }
 
 #[test]
-fn every_listed_quantity_bin_and_verdict_has_a_name() {
+fn every_listed_bin_verdict_and_mode_has_a_name() {
     let table = table();
     let list = |name: &str| {
         let text = SCRIPT.split(&format!("const {name} = [")).nth(1).unwrap();
@@ -126,7 +145,6 @@ fn every_listed_quantity_bin_and_verdict_has_a_name() {
             .collect::<Vec<_>>()
     };
     for (name, family, count) in [
-        ("KEYS", "key", 9),
         ("BINS", "bin", 6),
         ("VERDICTS", "verdict", 3),
         ("JOGS", "jog", 15),
@@ -152,11 +170,12 @@ fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_wor
         .unwrap()
     {
         let path = field["path"].as_str().unwrap();
-        let name = match path.strip_prefix("limits.") {
-            Some(limit) => format!("key.{}", limit.split('.').next().unwrap()),
-            None => format!("field.{path}"),
-        };
-        assert!(table.contains_key(&name), "{name}");
+        let mut parts = path.split('.');
+        let named = parts.any(|it| Characteristic::from_key(it).is_some());
+        assert!(
+            named || table.contains_key(&format!("field.{path}")),
+            "{path}"
+        );
         for word in field["words"].as_array().into_iter().flatten() {
             let name = format!("choice.{}", word.as_str().unwrap());
             assert!(table.contains_key(&name), "{name}");
@@ -206,7 +225,13 @@ fn no_two_scripts_of_the_page_give_one_name_twice() {
 #[test]
 fn the_page_is_whole_small_and_asks_nobody_else() {
     assert!(PAGE.len() < 150_000, "{}", PAGE.len());
-    for mark in ["<!--pages-->", "/*look*/", "/*words*/", "/*script*/"] {
+    for mark in [
+        "<!--pages-->",
+        "/*look*/",
+        "/*words*/",
+        "/*kinds*/",
+        "/*script*/",
+    ] {
         assert_eq!(FRAME.matches(mark).count(), 1);
         assert!(!PAGE.contains(mark));
     }
@@ -217,7 +242,13 @@ fn the_page_is_whole_small_and_asks_nobody_else() {
 
 #[test]
 fn nothing_inside_ends_its_element_early() {
-    for (text, end) in [(LOOK, "</style"), (WORDS, "</script"), (SCRIPT, "</script")] {
+    let kinds = kinds::json();
+    for (text, end) in [
+        (LOOK, "</style"),
+        (WORDS, "</script"),
+        (&kinds, "</script"),
+        (SCRIPT, "</script"),
+    ] {
         assert!(!text.to_ascii_lowercase().contains(end));
     }
     assert!(PAGE.contains(&format!("<style>{LOOK}</style>")));

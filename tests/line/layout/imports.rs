@@ -43,7 +43,7 @@ const TABLE: &[(&str, &[&str])] = &[
         "station",
         &["units", "rig", "guard", "gauge", "instrument", "dut"],
     ),
-    ("view", &["units"]),
+    ("view", &["units", "dut"]),
     (
         "history",
         &[

@@ -100,7 +100,7 @@ impl Line {
             serial: None,
             verdict: verdict.name().to_owned(),
             bin: bin.to_owned(),
-            reasons: verdict.texts(),
+            reasons: verdict.reasons().to_vec(),
             judged_at_us: at_us,
             test_s: 0.95 + 0.02 * draws.normal(),
             cycle_s: Some(cycle_us as f64 / 1e6),

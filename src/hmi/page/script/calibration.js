@@ -40,7 +40,7 @@ function goldenRows(part) {
   return part.values.map((it, place) => {
     const unit = unitOf(it.parameter), [value] = it.value === null ? [NONE] : measured(it.value, it.uncertainty);
     const difference = it.value === null ? NONE : measured(it.value - it.certified, it.uncertainty).join(" ± ") + " " + unit;
-    return row(place ? "" : part.serial, place ? "" : part.seen ? clock(part.seen) : word("c.never"), word("key." + it.parameter),
+    return row(place ? "" : part.serial, place ? "" : part.seen ? clock(part.seen) : word("c.never"), nameOf(it.parameter),
       measured(it.certified, it.certified_uncertainty)[0] + " " + unit, value === NONE ? NONE : value + " " + unit, difference);
   });
 }

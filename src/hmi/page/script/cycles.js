@@ -53,7 +53,7 @@ function together(times, name) {
 
 function showTestBars(part) {
   const rows = part.measurements.filter((it) => it.samples.length).map((it) => {
-    const name = known("key." + it.parameter, it.parameter);
+    const name = nameOf(it.parameter);
     return [name + (it.attempt > 1 ? " " + it.attempt : ""), together(it.samples.map((sample) => seconds(sample.at)), name)];
   }).sort((a, b) => a[1][0].from - b[1][0].from);
   const test = partBars(part).slice(0, 1);

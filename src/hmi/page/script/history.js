@@ -14,7 +14,7 @@ function makeFilter() {
   const all = ["", word("any")];
   fillSelect(at("h_verdict"), [all, ...[...VERDICTS, "unjudged"].map((it) => [it, word("verdict." + it)])]);
   fillSelect(at("h_bin"), [all, ...BINS.map((it) => [it, word("bin." + it)])]);
-  fillSelect(at("h_param"), [all, ...KEYS.map((it) => [it, word("key." + it)])]);
+  fillSelect(at("h_param"), [all, ...keyOptions()]);
 }
 
 async function readLots() {
@@ -60,14 +60,14 @@ function partLink(part) {
 
 function showParts(parts, count) {
   const key = at("h_param").value;
-  at("h_value").textContent = key ? word("key." + key) + " / " + unitOf(key) : "";
+  at("h_value").textContent = key ? nameOf(key) + " / " + unitOf(key) : "";
   at("h_count").textContent = count === 0 ? word("h.none")
     : (offset + 1) + " – " + (offset + parts.length) + " " + word("judged_of") + " " + whole(count);
   at("h_back").disabled = offset === 0;
   at("h_next").disabled = offset + parts.length >= count;
   at("parts").replaceChildren(...parts.map((part) => row(partLink(part), clock(part.time), part.recipe,
     verdictCell(part.verdict), known("bin." + (part.landed_bin || part.bin), NONE),
-    part.reasons.map(reasonText).join("; "), key ? measured(part.values[key], part.uncertainty[key]).join(" ± ") : "")));
+    reasonTexts(part).join("; "), key ? measured(part.values[key], part.uncertainty[key]).join(" ± ") : "")));
 }
 
 at("h_filter").addEventListener("submit", (event) => {
@@ -82,7 +82,6 @@ PAGES.history = {enter() { makeFilter(); readParts(); }};
 
 // --- one part ---
 
-const unitOf = (key) => UNITS[key.slice(key.lastIndexOf("_") + 1)];
 const limitText = (it) => (it.low === null ? "" : "≥ " + it.low + " ") + (it.high === null ? "" : "≤ " + it.high);
 
 async function readPart() {
@@ -105,7 +104,7 @@ function showPart(part) {
     ["h.bin", known("bin." + (part.landed_bin || part.bin), NONE)],
     ["h.test_s", part.test_s === null ? NONE : part.test_s.toFixed(2) + " s"],
     ["h.cycle_s", part.cycle_s === null ? NONE : part.cycle_s.toFixed(2) + " s"],
-    ["h.reasons", part.reasons.map(reasonText).join("; ") || NONE]];
+    ["h.reasons", reasonTexts(part).join("; ") || NONE]];
   at("part_facts").replaceChildren(...facts.map(([key, text]) => {
     const pair = make("div");
     pair.append(make("dt", word(key)), make("dd", text));
@@ -113,12 +112,12 @@ function showPart(part) {
   }));
   at("part_values").replaceChildren(...part.measurements.map((it) => {
     const [value, uncertainty] = measured(it.value, it.uncertainty);
-    return row(known("key." + it.parameter, it.parameter), String(it.attempt), value, uncertainty,
+    return row(nameOf(it.parameter), String(it.attempt), value, uncertainty,
       unitOf(it.parameter), limitText(it), verdictCell(it.verdict));
   }));
   showTestBars(part);
   at("part_replies").replaceChildren(...part.measurements.flatMap((it) => it.samples.map((sample) =>
-    row(known("key." + it.parameter, it.parameter), sample.line, sample.module, sample.channel,
+    row(nameOf(it.parameter), sample.line, sample.module, sample.channel,
       sample.command, sample.raw, sample.at.slice(11)))));
 }
 

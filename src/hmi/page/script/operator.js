@@ -17,18 +17,23 @@ function showLast(last) {
   verdict.textContent = last ? known("verdict." + last.verdict, last.verdict) : NONE;
   bin.textContent = last ? word("to_bin") + " " + known("bin." + last.bin, last.bin) : word("no_part");
   showRecent(view.recent);
-  const reasons = last ? last.reasons : [];
-  at("reasons").replaceChildren(...reasons.slice(0, 3).map((reason) => make("li", reasonText(reason))));
-  at("values").replaceChildren(...KEYS.map((key) => valueRow(key, last)));
+  const reasons = last ? reasonTexts(last) : [];
+  at("reasons").replaceChildren(...reasons.slice(0, 3).map((text) => make("li", text)));
+  at("values").replaceChildren(...measuredKeys().map((key) => valueRow(key, last)));
+}
+
+// Those of the recipe; before the first lot all there are.
+function measuredKeys() {
+  const keys = keysOf((key) => Object.hasOwn(view.limits, key));
+  return keys.length ? keys : keysOf(() => true);
 }
 
 function valueRow(key, last) {
   const [value, uncertainty] = last ? measured(last.values[key], last.uncertainty[key]) : [NONE, NONE];
   const row = make("tr");
-  const blamed = last && last.verdict === "fail" && last.reasons.some((it) => it.startsWith(key + " "));
+  const blamed = last && last.verdict === "fail" && last.reason_codes.some((it) => it.param === key);
   if (blamed) row.className = "bad";
-  const unit = UNITS[key.slice(key.lastIndexOf("_") + 1)];
-  row.append(make("td", word("key." + key)), make("td", value), make("td", uncertainty), make("td", unit), bandCell(key, last));
+  row.append(make("td", nameOf(key)), make("td", value), make("td", uncertainty), make("td", unitOf(key)), bandCell(key, last));
   return row;
 }
 

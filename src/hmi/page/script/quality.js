@@ -3,7 +3,7 @@
 let lotsSeen = [];
 
 async function enterQuality() {
-  fillSelect(at("q_param"), KEYS.map((it) => [it, word("key." + it)]));
+  fillSelect(at("q_param"), keyOptions());
   try {
     lotsSeen = await readLots();
     fillSelect(at("q_lot"), [...new Set(lotsSeen.map((it) => it.lot))].reverse().map((it) => [it, it]));

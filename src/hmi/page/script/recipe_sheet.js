@@ -1,6 +1,5 @@
 // A revision of a recipe as a sheet: every key in words with unit and range, and inputs for whoever may change it.
 
-const RECIPE_UNITS = {ohm: "Ω", mOhm: "mΩ", C: "°C"};
 // Three columns.
 const RECIPE_SECTIONS = [["about", "part", "decision"], ["limits"], ["test", "strategy"]];
 let recipe = null, drawnRecipe = "";
@@ -9,7 +8,6 @@ const typed = new Map();
 let refusedField = null, saidOfRecipe = () => ["", false];
 
 const mayRevise = () => me !== null && me.role === "engineer" && recipe !== null && recipe.number === recipe.newest;
-const recipeUnit = (unit) => RECIPE_UNITS[unit] || unit || "";
 const recipeSection = (path) => (path.startsWith("test.strategy.") ? "strategy" : path.includes(".") ? path.split(".")[0] : "about");
 const rangeText = (it) => (it.low === undefined ? "" : (it.low_allowed ? it.low + " … " : "> " + it.low + " … ") + it.high);
 
@@ -49,7 +47,7 @@ function shownText(field) {
 
 function typedInto(field, element, text, take) {
   element.value = text;
-  element.setAttribute("aria-label", fieldName(field.path) + (recipeUnit(field.unit) ? " / " + recipeUnit(field.unit) : ""));
+  element.setAttribute("aria-label", fieldName(field.path) + (unitText(field.unit) ? " / " + unitText(field.unit) : ""));
   element.dataset.path = field.path;
   element.addEventListener("input", () => {
     typed.set(field.path, take(element.value));
@@ -76,7 +74,7 @@ function fieldInputs(field) {
 
 const fieldName = (path) => {
   const [section, key, side] = path.split(".");
-  return section === "limits" ? word("key." + key) + " " + word("r." + side) : word("field." + path);
+  return section === "limits" ? nameOf(key) + " " + word("r." + side) : known("field." + path, nameOf(path.split(".").at(-1)));
 };
 
 const isFixed = (field) => field.path === "name" || Boolean(field.words) && field.words.length === 1;
@@ -90,7 +88,7 @@ function fieldCell(field) {
 
 // The unit; for whoever may change the value also where it must lie.
 function unitCell(field) {
-  const cell = make("td", recipeUnit(field.unit));
+  const cell = make("td", unitText(field.unit));
   if (mayRevise()) cell.append(make("small", rangeText(field)));
   return cell;
 }
@@ -112,7 +110,7 @@ function fieldRow(field) {
 
 // Least and greatest good value side by side.
 function limitRow(key, [low, high]) {
-  return withRefusal(row(word("key." + key), fieldCell(low), fieldCell(high), unitCell(low)), "limits." + key);
+  return withRefusal(row(nameOf(key), fieldCell(low), fieldCell(high), unitCell(low)), "limits." + key);
 }
 
 function fieldTable(section) {
@@ -123,7 +121,8 @@ function fieldTable(section) {
     body.append(...fields.flatMap(fieldRow));
     return table;
   }
-  body.append(...KEYS.flatMap((key) => limitRow(key, fields.filter((it) => it.path.startsWith("limits." + key + ".")))));
+  const ofKey = (key) => fields.filter((it) => it.path.startsWith("limits." + key + "."));
+  body.append(...keysOf((key) => ofKey(key).length).flatMap((key) => limitRow(key, ofKey(key))));
   const head = make("thead"), heads = ["quantity", "r.low", "r.high", "unit"].map((it) => make("th", word(it)));
   heads.forEach((it) => { it.scope = "col"; });
   head.append(make("tr"));

@@ -63,7 +63,7 @@ function refusedValue(answer) {
   const against = /^at most high, which is (.+)$/.exec(answer.expected), below = /^less than \w+, (.+) V$/.exec(answer.expected);
   const ranged = field && field.low !== undefined && /^a (whole )?number/.test(answer.expected);
   const expected = against ? word("r.at_most_high") + " " + against[1] : below ? "< " + below[1] + " V"
-    : ranged ? word(field.form === "whole" ? "r.whole" : "r.number") + ", " + rangeText(field) + " " + recipeUnit(field.unit)
+    : ranged ? word(field.form === "whole" ? "r.whole" : "r.number") + ", " + rangeText(field) + " " + unitText(field.unit)
       : answer.expected;
   return "▲ " + word("r.found") + " " + answer.found + word("r.expected") + " " + expected;
 }

@@ -6,10 +6,11 @@ function stateText(state) {
   return word("state.testing") + ": " + known("stage." + testing[1], testing[1]);
 }
 
-function reasonText(reason) {
-  if (Object.hasOwn(WORDS, "text." + reason)) return word("text." + reason);
-  const space = reason.indexOf(" ");
-  const key = reason.slice(0, space), rest = reason.slice(space + 1);
-  if (!KEYS.includes(key)) return reason;
-  return word("key." + key) + " " + known("reason." + rest, rest);
+// Why a part did not pass: by code, where the page has words for it, else as the rig says it.
+function reasonTexts(part) {
+  return part.reasons.map((text, place) => {
+    const {code, param, side} = part.reason_codes[place];
+    const said = FINDINGS[code]?.[language] ?? known("reason." + code + (side ? "." + side : ""), null);
+    return said === null ? text : (param ? nameOf(param) + " " : "") + said;
+  });
 }

@@ -1,10 +1,9 @@
 "use strict";
 // What all pages share. Every text comes through textContent, every word from the table.
 const WORDS = JSON.parse(document.getElementById("words").textContent);
-const KEYS = ["coil_resistance_ohm", "operate_voltage_v", "release_voltage_v", "operate_time_ms",
-  "release_time_ms", "operate_bounce_ms", "release_bounce_ms", "contact_resistance_no_mohm",
-  "contact_resistance_nc_mohm"];
-const UNITS = {ohm: "Ω", v: "V", ms: "ms", mohm: "mΩ"};
+// What is measured, and what a test may find, of every kind of device.
+const {characteristics: CHARACTERISTICS, findings: FINDINGS} = JSON.parse(document.getElementById("kinds").textContent);
+const UNITS = {ohm: "Ω", mOhm: "mΩ", C: "°C"};
 const BINS = ["pass", "coil", "contact", "voltage", "time", "retest"];
 const VERDICTS = ["pass", "fail", "void"];
 const NONE = "–";
@@ -26,6 +25,16 @@ const PAGES = {};
 const at = (id) => document.getElementById(id);
 const word = (key) => WORDS[key][language];
 const known = (key, text) => (Object.hasOwn(WORDS, key) ? word(key) : text);
+const unitText = (unit) => UNITS[unit] || unit || "";
+
+// --- characteristics ---
+
+const characteristic = (key) => CHARACTERISTICS.find((it) => it.key === key);
+// A key that no kind has came with a file of another system, and is its own name.
+const nameOf = (key) => characteristic(key)?.[language] ?? key;
+const unitOf = (key) => unitText(characteristic(key)?.unit);
+const keysOf = (has) => CHARACTERISTICS.map((it) => it.key).filter(has);
+const keyOptions = () => CHARACTERISTICS.map((it) => [it.key, it[language]]);
 
 function make(tag, text, name) {
   const element = document.createElement(tag);

@@ -1,0 +1,35 @@
+//! What a rig's instruments were found to do, and what its reference parts are certified to be: for people to read, of
+//! every kind alike.
+
+use super::calibration::Calibration;
+use super::characteristic::Characteristic;
+use super::em_relay::settings::{Certified, GoldenPart};
+use crate::gauge::factor::Named;
+
+/// What the certificate of a reference part says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certificate {
+    /// Serial number.
+    pub serial: String,
+    /// Nominal voltage of the recipes that it serves, V.
+    pub nominal_v: f64,
+    /// Every certified quantity, in the unit of its key.
+    pub values: Vec<(Characteristic, Certified)>,
+}
+
+impl From<&GoldenPart> for Certificate {
+    fn from(part: &GoldenPart) -> Self {
+        let values = part.certified();
+        Self {
+            serial: part.serial.clone(),
+            nominal_v: part.nominal_v,
+            values: values.map(|(it, value)| (it.into(), value)).to_vec(),
+        }
+    }
+}
+
+/// Returns every factor of a stored calibration; none when another program wrote it in a form that this one does not read.
+pub fn factors(calibration: serde_json::Value) -> Vec<Named> {
+    let read = serde_json::from_value::<Calibration>(calibration);
+    read.map_or_else(|_| Vec::new(), |it| it.factors())
+}
