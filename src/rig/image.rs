@@ -93,10 +93,11 @@ impl Image {
         let arrival = Arrival {
             line,
             module,
+            command: *command,
             raw,
             at,
         };
-        if self.file(&arrival, command, reply) {
+        if self.file(&arrival, reply) {
             return Ok(());
         }
         Err(Unexpected::WrongReply {
@@ -106,9 +107,9 @@ impl Image {
     }
 
     /// Puts a reply where it belongs; false when it cannot be a reply to this command.
-    fn file(&mut self, arrival: &Arrival<'_>, command: &Command, reply: &Reply) -> bool {
+    fn file(&mut self, arrival: &Arrival<'_>, reply: &Reply) -> bool {
         use dcon::AnalogIn::{ReadAll, ReadAllHex, ReadOne};
-        match (command, reply) {
+        match (&arrival.command, reply) {
             (Command::AnalogIn(_, ReadAll(_) | ReadAllHex(_)), Reply::Readings(readings)) => {
                 self.file_readings(arrival, |channel| readings.get(usize::from(channel.get())));
                 true
@@ -154,7 +155,7 @@ impl Image {
                 | Command::Digital(..)
                 | Command::Counter(..),
                 _,
-            ) => !carries_value(command),
+            ) => !carries_value(&arrival.command),
         }
     }
 
@@ -323,6 +324,7 @@ impl Image {
 struct Arrival<'a> {
     line: LineId,
     module: ModuleId,
+    command: Command,
     raw: &'a str,
     at: RigTime,
 }
@@ -333,6 +335,7 @@ impl Arrival<'_> {
             line: self.line,
             module: self.module,
             channel,
+            command: self.command,
             raw: Arc::clone(raw),
             at: self.at,
         }

@@ -2,7 +2,7 @@
 
 use super::point::{AnalogIn, Counter, DigitalIn, Temperature};
 use super::wiring::{LineId, ModuleId};
-use crate::dcon::Channel;
+use crate::dcon::{Channel, Command};
 use crate::units::RigTime;
 use std::sync::Arc;
 
@@ -15,10 +15,21 @@ pub struct Origin {
     pub module: ModuleId,
     /// The channel, from 0.
     pub channel: Channel,
+    /// What was asked.
+    pub command: Command,
     /// The reply as it came, lead included, check sum and CR excluded or not as the line hands it over.
     pub raw: Arc<str>,
     /// When the module was asked: the conversion may be older by its conversion time, never newer than the reply.
     pub at: RigTime,
+}
+
+impl Origin {
+    /// The request as sent, without check sum and end.
+    pub fn request(&self) -> String {
+        let mut bytes = Vec::new();
+        self.command.encode(false, &mut bytes);
+        String::from_utf8_lossy(&bytes).trim_end().to_string()
+    }
 }
 
 /// A point that gives analog samples.

@@ -5,7 +5,6 @@ use crate::dut::em_relay::Parameter;
 use crate::dut::verdict::{Judgement, Verdict};
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
 use crate::instrument::trace::Trace;
-use crate::rig::point::{AnalogIn, Counter};
 use crate::station::ledger::Kind;
 use crate::station::wants::Judged;
 use crate::units::RigTime;
@@ -84,7 +83,7 @@ fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<M
         line: setup.plant.wiring.line(origin.line).name.clone(),
         module: setup.plant.wiring.module(origin.module).name.clone(),
         channel: origin.channel.to_string(),
-        command: request(setup, origin),
+        command: origin.request(),
         raw: origin.raw.to_string(),
         at_us: setup.epoch_us + i64::try_from(origin.at.0).unwrap_or(i64::MAX),
     };
@@ -104,26 +103,6 @@ fn measurement(setup: &Setup, judged: &Judged, parameter: Parameter) -> Option<M
         budget: budget(&reading),
         samples: judged.findings.evidence(parameter).map(sample).collect(),
     })
-}
-
-/// The request that was answered, without checksum and end.
-fn request(setup: &Setup, origin: &crate::rig::sample::Origin) -> String {
-    let wiring = &setup.plant.wiring;
-    let asked = |counter| {
-        wiring.counter(counter).module == origin.module
-            && wiring.counter(counter).channel == origin.channel
-    };
-    let command =
-        if let Some(counter) = Counter::ALL.iter().copied().find(|counter| asked(*counter)) {
-            wiring.read_counter(counter)
-        } else if wiring.analog_in(AnalogIn::ContactDrop).module == origin.module {
-            wiring.read_analog(AnalogIn::ContactDrop)
-        } else {
-            wiring.poll(origin.module)
-        };
-    let mut bytes = Vec::new();
-    command.encode(false, &mut bytes);
-    String::from_utf8_lossy(&bytes).trim_end().to_string()
 }
 
 /// The budget as JSON; `None` while it holds a term that is not a number (JSON has no infinity).

@@ -8,7 +8,7 @@ mod stages;
 mod whole;
 
 use super::{Findings, Stop};
-use crate::dcon::Channel;
+use crate::dcon::{Channel, Command};
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{BoardInputs, CoilScan, Readings};
 use crate::rig::point::{AnalogIn, Counter};
@@ -22,6 +22,7 @@ fn origin() -> Origin {
         line: LineId(0),
         module: ModuleId(0),
         channel: Channel::new(0).unwrap(),
+        command: Command::HostOk,
         raw: ">0000".into(),
         at: RigTime(0),
     }
