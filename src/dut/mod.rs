@@ -6,5 +6,10 @@ pub mod em_relay;
 pub mod recipe;
 pub mod verdict;
 
+use crate::rig::point::Fixture;
+
+/// The points that each kind declares.
+pub const FIXTURES: &[Fixture] = &[em_relay::points::FIXTURE];
+
 pub use recipe::Recipe;
 pub use verdict::{Bin, Judgement, Verdict};

@@ -1,6 +1,6 @@
 //! What came from the rig, with everything needed to trace it back to its bytes.
 
-use super::point::{AnalogIn, Counter, DigitalIn, Temperature};
+use super::point::{AnalogInput, DigitalInput, GatedCounter, Thermometer};
 use super::wiring::{LineId, ModuleId};
 use crate::dcon::{Channel, Command};
 use crate::units::RigTime;
@@ -36,18 +36,18 @@ impl Origin {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AnalogPoint {
     /// A voltage input.
-    Input(AnalogIn),
+    Input(AnalogInput),
     /// A thermometer.
-    Temperature(Temperature),
+    Temperature(Thermometer),
 }
 
 /// A point that gives counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CountPoint {
     /// A gated counter, modulo 2^32.
-    Gate(Counter),
+    Gate(GatedCounter),
     /// The event counter of a digital input, modulo 2^16.
-    Events(DigitalIn),
+    Events(DigitalInput),
 }
 
 /// Whether a reading is a number.

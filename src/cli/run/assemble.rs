@@ -11,10 +11,10 @@ use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::{Factor, InputLine, OutputLine};
 use crate::dut::em_relay::feasible::nominal_v_per_s;
 use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Points};
 use crate::guard::{Actuator, Guard, PartSize};
 use crate::history::AlarmLeft;
 use crate::rig::axis::AxisStation;
-use crate::rig::point::{AnalogIn, AnalogOut};
 use crate::rig::wiring::StrokeLimits;
 use crate::station::catalogue;
 use crate::station::mechanism::Mechanism;
@@ -44,6 +44,7 @@ pub fn cycle(
     let plant = setup.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     let wiring = Arc::clone(&plant.wiring);
+    let points = Points::resolve(&wiring).context("config/rig.toml")?;
     let recipe = Arc::clone(setup.recipe);
     let strokes = Strokes {
         length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),
@@ -66,7 +67,9 @@ pub fn cycle(
         valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
         epoch_us: setup.epoch_us,
         simulated: setup.args.rig.sim,
-        voltage_gain: wiring.analog_in(AnalogIn::CoilVoltageFine).gain,
+        voltage_gain: wiring
+            .analog_in(points.analog(AnalogIn::CoilVoltageFine))
+            .gain,
         lot: plant.lot.clone(),
         worn,
         left,
@@ -77,7 +80,8 @@ pub fn cycle(
         reference: plant.reference,
         accuracy: plant.accuracy,
         nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
-            .map(|output| nominal_v_per_s(&wiring, output)),
+            .map(|output| nominal_v_per_s(&wiring, points.source(output))),
+        points,
         probe_contact: None,
         thorough: false,
         golden: None,

@@ -57,13 +57,13 @@ fn curves(trace: &Trace, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
     let mut curves: Vec<CurveRecord> = Vec::new();
     for look in trace.looks() {
         let sample = (at(look.at), Some(look.value).filter(|it| it.is_finite()));
-        let name = look.signal.name();
+        let name = look.signal.name;
         match curves.iter_mut().find(|curve| curve.signal == name) {
             Some(curve) => curve.samples.push(sample),
             None => curves.push(CurveRecord {
                 signal: name.to_owned(),
-                unit: look.signal.unit().to_owned(),
-                step: look.signal.step(),
+                unit: look.signal.unit.to_owned(),
+                step: look.signal.step,
                 samples: vec![sample],
             }),
         }

@@ -6,10 +6,11 @@
 use super::coil::relative_per_kelvin;
 use super::settings::AccuracySettings;
 use super::{Parameter, Strategy};
+use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, Points};
 use crate::dut::recipe::{Limit, Recipe};
 use crate::gauge::budget::COVERAGE_FACTOR;
 use crate::rig::fault::Fault;
-use crate::rig::point::{AnalogIn, AnalogOut, Counter};
+use crate::rig::point::AnalogOutput;
 use crate::rig::wiring::Wiring;
 use crate::units::Celsius;
 
@@ -27,9 +28,13 @@ const COUNTS: u8 = 0x50;
 /// # Errors
 /// The first fault.
 pub fn check(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<(), Fault> {
+    let points = Points::resolve(wiring).map_err(|missing| {
+        let expected = "a rig with every point that its test needs";
+        Fault::new("test", missing, expected)
+    })?;
     for (key, strategy) in recipe.test.strategy.each() {
         let key = format!("test.strategy.{key}");
-        if let Some(why) = hindrance(strategy, wiring, accuracy) {
+        if let Some(why) = hindrance(strategy, wiring, &points, accuracy) {
             return Err(Fault::new(
                 key,
                 strategy.name(),
@@ -72,10 +77,11 @@ pub fn check(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> R
 pub fn hindrance(
     strategy: Strategy,
     wiring: &Wiring,
+    points: &Points,
     accuracy: &AccuracySettings,
 ) -> Option<String> {
     let slew = |output: AnalogOut| {
-        let module = wiring.module(wiring.analog_out(output).module);
+        let module = wiring.module(wiring.analog_out(points.source(output)).module);
         (
             module.name.as_str(),
             module.slew.and_then(|code| code.volt_per_second()),
@@ -86,7 +92,7 @@ pub fn hindrance(
             "module {name} slews, supply_level must step (slew code 0)"
         ));
     }
-    let drop = wiring.analog_in(AnalogIn::ContactDrop);
+    let drop = wiring.analog_in(points.analog(AnalogIn::ContactDrop));
     let module = wiring.module(drop.module);
     if module
         .mask
@@ -97,7 +103,8 @@ pub fn hindrance(
             module.name
         ));
     }
-    let coil = wiring.module(wiring.analog_in(AnalogIn::CoilVoltageFine).module);
+    let coil = wiring.analog_in(points.analog(AnalogIn::CoilVoltageFine));
+    let coil = wiring.module(coil.module);
     if let Some(slow) = [module, coil].into_iter().find(|module| !module.fast)
         && accuracy.conversions_per_s > SLOW_CONVERSIONS_PER_S
     {
@@ -107,7 +114,7 @@ pub fn hindrance(
             slow.name
         ));
     }
-    let timer = wiring.module(wiring.counter(Counter::Gate0).module);
+    let timer = wiring.module(wiring.counter(points.counter(Counter::Gate0)).module);
     if timer.type_code.0 != COUNTS {
         return Some(format!(
             "module {} does not count (type code 50)",
@@ -134,7 +141,7 @@ pub fn hindrance(
 }
 
 /// Rate of an output at the coil, volts per second; 0 for one that steps.
-pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOut) -> f64 {
+pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOutput) -> f64 {
     let terminal = wiring.analog_out(output);
     let slew = wiring.module(terminal.module).slew;
     slew.and_then(|code| code.volt_per_second()).unwrap_or(0.0) * terminal.gain

@@ -1,10 +1,11 @@
 //! Recipe, golden parts and instruments that err by nothing.
 
-use super::RIG;
+use super::{RIG, wiring};
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::{Factor, InputLine, Lag, Lags, OutputLine};
 use crate::dut::em_relay::lag::LagLaw;
 use crate::dut::em_relay::measure::Bench;
+use crate::dut::em_relay::points::Points;
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
 use crate::dut::recipe::Recipe;
 use serde::Deserialize;
@@ -24,6 +25,7 @@ pub fn bench() -> Bench {
     Bench {
         recipe: Arc::new(recipe),
         calibration: Arc::new(calibration()),
+        points: Points::resolve(&wiring()).unwrap(),
         reference: instruments.reference,
         accuracy: instruments.accuracy,
         nominal_v_per_s: [96.0, 1.5],

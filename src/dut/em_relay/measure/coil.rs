@@ -3,16 +3,17 @@
 
 use super::{Bench, Findings, INTERLOCK, OFF, Stage, board};
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::coil::{resistance, to_reference};
+use crate::dut::em_relay::points::AnalogIn;
+use crate::dut::em_relay::points::DigitalOut::{
+    self, Arm, CoilDrive, EventNoBreak, KelvinTest, RampMode, SelectNo, SourceOn, SourceReverse,
+};
 use crate::dut::em_relay::probe_contact::in_series;
+use crate::dut::em_relay::readings::{CoilScan, Readings};
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::recipe::CoilChannels;
 use crate::dut::verdict::Bin;
-use crate::instrument::act::{Act, CoilScan, Read, Readings};
-use crate::rig::point::AnalogIn;
-use crate::rig::point::DigitalOut::{
-    self, Arm, CoilDrive, EventNoBreak, KelvinTest, RampMode, SelectNo, SourceOn, SourceReverse,
-};
 use crate::rig::sample::{Quality, Sample};
 use crate::units::{Ohm, Span, Volt};
 

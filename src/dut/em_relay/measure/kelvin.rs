@@ -7,9 +7,10 @@
 //! | five good, NC open or NO closed | a contact that does not rest: fail, contact |
 
 use super::{Bench, Findings, Stage, board};
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::points::DigitalOut::KelvinTest;
+use crate::dut::em_relay::readings::Readings;
 use crate::dut::verdict::Bin;
-use crate::instrument::act::{Act, Read, Readings};
-use crate::rig::point::DigitalOut::KelvinTest;
 use crate::units::Span;
 
 const PINS: [&str; 5] = ["coil A", "coil B", "COM", "NO", "NC"];

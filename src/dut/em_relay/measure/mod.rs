@@ -37,10 +37,12 @@ mod timing;
 
 use super::supply::Supply;
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::Act;
+use crate::dut::em_relay::points::DigitalOut;
+use crate::dut::em_relay::readings::Readings;
 use crate::dut::verdict::{Judgement, Verdict, failed_with, judge, of_part};
-use crate::instrument::act::{Act, Doing, JobDone, Runner};
+use crate::instrument::act::{Doing, JobDone, Runner};
 use crate::rig::image::Image;
-use crate::rig::point::DigitalOut;
 use crate::rig::sample::CountSample;
 use crate::units::{RigTime, Span};
 pub use bench::Bench;
@@ -97,7 +99,8 @@ impl Test {
     pub fn begin(bench: Bench, now: RigTime) -> Self {
         let mut supply = Supply::new(&bench.calibration);
         let mut findings = Findings::default();
-        let runner = Runner::new(acts(Stage::Kelvin, &bench, &mut supply, &mut findings), now);
+        let acts = acts(Stage::Kelvin, &bench, &mut supply, &mut findings);
+        let runner = Runner::new(bench.wired(acts), now);
         Self {
             stages: order(&bench),
             bench,
@@ -168,7 +171,7 @@ impl Test {
         self.stage = stage;
         self.findings.rested &= stage == Stage::Off;
         let acts = acts(stage, &self.bench, &mut self.supply, &mut self.findings);
-        self.runner = Runner::after(acts, now, &self.runner, self.gates.clone());
+        self.runner = Runner::after(self.bench.wired(acts), now, &self.runner);
     }
 
     /// Draws the conclusions of the stage that has just ended.
@@ -177,10 +180,10 @@ impl Test {
         self.findings
             .took(self.stage.measures(), now.since(self.began));
         self.began = now;
-        let mut readings = std::mem::take(&mut self.runner.readings);
-        let seen = std::mem::take(&mut readings.trace);
-        self.findings.trace.append(seen);
-        self.gates = readings.gates.last().cloned().or(self.gates.take());
+        let mut read = std::mem::take(&mut self.runner.readings);
+        self.findings.trace.append(std::mem::take(&mut read.trace));
+        let readings = Readings::of(&read, &self.bench.points, self.gates.take());
+        self.gates = readings.gates.last().cloned();
         let (bench, findings) = (&self.bench, &mut self.findings);
         let again = match self.stage {
             Stage::Kelvin => kelvin::conclude(bench, &readings, findings),

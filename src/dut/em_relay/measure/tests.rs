@@ -9,9 +9,9 @@ mod whole;
 
 use super::{Findings, Stop};
 use crate::dcon::{Channel, Command};
+use crate::dut::em_relay::points::{AnalogIn, Counter};
+use crate::dut::em_relay::readings::{BoardInputs, CoilScan, Readings};
 use crate::dut::verdict::Bin;
-use crate::instrument::act::{BoardInputs, CoilScan, Readings};
-use crate::rig::point::{AnalogIn, Counter};
 use crate::rig::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
 use crate::rig::wiring::{LineId, ModuleId};
 use crate::station::tests::bench;
@@ -36,7 +36,7 @@ fn sample(point: AnalogIn, quality: Quality, value: f64, gain: f64) -> Sample {
         f64::NAN
     };
     Sample {
-        point: AnalogPoint::Input(point),
+        point: AnalogPoint::Input(bench().points.analog(point)),
         value,
         terminal_volts: value * gain,
         quality,
@@ -65,7 +65,7 @@ fn scan(volts: f64, ampere: f64) -> CoilScan {
 
 fn gates(counts: [u32; 2]) -> [CountSample; 2] {
     let gate = |counter, count| CountSample {
-        point: CountPoint::Gate(counter),
+        point: CountPoint::Gate(bench().points.counter(counter)),
         count,
         origin: origin(),
     };

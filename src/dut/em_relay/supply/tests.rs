@@ -1,10 +1,10 @@
 //! Three outputs add up to what was asked, whatever the outputs' own gain and offset.
 
 use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::{Factor, OutputLine};
+use crate::dut::em_relay::points::AnalogOut;
 use crate::dut::em_relay::supply::Supply;
-use crate::instrument::act::Act;
-use crate::rig::point::AnalogOut;
 use crate::station::tests::bench;
 use crate::units::{Span, Volt};
 

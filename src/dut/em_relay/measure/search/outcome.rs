@@ -4,10 +4,10 @@ use super::{AFTER_SEARCH, Next, parameter};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Bench, Findings, Stage};
+use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::verdict::Judgement;
 use crate::gauge::budget::{Budget, Reading, resolution};
-use crate::instrument::act::Readings;
 use crate::rig::sample::CountSample;
 use crate::units::{Span, Volt};
 

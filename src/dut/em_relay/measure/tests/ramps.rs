@@ -3,16 +3,16 @@
 use super::super::{Stage, operate_fine, release, search};
 use super::{PULLED, RESTING, at_23_c, bench, watched};
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::{Calibration, Lags};
 use crate::dut::em_relay::golden::interim;
 use crate::dut::em_relay::lag::{LagLaw, Shown};
 use crate::dut::em_relay::measure::pace::Pace;
 use crate::dut::em_relay::measure::ramp::Expected;
+use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::budget::{Budget, Reading};
-use crate::instrument::act::Act;
-use crate::rig::point::DigitalOut;
 use crate::rig::sample::CountSample;
 use crate::station::tests::golden_parts;
 use crate::units::Celsius;
