@@ -26,11 +26,11 @@ use crate::bus::{Answer, LineError, Pace};
 use crate::dcon::{self, Command};
 use crate::guard::Guard;
 use crate::hmi::Asked;
-use crate::instrument::act::{Job, JobDone, Read};
+use crate::instrument::act::{Job, JobDone};
 use crate::rig::drive::Outputs;
 use crate::rig::image::Image;
 use crate::rig::level::Correction;
-use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
+use crate::rig::point::DigitalIn;
 use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
 use crate::station::inside::Inside;
@@ -331,7 +331,7 @@ impl Cycle {
         }
     }
 
-    /// Outputs become commands; the measuring line gets its job.
+    /// Outputs become commands; the measuring lines get their job.
     fn apply(&mut self, now: RigTime, wants: &mut Wants) {
         if wants.safe {
             self.outputs.everything_safe();
@@ -349,7 +349,7 @@ impl Cycle {
             .watch_beam(wants.beam.map(|beam| self.wiring.read_events(beam)));
         let is_job = wants.job.is_some();
         if let Some(job) = wants.job.take() {
-            self.start(job, now);
+            self.start(job);
         }
         for write in self.outputs.writes() {
             let again = self.traffic.is_rewrite_for_job(write.module);
@@ -370,14 +370,14 @@ impl Cycle {
     }
 
     fn is_measuring(&self, line: LineId) -> bool {
-        self.traffic.measuring_line() == line
+        self.traffic.measuring_lines().contains(&line)
     }
 
-    fn start(&mut self, job: Job, _now: RigTime) {
-        let line = self.traffic.measuring_line();
+    /// Outputs of the job are set, and written with those of the turn; readings are queued.
+    fn start(&mut self, job: Job) {
         self.traffic.begin_job();
-        let reads = match job {
-            Job::Board(outputs) => {
+        let commands = match job {
+            Job::Set(outputs) => {
                 for (point, on) in outputs {
                     if let Err(needs) = self.outputs.set(point, on) {
                         self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
@@ -385,7 +385,7 @@ impl Cycle {
                 }
                 Vec::new()
             }
-            Job::Supply(outputs) => {
+            Job::Level(outputs) => {
                 for (output, volts) in outputs {
                     if let Err(cannot) = self.outputs.set_supply(output, volts, Correction::NONE) {
                         self.bus_alarm
@@ -394,31 +394,12 @@ impl Cycle {
                 }
                 Vec::new()
             }
-            Job::Read(read) => self.reads(read),
-            Job::CoilMask(mask) => {
-                let module = self.wiring.analog_in(AnalogIn::CoilVoltageFine).module;
-                vec![dcon::AnalogIn::WriteMask(mask).to(self.wiring.module(module).address)]
-            }
+            Job::Read(points) => self.wiring.reads(&points),
+            Job::Restarts => self.traffic.measuring_resets(),
+            Job::Mask(inputs) => self.wiring.masks(&inputs),
         };
-        for command in reads {
+        for (line, command) in commands {
             self.traffic.queue(line, command, Purpose::Job);
-        }
-    }
-
-    fn reads(&self, read: Read) -> Vec<Command> {
-        let wiring = &self.wiring;
-        match read {
-            Read::Board => vec![wiring.poll(wiring.digital_in(DigitalIn::Latch).module)],
-            Read::Coil => vec![wiring.poll(wiring.analog_in(AnalogIn::CoilVoltageFine).module)],
-            Read::Current(channel) => vec![wiring.read_analog(channel)],
-            Read::Drop => vec![wiring.read_analog(AnalogIn::ContactDrop)],
-            Read::Gates => vec![
-                wiring.read_counter(Counter::Gate0),
-                wiring.read_counter(Counter::Gate1),
-            ],
-            Read::Gate => vec![wiring.read_counter(Counter::Gate0)],
-            Read::Resets => self.traffic.measuring_resets(),
-            Read::Track => vec![wiring.read_temperature(Temperature::Track)],
         }
     }
 

@@ -33,8 +33,31 @@ pub enum Form {
     Named(&'static Form),
     /// A table with exactly these names, all of one form.
     Each(&'static [&'static str], &'static Form),
+    /// A table of points.
+    Points(Points),
     /// A list of entries of one form.
     List(&'static Form),
+}
+
+/// A table of points of the rig, all of one form.
+#[derive(Debug, Clone, Copy)]
+pub struct Points {
+    /// Those that every rig has.
+    pub must: &'static [&'static str],
+    /// Those that a rig may lack, kind of device by kind.
+    pub may: &'static [&'static [&'static str]],
+    /// Whether the file itself may name others.
+    pub free: bool,
+    /// What each entry must look like.
+    pub entry: &'static Form,
+}
+
+impl Points {
+    /// Every name but the free ones.
+    pub fn names(&self) -> Vec<&'static str> {
+        let may = self.may.iter().copied().flatten();
+        self.must.iter().chain(may).copied().collect()
+    }
 }
 
 /// The range of a number.
@@ -142,7 +165,9 @@ impl Form {
             }
             Self::Flag => "true or false".to_owned(),
             Self::Numbers(count, range) => format!("a list of {count}, each {}", range.expected()),
-            Self::Table(_) | Self::Named(_) | Self::Each(..) => "a table".to_owned(),
+            Self::Table(_) | Self::Named(_) | Self::Each(..) | Self::Points(_) => {
+                "a table".to_owned()
+            }
             Self::List(_) => "a list".to_owned(),
         }
     }
@@ -150,7 +175,7 @@ impl Form {
     /// Whether the value is a table.
     pub fn is_table(&self) -> bool {
         match self {
-            Self::Table(_) | Self::Named(_) | Self::Each(..) => true,
+            Self::Table(_) | Self::Named(_) | Self::Each(..) | Self::Points(_) => true,
             Self::Text
             | Self::Choice(_)
             | Self::Hex(_)

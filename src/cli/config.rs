@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     fn wiring(rig: &str) -> Wiring {
-        Wiring::resolve(&toml::from_str(rig).unwrap()).unwrap()
+        Wiring::resolve(&toml::from_str(rig).unwrap(), crate::dut::FIXTURES).unwrap()
     }
 
     #[test]

@@ -6,7 +6,7 @@
 use super::error::ConfigError;
 use super::nearest::nearest;
 use super::tree::{Node, Value};
-use crate::form::{Form, Key, Range};
+use crate::form::{Form, Key, Points, Range};
 use crate::rig::fault::Fault;
 use std::path::PathBuf;
 
@@ -29,6 +29,14 @@ impl File {
 
     /// Gives a fault found by another module its file and line.
     pub fn locate(&self, fault: &Fault) -> ConfigError {
+        if let Some((path, name)) = fault
+            .key
+            .rsplit_once('.')
+            .filter(|_| !fault.known.is_empty())
+        {
+            let known: Vec<&str> = fault.known.iter().map(String::as_str).collect();
+            return self.unknown(path, name, &known);
+        }
         let expected = match &fault.other {
             Some(other) => {
                 let line = self.root.find(other).0.line;
@@ -77,6 +85,7 @@ impl File {
             Form::Table(keys) => self.table(path, node, keys),
             Form::Named(entry) => self.named(path, node, entry),
             Form::Each(names, entry) => self.each(path, node, names, entry),
+            Form::Points(points) => self.points(path, node, points),
             Form::List(entry) => self.list(path, node, entry),
             Form::Numbers(count, range) => self.numbers(path, node, *count, range),
             Form::Text
@@ -141,6 +150,28 @@ impl File {
             Some(missing) => Err(self.missing(path, missing, form)),
             None => Ok(()),
         }
+    }
+
+    fn points(&self, path: &str, node: &Node, points: &Points) -> Result<(), ConfigError> {
+        let names = points.names();
+        for (name, entry) in self.entries(path, node)? {
+            if !points.free && !names.contains(&name.as_str()) {
+                return Err(self.unknown(path, name, &names));
+            }
+            self.form(&join(path, name), entry, points.entry)?;
+        }
+        let mut must = points.must.iter();
+        let Some(missing) = must.find(|name| node.get(name).is_none()) else {
+            return Ok(());
+        };
+        // A free name next to a missing one is a slip.
+        let mut others = self.entries(path, node)?.iter().map(|(name, _)| name);
+        let slip = others
+            .find(|name| !names.contains(&name.as_str()) && nearest(name, &[missing]).is_some());
+        Err(match slip {
+            Some(name) => self.unknown(path, name, &names),
+            None => self.missing(path, missing, points.entry),
+        })
     }
 
     fn list(&self, path: &str, node: &Node, form: &Form) -> Result<(), ConfigError> {

@@ -5,10 +5,10 @@ use super::error::ConfigError;
 use super::keys;
 use super::lot::load_lot;
 use super::tree::{Node, NotToml, not_toml};
-use crate::dut::Recipe;
 use crate::dut::em_relay::settings::{
     AccuracySettings, CalibrationSettings, GoldenSet, ReferenceSettings,
 };
+use crate::dut::{self, Recipe};
 use crate::form::Key;
 use crate::guard::{Actuator, Guard, GuardSettings};
 use crate::rig::fault::Fault;
@@ -60,7 +60,8 @@ impl Plant {
         let rig = File::read(dir.join("rig.toml"), "the wiring of the rig")?;
         let settings: RigSettings = rig.settings(keys::rig::FILE)?;
         let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
-        let wiring = Wiring::resolve(&settings).map_err(|fault| rig.locate(&fault))?;
+        let wiring =
+            Wiring::resolve(&settings, dut::FIXTURES).map_err(|fault| rig.locate(&fault))?;
         let golden = load_golden(&dir.join(&gauge.calibration.golden))?;
         let scene = load_scene(&dir.join("scene.toml"))?;
         check_axis(&wiring, &scene, &rig)?;

@@ -1,6 +1,6 @@
 //! The tables of `config/README.md`, written from [`keys`](super::keys) so that they cannot drift.
 
-use crate::form::{Form, Key};
+use crate::form::{Form, Key, Points};
 use std::fmt::Write;
 
 /// One table row for each key of a file, tables before what is in them.
@@ -31,6 +31,7 @@ fn write_inner(path: &str, form: &Form, text: &mut String) {
         Form::Table(keys) => write_rows(&format!("{path}."), keys, text),
         Form::Named(inner) => write_inner(&format!("{path}.NAME"), inner, text),
         Form::Each(_, inner) => write_inner(&format!("{path}.NAME"), inner, text),
+        Form::Points(points) => write_inner(&format!("{path}.NAME"), points.entry, text),
         Form::List(inner) => write_inner(&format!("{path}[]"), inner, text),
         Form::Text
         | Form::Choice(_)
@@ -43,10 +44,29 @@ fn write_inner(path: &str, form: &Form, text: &mut String) {
     }
 }
 
+fn points_in_words(points: &Points) -> String {
+    let may: Vec<&str> = points.may.iter().copied().flatten().copied().collect();
+    let sentence = |is_so: bool, words: String| is_so.then_some(words);
+    let words = [
+        sentence(
+            !points.must.is_empty(),
+            format!("a table for each of {}", points.must.join(", ")),
+        ),
+        sentence(
+            !may.is_empty(),
+            format!("a table for each that the rig has of {}", may.join(", ")),
+        ),
+        sentence(points.free, "a table for each beam of a bin".to_owned()),
+    ];
+    let words: Vec<String> = words.into_iter().flatten().collect();
+    words.join("; ")
+}
+
 fn what(form: &Form) -> String {
     match form {
         Form::Named(_) => "tables with names of your choice".to_owned(),
         Form::Each(names, _) => format!("a table for each of {}", names.join(", ")),
+        Form::Points(points) => points_in_words(points),
         Form::Text
         | Form::Choice(_)
         | Form::Hex(_)

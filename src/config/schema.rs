@@ -63,6 +63,14 @@ fn form(form_of: &Form) -> Value {
                 .collect();
             json!({ "type": "object", "properties": properties, "required": names, "additionalProperties": false })
         }
+        Form::Points(points) => {
+            let entry = form(points.entry);
+            let names = points.names().into_iter();
+            let properties: Map<String, Value> =
+                names.map(|name| (name.to_owned(), entry.clone())).collect();
+            let others = if points.free { entry } else { json!(false) };
+            json!({ "type": "object", "properties": properties, "required": points.must, "additionalProperties": others })
+        }
         Form::List(entry) => json!({ "type": "array", "items": form(entry) }),
     }
 }
@@ -84,10 +92,12 @@ mod tests {
     #[test]
     fn the_schema_knows_what_the_check_knows() {
         let schema = schema("rig.toml", keys::rig::FILE);
-        assert_eq!(
-            schema["properties"]["analog_in"]["required"][0],
-            "coil_voltage"
-        );
+        let inputs = &schema["properties"]["digital_in"];
+        assert_eq!(inputs["required"][0], "emergency_stop_ok");
+        assert!(inputs["properties"]["latch"].is_object(), "may be missing");
+        assert!(inputs["additionalProperties"].is_object(), "beams");
+        let outputs = &schema["properties"]["digital_out"];
+        assert_eq!(outputs["additionalProperties"], json!(false));
         assert_eq!(
             schema["properties"]["safety"]["properties"]["estop_reaction_ms"]["exclusiveMinimum"],
             0.0

@@ -120,6 +120,7 @@ fn entry(form: &Form) -> Option<Entry> {
         | Form::Table(_)
         | Form::Named(_)
         | Form::Each(..)
+        | Form::Points(_)
         | Form::List(_) => None,
     }
 }

@@ -1,6 +1,7 @@
 //! Wrong files and what the operator reads. Each case changes one thing in the files of `config/`.
 #![allow(clippy::unwrap_used)]
 
+mod fixture;
 mod plant;
 mod revision;
 
@@ -9,6 +10,7 @@ use super::error::ConfigError;
 use super::keys;
 use super::recipes::parse_recipe;
 use crate::dut::recipe::Recipe;
+use crate::rig::axis::Bin;
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::Wiring;
 use std::path::PathBuf;
@@ -20,7 +22,7 @@ const RECIPE: &str = include_str!("../../config/recipes/jzc-22f-012.toml");
 fn rig(text: &str) -> Result<Wiring, ConfigError> {
     let file = File::parse(PathBuf::from("config/rig.toml"), text.to_owned())?;
     let settings: RigSettings = file.settings(keys::rig::FILE)?;
-    Wiring::resolve(&settings).map_err(|fault| file.locate(&fault))
+    Wiring::resolve(&settings, crate::dut::FIXTURES).map_err(|fault| file.locate(&fault))
 }
 
 fn recipe(text: &str) -> Result<Recipe, ConfigError> {
@@ -169,6 +171,39 @@ fn a_mistyped_key_is_refused_with_the_nearest_known_one() {
         "operate_voltage_mv",
         "[limits].operate_voltage_mv: found an unknown key, expected \"operate_voltage_v\"?",
     );
+}
+
+#[test]
+fn a_mistyped_point_is_refused_with_the_nearest_known_one() {
+    for (from, to, near) in [
+        ("air_ok            =", "air_oki           =", "air_ok"),
+        ("latch             =", "lach              =", "latch"),
+        ("beam_pass         =", "beam_pas          =", ""),
+    ] {
+        let name = to.split(' ').next().unwrap();
+        let message = match near {
+            "" => {
+                "[bin].pass.beam: found \"beam_pass\", expected the name of a digital input".into()
+            }
+            near => format!("[digital_in].{name}: found an unknown key, expected \"{near}\"?"),
+        };
+        let at = if near.is_empty() { "pass    =" } else { to };
+        refused(from, to, at, &message);
+    }
+    refused(
+        "coil_drive        =",
+        "coil_driv         =",
+        "coil_driv         =",
+        "[digital_out].coil_driv: found an unknown key, expected \"coil_drive\"?",
+    );
+}
+
+#[test]
+fn a_beam_may_have_any_name() {
+    let text = RIG.replace("beam_pass", "good_parts_fall_here");
+    let wiring = rig(&text).unwrap();
+    let beam = wiring.digital_input("good_parts_fall_here").unwrap();
+    assert_eq!(wiring.axis.beam(Bin::Pass), beam);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::Cycle;
 use crate::dut::verdict::Bin;
 use crate::guard::{Actuator, Position};
-use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::rig::point::DigitalInput;
 use crate::station::Station;
 use crate::station::annunciator::Standing;
 use crate::station::catalogue::{self, Stops};
@@ -97,7 +97,7 @@ impl Cycle {
 
     fn machine(&self, now: RigTime) -> Machine {
         let (station, wiring) = (&self.station, &self.wiring);
-        let input = |point: &DigitalIn| self.image.input(*point, now, SENSOR_AGE);
+        let input = |point: DigitalInput| self.image.input(point, now, SENSOR_AGE);
         let ms = |span: Span| span.as_seconds() * 1e3;
         Machine {
             state: station.outer().name().into(),
@@ -108,13 +108,13 @@ impl Cycle {
                 .map(|actuator| self.actuator(*actuator, now))
                 .collect(),
             places: places(station),
-            inputs: DigitalIn::ALL
-                .iter()
-                .map(|point| (point.name().to_owned(), input(point)))
+            inputs: wiring
+                .digital_inputs()
+                .map(|(name, point)| (name.to_owned(), input(point)))
                 .collect(),
-            outputs: DigitalOut::ALL
-                .iter()
-                .map(|point| (point.name().to_owned(), self.outputs.is_on(*point)))
+            outputs: wiring
+                .digital_outputs()
+                .map(|(name, point)| (name.to_owned(), self.outputs.is_on(point)))
                 .collect(),
             reaction: Reaction {
                 bound_ms: ms(wiring.longest_reaction()),
@@ -278,6 +278,7 @@ fn line(one: &Standing, epoch_us: i64) -> AlarmLine {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::read;
+    use crate::dut::em_relay;
     use crate::guard::Actuator;
     use crate::rig::point::{DigitalIn, DigitalOut};
     use crate::station::orders::JOGS;
@@ -291,6 +292,9 @@ mod tests {
             serde_json::from_str(table).unwrap();
         let signals = DigitalIn::ALL.iter().map(|it| it.name());
         let signals = signals.chain(DigitalOut::ALL.iter().map(|it| it.name()));
+        let boards = em_relay::points::DigitalIn::NAMES.iter();
+        let boards = boards.chain(em_relay::points::DigitalOut::NAMES).copied();
+        let signals = signals.chain(boards);
         let keys = (signals.map(|it| format!("signal.{it}")))
             .chain(JOGS.iter().map(|(name, _)| format!("jog.{name}")))
             .chain(Actuator::names().map(|it| format!("actuator.{it}")))

@@ -8,10 +8,11 @@ use super::underway::JobUnderway;
 use crate::bus::{Answer, Request};
 use crate::dcon::{Command, Common};
 use crate::instrument::act::JobDone;
-use crate::rig::point::DigitalIn;
+use crate::rig::axis::Bin;
+use crate::rig::point::{DigitalIn, DigitalInput};
 use crate::rig::wiring::{LineId, ModuleId, Wiring};
 use crate::units::{RigTime, Span};
-use std::collections::VecDeque;
+use std::collections::{BTreeSet, VecDeque};
 use std::future::poll_fn;
 use std::sync::Arc;
 use std::task::Poll;
@@ -24,6 +25,16 @@ fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
         .filter(|module| module.model.has_outputs())
         .map(|module| Common::ReadResetStatus.to(module.address))
         .collect()
+}
+
+/// Modules of a line that carry inputs of the machine or beams, by address; those of a fixture are read by its acts.
+fn scanned_modules(wiring: &Wiring, line: LineId) -> Vec<ModuleId> {
+    let machine = DigitalIn::ALL.iter().copied().map(DigitalInput::from);
+    let beams = Bin::ALL.iter().map(|bin| wiring.axis.beam(*bin));
+    let modules = machine.chain(beams).map(|it| wiring.digital_in(it).module);
+    let modules: BTreeSet<ModuleId> = modules.collect();
+    let here = |module: &ModuleId| wiring.module(*module).line == line;
+    modules.into_iter().filter(here).collect()
 }
 
 /// The cycle's ends of a line's queues.
@@ -71,7 +82,8 @@ struct Slot {
 /// All lines.
 pub struct Traffic {
     slots: Vec<Slot>,
-    measuring: LineId,
+    /// Lines with points of a fixture.
+    measuring: Vec<LineId>,
     heartbeat: Span,
     scan_period: Span,
     job: Option<JobUnderway>,
@@ -92,20 +104,11 @@ impl Traffic {
     pub fn new(wiring: &Arc<Wiring>, lines: Vec<LineEnds>) -> Self {
         let estop = wiring.emergency_stop_module();
         let estop_line = wiring.module(estop).line;
-        let board_line = wiring
-            .module(wiring.digital_in(DigitalIn::Latch).module)
-            .line;
         let slots = lines
             .into_iter()
             .map(|ends| {
-                let mut scan: Vec<ModuleId> = DigitalIn::ALL
-                    .iter()
-                    .map(|point| wiring.digital_in(*point).module)
-                    .filter(|module| wiring.module(*module).line == ends.line && *module != estop)
-                    .collect();
-                scan.sort_by_key(|module| module.0);
-                scan.dedup();
-                let is_board = ends.line == board_line && board_line != estop_line;
+                let mut scan = scanned_modules(wiring, ends.line);
+                scan.retain(|module| *module != estop);
                 Slot {
                     tries: wiring.tries_on(ends.line),
                     busy: None,
@@ -114,11 +117,7 @@ impl Traffic {
                     heartbeat_due: RigTime(0),
                     rota: Rota::new(
                         (ends.line == estop_line).then(|| wiring.poll(estop)),
-                        if is_board {
-                            Vec::new()
-                        } else {
-                            scan.into_iter().map(|m| wiring.poll(m)).collect()
-                        },
+                        scan.into_iter().map(|m| wiring.poll(m)).collect(),
                         reset_questions(wiring, ends.line),
                     ),
                     scan_due: RigTime(0),
@@ -128,7 +127,7 @@ impl Traffic {
             .collect();
         Self {
             slots,
-            measuring: board_line,
+            measuring: wiring.measuring_lines(),
             heartbeat: Span::seconds(wiring.bus.heartbeat_ms / 1e3),
             scan_period: Span::seconds(wiring.bus.scan_period_ms / 1e3),
             job: None,
@@ -143,17 +142,21 @@ impl Traffic {
         }
     }
 
-    /// The line with the interface board.
-    pub fn measuring_line(&self) -> LineId {
-        self.measuring
+    /// Lines with points of a fixture.
+    pub fn measuring_lines(&self) -> &[LineId] {
+        &self.measuring
     }
 
-    /// Reset status of every module with outputs on the measuring line.
-    pub fn measuring_resets(&self) -> Vec<Command> {
-        self.slots
-            .iter()
-            .find(|slot| slot.ends.line == self.measuring)
-            .map_or_else(Vec::new, |slot| slot.rota.resets.clone())
+    /// Reset status of every module with outputs on the measuring lines.
+    pub fn measuring_resets(&self) -> Vec<(LineId, Command)> {
+        let slots = self.slots.iter();
+        let measuring = slots.filter(|slot| self.measuring.contains(&slot.ends.line));
+        let resets = |slot: &Slot| {
+            let line = slot.ends.line;
+            let resets = slot.rota.resets.clone();
+            resets.into_iter().map(move |command| (line, command))
+        };
+        measuring.flat_map(resets).collect()
     }
 
     /// How often a command of this line is tried.

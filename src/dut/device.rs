@@ -2,10 +2,12 @@
 
 use super::calibration::Calibration;
 use super::em_relay;
+use super::em_relay::points::Missing;
 use super::em_relay::settings::{AccuracySettings, GoldenSet, ReferenceSettings};
 use super::procedure::Procedure;
 use super::recipe::{DeviceRecipe, Recipe};
-use crate::instrument::act::{Act, Readings};
+use crate::instrument::act::Act;
+use crate::instrument::readings::Readings;
 use crate::rig::wiring::Wiring;
 use crate::units::{Ohm, RigTime};
 use std::sync::Arc;
@@ -66,12 +68,20 @@ pub enum Device {
 
 impl Device {
     /// Puts `recipe` on a rig that was calibrated before, or was not.
-    pub fn new(recipe: Arc<Recipe>, rig: &Rig, stored: Option<Calibration>) -> Self {
+    ///
+    /// # Errors
+    /// Names the first point of the kind that the rig does not have.
+    pub fn new(
+        recipe: Arc<Recipe>,
+        rig: &Rig,
+        stored: Option<Calibration>,
+    ) -> Result<Self, Missing> {
         match &recipe.device {
             DeviceRecipe::EmRelay(relay) => {
                 let stored = stored.map(|Calibration::EmRelay(factors)| factors);
                 let relay = Arc::new(relay.clone());
-                Self::EmRelay(Box::new(em_relay::Device::new(recipe, relay, rig, stored)))
+                let device = em_relay::Device::new(recipe, relay, rig, stored)?;
+                Ok(Self::EmRelay(Box::new(device)))
             }
         }
     }

@@ -22,6 +22,11 @@ pub use reason::Reason;
 pub use recipe::Recipe;
 pub use verdict::{Bin, Verdict};
 
+use crate::rig::point::Fixture;
+
+/// The points that each kind declares.
+pub const FIXTURES: &[Fixture] = &[em_relay::points::FIXTURE];
+
 /// A kind of device under test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {

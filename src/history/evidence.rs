@@ -12,8 +12,7 @@
 
 use super::Curve;
 use crate::dut::em_relay::Parameter;
-use crate::instrument::trace::Signal;
-use crate::rig::point::AnalogOut;
+use crate::dut::em_relay::points::{AnalogOut, BOARD, DigitalOut};
 
 /// Copper 5 K from the reference (2 %), tolerance of the supply and a poll of the board.
 const DOUBT: f64 = 0.03;
@@ -121,9 +120,9 @@ fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
             let bit = |n: u32| value as u64 >> n & 1 == 1;
             if let Some(output) = supply {
                 events.push((at, Event::Asked(output, value)));
-            } else if curve.signal == Signal::Drive.name() {
+            } else if curve.signal == DigitalOut::CoilDrive.name() {
                 events.push((at, Event::Drive(bit(0))));
-            } else if curve.signal == Signal::Board.name() {
+            } else if curve.signal == BOARD {
                 let (no, nc) = (bit(0), bit(1));
                 events.push((at, Event::Contacts { no, nc }));
             }

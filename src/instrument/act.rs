@@ -1,51 +1,76 @@
-//! What a test stage is made of: acts, each one transaction on the measuring line or one wait.
+//! What a test stage is made of: acts, each a few transactions of one line or one wait.
 //!
 //! A stage writes its acts down as a list before it begins; [`Runner`] carries them out and keeps what
 //! was read. So the order of a test can be read, printed and replayed, and no stage ever holds the bus.
+//! Acts name wired points and know nothing of the device: which transactions they take is the wiring's.
 
-use super::trace::Trace;
+use super::readings::Readings;
 use crate::rig::image::Image;
-use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Temperature};
-use crate::rig::sample::{CountSample, Sample};
+use crate::rig::point::{AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Point};
 use crate::units::{RigTime, Span, Volt};
+use std::sync::Arc;
 
 /// What follows an awaited event is sent within so long after the last look that had not shown it yet: a poll, a reading,
 /// the write. Where a request is lost and asked again, or the line is slow, a ramp is sent later and ends later by as
 /// much; one that turns round has gone on meanwhile, and needs as long again to come back.
 const PROMPT: Span = Span::ms(13);
 
-/// What one transaction (or one pair, for the gates) brings in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Digital inputs that are looked at together and kept as one signal: bit n is input n.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Word {
+    /// Name of the signal.
+    pub name: &'static str,
+    /// The inputs; best all of one module, which is then one transaction.
+    pub inputs: Vec<DigitalInput>,
+}
+
+/// What one act brings in.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Read {
-    /// All inputs of the interface board.
-    Board,
-    /// The enabled channels of the coil converter, one scan.
-    Coil,
-    /// One channel of it, in little more than half the time.
-    Current(AnalogIn),
-    /// The contact drop.
-    Drop,
-    /// Both gate counters.
-    Gates,
-    /// Gate counter 0 alone: all that a ramp needs. Kept beside what counter 1 last was.
-    Gate,
-    /// Temperature of the magazine track, which the part has.
-    Track,
+    /// Inputs that are looked at together.
+    Word(Arc<Word>),
+    /// These points.
+    Points {
+        /// The points that are read.
+        asked: Vec<Point>,
+        /// Points that are kept beside them as they last were.
+        beside: Vec<Point>,
+    },
     /// Whether a module with outputs has restarted since it was asked last; one that has is an alarm.
-    Resets,
+    Restarts,
+}
+
+impl Read {
+    /// Reads these points and keeps nothing else.
+    pub fn points(asked: impl IntoIterator<Item = Point>) -> Self {
+        Self::Points {
+            asked: asked.into_iter().collect(),
+            beside: Vec::new(),
+        }
+    }
+
+    fn job(&self) -> Job {
+        match self {
+            Self::Word(word) => Job::Read(word.inputs.iter().copied().map(Point::Input).collect()),
+            Self::Points { asked, .. } => Job::Read(asked.clone()),
+            Self::Restarts => Job::Restarts,
+        }
+    }
 }
 
 /// One step of a stage.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Act {
-    /// Outputs of the interface board, written together.
-    Board(Vec<(DigitalOut, bool)>),
-    /// Voltages asked of the supply outputs, in volts of the coil, written one after the other.
-    Supply(Vec<(AnalogOut, Volt)>),
+    /// Digital outputs, those of one module written together.
+    Set(Vec<(DigitalOutput, bool)>),
+    /// Voltages asked of sources, in volts of the supply, written one after the other.
+    Level(Vec<(AnalogOutput, Volt)>),
+    /// As [`Act::Level`], of sources that begin to ramp and are not waited for.
+    Ramp(Vec<(AnalogOutput, Volt)>),
     /// One reading.
     Read(Read),
-    /// Channel mask of the coil converter; only while a lot is prepared.
-    CoilMask(u8),
+    /// The converters of these inputs convert them and nothing else; only while a lot is prepared.
+    Mask(Vec<AnalogInput>),
     /// Remembers this instant for [`Act::WaitSinceMark`].
     Mark,
     /// Waits until so much time has passed since the mark.
@@ -56,34 +81,30 @@ pub enum Act {
     Wait(Span),
     /// Waits as [`Act::WaitSinceMark`] does, for a conversion that began after the mark.
     ConvertSinceMark(Span),
-    /// Reads the board until the point is active, or gives up; which of both is kept.
+    /// Reads a word until the point is active, or gives up; which of both is kept.
     Until {
-        /// Point of the interface board.
-        point: DigitalIn,
+        /// The input that is awaited.
+        point: DigitalInput,
+        /// Inputs that are kept with the last look.
+        word: Arc<Word>,
         /// Longest wait.
         within: Span,
     },
 }
 
-impl Act {
-    /// The supply begins to ramp and is not waited for.
-    fn is_ramp(&self) -> bool {
-        let ramps = |output: &AnalogOut| *output != AnalogOut::SupplyLevel;
-        matches!(self, Self::Supply(outputs) if outputs.iter().any(|(output, _)| ramps(output)))
-    }
-}
-
-/// Work for the measuring line.
+/// Work for the lines.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Job {
-    /// See [`Act::Board`].
-    Board(Vec<(DigitalOut, bool)>),
-    /// See [`Act::Supply`].
-    Supply(Vec<(AnalogOut, Volt)>),
-    /// See [`Read`].
-    Read(Read),
-    /// Channel mask of the coil converter; only while a lot is prepared, never during a lot.
-    CoilMask(u8),
+    /// See [`Act::Set`].
+    Set(Vec<(DigitalOutput, bool)>),
+    /// See [`Act::Level`].
+    Level(Vec<(AnalogOutput, Volt)>),
+    /// Reads these points.
+    Read(Vec<Point>),
+    /// See [`Read::Restarts`].
+    Restarts,
+    /// Channel masks of converters; only while a lot is prepared, never during a lot.
+    Mask(Vec<AnalogInput>),
 }
 
 /// Answer to a [`Job`].
@@ -93,75 +114,6 @@ pub struct JobDone {
     pub at: RigTime,
     /// Why it failed: line, address, command, how often.
     pub trouble: Option<String>,
-}
-
-/// Inputs of the interface board at one instant; `None` is never read as open or closed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct BoardInputs {
-    /// Coil A, coil B, COM, NO, NC: force to sense below 5 ohm.
-    pub kelvin: [bool; 5],
-    /// Normally open contact is made.
-    pub no_closed: bool,
-    /// Normally closed contact is made.
-    pub nc_closed: bool,
-    /// The contact source cannot drive its current.
-    pub compliance: bool,
-    /// Probes are up, by the hard-wired chain.
-    pub probe_chain: bool,
-}
-
-impl BoardInputs {
-    /// From the image, provided every bit was read at or after `since`.
-    fn take(image: &Image, now: RigTime) -> Option<Self> {
-        let get = |point| image.answered_input(point, now);
-        Some(Self {
-            kelvin: [
-                get(DigitalIn::KelvinCoilA)?,
-                get(DigitalIn::KelvinCoilB)?,
-                get(DigitalIn::KelvinCom)?,
-                get(DigitalIn::KelvinNo)?,
-                get(DigitalIn::KelvinNc)?,
-            ],
-            no_closed: get(DigitalIn::NoClosed)?,
-            nc_closed: get(DigitalIn::NcClosed)?,
-            compliance: get(DigitalIn::SourceCompliance)?,
-            probe_chain: get(DigitalIn::ProbeChain)?,
-        })
-    }
-}
-
-/// One scan of the coil converter; a channel that is masked out is `None`.
-#[derive(Debug, Clone)]
-pub struct CoilScan {
-    /// Coil voltage, up to 6 V.
-    pub voltage_fine: Option<Sample>,
-    /// Coil current, up to 16 mA.
-    pub current_fine: Option<Sample>,
-    /// Coil current, up to 50 mA.
-    pub current_wide: Option<Sample>,
-    /// The 5 V reference.
-    pub reference: Option<Sample>,
-}
-
-/// Everything a stage has read, in order, by kind.
-#[derive(Debug, Clone, Default)]
-pub struct Readings {
-    /// Board inputs.
-    pub boards: Vec<BoardInputs>,
-    /// Scans of the coil converter.
-    pub coil: Vec<CoilScan>,
-    /// Coil currents read by themselves.
-    pub currents: Vec<Sample>,
-    /// Contact drops.
-    pub drops: Vec<Sample>,
-    /// Gate counters 0 and 1.
-    pub gates: Vec<[CountSample; 2]>,
-    /// Outcomes of [`Act::Until`].
-    pub seen: Vec<bool>,
-    /// Track temperatures.
-    pub track: Vec<Sample>,
-    /// All of it sample by sample, and what was asked of the outputs.
-    pub trace: Trace,
 }
 
 /// What the runner asks of its surroundings.
@@ -253,19 +205,12 @@ impl Runner {
         self.current.is_none() && !self.pending
     }
 
-    /// A runner that begins now and remembers what the one before it marked and counted: a mark outlives
-    /// its stage, and counters that stand still need not be read twice.
-    pub fn after(
-        acts: Vec<Act>,
-        now: RigTime,
-        before: &Runner,
-        gates: Option<[CountSample; 2]>,
-    ) -> Self {
+    /// A runner that begins now and remembers what the one before it marked: a mark outlives its stage.
+    pub fn after(acts: Vec<Act>, now: RigTime, before: &Runner) -> Self {
         let mut runner = Self::new(acts, now);
         runner.mark = before.mark;
         runner.since_mark = before.since_mark;
         (runner.marked_from, runner.late) = (before.marked_from, before.late);
-        runner.readings.gates.extend(gates);
         runner
     }
 
@@ -284,11 +229,17 @@ impl Runner {
         }
         while let Some(act) = &self.current {
             match act {
-                Act::Board(outputs) => return self.ask(Job::Board(outputs.clone())),
-                Act::Supply(outputs) => return self.ask(Job::Supply(outputs.clone())),
-                Act::Read(read) => return self.ask(Job::Read(*read)),
-                Act::CoilMask(mask) => return self.ask(Job::CoilMask(*mask)),
-                Act::Until { .. } => return self.ask(Job::Read(Read::Board)),
+                Act::Set(outputs) => return self.ask(Job::Set(outputs.clone())),
+                Act::Level(outputs) | Act::Ramp(outputs) => {
+                    return self.ask(Job::Level(outputs.clone()));
+                }
+                Act::Read(read) => return self.ask(read.job()),
+                Act::Mask(inputs) => return self.ask(Job::Mask(inputs.clone())),
+                Act::Until { point, word, .. } => {
+                    let word = word.inputs.iter().copied();
+                    let inputs = std::iter::once(*point).chain(word);
+                    return self.ask(Job::Read(inputs.map(Point::Input).collect()));
+                }
                 Act::Mark => {
                     self.mark = self.since;
                     self.marked_from = self.looked.take().unwrap_or(self.since);
@@ -342,7 +293,14 @@ impl Runner {
                 Act::WaitSinceMark(span) | Act::RampSinceMark(span) | Act::ConvertSinceMark(span),
             ) => Span(span.0.saturating_sub(self.since_mark.0)),
             Some(Act::Until { .. }) => took,
-            Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_) | Act::Mark)
+            Some(
+                Act::Set(_)
+                | Act::Level(_)
+                | Act::Ramp(_)
+                | Act::Read(_)
+                | Act::Mask(_)
+                | Act::Mark,
+            )
             | None => Span(0),
         };
         self.spent.bound += least;
@@ -354,7 +312,7 @@ impl Runner {
             self.looked = None;
         }
         match &self.current {
-            Some(Act::Board(_) | Act::Supply(_) | Act::Read(_) | Act::CoilMask(_)) => {
+            Some(Act::Set(_) | Act::Level(_) | Act::Ramp(_) | Act::Read(_) | Act::Mask(_)) => {
                 self.spent.bus += took
             }
             Some(Act::Wait(_) | Act::WaitSinceMark(_) | Act::RampSinceMark(_)) => {
@@ -371,30 +329,40 @@ impl Runner {
     /// Takes in what the finished job brought, and moves on unless a condition is still awaited.
     fn keep(&mut self, image: &Image, now: RigTime) -> Result<(), String> {
         match self.current.clone() {
-            Some(Act::Read(read)) => self.take(read, image, now)?,
-            Some(Act::Until { point, within }) => {
-                let active = image
-                    .answered_input(point, now)
-                    .ok_or("a board input is stale")?;
-                let inputs = BoardInputs::take(image, now).ok_or("a board input is stale")?;
-                self.readings.trace.board(&inputs, self.since);
+            Some(Act::Read(read)) => self.readings.take(&read, image, (now, self.since))?,
+            Some(Act::Until {
+                point,
+                word,
+                within,
+            }) => {
+                let stale = || format!("a {} input is stale", word.name);
+                let active = image.answered_input(point, now).ok_or_else(stale)?;
+                let states = word.states(image, now).ok_or_else(stale)?;
+                self.readings.trace.word(word.name, &states, self.since);
                 if !active && self.since.since(self.began) < within {
                     self.looked = Some(self.since);
                     return Ok(());
                 }
                 self.looked.get_or_insert(self.began);
-                self.readings.boards.push(inputs);
+                self.readings.keep_word(&word, &states);
                 self.readings.seen.push(active);
             }
-            Some(act @ (Act::Board(_) | Act::Supply(_))) => {
-                self.readings.trace.asked(&act, self.since);
-                if act.is_ramp() {
-                    let after = self.since.since(self.marked_from);
-                    self.late = self.late.max(Span(after.0.saturating_sub(PROMPT.0)));
-                }
+            Some(Act::Set(outputs)) => {
+                let wiring = image.wiring();
+                self.readings.trace.switched(wiring, &outputs, self.since);
+            }
+            Some(Act::Level(outputs)) => {
+                let wiring = image.wiring();
+                self.readings.trace.asked(wiring, &outputs, self.since);
+            }
+            Some(Act::Ramp(outputs)) => {
+                let wiring = image.wiring();
+                self.readings.trace.asked(wiring, &outputs, self.since);
+                let after = self.since.since(self.marked_from);
+                self.late = self.late.max(Span(after.0.saturating_sub(PROMPT.0)));
             }
             Some(
-                Act::CoilMask(_)
+                Act::Mask(_)
                 | Act::Mark
                 | Act::Wait(_)
                 | Act::WaitSinceMark(_)
@@ -406,48 +374,13 @@ impl Runner {
         self.next();
         Ok(())
     }
+}
 
-    fn take(&mut self, read: Read, image: &Image, now: RigTime) -> Result<(), String> {
-        let missing = || format!("{read:?} was answered without a value");
-        match read {
-            Read::Board => {
-                let inputs = BoardInputs::take(image, now).ok_or_else(missing)?;
-                self.readings.trace.board(&inputs, self.since);
-                self.readings.boards.push(inputs);
-            }
-            Read::Coil => {
-                let scan = CoilScan {
-                    voltage_fine: image.analog(AnalogIn::CoilVoltageFine).cloned(),
-                    current_fine: image.analog(AnalogIn::CoilCurrentFine).cloned(),
-                    current_wide: image.analog(AnalogIn::CoilCurrent).cloned(),
-                    reference: image.analog(AnalogIn::ReferenceVoltage).cloned(),
-                };
-                self.readings.trace.scan(&scan);
-                self.readings.coil.push(scan);
-            }
-            Read::Current(channel) => {
-                let current = image.analog(channel).ok_or_else(missing)?;
-                self.readings.trace.input(channel, current);
-                self.readings.currents.push(current.clone());
-            }
-            Read::Drop => {
-                let drop = image.analog(AnalogIn::ContactDrop).ok_or_else(missing)?;
-                self.readings.trace.input(AnalogIn::ContactDrop, drop);
-                self.readings.drops.push(drop.clone());
-            }
-            Read::Gates | Read::Gate => {
-                let gate = |counter| image.counter(counter).cloned().ok_or_else(missing);
-                let gates = [gate(Counter::Gate0)?, gate(Counter::Gate1)?];
-                self.readings.trace.gates(&gates);
-                self.readings.gates.push(gates);
-            }
-            Read::Resets => {}
-            Read::Track => {
-                let sample = image.temperature(Temperature::Track).cloned();
-                self.readings.track.push(sample.ok_or_else(missing)?);
-            }
-        }
-        Ok(())
+impl Word {
+    /// What each input is, provided that all were just read.
+    pub(super) fn states(&self, image: &Image, now: RigTime) -> Option<Vec<bool>> {
+        let inputs = self.inputs.iter();
+        inputs.map(|it| image.answered_input(*it, now)).collect()
     }
 }
 

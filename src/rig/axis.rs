@@ -4,7 +4,7 @@
 //! `axis_drive`. Positions are relative to the nest, along the line.
 
 use super::fault::Fault;
-use super::point::DigitalIn;
+use super::point::DigitalInput;
 use super::settings::{BinSettings, StationSettings};
 use std::collections::BTreeMap;
 
@@ -87,7 +87,7 @@ pub struct AxisPoint {
 pub struct AxisTable {
     nest: AxisPoint,
     park: AxisPoint,
-    bins: [(AxisPoint, DigitalIn); 6],
+    bins: [(AxisPoint, DigitalInput); 6],
 }
 
 impl AxisTable {
@@ -101,7 +101,7 @@ impl AxisTable {
     }
 
     /// The beam in the chute of a bin.
-    pub fn beam(&self, bin: Bin) -> DigitalIn {
+    pub fn beam(&self, bin: Bin) -> DigitalInput {
         self.bins[bin as usize].1
     }
 
@@ -122,15 +122,16 @@ impl AxisTable {
     pub(super) fn resolve(
         axis: &BTreeMap<String, StationSettings>,
         bins: &BTreeMap<String, BinSettings>,
+        input: impl Fn(&str) -> Option<DigitalInput>,
     ) -> Result<Self, Fault> {
         let mut taken = Taken::default();
         let nest = taken.station("nest", axis)?;
         let park = taken.station("park", axis)?;
         let mut found = Vec::new();
         for &bin in Bin::ALL {
-            found.push(taken.bin(bin, bins)?);
+            found.push(taken.bin(bin, bins, &input)?);
         }
-        let bins = <[(AxisPoint, DigitalIn); 6]>::try_from(found)
+        let bins = <[(AxisPoint, DigitalInput); 6]>::try_from(found)
             .map_err(|found| Fault::new("bin", found.len(), "six bins"))?;
         Ok(Self { nest, park, bins })
     }
@@ -140,7 +141,7 @@ impl AxisTable {
 #[derive(Default)]
 struct Taken {
     points: Vec<(AxisPoint, String)>,
-    beams: Vec<(DigitalIn, String)>,
+    beams: Vec<(DigitalInput, String)>,
 }
 
 impl Taken {
@@ -166,7 +167,8 @@ impl Taken {
         &mut self,
         bin: Bin,
         bins: &BTreeMap<String, BinSettings>,
-    ) -> Result<(AxisPoint, DigitalIn), Fault> {
+        input: impl Fn(&str) -> Option<DigitalInput>,
+    ) -> Result<(AxisPoint, DigitalInput), Fault> {
         let key = format!("bin.{}", bin.name());
         let Some(settings) = bins.get(bin.name()) else {
             return Err(Fault::new(key, "nothing", "a bin"));
@@ -178,7 +180,8 @@ impl Taken {
                 x_mm: settings.x_mm,
             },
         )?;
-        let beam = self.beam(format!("{key}.beam"), &settings.beam)?;
+        let name = &settings.beam;
+        let beam = self.beam(format!("{key}.beam"), name, input(name))?;
         Ok((point, beam))
     }
 
@@ -217,9 +220,14 @@ impl Taken {
         Ok(point)
     }
 
-    fn beam(&mut self, key: String, name: &str) -> Result<DigitalIn, Fault> {
+    fn beam(
+        &mut self,
+        key: String,
+        name: &str,
+        input: Option<DigitalInput>,
+    ) -> Result<DigitalInput, Fault> {
         let quoted = format!("\"{name}\"");
-        let Some(beam) = DigitalIn::from_name(name) else {
+        let Some(beam) = input else {
             return Err(Fault::new(key, quoted, "the name of a digital input"));
         };
         if let Some((_, other)) = self.beams.iter().find(|(taken, _)| *taken == beam) {

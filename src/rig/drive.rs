@@ -10,7 +10,7 @@
 
 use super::axis::AxisStation;
 use super::level::{Correction, SupplyError, nearest_level};
-use super::point::{AnalogOut, DigitalOut};
+use super::point::{AnalogOutput, DigitalOut, DigitalOutput};
 use super::wiring::{LineId, ModuleId, Wiring};
 use crate::dcon::{self, Command, Digital, Level, OutputWord, Width};
 use crate::guard::{Actuator, Cleared};
@@ -95,12 +95,15 @@ impl Outputs {
     ///
     /// # Errors
     /// [`DriveError::NeedsClearance`] for an output that does, whichever way it is switched.
-    pub fn set(&mut self, point: DigitalOut, on: bool) -> Result<(), DriveError> {
-        if point.moves() {
-            return Err(DriveError::NeedsClearance { point });
+    pub fn set(&mut self, point: impl Into<DigitalOutput>, on: bool) -> Result<(), DriveError> {
+        let point = point.into();
+        match point.of_machine().filter(|known| known.moves()) {
+            Some(point) => Err(DriveError::NeedsClearance { point }),
+            None => {
+                self.switch(point, on);
+                Ok(())
+            }
         }
-        self.switch(point, on);
-        Ok(())
     }
 
     /// Drives a cleared motion.
@@ -177,7 +180,7 @@ impl Outputs {
         }
     }
 
-    fn switch(&mut self, point: DigitalOut, on: bool) {
+    fn switch(&mut self, point: impl Into<DigitalOutput>, on: bool) {
         let terminal = self.wiring.digital_out(point);
         if let Some(Output {
             image: Image::Bits { word, before, .. },
@@ -203,20 +206,21 @@ impl Outputs {
         }
     }
 
-    /// Sets one of the three outputs whose sum is the coil supply. `supply` is its share, V at the coil supply;
-    /// the result is what it will really be: the nearest step.
+    /// Sets one of the outputs whose sum is a supply. `supply` is its share, V at the supply; the result is what it
+    /// will really be: the nearest step.
     ///
     /// # Errors
     /// A voltage that the output cannot give; nothing is changed.
     pub fn set_supply(
         &mut self,
-        point: AnalogOut,
+        point: AnalogOutput,
         supply: Volt,
         correction: Correction,
     ) -> Result<Volt, SupplyError> {
         let terminal = self.wiring.analog_out(point);
         let module = self.wiring.module(terminal.module);
-        let (level, really) = nearest_level(point, module, terminal.gain, supply, correction)?;
+        let name = self.wiring.source_name(point);
+        let (level, really) = nearest_level(name, module, terminal.gain, supply, correction)?;
         if let Some(output) = &mut self.modules[terminal.module.0] {
             output.due |= output.image != Image::Level(level);
             output.image = Image::Level(level);
@@ -290,7 +294,7 @@ impl Outputs {
     }
 
     /// What an output should be.
-    pub fn is_on(&self, point: DigitalOut) -> bool {
+    pub fn is_on(&self, point: impl Into<DigitalOutput>) -> bool {
         let terminal = self.wiring.digital_out(point);
         match self.modules[terminal.module.0].map(|output| output.image) {
             Some(Image::Bits { word, .. }) => word & terminal.bit() != 0,

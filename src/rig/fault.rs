@@ -14,6 +14,8 @@ pub struct Fault {
     pub expected: String,
     /// Path of the setting it clashes with, when there is one.
     pub other: Option<String>,
+    /// Of a name that nothing has: those that would have been known.
+    pub known: Vec<String>,
 }
 
 impl Fault {
@@ -24,6 +26,16 @@ impl Fault {
             found: found.to_string(),
             expected: expected.into(),
             other: None,
+            known: Vec::new(),
+        }
+    }
+
+    /// A name that nothing has.
+    pub fn unknown(key: impl Into<String>, known: Vec<String>) -> Self {
+        let expected = format!("one of {}", known.join(", "));
+        Self {
+            known,
+            ..Self::new(key, "an unknown key", expected)
         }
     }
 

@@ -4,7 +4,7 @@
 //! [`Image::forget`] (module silent or reset) it has none until it is read again. Times are those at which the
 //! module was asked, so that an age is never understated.
 
-use super::point::{AnalogIn, Counter, DigitalIn, Temperature};
+use super::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Thermometer};
 use super::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
 use super::wiring::{LineId, Module, ModuleId, Wiring};
 use crate::dcon::{self, Address, Channel, Command, Common, Digital, Reading, Reply, Unit, Value};
@@ -58,15 +58,20 @@ impl Image {
     pub fn new(wiring: Arc<Wiring>) -> Self {
         let modules = wiring.modules.len();
         Self {
-            wiring,
             words: vec![None; modules],
-            analog: vec![None; AnalogIn::COUNT],
-            temperatures: vec![None; Temperature::COUNT],
-            counters: vec![None; Counter::COUNT],
-            events: vec![None; DigitalIn::COUNT],
+            analog: vec![None; wiring.analog_in.len()],
+            temperatures: vec![None; wiring.temperature.len()],
+            counters: vec![None; wiring.counter.len()],
+            events: vec![None; wiring.digital_in.len()],
             levels: vec![None; modules],
             resets: Vec::new(),
+            wiring,
         }
+    }
+
+    /// The rig that this is the image of.
+    pub fn wiring(&self) -> &Wiring {
+        &self.wiring
     }
 
     /// Takes in a good reply. `at` is when the module was asked. Replies that carry no process value are ignored.
@@ -93,10 +98,11 @@ impl Image {
         let arrival = Arrival {
             line,
             module,
+            command: *command,
             raw,
             at,
         };
-        if self.file(&arrival, command, reply) {
+        if self.file(&arrival, reply) {
             return Ok(());
         }
         Err(Unexpected::WrongReply {
@@ -106,9 +112,9 @@ impl Image {
     }
 
     /// Puts a reply where it belongs; false when it cannot be a reply to this command.
-    fn file(&mut self, arrival: &Arrival<'_>, command: &Command, reply: &Reply) -> bool {
+    fn file(&mut self, arrival: &Arrival<'_>, reply: &Reply) -> bool {
         use dcon::AnalogIn::{ReadAll, ReadAllHex, ReadOne};
-        match (command, reply) {
+        match (&arrival.command, reply) {
             (Command::AnalogIn(_, ReadAll(_) | ReadAllHex(_)), Reply::Readings(readings)) => {
                 self.file_readings(arrival, |channel| readings.get(usize::from(channel.get())));
                 true
@@ -154,7 +160,7 @@ impl Image {
                 | Command::Digital(..)
                 | Command::Counter(..),
                 _,
-            ) => !carries_value(command),
+            ) => !carries_value(&arrival.command),
         }
     }
 
@@ -166,61 +172,46 @@ impl Image {
         let wiring = Arc::clone(&self.wiring);
         let module = wiring.module(arrival.module);
         let raw: Arc<str> = Arc::from(arrival.raw);
-        for &point in AnalogIn::ALL {
-            let terminal = wiring.analog_in(point);
+        for (index, (_, terminal)) in wiring.analog_in.iter().enumerate() {
             if terminal.module == arrival.module
                 && let Some(reading) = reading(terminal.channel)
             {
                 let origin = arrival.origin(terminal.channel, &raw);
-                self.analog[point.index()] = Some(sample(
-                    AnalogPoint::Input(point),
-                    &reading,
-                    module,
-                    terminal.gain,
-                    origin,
-                ));
+                let point = AnalogPoint::Input(AnalogInput::at(index));
+                self.analog[index] = Some(sample(point, &reading, module, terminal.gain, origin));
             }
         }
-        for &point in Temperature::ALL {
-            let terminal = wiring.temperature(point);
+        for (index, (_, terminal)) in wiring.temperature.iter().enumerate() {
             if terminal.module == arrival.module
                 && let Some(reading) = reading(terminal.channel)
             {
                 let origin = arrival.origin(terminal.channel, &raw);
-                self.temperatures[point.index()] = Some(sample(
-                    AnalogPoint::Temperature(point),
-                    &reading,
-                    module,
-                    1.0,
-                    origin,
-                ));
+                let point = AnalogPoint::Temperature(Thermometer::at(index));
+                self.temperatures[index] = Some(sample(point, &reading, module, 1.0, origin));
             }
         }
     }
 
     fn file_events(&mut self, arrival: &Arrival<'_>, channel: Channel, count: u16) {
-        let here = |point: &&DigitalIn| {
-            let terminal = self.wiring.digital_in(**point);
-            terminal.module == arrival.module && terminal.channel == channel
-        };
-        if let Some(&point) = DigitalIn::ALL.iter().find(here) {
+        let mut terminals = self.wiring.digital_in.iter().map(|(_, terminal)| terminal);
+        let here = terminals
+            .position(|terminal| terminal.module == arrival.module && terminal.channel == channel);
+        if let Some(index) = here {
             let origin = arrival.origin(channel, &Arc::from(arrival.raw));
-            let count = u32::from(count);
-            self.events[point.index()] = Some(CountSample {
-                point: CountPoint::Events(point),
-                count,
+            self.events[index] = Some(CountSample {
+                point: CountPoint::Events(DigitalInput::at(index)),
+                count: u32::from(count),
                 origin,
             });
         }
     }
 
     fn file_count(&mut self, arrival: &Arrival<'_>, number: u8, count: u32) {
-        for &point in Counter::ALL {
-            let terminal = self.wiring.counter(point);
+        for (index, (_, terminal)) in self.wiring.counter.iter().enumerate() {
             if terminal.module == arrival.module && terminal.channel.get() == number {
                 let origin = arrival.origin(terminal.channel, &Arc::from(arrival.raw));
-                self.counters[point.index()] = Some(CountSample {
-                    point: CountPoint::Gate(point),
+                self.counters[index] = Some(CountSample {
+                    point: CountPoint::Gate(GatedCounter::at(index)),
                     count,
                     origin,
                 });
@@ -247,7 +238,8 @@ impl Image {
 
     /// State of an input that was just asked for: as [`Image::input`], no older than a transaction of its line may
     /// take at worst.
-    pub fn answered_input(&self, point: DigitalIn, now: RigTime) -> Option<bool> {
+    pub fn answered_input(&self, point: impl Into<DigitalInput>, now: RigTime) -> Option<bool> {
+        let point = point.into();
         let line = self
             .wiring
             .module(self.wiring.digital_in(point).module)
@@ -256,7 +248,12 @@ impl Image {
     }
 
     /// A digital input, if it was asked for at most `max_age` ago.
-    pub fn input(&self, point: DigitalIn, now: RigTime, max_age: Span) -> Option<bool> {
+    pub fn input(
+        &self,
+        point: impl Into<DigitalInput>,
+        now: RigTime,
+        max_age: Span,
+    ) -> Option<bool> {
         let terminal = self.wiring.digital_in(point);
         let word = self.words[terminal.module.0]?;
         let fresh = word.at <= now && now.since(word.at) <= max_age;
@@ -277,7 +274,7 @@ impl Image {
     }
 
     /// When a digital input was last asked for.
-    pub fn input_at(&self, point: DigitalIn) -> Option<RigTime> {
+    pub fn input_at(&self, point: impl Into<DigitalInput>) -> Option<RigTime> {
         self.words[self.wiring.digital_in(point).module.0].map(|word| word.at)
     }
 
@@ -287,30 +284,30 @@ impl Image {
     }
 
     /// The last sample of an analog input, however old.
-    pub fn analog(&self, point: AnalogIn) -> Option<&Sample> {
+    pub fn analog(&self, point: AnalogInput) -> Option<&Sample> {
         self.analog[point.index()].as_ref()
     }
 
     /// The last sample of an analog input, if it was asked for at `not_before` or later. May be out of range:
     /// see [`Sample::good`].
-    pub fn fresh_analog(&self, point: AnalogIn, not_before: RigTime) -> Option<&Sample> {
+    pub fn fresh_analog(&self, point: AnalogInput, not_before: RigTime) -> Option<&Sample> {
         self.analog(point)
             .filter(|sample| sample.origin.at >= not_before)
     }
 
     /// The last sample of a thermometer, however old.
-    pub fn temperature(&self, point: Temperature) -> Option<&Sample> {
+    pub fn temperature(&self, point: Thermometer) -> Option<&Sample> {
         self.temperatures[point.index()].as_ref()
     }
 
     /// The last sample of a gated counter, however old.
-    pub fn counter(&self, point: Counter) -> Option<&CountSample> {
+    pub fn counter(&self, point: GatedCounter) -> Option<&CountSample> {
         self.counters[point.index()].as_ref()
     }
 
     /// The last count of events on a digital input, however old.
-    pub fn events(&self, point: DigitalIn) -> Option<&CountSample> {
-        self.events[point.index()].as_ref()
+    pub fn events(&self, point: impl Into<DigitalInput>) -> Option<&CountSample> {
+        self.events[point.into().index()].as_ref()
     }
 
     /// Where an analog output last said it was, V at its terminal, and when it was asked.
@@ -323,6 +320,7 @@ impl Image {
 struct Arrival<'a> {
     line: LineId,
     module: ModuleId,
+    command: Command,
     raw: &'a str,
     at: RigTime,
 }
@@ -333,6 +331,7 @@ impl Arrival<'_> {
             line: self.line,
             module: self.module,
             channel,
+            command: self.command,
             raw: Arc::clone(raw),
             at: self.at,
         }

@@ -1,6 +1,5 @@
 //! From volts of the coil supply to the level of an analog output, with its calibration.
 
-use super::point::AnalogOut;
 use super::wiring::Module;
 use crate::dcon::{Level, LevelError};
 use crate::units::Volt;
@@ -23,20 +22,20 @@ impl Correction {
     };
 }
 
-/// Why a share of the supply cannot be set.
+/// Why a share of a supply cannot be set.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SupplyError {
     /// The module of this point has no analog output.
     #[error("{point} is not wired to an analog output")]
     NotAnOutput {
         /// The output.
-        point: AnalogOut,
+        point: &'static str,
     },
     /// Outside the range of the output, or no number.
     #[error("{point} cannot give {supply}")]
     Level {
         /// The output.
-        point: AnalogOut,
+        point: &'static str,
         /// The share asked for, V of the coil supply.
         supply: Volt,
         /// What the module can do.
@@ -49,7 +48,7 @@ const UNREACHABLE_OFFSET_V: f64 = 0.02;
 
 /// The level nearest to a share of the supply, and the share it really gives. `gain`: supply volts per terminal volt.
 pub(super) fn nearest_level(
-    point: AnalogOut,
+    point: &'static str,
     module: &Module,
     gain: f64,
     supply: Volt,

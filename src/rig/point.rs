@@ -1,7 +1,12 @@
-//! The closed vocabulary of points: everything the rig can sense, switch, set, measure or count.
+//! The vocabulary of points: everything the rig can sense, switch, set, measure or count.
 //!
 //! A point is a name of the process ("pusher retracted"), never a terminal. Which module and channel
-//! carries it is wiring, found in `config/rig.toml`, where every point of this file must appear once.
+//! carries it is wiring, found in `config/rig.toml`. Three sources name points:
+//! - the machine: safety, actuators, buttons, axis, lamps. A closed enum; every one must be wired.
+//! - the kinds of device under test: each declares a [`Fixture`]. A rig may lack them.
+//! - the bins: each names the digital input of its beam.
+//!
+//! The wiring resolves a name to a handle ([`DigitalInput`] and its like): an index into its table.
 
 /// Declares one vocabulary: an enum whose variants carry their name in `config/rig.toml`.
 macro_rules! points {
@@ -43,21 +48,11 @@ macro_rules! points {
         }
     };
 }
+pub(crate) use points;
 
 points! {
-    /// Contacts and sensors; `true` means the named thing is so, whatever the polarity of the wire.
+    /// Contacts and sensors of the machine; `true` means the named thing is so, whatever the polarity of the wire.
     DigitalIn {
-        KelvinCoilA = "kelvin_coil_a",
-        KelvinCoilB = "kelvin_coil_b",
-        KelvinCom = "kelvin_com",
-        KelvinNo = "kelvin_no",
-        KelvinNc = "kelvin_nc",
-        NoClosed = "no_closed",
-        NcClosed = "nc_closed",
-        Window = "window",
-        Latch = "latch",
-        SourceCompliance = "source_compliance",
-        ProbeChain = "probe_chain",
         EmergencyStopOk = "emergency_stop_ok",
         DoorClosed = "door_closed",
         AirOk = "air_ok",
@@ -83,29 +78,12 @@ points! {
         GripperPart = "gripper_part",
         ButtonStop = "button_stop",
         ButtonReset = "button_reset",
-        BeamPass = "beam_pass",
-        BeamCoil = "beam_coil",
-        BeamVoltage = "beam_voltage",
-        BeamTime = "beam_time",
-        BeamContact = "beam_contact",
-        BeamRetest = "beam_retest",
     }
 }
 
 points! {
-    /// Transistor outputs: the interface board, the valves, the axis, the lamps.
+    /// Transistor outputs of the machine: the valves, the axis, the lamps.
     DigitalOut {
-        CoilDrive = "coil_drive",
-        ClampDiode = "clamp_diode",
-        SourceOn = "source_on",
-        SelectNo = "select_no",
-        SourceReverse = "source_reverse",
-        ReferenceCoil = "reference_coil",
-        ReferenceContact = "reference_contact",
-        RampMode = "ramp_mode",
-        Arm = "arm",
-        EventNoBreak = "event_no_break",
-        KelvinTest = "kelvin_test",
         EscapementRelease = "escapement_release",
         PusherExtend = "pusher_extend",
         ClampClose = "clamp_close",
@@ -127,44 +105,113 @@ points! {
     }
 }
 
-points! {
-    /// Analog inputs of the measuring line.
-    AnalogIn {
-        CoilVoltage = "coil_voltage",
-        CoilCurrent = "coil_current",
-        ContactCurrent = "contact_current",
-        SupplyVoltage = "supply_voltage",
-        CoilVoltageFine = "coil_voltage_fine",
-        CoilCurrentFine = "coil_current_fine",
-        ReferenceVoltage = "reference_voltage",
-        ContactDrop = "contact_drop",
-    }
+/// An output that a kind declares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Switch {
+    /// Its name in `config/rig.toml`.
+    pub name: &'static str,
+    /// Whether its changes belong to the trace of a test.
+    pub traced: bool,
 }
 
-points! {
-    /// The three outputs whose sum, amplified, is the coil supply.
-    AnalogOut {
-        SupplyLevel = "supply_level",
-        SupplyCoarse = "supply_coarse",
-        SupplyFine = "supply_fine",
-    }
+/// What an analog input that a kind declares measures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantity {
+    /// Its name in `config/rig.toml`.
+    pub name: &'static str,
+    /// Its unit, as `config/rig.toml` must state it: `V` or `A`.
+    pub unit: &'static str,
+    /// Step that its values are kept in, in its unit: a tenth or less of a step of its converter.
+    pub step: f64,
+    /// Whether its channel must be enabled from the start: no act ever asks for its mask.
+    pub enabled: bool,
 }
 
-points! {
-    /// Platinum resistance thermometers.
-    Temperature {
-        Nest = "nest_temperature",
-        Ambient = "ambient_temperature",
-        Track = "track_temperature",
-    }
-}
-
-points! {
+/// The points that one kind of device declares. A rig may lack them; a recipe that needs one is then refused.
+#[derive(Debug, Clone, Copy)]
+pub struct Fixture {
+    /// Digital inputs.
+    pub digital_in: &'static [&'static str],
+    /// Digital outputs.
+    pub digital_out: &'static [Switch],
+    /// Analog inputs.
+    pub analog_in: &'static [Quantity],
+    /// Sources: analog outputs.
+    pub analog_out: &'static [&'static str],
+    /// Thermometers.
+    pub temperature: &'static [&'static str],
     /// Gated counters on the reference clock.
-    Counter {
-        Gate0 = "gate_0",
-        Gate1 = "gate_1",
+    pub counter: &'static [&'static str],
+}
+
+/// Declares the handle of a wired point: an index into one table of the wiring.
+macro_rules! handles {
+    ($($(#[$doc:meta])* $handle:ident,)+) => { $(
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $handle(pub(super) u16);
+
+        impl $handle {
+            /// The handle of a place in the table.
+            pub(super) fn at(index: usize) -> Self {
+                assert!(index < usize::from(u16::MAX), "no rig has so many points");
+                Self(index as u16)
+            }
+
+            /// Place in the table of the wiring that resolved it.
+            pub fn index(self) -> usize {
+                self.0.into()
+            }
+        }
+    )+ };
+}
+
+handles! {
+    /// A wired digital input: of the machine, of a fixture, or the beam of a bin.
+    DigitalInput,
+    /// A wired digital output, of the machine or of a fixture.
+    DigitalOutput,
+    /// A wired analog input.
+    AnalogInput,
+    /// A wired analog output.
+    AnalogOutput,
+    /// A wired platinum resistance thermometer.
+    Thermometer,
+    /// A wired gated counter.
+    GatedCounter,
+}
+
+/// The points of the machine come first in their table, in the order of the enum.
+impl From<DigitalIn> for DigitalInput {
+    fn from(point: DigitalIn) -> Self {
+        Self(point as u16)
     }
+}
+
+impl From<DigitalOut> for DigitalOutput {
+    fn from(point: DigitalOut) -> Self {
+        Self(point as u16)
+    }
+}
+
+impl DigitalOutput {
+    /// The output of the machine that this is; `None` for one of a fixture.
+    pub fn of_machine(self) -> Option<DigitalOut> {
+        DigitalOut::ALL.get(self.index()).copied()
+    }
+}
+
+/// A point that is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Point {
+    /// A digital input, with all others of its module.
+    Input(DigitalInput),
+    /// An analog input.
+    Analog(AnalogInput),
+    /// A thermometer.
+    Temperature(Thermometer),
+    /// A gated counter.
+    Count(GatedCounter),
 }
 
 impl DigitalOut {
@@ -186,37 +233,12 @@ impl DigitalOut {
             | Self::AxisPoint1
             | Self::AxisPoint2
             | Self::AxisDrive => true,
-            Self::CoilDrive
-            | Self::ClampDiode
-            | Self::SourceOn
-            | Self::SelectNo
-            | Self::SourceReverse
-            | Self::ReferenceCoil
-            | Self::ReferenceContact
-            | Self::RampMode
-            | Self::Arm
-            | Self::EventNoBreak
-            | Self::KelvinTest
-            | Self::AxisServoOn
+            Self::AxisServoOn
             | Self::AxisReset
             | Self::LampGreen
             | Self::LampYellow
             | Self::LampRed
             | Self::Buzzer => false,
-        }
-    }
-}
-
-impl AnalogIn {
-    /// Unit of the quantity at this point, as `config/rig.toml` must state it.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::CoilVoltage
-            | Self::SupplyVoltage
-            | Self::CoilVoltageFine
-            | Self::ReferenceVoltage
-            | Self::ContactDrop => "V",
-            Self::CoilCurrent | Self::ContactCurrent | Self::CoilCurrentFine => "A",
         }
     }
 }
@@ -234,13 +256,13 @@ mod tests {
         for &point in DigitalOut::ALL {
             assert_eq!(DigitalOut::from_name(point.name()), Some(point));
         }
-        assert_eq!(AnalogIn::from_name("coil"), None);
+        assert_eq!(DigitalIn::from_name("coil"), None);
     }
 
     #[test]
     fn twelve_outputs_move_something() {
         let moving = DigitalOut::ALL.iter().filter(|out| out.moves()).count();
         assert_eq!(moving, 12);
-        assert!(!DigitalOut::ClampDiode.moves());
+        assert!(!DigitalOut::AxisServoOn.moves());
     }
 }

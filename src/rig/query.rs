@@ -1,9 +1,10 @@
 //! Which command asks for which point.
 
 use super::model::{Model, Terminals};
-use super::point::{AnalogIn, AnalogOut, Counter, DigitalIn, Temperature};
-use super::wiring::{AnalogTerminal, Module, ModuleId, Terminal, Wiring};
+use super::point::{AnalogInput, DigitalInput, GatedCounter, Point};
+use super::wiring::{AnalogTerminal, LineId, Module, ModuleId, Terminal, Wiring};
 use crate::dcon::{self, Channel, Command, DataFormat, Digital, InputForm, OutputForm, UpTo};
+use std::collections::BTreeSet;
 
 impl Module {
     /// How its readings are printed; `None` unless it measures.
@@ -61,35 +62,87 @@ impl Wiring {
             .to(module.address);
         }
         if module.model.channels(Terminals::Counter) > 0 {
-            return dcon::Counter::Read(counter_number(Counter::Gate0)).to(module.address);
+            return dcon::Counter::Read(FIRST).to(module.address);
         }
         Digital::ReadPort.to(module.address)
     }
 
-    /// Reads one analog input.
-    pub fn read_analog(&self, point: AnalogIn) -> Command {
-        self.read_one(self.analog_in(point))
+    /// The transactions that read these points, in their order, each with its line: all inputs of a module in one,
+    /// several of its analog channels in one scan, everything else by itself.
+    pub fn reads(&self, points: &[Point]) -> Vec<(LineId, Command)> {
+        let mut asked: Vec<(ModuleId, Command)> = Vec::new();
+        for point in points {
+            let one @ (module, command) = self.read(*point, points);
+            let known = |it: &(ModuleId, Command)| it.0 == module && it.1 == command;
+            if !asked.iter().any(known) {
+                asked.push(one);
+            }
+        }
+        let sent = |(module, command)| (self.module(module).line, command);
+        asked.into_iter().map(sent).collect()
     }
 
-    /// Reads one thermometer.
-    pub fn read_temperature(&self, point: Temperature) -> Command {
-        self.read_one(self.temperature(point))
+    /// What reads one point, while others are wanted beside it.
+    fn read(&self, point: Point, wanted: &[Point]) -> (ModuleId, Command) {
+        match point {
+            Point::Input(input) => {
+                let module = self.digital_in(input).module;
+                (module, self.poll(module))
+            }
+            Point::Analog(input) => {
+                let at = self.analog_in(input);
+                let here = |it: &&Point| matches!(it, Point::Analog(other) if self.analog_in(*other).module == at.module);
+                let command = match wanted.iter().filter(here).count() {
+                    1 => self.read_one(at),
+                    _ => self.scan(at.module),
+                };
+                (at.module, command)
+            }
+            Point::Temperature(point) => {
+                let at = self.temperature(point);
+                (at.module, self.read_one(at))
+            }
+            Point::Count(counter) => (self.counter(counter).module, self.read_counter(counter)),
+        }
     }
 
-    /// Where an analog output is now, in the middle of a ramp too.
-    pub fn read_supply(&self, point: AnalogOut) -> Command {
-        self.poll(self.analog_out(point).module)
+    /// All enabled channels of a converter.
+    fn scan(&self, module: ModuleId) -> Command {
+        match self.module(module).input_form() {
+            Some(form) => dcon::AnalogIn::ReadAll(form).to(self.module(module).address),
+            None => self.poll(module),
+        }
     }
 
-    /// Reads a gated counter.
-    pub fn read_counter(&self, point: Counter) -> Command {
+    /// The writes after which the converters of these inputs convert them and nothing else. They write EEPROM.
+    pub fn masks(&self, inputs: &[AnalogInput]) -> Vec<(LineId, Command)> {
+        let modules: BTreeSet<ModuleId> =
+            inputs.iter().map(|it| self.analog_in(*it).module).collect();
+        let write = |id: ModuleId| {
+            let (module, mask) = (self.module(id), self.mask_of(id, inputs));
+            (
+                module.line,
+                dcon::AnalogIn::WriteMask(mask).to(module.address),
+            )
+        };
+        modules.into_iter().map(write).collect()
+    }
+
+    /// Channel mask of one converter while these inputs are converted and nothing else; 0 when it has none of them.
+    pub fn mask_of(&self, module: ModuleId, inputs: &[AnalogInput]) -> u8 {
+        let here = inputs.iter().map(|input| self.analog_in(*input));
+        let here = here.filter(|at| at.module == module);
+        here.fold(0, |mask, at| mask | 1 << at.channel.get())
+    }
+
+    fn read_counter(&self, point: GatedCounter) -> Command {
         let terminal = self.counter(point);
-        let number = UpTo::new(terminal.channel.get()).unwrap_or(counter_number(point));
+        let number = UpTo::new(terminal.channel.get()).unwrap_or(FIRST);
         dcon::Counter::Read(number).to(self.module(terminal.module).address)
     }
 
     /// Reads the event counter of a digital input.
-    pub fn read_events(&self, point: DigitalIn) -> Command {
+    pub fn read_events(&self, point: impl Into<DigitalInput>) -> Command {
         let Terminal {
             module, channel, ..
         } = self.digital_in(point);
@@ -97,7 +150,7 @@ impl Wiring {
     }
 
     /// Clears the event counter of a digital input. Prefer differences modulo 65536.
-    pub fn clear_events(&self, point: DigitalIn) -> Command {
+    pub fn clear_events(&self, point: impl Into<DigitalInput>) -> Command {
         let Terminal {
             module, channel, ..
         } = self.digital_in(point);
@@ -117,11 +170,5 @@ impl Wiring {
     }
 }
 
-fn counter_number(point: Counter) -> UpTo<1> {
-    const FIRST: UpTo<1> = UpTo::<1>::new(0).expect("0 is a counter");
-    const SECOND: UpTo<1> = UpTo::<1>::new(1).expect("1 is a counter");
-    match point {
-        Counter::Gate0 => FIRST,
-        Counter::Gate1 => SECOND,
-    }
-}
+/// The first counter of a module.
+const FIRST: UpTo<1> = UpTo::<1>::new(0).expect("0 is a counter");

@@ -157,7 +157,9 @@ mod tests {
         // Frames of 13 + 12 + 2 characters with 30 ms, eleven times (poll, poll again, who is there, asked, given up,
         // who is there, poll, given up, who is there, two writes), and 12 characters with 30 ms twice, for silence; each
         // wire time rounded up to the microsecond.
-        let bound = Wiring::resolve(&settings()).unwrap().longest_reaction();
+        let bound = Wiring::resolve(&settings(), crate::dut::FIXTURES)
+            .unwrap()
+            .longest_reaction();
         assert_eq!(bound, Span(11 * (2_344 + 30_000) + 2 * (1_042 + 30_000)));
     }
 
@@ -166,12 +168,14 @@ mod tests {
         let mut slow = settings();
         slow.line.get_mut("motion").unwrap().baud = 9600;
         slow.safety.estop_reaction_ms = 800.0;
-        let bound = Wiring::resolve(&slow).unwrap().longest_reaction();
+        let bound = Wiring::resolve(&slow, crate::dut::FIXTURES)
+            .unwrap()
+            .longest_reaction();
         assert_eq!(bound, Span(11 * (28_125 + 30_000) + 2 * (12_500 + 30_000)));
         let mut shared = settings();
         let contact = shared.digital_in.get_mut("emergency_stop_ok").unwrap();
         (contact.module, contact.channel) = ("board_di".to_owned(), 11);
-        let fault = Wiring::resolve(&shared).unwrap_err();
+        let fault = Wiring::resolve(&shared, crate::dut::FIXTURES).unwrap_err();
         assert_eq!(fault.key, "safety.estop_reaction_ms");
     }
 }

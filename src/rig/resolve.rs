@@ -1,15 +1,16 @@
 //! From the settings of `config/rig.toml` to a checked [`Wiring`].
 //!
-//! Checked here, because it takes more than one key to see it: that every point names a module that
-//! exists, on a channel it has, of the kind the point needs; that no two points share a terminal and no
+//! Checked here, because it takes more than one key to see it: that every point is one of the machine, one that a
+//! kind of device declares or the beam of a bin; that it names a module that exists, on a channel it has, of the kind the point needs; that no two points share a terminal and no
 //! two modules an address on one line; that a module has the settings its model needs and no others;
 //! that the axis has one point for each place; that the emergency stop acts in time.
 
 use super::axis::AxisTable;
+use super::declared::{Declared, InputNames};
 use super::fault::Fault;
 use super::model::Terminals;
 use super::modules::resolve_modules;
-use super::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Temperature};
+use super::point::{Fixture, Quantity, Switch};
 use super::reaction::check_reaction;
 use super::settings::{ActuatorSettings, ChannelSettings, RigSettings};
 use super::wiring::{AnalogTerminal, Line, Module, ModuleId, StrokeLimits, Terminal, Wiring};
@@ -18,8 +19,9 @@ use crate::units::Span;
 use std::collections::BTreeMap;
 
 impl Wiring {
-    /// Resolves all names and checks the whole; the first fault found is returned.
-    pub fn resolve(settings: &RigSettings) -> Result<Self, Fault> {
+    /// Resolves all names and checks the whole; the first fault found is returned. `fixtures`: what the kinds of
+    /// device declare; the rig may lack any of it.
+    pub fn resolve(settings: &RigSettings, fixtures: &[Fixture]) -> Result<Self, Fault> {
         let lines: Vec<Line> = settings
             .line
             .iter()
@@ -32,29 +34,33 @@ impl Wiring {
             .collect();
         check_ports(&lines)?;
         let modules = resolve_modules(settings, &lines)?;
-        let axis = AxisTable::resolve(&settings.axis, &settings.bin)?;
+        let inputs = InputNames::of(settings, fixtures);
+        let axis = AxisTable::resolve(&settings.axis, &settings.bin, |name| inputs.handle(name))?;
+        inputs.check(settings)?;
         let strokes = resolve_strokes(&settings.actuator)?;
+        let declared = Declared { settings, fixtures };
         let mut terminals = TerminalBook {
             modules: &modules,
             taken: BTreeMap::new(),
         };
         let wiring = Self {
-            digital_in: terminals.digital_in(settings)?,
-            digital_out: terminals.digital_out(settings)?,
-            analog_in: terminals.analog_in(settings)?,
-            analog_out: terminals.analog_out(settings)?,
+            digital_in: terminals.digital_in(settings, &inputs.names)?,
+            digital_out: terminals.digital_out(settings, &declared.outputs())?,
+            analog_in: terminals.analog_in(settings, &declared.quantities())?,
+            analog_out: terminals.analog_out(settings, &declared.sources())?,
             temperature: terminals.channels(
                 "temperature",
-                Temperature::NAMES,
+                &declared.thermometers(),
                 &settings.temperature,
                 Terminals::Temperature,
             )?,
             counter: terminals.channels(
                 "counter",
-                Counter::NAMES,
+                &declared.counters(),
                 &settings.counter,
                 Terminals::Counter,
             )?,
+            before_beams: inputs.before_beams,
             lines,
             modules,
             bus: settings.bus,
@@ -127,50 +133,56 @@ impl TerminalBook<'_> {
         })
     }
 
-    fn digital_in(&mut self, settings: &RigSettings) -> Result<Vec<Terminal>, Fault> {
-        let mut terminals = Vec::with_capacity(DigitalIn::COUNT);
-        for name in DigitalIn::NAMES {
+    fn digital_in(
+        &mut self,
+        settings: &RigSettings,
+        names: &[String],
+    ) -> Result<Vec<(String, Terminal)>, Fault> {
+        let mut terminals = Vec::with_capacity(names.len());
+        for name in names {
             let key = format!("digital_in.{name}");
-            let point = settings
-                .digital_in
-                .get(*name)
-                .ok_or_else(|| unwired(&key))?;
+            let point = settings.digital_in.get(name).ok_or_else(|| unwired(&key))?;
             let Place { module, channel } =
                 self.take(&key, &point.module, point.channel, Terminals::DigitalIn)?;
-            terminals.push(Terminal {
+            let terminal = Terminal {
                 module,
                 channel,
                 active_low: point.active == "low",
-            });
+            };
+            terminals.push((name.clone(), terminal));
         }
         Ok(terminals)
     }
 
-    fn digital_out(&mut self, settings: &RigSettings) -> Result<Vec<Terminal>, Fault> {
-        let terminals = self.channels(
-            "digital_out",
-            DigitalOut::NAMES,
-            &settings.digital_out,
-            Terminals::DigitalOut,
-        )?;
+    fn digital_out(
+        &mut self,
+        settings: &RigSettings,
+        outputs: &[Switch],
+    ) -> Result<Vec<(Switch, Terminal)>, Fault> {
+        let names: Vec<&'static str> = outputs.iter().map(|it| it.name).collect();
+        let wired = &settings.digital_out;
+        let terminals = self.channels("digital_out", &names, wired, Terminals::DigitalOut)?;
         let plain = |at: AnalogTerminal| Terminal {
             module: at.module,
             channel: at.channel,
             active_low: false,
         };
-        Ok(terminals.into_iter().map(plain).collect())
+        let both = outputs.iter().zip(terminals);
+        Ok(both.map(|(it, (_, at))| (*it, plain(at))).collect())
     }
 
-    fn analog_in(&mut self, settings: &RigSettings) -> Result<Vec<AnalogTerminal>, Fault> {
-        let mut terminals = Vec::with_capacity(AnalogIn::COUNT);
-        for point in AnalogIn::ALL {
-            let key = format!("analog_in.{point}");
-            let wired = settings
-                .analog_in
-                .get(point.name())
-                .ok_or_else(|| unwired(&key))?;
-            if wired.unit != point.unit() {
-                let expected = format!("\"{}\", the unit of {point}", point.unit());
+    fn analog_in(
+        &mut self,
+        settings: &RigSettings,
+        quantities: &[Quantity],
+    ) -> Result<Vec<(Quantity, AnalogTerminal)>, Fault> {
+        let mut terminals = Vec::with_capacity(quantities.len());
+        for point in quantities {
+            let (name, unit) = (point.name, point.unit);
+            let key = format!("analog_in.{name}");
+            let wired = settings.analog_in.get(name).ok_or_else(|| unwired(&key))?;
+            if wired.unit != unit {
+                let expected = format!("\"{unit}\", the unit of {name}");
                 return Err(Fault::new(
                     format!("{key}.unit"),
                     format!("\"{}\"", wired.unit),
@@ -179,30 +191,42 @@ impl TerminalBook<'_> {
             }
             let Place { module, channel } =
                 self.take(&key, &wired.module, wired.channel, Terminals::AnalogIn)?;
-            terminals.push(AnalogTerminal {
-                module,
-                channel,
-                gain: wired.gain,
-            });
+            let gain = wired.gain;
+            terminals.push((
+                *point,
+                AnalogTerminal {
+                    module,
+                    channel,
+                    gain,
+                },
+            ));
         }
         Ok(terminals)
     }
 
-    fn analog_out(&mut self, settings: &RigSettings) -> Result<Vec<AnalogTerminal>, Fault> {
-        let mut terminals = Vec::with_capacity(AnalogOut::COUNT);
-        for point in AnalogOut::ALL {
-            let key = format!("analog_out.{point}");
+    fn analog_out(
+        &mut self,
+        settings: &RigSettings,
+        names: &[&'static str],
+    ) -> Result<Vec<(&'static str, AnalogTerminal)>, Fault> {
+        let mut terminals = Vec::with_capacity(names.len());
+        for name in names {
+            let key = format!("analog_out.{name}");
             let wired = settings
                 .analog_out
-                .get(point.name())
+                .get(*name)
                 .ok_or_else(|| unwired(&key))?;
             let Place { module, channel } =
                 self.take(&key, &wired.module, 0, Terminals::AnalogOut)?;
-            terminals.push(AnalogTerminal {
-                module,
-                channel,
-                gain: wired.gain,
-            });
+            let gain = wired.gain;
+            terminals.push((
+                *name,
+                AnalogTerminal {
+                    module,
+                    channel,
+                    gain,
+                },
+            ));
         }
         Ok(terminals)
     }
@@ -210,20 +234,23 @@ impl TerminalBook<'_> {
     fn channels(
         &mut self,
         section: &str,
-        names: &[&str],
+        names: &[&'static str],
         wired: &BTreeMap<String, ChannelSettings>,
         kind: Terminals,
-    ) -> Result<Vec<AnalogTerminal>, Fault> {
+    ) -> Result<Vec<(&'static str, AnalogTerminal)>, Fault> {
         let mut terminals = Vec::with_capacity(names.len());
         for name in names {
             let key = format!("{section}.{name}");
             let point = wired.get(*name).ok_or_else(|| unwired(&key))?;
             let Place { module, channel } = self.take(&key, &point.module, point.channel, kind)?;
-            terminals.push(AnalogTerminal {
-                module,
-                channel,
-                gain: 1.0,
-            });
+            terminals.push((
+                *name,
+                AnalogTerminal {
+                    module,
+                    channel,
+                    gain: 1.0,
+                },
+            ));
         }
         Ok(terminals)
     }
@@ -269,24 +296,20 @@ fn check_beams(wiring: &Wiring, settings: &RigSettings) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The contact drop is read on every part: its channel must be enabled from the start.
+/// A channel whose mask no act ever changes must be enabled from the start.
 fn check_masks(wiring: &Wiring) -> Result<(), Fault> {
-    let drop = wiring.analog_in(AnalogIn::ContactDrop);
-    let module = wiring.module(drop.module);
-    match module.mask {
-        Some(mask) if mask & (1 << drop.channel.get()) == 0 => {
-            let expected = format!(
-                "a mask with channel {} (contact_drop) enabled",
-                drop.channel
-            );
-            Err(Fault::new(
+    for (point, at) in wiring.analog_in.iter().filter(|(point, _)| point.enabled) {
+        let module = wiring.module(at.module);
+        if let Some(mask) = module.mask.filter(|mask| mask >> at.channel.get() & 1 == 0) {
+            let (channel, name) = (at.channel, point.name);
+            return Err(Fault::new(
                 format!("module.{}.mask", module.name),
                 format!("\"{mask:02X}\""),
-                expected,
-            ))
+                format!("a mask with channel {channel} ({name}) enabled"),
+            ));
         }
-        Some(_) | None => Ok(()),
     }
+    Ok(())
 }
 
 fn resolve_strokes(actuators: &BTreeMap<String, ActuatorSettings>) -> Result<StrokeLimits, Fault> {

@@ -1,8 +1,8 @@
 //! What came from the rig, with everything needed to trace it back to its bytes.
 
-use super::point::{AnalogIn, Counter, DigitalIn, Temperature};
+use super::point::{AnalogInput, DigitalInput, GatedCounter, Thermometer};
 use super::wiring::{LineId, ModuleId};
-use crate::dcon::Channel;
+use crate::dcon::{Channel, Command};
 use crate::units::RigTime;
 use std::sync::Arc;
 
@@ -15,28 +15,39 @@ pub struct Origin {
     pub module: ModuleId,
     /// The channel, from 0.
     pub channel: Channel,
+    /// What was asked.
+    pub command: Command,
     /// The reply as it came, lead included, check sum and CR excluded or not as the line hands it over.
     pub raw: Arc<str>,
     /// When the module was asked: the conversion may be older by its conversion time, never newer than the reply.
     pub at: RigTime,
 }
 
+impl Origin {
+    /// The request as sent, without check sum and end.
+    pub fn request(&self) -> String {
+        let mut bytes = Vec::new();
+        self.command.encode(false, &mut bytes);
+        String::from_utf8_lossy(&bytes).trim_end().to_string()
+    }
+}
+
 /// A point that gives analog samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AnalogPoint {
     /// A voltage input.
-    Input(AnalogIn),
+    Input(AnalogInput),
     /// A thermometer.
-    Temperature(Temperature),
+    Temperature(Thermometer),
 }
 
 /// A point that gives counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CountPoint {
     /// A gated counter, modulo 2^32.
-    Gate(Counter),
+    Gate(GatedCounter),
     /// The event counter of a digital input, modulo 2^16.
-    Events(DigitalIn),
+    Events(DigitalInput),
 }
 
 /// Whether a reading is a number.

@@ -17,12 +17,16 @@ pub struct RigSettings {
     /// Modules by name.
     pub module: BTreeMap<String, ModuleSettings>,
     /// Analog inputs by point name.
+    #[serde(default)]
     pub analog_in: BTreeMap<String, AnalogInSettings>,
     /// Thermometers by point name.
+    #[serde(default)]
     pub temperature: BTreeMap<String, ChannelSettings>,
     /// Analog outputs by point name.
+    #[serde(default)]
     pub analog_out: BTreeMap<String, AnalogOutSettings>,
     /// Gated counters by point name.
+    #[serde(default)]
     pub counter: BTreeMap<String, ChannelSettings>,
     /// Digital inputs by point name.
     pub digital_in: BTreeMap<String, DigitalInSettings>,

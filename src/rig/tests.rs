@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 fn wiring() -> Arc<Wiring> {
     let settings: RigSettings = toml::from_str(include_str!("../../config/rig.toml")).unwrap();
-    Arc::new(Wiring::resolve(&settings).unwrap())
+    Arc::new(Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap())
 }
 
 fn motion(wiring: &Wiring) -> LineId {

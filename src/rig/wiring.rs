@@ -6,10 +6,14 @@
 
 use super::axis::AxisTable;
 use super::model::Model;
-use super::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Temperature};
+use super::point::{
+    AnalogInput, AnalogOutput, DigitalIn, DigitalInput, DigitalOut, DigitalOutput, GatedCounter,
+    Quantity, Switch, Thermometer,
+};
 use super::settings::{BusSettings, SafetySettings};
 use crate::dcon::{Address, Channel, DataFormat, SlewCode, TypeCode};
 use crate::units::Span;
+use std::collections::BTreeSet;
 
 /// Index of a line in [`Wiring::lines`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -130,12 +134,21 @@ pub struct Wiring {
     pub strokes: StrokeLimits,
     /// Points of the sort axis and the bins at them.
     pub axis: AxisTable,
-    pub(super) digital_in: Vec<Terminal>,
-    pub(super) digital_out: Vec<Terminal>,
-    pub(super) analog_in: Vec<AnalogTerminal>,
-    pub(super) analog_out: Vec<AnalogTerminal>,
-    pub(super) temperature: Vec<AnalogTerminal>,
-    pub(super) counter: Vec<AnalogTerminal>,
+    /// Inputs of the machine, of the fixtures, beams.
+    pub(super) digital_in: Vec<(String, Terminal)>,
+    /// Outputs of the machine, of the fixtures.
+    pub(super) digital_out: Vec<(Switch, Terminal)>,
+    pub(super) analog_in: Vec<(Quantity, AnalogTerminal)>,
+    pub(super) analog_out: Vec<(&'static str, AnalogTerminal)>,
+    pub(super) temperature: Vec<(&'static str, AnalogTerminal)>,
+    pub(super) counter: Vec<(&'static str, AnalogTerminal)>,
+    /// How many of the digital inputs belong to the machine and the fixtures: the beams come behind them.
+    pub(super) before_beams: usize,
+}
+
+/// The place of a name in a table.
+fn named<'a>(mut names: impl Iterator<Item = &'a str>, name: &str) -> Option<usize> {
+    names.position(|known| known == name)
 }
 
 impl Wiring {
@@ -188,33 +201,125 @@ impl Wiring {
     }
 
     /// Where a digital input is wired.
-    pub fn digital_in(&self, point: DigitalIn) -> Terminal {
-        self.digital_in[point.index()]
+    pub fn digital_in(&self, point: impl Into<DigitalInput>) -> Terminal {
+        self.digital_in[point.into().index()].1
     }
 
     /// Where a digital output is wired.
-    pub fn digital_out(&self, point: DigitalOut) -> Terminal {
-        self.digital_out[point.index()]
+    pub fn digital_out(&self, point: impl Into<DigitalOutput>) -> Terminal {
+        self.digital_out[point.into().index()].1
     }
 
     /// Where an analog input is wired.
-    pub fn analog_in(&self, point: AnalogIn) -> AnalogTerminal {
-        self.analog_in[point.index()]
+    pub fn analog_in(&self, point: AnalogInput) -> AnalogTerminal {
+        self.analog_in[point.index()].1
     }
 
     /// Where an analog output is wired.
-    pub fn analog_out(&self, point: AnalogOut) -> AnalogTerminal {
-        self.analog_out[point.index()]
+    pub fn analog_out(&self, point: AnalogOutput) -> AnalogTerminal {
+        self.analog_out[point.index()].1
     }
 
     /// Where a thermometer is wired.
-    pub fn temperature(&self, point: Temperature) -> AnalogTerminal {
-        self.temperature[point.index()]
+    pub fn temperature(&self, point: Thermometer) -> AnalogTerminal {
+        self.temperature[point.index()].1
     }
 
     /// Where a counter is wired.
-    pub fn counter(&self, point: Counter) -> AnalogTerminal {
-        self.counter[point.index()]
+    pub fn counter(&self, point: GatedCounter) -> AnalogTerminal {
+        self.counter[point.index()].1
+    }
+
+    /// What a kind declares of an output: its name, and whether it is traced.
+    pub fn switch(&self, point: DigitalOutput) -> Switch {
+        self.digital_out[point.index()].0
+    }
+
+    /// What an analog input measures.
+    pub fn quantity(&self, point: AnalogInput) -> Quantity {
+        self.analog_in[point.index()].0
+    }
+
+    /// Name of a digital input.
+    pub fn input_name(&self, point: impl Into<DigitalInput>) -> &str {
+        &self.digital_in[point.into().index()].0
+    }
+
+    /// Name of a thermometer.
+    pub fn thermometer_name(&self, point: Thermometer) -> &'static str {
+        self.temperature[point.index()].0
+    }
+
+    /// Name of an analog output.
+    pub fn source_name(&self, point: AnalogOutput) -> &'static str {
+        self.analog_out[point.index()].0
+    }
+
+    /// Name of a counter.
+    pub fn counter_name(&self, point: GatedCounter) -> &'static str {
+        self.counter[point.index()].0
+    }
+
+    /// The digital input of this name; `None` when the rig has none.
+    pub fn digital_input(&self, name: &str) -> Option<DigitalInput> {
+        named(self.digital_in.iter().map(|it| it.0.as_str()), name).map(DigitalInput::at)
+    }
+
+    /// The digital output of this name.
+    pub fn digital_output(&self, name: &str) -> Option<DigitalOutput> {
+        named(self.digital_out.iter().map(|it| it.0.name), name).map(DigitalOutput::at)
+    }
+
+    /// The analog input of this name.
+    pub fn analog_input(&self, name: &str) -> Option<AnalogInput> {
+        named(self.analog_in.iter().map(|it| it.0.name), name).map(AnalogInput::at)
+    }
+
+    /// The analog output of this name.
+    pub fn analog_output(&self, name: &str) -> Option<AnalogOutput> {
+        named(self.analog_out.iter().map(|it| it.0), name).map(AnalogOutput::at)
+    }
+
+    /// The thermometer of this name.
+    pub fn thermometer(&self, name: &str) -> Option<Thermometer> {
+        named(self.temperature.iter().map(|it| it.0), name).map(Thermometer::at)
+    }
+
+    /// The counter of this name.
+    pub fn gated_counter(&self, name: &str) -> Option<GatedCounter> {
+        named(self.counter.iter().map(|it| it.0), name).map(GatedCounter::at)
+    }
+
+    /// Every digital input with its name, as screens list them: fixtures, machine, beams.
+    pub fn digital_inputs(&self) -> impl Iterator<Item = (&str, DigitalInput)> {
+        let (machine, all) = (DigitalIn::COUNT, self.digital_in.len());
+        (machine..self.before_beams)
+            .chain(0..machine)
+            .chain(self.before_beams..all)
+            .map(|at| (self.digital_in[at].0.as_str(), DigitalInput::at(at)))
+    }
+
+    /// Every digital output with its name, as screens list them: fixtures, machine.
+    pub fn digital_outputs(&self) -> impl Iterator<Item = (&'static str, DigitalOutput)> {
+        let machine = DigitalOut::COUNT;
+        (machine..self.digital_out.len())
+            .chain(0..machine)
+            .map(|at| (self.digital_out[at].0.name, DigitalOutput::at(at)))
+    }
+
+    /// Lines that carry points of a fixture: there measuring jobs go. In order, each once.
+    pub fn measuring_lines(&self) -> Vec<LineId> {
+        let inputs = self.digital_in[DigitalIn::COUNT..self.before_beams].iter();
+        let outputs = self.digital_out[DigitalOut::COUNT..].iter();
+        let digital = inputs
+            .map(|it| it.1.module)
+            .chain(outputs.map(|it| it.1.module));
+        let analog = self.analog_in.iter().map(|it| it.1.module);
+        let other = [&self.analog_out, &self.temperature, &self.counter];
+        let other = other.into_iter().flatten().map(|it| it.1.module);
+        let modules = digital.chain(analog).chain(other);
+        let lines: BTreeSet<LineId> = modules.map(|it| self.module(it).line).collect();
+        lines.into_iter().collect()
     }
 
     /// The module that carries the emergency-stop contact: every second transaction of its line.

@@ -142,7 +142,7 @@ pub struct Station {
     /// When the emergency-stop chain was last seen open.
     chain_open: Option<RigTime>,
     lamps: Lamps,
-    dark: Vec<(crate::rig::point::DigitalIn, RigTime)>,
+    dark: Vec<(crate::rig::point::DigitalInput, RigTime)>,
     /// Motions that wait for a step in maintenance.
     stepwise: VecDeque<Move>,
     /// Motions that wait until no end sensor is in doubt.

@@ -6,7 +6,7 @@ use super::moves::Move;
 use super::trouble::Alarm;
 use super::wants::Wants;
 use crate::rig::image::Image;
-use crate::rig::point::DigitalIn;
+use crate::rig::point::{DigitalIn, DigitalInput};
 use crate::units::RigTime;
 use std::collections::VecDeque;
 
@@ -47,12 +47,12 @@ impl Turn<'_> {
     }
 
     /// A sensor, when it is fresh enough to be believed.
-    pub fn input(&self, point: DigitalIn) -> Option<bool> {
+    pub fn input(&self, point: impl Into<DigitalInput>) -> Option<bool> {
         self.image.input(point, self.now, SENSOR_AGE)
     }
 
     /// True when the sensor is fresh and in this state.
-    pub fn seen(&self, point: DigitalIn, state: bool) -> bool {
+    pub fn seen(&self, point: impl Into<DigitalInput>, state: bool) -> bool {
         self.input(point) == Some(state)
     }
 

@@ -9,7 +9,7 @@ use crate::dut::em_relay::measure::TestRecord;
 use crate::dut::{Bin, Calibration, Characteristic, Judgement, Reason, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::image::Image;
-use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::rig::point::{DigitalInput, DigitalOut};
 use crate::units::{RigTime, Second};
 
 /// What the station is told in a turn beside the time.
@@ -133,7 +133,7 @@ pub struct Wants {
     /// An actuator is not where it should be: before it is named, the modules are asked whether one has restarted.
     pub suspicious: bool,
     /// Beam whose event counter is to be read with every scan.
-    pub beam: Option<DigitalIn>,
+    pub beam: Option<DigitalInput>,
     /// Orders of the buttons at the machine, each with its answer.
     pub pressed: Vec<(Command, Result<(), Refused>)>,
     /// Trouble seen in this turn, before it was compared with what stands.

@@ -2,8 +2,8 @@
 
 use super::output::{Format, FormatArgs, Output, Table, figure, text};
 use super::{lots, orders};
+use crate::dut::em_relay::points::BOARD;
 use crate::history::{Archive, Curve, Filter, LotSummary, Part};
-use crate::instrument::trace::Signal;
 use clap::Args;
 use std::io::Write;
 
@@ -140,7 +140,7 @@ fn curve(it: &Curve, out: &mut Output) -> anyhow::Result<()> {
         begin,
         ..
     } = it;
-    let is_board = signal == Signal::Board.name();
+    let is_board = signal == BOARD;
     let unit = match unit.as_str() {
         "" if is_board => {
             "Kelvin NC NO COM coil B A, probes up, no compliance, NC closed, NO closed"

@@ -6,7 +6,6 @@ use crate::dut::{Characteristic, Judgement, Verdict};
 use crate::gauge::{Limit, Reading};
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
 use crate::instrument::trace::Trace;
-use crate::rig::point::{AnalogIn, Counter};
 use crate::station::ledger::Kind;
 use crate::station::wants::Judged;
 use crate::units::RigTime;
@@ -60,13 +59,13 @@ fn curves(trace: &Trace, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
     let mut curves: Vec<CurveRecord> = Vec::new();
     for look in trace.looks() {
         let sample = (at(look.at), Some(look.value).filter(|it| it.is_finite()));
-        let name = look.signal.name();
+        let name = look.signal.name;
         match curves.iter_mut().find(|curve| curve.signal == name) {
             Some(curve) => curve.samples.push(sample),
             None => curves.push(CurveRecord {
                 signal: name.to_owned(),
-                unit: look.signal.unit().to_owned(),
-                step: look.signal.step(),
+                unit: look.signal.unit.to_owned(),
+                step: look.signal.step,
                 samples: vec![sample],
             }),
         }
@@ -89,7 +88,7 @@ fn measurement(
         line: setup.plant.wiring.line(origin.line).name.clone(),
         module: setup.plant.wiring.module(origin.module).name.clone(),
         channel: origin.channel.to_string(),
-        command: request(setup, origin),
+        command: origin.request(),
         raw: origin.raw.to_string(),
         at_us: setup.epoch_us + i64::try_from(origin.at.0).unwrap_or(i64::MAX),
     };
@@ -109,26 +108,6 @@ fn measurement(
         budget: budget(&reading),
         samples: evidence(judged, characteristic).map(sample).collect(),
     })
-}
-
-/// The request that was answered, without checksum and end.
-fn request(setup: &Setup, origin: &crate::rig::sample::Origin) -> String {
-    let wiring = &setup.plant.wiring;
-    let asked = |counter| {
-        wiring.counter(counter).module == origin.module
-            && wiring.counter(counter).channel == origin.channel
-    };
-    let command =
-        if let Some(counter) = Counter::ALL.iter().copied().find(|counter| asked(*counter)) {
-            wiring.read_counter(counter)
-        } else if wiring.analog_in(AnalogIn::ContactDrop).module == origin.module {
-            wiring.read_analog(AnalogIn::ContactDrop)
-        } else {
-            wiring.poll(origin.module)
-        };
-    let mut bytes = Vec::new();
-    command.encode(false, &mut bytes);
-    String::from_utf8_lossy(&bytes).trim_end().to_string()
 }
 
 /// The budget as JSON; `None` while it holds a term that is not a number (JSON has no infinity).

@@ -5,6 +5,7 @@
 use super::fleet::{Folder, Order};
 use super::journal::{self, Entry};
 use crate::config::Plant;
+use crate::dut::em_relay;
 use crate::rig::point::DigitalOut;
 use crate::rig::wiring::Wiring;
 use anyhow::Context;
@@ -16,20 +17,23 @@ const SCRIPT: &str = "# A chart of one part\nparts 8\n";
 const BEHIND: usize = 3;
 
 /// Rows from top to bottom: label, and outputs of which one at least is on.
-const ROWS: [(&str, &[DigitalOut]); 8] = [
-    ("escapement open", &[DigitalOut::EscapementRelease]),
-    ("pusher at the nest", &[DigitalOut::PusherExtend]),
-    ("jaws closed", &[DigitalOut::ClampClose]),
-    ("probes up", &[DigitalOut::ProbeLift]),
-    ("coil driven", &[DigitalOut::CoilDrive]),
-    ("z down", &[DigitalOut::SortZLower]),
-    ("fingers closed", &[DigitalOut::GripperClose]),
+const ROWS: [(&str, &[&str]); 8] = [
+    ("escapement open", &[DigitalOut::EscapementRelease.name()]),
+    ("pusher at the nest", &[DigitalOut::PusherExtend.name()]),
+    ("jaws closed", &[DigitalOut::ClampClose.name()]),
+    ("probes up", &[DigitalOut::ProbeLift.name()]),
+    (
+        "coil driven",
+        &[em_relay::points::DigitalOut::CoilDrive.name()],
+    ),
+    ("z down", &[DigitalOut::SortZLower.name()]),
+    ("fingers closed", &[DigitalOut::GripperClose.name()]),
     (
         "axis away",
         &[
-            DigitalOut::AxisPoint0,
-            DigitalOut::AxisPoint1,
-            DigitalOut::AxisPoint2,
+            DigitalOut::AxisPoint0.name(),
+            DigitalOut::AxisPoint1.name(),
+            DigitalOut::AxisPoint2.name(),
         ],
     ),
 ];
@@ -60,10 +64,11 @@ pub fn svg(order: &Order) -> anyhow::Result<String> {
 }
 
 /// When one of these outputs was on.
-fn intervals(entries: &[Entry], wiring: &Wiring, outputs: &[DigitalOut]) -> Vec<Interval> {
+fn intervals(entries: &[Entry], wiring: &Wiring, outputs: &[&str]) -> Vec<Interval> {
     let terminals: Vec<_> = outputs
         .iter()
-        .map(|output| wiring.digital_out(*output))
+        .filter_map(|name| wiring.digital_output(name))
+        .map(|output| wiring.digital_out(output))
         .collect();
     let (mut since, mut intervals) = (None, Vec::new());
     for entry in entries {

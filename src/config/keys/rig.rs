@@ -4,12 +4,23 @@ mod measuring;
 mod modules;
 mod points;
 
-use crate::form::{Form, Key, key};
+use crate::dut::em_relay::points as em_relay;
+use crate::form::{Form, Key, Points, key, optional};
 use crate::rig::axis::Bin;
-use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Temperature};
+use crate::rig::point::{DigitalIn, DigitalOut};
 use measuring::{ACCURACY, CALIBRATION, REFERENCE};
 use modules::{BUS, LINE, MODULE, SAFETY};
 use points::{ACTUATOR, ACTUATORS, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION};
+
+/// Points that only kinds of device declare.
+const fn of_kinds(may: &'static [&'static [&'static str]], entry: &'static Form) -> Form {
+    Form::Points(Points {
+        must: &[],
+        may,
+        free: false,
+        entry,
+    })
+}
 
 /// The whole file.
 pub const FILE: &[Key] = &[
@@ -37,39 +48,49 @@ pub const FILE: &[Key] = &[
         "rig",
         "modules by name",
     ),
-    key(
+    optional(
         "analog_in",
-        Form::Each(AnalogIn::NAMES, &Form::Table(ANALOG_IN)),
+        of_kinds(&[&em_relay::QUANTITY_NAMES], &Form::Table(ANALOG_IN)),
         "rig",
         "analog inputs by point",
     ),
-    key(
+    optional(
         "temperature",
-        Form::Each(Temperature::NAMES, &Form::Table(CHANNEL)),
+        of_kinds(&[em_relay::FIXTURE.temperature], &Form::Table(CHANNEL)),
         "rig",
         "thermometers by point",
     ),
-    key(
+    optional(
         "analog_out",
-        Form::Each(AnalogOut::NAMES, &Form::Table(ANALOG_OUT)),
+        of_kinds(&[em_relay::FIXTURE.analog_out], &Form::Table(ANALOG_OUT)),
         "rig",
         "analog outputs by point",
     ),
-    key(
+    optional(
         "counter",
-        Form::Each(Counter::NAMES, &Form::Table(CHANNEL)),
+        of_kinds(&[em_relay::FIXTURE.counter], &Form::Table(CHANNEL)),
         "rig",
         "gated counters by point",
     ),
     key(
         "digital_in",
-        Form::Each(DigitalIn::NAMES, &Form::Table(DIGITAL_IN)),
+        Form::Points(Points {
+            must: DigitalIn::NAMES,
+            may: &[em_relay::DigitalIn::NAMES],
+            free: true,
+            entry: &Form::Table(DIGITAL_IN),
+        }),
         "rig",
         "digital inputs by point",
     ),
     key(
         "digital_out",
-        Form::Each(DigitalOut::NAMES, &Form::Table(CHANNEL)),
+        Form::Points(Points {
+            must: DigitalOut::NAMES,
+            may: &[em_relay::DigitalOut::NAMES],
+            free: false,
+            entry: &Form::Table(CHANNEL),
+        }),
         "rig",
         "digital outputs by point",
     ),

@@ -9,14 +9,15 @@ use super::golden::{self, GoldenRun, Misfit};
 use super::lag::LagLaw;
 use super::measure::context::{UNTAUGHT_FINE_V, untaught};
 use super::measure::{Context, Test, TestRecord};
+use super::points::{AnalogIn, AnalogOut, Missing, Points};
 use super::probe_contact::Trend;
 use super::recipe::RelayRecipe;
 use super::reference::{self, ReferenceFault};
 use super::settings::GoldenPart;
 use crate::dut::Recipe;
 use crate::dut::device::{Made, Rig, TestOrder};
-use crate::instrument::act::{Act, Readings};
-use crate::rig::point::{AnalogIn, AnalogOut};
+use crate::instrument::act::Act;
+use crate::instrument::readings::Readings;
 use crate::units::{Ohm, RigTime};
 use std::sync::Arc;
 
@@ -37,14 +38,20 @@ pub struct Device {
 
 impl Device {
     /// Puts the recipe on a rig. Reference parts of its nominal voltage serve it.
+    ///
+    /// # Errors
+    /// Names the first point that the rig does not have.
     pub fn new(
         recipe: Arc<Recipe>,
         relay: Arc<RelayRecipe>,
         rig: &Rig,
         stored: Option<Calibration>,
-    ) -> Self {
+    ) -> Result<Self, Missing> {
+        let points = Points::resolve(rig.wiring)?;
         let nominal_v = relay.part.nominal_v;
         let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v));
+        let voltage = points.analog(AnalogIn::CoilVoltageFine);
+        let voltage_gain = rig.wiring.analog_in(voltage).gain;
         let context = Context {
             recipe,
             relay,
@@ -52,14 +59,14 @@ impl Device {
             reference: *rig.reference,
             accuracy: *rig.accuracy,
             nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
-                .map(|output| nominal_v_per_s(rig.wiring, output)),
+                .map(|output| nominal_v_per_s(rig.wiring, points.source(output))),
+            points,
             probe_contact: None,
             thorough: false,
             golden: None,
         };
-        let voltage_gain = rig.wiring.analog_in(AnalogIn::CoilVoltageFine).gain;
         let certificates = rig.reference_parts.of_nominal(nominal_v).cloned();
-        Self::of(context, voltage_gain, certificates.collect())
+        Ok(Self::of(context, voltage_gain, certificates.collect()))
     }
 
     pub(super) fn of(context: Context, voltage_gain: f64, certificates: Vec<GoldenPart>) -> Self {

@@ -7,11 +7,12 @@ use super::coil::relative_per_kelvin;
 use super::recipe::RelayRecipe;
 use super::settings::AccuracySettings;
 use super::{Parameter, Strategy};
+use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, Points};
 use crate::dut::recipe::Limits;
 use crate::gauge::Limit;
 use crate::gauge::budget::COVERAGE_FACTOR;
 use crate::rig::fault::Fault;
-use crate::rig::point::{AnalogIn, AnalogOut, Counter};
+use crate::rig::point::AnalogOutput;
 use crate::rig::wiring::Wiring;
 use crate::units::Celsius;
 
@@ -34,9 +35,13 @@ pub fn check(
     wiring: &Wiring,
     accuracy: &AccuracySettings,
 ) -> Result<(), Fault> {
+    let points = Points::resolve(wiring).map_err(|missing| {
+        let expected = "a rig with every point that its test needs";
+        Fault::new("test", missing, expected)
+    })?;
     for (key, strategy) in recipe.test.strategy.each() {
         let key = format!("test.strategy.{key}");
-        if let Some(why) = hindrance(strategy, wiring, accuracy) {
+        if let Some(why) = hindrance(strategy, wiring, &points, accuracy) {
             return Err(Fault::new(
                 key,
                 strategy.name(),
@@ -80,10 +85,11 @@ pub fn check(
 pub fn hindrance(
     strategy: Strategy,
     wiring: &Wiring,
+    points: &Points,
     accuracy: &AccuracySettings,
 ) -> Option<String> {
     let slew = |output: AnalogOut| {
-        let module = wiring.module(wiring.analog_out(output).module);
+        let module = wiring.module(wiring.analog_out(points.source(output)).module);
         (
             module.name.as_str(),
             module.slew.and_then(|code| code.volt_per_second()),
@@ -94,7 +100,7 @@ pub fn hindrance(
             "module {name} slews, supply_level must step (slew code 0)"
         ));
     }
-    let drop = wiring.analog_in(AnalogIn::ContactDrop);
+    let drop = wiring.analog_in(points.analog(AnalogIn::ContactDrop));
     let module = wiring.module(drop.module);
     if module
         .mask
@@ -105,7 +111,8 @@ pub fn hindrance(
             module.name
         ));
     }
-    let coil = wiring.module(wiring.analog_in(AnalogIn::CoilVoltageFine).module);
+    let coil = wiring.analog_in(points.analog(AnalogIn::CoilVoltageFine));
+    let coil = wiring.module(coil.module);
     if let Some(slow) = [module, coil].into_iter().find(|module| !module.fast)
         && accuracy.conversions_per_s > SLOW_CONVERSIONS_PER_S
     {
@@ -115,7 +122,7 @@ pub fn hindrance(
             slow.name
         ));
     }
-    let timer = wiring.module(wiring.counter(Counter::Gate0).module);
+    let timer = wiring.module(wiring.counter(points.counter(Counter::Gate0)).module);
     if timer.type_code.0 != COUNTS {
         return Some(format!(
             "module {} does not count (type code 50)",
@@ -142,7 +149,7 @@ pub fn hindrance(
 }
 
 /// Rate of an output at the coil, volts per second; 0 for one that steps.
-pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOut) -> f64 {
+pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOutput) -> f64 {
     let terminal = wiring.analog_out(output);
     let slew = wiring.module(terminal.module).slew;
     slew.and_then(|code| code.volt_per_second()).unwrap_or(0.0) * terminal.gain

@@ -8,6 +8,7 @@
 //! | what a test finds beside figures | [`finding`] |
 //! | the order of a test, a file per stage | [`measure`] |
 //! | how a threshold is found, and whether modules and uncertainty allow it | [`strategy`], [`feasible`] |
+//! | which points a rig must have, and how acts and readings name them | [`points`], [`act`], [`readings`] |
 //! | how often coil and contacts are read | [`sampling`] |
 //! | what the instruments are known to do | [`calibration`], [`settings`] |
 //! | how the factors are found: board references, reference parts | [`reference`], [`golden`] |
@@ -17,6 +18,7 @@
 //! | contact resistance | [`contact`] |
 //! | contact of the probes at the coil | [`probe_contact`] |
 
+pub mod act;
 pub mod calibration;
 pub mod coil;
 pub mod contact;
@@ -27,7 +29,9 @@ pub mod golden;
 pub mod lag;
 pub mod measure;
 pub mod parameter;
+pub mod points;
 pub mod probe_contact;
+pub mod readings;
 pub mod recipe;
 pub mod reference;
 pub mod sampling;

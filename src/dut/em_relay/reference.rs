@@ -5,22 +5,31 @@
 //! delay, gain and offset of the three supply outputs, and the slope of the fine ramp against the
 //! host's clock. The slope of the coarse ramp stays the maker's: it only places the fine one.
 
+use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::calibration::{Calibration, InputLine, OutputLine};
 use crate::dut::em_relay::measure::Context;
+use crate::dut::em_relay::points::AnalogIn;
+use crate::dut::em_relay::points::AnalogOut::{SupplyCoarse, SupplyFine, SupplyLevel};
+use crate::dut::em_relay::points::DigitalOut::{
+    Arm, CoilDrive, KelvinTest, RampMode, ReferenceCoil, ReferenceContact, SourceOn, SourceReverse,
+};
+use crate::dut::em_relay::readings::{CoilScan, Readings};
 use crate::dut::em_relay::timing::counts;
 use crate::gauge::Factor;
 use crate::gauge::budget::rectangular;
-use crate::instrument::act::{Act, CoilScan, Read, Readings};
-use crate::rig::point::AnalogOut::{SupplyCoarse, SupplyFine, SupplyLevel};
-use crate::rig::point::DigitalOut::{
-    Arm, CoilDrive, KelvinTest, RampMode, ReferenceCoil, ReferenceContact, SourceOn, SourceReverse,
-};
+use crate::instrument::act;
+use crate::instrument::readings::Readings as ByPoint;
 use crate::rig::sample::{Quality, Sample};
 use crate::units::{Span, Volt};
 use thiserror::Error;
 
-/// Channels 1, 5, 6 and 7 of the coil converter.
-pub const MASK: u8 = 0b1110_0010;
+/// Channels of the coil converter.
+pub const SCANNED: [AnalogIn; CHANNELS] = [
+    AnalogIn::CoilVoltageFine,
+    AnalogIn::CoilCurrentFine,
+    AnalogIn::CoilCurrent,
+    AnalogIn::ReferenceVoltage,
+];
 const CHANNELS: usize = 4;
 /// Scans per level: averages 2.8 mV of one reading to 0.8 mV.
 const SCANS: usize = 12;
@@ -123,9 +132,9 @@ impl ReferenceFault {
 }
 
 /// The acts, in the order [`conclude`] expects.
-pub fn acts(context: &Context) -> Vec<Act> {
+pub fn acts(context: &Context) -> Vec<act::Act> {
     let mut acts = vec![
-        Act::CoilMask(MASK),
+        Act::CoilMask(&SCANNED),
         all_off(),
         Act::Supply(vec![
             (SupplyLevel, Volt(0.0)),
@@ -166,11 +175,11 @@ pub fn acts(context: &Context) -> Vec<Act> {
     pulses(&mut acts);
     acts.extend([
         all_off(),
-        Act::CoilMask(context.coil_mask()),
+        Act::CoilMask(context.coil_channels()),
         Act::Supply(vec![(SupplyLevel, Volt(context.relay.test.prebias_v))]),
         Act::Wait(Span::ms(2000)),
     ]);
-    acts
+    context.points.wired(acts, &SCANNED)
 }
 
 fn all_off() -> Act {
@@ -274,11 +283,12 @@ fn level(scans: &[CoilScan]) -> Result<Level, ReferenceFault> {
 /// Draws the factors from what [`acts`] has read. `made_at_us`: microseconds since 1970 UTC.
 pub fn conclude(
     context: &Context,
-    readings: &Readings,
+    readings: &ByPoint,
     made_at_us: i64,
     valid_us: i64,
     voltage_gain: f64,
 ) -> Result<Calibration, ReferenceFault> {
+    let readings = &Readings::of(readings, &context.points, None);
     let expected = 4 * SCANS + RAMP_SCANS + SCANS;
     if readings.coil.len() != expected
         || readings.drops.len() != 2 * DROPS

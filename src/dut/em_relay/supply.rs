@@ -4,9 +4,9 @@
 //! the stage before has left it: the coarse ramp goes up once for operate and down once for release.
 
 use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::OutputLine;
-use crate::instrument::act::Act;
-use crate::rig::point::AnalogOut;
+use crate::dut::em_relay::points::AnalogOut;
 use crate::units::{Span, Volt};
 
 /// Slowest settling of an output after its last refresh.

@@ -1,13 +1,16 @@
 //! Recipe, golden parts and instruments that err by nothing.
 
 use crate::dut;
+use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::Device;
 use crate::dut::em_relay::calibration::{InputLine, Lag, Lags, OutputLine};
 use crate::dut::em_relay::lag::LagLaw;
 use crate::dut::em_relay::measure::Context;
+use crate::dut::em_relay::points::Points;
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
-use crate::dut::em_relay::{Calibration, Device};
 use crate::dut::recipe::{DeviceRecipe, Recipe};
 use crate::gauge::Factor;
+use crate::station::tests::wiring;
 use serde::Deserialize;
 use std::sync::Arc;
 
@@ -29,6 +32,7 @@ pub fn context() -> Context {
         relay: Arc::new(relay.clone()),
         recipe: Arc::new(recipe),
         calibration: Arc::new(calibration()),
+        points: Points::resolve(&wiring()).unwrap(),
         reference: instruments.reference,
         accuracy: instruments.accuracy,
         nominal_v_per_s: [96.0, 1.5],

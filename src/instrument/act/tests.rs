@@ -1,7 +1,8 @@
 //! The runner carries acts out one after the other and says where the time went.
 
+use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut};
 use crate::instrument::act::{Act, Doing, Job, JobDone, Read, Runner, Spent};
-use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut};
+use crate::rig::point::Point;
 use crate::station::tests::Shop;
 use crate::units::{RigTime, Span, Volt};
 
@@ -25,29 +26,58 @@ fn read_once() -> Shop {
     shop
 }
 
+/// One word to the board.
+fn armed(shop: &Shop) -> Act {
+    Act::Set(vec![(shop.points.output(DigitalOut::Arm), true)])
+}
+
+fn analog(shop: &Shop, point: AnalogIn) -> Point {
+    Point::Analog(shop.points.analog(point))
+}
+
+fn gates(shop: &Shop) -> [Point; 2] {
+    [Counter::Gate0, Counter::Gate1].map(|it| Point::Count(shop.points.counter(it)))
+}
+
 #[test]
 fn every_act_of_the_bus_becomes_its_job_and_is_asked_once() {
-    let outputs = vec![(DigitalOut::Arm, true)];
-    let supply = vec![(AnalogOut::SupplyLevel, Volt(5.0))];
+    let shop = read_once();
+    let (points, coil) = (&shop.points, analog(&shop, AnalogIn::CoilVoltageFine));
+    let outputs = vec![(points.output(DigitalOut::Arm), true)];
+    let levels = vec![(points.source(AnalogOut::SupplyLevel), Volt(5.0))];
+    let masked = vec![points.analog(AnalogIn::CoilCurrent)];
+    let [gate, other] = gates(&shop);
+    let word: Vec<Point> = points
+        .board
+        .inputs
+        .iter()
+        .copied()
+        .map(Point::Input)
+        .collect();
+    let latch = points.input(DigitalIn::Latch);
+    let latched = [Point::Input(latch)].into_iter().chain(word.clone());
     let cases = [
-        (Act::Board(outputs.clone()), Job::Board(outputs)),
-        (Act::Supply(supply.clone()), Job::Supply(supply)),
-        (Act::Read(Read::Coil), Job::Read(Read::Coil)),
+        (Act::Set(outputs.clone()), Job::Set(outputs)),
+        (Act::Level(levels.clone()), Job::Level(levels.clone())),
+        (Act::Ramp(levels.clone()), Job::Level(levels)),
+        (Act::Read(Read::points([coil])), Job::Read(vec![coil])),
+        (Act::Read(Read::Word(points.board.clone())), Job::Read(word)),
         (
-            Act::Read(Read::Current(AnalogIn::CoilCurrentFine)),
-            Job::Read(Read::Current(AnalogIn::CoilCurrentFine)),
+            Act::Read(Read::Points {
+                asked: vec![gate],
+                beside: vec![other],
+            }),
+            Job::Read(vec![gate]),
         ),
-        (Act::Read(Read::Drop), Job::Read(Read::Drop)),
-        (Act::Read(Read::Gates), Job::Read(Read::Gates)),
-        (Act::Read(Read::Track), Job::Read(Read::Track)),
-        (Act::Read(Read::Resets), Job::Read(Read::Resets)),
-        (Act::CoilMask(0x60), Job::CoilMask(0x60)),
+        (Act::Read(Read::Restarts), Job::Restarts),
+        (Act::Mask(masked.clone()), Job::Mask(masked)),
         (
             Act::Until {
-                point: DigitalIn::Latch,
+                point: latch,
+                word: points.board.clone(),
                 within: Span(0),
             },
-            Job::Read(Read::Board),
+            Job::Read(latched.collect()),
         ),
     ];
     for (act, job) in cases {
@@ -64,43 +94,69 @@ fn every_act_of_the_bus_becomes_its_job_and_is_asked_once() {
 }
 
 #[test]
-fn what_was_read_is_kept_by_kind() {
+fn what_was_read_is_kept_by_point() {
     let shop = read_once();
+    let (points, [gate, other]) = (&shop.points, gates(&shop));
     let reads = [
-        Read::Board,
-        Read::Coil,
-        Read::Drop,
-        Read::Gates,
-        Read::Track,
+        Read::Word(points.board.clone()),
+        Read::points([analog(&shop, AnalogIn::CoilVoltageFine)]),
+        Read::points([gate, other]),
+        Read::Points {
+            asked: vec![gate],
+            beside: vec![other],
+        },
+        Read::points([Point::Temperature(points.track)]),
     ];
-    let mut runner = Runner::new(reads.map(Act::Read).to_vec(), shop.now);
+    let mut runner = Runner::new(reads.clone().map(Act::Read).to_vec(), shop.now);
     let mut last = runner.step(shop.now, None, &shop.image);
     for _ in reads {
         last = runner.step(shop.now, Some(&done(shop.now)), &shop.image);
     }
     assert_eq!(last, Doing::Done);
     let readings = &runner.readings;
-    assert!(readings.boards[0].nc_closed && !readings.boards[0].no_closed);
-    let scan = &readings.coil[0];
-    let volts = scan.voltage_fine.as_ref().unwrap().terminal_volts;
-    assert!((volts - 8.0).abs() < 0.001);
-    assert!(
-        scan.current_wide.is_none(),
-        "a masked channel has no sample"
-    );
-    assert_eq!(readings.gates[0].each_ref().map(|gate| gate.count), [7, 9]);
-    assert_eq!(readings.track[0].value, 23.0);
-    assert_eq!(readings.drops.len(), 1);
+    let state = |point| readings.states(points.input(point)).collect::<Vec<_>>();
+    assert_eq!(state(DigitalIn::NcClosed), [true]);
+    assert_eq!(state(DigitalIn::NoClosed), [false]);
+    assert!(state(DigitalIn::Latch).is_empty(), "no input of the word");
+    let volts = |point| {
+        readings
+            .analog(points.analog(point))
+            .map(|it| it.terminal_volts)
+    };
+    assert!((volts(AnalogIn::CoilVoltageFine).sum::<f64>() - 8.0).abs() < 0.001);
+    assert_eq!(volts(AnalogIn::CoilCurrentFine).count(), 0, "not asked for");
+    for (counter, count) in [(Counter::Gate0, 7), (Counter::Gate1, 9)] {
+        let counts = readings.counts(points.counter(counter));
+        let counts: Vec<u32> = counts.map(|it| it.count).collect();
+        assert_eq!(counts, [count; 2], "read, and kept beside");
+    }
+    let track = readings.temperatures(points.track).next().unwrap();
+    assert_eq!(track.value, 23.0);
+    let curves = readings.trace.looks().iter().map(|it| it.signal.name);
+    let curves: Vec<_> = curves.collect();
+    assert_eq!(curves, ["board", "coil_voltage_fine", "gate_0", "gate_1"]);
 }
 
 #[test]
 fn a_value_that_was_never_read_is_trouble_not_a_guess() {
-    for read in [Read::Board, Read::Drop, Read::Gates, Read::Track] {
-        let shop = Shop::unread();
+    let shop = Shop::unread();
+    for (read, name) in [
+        (Read::Word(shop.points.board.clone()), "board"),
+        (
+            Read::points([analog(&shop, AnalogIn::ContactDrop)]),
+            "contact_drop",
+        ),
+        (Read::points(gates(&shop)), "gate_0"),
+        (
+            Read::points([Point::Temperature(shop.points.track)]),
+            "track_temperature",
+        ),
+    ] {
         let mut runner = Runner::new(vec![Act::Read(read)], shop.now);
         runner.step(shop.now, None, &shop.image);
         let answered = runner.step(shop.now, Some(&done(shop.now)), &shop.image);
-        assert!(matches!(answered, Doing::Trouble(_)), "{read:?}");
+        let why = format!("{name} was answered without a value");
+        assert_eq!(answered, Doing::Trouble(why));
     }
 }
 
@@ -108,7 +164,7 @@ fn a_value_that_was_never_read_is_trouble_not_a_guess() {
 fn a_wait_counts_from_the_reply_before_and_a_wait_since_mark_from_the_mark() {
     let shop = read_once();
     let start = shop.now;
-    let board = || Act::Board(vec![(DigitalOut::Arm, true)]);
+    let board = || armed(&shop);
     let acts = vec![
         Act::Mark,
         board(),
@@ -148,9 +204,10 @@ fn a_wait_since_mark_that_is_already_over_costs_nothing() {
     assert_eq!(runner.spent().settling, Span::ms(30));
 }
 
-fn until(within: Span) -> Vec<Act> {
+fn until(shop: &Shop, within: Span) -> Vec<Act> {
     vec![Act::Until {
-        point: DigitalIn::Latch,
+        point: shop.points.input(DigitalIn::Latch),
+        word: shop.points.board.clone(),
         within,
     }]
 }
@@ -158,14 +215,14 @@ fn until(within: Span) -> Vec<Act> {
 #[test]
 fn until_asks_again_as_long_as_the_point_is_inactive_then_keeps_that_it_came() {
     let mut shop = read_once();
-    let mut runner = Runner::new(until(Span::ms(60)), shop.now);
+    let mut runner = Runner::new(until(&shop, Span::ms(60)), shop.now);
     runner.step(shop.now, None, &shop.image);
     for _ in 0..5 {
         shop.after(5);
         let asked = runner.step(shop.now, Some(&done(shop.now)), &shop.image);
-        assert_eq!(asked, Doing::Job(Job::Read(Read::Board)));
+        assert!(matches!(asked, Doing::Job(Job::Read(_))), "{asked:?}");
     }
-    shop.set(DigitalIn::Latch, true);
+    shop.set_board(DigitalIn::Latch, true);
     shop.after(5);
     let last = runner.step(shop.now, Some(&done(shop.now)), &shop.image);
     assert_eq!((last, &*runner.readings.seen), (Doing::Done, &[true][..]));
@@ -176,18 +233,14 @@ fn until_asks_again_as_long_as_the_point_is_inactive_then_keeps_that_it_came() {
 /// after the mark, a wait of 40 ms since it is over.
 fn ramp_behind_an_event(poll_ms: u64, sent_ms: u64) -> u64 {
     let mut shop = read_once();
-    let mut acts = until(Span::ms(200));
-    let ramp = vec![(AnalogOut::SupplyCoarse, Volt(1.0))];
-    acts.extend([
-        Act::Mark,
-        Act::Supply(ramp),
-        Act::RampSinceMark(Span::ms(40)),
-    ]);
+    let mut acts = until(&shop, Span::ms(200));
+    let ramp = vec![(shop.points.source(AnalogOut::SupplyCoarse), Volt(1.0))];
+    acts.extend([Act::Mark, Act::Ramp(ramp), Act::RampSinceMark(Span::ms(40))]);
     let mut runner = Runner::new(acts, shop.now);
     runner.step(shop.now, None, &shop.image);
     shop.after(3);
     runner.step(shop.now, Some(&done(shop.now)), &shop.image);
-    shop.set(DigitalIn::Latch, true);
+    shop.set_board(DigitalIn::Latch, true);
     shop.after(poll_ms);
     runner.step(shop.now, Some(&done(shop.now)), &shop.image);
     let mark = shop.now;
@@ -213,7 +266,7 @@ fn a_ramp_that_was_sent_late_is_waited_for_twice_as_much_longer() {
 #[test]
 fn until_gives_up_after_its_longest_wait_and_keeps_that_nothing_came() {
     let mut shop = read_once();
-    let mut runner = Runner::new(until(Span::ms(60)), shop.now);
+    let mut runner = Runner::new(until(&shop, Span::ms(60)), shop.now);
     runner.step(shop.now, None, &shop.image);
     let mut polls = 0;
     while runner.readings.seen.is_empty() && polls < 100 {
@@ -228,9 +281,12 @@ fn until_gives_up_after_its_longest_wait_and_keeps_that_nothing_came() {
 #[test]
 fn until_takes_a_board_that_was_not_read_lately_for_trouble() {
     let shop = read_once();
-    let mut runner = Runner::new(until(Span::ms(200)), shop.now);
+    let mut runner = Runner::new(until(&shop, Span::ms(200)), shop.now);
     runner.step(shop.now, None, &shop.image);
-    let board = shop.wiring.digital_in(DigitalIn::Latch).module;
+    let board = shop
+        .wiring
+        .digital_in(shop.points.input(DigitalIn::Latch))
+        .module;
     let line = shop.wiring.module(board).line;
     let later = shop.now + shop.wiring.answer_max_age(line) + Span(1);
     let answered = runner.step(later, Some(&done(later)), &shop.image);
@@ -240,7 +296,9 @@ fn until_takes_a_board_that_was_not_read_lately_for_trouble() {
 #[test]
 fn a_job_in_trouble_ends_the_acts() {
     let shop = read_once();
-    let acts = vec![Act::Read(Read::Coil), Act::Read(Read::Drop)];
+    let [coil, drop] = [AnalogIn::CoilVoltageFine, AnalogIn::ContactDrop]
+        .map(|it| Act::Read(Read::points([analog(&shop, it)])));
+    let acts = vec![coil, drop];
     let mut runner = Runner::new(acts, shop.now);
     runner.step(shop.now, None, &shop.image);
     let failed = JobDone {
@@ -249,7 +307,8 @@ fn a_job_in_trouble_ends_the_acts() {
     };
     let answered = runner.step(shop.now, Some(&failed), &shop.image);
     assert_eq!(answered, Doing::Trouble("measure 01 #01: silent".into()));
-    assert!(runner.readings.coil.is_empty());
+    let coil = shop.points.analog(AnalogIn::CoilVoltageFine);
+    assert_eq!(runner.readings.analog(coil).count(), 0);
 }
 
 #[test]
@@ -257,17 +316,17 @@ fn the_four_shares_of_the_time_add_up_to_the_time_that_passed() {
     let mut shop = read_once();
     let start = shop.now;
     let mut acts = vec![
-        Act::Board(vec![(DigitalOut::Arm, true)]),
+        armed(&shop),
         Act::Mark,
         Act::Wait(Span::ms(3)),
-        Act::Read(Read::Gates),
+        Act::Read(Read::points(gates(&shop))),
         Act::WaitSinceMark(Span::ms(20)),
         Act::Mark,
-        Act::Read(Read::Board),
+        Act::Read(Read::Word(shop.points.board.clone())),
         Act::ConvertSinceMark(Span::ms(28)),
-        Act::Read(Read::Coil),
+        Act::Read(Read::points([analog(&shop, AnalogIn::CoilVoltageFine)])),
     ];
-    acts.extend(until(Span::ms(15)));
+    acts.extend(until(&shop, Span::ms(15)));
     let mut runner = Runner::new(acts, start);
     let mut doing = runner.step(start, None, &shop.image);
     while doing != Doing::Done {

@@ -4,7 +4,7 @@ use super::{text, wiring};
 use crate::guard::{Actuator, Guard, GuardSettings, Motion, PartSize, Position, Situation, Stroke};
 use crate::rig::drive::{DriveError, Outputs};
 use crate::rig::level::{Correction, SupplyError};
-use crate::rig::point::{AnalogOut, DigitalOut};
+use crate::rig::point::DigitalOut;
 use crate::units::Volt;
 use std::sync::Arc;
 
@@ -155,30 +155,28 @@ fn outputs_are_settled_when_every_write_was_confirmed() {
 
 #[test]
 fn a_share_of_the_supply_is_written_as_the_nearest_corrected_step() {
-    let mut outputs = Outputs::new(wiring());
+    let wiring = wiring();
+    let level = wiring.analog_output("supply_level").unwrap();
+    let mut outputs = Outputs::new(wiring);
     outputs.writes();
     let correction = Correction {
         gain: 1.0005,
         offset_v: 0.002,
     };
-    let really = outputs
-        .set_supply(AnalogOut::SupplyLevel, Volt(12.0), correction)
-        .unwrap();
+    let really = outputs.set_supply(level, Volt(12.0), correction).unwrap();
     assert!((really.0 - 12.0).abs() < 1.5 * 10.0 / 65535.0);
-    let level = ((8.0 - 0.002) / 1.0005 / 10.0 * 65535.0f64).round() as u32;
+    let written = ((8.0 - 0.002) / 1.0005 / 10.0 * 65535.0f64).round() as u32;
     let writes: Vec<String> = outputs
         .writes()
         .iter()
         .map(|write| text(&write.command))
         .collect();
-    assert_eq!(writes, [format!("#02{level:04X}")]);
-    let zero = outputs
-        .set_supply(AnalogOut::SupplyLevel, Volt(0.0), correction)
-        .unwrap();
+    assert_eq!(writes, [format!("#02{written:04X}")]);
+    let zero = outputs.set_supply(level, Volt(0.0), correction).unwrap();
     assert!((zero.0 - 0.003).abs() < 1e-9);
     for impossible in [Volt(15.1), Volt(-1.0), Volt(f64::NAN)] {
         let error = outputs
-            .set_supply(AnalogOut::SupplyLevel, impossible, Correction::NONE)
+            .set_supply(level, impossible, Correction::NONE)
             .unwrap_err();
         assert!(matches!(error, SupplyError::Level { .. }));
     }

@@ -3,7 +3,7 @@
 use super::{motion, text, wiring};
 use crate::dcon::{Address, Command, Common};
 use crate::rig::image::{Image, Unexpected};
-use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, Temperature};
+use crate::rig::point::{AnalogInput, DigitalIn, GatedCounter, Point};
 use crate::rig::sample::Quality;
 use crate::rig::wiring::{LineId, Wiring};
 use crate::units::{RigTime, Span};
@@ -13,6 +13,25 @@ const NOW: RigTime = RigTime(1_000_000);
 
 fn measure(wiring: &Wiring) -> LineId {
     wiring.line_named("measure").unwrap()
+}
+
+fn analog(wiring: &Wiring, name: &str) -> AnalogInput {
+    wiring.analog_input(name).unwrap()
+}
+
+fn counter(wiring: &Wiring, name: &str) -> GatedCounter {
+    wiring.gated_counter(name).unwrap()
+}
+
+/// What reads one analog input, and what reads one counter.
+fn reads(wiring: &Wiring, point: Point) -> Command {
+    wiring.reads(&[point])[0].1
+}
+
+/// The requests that read these points.
+fn texts(wiring: &Wiring, points: &[Point]) -> Vec<String> {
+    let reads = wiring.reads(points);
+    reads.iter().map(|(_, command)| text(command)).collect()
 }
 
 /// The module on `line` answers `reply` to `command` at `at`.
@@ -32,13 +51,18 @@ fn answer(
 #[test]
 fn every_point_is_asked_for_at_its_own_terminal() {
     let wiring = wiring();
-    assert_eq!(text(&wiring.read_analog(AnalogIn::ContactDrop)), "#090");
-    assert_eq!(text(&wiring.read_analog(AnalogIn::CoilCurrentFine)), "#016");
-    assert_eq!(text(&wiring.read_temperature(Temperature::Track)), "#052");
-    assert_eq!(text(&wiring.read_counter(Counter::Gate1)), "#031");
-    assert_eq!(text(&wiring.read_events(DigitalIn::BeamPass)), "#129");
-    assert_eq!(text(&wiring.clear_events(DigitalIn::BeamRetest)), "$12CE");
-    assert_eq!(text(&wiring.read_supply(AnalogOut::SupplyFine)), "$078");
+    let track = wiring.thermometer("track_temperature").unwrap();
+    for (point, asked) in [
+        (Point::Analog(analog(&wiring, "contact_drop")), "#090"),
+        (Point::Analog(analog(&wiring, "coil_current_fine")), "#016"),
+        (Point::Temperature(track), "#052"),
+        (Point::Count(counter(&wiring, "gate_1")), "#031"),
+    ] {
+        assert_eq!(texts(&wiring, &[point]), [asked]);
+    }
+    let beam = |name| wiring.digital_input(name).unwrap();
+    assert_eq!(text(&wiring.read_events(beam("beam_pass"))), "#129");
+    assert_eq!(text(&wiring.clear_events(beam("beam_retest"))), "$12CE");
     assert_eq!(
         text(&wiring.poll(wiring.module_named("contact_ai").unwrap())),
         "#090"
@@ -48,6 +72,37 @@ fn every_point_is_asked_for_at_its_own_terminal() {
         "#01"
     );
     assert_eq!(text(&wiring.poll(wiring.emergency_stop_module())), "@11");
+}
+
+#[test]
+fn points_of_one_module_are_read_in_one_transaction_where_it_can() {
+    let wiring = wiring();
+    let input = |name| Point::Input(wiring.digital_input(name).unwrap());
+    let inputs = ["latch", "no_closed", "kelvin_nc"].map(input);
+    assert_eq!(texts(&wiring, &inputs), ["@08"]);
+    let coil = ["coil_voltage_fine", "coil_current_fine"];
+    let scan = coil.map(|name| Point::Analog(analog(&wiring, name)));
+    assert_eq!(texts(&wiring, &scan), ["#01"]);
+    let gates = ["gate_0", "gate_1"].map(|name| Point::Count(counter(&wiring, name)));
+    assert_eq!(texts(&wiring, &gates), ["#030", "#031"]);
+}
+
+#[test]
+fn a_channel_mask_is_that_of_the_points_wanted() {
+    let wiring = wiring();
+    let mask = |names: &[&str]| {
+        let inputs: Vec<_> = names.iter().map(|name| analog(&wiring, name)).collect();
+        let masks = wiring.masks(&inputs);
+        let masks = masks.iter().map(|(_, command)| text(command));
+        masks.collect::<Vec<String>>()
+    };
+    assert_eq!(
+        mask(&["coil_voltage_fine", "coil_current_fine"]),
+        ["$01560"]
+    );
+    assert_eq!(mask(&["coil_voltage_fine", "coil_current"]), ["$01522"]);
+    let both = mask(&["contact_drop", "coil_voltage_fine"]);
+    assert_eq!(both, ["$01520", "$09501"]);
 }
 
 #[test]
@@ -88,18 +143,20 @@ fn the_high_byte_of_a_sixteen_input_module_comes_first() {
 fn a_reading_carries_value_terminal_and_bytes() {
     let wiring = wiring();
     let mut image = Image::new(Arc::clone(&wiring));
-    let read = wiring.read_analog(AnalogIn::CoilVoltageFine);
+    let read = reads(&wiring, Point::Analog(analog(&wiring, "coil_voltage_fine")));
     answer(&mut image, measure(&wiring), read, ">4000", NOW).unwrap();
-    let sample = image.fresh_analog(AnalogIn::CoilVoltageFine, NOW).unwrap();
+    let sample = image
+        .fresh_analog(analog(&wiring, "coil_voltage_fine"), NOW)
+        .unwrap();
     assert_eq!((sample.terminal_volts, sample.value), (5.0, 5.0 / 1.6));
     assert_eq!(&*sample.origin.raw, ">4000");
     assert_eq!(wiring.module(sample.origin.module).name, "coil_ai");
     assert_eq!(sample.origin.channel.get(), 5);
     assert_eq!(
-        image.fresh_analog(AnalogIn::CoilVoltageFine, NOW + Span(1)),
+        image.fresh_analog(analog(&wiring, "coil_voltage_fine"), NOW + Span(1)),
         None
     );
-    assert_eq!(image.analog(AnalogIn::CoilVoltage), None);
+    assert_eq!(image.analog(analog(&wiring, "coil_voltage")), None);
 }
 
 #[test]
@@ -116,14 +173,20 @@ fn a_reading_of_all_channels_reaches_each_point_and_blanks_are_no_numbers() {
     )
     .unwrap();
     assert_eq!(
-        image.analog(AnalogIn::CoilVoltageFine).unwrap().good(),
+        image
+            .analog(analog(&wiring, "coil_voltage_fine"))
+            .unwrap()
+            .good(),
         Some(2.5 / 1.6)
     );
-    let over = image.analog(AnalogIn::CoilCurrentFine).unwrap();
+    let over = image.analog(analog(&wiring, "coil_current_fine")).unwrap();
     assert_eq!((over.quality, over.good()), (Quality::OverRange, None));
     assert!(over.value.is_nan());
     assert_eq!(
-        image.analog(AnalogIn::CoilVoltage).unwrap().quality,
+        image
+            .analog(analog(&wiring, "coil_voltage"))
+            .unwrap()
+            .quality,
         Quality::Blank
     );
 }
@@ -132,16 +195,31 @@ fn a_reading_of_all_channels_reaches_each_point_and_blanks_are_no_numbers() {
 fn counts_are_differences_across_the_wrap() {
     let wiring = wiring();
     let mut image = Image::new(Arc::clone(&wiring));
-    let read = wiring.read_counter(Counter::Gate0);
+    let read = reads(&wiring, Point::Count(counter(&wiring, "gate_0")));
     answer(&mut image, measure(&wiring), read, ">FFFFFFF0", NOW).unwrap();
-    let before = image.counter(Counter::Gate0).unwrap().clone();
+    let before = image.counter(counter(&wiring, "gate_0")).unwrap().clone();
     answer(&mut image, measure(&wiring), read, ">00000010", NOW).unwrap();
-    assert_eq!(image.counter(Counter::Gate0).unwrap().since(&before), 32);
-    let read = wiring.read_events(DigitalIn::BeamPass);
+    assert_eq!(
+        image
+            .counter(counter(&wiring, "gate_0"))
+            .unwrap()
+            .since(&before),
+        32
+    );
+    let read = wiring.read_events(wiring.digital_input("beam_pass").unwrap());
     answer(&mut image, motion(&wiring), read, "!1265535", NOW).unwrap();
-    let before = image.events(DigitalIn::BeamPass).unwrap().clone();
+    let before = image
+        .events(wiring.digital_input("beam_pass").unwrap())
+        .unwrap()
+        .clone();
     answer(&mut image, motion(&wiring), read, "!1200001", NOW).unwrap();
-    assert_eq!(image.events(DigitalIn::BeamPass).unwrap().since(&before), 2);
+    assert_eq!(
+        image
+            .events(wiring.digital_input("beam_pass").unwrap())
+            .unwrap()
+            .since(&before),
+        2
+    );
 }
 
 #[test]

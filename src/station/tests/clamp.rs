@@ -1,10 +1,11 @@
 //! The nest takes a part, has it tested and hands it to the gripper, never letting it loose in between.
 
-use super::{Shop, device};
+use super::{Shop, context, device};
+use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::{Bin, Reason, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::axis::AxisStation;
-use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::rig::point::DigitalIn;
 use crate::station::clamp::{Beside, Clamp};
 use crate::station::moves::Move;
 use crate::station::sort::Sort;
@@ -103,7 +104,10 @@ fn the_test_begins_with_the_pins_once_the_probes_are_up() {
     let mut nest = Nest::loaded(None);
     let clamp = nest.testing();
     assert!(clamp.test().is_some());
-    let pins = Job::Board(vec![(DigitalOut::KelvinTest, true)]);
+    let pins = Job::Set(vec![(
+        context().points.output(DigitalOut::KelvinTest),
+        true,
+    )]);
     assert_eq!(nest.shop.wants.job, Some(pins));
     let part = nest.shop.ledger.nest.as_ref().unwrap();
     assert_eq!(part.probed_at, Some(nest.shop.now));
@@ -132,7 +136,10 @@ fn a_golden_part_that_could_not_be_judged_is_tested_three_times_and_ends_in_rete
     let mut clamp = nest.judged();
     for tests in 1..3 {
         assert!(nest.shop.wants.judged.is_empty(), "after {tests}");
-        let pins = Job::Board(vec![(DigitalOut::KelvinTest, true)]);
+        let pins = Job::Set(vec![(
+            context().points.output(DigitalOut::KelvinTest),
+            true,
+        )]);
         assert_eq!(nest.shop.wants.job, Some(pins), "from the beginning");
         clamp = nest.fails(clamp);
     }

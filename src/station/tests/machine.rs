@@ -2,11 +2,12 @@
 
 use super::shop::mechanism;
 use super::{Shop, context, device, device_of};
+use crate::dut::em_relay::points::{self, AnalogIn};
 use crate::dut::verdict::Bin;
-use crate::instrument::act::{Job, JobDone, Read};
+use crate::instrument::act::{Job, JobDone};
 use crate::rig::axis::AxisStation;
 use crate::rig::image::Image;
-use crate::rig::point::{AnalogIn, Counter, DigitalIn, DigitalOut};
+use crate::rig::point::{DigitalIn, DigitalInput, DigitalOut, Point};
 use crate::station::gates::{LotSettings, Uses};
 use crate::station::inside::Inside;
 use crate::station::moves::Move;
@@ -65,8 +66,8 @@ pub struct Machine {
     job: Option<Job>,
     reversed: bool,
     axis: AxisStation,
-    beams: BTreeMap<DigitalIn, u16>,
-    beam: Option<DigitalIn>,
+    beams: BTreeMap<DigitalInput, u16>,
+    beam: Option<DigitalInput>,
     recorded: u64,
     orders: Vec<Order>,
     answers: Vec<Result<(), Refused>>,
@@ -358,50 +359,54 @@ impl Machine {
     fn insert(&mut self) {
         let specimen = self.magazine.pop_front().unwrap();
         let kelvin = [
-            DigitalIn::KelvinCoilA,
-            DigitalIn::KelvinCoilB,
-            DigitalIn::KelvinCom,
-            DigitalIn::KelvinNo,
-            DigitalIn::KelvinNc,
+            points::DigitalIn::KelvinCoilA,
+            points::DigitalIn::KelvinCoilB,
+            points::DigitalIn::KelvinCom,
+            points::DigitalIn::KelvinNo,
+            points::DigitalIn::KelvinNc,
         ];
-        self.shop.set(DigitalIn::ProbeChain, true);
+        self.shop.set_board(points::DigitalIn::ProbeChain, true);
         for point in kelvin {
-            self.shop.set(point, true);
+            self.shop.set_board(point, true);
         }
         let missing = specimen == Specimen::MissingPin;
-        self.shop.set(DigitalIn::KelvinNo, !missing);
+        self.shop.set_board(points::DigitalIn::KelvinNo, !missing);
         let stuck = specimen == Specimen::StuckNo;
-        self.shop.set(DigitalIn::NoClosed, stuck);
+        self.shop.set_board(points::DigitalIn::NoClosed, stuck);
     }
 
     fn answer(&mut self, job: &Job) -> JobDone {
         match job {
-            Job::Board(outputs) => {
-                for (point, state) in outputs {
-                    if *point == DigitalOut::SourceReverse {
-                        self.reversed = *state;
-                    }
+            Job::Set(outputs) => {
+                let reverse = self.shop.points.output(points::DigitalOut::SourceReverse);
+                for (_, state) in outputs.iter().filter(|(point, _)| *point == reverse) {
+                    self.reversed = *state;
                 }
             }
-            Job::Read(Read::Coil) => {
-                self.shop.volts(AnalogIn::CoilVoltageFine, 8.0);
-                self.shop.volts(AnalogIn::CoilCurrentFine, 0.0);
-            }
-            Job::Read(Read::Current(channel)) => self.shop.volts(*channel, 0.0),
-            Job::Read(Read::Drop) => {
-                let volts = if self.reversed { -1.1 } else { 1.1 };
-                self.shop.volts(AnalogIn::ContactDrop, volts);
-            }
-            Job::Read(Read::Gates | Read::Gate) => {
-                self.shop.gate(Counter::Gate0, 0);
-                self.shop.gate(Counter::Gate1, 0);
-            }
-            Job::Read(Read::Track) => self.shop.track(23.0),
-            Job::Read(Read::Board | Read::Resets) | Job::Supply(_) | Job::CoilMask(_) => {}
+            Job::Read(asked) => asked.iter().for_each(|point| self.read(*point)),
+            Job::Level(_) | Job::Restarts | Job::Mask(_) => {}
         }
         JobDone {
             at: self.shop.now,
             trouble: None,
+        }
+    }
+
+    /// The coil is open, contacts are good, nothing is timed.
+    fn read(&mut self, point: Point) {
+        let known = |input| self.shop.points.analog(input);
+        match point {
+            Point::Analog(input) if input == known(AnalogIn::CoilVoltageFine) => {
+                self.shop.volts_at(input, 8.0);
+            }
+            Point::Analog(input) if input == known(AnalogIn::ContactDrop) => {
+                let volts = if self.reversed { -1.1 } else { 1.1 };
+                self.shop.volts_at(input, volts);
+            }
+            Point::Analog(input) => self.shop.volts_at(input, 0.0),
+            Point::Count(counter) => self.shop.count(counter, 0),
+            Point::Temperature(_) => self.shop.track(23.0),
+            Point::Input(_) => {}
         }
     }
 

@@ -29,7 +29,7 @@ use std::sync::Arc;
 
 const RIG: &str = include_str!("../../../config/rig.toml");
 
-fn wiring() -> Arc<Wiring> {
+pub(crate) fn wiring() -> Arc<Wiring> {
     let settings: RigSettings = toml::from_str(RIG).unwrap();
-    Arc::new(Wiring::resolve(&settings).unwrap())
+    Arc::new(Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap())
 }

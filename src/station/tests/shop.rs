@@ -2,9 +2,10 @@
 
 use super::wiring;
 use crate::dcon::{Bits, Command, Reply};
+use crate::dut::em_relay::points::{self, AnalogIn, Counter, Points};
 use crate::guard::{Actuator, PartSize};
 use crate::rig::image::Image;
-use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
+use crate::rig::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Point};
 use crate::rig::wiring::{ModuleId, Wiring};
 use crate::station::ledger::Ledger;
 use crate::station::mechanism::Mechanism;
@@ -19,7 +20,7 @@ use std::sync::Arc;
 pub const TIMEOUT: Span = Span::ms(900);
 
 /// Sensors that are on with every actuator at its rest end, no part and safety as it should be.
-const AT_REST: [DigitalIn; 12] = [
+const AT_REST: [DigitalIn; 11] = [
     DigitalIn::EmergencyStopOk,
     DigitalIn::DoorClosed,
     DigitalIn::AirOk,
@@ -31,7 +32,6 @@ const AT_REST: [DigitalIn; 12] = [
     DigitalIn::AxisInPosition,
     DigitalIn::SortZUp,
     DigitalIn::GripperOpen,
-    DigitalIn::NcClosed,
 ];
 
 /// Everything that a turn needs.
@@ -44,14 +44,20 @@ pub struct Shop {
     pub wants: Wants,
     pub golden: VecDeque<String>,
     pub recorded: u64,
-    on: BTreeSet<DigitalIn>,
+    pub points: Points,
+    on: BTreeSet<DigitalInput>,
 }
 
 impl Shop {
     /// At rest, but no sensor was read yet.
     pub fn unread() -> Self {
         let wiring = wiring();
+        let points = Points::resolve(&wiring).unwrap();
+        let at_rest = AT_REST.into_iter().map(DigitalInput::from);
+        let nc_closed = points.input(points::DigitalIn::NcClosed);
         Self {
+            on: at_rest.chain([nc_closed]).collect(),
+            points,
             image: Image::new(Arc::clone(&wiring)),
             now: RigTime(1_000_000),
             mechanism: mechanism(&wiring),
@@ -60,7 +66,6 @@ impl Shop {
             wants: Wants::default(),
             golden: VecDeque::new(),
             recorded: 0,
-            on: AT_REST.into_iter().collect(),
         }
     }
 
@@ -72,24 +77,29 @@ impl Shop {
     }
 
     /// A sensor changes; nobody has read it yet.
-    pub fn set(&mut self, point: DigitalIn, state: bool) {
+    pub fn set(&mut self, point: impl Into<DigitalInput>, state: bool) {
         if state {
-            self.on.insert(point);
+            self.on.insert(point.into());
         } else {
-            self.on.remove(&point);
+            self.on.remove(&point.into());
         }
     }
 
+    /// An input of the interface board changes.
+    pub fn set_board(&mut self, point: points::DigitalIn, state: bool) {
+        self.set(self.points.input(point), state);
+    }
+
     /// State of a sensor, read or not.
-    pub fn is_on(&self, point: DigitalIn) -> bool {
-        self.on.contains(&point)
+    pub fn is_on(&self, point: impl Into<DigitalInput>) -> bool {
+        self.on.contains(&point.into())
     }
 
     /// Every digital module is read now.
     pub fn scan(&mut self) {
-        let modules: BTreeSet<ModuleId> = DigitalIn::ALL
-            .iter()
-            .map(|point| self.wiring.digital_in(*point).module)
+        let inputs = self.wiring.digital_inputs();
+        let modules: BTreeSet<ModuleId> = inputs
+            .map(|(_, point)| self.wiring.digital_in(point).module)
             .collect();
         for module in modules {
             self.scan_module(module);
@@ -98,7 +108,7 @@ impl Shop {
 
     fn scan_module(&mut self, module: ModuleId) {
         let mut word = 0;
-        for &point in DigitalIn::ALL {
+        for (_, point) in self.wiring.digital_inputs() {
             let terminal = self.wiring.digital_in(point);
             if terminal.module == module && self.on.contains(&point) != terminal.active_low {
                 word |= terminal.bit();
@@ -131,7 +141,7 @@ impl Shop {
     }
 
     /// Beam of a chute answers its count.
-    pub fn beam(&mut self, point: DigitalIn, count: u16) {
+    pub fn beam(&mut self, point: DigitalInput, count: u16) {
         let command = self.wiring.read_events(point);
         let module = self.wiring.digital_in(point).module;
         let address = self.wiring.module(module).address;
@@ -140,24 +150,41 @@ impl Shop {
 
     /// A converter answers volts at one terminal.
     pub fn volts(&mut self, point: AnalogIn, volts: f64) {
+        self.volts_at(self.points.analog(point), volts);
+    }
+
+    /// The same of a point that a job has named.
+    pub fn volts_at(&mut self, point: AnalogInput, volts: f64) {
         let steps = (volts / 10.0 * 32768.0).round() as i16;
-        let command = self.wiring.read_analog(point);
         let module = self.wiring.analog_in(point).module;
-        self.answer(command, module, &format!(">{steps:04X}"));
+        self.reads(Point::Analog(point), module, &format!(">{steps:04X}"));
     }
 
     /// A gate counter answers.
     pub fn gate(&mut self, counter: Counter, count: u32) {
-        let command = self.wiring.read_counter(counter);
+        self.count(self.points.counter(counter), count);
+    }
+
+    /// The same of a counter that a job has named.
+    pub fn count(&mut self, counter: GatedCounter, count: u32) {
         let module = self.wiring.counter(counter).module;
-        self.answer(command, module, &format!(">{count:08X}"));
+        self.reads(Point::Count(counter), module, &format!(">{count:08X}"));
     }
 
     /// The thermometer of the track answers.
     pub fn track(&mut self, celsius: f64) {
-        let command = self.wiring.read_temperature(Temperature::Track);
-        let module = self.wiring.temperature(Temperature::Track).module;
-        self.answer(command, module, &format!(">{celsius:+07.2}"));
+        let track = self.points.track;
+        let module = self.wiring.temperature(track).module;
+        self.reads(
+            Point::Temperature(track),
+            module,
+            &format!(">{celsius:+07.2}"),
+        );
+    }
+
+    fn reads(&mut self, point: Point, module: ModuleId, reply: &str) {
+        let command = self.wiring.reads(&[point])[0].1;
+        self.answer(command, module, reply);
     }
 
     /// The sensors of a motion's end, as if the actuator were there.

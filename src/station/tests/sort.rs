@@ -158,7 +158,7 @@ fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
     let since = shop.now;
     let sort = step(Sort::OverBin(Bin::Time, since), &mut shop, false);
     assert_eq!(sort, Sort::OverBin(Bin::Time, since), "read too early");
-    assert_eq!(shop.wants.beam, Some(DigitalIn::BeamTime));
+    assert_eq!(shop.wants.beam, Some(shop.wiring.axis.beam(Bin::Time)));
     shop.after(1);
     beam(&mut shop, Bin::Time, 5);
     let asked = step(sort, &mut shop, false);

@@ -2,6 +2,7 @@
 
 use crate::dut::Kind;
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::points::{BOARD, COIL_VOLTAGE};
 use crate::dut::recipe::DeviceRecipe;
 use crate::dut::recipe::Recipe;
 use crate::dut::{Judgement, Verdict};
@@ -9,7 +10,6 @@ use crate::gauge::judge;
 use crate::gauge::{Budget, Reading};
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
 use crate::instrument::trace::Signal;
-use crate::rig::point::AnalogIn;
 
 /// Share of parts with a defect, as in the default world.
 const DEFECTS: f64 = 0.04;
@@ -119,16 +119,16 @@ fn evidence(verdict: &Verdict, at_us: i64) -> Vec<CurveRecord> {
         return Vec::new();
     }
     let curve = |signal: Signal, samples: i64, value: fn(i64) -> f64| CurveRecord {
-        signal: signal.name().to_owned(),
-        unit: signal.unit().to_owned(),
-        step: signal.step(),
+        signal: signal.name.to_owned(),
+        unit: signal.unit.to_owned(),
+        step: signal.step,
         samples: (0..samples)
             .map(|n| (at_us + 5_321 * n, Some(value(n))))
             .collect(),
     };
     vec![
-        curve(Signal::Board, 30, |n| (500 + n % 2) as f64),
-        curve(Signal::Input(AnalogIn::CoilVoltageFine), 120, |n| {
+        curve(Signal::bits(BOARD), 30, |n| (500 + n % 2) as f64),
+        curve(Signal::input(COIL_VOLTAGE), 120, |n| {
             5.0 + 0.031_7 * n as f64
         }),
     ]

@@ -5,8 +5,8 @@ use super::super::settings::AccuracySettings;
 use super::super::{Parameter, Strategy};
 use super::{hindrance, nominal_v_per_s};
 use crate::dut::Recipe;
+use crate::dut::em_relay::points::{AnalogOut, Points};
 use crate::dut::recipe::DeviceRecipe;
-use crate::rig::point::AnalogOut;
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::{Module, Wiring};
 use serde::Deserialize;
@@ -22,7 +22,14 @@ struct Promised {
 fn plant() -> (Wiring, AccuracySettings) {
     let settings: RigSettings = toml::from_str(RIG).unwrap();
     let promised: Promised = toml::from_str(RIG).unwrap();
-    (Wiring::resolve(&settings).unwrap(), promised.accuracy)
+    (
+        Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap(),
+        promised.accuracy,
+    )
+}
+
+fn points(wiring: &Wiring) -> Points {
+    Points::resolve(wiring).unwrap()
 }
 
 /// The default recipe with every threshold found by `strategy`.
@@ -53,7 +60,7 @@ fn hindered(change: impl Fn(&mut Wiring)) -> Vec<Strategy> {
     let (mut wiring, accuracy) = plant();
     change(&mut wiring);
     let all = Strategy::ALL.into_iter();
-    all.filter(|strategy| hindrance(*strategy, &wiring, &accuracy).is_some())
+    all.filter(|strategy| hindrance(*strategy, &wiring, &points(&wiring), &accuracy).is_some())
         .collect()
 }
 
@@ -69,9 +76,10 @@ fn the_default_plant_performs_every_strategy() {
     for strategy in Strategy::ALL {
         recipe(strategy).feasible(&wiring, &accuracy).unwrap();
     }
-    assert_eq!(nominal_v_per_s(&wiring, AnalogOut::SupplyCoarse), 96.0);
-    assert_eq!(nominal_v_per_s(&wiring, AnalogOut::SupplyFine), 1.5);
-    assert_eq!(nominal_v_per_s(&wiring, AnalogOut::SupplyLevel), 0.0);
+    let rate = |output| nominal_v_per_s(&wiring, points(&wiring).source(output));
+    assert_eq!(rate(AnalogOut::SupplyCoarse), 96.0);
+    assert_eq!(rate(AnalogOut::SupplyFine), 1.5);
+    assert_eq!(rate(AnalogOut::SupplyLevel), 0.0);
 }
 
 #[test]
@@ -135,7 +143,10 @@ fn a_converter_out_of_fast_mode_is_refused_unless_nobody_counts_on_it() {
         let (mut wiring, mut accuracy) = plant();
         slow(&mut wiring);
         accuracy.conversions_per_s = 10.0;
-        assert_eq!(hindrance(Strategy::CoarseFine, &wiring, &accuracy), None);
+        assert_eq!(
+            hindrance(Strategy::CoarseFine, &wiring, &points(&wiring), &accuracy),
+            None
+        );
     }
 }
 
@@ -156,11 +167,17 @@ fn closures_cannot_stop_early_where_no_limit_says_when() {
 fn outputs_refreshed_every_two_milliseconds_ramp_and_slower_ones_only_step() {
     let (wiring, mut accuracy) = plant();
     accuracy.ao_refresh_ms = 2.0;
-    assert_eq!(hindrance(Strategy::CoarseFine, &wiring, &accuracy), None);
+    assert_eq!(
+        hindrance(Strategy::CoarseFine, &wiring, &points(&wiring), &accuracy),
+        None
+    );
     accuracy.ao_refresh_ms = 2.1;
-    let why = hindrance(Strategy::CoarseFine, &wiring, &accuracy).unwrap();
+    let why = hindrance(Strategy::CoarseFine, &wiring, &points(&wiring), &accuracy).unwrap();
     assert!(why.contains("every 2.1 ms only"), "{why}");
-    assert_eq!(hindrance(Strategy::Bisection, &wiring, &accuracy), None);
+    assert_eq!(
+        hindrance(Strategy::Bisection, &wiring, &points(&wiring), &accuracy),
+        None
+    );
 }
 
 #[test]

@@ -4,15 +4,16 @@
 use super::{Context, INTERLOCK, OFF, Stage, TestRecord, board};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::coil::{resistance, to_reference};
-use crate::dut::em_relay::probe_contact::in_series;
-use crate::dut::em_relay::recipe::CoilChannels;
-use crate::dut::em_relay::supply::Supply;
-use crate::instrument::act::{Act, CoilScan, Read, Readings};
-use crate::rig::point::AnalogIn;
-use crate::rig::point::DigitalOut::{
+use crate::dut::em_relay::points::AnalogIn;
+use crate::dut::em_relay::points::DigitalOut::{
     self, Arm, CoilDrive, EventNoBreak, KelvinTest, RampMode, SelectNo, SourceOn, SourceReverse,
 };
+use crate::dut::em_relay::probe_contact::in_series;
+use crate::dut::em_relay::readings::{CoilScan, Readings};
+use crate::dut::em_relay::recipe::CoilChannels;
+use crate::dut::em_relay::supply::Supply;
 use crate::rig::sample::{Quality, Sample};
 use crate::units::{Ohm, Span, Volt};
 

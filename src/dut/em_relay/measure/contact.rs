@@ -3,12 +3,13 @@
 
 use super::{Context, INTERLOCK, Stage, TestRecord, board};
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::contact::{Closure, resistance, u_with_later_v};
 use crate::dut::em_relay::finding::{Contact, Finding};
+use crate::dut::em_relay::points::DigitalOut::{Arm, KelvinTest, SourceOn, SourceReverse};
+use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::sampling::Polarities;
 use crate::dut::em_relay::supply::Supply;
-use crate::instrument::act::{Act, Read, Readings};
-use crate::rig::point::DigitalOut::{Arm, KelvinTest, SourceOn, SourceReverse};
 use crate::rig::sample::{Quality, Sample};
 use crate::units::{Celsius, Span, Volt};
 

@@ -1,14 +1,17 @@
 //! What a test needs to know beside the part: recipe, calibration and what the makers promise.
 
 use crate::dut::Recipe;
+use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::{Calibration, Lag};
 use crate::dut::em_relay::coil::ScanDoubt;
 use crate::dut::em_relay::golden::interim;
 use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, ReferenceSettings};
 use crate::dut::em_relay::timing::Clock;
 use crate::dut::em_relay::{Parameter, Strategy};
+use crate::instrument::act;
 use crate::units::{Celsius, Ohm, Span};
 use std::sync::Arc;
 
@@ -31,6 +34,8 @@ pub struct Context {
     pub relay: Arc<RelayRecipe>,
     /// What the instruments do.
     pub calibration: Arc<Calibration>,
+    /// The points of the rig.
+    pub points: Points,
     /// References on the interface board.
     pub reference: ReferenceSettings,
     /// Promises of the makers.
@@ -57,12 +62,17 @@ impl Context {
         Span::seconds(1.03 * channels as f64 / self.accuracy.conversions_per_s)
     }
 
-    /// Channel mask of the coil converter that the recipe asks for.
-    pub fn coil_mask(&self) -> u8 {
+    /// Channels of the coil converter that the recipe asks for.
+    pub fn coil_channels(&self) -> &'static [AnalogIn] {
         match self.relay.test.coil_channels {
-            CoilChannels::Fine => 0b0110_0000,
-            CoilChannels::CoarseCurrent => 0b0010_0010,
+            CoilChannels::Fine => &[AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrentFine],
+            CoilChannels::CoarseCurrent => &[AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrent],
         }
+    }
+
+    /// The acts of a test on this rig.
+    pub(super) fn wired(&self, acts: Vec<Act>) -> Vec<act::Act> {
+        self.points.wired(acts, self.coil_channels())
     }
 
     /// Standard uncertainty of one reading at the terminal: noise and resolution.

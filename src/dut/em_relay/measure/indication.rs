@@ -4,12 +4,12 @@ use super::{Context, Ramp};
 use crate::dut::em_relay::calibration::Lag;
 use crate::dut::em_relay::coil::to_reference;
 use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::strategy::{from_two_rates, growth_s};
 use crate::dut::em_relay::threshold::{Direction, RampDoubt, quasi_static};
 use crate::dut::em_relay::timing::counts;
 use crate::dut::em_relay::{Parameter, Strategy};
 use crate::gauge::budget::Reading;
-use crate::instrument::act::Readings;
 use crate::units::{Celsius, Second, Volt};
 
 /// Length of gate 0 between the last two readings.

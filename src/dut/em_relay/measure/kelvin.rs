@@ -8,8 +8,9 @@
 
 use super::{Context, Stage, TestRecord, board};
 use crate::dut::em_relay::Finding;
-use crate::instrument::act::{Act, Read, Readings};
-use crate::rig::point::DigitalOut::KelvinTest;
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::points::DigitalOut::KelvinTest;
+use crate::dut::em_relay::readings::Readings;
 use crate::units::Span;
 
 const PINS: [&str; 5] = ["coil A", "coil B", "COM", "NO", "NC"];

@@ -37,12 +37,14 @@ mod timing;
 
 use super::supply::Supply;
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::Act;
+use crate::dut::em_relay::points::DigitalOut;
+use crate::dut::em_relay::readings::Readings;
 use crate::dut::procedure::Progress;
 use crate::dut::{Characteristic, Verdict};
 use crate::gauge::{Judgement, judge};
-use crate::instrument::act::{Act, Doing, JobDone, Runner};
+use crate::instrument::act::{Doing, JobDone, Runner};
 use crate::rig::image::Image;
-use crate::rig::point::DigitalOut;
 use crate::rig::sample::CountSample;
 use crate::units::{RigTime, Span};
 pub use context::Context;
@@ -90,7 +92,8 @@ impl Test {
     pub fn begin(context: Context, now: RigTime) -> Self {
         let mut supply = Supply::new(&context.calibration);
         let mut record = TestRecord::default();
-        let runner = Runner::new(acts(Stage::Kelvin, &context, &mut supply, &mut record), now);
+        let acts = acts(Stage::Kelvin, &context, &mut supply, &mut record);
+        let runner = Runner::new(context.wired(acts), now);
         Self {
             stages: order(&context),
             context,
@@ -161,7 +164,7 @@ impl Test {
         self.stage = stage;
         self.record.rested &= stage == Stage::Off;
         let acts = acts(stage, &self.context, &mut self.supply, &mut self.record);
-        self.runner = Runner::after(acts, now, &self.runner, self.gates.clone());
+        self.runner = Runner::after(self.context.wired(acts), now, &self.runner);
     }
 
     /// Draws the conclusions of the stage that has just ended.
@@ -170,10 +173,10 @@ impl Test {
         self.record
             .took(self.stage.measures(), now.since(self.began));
         self.began = now;
-        let mut readings = std::mem::take(&mut self.runner.readings);
-        let seen = std::mem::take(&mut readings.trace);
-        self.record.trace.append(seen);
-        self.gates = readings.gates.last().cloned().or(self.gates.take());
+        let mut read = std::mem::take(&mut self.runner.readings);
+        self.record.trace.append(std::mem::take(&mut read.trace));
+        let readings = Readings::of(&read, &self.context.points, self.gates.take());
+        self.gates = readings.gates.last().cloned();
         let (context, record) = (&self.context, &mut self.record);
         let again = match self.stage {
             Stage::Kelvin => kelvin::conclude(context, &readings, record),

@@ -4,13 +4,14 @@ use super::indication::gate0;
 use super::ramp::{after_coarse, stopped_at};
 use super::{Context, INTERLOCK, OFF, Ramp, Stage, TestRecord, board};
 use crate::dut::em_relay::Finding;
-use crate::dut::em_relay::supply::{RAMP_MARGIN, Supply};
-use crate::dut::em_relay::threshold::{Direction, indicated};
-use crate::instrument::act::{Act, Read, Readings};
-use crate::rig::point::DigitalIn;
-use crate::rig::point::DigitalOut::{
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::points::DigitalIn;
+use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::supply::{RAMP_MARGIN, Supply};
+use crate::dut::em_relay::threshold::{Direction, indicated};
 use crate::units::{Span, Volt};
 
 /// The coarse release ramp begins so far above the highest threshold of the lot, volts.

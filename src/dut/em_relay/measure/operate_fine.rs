@@ -10,13 +10,14 @@ use super::ramp::{self, Expected, Met};
 use super::search::{AFTER_SEARCH, Search};
 use super::{Context, OFF, Ramp, Stage, TestRecord, board};
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::supply::Supply;
-use crate::dut::em_relay::threshold::Direction;
-use crate::instrument::act::{Act, Read, Readings};
-use crate::rig::point::DigitalIn;
-use crate::rig::point::DigitalOut::{
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::points::DigitalIn;
+use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::supply::Supply;
+use crate::dut::em_relay::threshold::Direction;
 use crate::units::{Span, Volt};
 
 /// First step of the approach, as a fraction of the start of the fine ramp.

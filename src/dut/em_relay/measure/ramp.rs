@@ -10,8 +10,8 @@ use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::calibration::Lag;
 use crate::dut::em_relay::coil::to_reference;
 use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::threshold::{Direction, indicated};
-use crate::instrument::act::Readings;
 use crate::units::{Celsius, Second, Span, Volt};
 
 /// The level jumps by this much between ARM and ramp: the window opens after [`WINDOW_V`], and on the fine

@@ -10,13 +10,14 @@ use super::ramp::{self, Expected, Met};
 use super::search::Search;
 use super::{Context, INTERLOCK, Ramp, Stage, TestRecord, board};
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::supply::Supply;
-use crate::dut::em_relay::threshold::{Direction, indicated};
-use crate::instrument::act::{Act, Read, Readings};
-use crate::rig::point::DigitalIn;
-use crate::rig::point::DigitalOut::{
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::points::DigitalIn;
+use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::supply::Supply;
+use crate::dut::em_relay::threshold::{Direction, indicated};
 use crate::units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.

@@ -4,9 +4,9 @@ use super::{
     Context, TestRecord, coil, contact, kelvin, operate, operate_fine, release, search, timing,
 };
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::Direction;
-use crate::instrument::act::Act;
 use std::collections::VecDeque;
 
 /// One stage of the test.

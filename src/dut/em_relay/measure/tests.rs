@@ -8,11 +8,12 @@ mod stages;
 mod whole;
 
 use super::{Stop, TestRecord};
-use crate::dcon::Channel;
+
+use crate::dcon::{Channel, Command};
+use crate::dut::em_relay::points::{AnalogIn, Counter};
+use crate::dut::em_relay::readings::{BoardInputs, CoilScan, Readings};
 use crate::dut::em_relay::tests::context;
 use crate::dut::verdict::Bin;
-use crate::instrument::act::{BoardInputs, CoilScan, Readings};
-use crate::rig::point::{AnalogIn, Counter};
 use crate::rig::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
 use crate::rig::wiring::{LineId, ModuleId};
 use crate::units::{Celsius, RigTime};
@@ -22,6 +23,7 @@ fn origin() -> Origin {
         line: LineId(0),
         module: ModuleId(0),
         channel: Channel::new(0).unwrap(),
+        command: Command::HostOk,
         raw: ">0000".into(),
         at: RigTime(0),
     }
@@ -35,7 +37,7 @@ fn sample(point: AnalogIn, quality: Quality, value: f64, gain: f64) -> Sample {
         f64::NAN
     };
     Sample {
-        point: AnalogPoint::Input(point),
+        point: AnalogPoint::Input(context().points.analog(point)),
         value,
         terminal_volts: value * gain,
         quality,
@@ -64,7 +66,7 @@ fn scan(volts: f64, ampere: f64) -> CoilScan {
 
 fn gates(counts: [u32; 2]) -> [CountSample; 2] {
     let gate = |counter, count| CountSample {
-        point: CountPoint::Gate(counter),
+        point: CountPoint::Gate(context().points.counter(counter)),
         count,
         origin: origin(),
     };

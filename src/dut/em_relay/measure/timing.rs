@@ -6,15 +6,16 @@ use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, r
 use super::operate::dropped;
 use super::{Context, OFF, Stage, TestRecord, board};
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::contact::resistance;
 use crate::dut::em_relay::finding::{Contact, Finding};
-use crate::dut::em_relay::supply::Supply;
-use crate::dut::em_relay::timing::{bounce_ms, counts, gate_ms};
-use crate::instrument::act::{Act, Read, Readings};
-use crate::rig::point::DigitalIn;
-use crate::rig::point::DigitalOut::{
+use crate::dut::em_relay::points::DigitalIn;
+use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::supply::Supply;
+use crate::dut::em_relay::timing::{bounce_ms, counts, gate_ms};
 use crate::units::{Span, Volt};
 
 /// Slowest operation or release that is still waited for.

@@ -1,12 +1,12 @@
 //! Three outputs add up to what was asked, whatever the outputs' own gain and offset.
 
 use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::calibration::OutputLine;
+use crate::dut::em_relay::points::AnalogOut;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::tests::context;
 use crate::gauge::Factor;
-use crate::instrument::act::Act;
-use crate::rig::point::AnalogOut;
 use crate::units::{Span, Volt};
 
 /// Outputs that err by as much as their makers allow, each its own way.

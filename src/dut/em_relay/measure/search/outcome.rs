@@ -5,10 +5,10 @@ use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Context, Stage, TestRecord};
+use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::Judgement;
 use crate::gauge::budget::{Budget, Reading, resolution};
-use crate::instrument::act::Readings;
 use crate::rig::sample::CountSample;
 use crate::units::{Span, Volt};
 

@@ -1,16 +1,16 @@
 //! The acts of one trial: from rest or from a sealed armature to a level, and a look at the contacts.
 
 use super::{REACH, Search, parameter};
+use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::measure::operate::dropped;
 use crate::dut::em_relay::measure::operate_fine::APPROACH;
 use crate::dut::em_relay::measure::pace::Pace;
 use crate::dut::em_relay::measure::{Context, INTERLOCK, OFF, TestRecord, board};
-use crate::dut::em_relay::supply::Supply;
-use crate::dut::em_relay::threshold::Direction;
-use crate::instrument::act::{Act, Read};
-use crate::rig::point::DigitalOut::{
+use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
+use crate::dut::em_relay::supply::Supply;
+use crate::dut::em_relay::threshold::Direction;
 use crate::units::{Span, Volt};
 
 /// Flux and armature from one level to the next while the armature is sealed.

@@ -3,13 +3,14 @@
 use super::super::{Stage, Test, acts};
 use super::{at_23_c, context, good, scan};
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::measure::{Context, coil};
+use crate::dut::em_relay::points::DigitalOut::{SourceOn, SourceReverse};
+use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::recipe::Strategies;
 use crate::dut::em_relay::sampling::Polarities;
 use crate::dut::em_relay::supply::Supply;
 use crate::gauge::budget::{Budget, Reading};
-use crate::instrument::act::{Act, Read, Readings};
-use crate::rig::point::DigitalOut::{SourceOn, SourceReverse};
 use crate::rig::sample::Sample;
 use crate::station::tests::Shop;
 use crate::units::Volt;
@@ -142,7 +143,7 @@ fn a_further_closure_begins_with_the_source_off_and_forward() {
     });
     let armed = words
         .into_iter()
-        .find(|word| word.contains(&(crate::rig::point::DigitalOut::Arm, true)))
+        .find(|word| word.contains(&(crate::dut::em_relay::points::DigitalOut::Arm, true)))
         .unwrap();
     assert!(armed.contains(&(SourceOn, false)) && armed.contains(&(SourceReverse, false)));
 }

@@ -2,15 +2,16 @@
 
 use super::super::{Ramp, Stage, coil, operate, operate_fine, release, timing};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, gates, scan, watched};
+use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::lag::{LagLaw, Shown};
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Context, TestRecord};
+use crate::dut::em_relay::points::DigitalOut;
+use crate::dut::em_relay::readings::{BoardInputs, Readings};
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::{Parameter, Strategy};
 use crate::dut::verdict::Bin;
-use crate::instrument::act::{Act, BoardInputs, Readings};
-use crate::rig::point::DigitalOut;
 use crate::rig::sample::Quality;
 use crate::units::Volt;
 use std::sync::Arc;

@@ -3,14 +3,16 @@
 use super::super::{Progress, Stage, Test, TestRecord, acts, order};
 use super::{at_23_c, context};
 use crate::dut::em_relay::Finding;
+use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::measure::ramp::Expected;
+use crate::dut::em_relay::points::{AnalogOut, DigitalOut};
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::{Parameter, parameter};
 use crate::dut::reason::{Code, Reason};
 use crate::dut::verdict::{Bin, Verdict};
 use crate::gauge::budget::{Budget, Reading};
-use crate::instrument::act::{Act, Doing, Job, JobDone, Read};
-use crate::rig::point::{AnalogOut, DigitalOut};
+use crate::instrument::act::{Doing, Job, JobDone};
+use crate::rig::point::Point;
 use crate::rig::sample::Sample;
 use crate::station::tests::Shop;
 use crate::units::{Span, Volt};
@@ -159,6 +161,12 @@ fn every_supply_output_asked_for_is_one_that_it_can_give() {
     }
 }
 
+/// The job that reads the board.
+fn board() -> Job {
+    let inputs = Shop::unread().points.board.inputs.clone();
+    Job::Read(inputs.into_iter().map(Point::Input).collect())
+}
+
 /// Steps a test through good answers up to a job, then lets that job fail.
 fn fails_at(job: &Job) -> Test {
     let mut shop = Shop::at_rest();
@@ -188,7 +196,7 @@ fn fails_at(job: &Job) -> Test {
 
 #[test]
 fn a_rig_in_trouble_has_proven_no_part_bad() {
-    let mut test = fails_at(&Job::Read(Read::Resets));
+    let mut test = fails_at(&Job::Restarts);
     let mut record = TestRecord::default();
     record.stop(Finding::NoDoesNotMake);
     test.record = record.clone();
@@ -225,11 +233,11 @@ fn the_level_is_written_anew_after_a_test_that_ended_early() {
 #[test]
 fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
     // No Kelvin bit is set, so the test goes from the pins straight to off.
-    let test = fails_at(&Job::Read(Read::Board));
+    let test = fails_at(&board());
     let why = Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")]);
     assert_eq!(test.verdict(), why);
     assert_eq!(test.verdict().bin(), Bin::Retest);
-    let restarted = fails_at(&Job::Read(Read::Resets));
+    let restarted = fails_at(&Job::Restarts);
     assert_eq!(restarted.verdict().name(), "void");
     assert_eq!(restarted.stage(), Stage::Off);
 }

@@ -1,0 +1,265 @@
+//! Points of the fixture that measures an electromagnetic relay: interface board, converters, sources, counters.
+//!
+//! The names are declared here; which of them a rig has, and where, is its `config/rig.toml`. [`Points`] exists
+//! only when the rig has all that a test needs.
+
+use crate::instrument::act::Word;
+use crate::rig::point::{
+    AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Fixture, GatedCounter, Quantity,
+    Switch, Thermometer, points,
+};
+use crate::rig::wiring::Wiring;
+use std::sync::Arc;
+use thiserror::Error;
+
+points! {
+    /// Inputs from the interface board; `true` means the named thing is so, whatever the polarity of the wire.
+    DigitalIn {
+        KelvinCoilA = "kelvin_coil_a",
+        KelvinCoilB = "kelvin_coil_b",
+        KelvinCom = "kelvin_com",
+        KelvinNo = "kelvin_no",
+        KelvinNc = "kelvin_nc",
+        NoClosed = "no_closed",
+        NcClosed = "nc_closed",
+        Window = "window",
+        Latch = "latch",
+        SourceCompliance = "source_compliance",
+        ProbeChain = "probe_chain",
+    }
+}
+
+points! {
+    /// Outputs to the interface board. None of them moves anything.
+    DigitalOut {
+        CoilDrive = "coil_drive",
+        ClampDiode = "clamp_diode",
+        SourceOn = "source_on",
+        SelectNo = "select_no",
+        SourceReverse = "source_reverse",
+        ReferenceCoil = "reference_coil",
+        ReferenceContact = "reference_contact",
+        RampMode = "ramp_mode",
+        Arm = "arm",
+        EventNoBreak = "event_no_break",
+        KelvinTest = "kelvin_test",
+    }
+}
+
+points! {
+    /// Analog inputs that a test reads.
+    AnalogIn {
+        CoilCurrent = "coil_current",
+        CoilVoltageFine = "coil_voltage_fine",
+        CoilCurrentFine = "coil_current_fine",
+        ReferenceVoltage = "reference_voltage",
+        ContactDrop = "contact_drop",
+    }
+}
+
+points! {
+    /// The three outputs whose sum, amplified, is the coil supply.
+    AnalogOut {
+        SupplyLevel = "supply_level",
+        SupplyCoarse = "supply_coarse",
+        SupplyFine = "supply_fine",
+    }
+}
+
+points! {
+    /// Gated counters on the reference clock.
+    Counter {
+        Gate0 = "gate_0",
+        Gate1 = "gate_1",
+    }
+}
+
+/// Thermometer of the magazine track, whose temperature the part has.
+const TRACK: &str = "track_temperature";
+
+/// Inputs of the board that are looked at together, from bit 0 on.
+const BOARD_INPUTS: [DigitalIn; 9] = [
+    DigitalIn::NoClosed,
+    DigitalIn::NcClosed,
+    DigitalIn::SourceCompliance,
+    DigitalIn::ProbeChain,
+    DigitalIn::KelvinCoilA,
+    DigitalIn::KelvinCoilB,
+    DigitalIn::KelvinCom,
+    DigitalIn::KelvinNo,
+    DigitalIn::KelvinNc,
+];
+/// Name of their signal.
+pub const BOARD: &str = "board";
+
+/// Every point that may stand in `config/rig.toml` for this kind; a test does without those that no name above has.
+pub const FIXTURE: Fixture = Fixture {
+    digital_in: DigitalIn::NAMES,
+    digital_out: &SWITCHES,
+    analog_in: &QUANTITIES,
+    analog_out: AnalogOut::NAMES,
+    temperature: &["nest_temperature", "ambient_temperature", TRACK],
+    counter: Counter::NAMES,
+};
+
+/// Names of [`QUANTITIES`].
+pub const QUANTITY_NAMES: [&str; QUANTITIES.len()] = {
+    let mut names = [""; QUANTITIES.len()];
+    let mut at = 0;
+    while at < names.len() {
+        names[at] = QUANTITIES[at].name;
+        at += 1;
+    }
+    names
+};
+
+const QUANTITIES: [Quantity; 8] = [
+    quantity("coil_voltage", "V", 1e-5),
+    quantity("coil_current", "A", 1e-8),
+    quantity("contact_current", "A", 1e-5),
+    quantity("supply_voltage", "V", 1e-5),
+    COIL_VOLTAGE,
+    quantity("coil_current_fine", "A", 1e-8),
+    quantity("reference_voltage", "V", 1e-5),
+    // Read on every part, and no act asks for its mask.
+    Quantity {
+        enabled: true,
+        ..quantity("contact_drop", "V", 1e-7)
+    },
+];
+
+/// The coil voltage of a test.
+pub const COIL_VOLTAGE: Quantity = quantity("coil_voltage_fine", "V", 1e-5);
+
+const fn quantity(name: &'static str, unit: &'static str, step: f64) -> Quantity {
+    Quantity {
+        name,
+        unit,
+        step,
+        enabled: false,
+    }
+}
+
+const SWITCHES: [Switch; DigitalOut::COUNT] = {
+    let mut all = [Switch {
+        name: "",
+        traced: false,
+    }; DigitalOut::COUNT];
+    let mut at = 0;
+    while at < all.len() {
+        let output = DigitalOut::ALL[at];
+        all[at].name = output.name();
+        all[at].traced = matches!(output, DigitalOut::CoilDrive);
+        at += 1;
+    }
+    all
+};
+
+/// The rig has not what a test needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("the rig has no {section} {name}")]
+pub struct Missing {
+    /// Section of `config/rig.toml` where it would stand.
+    pub section: &'static str,
+    /// Name of the first point that is missing.
+    pub name: &'static str,
+}
+
+/// The points of a test as this rig has wired them.
+#[derive(Debug, Clone)]
+pub struct Points {
+    inputs: [DigitalInput; DigitalIn::COUNT],
+    outputs: [DigitalOutput; DigitalOut::COUNT],
+    analog: [AnalogInput; AnalogIn::COUNT],
+    sources: [AnalogOutput; AnalogOut::COUNT],
+    counters: [GatedCounter; Counter::COUNT],
+    /// Temperature of the part.
+    pub track: Thermometer,
+    /// The inputs of the board that are looked at together.
+    pub board: Arc<Word>,
+}
+
+impl Points {
+    /// Looks every point up.
+    ///
+    /// # Errors
+    /// The first one that the rig has not.
+    pub fn resolve(wiring: &Wiring) -> Result<Self, Missing> {
+        let inputs = all("digital_in", DigitalIn::NAMES, |it| {
+            wiring.digital_input(it)
+        })?;
+        let outputs = all("digital_out", DigitalOut::NAMES, |it| {
+            wiring.digital_output(it)
+        })?;
+        let analog = all("analog_in", AnalogIn::NAMES, |it| wiring.analog_input(it))?;
+        let sources = all("analog_out", AnalogOut::NAMES, |it| {
+            wiring.analog_output(it)
+        })?;
+        let counters = all("counter", Counter::NAMES, |it| wiring.gated_counter(it))?;
+        let [track] = all("temperature", &[TRACK], |it| wiring.thermometer(it))?;
+        let board = Arc::new(Word {
+            name: BOARD,
+            inputs: BOARD_INPUTS.map(|it| inputs[it.index()]).to_vec(),
+        });
+        Ok(Self {
+            inputs,
+            outputs,
+            analog,
+            sources,
+            counters,
+            track,
+            board,
+        })
+    }
+
+    /// An input of the board.
+    pub fn input(&self, point: DigitalIn) -> DigitalInput {
+        self.inputs[point.index()]
+    }
+
+    /// An output of the board.
+    pub fn output(&self, point: DigitalOut) -> DigitalOutput {
+        self.outputs[point.index()]
+    }
+
+    /// An analog input.
+    pub fn analog(&self, point: AnalogIn) -> AnalogInput {
+        self.analog[point.index()]
+    }
+
+    /// One of the three outputs of the supply.
+    pub fn source(&self, point: AnalogOut) -> AnalogOutput {
+        self.sources[point.index()]
+    }
+
+    /// A counter.
+    pub fn counter(&self, point: Counter) -> GatedCounter {
+        self.counters[point.index()]
+    }
+}
+
+/// The handles of all these names.
+fn all<T: Copy, const N: usize>(
+    section: &'static str,
+    names: &[&'static str],
+    handle: impl Fn(&str) -> Option<T>,
+) -> Result<[T; N], Missing> {
+    assert_eq!(names.len(), N, "a handle for each name");
+    let mut found = Vec::with_capacity(N);
+    for name in names {
+        found.push(handle(name).ok_or(Missing { section, name })?);
+    }
+    Ok(std::array::from_fn(|at| found[at]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_analog_input_of_a_test_is_declared() {
+        for name in AnalogIn::NAMES {
+            assert!(QUANTITY_NAMES.contains(name), "{name}");
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! What a stage has read, put together as this kind looks at it: the board, scans of the coil, pairs of counters.
+
+use super::points::{AnalogIn, Counter, DigitalIn, Points};
+use crate::instrument::readings::Readings as ByPoint;
+use crate::rig::sample::{CountSample, Sample};
+
+/// Inputs of the interface board at one instant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BoardInputs {
+    /// Coil A, coil B, COM, NO, NC: force to sense below 5 ohm.
+    pub kelvin: [bool; 5],
+    /// Normally open contact is made.
+    pub no_closed: bool,
+    /// Normally closed contact is made.
+    pub nc_closed: bool,
+    /// The contact source cannot drive its current.
+    pub compliance: bool,
+    /// Probes are up, by the hard-wired chain.
+    pub probe_chain: bool,
+}
+
+/// One scan of the coil converter; a channel that was not asked for is `None`.
+#[derive(Debug, Clone)]
+pub struct CoilScan {
+    /// Coil voltage, up to 6 V.
+    pub voltage_fine: Option<Sample>,
+    /// Coil current, up to 16 mA.
+    pub current_fine: Option<Sample>,
+    /// Coil current, up to 50 mA.
+    pub current_wide: Option<Sample>,
+    /// The 5 V reference.
+    pub reference: Option<Sample>,
+}
+
+/// Everything a stage has read, in order, by kind.
+#[derive(Debug, Clone, Default)]
+pub struct Readings {
+    /// Board inputs.
+    pub boards: Vec<BoardInputs>,
+    /// Scans of the coil converter.
+    pub coil: Vec<CoilScan>,
+    /// Coil currents, in scans or by themselves.
+    pub currents: Vec<Sample>,
+    /// Contact drops.
+    pub drops: Vec<Sample>,
+    /// Gate counters 0 and 1.
+    pub gates: Vec<[CountSample; 2]>,
+    /// Whether each awaited input came.
+    pub seen: Vec<bool>,
+    /// Track temperatures.
+    pub track: Vec<Sample>,
+}
+
+impl Readings {
+    /// What was read, behind what the counters were before: one that stands still need not be read twice.
+    pub fn of(read: &ByPoint, points: &Points, before: Option<[CountSample; 2]>) -> Self {
+        let analog = |input| read.analog(points.analog(input)).cloned();
+        let count = |counter| read.counts(points.counter(counter)).cloned();
+        let gates = count(Counter::Gate0).zip(count(Counter::Gate1));
+        let gates = gates.map(|(first, second)| [first, second]);
+        let currents = analog(AnalogIn::CoilCurrentFine).chain(analog(AnalogIn::CoilCurrent));
+        Self {
+            boards: boards(read, points),
+            coil: scans(read, points),
+            currents: currents.collect(),
+            drops: analog(AnalogIn::ContactDrop).collect(),
+            gates: before.into_iter().chain(gates).collect(),
+            seen: read.seen.clone(),
+            track: read.temperatures(points.track).cloned().collect(),
+        }
+    }
+}
+
+fn boards(read: &ByPoint, points: &Points) -> Vec<BoardInputs> {
+    let states = |point| read.states(points.input(point));
+    let mut kelvin = [
+        DigitalIn::KelvinCoilA,
+        DigitalIn::KelvinCoilB,
+        DigitalIn::KelvinCom,
+        DigitalIn::KelvinNo,
+        DigitalIn::KelvinNc,
+    ]
+    .map(states);
+    let contacts = states(DigitalIn::NoClosed).zip(states(DigitalIn::NcClosed));
+    let board = states(DigitalIn::SourceCompliance).zip(states(DigitalIn::ProbeChain));
+    let board = contacts.zip(board);
+    board
+        .map(
+            |((no_closed, nc_closed), (compliance, probe_chain))| BoardInputs {
+                // All inputs of the board are kept together.
+                kelvin: kelvin.each_mut().map(|pin| pin.next() == Some(true)),
+                no_closed,
+                nc_closed,
+                compliance,
+                probe_chain,
+            },
+        )
+        .collect()
+}
+
+fn scans(read: &ByPoint, points: &Points) -> Vec<CoilScan> {
+    let channel = |input| read.analog(points.analog(input)).cloned();
+    let mut fine = channel(AnalogIn::CoilCurrentFine);
+    let mut wide = channel(AnalogIn::CoilCurrent);
+    let mut reference = channel(AnalogIn::ReferenceVoltage);
+    channel(AnalogIn::CoilVoltageFine)
+        .map(|voltage| CoilScan {
+            voltage_fine: Some(voltage),
+            current_fine: fine.next(),
+            current_wide: wide.next(),
+            reference: reference.next(),
+        })
+        .collect()
+}

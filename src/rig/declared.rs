@@ -1,0 +1,124 @@
+//! Which points this rig has: those of the machine, those that kinds of device declare and the file wires, the beams
+//! that bins name. Their order here is their place in the tables of the wiring.
+
+use super::axis::Bin;
+use super::fault::Fault;
+use super::point::{DigitalIn, DigitalInput, DigitalOut, Fixture, Quantity, Switch};
+use super::settings::RigSettings;
+
+/// The digital inputs of this rig in the order of the wiring: machine, fixtures, beams.
+pub(super) struct InputNames {
+    pub names: Vec<String>,
+    /// How many belong to the machine and the fixtures.
+    pub before_beams: usize,
+    /// Those of the fixtures that this rig lacks.
+    lacks: Vec<&'static str>,
+}
+
+impl InputNames {
+    pub(super) fn of(settings: &RigSettings, fixtures: &[Fixture]) -> Self {
+        let mut names: Vec<String> = DigitalIn::NAMES.iter().map(|it| (*it).into()).collect();
+        let declared = fixtures.iter().flat_map(|it| it.digital_in).copied();
+        add_wired(&mut names, settings, declared.clone());
+        let before_beams = names.len();
+        let bins = Bin::ALL
+            .iter()
+            .filter_map(|bin| settings.bin.get(bin.name()));
+        add_wired(&mut names, settings, bins.map(|bin| bin.beam.as_str()));
+        Self {
+            names,
+            before_beams,
+            lacks: declared
+                .filter(|name| !settings.digital_in.contains_key(*name))
+                .collect(),
+        }
+    }
+
+    pub(super) fn handle(&self, name: &str) -> Option<DigitalInput> {
+        let at = self.names.iter().position(|known| known == name)?;
+        Some(DigitalInput::at(at))
+    }
+
+    /// No other name may stand in the file.
+    pub(super) fn check(&self, settings: &RigSettings) -> Result<(), Fault> {
+        let mut others = settings.digital_in.keys();
+        let Some(name) = others.find(|name| !self.names.contains(name)) else {
+            return Ok(());
+        };
+        let lacks = self.lacks.iter().map(|it| (*it).to_owned());
+        let known = self.names.iter().cloned().chain(lacks).collect();
+        Err(Fault::unknown(format!("digital_in.{name}"), known))
+    }
+}
+
+/// Adds the names that are wired, each once.
+fn add_wired<'a>(
+    names: &mut Vec<String>,
+    settings: &RigSettings,
+    more: impl Iterator<Item = &'a str>,
+) {
+    for name in more.filter(|name| settings.digital_in.contains_key(*name)) {
+        if !names.iter().any(|known| known == name) {
+            names.push(name.to_owned());
+        }
+    }
+}
+
+/// What the kinds of device declare and this rig has, each name once.
+pub(super) struct Declared<'a> {
+    pub settings: &'a RigSettings,
+    pub fixtures: &'a [Fixture],
+}
+
+impl Declared<'_> {
+    pub(super) fn outputs(&self) -> Vec<Switch> {
+        let machine = DigitalOut::NAMES.iter().map(|&name| Switch {
+            name,
+            traced: false,
+        });
+        let of_kinds = self.fixtures.iter().flat_map(|it| it.digital_out).copied();
+        let wired = of_kinds.filter(|it| self.settings.digital_out.contains_key(it.name));
+        once(machine.chain(wired), |it| it.name)
+    }
+
+    pub(super) fn quantities(&self) -> Vec<Quantity> {
+        let of_kinds = self.fixtures.iter().flat_map(|it| it.analog_in).copied();
+        let wired = of_kinds.filter(|it| self.settings.analog_in.contains_key(it.name));
+        once(wired, |it| it.name)
+    }
+
+    pub(super) fn sources(&self) -> Vec<&'static str> {
+        let wired = &self.settings.analog_out;
+        self.names(|it| it.analog_out, |name| wired.contains_key(name))
+    }
+
+    pub(super) fn thermometers(&self) -> Vec<&'static str> {
+        let wired = &self.settings.temperature;
+        self.names(|it| it.temperature, |name| wired.contains_key(name))
+    }
+
+    pub(super) fn counters(&self) -> Vec<&'static str> {
+        let wired = &self.settings.counter;
+        self.names(|it| it.counter, |name| wired.contains_key(name))
+    }
+
+    fn names(
+        &self,
+        of_kind: impl Fn(&Fixture) -> &'static [&'static str],
+        is_wired: impl Fn(&str) -> bool,
+    ) -> Vec<&'static str> {
+        let names = self.fixtures.iter().flat_map(of_kind).copied();
+        once(names.filter(|name| is_wired(name)), |name| name)
+    }
+}
+
+/// The first of each name: two kinds may declare the same point.
+fn once<T: Copy>(points: impl Iterator<Item = T>, name: impl Fn(T) -> &'static str) -> Vec<T> {
+    let mut all: Vec<T> = Vec::new();
+    for point in points {
+        if !all.iter().any(|known| name(*known) == name(point)) {
+            all.push(point);
+        }
+    }
+    all
+}
