@@ -8,6 +8,7 @@ pub mod em_relay;
 pub mod instruments;
 pub mod reason;
 pub mod recipe;
+pub mod rejudge;
 pub mod verdict;
 
 pub use crate::gauge::Judgement;
@@ -32,6 +33,11 @@ impl Kind {
         match self {
             Self::EmRelay => "em_relay",
         }
+    }
+
+    /// The kind of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|it| it.name() == name)
     }
 
     /// What is measured on it, in the order of reports.

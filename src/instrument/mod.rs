@@ -1,4 +1,5 @@
-//! Instruments as a procedure uses them: acts, their runner, and the trace of what was seen.
+//! Instruments as a procedure uses them: acts, their runner, the trace of what was seen, and its curves as kept.
 
 pub mod act;
+pub mod curve;
 pub mod trace;

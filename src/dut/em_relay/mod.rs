@@ -15,10 +15,12 @@
 //! | times and bounce | [`timing`] |
 //! | contact resistance | [`contact`] |
 //! | contact of the probes at the coil | [`probe_contact`] |
+//! | what curves prove of a part without a value | [`evidence`] |
 
 pub mod calibration;
 pub mod coil;
 pub mod contact;
+pub mod evidence;
 pub mod feasible;
 pub mod finding;
 pub mod golden;
