@@ -3,6 +3,7 @@
 //! A kind of device is one folder. The rest of the program knows [`Recipe`], [`Characteristic`], [`Judgement`], [`Reason`]
 //! and [`Verdict`], never a kind.
 
+pub mod card;
 pub mod characteristic;
 pub mod em_relay;
 pub mod instruments;
@@ -10,6 +11,7 @@ pub mod reason;
 pub mod recipe;
 pub mod rejudge;
 pub mod verdict;
+pub mod words;
 
 pub use crate::gauge::Judgement;
 pub use characteristic::Characteristic;

@@ -16,8 +16,10 @@
 //! | contact resistance | [`contact`] |
 //! | contact of the probes at the coil | [`probe_contact`] |
 //! | what curves prove of a part without a value | [`evidence`] |
+//! | lines of the process card | [`card`] |
 
 pub mod calibration;
+pub mod card;
 pub mod coil;
 pub mod contact;
 pub mod evidence;
