@@ -7,6 +7,7 @@ pub mod card;
 pub mod characteristic;
 pub mod em_relay;
 pub mod instruments;
+pub mod made_up;
 pub mod reason;
 pub mod recipe;
 pub mod rejudge;

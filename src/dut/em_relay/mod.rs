@@ -17,6 +17,7 @@
 //! | contact of the probes at the coil | [`probe_contact`] |
 //! | what curves prove of a part without a value | [`evidence`] |
 //! | lines of the process card | [`card`] |
+//! | figures of made-up relays, for trying a history | [`made_up`] |
 
 pub mod calibration;
 pub mod card;
@@ -27,6 +28,7 @@ pub mod feasible;
 pub mod finding;
 pub mod golden;
 pub mod lag;
+pub mod made_up;
 pub mod measure;
 pub mod parameter;
 pub mod probe_contact;
