@@ -3,7 +3,7 @@
 use super::check::File;
 use super::error::ConfigError;
 use super::keys;
-use crate::report::card::CardSettings;
+use crate::dut::card::CardSettings;
 use std::path::Path;
 
 /// Reads and checks what the process card says of the plant.

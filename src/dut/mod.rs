@@ -4,14 +4,18 @@
 //! and [`Verdict`], never a kind.
 
 pub mod calibration;
+pub mod card;
 pub mod characteristic;
 pub mod device;
 pub mod em_relay;
 pub mod instruments;
+pub mod made_up;
 pub mod procedure;
 pub mod reason;
 pub mod recipe;
+pub mod rejudge;
 pub mod verdict;
+pub mod words;
 
 pub use crate::gauge::Judgement;
 pub use calibration::Calibration;
@@ -43,6 +47,11 @@ impl Kind {
         match self {
             Self::EmRelay => "em_relay",
         }
+    }
+
+    /// The kind of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|it| it.name() == name)
     }
 
     /// What is measured on it, in the order of reports.

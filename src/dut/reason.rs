@@ -7,6 +7,7 @@
 use super::characteristic::Characteristic;
 use super::em_relay;
 use super::verdict::Bin;
+use super::words::Words;
 use crate::gauge::Side;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
@@ -190,15 +191,6 @@ impl Code {
             | Self::Unclassified => None,
         }
     }
-}
-
-/// One text in both languages of pages and paper.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Words {
-    /// English.
-    pub en: &'static str,
-    /// Simplified Chinese.
-    pub zh: &'static str,
 }
 
 impl Serialize for Reason {

@@ -14,8 +14,9 @@
 use super::Moment;
 use super::error::{Doing, HistoryError, Result};
 use super::{Archive, Part};
+use crate::instrument::curve::Curve;
 use rusqlite::{Transaction, params};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// The samples of one signal, as they were measured.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -30,27 +31,28 @@ pub struct CurveRecord {
     pub samples: Vec<(i64, Option<f64>)>,
 }
 
-/// A curve as it leaves the history.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Curve {
-    /// Name of the point.
-    pub signal: String,
-    /// Unit of the values; empty for bits and counts.
-    pub unit: String,
-    /// When the first sample was taken.
-    pub begin: Moment,
-    /// Microseconds since then.
-    pub t_us: Vec<i64>,
-    /// Beside them; none where the look gave no number.
-    pub values: Vec<Option<f64>>,
+/// A curve as it leaves the program.
+#[derive(Serialize)]
+struct Shown<'a> {
+    signal: &'a str,
+    unit: &'a str,
+    begin: Moment,
+    t_us: &'a [i64],
+    values: &'a [Option<f64>],
 }
 
-impl Curve {
-    /// Instant, microseconds UTC, and value.
-    pub fn samples(&self) -> impl Iterator<Item = (i64, Option<f64>)> {
-        let at = self.t_us.iter().map(|t| self.begin.0 + t);
-        at.zip(self.values.iter().copied())
-    }
+/// The curves of a part, their begin as an instant.
+pub(super) fn shown<S: Serializer>(
+    curves: &[Curve],
+    serializer: S,
+) -> std::result::Result<S::Ok, S::Error> {
+    serializer.collect_seq(curves.iter().map(|it| Shown {
+        signal: &it.signal,
+        unit: &it.unit,
+        begin: Moment(it.begin_us),
+        t_us: &it.t_us,
+        values: &it.values,
+    }))
 }
 
 /// The blob.
@@ -172,7 +174,7 @@ impl Archive {
         Ok(Ok(Curve {
             signal,
             unit: row.get(1)?,
-            begin: Moment(row.get(2)?),
+            begin_us: row.get(2)?,
             t_us,
             values,
         }))
@@ -190,7 +192,7 @@ mod tests {
 
     fn curve(samples: &[(i64, Option<f64>)]) -> CurveRecord {
         CurveRecord {
-            signal: "coil_voltage".into(),
+            signal: "voltage".into(),
             unit: "V".into(),
             step: 1e-4,
             samples: samples.to_vec(),

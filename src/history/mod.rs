@@ -9,7 +9,7 @@
 //!   from the run by their hashes.
 //! - What another recipe would say is told and not written ([`rejudged`]); what was copied whole may be
 //!   pruned ([`Store::prune`]), nothing else is ever deleted.
-//! - Of a part that did not pass everything that was seen of it stays, as small blobs ([`Curve`]).
+//! - Of a part that did not pass everything that was seen of it stays, as small blobs ([`CurveRecord`]).
 //! - The file may be opened by hand: the tables carry a remark per column, and the views `lots`,
 //!   `parts`, `reasons`, `measurements`, `samples`, `curves` and `alarms` show local time and names instead of numbers.
 //!
@@ -24,7 +24,6 @@ pub mod csv;
 mod curve;
 mod decision;
 mod error;
-mod evidence;
 mod filter;
 mod gates;
 mod import;
@@ -51,7 +50,7 @@ mod wear;
 pub use alarm_states::{AlarmChange, AlarmChangeRecord, AlarmLeft};
 pub use alarms::{Alarm, AlarmState, Shelf};
 pub use archive::Archive;
-pub use curve::{Curve, CurveRecord};
+pub use curve::CurveRecord;
 pub use decision::Decision;
 pub use error::{HistoryError, Result};
 pub use filter::Filter;
@@ -69,7 +68,7 @@ pub use record::{
     AlarmRecord, CalibrationRecord, InterruptedRecord, LandingRecord, LotRecord, MeasurementRecord,
     PartRecord, Row, SampleRecord, snapshot_hash,
 };
-pub use rejudge::{Basis, rejudged};
+pub use rejudge::rejudged;
 pub use retention::Pruned;
 pub use store::{Identity, Store};
 pub use values::{LimitsSeen, Values};

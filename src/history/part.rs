@@ -1,7 +1,8 @@
 //! A part with what was measured on it, as it leaves the history: what screens, sheets and `--json` show.
 
-use super::{Curve, Moment};
+use super::{Moment, curve};
 use crate::dut::Reason;
+use crate::instrument::curve::Curve;
 use serde::Serialize;
 
 /// A part as screens, sheets and `--json` show it.
@@ -48,7 +49,7 @@ pub struct Part {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub measurements: Vec<Measurement>,
     /// What was seen of it, when it did not pass; only on a single part.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "curve::shown")]
     pub curves: Vec<Curve>,
     #[serde(skip)]
     pub(super) row: i64,

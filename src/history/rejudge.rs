@@ -2,87 +2,26 @@
 //!
 //! - What the values say is judged as in a run, with their stored uncertainty; a value within U of a limit
 //!   is `not proven`, for it cannot be measured again.
-//! - Coil resistance and thresholds are stored at the reference temperature of their recipe; they are
-//!   brought to the one of the other recipe.
-//! - A parameter without a value may still be proven too great by what was seen of the part (`evidence.rs`).
-//! - What neither says (an open coil, a refused reply) is not the recipe's business and stays.
-//! - Thresholds and times are those of one nominal voltage: a recipe with another one cannot judge them
-//!   ([`Basis::fits`]).
+//! - What is stored at the reference temperature of its recipe is brought to the one of the other recipe.
+//! - A characteristic without a value may still be proven too great by what was seen of the part ([`above`]).
+//! - What neither says (an open circuit, a refused reply) is not the recipe's business and stays.
+//! - Results are those of one kind and nominal voltage: a recipe with another one cannot judge them
+//!   ([`Basis::misfit`]).
 
-use super::evidence::{above, at_least};
-use super::{Curve, Part};
-use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::coil::to_reference;
+use super::Part;
 use crate::dut::reason::Code;
-use crate::dut::{Characteristic, Reason};
-use crate::dut::{Judgement, Recipe, Verdict};
-use crate::gauge::{Budget, Reading};
-use crate::gauge::{Side, judge};
-use crate::units::Celsius;
-
-/// What the stored values refer to: of the recipe that was in force.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Basis {
-    /// Coil voltage of timed operations, V.
-    pub nominal_v: f64,
-    /// Temperature that coil resistance and thresholds are brought to.
-    pub reference: Celsius,
-}
-
-impl Basis {
-    /// From the stored text of a recipe; none when it does not say.
-    pub fn of(recipe: &str) -> Option<Self> {
-        let recipe: toml::Table = recipe.parse().ok()?;
-        let part = recipe.get("part")?;
-        let number = |key: &str| {
-            let value = part.get(key)?;
-            value.as_float().or(value.as_integer().map(|it| it as f64))
-        };
-        Some(Self {
-            nominal_v: number("nominal_v")?,
-            reference: Celsius(number("reference_temperature_c")?),
-        })
-    }
-
-    /// Of a recipe that is loaded.
-    pub fn of_recipe(recipe: &Recipe) -> Self {
-        Self {
-            nominal_v: recipe.nominal_v(),
-            reference: Celsius(recipe.reference_temperature_c()),
-        }
-    }
-
-    /// Whether values on this basis can be judged by `recipe`.
-    pub fn fits(&self, recipe: &Recipe) -> bool {
-        (self.nominal_v - recipe.nominal_v()).abs() < 1e-6 * self.nominal_v
-    }
-
-    /// Factor from a stored value to the one that `recipe` would have stored.
-    fn factor(&self, parameter: Parameter, recipe: &Recipe) -> f64 {
-        match parameter {
-            Parameter::CoilResistance | Parameter::OperateVoltage | Parameter::ReleaseVoltage => {
-                let wanted = Celsius(recipe.reference_temperature_c());
-                to_reference(self.reference, wanted)
-            }
-            Parameter::OperateTime
-            | Parameter::ReleaseTime
-            | Parameter::OperateBounce
-            | Parameter::ReleaseBounce
-            | Parameter::ContactResistanceNo
-            | Parameter::ContactResistanceNc => 1.0,
-        }
-    }
-}
+use crate::dut::rejudge::{Basis, above, bounded};
+use crate::dut::{Characteristic, Judgement, Reason, Recipe, Verdict};
+use crate::gauge::{Budget, Reading, Side, judge};
+use crate::instrument::curve::Curve;
 
 /// The verdict of `recipe` over what was measured on `part` under a recipe of `basis`, and seen of it.
 pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) -> Verdict {
-    let nominal_v = recipe.nominal_v();
     let judged: Vec<(Characteristic, Judgement)> = recipe
         .limits()
         .map(|(characteristic, limit)| {
-            let Characteristic::EmRelay(parameter) = characteristic;
-            let reading = stored(part, parameter, basis.factor(parameter, recipe));
-            let seen = |high| above(curves, parameter, high, nominal_v);
+            let reading = stored(part, characteristic, basis.factor(characteristic, recipe));
+            let seen = |high| above(curves, characteristic, high, recipe);
             let judgement = match judge(&reading, &limit, recipe.decision.rule) {
                 Judgement::Void if limit.high.is_some_and(seen) => Judgement::Fail(Side::High),
                 judgement => judgement,
@@ -91,7 +30,7 @@ pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) ->
         })
         .collect();
     let by_values = Verdict::of(&recipe.kind().characteristics(), &judged);
-    let seen = |Characteristic::EmRelay(it)| at_least(curves, it, nominal_v).is_some();
+    let seen = |it| bounded(curves, it, recipe);
     let others = part.reason_codes.iter();
     let others: Vec<Reason> = others.filter(|it| !of_a_limit(it, seen)).cloned().collect();
     match (part.verdict.as_str(), others.as_slice()) {
@@ -111,11 +50,9 @@ pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) ->
 }
 
 /// Value and uncertainty as they were stored, at the other reference; without either it is no number.
-fn stored(part: &Part, parameter: Parameter, factor: f64) -> Reading {
+fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
     let number = |map: &serde_json::Map<String, serde_json::Value>| {
-        let number = map
-            .get(parameter.name())
-            .and_then(serde_json::Value::as_f64);
+        let number = map.get(of.key()).and_then(serde_json::Value::as_f64);
         number.map_or(f64::NAN, |number| factor * number)
     };
     let expanded = number(&part.uncertainty);

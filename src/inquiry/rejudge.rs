@@ -1,8 +1,9 @@
 //! What another recipe would have said of the parts of a lot. The history stays as it is.
 
 use super::{InquiryError, Result, checks};
+use crate::dut::rejudge::{Basis, Misfit};
 use crate::dut::{Reason, Recipe};
-use crate::history::{Archive, Basis, Filter, Part, rejudged};
+use crate::history::{Archive, Filter, Part, rejudged};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -77,7 +78,7 @@ impl Rejudging {
     /// The parts of `lot`, or only those of one `run`, held against `recipe`.
     ///
     /// # Errors
-    /// A lot or run that never was; one that was measured at another coil voltage.
+    /// A lot or run that never was; one that holds another kind of part, or was measured at another nominal voltage.
     pub fn of(archive: &Archive, lot: String, run: Option<u32>, recipe: Recipe) -> Result<Self> {
         let filter = Filter {
             lot: Some(lot),
@@ -91,12 +92,8 @@ impl Rejudging {
             let Some(basis) = text.as_deref().and_then(Basis::of) else {
                 continue;
             };
-            if !basis.fits(&recipe) {
-                let (nominal_v, measured_v) = (recipe.nominal_v(), basis.nominal_v);
-                let reason = format!(
-                    "the coil of {} has {nominal_v} V, run {} of lot {:?} was measured at {measured_v} V",
-                    recipe.name, run.run, run.lot
-                );
+            if let Some(Misfit { wanted, found }) = basis.misfit(&recipe) {
+                let reason = format!("{wanted}, run {} of lot {:?} {found}", run.run, run.lot);
                 return Err(InquiryError::member("recipe", reason));
             }
             bases.insert(run.run, basis);

@@ -1,13 +1,14 @@
 //! Facts about the pages.
 #![allow(clippy::unwrap_used)]
 
-use super::card::{CardSettings, Quota, STEPS, card};
+use super::card::card;
 use super::certificate::certificate;
 use super::lot::{LotReport, ParameterValues};
 use super::spc::{Named, spc};
 use super::*;
 use crate::config::load_recipe;
 use crate::dut::Reason;
+use crate::dut::card::{CardSettings, Quota, STEPS};
 use crate::history::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Shelf, Yield};
 use crate::quality::Limits;
 use crate::quality::chart::{individuals, shares};

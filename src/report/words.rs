@@ -1,6 +1,7 @@
 //! The words of the pages in both languages, in one place.
 
 use crate::dut::reason::Code;
+use crate::dut::words::Words;
 use crate::dut::{Characteristic, Reason};
 use crate::gauge::Side;
 use serde::Deserialize;
@@ -24,6 +25,11 @@ impl Language {
         }
     }
 
+    /// The text of this language.
+    pub fn say(self, words: Words) -> &'static str {
+        self.of(words.en, words.zh)
+    }
+
     /// Tag for the `lang` of a page.
     pub fn tag(self) -> &'static str {
         match self {
@@ -45,7 +51,7 @@ impl Language {
     pub fn reason(self, reason: &Reason) -> String {
         let side = reason.side;
         let said = match (reason.code, reason.code.words()) {
-            (_, Some(words)) => self.of(words.en, words.zh).to_owned(),
+            (_, Some(words)) => self.say(words).to_owned(),
             (Code::OutsideLimit(_), None) => self.outside(side).to_owned(),
             (Code::NotProven(_), None) => self.not_proven(side).to_owned(),
             (Code::NotMeasured(_), None) => self.of("not measured", "未测得").to_owned(),

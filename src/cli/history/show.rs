@@ -3,7 +3,8 @@
 use super::output::{Format, FormatArgs, Output, Table, figure, text};
 use super::{lots, orders};
 use crate::dut::em_relay::points::BOARD;
-use crate::history::{Archive, Curve, Filter, LotSummary, Part};
+use crate::history::{Archive, Filter, LotSummary, Moment, Part};
+use crate::instrument::curve::Curve;
 use clap::Args;
 use std::io::Write;
 
@@ -137,9 +138,10 @@ fn curve(it: &Curve, out: &mut Output) -> anyhow::Result<()> {
     let Curve {
         signal,
         unit,
-        begin,
+        begin_us,
         ..
     } = it;
+    let begin = Moment(*begin_us);
     let is_board = signal == BOARD;
     let unit = match unit.as_str() {
         "" if is_board => {

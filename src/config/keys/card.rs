@@ -53,7 +53,7 @@ pub const FILE: &[Key] = &[
     ),
     key(
         "quota",
-        Form::Each(crate::report::card::STEPS, &Form::Table(QUOTA)),
+        Form::Each(crate::dut::card::STEPS, &Form::Table(QUOTA)),
         "report",
         "time quota of each step of the card",
     ),

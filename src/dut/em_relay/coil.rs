@@ -4,6 +4,7 @@
 //! same two channels on the reference resistor, so gain errors cancel. Copper: `R(T1) / R(T2) =
 //! (234.5 + T1) / (234.5 + T2)`, temperatures in Celsius (IEC 60028 annealed copper).
 
+use super::Parameter;
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
 use crate::units::{Celsius, Ohm, Volt};
@@ -25,6 +26,21 @@ pub struct ScanDoubt {
 /// Factor from a resistance, or a threshold voltage, at `part` to the one at `reference`.
 pub fn to_reference(part: Celsius, reference: Celsius) -> f64 {
     (COPPER_ZERO_C + reference.0) / (COPPER_ZERO_C + part.0)
+}
+
+/// Factor from a result at the temperature `from` to the one at `to`: 1 for those that do not go with the copper of the coil.
+pub fn factor(parameter: Parameter, from: Celsius, to: Celsius) -> f64 {
+    match parameter {
+        Parameter::CoilResistance | Parameter::OperateVoltage | Parameter::ReleaseVoltage => {
+            to_reference(from, to)
+        }
+        Parameter::OperateTime
+        | Parameter::ReleaseTime
+        | Parameter::OperateBounce
+        | Parameter::ReleaseBounce
+        | Parameter::ContactResistanceNo
+        | Parameter::ContactResistanceNc => 1.0,
+    }
 }
 
 /// Relative change of copper per kelvin at `at`.

@@ -2,8 +2,9 @@
 
 use super::Parameter;
 use super::threshold::Direction;
-use crate::dut::reason::{Code, Reason, Words};
+use crate::dut::reason::{Code, Reason};
 use crate::dut::verdict::Bin;
+use crate::dut::words::Words;
 use crate::gauge::Side;
 
 /// A changeover contact has two sides.

@@ -17,16 +17,22 @@
 //! | times and bounce | [`timing`] |
 //! | contact resistance | [`contact`] |
 //! | contact of the probes at the coil | [`probe_contact`] |
+//! | what curves prove of a part without a value | [`evidence`] |
+//! | lines of the process card | [`card`] |
+//! | figures of made-up relays, for trying a history | [`made_up`] |
 
 pub mod act;
 pub mod calibration;
+pub mod card;
 pub mod coil;
 pub mod contact;
 pub mod device;
+pub mod evidence;
 pub mod feasible;
 pub mod finding;
 pub mod golden;
 pub mod lag;
+pub mod made_up;
 pub mod measure;
 pub mod parameter;
 pub mod points;

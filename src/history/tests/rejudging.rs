@@ -4,7 +4,9 @@ use super::super::*;
 use crate::config::load_recipe;
 use crate::dut::em_relay::recipe::RelayRecipe;
 use crate::dut::recipe::DeviceRecipe;
+use crate::dut::rejudge::Basis;
 use crate::dut::{Bin, Reason, Recipe, Verdict};
+use crate::instrument::curve::Curve;
 use std::path::Path;
 
 fn recipe() -> Recipe {
@@ -33,8 +35,9 @@ fn part(operate_v: f64, verdict: &str, reasons: &[&str]) -> Part {
 }
 
 fn relay(recipe: &mut Recipe) -> &mut RelayRecipe {
-    let DeviceRecipe::EmRelay(relay) = &mut recipe.device;
-    relay
+    match &mut recipe.device {
+        DeviceRecipe::EmRelay(relay) => relay,
+    }
 }
 
 fn by_values(part: &Part, recipe: &Recipe) -> Verdict {
@@ -100,9 +103,9 @@ fn a_recipe_of_another_coil_voltage_does_not_fit() {
     let mut recipe = recipe();
     let basis = Basis::of(&recipe.source_text).unwrap();
     assert_eq!(basis, Basis::of_recipe(&recipe));
-    assert!(basis.fits(&recipe));
+    assert_eq!(basis.misfit(&recipe), None);
     relay(&mut recipe).part.nominal_v = 24.0;
-    assert!(!basis.fits(&recipe));
+    assert!(basis.misfit(&recipe).is_some());
     assert_eq!(Basis::of("name = \"old\""), None);
 }
 
@@ -123,7 +126,7 @@ fn never_made() -> Vec<Curve> {
     let curve = |signal: &str, samples: &[(i64, f64)]| Curve {
         signal: signal.into(),
         unit: String::new(),
-        begin: Moment(0),
+        begin_us: 0,
         t_us: samples.iter().map(|it| it.0).collect(),
         values: samples.iter().map(|it| Some(it.1)).collect(),
     };

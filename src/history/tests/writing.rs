@@ -115,10 +115,7 @@ fn what_was_seen_of_a_part_comes_back_with_it_and_with_nothing_else() {
     let [only] = shown.as_slice() else {
         panic!("one curve, found {}", shown.len())
     };
-    assert_eq!(
-        (only.begin, &only.t_us),
-        (Moment(2_000_000), &vec![0, 3_500])
-    );
+    assert_eq!((only.begin_us, &only.t_us), (2_000_000, &vec![0, 3_500]));
     let first = only.values[0].unwrap();
     assert!((first - 5.000_01).abs() < 1e-9 && only.values[1].is_none());
     file.by_hand()

@@ -1,7 +1,8 @@
 //! What the page has to know of the kinds of device, as JSON beside its words: every characteristic with unit and names, and
 //! what is said of a finding.
 
-use crate::dut::reason::{Code, Words};
+use crate::dut::reason::Code;
+use crate::dut::words::Words;
 use crate::dut::{Characteristic, Kind};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

@@ -1,30 +1,20 @@
 //! Values of made-up parts: the lot of the default world, one draw after the other.
 
-use crate::dut::Kind;
-use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::points::{BOARD, COIL_VOLTAGE};
-use crate::dut::recipe::DeviceRecipe;
-use crate::dut::recipe::Recipe;
-use crate::dut::{Judgement, Verdict};
-use crate::gauge::judge;
-use crate::gauge::{Budget, Reading};
+use crate::dut::made_up::{Looks, Scatter, evidence, scatter};
+use crate::dut::{Characteristic, Judgement, Recipe, Verdict};
+use crate::gauge::{Budget, Limit, Reading, judge};
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
-use crate::instrument::trace::Signal;
 
 /// Share of parts with a defect, as in the default world.
 const DEFECTS: f64 = 0.04;
 /// Share of values measured a second time.
 const REPEATED: f64 = 0.05;
 
-/// Scatter of one parameter.
-struct Scatter {
-    parameter: Parameter,
-    mean: f64,
-    sd: f64,
-    /// Of the logarithm instead, about the logarithm of the mean.
-    logarithmic: bool,
-    /// Standard uncertainty of a value.
-    u: f64,
+/// One characteristic of the parts.
+struct Made {
+    of: Characteristic,
+    limit: Limit,
+    scatter: Scatter,
     /// Budget as a run stores it.
     budget: String,
 }
@@ -32,20 +22,24 @@ struct Scatter {
 /// Where made-up parts come from.
 pub(super) struct Line {
     recipe: Recipe,
-    scatter: Vec<Scatter>,
+    made: Vec<Made>,
+    looks: Vec<Looks>,
     draws: Draws,
 }
 
 impl Line {
-    /// Means from the recipe where it knows them, else those of the default world.
+    /// Parts of this recipe.
     pub fn new(recipe: &Recipe, seed: u64) -> Self {
-        let scatter = Parameter::ALL
-            .into_iter()
-            .map(|it| scatter(recipe, it))
-            .collect();
+        let made = scatter(recipe).into_iter().map(|(of, scatter)| Made {
+            of,
+            limit: recipe.limits.of(of),
+            budget: serde_json::to_string(&scatter.budget).unwrap_or_default(),
+            scatter,
+        });
         Self {
             recipe: recipe.clone(),
-            scatter,
+            made: made.collect(),
+            looks: evidence(recipe),
             draws: Draws(seed),
         }
     }
@@ -54,14 +48,13 @@ impl Line {
     pub fn part(&mut self, lot: &str, seq: u64, begin_us: i64, cycle_us: i64) -> PartRecord {
         let at_us = begin_us + cycle_us * i64::try_from(seq).unwrap_or(i64::MAX / cycle_us);
         let defect = (self.draws.unit() < DEFECTS)
-            .then(|| (self.draws.unit() * Parameter::ALL.len() as f64) as usize);
+            .then(|| (self.draws.unit() * self.made.len() as f64) as usize);
         let draws = &mut self.draws;
-        let limits = &self.recipe.limits;
         let rule = self.recipe.decision.rule;
-        let mut judged = Vec::with_capacity(Parameter::ALL.len());
-        let mut measurements = Vec::with_capacity(Parameter::ALL.len() + 1);
-        for (n, it) in self.scatter.iter().enumerate() {
-            let limit = limits.of(it.parameter);
+        let mut judged = Vec::with_capacity(self.made.len());
+        let mut measurements = Vec::with_capacity(self.made.len() + 1);
+        for (n, it) in self.made.iter().enumerate() {
+            let Made { of, limit, .. } = it;
             let mut value = it.drawn(draws);
             if defect == Some(n) {
                 value = match (limit.high, limit.low) {
@@ -71,23 +64,23 @@ impl Line {
                 };
             }
             if draws.unit() < REPEATED {
-                let first = value + 3.0 * it.u * draws.normal();
-                measurements.push(it.record(first, limit, Judgement::Void, 1));
+                let first = value + 3.0 * it.scatter.u * draws.normal();
+                measurements.push(it.record(first, Judgement::Void, 1));
             }
             let reading = Reading {
                 value,
-                budget: Budget::default().with("all", it.u),
+                budget: Budget::default().with("all", it.scatter.u),
             };
-            let judgement = judge(&reading, &limit, rule);
+            let judgement = judge(&reading, limit, rule);
             let attempt = 1 + u32::from(
                 measurements
                     .last()
-                    .is_some_and(|before: &MeasurementRecord| before.key == it.parameter.name()),
+                    .is_some_and(|before: &MeasurementRecord| before.key == of.key()),
             );
-            measurements.push(it.record(value, limit, judgement, attempt));
-            judged.push((it.parameter.into(), judgement));
+            measurements.push(it.record(value, judgement, attempt));
+            judged.push((*of, judgement));
         }
-        let verdict = Verdict::of(&Kind::EmRelay.characteristics(), &judged);
+        let verdict = Verdict::of(&self.recipe.kind().characteristics(), &judged);
         if verdict != Verdict::Pass {
             for it in &mut measurements {
                 it.samples = vec![reply(at_us), reply(at_us + 3_000)];
@@ -108,55 +101,44 @@ impl Line {
             landed_at_us: Some(at_us + 900_000),
             kind: "lot".to_owned(),
             measurements,
-            curves: evidence(&verdict, at_us),
+            curves: match verdict {
+                Verdict::Pass => Vec::new(),
+                Verdict::Fail(_) | Verdict::Void(_) => {
+                    self.looks.iter().map(|it| curve(it, at_us)).collect()
+                }
+            },
         }
     }
 }
 
-/// As many looks as a test of the default recipe has: 30 polls of a contact, 120 samples of a voltage.
-fn evidence(verdict: &Verdict, at_us: i64) -> Vec<CurveRecord> {
-    if *verdict == Verdict::Pass {
-        return Vec::new();
+fn curve(looks: &Looks, at_us: i64) -> CurveRecord {
+    let samples = (0..looks.count).map(|n| (at_us + 5_321 * n, Some((looks.value)(n))));
+    CurveRecord {
+        signal: looks.signal.name.to_owned(),
+        unit: looks.signal.unit.to_owned(),
+        step: looks.signal.step,
+        samples: samples.collect(),
     }
-    let curve = |signal: Signal, samples: i64, value: fn(i64) -> f64| CurveRecord {
-        signal: signal.name.to_owned(),
-        unit: signal.unit.to_owned(),
-        step: signal.step,
-        samples: (0..samples)
-            .map(|n| (at_us + 5_321 * n, Some(value(n))))
-            .collect(),
-    };
-    vec![
-        curve(Signal::bits(BOARD), 30, |n| (500 + n % 2) as f64),
-        curve(Signal::input(COIL_VOLTAGE), 120, |n| {
-            5.0 + 0.031_7 * n as f64
-        }),
-    ]
 }
 
-impl Scatter {
+impl Made {
     fn drawn(&self, draws: &mut Draws) -> f64 {
-        let scatter = self.sd * draws.normal();
-        if self.logarithmic {
-            self.mean * scatter.exp()
+        let it = &self.scatter;
+        let scatter = it.sd * draws.normal();
+        if it.logarithmic {
+            it.mean * scatter.exp()
         } else {
-            (self.mean + scatter).max(0.0)
+            (it.mean + scatter).max(0.0)
         }
     }
 
-    fn record(
-        &self,
-        value: f64,
-        limit: crate::gauge::Limit,
-        judgement: Judgement,
-        attempt: u32,
-    ) -> MeasurementRecord {
+    fn record(&self, value: f64, judgement: Judgement, attempt: u32) -> MeasurementRecord {
         MeasurementRecord {
-            key: self.parameter.name().to_owned(),
+            key: self.of.key().to_owned(),
             value: Some(value),
-            uncertainty: Some(2.0 * self.u),
-            low: limit.low,
-            high: limit.high,
+            uncertainty: Some(2.0 * self.scatter.u),
+            low: self.limit.low,
+            high: self.limit.high,
             verdict: match judgement {
                 Judgement::Pass => "pass",
                 Judgement::Fail(_) | Judgement::Conditional(_) => "fail",
@@ -167,48 +149,6 @@ impl Scatter {
             budget: Some(self.budget.clone()),
             samples: Vec::new(),
         }
-    }
-}
-
-fn scatter(recipe: &Recipe, parameter: Parameter) -> Scatter {
-    let DeviceRecipe::EmRelay(relay) = &recipe.device;
-    let (test, part) = (&relay.test, &relay.part);
-    let (mean, sd, logarithmic, u) = match parameter {
-        Parameter::CoilResistance => {
-            let nominal = part.nominal_coil_ohm;
-            (nominal, 0.015 * nominal, false, 0.001 * nominal)
-        }
-        Parameter::OperateVoltage => (
-            test.expected_operate_v,
-            test.expected_operate_sd_v,
-            false,
-            0.006,
-        ),
-        Parameter::ReleaseVoltage => (
-            test.expected_release_v,
-            test.expected_release_sd_v,
-            false,
-            0.006,
-        ),
-        Parameter::OperateTime => (4.7, 0.25, false, 0.01),
-        Parameter::ReleaseTime => (2.9, 0.15, false, 0.01),
-        Parameter::OperateBounce => (0.4, 0.4, true, 0.01),
-        Parameter::ReleaseBounce => (0.5, 0.4, true, 0.01),
-        Parameter::ContactResistanceNo => (18.0, 0.25, true, 0.3),
-        Parameter::ContactResistanceNc => (22.0, 0.25, true, 0.3),
-    };
-    let budget = Budget::default()
-        .with_random("reading", 0.6 * u)
-        .with("offset", 0.3 * u)
-        .with("reference resistor", 0.2 * u)
-        .with("coil temperature", 0.7 * u);
-    Scatter {
-        parameter,
-        mean,
-        sd,
-        logarithmic,
-        u,
-        budget: serde_json::to_string(&budget).unwrap_or_default(),
     }
 }
 

@@ -10,9 +10,9 @@
 //! A bound decides only with [`DOUBT`] to spare: it is neither corrected nor brought to the reference
 //! temperature.
 
-use super::Curve;
-use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::points::{AnalogOut, BOARD, DigitalOut};
+use super::Parameter;
+use super::points::{AnalogOut, BOARD, DigitalOut};
+use crate::instrument::curve::Curve;
 
 /// Copper 5 K from the reference (2 %), tolerance of the supply and a poll of the board.
 const DOUBT: f64 = 0.03;
@@ -20,12 +20,12 @@ const DOUBT: f64 = 0.03;
 const NOMINAL: f64 = 0.98;
 
 /// Whether the curves prove that the parameter lies above `high`, for a coil of `nominal_v`.
-pub(super) fn above(curves: &[Curve], parameter: Parameter, high: f64, nominal_v: f64) -> bool {
+pub fn above(curves: &[Curve], parameter: Parameter, high: f64, nominal_v: f64) -> bool {
     at_least(curves, parameter, nominal_v).is_some_and(|bound| bound * (1.0 - DOUBT) > high)
 }
 
 /// The bound, in the unit of the parameter.
-pub(super) fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Option<f64> {
+pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Option<f64> {
     let seen = Seen::of(curves, nominal_v);
     let ms = |us: i64| us as f64 / 1e3;
     match parameter {
@@ -134,7 +134,6 @@ fn events(curves: &[Curve]) -> Vec<(i64, Event)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Moment;
     use super::*;
 
     /// A signal from pairs of millisecond and value.
@@ -142,7 +141,7 @@ mod tests {
         Curve {
             signal: signal.into(),
             unit: String::new(),
-            begin: Moment(1_000_000),
+            begin_us: 1_000_000,
             t_us: samples.iter().map(|(ms, _)| ms * 1_000).collect(),
             values: samples.iter().map(|(_, value)| Some(*value)).collect(),
         }

@@ -1,0 +1,138 @@
+//! The operation process card of a recipe as data: what the kind says on it, and what the plant adds in `card.toml`.
+
+use super::characteristic::Characteristic;
+use super::em_relay;
+use super::recipe::{DeviceRecipe, Recipe};
+use super::words::Words;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// Steps of every kind by the names of `card.toml`, in the order of the card.
+pub const STEPS: &[&str] = &em_relay::card::STEPS;
+
+/// What the kind says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Card {
+    /// What the part is rated, with its heading.
+    pub rating: (Words, Vec<Piece>),
+    /// What is done to a part, in order.
+    pub steps: Vec<Step>,
+    /// Counts that the remarks name.
+    pub counts: Vec<(Words, u32)>,
+}
+
+/// One line of the card.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// Its name in `card.toml`.
+    pub name: &'static str,
+    /// What is done.
+    pub what: Words,
+    /// With what.
+    pub tooling: Words,
+    /// How the part is driven; empty where it is not.
+    pub drive: Vec<Piece>,
+    /// What must come out.
+    pub demand: Demand,
+}
+
+/// A piece of a line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Piece {
+    /// A figure of the recipe.
+    Figure(f64),
+    /// What stands between figures.
+    Text(Words),
+}
+
+/// What must come out of a step.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Demand {
+    /// What sensors say.
+    Seen(Words),
+    /// The limits of these.
+    Within(Vec<Characteristic>),
+}
+
+/// Planned times of one step, s.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+pub struct Quota {
+    /// The step itself.
+    pub machine_s: f64,
+    /// Beside it.
+    pub auxiliary_s: f64,
+}
+
+/// What the plant adds to the recipe, from `card.toml`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct CardSettings {
+    /// Workshop.
+    pub workshop: String,
+    /// Number of the operation in the process.
+    pub operation_no: String,
+    /// Type of the rig.
+    pub equipment_model: String,
+    /// Its inventory number.
+    pub equipment_no: String,
+    /// Number of nest and pin block.
+    pub fixture_no: String,
+    /// Parts tested at the same time.
+    pub pieces_at_once: u32,
+    /// Preparing and ending a lot, min.
+    pub preparation_min: f64,
+    /// Time quota by step.
+    pub quota: BTreeMap<String, Quota>,
+}
+
+impl Card {
+    /// What the kind of this recipe says.
+    pub fn of(recipe: &Recipe) -> Self {
+        match &recipe.device {
+            DeviceRecipe::EmRelay(relay) => em_relay::card::card(relay),
+        }
+    }
+}
+
+impl Step {
+    /// From the magazine into the nest.
+    pub fn load() -> Self {
+        Self {
+            name: "load",
+            what: Words::of(
+                "Let one part into the pocket, push it into the nest",
+                "放行一件，推入测试座",
+            ),
+            tooling: Words::of("escapement, pusher", "隔料器、推料缸"),
+            drive: Vec::new(),
+            demand: Demand::Seen(Words::of("part present", "有件到位")),
+        }
+    }
+
+    /// Jaws and probes.
+    pub fn clamp() -> Self {
+        Self {
+            name: "clamp",
+            what: Words::of(
+                "Close both jaws, raise the pin block",
+                "两侧夹爪夹紧，探针上升",
+            ),
+            tooling: Words::of("jaws, probe lift", "夹爪、探针升降缸"),
+            drive: Vec::new(),
+            demand: Demand::Seen(Words::of("closed and up by their sensors", "传感器确认")),
+        }
+    }
+
+    /// From the nest into a bin.
+    pub fn sort() -> Self {
+        Self {
+            name: "sort",
+            what: Words::of(
+                "Carry the part to the bin of its verdict, confirm by beam",
+                "按判定送入料箱，光电确认",
+            ),
+            tooling: Words::of("gripper, sort axis", "气爪、分选轴"),
+            drive: Vec::new(),
+            demand: Demand::Seen(Words::of("one count of the beam", "光电计数为一")),
+        }
+    }
+}

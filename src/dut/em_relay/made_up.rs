@@ -1,0 +1,69 @@
+//! The lot of the default world in figures, for made-up relays.
+
+use super::Parameter;
+use super::points::{BOARD, COIL_VOLTAGE};
+use super::recipe::RelayRecipe;
+use crate::dut::Characteristic;
+use crate::dut::made_up::{Looks, Scatter};
+use crate::gauge::Budget;
+use crate::instrument::trace::Signal;
+
+/// Scatter of every parameter.
+pub fn scatter(relay: &RelayRecipe) -> Vec<(Characteristic, Scatter)> {
+    let all = Parameter::ALL.into_iter();
+    all.map(|it| (it.into(), of(relay, it))).collect()
+}
+
+fn of(relay: &RelayRecipe, parameter: Parameter) -> Scatter {
+    let test = &relay.test;
+    let nominal_ohm = relay.part.nominal_coil_ohm;
+    let (mean, sd, logarithmic, u) = match parameter {
+        Parameter::CoilResistance => (nominal_ohm, 0.015 * nominal_ohm, false, 0.001 * nominal_ohm),
+        Parameter::OperateVoltage => (
+            test.expected_operate_v,
+            test.expected_operate_sd_v,
+            false,
+            0.006,
+        ),
+        Parameter::ReleaseVoltage => (
+            test.expected_release_v,
+            test.expected_release_sd_v,
+            false,
+            0.006,
+        ),
+        Parameter::OperateTime => (4.7, 0.25, false, 0.01),
+        Parameter::ReleaseTime => (2.9, 0.15, false, 0.01),
+        Parameter::OperateBounce => (0.4, 0.4, true, 0.01),
+        Parameter::ReleaseBounce => (0.5, 0.4, true, 0.01),
+        Parameter::ContactResistanceNo => (18.0, 0.25, true, 0.3),
+        Parameter::ContactResistanceNc => (22.0, 0.25, true, 0.3),
+    };
+    let budget = Budget::default()
+        .with_random("reading", 0.6 * u)
+        .with("offset", 0.3 * u)
+        .with("reference resistor", 0.2 * u)
+        .with("coil temperature", 0.7 * u);
+    Scatter {
+        mean,
+        sd,
+        logarithmic,
+        u,
+        budget,
+    }
+}
+
+/// 30 polls of a contact, 120 samples of a voltage.
+pub fn evidence() -> Vec<Looks> {
+    vec![
+        Looks {
+            signal: Signal::bits(BOARD),
+            count: 30,
+            value: |n| (500 + n % 2) as f64,
+        },
+        Looks {
+            signal: Signal::input(COIL_VOLTAGE),
+            count: 120,
+            value: |n| 5.0 + 0.031_7 * n as f64,
+        },
+    ]
+}

@@ -1,0 +1,48 @@
+//! What made-up parts of a kind look like, for trying a history: how values scatter, and what a test would have seen.
+
+use super::characteristic::Characteristic;
+use super::em_relay;
+use super::recipe::{DeviceRecipe, Recipe};
+use crate::gauge::Budget;
+use crate::instrument::trace::Signal;
+
+/// How a characteristic scatters over a lot, and how well a value is known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scatter {
+    /// Of the values.
+    pub mean: f64,
+    /// Standard deviation of the values, or of their logarithm.
+    pub sd: f64,
+    /// The logarithm scatters, about the logarithm of the mean.
+    pub logarithmic: bool,
+    /// Standard uncertainty of a value.
+    pub u: f64,
+    /// Budget as a run stores it.
+    pub budget: Budget,
+}
+
+/// Looks at one signal, equally far apart.
+#[derive(Debug, Clone, Copy)]
+pub struct Looks {
+    /// At what.
+    pub signal: Signal,
+    /// How many.
+    pub count: i64,
+    /// Value of the look with this number, from 0.
+    pub value: fn(i64) -> f64,
+}
+
+/// Scatter of every characteristic of the recipe's kind, in the order of reports: means from the recipe where it knows them,
+/// else those of the default world.
+pub fn scatter(recipe: &Recipe) -> Vec<(Characteristic, Scatter)> {
+    match &recipe.device {
+        DeviceRecipe::EmRelay(relay) => em_relay::made_up::scatter(relay),
+    }
+}
+
+/// As many looks as a test of the default recipe has.
+pub fn evidence(recipe: &Recipe) -> Vec<Looks> {
+    match &recipe.device {
+        DeviceRecipe::EmRelay(_) => em_relay::made_up::evidence(),
+    }
+}
