@@ -177,7 +177,7 @@ fn worth_another(turn: &Turn, test: &Test) -> Option<Alarm> {
         return None;
     };
     // What ran to its end proves nothing either while the lags are being taught, and is all that is wanted.
-    let (Stop::Void(why) | Stop::Trouble(why)) = test.record.why_stopped()? else {
+    let (Stop::Void(why) | Stop::Trouble(why)) = test.record().why_stopped()? else {
         return None;
     };
     (test.number() < GOLDEN_TESTS).then(|| Alarm::golden_repeated(serial, &why.to_string()))
@@ -199,7 +199,7 @@ fn judged(turn: &mut Turn, bench: &Context, test: Test) {
         part: part.clone(),
         verdict,
         judgements,
-        record: test.record,
+        record: test.into_record(),
         bench: bench.clone(),
         at: now,
     });

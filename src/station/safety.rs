@@ -282,7 +282,7 @@ impl Station {
             }
             let mut judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
             if let Clamp::Testing(test) = &self.clamp {
-                judged.record = test.record.clone();
+                judged.record = test.record().clone();
                 judged.judgements = test.judgements();
             }
             debug_assert!(matches!(judged.verdict, Verdict::Void(_)));

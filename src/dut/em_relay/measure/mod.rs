@@ -1,41 +1,49 @@
-//! The test of one part: the order of stages, and what each leaves behind.
+//! The test of one part: the order of its stages, and when it repeats or leaves out some.
 //!
 //! ```text
 //! kelvin -> NC contact -> timed operate + NO contact -> timed release + NC contact -> coil
 //!        -> operate coarse -> release coarse -> operate fine -> release fine -> off -> verdict
 //! ```
 //! Each release follows on the operation before it, so that a part operates three times and not five.
-//! The times come first: a relay that is late on a step is late on a ramp, and what its times and its coil tell of
-//! that ([`crate::dut::em_relay::lag`]) places the fine ramps. A contact that does not move at nominal voltage is so found
-//! before any ramp; the coil is still measured, since it may be the cause.
-//! What needs no waiting (arming, counters, selections) is done while something else settles or converts;
+//! The times come first: a relay that is late on a step is late on a ramp, and its times and its coil predict by how much
+//! ([`crate::dut::em_relay::lag`]), which places the fine ramps. The test so finds a contact that does not move at nominal
+//! voltage before any ramp, and still measures the coil, which may be the cause.
+//!
+//! A stage consists of acts and a conclusion; `state.rs` calls both. The acts begin from the state of the board (`board.rs`)
+//! and come with the state that they leave. The conclusion writes results into the record (`record.rs`) and what later
+//! stages go by into the plan (`plan.rs`), and may put a stage before the planned ones.
+//!
+//! A stage does what needs no waiting (arming, counters, selections) while something else settles or converts;
 //! a mark therefore outlives the stage that set it, and so does the last reading of the counters.
 //! The board takes the source off by itself, 2 ms ahead of a change of drive, selection or direction;
-//! whoever makes such a change allows for it ([`INTERLOCK`]).
+//! the acts that make such a change wait for it ([`INTERLOCK`]).
 //!
-//! How a threshold is found is the recipe's ([`crate::dut::em_relay::strategy`]): the line above is that of
-//! `coarse_fine`, a [`search`] takes the place of the ramps.
+//! The recipe says how to find a threshold ([`crate::dut::em_relay::strategy`]): the line above is that of
+//! `coarse_fine`, a search (`search/mod.rs`) takes the place of the ramps.
 //!
 //! A stage that finds the part unfit for the rest (open coil, contact that does not move) says why
-//! and the test goes straight to `off`. Results inside the guard band are measured again by the slow
-//! strategy: the same stage `slow_repeats` times, averaged. What is then still conditional fails.
+//! and the test goes straight to `off`. The slow strategy measures results inside the guard band again: the same stage
+//! `slow_repeats` times, averaged. What is then still conditional fails.
 
+mod board;
 mod coil;
 mod contact;
 pub mod context;
+mod fine;
 mod indication;
 mod kelvin;
 mod operate;
 mod operate_fine;
 mod pace;
-pub mod ramp;
-pub mod record;
+mod plan;
+mod ramp;
+mod record;
 mod release;
-pub mod search;
+mod search;
 mod stage;
+mod state;
 mod timing;
 
-use super::supply::Supply;
 use crate::dut::em_relay::Parameter;
 use crate::dut::{Characteristic, Verdict};
 use crate::gauge::{Judgement, judge};
@@ -44,10 +52,12 @@ use crate::rig::image::Image;
 use crate::rig::point::DigitalOut;
 use crate::rig::sample::CountSample;
 use crate::units::{RigTime, Span};
+use board::Armature;
 pub use context::Context;
 pub use record::{Evidence, Ramp, Stop, TestRecord};
 pub use stage::Stage;
-use stage::{acts, order};
+use stage::order;
+use state::TestState;
 use std::collections::VecDeque;
 
 /// Release, bounce and the swing of the armature are over after this long without drive.
@@ -64,7 +74,7 @@ const SLOW: [Stage; 5] = [
     Stage::ReleaseFine(0),
 ];
 
-/// A fine ramp that was placed anew takes 0.3 s, also on its way back.
+/// Longest time that a ramp which the test before has cut off still runs: one that was placed anew takes 0.3 s.
 const CUT_OFF: Span = Span::ms(400);
 
 /// What the test wants from its surroundings.
@@ -80,7 +90,7 @@ pub enum Progress {
 #[derive(Debug)]
 pub struct Test {
     context: Context,
-    supply: Supply,
+    state: TestState,
     stages: VecDeque<Stage>,
     stage: Stage,
     runner: Runner,
@@ -89,34 +99,30 @@ pub struct Test {
     began: RigTime,
     /// Tests of this part so far, this one included.
     number: u8,
-    /// What has been found so far.
-    pub record: TestRecord,
 }
 
 impl Test {
     /// Begins with the Kelvin check; the probes are up.
     pub fn begin(context: Context, now: RigTime) -> Self {
-        let mut supply = Supply::new(&context.calibration);
-        let mut record = TestRecord::default();
-        let runner = Runner::new(acts(Stage::Kelvin, &context, &mut supply, &mut record), now);
+        let mut state = TestState::new(&context);
+        let runner = Runner::new(state.enter(Stage::Kelvin, &context), now);
         Self {
             stages: order(&context),
             context,
-            supply,
+            state,
             began: now,
             number: 1,
             stage: Stage::Kelvin,
             runner,
             slow_done: false,
             gates: None,
-            record,
         }
     }
 
     /// The same as another test of a part that was tested just now: a ramp that was cut off may still run.
     pub fn another(mut self, number: u8) -> Self {
         self.number = number;
-        self.record.still_ramping = CUT_OFF;
+        self.state.board.still_ramping = CUT_OFF;
         self
     }
 
@@ -130,6 +136,16 @@ impl Test {
         self.stage
     }
 
+    /// What was measured so far.
+    pub fn record(&self) -> &TestRecord {
+        &self.state.record
+    }
+
+    /// The record of a test that is over.
+    pub fn into_record(self) -> TestRecord {
+        self.state.record
+    }
+
     /// Goes on as far as it can.
     pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
         let mut done = done;
@@ -137,9 +153,7 @@ impl Test {
             match self.runner.step(now, done.take(), image) {
                 Doing::Done => {}
                 Doing::Trouble(why) => {
-                    let seen = std::mem::take(&mut self.runner.readings.trace);
-                    self.record.trace.append(seen);
-                    self.record.trouble(why);
+                    self.abandon(why);
                     if self.stage == Stage::Off {
                         return Progress::Judged;
                     }
@@ -165,42 +179,32 @@ impl Test {
         }
     }
 
+    /// Gives up the stage under way: its acts have not left the board as they were to.
+    fn abandon(&mut self, why: String) {
+        let seen = std::mem::take(&mut self.runner.readings.trace);
+        self.state.record.trace.append(seen);
+        self.state.record.trouble(why);
+        self.state.board.armature = Armature::Unknown;
+    }
+
     fn enter(&mut self, stage: Stage, now: RigTime) {
         self.stage = stage;
-        self.record.rested &= stage == Stage::Off;
-        let acts = acts(stage, &self.context, &mut self.supply, &mut self.record);
+        let acts = self.state.enter(stage, &self.context);
         self.runner = Runner::after(acts, now, &self.runner, self.gates.clone());
     }
 
     /// Draws the conclusions of the stage that has just ended.
     fn conclude(&mut self, now: RigTime) {
-        self.record.spent.add(self.runner.spent());
-        self.record
-            .took(self.stage.measures(), now.since(self.began));
+        let record = &mut self.state.record;
+        record.spent.add(self.runner.spent());
+        record.took(self.stage.measures(), now.since(self.began));
         self.began = now;
         let mut readings = std::mem::take(&mut self.runner.readings);
         let seen = std::mem::take(&mut readings.trace);
-        self.record.trace.append(seen);
+        record.trace.append(seen);
         self.gates = readings.gates.last().cloned().or(self.gates.take());
-        let (context, record) = (&self.context, &mut self.record);
-        let again = match self.stage {
-            Stage::Kelvin => kelvin::conclude(context, &readings, record),
-            Stage::NcContact => contact::conclude_nc(context, &readings, record),
-            Stage::Coil => coil::conclude(context, &readings, record),
-            Stage::Search(direction) => search::conclude(context, &readings, record, direction),
-            Stage::OperateCoarse => operate::conclude_coarse(context, &readings, record),
-            Stage::OperateFine(attempt) => {
-                operate_fine::conclude(context, &readings, record, attempt)
-            }
-            Stage::TimedOperate => timing::conclude_operate(context, &readings, record),
-            Stage::TimedRelease => timing::conclude_release(context, &readings, record),
-            Stage::ReleaseCoarse => release::conclude_coarse(context, &readings, record),
-            Stage::ReleaseFine(attempt) => {
-                release::conclude_fine(context, &readings, record, attempt)
-            }
-            Stage::Off => coil::conclude_off(&readings, record),
-        };
-        if record.stopped() && self.stage != Stage::Off {
+        let again = self.state.conclude(self.stage, &self.context, &readings);
+        if self.state.record.stopped() && self.stage != Stage::Off {
             self.stages = VecDeque::from([Stage::Off]);
         } else if let Some(stage) = again {
             if matches!(self.stage, Stage::Search(_)) {
@@ -215,13 +219,13 @@ impl Test {
 
     /// Another timed closure of both contacts, while the recipe asks for one.
     fn add_closure(&mut self) {
-        let record = &self.record;
+        let record = &self.state.record;
         let sampling = self.context.relay.test.strategy.contact;
         let closures = record.attempts(Parameter::ContactResistanceNo) as u64;
         if self.slow_done || record.stopped() || closures >= sampling.closures.into() {
             return;
         }
-        let clear = |parameter| contact::is_clear(&self.context, record, parameter);
+        let clear = |parameter| contact::is_clear(&self.context, &self.state, parameter);
         if sampling.stops_early
             && clear(Parameter::ContactResistanceNo)
             && clear(Parameter::ContactResistanceNc)
@@ -234,7 +238,7 @@ impl Test {
 
     /// Repeats the stages whose results lie inside the guard band (of a thorough test: all), once per test.
     fn add_slow_repeats(&mut self) {
-        if self.slow_done || self.record.stopped() {
+        if self.slow_done || self.state.record.stopped() {
             return;
         }
         self.slow_done = true;
@@ -257,17 +261,16 @@ impl Test {
 
     /// Each result against its limit.
     pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
-        let recipe = &self.context.recipe;
+        let (recipe, record) = (&self.context.recipe, &self.state.record);
         let one = |parameter: &Parameter| {
-            let reading = self.record.result(*parameter)?;
+            let reading = record.result(*parameter)?;
             let limit = recipe.limits.of(*parameter);
             let judgement = judge(&reading, &limit, recipe.decision.rule);
             Some((*parameter, judgement))
         };
-        let proven = self.record.proven.iter().copied();
+        let proven = record.proven.iter().copied();
         let measured = Parameter::ALL.iter().filter_map(one);
-        let unmeasured =
-            |(parameter, _): &(Parameter, Judgement)| self.record.attempts(*parameter) == 0;
+        let unmeasured = |(parameter, _): &(Parameter, Judgement)| record.attempts(*parameter) == 0;
         let all = measured.chain(proven.filter(unmeasured));
         all.map(|(parameter, judgement)| (parameter.into(), judgement))
             .collect()
@@ -277,7 +280,7 @@ impl Test {
     pub fn verdict(&self) -> Verdict {
         let judged = self.judgements();
         let expected = Parameter::ALL.map(Characteristic::from);
-        let Some(stop) = self.record.why_stopped() else {
+        let Some(stop) = self.state.record.why_stopped() else {
             return Verdict::of(&expected, &judged);
         };
         let proven = |(_, judgement): &(Characteristic, Judgement)| match judgement {
@@ -300,7 +303,7 @@ impl Test {
 }
 
 /// One write of the interface board.
-fn board(outputs: &[(DigitalOut, bool)]) -> Act {
+fn set(outputs: &[(DigitalOut, bool)]) -> Act {
     Act::Board(outputs.to_vec())
 }
 
