@@ -20,7 +20,7 @@ pub struct BoardState {
     pub supply: Supply,
     /// What drive and armature are doing.
     pub armature: Armature,
-    /// The ramp that was sent last.
+    /// The ramp that the present stage sends.
     pub ramp: Option<SentRamp>,
     /// How long after the mark an output still ramps that no stage has waited for.
     pub still_ramping: Span,
@@ -76,10 +76,10 @@ impl BoardState {
         }
     }
 
-    /// The ramp of the stage that has just ended. Panics if no stage has sent one.
+    /// The ramp of the stage that has just ended. Panics if that has sent none.
     pub fn sent(&self) -> SentRamp {
         let Some(ramp) = self.ramp else {
-            panic!("a stage concludes a ramp that none has sent");
+            panic!("a stage concludes a ramp that it has not sent");
         };
         ramp
     }

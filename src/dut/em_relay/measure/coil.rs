@@ -26,7 +26,7 @@ const LEAST_PREBIAS: f64 = 0.5;
 const NO_CURRENT: Volt = Volt(0.15);
 /// Below this coil current the clamp may be switched and the probes may leave, ampere.
 const OFF_CURRENT_A: f64 = 0.001;
-/// The word that takes the drive off is written, and the current gone, so long after the mark before it.
+/// From the mark to a free coil: the word that takes the drive off is written by then, and the current gone.
 const FREED: Span = Span::ms(6);
 /// Nothing driven, nothing selected, ready for the Kelvin check with which the next test begins.
 const IDLE: [(DigitalOut, bool); 8] = [
@@ -40,7 +40,7 @@ const IDLE: [(DigitalOut, bool); 8] = [
     (KelvinTest, true),
 ];
 
-/// The board is prepared for the operate ramp while the coil is converted: nothing moves the supply
+/// Prepares the board for the operate ramp while the coil is converted: nothing moves the supply
 /// between arming and the ramp. Where the stage is repeated, the relay drops and the ramps come down first.
 pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;

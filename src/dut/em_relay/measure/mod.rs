@@ -43,10 +43,11 @@ mod search;
 mod stage;
 mod state;
 mod timing;
+mod verdict;
 
 use crate::dut::em_relay::Parameter;
 use crate::dut::{Characteristic, Verdict};
-use crate::gauge::{Judgement, judge};
+use crate::gauge::Judgement;
 use crate::instrument::act::{Act, Doing, JobDone, Runner};
 use crate::rig::image::Image;
 use crate::rig::point::DigitalOut;
@@ -243,13 +244,10 @@ impl Test {
         }
         self.slow_done = true;
         let doubtful = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
-        let again: Vec<Stage> = self
-            .judgements()
+        let again: Vec<Stage> = verdict::judged(&self.context, &self.state.record)
             .iter()
             .filter(|(_, judgement)| self.context.thorough || doubtful(judgement))
-            .filter_map(|(characteristic, _)| match characteristic {
-                Characteristic::EmRelay(parameter) => Some(Stage::of(*parameter)),
-            })
+            .map(|(parameter, _)| Stage::of(*parameter))
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from
         // another flux than the one its lag was learned from.
@@ -261,44 +259,14 @@ impl Test {
 
     /// Each result against its limit.
     pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
-        let (recipe, record) = (&self.context.recipe, &self.state.record);
-        let one = |parameter: &Parameter| {
-            let reading = record.result(*parameter)?;
-            let limit = recipe.limits.of(*parameter);
-            let judgement = judge(&reading, &limit, recipe.decision.rule);
-            Some((*parameter, judgement))
-        };
-        let proven = record.proven.iter().copied();
-        let measured = Parameter::ALL.iter().filter_map(one);
-        let unmeasured = |(parameter, _): &(Parameter, Judgement)| record.attempts(*parameter) == 0;
-        let all = measured.chain(proven.filter(unmeasured));
-        all.map(|(parameter, judgement)| (parameter.into(), judgement))
-            .collect()
+        let judged = verdict::judged(&self.context, &self.state.record);
+        let general = |(parameter, judgement): (Parameter, _)| (parameter.into(), judgement);
+        judged.into_iter().map(general).collect()
     }
 
-    /// Verdict of the part. A proven failure outweighs whatever ended the test early, but for trouble of the rig.
+    /// Verdict of the part.
     pub fn verdict(&self) -> Verdict {
-        let judged = self.judgements();
-        let expected = Parameter::ALL.map(Characteristic::from);
-        let Some(stop) = self.state.record.why_stopped() else {
-            return Verdict::of(&expected, &judged);
-        };
-        let proven = |(_, judgement): &(Characteristic, Judgement)| match judgement {
-            Judgement::Fail(_) => true,
-            Judgement::Pass | Judgement::Conditional(_) | Judgement::Void => false,
-        };
-        let failed: Vec<_> = judged.into_iter().filter(proven).collect();
-        match (stop, Verdict::of(&expected, &failed)) {
-            (Stop::Trouble(why), _) => Verdict::Void(vec![why.clone()]),
-            (Stop::Fail(reason), Verdict::Fail(reasons)) => {
-                Verdict::failed(reason.clone(), reasons)
-            }
-            (Stop::Fail(reason), Verdict::Pass | Verdict::Void(_)) => {
-                Verdict::Fail(vec![reason.clone()])
-            }
-            (Stop::Void(_), Verdict::Fail(reasons)) => Verdict::Fail(reasons),
-            (Stop::Void(why), Verdict::Pass | Verdict::Void(_)) => Verdict::Void(vec![why.clone()]),
-        }
+        verdict::verdict(self.state.record.why_stopped(), self.judgements())
     }
 }
 

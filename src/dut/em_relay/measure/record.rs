@@ -146,7 +146,7 @@ impl TestRecord {
         mean(&repetitions, parameter.definition().spoken_of)
     }
 
-    /// What the part has shown when its coarse ramp has just indicated so many volts.
+    /// What the part has shown by the end of a coarse ramp.
     pub fn shown(&self, indicated: Volt, direction: Direction) -> Shown {
         let value = |parameter| {
             self.result(parameter)

@@ -33,6 +33,7 @@ impl TestState {
 
     /// Enters a stage: returns its acts and keeps the state in which they leave the board.
     pub fn enter(&mut self, stage: Stage, context: &Context) -> Vec<Act> {
+        self.board.ramp = None;
         let (acts, board) = self.acts(stage, context);
         board.check(context);
         self.board = board;

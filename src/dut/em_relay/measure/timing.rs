@@ -1,5 +1,5 @@
 //! Timed operation at exactly nominal voltage and timed release into the recipe's clamp, each with its
-//! bounce; the closure it ends on is then read for its contact resistance.
+//! bounce and the contact resistance of the closure that it ends on.
 
 use super::board::{Armature, BoardState, drive_off};
 use super::coil::rest;
@@ -27,7 +27,7 @@ const GATE_SKEW: u32 = 4;
 /// that the source asks for.
 const SOURCE_FLOWS: Span = Span::ms(11);
 
-/// Counters are read after ARM, here unless the NC stage has done so: before ARM a window may still be open that an
+/// Reads the counters after ARM unless the NC stage has done so: before ARM a window may still be open that an
 /// early end has left.
 pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
     let mut supply = board.supply;
@@ -127,7 +127,7 @@ fn drop_of_closure(context: &Context) -> [Act; 6] {
     ]
 }
 
-/// Both gates of a stage as time and bounce; `false` when the counters were not read twice.
+/// Records time and bounce from both gates of a stage; ends the test where the counters do not give them.
 fn time_and_bounce(
     context: &Context,
     readings: &Readings,
