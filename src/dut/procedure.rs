@@ -50,7 +50,7 @@ impl Procedure {
     /// Why the test could not be carried through, if it was not: the rig was in trouble or the part could not be seen.
     pub fn why_void(&self) -> Option<&Reason> {
         match self {
-            Self::EmRelay(test) => match test.record.why_stopped()? {
+            Self::EmRelay(test) => match test.record().why_stopped()? {
                 measure::Stop::Void(why) | measure::Stop::Trouble(why) => Some(why),
                 measure::Stop::Fail(_) => None,
             },
@@ -74,14 +74,14 @@ impl Procedure {
     /// What was found so far, with the replies behind it.
     pub fn record(&self) -> &TestRecord {
         match self {
-            Self::EmRelay(test) => &test.record,
+            Self::EmRelay(test) => test.record(),
         }
     }
 
     /// The same, once the part is judged.
     pub fn into_record(self) -> TestRecord {
         match self {
-            Self::EmRelay(test) => test.record,
+            Self::EmRelay(test) => test.into_record(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The coil supply as three outputs that add up: level (steps), coarse ramp, fine ramp.
 //!
-//! Keeps what was asked of each, so that a stage can say "so many volts in all" and leave a ramp where
+//! Keeps what was asked of each, so that a stage can ask for a sum and leave a ramp where
 //! the stage before has left it: the coarse ramp goes up once for operate and down once for release.
 
 use crate::dut::em_relay::Calibration;
@@ -9,11 +9,13 @@ use crate::dut::em_relay::calibration::OutputLine;
 use crate::dut::em_relay::points::AnalogOut;
 use crate::units::{Span, Volt};
 
+/// The sum of three outputs in floating point.
+const ROUNDING: Volt = Volt(1e-9);
 /// Slowest settling of an output after its last refresh.
 pub const RAMP_MARGIN: Span = Span::ms(4);
 
 /// Voltages that each output contributes at the coil.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Supply {
     level: OutputLine,
     coarse: OutputLine,
@@ -56,11 +58,25 @@ impl Supply {
         self.fine_at
     }
 
+    /// True once both ramps have gone as low as their outputs can.
+    pub fn ramps_are_down(&self) -> bool {
+        let rests = |line: OutputLine, at: Volt| {
+            let lowest = line.delivers(Volt(0.0)).0.max(0.0);
+            at < Volt(lowest) + ROUNDING
+        };
+        rests(self.coarse, self.coarse_at) && rests(self.fine, self.fine_at)
+    }
+
     /// Act that steps the level so that the sum becomes `total`; the ramps stay.
     pub fn step_to(&mut self, total: Volt) -> Act {
         let wanted = total - self.coarse_at - self.fine_at;
         let asked = Volt(self.level.ask_for(wanted).0.max(0.0));
         self.level_at = self.level.delivers(asked);
+        let over = self.total() - total;
+        assert!(
+            asked == Volt(0.0) || over < ROUNDING,
+            "{over:?} over {total:?}"
+        );
         Act::Supply(vec![(AnalogOut::SupplyLevel, asked)])
     }
 

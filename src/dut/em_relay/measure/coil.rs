@@ -1,7 +1,9 @@
 //! Coil resistance at the pre-bias, below pickup: the armature is open and L/R short. The pre-bias is
 //! also where the operate ramp starts, so the coil stays on.
 
-use super::{Context, INTERLOCK, OFF, Stage, TestRecord, board};
+use super::board::{Armature, BoardState};
+use super::state::TestState;
+use super::{Context, INTERLOCK, OFF, Stage, set};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
@@ -25,9 +27,9 @@ const LEAST_PREBIAS: f64 = 0.5;
 const NO_CURRENT: Volt = Volt(0.15);
 /// Below this coil current the clamp may be switched and the probes may leave, ampere.
 const OFF_CURRENT_A: f64 = 0.001;
-/// The word that takes the drive off is written, and the current gone, so long after the mark before it.
+/// From the mark to a free coil: the word that takes the drive off is written by then, and the current gone.
 const FREED: Span = Span::ms(6);
-/// Nothing driven, nothing selected; the pins of the next part will be looked at first.
+/// Nothing driven, nothing selected, ready for the Kelvin check with which the next test begins.
 const IDLE: [(DigitalOut, bool); 8] = [
     (SourceOn, false),
     (SourceReverse, false),
@@ -39,24 +41,22 @@ const IDLE: [(DigitalOut, bool); 8] = [
     (KelvinTest, true),
 ];
 
-/// The board is prepared for the operate ramp while the coil is converted: nothing moves the supply
-/// between arming and the ramp.
-pub(super) fn acts(context: &Context, supply: &mut Supply, record: &mut TestRecord) -> Vec<Act> {
+/// Prepares the board for the operate ramp while the coil is converted: nothing moves the supply
+/// between arming and the ramp. Where the stage is repeated, the relay drops and the ramps come down first.
+pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
     let prebias = Volt(context.relay.test.prebias_v);
     let sampling = context.relay.test.strategy.coil;
     let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
     let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
-    let repeated = record.attempts(Parameter::CoilResistance) > 0;
-    (record.operated, record.released, record.armed) = (false, false, true);
     let mut acts = Vec::new();
     if repeated {
-        let falls = std::mem::take(&mut record.still_ramping);
-        let down = OFF.max(coarse_takes).max(falls + fine_takes);
+        let down = OFF.max(coarse_takes).max(board.still_ramping + fine_takes);
         acts.extend([coarse, fine, Act::Board(IDLE.to_vec()), Act::Wait(down)]);
     }
     acts.extend((supply.total() != prebias).then(|| supply.step_to(prebias)));
     acts.extend([
-        board(&[
+        set(&[
             (SourceOn, false),
             (SourceReverse, false),
             (RampMode, true),
@@ -67,7 +67,7 @@ pub(super) fn acts(context: &Context, supply: &mut Supply, record: &mut TestReco
         ]),
         Act::Wait(INTERLOCK + Span::ms(sampling.settles_ms.into())),
         Act::Mark,
-        board(&[(Arm, true)]),
+        set(&[(Arm, true)]),
         Act::Read(Read::Gates),
         Act::ConvertSinceMark(context.fresh(CHANNELS)),
         Act::Read(Read::Coil),
@@ -79,28 +79,39 @@ pub(super) fn acts(context: &Context, supply: &mut Supply, record: &mut TestReco
             Act::Read(Read::Coil),
         ]);
     }
-    acts
+    let left = BoardState {
+        supply,
+        armature: Armature::ReadyForRamp,
+        still_ramping: Span(0),
+        ..board
+    };
+    (acts, left)
 }
 
 /// Everything off, and the supply where the next part begins. After a release the coil is free since its mark,
 /// or since the word that followed it.
-pub(super) fn acts_off(context: &Context, supply: &mut Supply, record: &TestRecord) -> Vec<Act> {
+pub(super) fn acts_off(
+    context: &Context,
+    mut board: BoardState,
+    stopped: bool,
+) -> (Vec<Act>, BoardState) {
     let mut acts = vec![Act::Board(IDLE.to_vec())];
-    if !record.rested {
-        acts.extend((!record.released).then_some(Act::Mark));
-        // What stands already is not written: a module that ignores writes would be found out by the next part only.
-        acts.extend(record.stopped().then(|| supply.step_to(Volt(0.0))));
-        acts.extend(rest(context, supply));
+    if board.armature != Armature::Rested {
+        acts.extend((!board.armature.is_released()).then_some(Act::Mark));
+        // The line sends no value that an output has already: only the next part would show a module that ignores writes.
+        acts.extend(stopped.then(|| board.supply.step_to(Volt(0.0))));
+        acts.extend(rest(context, &mut board.supply));
     }
     acts.extend([
         Act::ConvertSinceMark(FREED + context.fresh(CHANNELS)),
         Act::Read(Read::Current(current_channel(context))),
     ]);
-    acts
+    board.armature = Armature::Rested;
+    (acts, board)
 }
 
 /// The supply goes where the next part begins: pre-bias on the level, both ramps down. Then every module
-/// with outputs is asked whether it has restarted under this part.
+/// with outputs answers whether it has restarted under this part.
 pub(super) fn rest(context: &Context, supply: &mut Supply) -> [Act; 4] {
     let (coarse, _) = supply.ramp_coarse(Volt(0.0));
     let (fine, _) = supply.ramp_fine(Volt(0.0));
@@ -125,8 +136,9 @@ fn current_channel(context: &Context) -> AnalogIn {
 pub(super) fn conclude(
     context: &Context,
     readings: &Readings,
-    record: &mut TestRecord,
+    state: &mut TestState,
 ) -> Option<Stage> {
+    let TestState { plan, record, .. } = state;
     let calibration = &context.calibration;
     let mut scans = Vec::new();
     let mut samples = Vec::new();
@@ -173,13 +185,13 @@ pub(super) fn conclude(
         }
         None => record.stop(Finding::CoilOpen),
     }
-    if let Some(unmoved) = record.unmoved.take() {
+    if let Some(unmoved) = plan.unmoved {
         record.stop(unmoved);
     }
     None
 }
 
-/// What is lost between the supply and the pins of `coil`; the input is taken as it was calibrated, like the supply.
+/// What is lost between the supply and the pins of `coil`, by the calibration of the input and of the supply.
 fn probe_contact(context: &Context, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
     let at_pins = |scan: &CoilScan| {
         let Sample {
@@ -198,10 +210,10 @@ fn probe_contact(context: &Context, scans: &[CoilScan], coil: Ohm) -> Option<Ohm
     ))
 }
 
-pub(super) fn conclude_off(readings: &Readings, record: &mut TestRecord) -> Option<Stage> {
+pub(super) fn conclude_off(readings: &Readings, state: &mut TestState) -> Option<Stage> {
     match readings.currents.first() {
         Some(sample) if sample.quality == Quality::Good && sample.value.abs() < OFF_CURRENT_A => {}
-        Some(_) | None => record.stop(Finding::CoilCurrentRemains),
+        Some(_) | None => state.record.stop(Finding::CoilCurrentRemains),
     }
     None
 }

@@ -1,7 +1,9 @@
 //! Contact resistance of a closure: source on, the polarities of the recipe, each read from a conversion that
 //! began after the source had settled.
 
-use super::{Context, INTERLOCK, Stage, TestRecord, board};
+use super::board::{Armature, BoardState};
+use super::state::TestState;
+use super::{Context, INTERLOCK, Stage, TestRecord, set};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::contact::{Closure, resistance, u_with_later_v};
@@ -9,7 +11,6 @@ use crate::dut::em_relay::finding::{Contact, Finding};
 use crate::dut::em_relay::points::DigitalOut::{Arm, KelvinTest, SourceOn, SourceReverse};
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::sampling::Polarities;
-use crate::dut::em_relay::supply::Supply;
 use crate::rig::sample::{Quality, Sample};
 use crate::units::{Celsius, Span, Volt};
 
@@ -23,7 +24,7 @@ pub(super) const SOURCE_SETTLES: Span = Span::ms(1);
 /// The source turned round, and a reading.
 fn turned(context: &Context, reverse: bool) -> [Act; 4] {
     [
-        board(&[(SourceReverse, reverse)]),
+        set(&[(SourceReverse, reverse)]),
         Act::Mark,
         Act::ConvertSinceMark(INTERLOCK + SOURCE_SETTLES + context.fresh(1)),
         Act::Read(Read::Drop),
@@ -47,22 +48,22 @@ pub(super) fn reversed(context: &Context) -> Vec<Act> {
     acts
 }
 
-/// Both polarities at rest. While the first one is converted the temperature of the part is read, and the timed
-/// operation prepared: counters behind an ARM that nothing can answer, supply at nominal with the drive off.
-pub(super) fn acts_nc(context: &Context, supply: &mut Supply, record: &mut TestRecord) -> Vec<Act> {
-    record.counted = true;
+/// Both polarities at rest. While the first one is converted the stage reads the temperature of the part and prepares the
+/// timed operation: counters behind an ARM that nothing can answer, supply at nominal with the drive off.
+pub(super) fn acts_nc(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
     let mut acts = vec![
-        board(&[(KelvinTest, false), (SourceOn, true), (Arm, true)]),
+        set(&[(KelvinTest, false), (SourceOn, true), (Arm, true)]),
         Act::Mark,
         Act::Read(Read::Track),
         Act::Read(Read::Board),
         Act::Read(Read::Gates),
-        supply.step_to(Volt(context.relay.part.nominal_v)),
+        board.supply.step_to(Volt(context.relay.part.nominal_v)),
         Act::ConvertSinceMark(SOURCE_SETTLES + context.fresh(1)),
         Act::Read(Read::Drop),
     ];
     acts.extend(reversed(context));
-    acts
+    board.armature = Armature::ReadyForTiming;
+    (acts, board)
 }
 
 /// Drop of a reading, or why there is none.
@@ -113,21 +114,23 @@ pub(super) fn closure(context: &Context, readings: &Readings) -> Result<Closure,
 pub(super) fn conclude_nc(
     context: &Context,
     readings: &Readings,
-    record: &mut TestRecord,
+    state: &mut TestState,
 ) -> Option<Stage> {
     match readings.track.first() {
         Some(track) if track.quality == Quality::Good && track.value.is_finite() => {
-            record.track = Some(Celsius(track.value));
+            state.record.track = Some(Celsius(track.value));
         }
-        Some(_) | None => record.stop(Finding::TrackNotReadable),
+        Some(_) | None => state.record.stop(Finding::TrackNotReadable),
     }
     match closure(context, readings) {
         Ok(closure) => {
-            record.drop_zero = Some(closure.zero);
-            record.released = true;
-            add_nc(context, closure.drop, &readings.drops, record);
+            state.plan.drop_zero = Some(closure.zero);
+            add_nc(context, closure.drop, &readings.drops, state);
         }
-        Err(unread) => record.stop(unread.of(Contact::Nc)),
+        Err(unread) => {
+            state.board.armature = Armature::Unknown;
+            state.record.stop(unread.of(Contact::Nc));
+        }
     }
     None
 }
@@ -142,12 +145,14 @@ pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecor
     implausible
 }
 
-/// True when more closures would not change what is said of this contact.
-pub(super) fn is_clear(context: &Context, record: &TestRecord, parameter: Parameter) -> bool {
-    let recipe = &context.recipe;
+/// True when more closures would not change the judgement of this contact.
+pub(super) fn is_clear(context: &Context, state: &TestState, parameter: Parameter) -> bool {
+    let (recipe, record) = (&context.recipe, &state.record);
     let per_v = context.calibration.contact_mohm_per_v.value;
     let values: Vec<f64> = match parameter {
-        Parameter::ContactResistanceNc => record.nc_drops.iter().map(|it| per_v * it.0).collect(),
+        Parameter::ContactResistanceNc => {
+            state.plan.nc_drops.iter().map(|it| per_v * it.0).collect()
+        }
         Parameter::ContactResistanceNo
         | Parameter::CoilResistance
         | Parameter::OperateVoltage
@@ -165,12 +170,13 @@ pub(super) fn is_clear(context: &Context, record: &TestRecord, parameter: Parame
 }
 
 /// Adds one NC closure; the result is the mean of all closures read.
-pub(super) fn add_nc(context: &Context, drop: Volt, samples: &[Sample], record: &mut TestRecord) {
-    record.nc_drops.push(drop);
+pub(super) fn add_nc(context: &Context, drop: Volt, samples: &[Sample], state: &mut TestState) {
+    let (drops, record) = (&mut state.plan.nc_drops, &mut state.record);
+    drops.push(drop);
     let first = context.relay.test.strategy.contact.polarities.signs().len();
-    let later = record.nc_drops.len() - 1;
+    let later = drops.len() - 1;
     let u = u_with_later_v(first, later, context.reading_u_v(), EMF_MOVES_V);
-    if let Some(reading) = resistance(&record.nc_drops, context.calibration.contact_mohm_per_v, u) {
+    if let Some(reading) = resistance(drops, context.calibration.contact_mohm_per_v, u) {
         if is_implausible(Contact::Nc, reading.value, record) {
             return;
         }

@@ -1,4 +1,4 @@
-//! What a test needs to know beside the part: recipe, calibration and what the makers promise.
+//! Context of a test: recipe, calibration, and what the makers of the instruments promise.
 
 use crate::dut::Recipe;
 use crate::dut::em_relay::act::Act;
@@ -9,6 +9,7 @@ use crate::dut::em_relay::lag::LagLaw;
 use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, ReferenceSettings};
+use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::timing::Clock;
 use crate::dut::em_relay::{Parameter, Strategy};
 use crate::instrument::act;
@@ -42,7 +43,7 @@ pub struct Context {
     pub accuracy: AccuracySettings,
     /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
     pub nominal_v_per_s: [f64; 2],
-    /// Force contacts of the coil in series, mean over the last parts; `None`: no part of this run has told it.
+    /// Force contacts of the coil in series, mean over the last parts; `None` before any part of this run has shown it.
     pub probe_contact: Option<Ohm>,
     /// The slow strategy for every result: a golden check or a first article.
     pub thorough: bool,
@@ -95,7 +96,7 @@ impl Context {
     }
 
     /// What the probes may have lifted or lowered a threshold by since the golden parts taught its lag, relative (1 sd):
-    /// all that their trend shows, which nothing takes off.
+    /// all that their trend shows; no correction takes it off.
     pub fn contact_share(&self) -> f64 {
         let then_ohm = self.calibration.probe_contact_ohm;
         let changed = self.probe_contact.map_or(0.0, |Ohm(now)| now - then_ohm);
@@ -135,6 +136,14 @@ impl Context {
             Some((_, Strategy::Adaptive)) if !lag.judges => Strategy::CoarseFine,
             Some((_, strategy)) if lag.fine_v.u.is_finite() => strategy,
             Some(_) | None => Strategy::CoarseFine,
+        }
+    }
+
+    /// Lag of the ramps of a direction.
+    pub fn lag(&self, direction: Direction) -> Lag {
+        match direction {
+            Direction::Rising => self.operate_lag(),
+            Direction::Falling => self.release_lag(),
         }
     }
 

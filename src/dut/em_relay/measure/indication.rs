@@ -1,6 +1,8 @@
 //! What the gate of a ramp says: the indicated voltage, and the threshold behind it.
 
+use super::search::parameter;
 use super::{Context, Ramp};
+use crate::dut::em_relay::Strategy;
 use crate::dut::em_relay::calibration::Lag;
 use crate::dut::em_relay::coil::to_reference;
 use crate::dut::em_relay::lag::Shown;
@@ -8,7 +10,6 @@ use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::strategy::{from_two_rates, growth_s};
 use crate::dut::em_relay::threshold::{Direction, RampDoubt, quasi_static};
 use crate::dut::em_relay::timing::counts;
-use crate::dut::em_relay::{Parameter, Strategy};
 use crate::gauge::budget::Reading;
 use crate::units::{Celsius, Second, Volt};
 
@@ -23,8 +24,8 @@ pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
     ))
 }
 
-/// The threshold behind a coarse ramp whose lag golden parts and lot have taught; none of a part unlike those, whose
-/// lag nobody knows.
+/// The threshold behind a coarse ramp whose lag golden parts and lot have taught; `None` for a part unlike those, whose
+/// lag is not known.
 ///
 /// The scatter that was learned holds what a coarse ramp does not know of itself: resolution, repeatability, the
 /// error of its slope; each would otherwise be counted twice.
@@ -62,10 +63,7 @@ pub(super) fn fine_reading(
     part: Celsius,
     direction: Direction,
 ) -> Reading {
-    let (lag, parameter) = match direction {
-        Direction::Rising => (context.operate_lag(), Parameter::OperateVoltage),
-        Direction::Falling => (context.release_lag(), Parameter::ReleaseVoltage),
-    };
+    let (lag, parameter) = (context.lag(direction), parameter(direction));
     let seen = ramps.fine.unwrap_or(Volt(f64::NAN));
     let reference = context.reference_temperature();
     let own = lag.own_v((ramps.coarse.indicated - seen).0, direction);

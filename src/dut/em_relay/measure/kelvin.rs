@@ -6,7 +6,8 @@
 //! | COM open, the other four good | a turned part, or a dirty COM probe: void |
 //! | five good, NC open or NO closed | a contact that does not rest: fail, contact |
 
-use super::{Context, Stage, TestRecord, board};
+use super::state::TestState;
+use super::{Stage, set};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::points::DigitalOut::KelvinTest;
@@ -18,13 +19,14 @@ const COM: usize = 2;
 
 pub(super) fn acts() -> Vec<Act> {
     vec![
-        board(&[(KelvinTest, true)]),
+        set(&[(KelvinTest, true)]),
         Act::Wait(Span::ms(1)),
         Act::Read(Read::Board),
     ]
 }
 
-pub(super) fn conclude(_: &Context, readings: &Readings, record: &mut TestRecord) -> Option<Stage> {
+pub(super) fn conclude(readings: &Readings, state: &mut TestState) -> Option<Stage> {
+    let record = &mut state.record;
     let Some(seen) = readings.boards.first() else {
         record.stop(Finding::BoardNotRead);
         return None;

@@ -1,56 +1,67 @@
-//! The test of one part: the order of stages, and what each leaves behind.
+//! The test of one part: the order of its stages, and when it repeats or leaves out some.
 //!
 //! ```text
 //! kelvin -> NC contact -> timed operate + NO contact -> timed release + NC contact -> coil
 //!        -> operate coarse -> release coarse -> operate fine -> release fine -> off -> verdict
 //! ```
 //! Each release follows on the operation before it, so that a part operates three times and not five.
-//! The times come first: a relay that is late on a step is late on a ramp, and what its times and its coil tell of
-//! that ([`crate::dut::em_relay::lag`]) places the fine ramps. A contact that does not move at nominal voltage is so found
-//! before any ramp; the coil is still measured, since it may be the cause.
-//! What needs no waiting (arming, counters, selections) is done while something else settles or converts;
+//! The times come first: a relay that is late on a step is late on a ramp, and its times and its coil predict by how much
+//! ([`crate::dut::em_relay::lag`]), which places the fine ramps. The test so finds a contact that does not move at nominal
+//! voltage before any ramp, and still measures the coil, which may be the cause.
+//!
+//! A stage consists of acts and a conclusion; `state.rs` calls both. The acts begin from the state of the board (`board.rs`)
+//! and come with the state that they leave. The conclusion writes results into the record (`record.rs`) and what later
+//! stages go by into the plan (`plan.rs`), and may put a stage before the planned ones.
+//!
+//! A stage does what needs no waiting (arming, counters, selections) while something else settles or converts;
 //! a mark therefore outlives the stage that set it, and so does the last reading of the counters.
 //! The board takes the source off by itself, 2 ms ahead of a change of drive, selection or direction;
-//! whoever makes such a change allows for it ([`INTERLOCK`]).
+//! the acts that make such a change wait for it ([`INTERLOCK`]).
 //!
-//! How a threshold is found is the recipe's ([`crate::dut::em_relay::strategy`]): the line above is that of
-//! `coarse_fine`, a [`search`] takes the place of the ramps.
+//! The recipe says how to find a threshold ([`crate::dut::em_relay::strategy`]): the line above is that of
+//! `coarse_fine`, a search (`search/mod.rs`) takes the place of the ramps.
 //!
 //! A stage that finds the part unfit for the rest (open coil, contact that does not move) says why
-//! and the test goes straight to `off`. Results inside the guard band are measured again by the slow
-//! strategy: the same stage `slow_repeats` times, averaged. What is then still conditional fails.
+//! and the test goes straight to `off`. The slow strategy measures results inside the guard band again: the same stage
+//! `slow_repeats` times, averaged. What is then still conditional fails.
 
+mod board;
 mod coil;
 mod contact;
 pub mod context;
+mod fine;
 mod indication;
 mod kelvin;
 mod operate;
 mod operate_fine;
 mod pace;
-pub mod ramp;
-pub mod record;
+mod plan;
+mod ramp;
+mod record;
 mod release;
-pub mod search;
+mod search;
 mod stage;
+mod state;
 mod timing;
+mod verdict;
 
-use super::supply::Supply;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::procedure::Progress;
 use crate::dut::{Characteristic, Verdict};
-use crate::gauge::{Judgement, judge};
+use crate::gauge::Judgement;
 use crate::instrument::act::{Doing, JobDone, Runner};
 use crate::rig::image::Image;
 use crate::rig::sample::CountSample;
 use crate::units::{RigTime, Span};
+use board::Armature;
 pub use context::Context;
 pub use record::{Evidence, Ramp, Stop, TestRecord};
 pub use stage::Stage;
-use stage::{acts, order};
+use stage::order;
+use state::TestState;
 use std::collections::VecDeque;
 
 /// Release, bounce and the swing of the armature are over after this long without drive.
@@ -67,14 +78,14 @@ const SLOW: [Stage; 5] = [
     Stage::ReleaseFine(0),
 ];
 
-/// A fine ramp that was placed anew takes 0.3 s, also on its way back.
+/// Longest time that a ramp which the test before has cut off still runs: one that was placed anew takes 0.3 s.
 const CUT_OFF: Span = Span::ms(400);
 
 /// A test under way.
 #[derive(Debug)]
 pub struct Test {
     context: Context,
-    supply: Supply,
+    state: TestState,
     stages: VecDeque<Stage>,
     stage: Stage,
     runner: Runner,
@@ -83,35 +94,31 @@ pub struct Test {
     began: RigTime,
     /// Tests of this part so far, this one included.
     number: u8,
-    /// What has been found so far.
-    pub record: TestRecord,
 }
 
 impl Test {
     /// Begins with the Kelvin check; the probes are up.
     pub fn begin(context: Context, now: RigTime) -> Self {
-        let mut supply = Supply::new(&context.calibration);
-        let mut record = TestRecord::default();
-        let acts = acts(Stage::Kelvin, &context, &mut supply, &mut record);
+        let mut state = TestState::new(&context);
+        let acts = state.enter(Stage::Kelvin, &context);
         let runner = Runner::new(context.wired(acts), now);
         Self {
             stages: order(&context),
             context,
-            supply,
+            state,
             began: now,
             number: 1,
             stage: Stage::Kelvin,
             runner,
             slow_done: false,
             gates: None,
-            record,
         }
     }
 
     /// The same as another test of a part that was tested just now: a ramp that was cut off may still run.
     pub fn another(mut self, number: u8) -> Self {
         self.number = number;
-        self.record.still_ramping = CUT_OFF;
+        self.state.board.still_ramping = CUT_OFF;
         self
     }
 
@@ -125,6 +132,16 @@ impl Test {
         self.stage
     }
 
+    /// What was measured so far.
+    pub fn record(&self) -> &TestRecord {
+        &self.state.record
+    }
+
+    /// The record of a test that is over.
+    pub fn into_record(self) -> TestRecord {
+        self.state.record
+    }
+
     /// Goes on as far as it can.
     pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
         let mut done = done;
@@ -132,9 +149,7 @@ impl Test {
             match self.runner.step(now, done.take(), image) {
                 Doing::Done => {}
                 Doing::Trouble(why) => {
-                    let seen = std::mem::take(&mut self.runner.readings.trace);
-                    self.record.trace.append(seen);
-                    self.record.trouble(why);
+                    self.abandon(why);
                     if self.stage == Stage::Off {
                         return Progress::Judged;
                     }
@@ -160,42 +175,32 @@ impl Test {
         }
     }
 
+    /// Gives up the stage under way: its acts have not left the board as they were to.
+    fn abandon(&mut self, why: String) {
+        let seen = std::mem::take(&mut self.runner.readings.trace);
+        self.state.record.trace.append(seen);
+        self.state.record.trouble(why);
+        self.state.board.armature = Armature::Unknown;
+    }
+
     fn enter(&mut self, stage: Stage, now: RigTime) {
         self.stage = stage;
-        self.record.rested &= stage == Stage::Off;
-        let acts = acts(stage, &self.context, &mut self.supply, &mut self.record);
+        let acts = self.state.enter(stage, &self.context);
         self.runner = Runner::after(self.context.wired(acts), now, &self.runner);
     }
 
     /// Draws the conclusions of the stage that has just ended.
     fn conclude(&mut self, now: RigTime) {
-        self.record.spent.add(self.runner.spent());
-        self.record
-            .took(self.stage.measures(), now.since(self.began));
+        let record = &mut self.state.record;
+        record.spent.add(self.runner.spent());
+        record.took(self.stage.measures(), now.since(self.began));
         self.began = now;
         let mut read = std::mem::take(&mut self.runner.readings);
-        self.record.trace.append(std::mem::take(&mut read.trace));
+        record.trace.append(std::mem::take(&mut read.trace));
         let readings = Readings::of(&read, &self.context.points, self.gates.take());
         self.gates = readings.gates.last().cloned();
-        let (context, record) = (&self.context, &mut self.record);
-        let again = match self.stage {
-            Stage::Kelvin => kelvin::conclude(context, &readings, record),
-            Stage::NcContact => contact::conclude_nc(context, &readings, record),
-            Stage::Coil => coil::conclude(context, &readings, record),
-            Stage::Search(direction) => search::conclude(context, &readings, record, direction),
-            Stage::OperateCoarse => operate::conclude_coarse(context, &readings, record),
-            Stage::OperateFine(attempt) => {
-                operate_fine::conclude(context, &readings, record, attempt)
-            }
-            Stage::TimedOperate => timing::conclude_operate(context, &readings, record),
-            Stage::TimedRelease => timing::conclude_release(context, &readings, record),
-            Stage::ReleaseCoarse => release::conclude_coarse(context, &readings, record),
-            Stage::ReleaseFine(attempt) => {
-                release::conclude_fine(context, &readings, record, attempt)
-            }
-            Stage::Off => coil::conclude_off(&readings, record),
-        };
-        if record.stopped() && self.stage != Stage::Off {
+        let again = self.state.conclude(self.stage, &self.context, &readings);
+        if self.state.record.stopped() && self.stage != Stage::Off {
             self.stages = VecDeque::from([Stage::Off]);
         } else if let Some(stage) = again {
             if matches!(self.stage, Stage::Search(_)) {
@@ -210,13 +215,13 @@ impl Test {
 
     /// Another timed closure of both contacts, while the recipe asks for one.
     fn add_closure(&mut self) {
-        let record = &self.record;
+        let record = &self.state.record;
         let sampling = self.context.relay.test.strategy.contact;
         let closures = record.attempts(Parameter::ContactResistanceNo) as u64;
         if self.slow_done || record.stopped() || closures >= sampling.closures.into() {
             return;
         }
-        let clear = |parameter| contact::is_clear(&self.context, record, parameter);
+        let clear = |parameter| contact::is_clear(&self.context, &self.state, parameter);
         if sampling.stops_early
             && clear(Parameter::ContactResistanceNo)
             && clear(Parameter::ContactResistanceNc)
@@ -229,18 +234,15 @@ impl Test {
 
     /// Repeats the stages whose results lie inside the guard band (of a thorough test: all), once per test.
     fn add_slow_repeats(&mut self) {
-        if self.slow_done || self.record.stopped() {
+        if self.slow_done || self.state.record.stopped() {
             return;
         }
         self.slow_done = true;
         let doubtful = |judgement: &Judgement| matches!(judgement, Judgement::Conditional(_));
-        let again: Vec<Stage> = self
-            .judgements()
+        let again: Vec<Stage> = verdict::judged(&self.context, &self.state.record)
             .iter()
             .filter(|(_, judgement)| self.context.thorough || doubtful(judgement))
-            .filter_map(|(characteristic, _)| match characteristic {
-                Characteristic::EmRelay(parameter) => Some(Stage::of(*parameter)),
-            })
+            .map(|(parameter, _)| Stage::of(*parameter))
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from
         // another flux than the one its lag was learned from.
@@ -252,50 +254,19 @@ impl Test {
 
     /// Each result against its limit.
     pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
-        let recipe = &self.context.recipe;
-        let one = |parameter: &Parameter| {
-            let reading = self.record.result(*parameter)?;
-            let limit = recipe.limits.of(*parameter);
-            let judgement = judge(&reading, &limit, recipe.decision.rule);
-            Some((*parameter, judgement))
-        };
-        let proven = self.record.proven.iter().copied();
-        let measured = Parameter::ALL.iter().filter_map(one);
-        let unmeasured =
-            |(parameter, _): &(Parameter, Judgement)| self.record.attempts(*parameter) == 0;
-        let all = measured.chain(proven.filter(unmeasured));
-        all.map(|(parameter, judgement)| (parameter.into(), judgement))
-            .collect()
+        let judged = verdict::judged(&self.context, &self.state.record);
+        let general = |(parameter, judgement): (Parameter, _)| (parameter.into(), judgement);
+        judged.into_iter().map(general).collect()
     }
 
-    /// Verdict of the part. A proven failure outweighs whatever ended the test early, but for trouble of the rig.
+    /// Verdict of the part.
     pub fn verdict(&self) -> Verdict {
-        let judged = self.judgements();
-        let expected = Parameter::ALL.map(Characteristic::from);
-        let Some(stop) = self.record.why_stopped() else {
-            return Verdict::of(&expected, &judged);
-        };
-        let proven = |(_, judgement): &(Characteristic, Judgement)| match judgement {
-            Judgement::Fail(_) => true,
-            Judgement::Pass | Judgement::Conditional(_) | Judgement::Void => false,
-        };
-        let failed: Vec<_> = judged.into_iter().filter(proven).collect();
-        match (stop, Verdict::of(&expected, &failed)) {
-            (Stop::Trouble(why), _) => Verdict::Void(vec![why.clone()]),
-            (Stop::Fail(reason), Verdict::Fail(reasons)) => {
-                Verdict::failed(reason.clone(), reasons)
-            }
-            (Stop::Fail(reason), Verdict::Pass | Verdict::Void(_)) => {
-                Verdict::Fail(vec![reason.clone()])
-            }
-            (Stop::Void(_), Verdict::Fail(reasons)) => Verdict::Fail(reasons),
-            (Stop::Void(why), Verdict::Pass | Verdict::Void(_)) => Verdict::Void(vec![why.clone()]),
-        }
+        verdict::verdict(self.state.record.why_stopped(), self.judgements())
     }
 }
 
 /// One write of the interface board.
-fn board(outputs: &[(DigitalOut, bool)]) -> Act {
+fn set(outputs: &[(DigitalOut, bool)]) -> Act {
     Act::Board(outputs.to_vec())
 }
 

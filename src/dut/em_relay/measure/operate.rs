@@ -1,16 +1,16 @@
 //! Operate voltage on the coarse ramp from the pre-bias: an estimate to some 10 mV that places the fine ramp.
 
+use super::board::{Armature, BoardState, SentRamp, drive_off};
 use super::indication::gate0;
 use super::ramp::{after_coarse, stopped_at};
-use super::{Context, INTERLOCK, OFF, Ramp, Stage, TestRecord, board};
+use super::state::TestState;
+use super::{Context, OFF, Ramp, Stage, set};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::points::DigitalIn;
-use crate::dut::em_relay::points::DigitalOut::{
-    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
-};
+use crate::dut::em_relay::points::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
 use crate::dut::em_relay::readings::Readings;
-use crate::dut::em_relay::supply::{RAMP_MARGIN, Supply};
+use crate::dut::em_relay::supply::RAMP_MARGIN;
 use crate::dut::em_relay::threshold::{Direction, indicated};
 use crate::units::{Span, Volt};
 
@@ -20,7 +20,7 @@ const RELEASE_HEADROOM_V: f64 = 0.8;
 pub(super) const SETTLES: Span = Span::ms(25);
 /// Poll of the latch and write of the turn, at the longest.
 const TURNS: Span = Span::ms(10);
-/// Slowest operation after the end of a ramp that is still taken for its event.
+/// Slowest operation after the end of a ramp that still counts as its event.
 pub(super) const LATE: Span = Span::ms(25);
 
 /// Height of the coarse output at which the release ramp begins.
@@ -30,22 +30,21 @@ pub(super) fn release_start(context: &Context) -> Volt {
     Volt(above.min(test.coarse_span_v))
 }
 
-/// The board was armed while the coil was converted. Once the contact has made, the ramp turns round to
+/// The coil stage has armed the board while the coil was converted. Once the contact has made, the ramp turns round to
 /// where the release begins; the armature stays.
-pub(super) fn acts_coarse(
-    context: &Context,
-    supply: &mut Supply,
-    record: &mut TestRecord,
-) -> Vec<Act> {
-    let mut acts = if std::mem::take(&mut record.armed) {
-        Vec::new()
-    } else {
-        prepared(context, supply, record)
+pub(super) fn acts_coarse(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
+    let (mut acts, mut board) = match board.armature {
+        Armature::ReadyForRamp => (Vec::new(), board),
+        Armature::Unknown
+        | Armature::ReadyForTiming
+        | Armature::Operated
+        | Armature::Released
+        | Armature::Rested => prepared(context, board),
     };
-    record.ramp_start = Some(supply.total());
-    record.ramp_span = Some(Volt(context.relay.test.coarse_span_v) - supply.coarse());
-    let (ramp, takes) = supply.ramp_coarse(Volt(context.relay.test.coarse_span_v));
-    let (turn, _) = supply.ramp_coarse(release_start(context));
+    let top = Volt(context.relay.test.coarse_span_v);
+    let (start, span) = (board.supply.total(), top - board.supply.coarse());
+    let (ramp, takes) = board.supply.ramp_coarse(top);
+    let (turn, _) = board.supply.ramp_coarse(release_start(context));
     acts.extend([
         ramp,
         Act::Until {
@@ -56,90 +55,71 @@ pub(super) fn acts_coarse(
         turn,
         Act::Read(Read::Gate),
     ]);
-    acts
+    board.armature = Armature::Unknown;
+    board.ramp = Some(SentRamp { start, span, takes });
+    (acts, board)
 }
 
-/// From rest at the pre-bias, armed: what the coil stage leaves behind, when another stage came between.
-fn prepared(context: &Context, supply: &mut Supply, record: &mut TestRecord) -> Vec<Act> {
-    let mut acts = dropped(record);
+/// From rest to the pre-bias, armed: what the coil stage leaves behind, when another stage came between.
+fn prepared(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
+    let mut acts = drive_off(board.armature);
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
-    let takes = takes.max(std::mem::take(&mut record.still_ramping));
     acts.extend([
         coarse,
         supply.step_to(Volt(context.relay.test.prebias_v)),
-        board(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
-        Act::RampSinceMark(OFF.max(takes)),
-        board(&[(CoilDrive, true)]),
-        board(&[(Arm, true)]),
+        set(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
+        Act::RampSinceMark(OFF.max(takes.max(board.still_ramping))),
+        set(&[(CoilDrive, true)]),
+        set(&[(Arm, true)]),
         Act::Read(Read::Gates),
         Act::Wait(SETTLES),
     ]);
-    acts
+    let left = BoardState {
+        supply,
+        armature: Armature::ReadyForRamp,
+        still_ramping: Span(0),
+        ..board
+    };
+    (acts, left)
 }
 
 pub(super) fn conclude_coarse(
     context: &Context,
     readings: &Readings,
-    record: &mut TestRecord,
+    state: &mut TestState,
 ) -> Option<Stage> {
-    let start = record.ramp_start?;
+    let (board, record) = (&mut state.board, &mut state.record);
     if readings.seen.first() != Some(&true) {
         // It has operated at nominal voltage.
-        match readings.boards.last() {
-            Some(board) if board.no_closed => {
-                record.stop(Finding::MadeOutsideWindow);
-            }
-            Some(_) => record.stop(Finding::AboveCoarseRamp),
-            None => record.stop(Finding::BoardNotRead),
-        }
+        record.stop(match readings.boards.last() {
+            Some(board) if board.no_closed => Finding::MadeOutsideWindow,
+            Some(_) => Finding::AboveCoarseRamp,
+            None => Finding::BoardNotRead,
+        });
         return None;
     }
     let Some(gate) = gate0(context, readings) else {
         record.stop(Finding::GatesNotRead);
         return None;
     };
-    let seen = indicated(
-        start,
-        context.calibration.coarse_v_per_s.value,
-        gate,
-        Direction::Rising,
-    );
-    let coarse = record
-        .ramp_span
-        .and_then(|span| stopped_at(start, span, seen))
-        .unwrap_or(seen);
-    let lag = context.operate_lag();
-    let seen = record.shown(coarse, Direction::Rising);
-    record.operate = Some(Ramp {
-        coarse: seen,
-        fine: None,
-    });
-    record.operated = true;
-    record.still_ramping = turning(context, coarse - start);
-    let told = (seen, lag, Direction::Rising);
-    after_coarse(context, readings, record, told).then_some(Stage::OperateFine(0))
+    let SentRamp { start, span, .. } = board.sent();
+    let v_per_s = context.calibration.coarse_v_per_s.value;
+    let seen = indicated(start, v_per_s, gate, Direction::Rising);
+    let coarse = stopped_at(start, span, seen).unwrap_or(seen);
+    board.armature = Armature::Operated;
+    board.still_ramping = turning(context, coarse - start);
+    let shown = record.shown(coarse, Direction::Rising);
+    record.operate = Some(Ramp::coarse_only(shown));
+    after_coarse(context, readings, state, (shown, Direction::Rising))
+        .then_some(Stage::OperateFine(0))
 }
 
-/// How long the coarse ramp needs from its event back down to [`release_start`]: it has gone on while the
-/// event was polled for and the turn written.
+/// How long the coarse ramp needs from its event back down to [`release_start`]: it has gone on during the poll that
+/// has seen the event and the write that turns it round.
 fn turning(context: &Context, climbed: Volt) -> Span {
     let per_s = context.calibration.coarse_v_per_s.value;
     let over = climbed.0 + per_s * TURNS.as_seconds();
     let back = over.min(context.relay.test.coarse_span_v) - release_start(context).0;
     TURNS + Span::seconds(back.abs() / per_s) + RAMP_MARGIN
-}
-
-/// Drive off, unless the stage before has switched it off already; [`OFF`] counts from the mark.
-pub(super) fn dropped(record: &mut TestRecord) -> Vec<Act> {
-    if std::mem::take(&mut record.released) {
-        return Vec::new();
-    }
-    record.operated = false;
-    let off = [
-        (SourceOn, false),
-        (SourceReverse, false),
-        (CoilDrive, false),
-        (Arm, false),
-    ];
-    vec![board(&off), Act::Wait(INTERLOCK), Act::Mark]
 }

@@ -1,4 +1,4 @@
-//! How long an armature is given, counted in its own operate time.
+//! How long a test waits for an armature, counted in its own operate time.
 //!
 //! What makes a relay late on a step (mass, drag, a pull that grows slowly) makes it swing longer after an approach and
 //! leave its rest later at a level, so every wait for a free armature is a multiple of the operate time at nominal voltage

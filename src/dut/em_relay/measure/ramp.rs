@@ -1,18 +1,16 @@
-//! What operate and release share: a fine ramp is placed around an estimate, and placed anew when the
-//! contact changed before the window opened or not at all.
+//! What operate and release share: where a fine ramp is placed, around which estimate, and where it is placed anew when
+//! the contact changed before the window opened or not at all.
 
 use super::Context;
-use super::indication::{coarse_reading, gate0};
-use super::pace::Pace;
-use super::record::TestRecord;
+use super::indication::coarse_reading;
 use super::search::parameter;
-use crate::dut::em_relay::Finding;
+use super::state::TestState;
 use crate::dut::em_relay::calibration::Lag;
 use crate::dut::em_relay::coil::to_reference;
 use crate::dut::em_relay::lag::Shown;
 use crate::dut::em_relay::readings::Readings;
-use crate::dut::em_relay::threshold::{Direction, indicated};
-use crate::units::{Celsius, Second, Span, Volt};
+use crate::dut::em_relay::threshold::Direction;
+use crate::units::{Celsius, Volt};
 
 /// The level jumps by this much between ARM and ramp: the window opens after [`WINDOW_V`], and on the fine
 /// ramp alone that would take 33 ms. What is left keeps the comparator's tolerance out of the way. Flux and
@@ -21,8 +19,8 @@ pub(super) const JUMP: Volt = Volt(0.045);
 /// Way of a falling ramp before the interval that it searches: the flux of a sealed armature follows at 6 to 9 ms and
 /// still falls from the seal.
 const RUN_DOWN: Volt = Volt(0.085);
-/// After so much of it what is left of the seal is a millivolt: an event there is that of the ramp.
-const SETTLED_DOWN: Volt = Volt(0.068);
+/// After so much of it a millivolt is left of the seal: an event there is that of the ramp.
+pub(super) const SETTLED_DOWN: Volt = Volt(0.068);
 /// Beyond the far end of the estimate, for the lag's own scatter.
 const FAR_MARGIN: Volt = Volt(0.015);
 /// Half width of a placed ramp in standard deviations of its estimate. One in four hundred misses and
@@ -40,8 +38,6 @@ const TWO_OPERATIONS_V: f64 = 0.004;
 const TWO_TEMPERATURES: f64 = 0.001;
 /// Width of the next interval against that of the one that was missed.
 const WIDER: f64 = 3.0;
-/// A fine ramp is placed so often before the test is void.
-pub(super) const ATTEMPTS: u8 = 5;
 
 /// Where a contact event is expected on the fine ramp.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,9 +76,10 @@ impl Expected {
     /// Where the certificate of a golden part that teaches the lags says; the first of them is to tell the fine one.
     pub fn certified(context: &Context, track: Celsius, direction: Direction) -> Option<Self> {
         let golden = context.golden.as_ref()?;
-        let (certified, lag) = match direction {
-            Direction::Rising => (golden.operate_voltage_v, context.operate_lag()),
-            Direction::Falling => (golden.release_voltage_v, context.release_lag()),
+        let lag = context.lag(direction);
+        let certified = match direction {
+            Direction::Rising => golden.operate_voltage_v,
+            Direction::Falling => golden.release_voltage_v,
         };
         let at_part = certified.value / to_reference(track, context.reference_temperature());
         let sd_v = if lag.coarse.parts() == 0 {
@@ -146,82 +143,26 @@ pub(super) fn stopped_at(start: Volt, span: Volt, seen: Volt) -> Option<Volt> {
     ((seen - start).abs() > span).then_some(start + Volt(span.0.copysign((seen - start).0)))
 }
 
-/// What came of a fine ramp.
-pub(super) enum Met {
-    /// The indicated voltage at the contact event, and the length of the gate.
-    At(Volt, Second),
-    /// The event was missed; the next ramp looks where [`TestRecord::expected`] now says.
-    Again,
-}
-
-/// Holds a fine ramp against its event; `None` once the test is void.
-pub(super) fn meet(
+/// Draws what follows from a coarse ramp: where the fine one looks, and the result where the recipe trusts this one.
+/// True if a fine one has to be put in that the recipe did not plan.
+pub(super) fn after_coarse(
     context: &Context,
     readings: &Readings,
-    record: &mut TestRecord,
-    direction: Direction,
-    attempt: u8,
-) -> Option<Met> {
-    let (start, expected) = (record.ramp_start?, (*record.expected(direction))?);
-    let (Some(gate), Some(_)) = (gate0(context, readings), record.track) else {
-        record.stop(Finding::GatesNotRead);
-        return None;
-    };
-    let seen = indicated(
-        start,
-        context.calibration.fine_v_per_s.value,
-        gate,
-        direction,
-    );
-    let met = readings.seen.first() == Some(&true);
-    let stopped = record
-        .ramp_span
-        .and_then(|span| stopped_at(start, span, seen));
-    let left = record.ramp_takes.0.saturating_sub(Span::seconds(gate.0).0);
-    record.still_ramping = Span(if met { left } else { 0 });
-    // Before the interval the ramp had hardly begun: what moved the armature was the step before it.
-    let settled = match direction {
-        Direction::Rising => Pace::of(record).run_up(context.calibration.fine_v_per_s.value),
-        Direction::Falling => SETTLED_DOWN,
-    };
-    let hasty = met && (seen - start).abs() < JUMP + settled;
-    if met && stopped.is_none() && !hasty {
-        return Some(Met::At(seen, gate));
-    }
-    let operated = direction == Direction::Rising;
-    let early = readings
-        .boards
-        .last()
-        .is_some_and(|board| board.no_closed == operated);
-    *record.expected(direction) = Some(match stopped {
-        Some(end) if met => expected.around(end),
-        Some(_) | None => expected.next(direction, early || hasty),
-    });
-    if attempt + 1 < ATTEMPTS {
-        return Some(Met::Again);
-    }
-    record.stop(Finding::ThresholdNotFound(direction).with(ATTEMPTS.to_string()));
-    None
-}
-
-/// What follows from a coarse ramp: where the fine one looks, and the result where the recipe trusts this one. True if
-/// a fine one has to be put in that the recipe did not plan.
-pub fn after_coarse(
-    context: &Context,
-    readings: &Readings,
-    record: &mut TestRecord,
-    (seen, lag, direction): (Shown, Lag, Direction),
+    state: &mut TestState,
+    (seen, direction): (Shown, Direction),
 ) -> bool {
-    let Some(part) = record.track else {
+    let Some(part) = state.record.track else {
         return false;
     };
+    let (lag, parameter) = (context.lag(direction), parameter(direction));
     let certified = Expected::certified(context, part, direction);
-    *record.expected(direction) = certified.or(Some(Expected::after(&seen, &lag)));
-    let parameter = parameter(direction);
+    let expected = certified.unwrap_or_else(|| Expected::after(&seen, &lag));
+    state.plan.expect(direction, expected);
     let strategy = context.strategy(parameter);
     match coarse_reading(context, (seen, lag), part, direction) {
         Some(reading) if strategy.trusts_coarse() => {
-            record.found(parameter, reading, readings.gates.iter().flatten());
+            let gates = readings.gates.iter().flatten();
+            state.record.found(parameter, reading, gates);
             false
         }
         Some(_) | None => !strategy.always_fine(),

@@ -1,8 +1,5 @@
-//! What the stages of a test have found: results, the bytes they came from, and why it ended early.
+//! Record of a test: results, the replies they came from, where the time went, and why it ended early.
 
-use super::ramp::Expected;
-use super::search::Search;
-use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::lag::Shown;
 use crate::dut::em_relay::threshold::Direction;
@@ -41,7 +38,7 @@ pub enum Stop {
     Fail(Reason),
     /// It cannot be judged.
     Void(Reason),
-    /// The rig was in trouble: what it has said of the part so far, good or bad, proves nothing.
+    /// The rig was in trouble: what it has measured of the part so far, good or bad, proves nothing.
     Trouble(Reason),
 }
 
@@ -55,6 +52,11 @@ pub struct Ramp {
 }
 
 impl Ramp {
+    /// A coarse ramp that no fine one has followed.
+    pub fn coarse_only(coarse: Shown) -> Self {
+        Self { coarse, fine: None }
+    }
+
     /// A fine ramp that no coarse one has placed.
     pub fn fine_only(seen: Volt) -> Self {
         Self {
@@ -64,7 +66,7 @@ impl Ramp {
     }
 }
 
-/// Results so far.
+/// What a test has measured so far.
 #[derive(Debug, Clone, Default)]
 pub struct TestRecord {
     readings: Vec<(Parameter, Reading)>,
@@ -78,40 +80,10 @@ pub struct TestRecord {
     pub probe_contact: Option<Ohm>,
     /// Temperature of the magazine track when the test began.
     pub track: Option<Celsius>,
-    /// Terminal voltage of the contact drop without current.
-    pub drop_zero: Option<Volt>,
-    /// NC drops of the closures read so far, free of offset.
-    pub nc_drops: Vec<Volt>,
-    /// Where the ramp under way began.
-    pub ramp_start: Option<Volt>,
-    /// Length of the ramp under way.
-    pub ramp_span: Option<Volt>,
-    /// Both counters were read behind an ARM whose window nothing has opened since, and the supply is at nominal.
-    pub counted: bool,
-    /// No contact moves at nominal voltage, and which; the coil, which may be the cause, is still to be measured.
-    pub unmoved: Option<Finding>,
-    /// The armature is still operated from the stage before, at the instant that stage has marked.
-    pub operated: bool,
-    /// The drive went off in the stage before, at the instant it has marked or earlier.
-    pub released: bool,
-    /// Coil free, supply where the next part begins: nothing is left for the last stage but to see it.
-    pub rested: bool,
-    /// How long after that mark a ramp goes on that nobody waits for.
-    pub still_ramping: Span,
-    /// Ramp mode and ARM are set, and nothing has moved since.
-    pub armed: bool,
-    /// The search by levels under way.
-    pub search: Option<Search>,
     /// Limits that were proven without a value.
     pub proven: Vec<(Parameter, Judgement)>,
     /// Rig time by what it was spent on.
     pub stages: BTreeMap<&'static str, Span>,
-    /// Longest time of the ramp under way.
-    pub ramp_takes: Span,
-    /// Where the next fine operate ramp looks for its event.
-    pub expected_operate: Option<Expected>,
-    /// The same for release.
-    pub expected_release: Option<Expected>,
     /// Operate ramps.
     pub operate: Option<Ramp>,
     /// Release ramps.
@@ -119,11 +91,19 @@ pub struct TestRecord {
 }
 
 impl TestRecord {
-    /// Where the next fine ramp of this direction looks for its event.
-    pub fn expected(&mut self, direction: Direction) -> &mut Option<Expected> {
+    /// The ramps of a direction.
+    pub fn ramp(&self, direction: Direction) -> Option<Ramp> {
         match direction {
-            Direction::Rising => &mut self.expected_operate,
-            Direction::Falling => &mut self.expected_release,
+            Direction::Rising => self.operate,
+            Direction::Falling => self.release,
+        }
+    }
+
+    /// Keeps the ramps of a direction.
+    pub fn keep_ramp(&mut self, direction: Direction, ramp: Ramp) {
+        match direction {
+            Direction::Rising => self.operate = Some(ramp),
+            Direction::Falling => self.release = Some(ramp),
         }
     }
 
@@ -166,7 +146,7 @@ impl TestRecord {
         mean(&repetitions, parameter.definition().spoken_of)
     }
 
-    /// What the part has shown when its coarse ramp has just indicated so many volts.
+    /// What the part has shown by the end of a coarse ramp.
     pub fn shown(&self, indicated: Volt, direction: Direction) -> Shown {
         let value = |parameter| {
             self.result(parameter)

@@ -3,20 +3,19 @@
 //! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
 //! voltage, so the timed one stays the last of those.
 
-use super::indication::{fine_reading, gate0};
+use super::board::{Armature, BoardState, SentRamp};
+use super::indication::gate0;
 use super::operate::{SETTLES, release_start};
-use super::operate_fine::{REPEAT_SD_V, again};
-use super::ramp::{self, Expected, Met};
+use super::ramp::{Expected, JUMP, after_coarse};
 use super::search::Search;
-use super::{Context, INTERLOCK, Ramp, Stage, TestRecord, board};
-use crate::dut::em_relay::Parameter;
+use super::state::TestState;
+use super::{Context, INTERLOCK, Ramp, Stage, set};
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::points::DigitalIn;
 use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
 use crate::dut::em_relay::readings::Readings;
-use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::{Direction, indicated};
 use crate::units::{Span, Volt};
 
@@ -29,14 +28,13 @@ const SEAL_TIME: Span = Span::ms(25);
 /// The flux of the seal has fallen to a few per cent of its step before a fine ramp begins; what the coarse ramp
 /// has left of it, after [`SETTLES`], its lag has learned.
 const FINE_SETTLES: Span = Span::ms(35);
-/// Slowest break after the end of a ramp that is still taken for its event.
+/// Slowest break after the end of a ramp that still counts as its event.
 const LATE: Span = Span::ms(12);
 
 /// Seals the armature, steps to where a falling ramp begins and arms it. An armature that is still operated from the stage
 /// before is sealed from there, once the ramp that may still run has ended.
-fn seal(context: &Context, supply: &mut Supply, record: &mut TestRecord, start: Volt) -> Vec<Act> {
-    let operated = std::mem::take(&mut record.operated);
-    record.released = false;
+fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
     let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
     // No current: the contact that the ramp breaks was read before, if at all.
     let falling = [
@@ -48,31 +46,35 @@ fn seal(context: &Context, supply: &mut Supply, record: &mut TestRecord, start: 
         (Arm, false),
     ];
     let mut acts = Vec::new();
-    if operated {
-        acts.extend([seal, board(&falling)]);
+    if board.armature == Armature::Operated {
+        acts.extend([seal, set(&falling)]);
     } else {
         acts.extend([
-            board(&[
+            set(&[
                 (CoilDrive, false),
                 (SourceOn, false),
                 (SourceReverse, false),
             ]),
             Act::Wait(INTERLOCK),
-            board(&falling),
+            set(&falling),
             seal,
-            board(&[(CoilDrive, true)]),
+            set(&[(CoilDrive, true)]),
             Act::Mark,
         ]);
     }
-    let still_ramping = std::mem::take(&mut record.still_ramping);
     acts.extend([
-        Act::RampSinceMark(SEAL_TIME.max(still_ramping)),
+        Act::RampSinceMark(SEAL_TIME.max(board.still_ramping)),
         supply.step_to(start),
         Act::Mark,
-        board(&[(Arm, true)]),
+        set(&[(Arm, true)]),
     ]);
-    record.ramp_start = Some(supply.total());
-    acts
+    let sealed = BoardState {
+        supply,
+        armature: Armature::Operated,
+        still_ramping: Span(0),
+        ..board
+    };
+    (acts, sealed)
 }
 
 /// Flux and armature settle after the step; the counters are read meanwhile. ARM is a pulse: it may rise again as soon
@@ -80,12 +82,12 @@ fn seal(context: &Context, supply: &mut Supply, record: &mut TestRecord, start: 
 fn settled(within: Span) -> [Act; 3] {
     [
         Act::Read(Read::Gates),
-        board(&[(Arm, false)]),
+        set(&[(Arm, false)]),
         Act::WaitSinceMark(within),
     ]
 }
 
-/// The drive goes off once NO has broken; from that event on the armature falls.
+/// Waits for NO to break, then takes the drive off; from that event on the armature falls.
 fn until_break(takes: Span) -> [Act; 4] {
     [
         Act::Until {
@@ -93,124 +95,85 @@ fn until_break(takes: Span) -> [Act; 4] {
             within: takes + LATE,
         },
         Act::Mark,
-        board(&[(CoilDrive, false), (EventNoBreak, false)]),
+        set(&[(CoilDrive, false), (EventNoBreak, false)]),
         Act::Read(Read::Gate),
     ]
 }
 
-pub(super) fn acts_coarse(
-    context: &Context,
-    supply: &mut Supply,
-    record: &mut TestRecord,
-) -> Vec<Act> {
+pub(super) fn acts_coarse(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
     let mut acts = Vec::new();
-    if supply.coarse() != release_start(context) {
-        let (ramp, takes) = supply.ramp_coarse(release_start(context));
+    if board.supply.coarse() != release_start(context) {
+        let (ramp, takes) = board.supply.ramp_coarse(release_start(context));
         acts.extend([ramp, Act::Wait(takes)]);
     }
-    let start = supply.coarse() + supply.fine();
-    acts.extend(seal(context, supply, record, start));
+    let start = board.supply.coarse() + board.supply.fine();
+    let (sealing, mut board) = seal(context, board, start);
+    let (start, span) = (board.supply.total(), board.supply.coarse());
+    acts.extend(sealing);
     acts.extend(settled(SETTLES));
-    let (ramp, takes) = supply.ramp_coarse(Volt(0.0));
+    let (ramp, takes) = board.supply.ramp_coarse(Volt(0.0));
     acts.push(ramp);
     acts.extend(until_break(takes));
-    acts
+    board.armature = Armature::Released;
+    board.ramp = Some(SentRamp { start, span, takes });
+    (acts, board)
 }
 
 pub(super) fn conclude_coarse(
     context: &Context,
     readings: &Readings,
-    record: &mut TestRecord,
+    state: &mut TestState,
 ) -> Option<Stage> {
-    let (start, test) = (record.ramp_start?, &context.relay.test);
+    let (start, test) = (state.board.sent().start, &context.relay.test);
     let coarse_v_per_s = context.calibration.coarse_v_per_s.value;
     let seen = readings.seen.first() == Some(&true);
     let floor_v = coarse_v_per_s * LAST_REFRESHES * context.accuracy.ao_refresh_ms * 1e-3;
     let gate =
         gate0(context, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - floor_v);
-    record.released = true;
+    let (plan, record) = (&mut state.plan, &mut state.record);
     let Some(gate) = gate else {
-        // Below its floor the coarse ramp tells nothing: the threshold is far from the lot's.
+        // Below its floor the coarse ramp is no estimate: the threshold is far from the lot's.
         let expected = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
-        record.expected_release = Some(expected);
-        record.search = Some(Search::placing(context, record, Direction::Falling));
+        plan.expect(Direction::Falling, expected);
+        plan.search = Some(Search::placing(context, record, Direction::Falling));
         return Some(Stage::Search(Direction::Falling));
     };
     let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
-    let (seen, lag) = (
-        record.shown(coarse, Direction::Falling),
-        context.release_lag(),
-    );
-    record.release = Some(Ramp {
-        coarse: seen,
-        fine: None,
-    });
-    let told = (seen, lag, Direction::Falling);
-    ramp::after_coarse(context, readings, record, told).then_some(Stage::ReleaseFine(0))
+    let shown = record.shown(coarse, Direction::Falling);
+    record.release = Some(Ramp::coarse_only(shown));
+    after_coarse(context, readings, state, (shown, Direction::Falling))
+        .then_some(Stage::ReleaseFine(0))
 }
 
 pub(super) fn acts_fine(
     context: &Context,
-    supply: &mut Supply,
-    record: &mut TestRecord,
-) -> Vec<Act> {
-    let repeated = record
-        .release
-        .and_then(|ramp| ramp.fine)
-        .map(|fine| Expected::new(fine, REPEAT_SD_V));
-    let Some(expected) = repeated.or(record.expected_release) else {
-        return Vec::new();
-    };
-    record.expected_release = Some(expected);
-    let placed = expected.falling();
-    let way = placed.span - ramp::JUMP;
+    mut board: BoardState,
+    searched: Expected,
+) -> (Vec<Act>, BoardState) {
+    let placed = searched.falling();
+    let way = placed.span - JUMP;
     let mut acts = Vec::new();
-    if supply.fine() < way {
-        let (fine, takes) = supply.ramp_fine(way);
+    if board.supply.fine() < way {
+        let (fine, takes) = board.supply.ramp_fine(way);
         // A ramp that rises goes on, one that falls turns round.
-        let rises = if record.operated {
-            record.still_ramping
-        } else {
-            Span(0)
+        let rises = match board.armature == Armature::Operated {
+            true => board.still_ramping,
+            false => Span(0),
         };
-        record.still_ramping = rises + takes;
+        board.still_ramping = rises + takes;
         acts.push(fine);
     }
-    let least = supply.coarse() + supply.fine() + ramp::JUMP;
-    let start = placed.start.0.max(least.0);
-    acts.extend(seal(context, supply, record, Volt(start)));
-    record.ramp_span = Some(placed.span);
-    acts.push(supply.step_to(Volt(start) - ramp::JUMP));
+    let least = board.supply.coarse() + board.supply.fine() + JUMP;
+    let top = Volt(placed.start.0.max(least.0));
+    let (sealing, mut board) = seal(context, board, top);
+    let (start, span) = (board.supply.total(), placed.span);
+    acts.extend(sealing);
+    acts.push(board.supply.step_to(top - JUMP));
     acts.extend(settled(FINE_SETTLES));
-    let (ramp, takes) = supply.ramp_fine(supply.fine() - way);
-    record.ramp_takes = takes;
+    let (ramp, takes) = board.supply.ramp_fine(board.supply.fine() - way);
     acts.push(ramp);
     acts.extend(until_break(takes));
-    acts
-}
-
-pub(super) fn conclude_fine(
-    context: &Context,
-    readings: &Readings,
-    record: &mut TestRecord,
-    attempt: u8,
-) -> Option<Stage> {
-    record.released = true;
-    let (seen, gate) = match ramp::meet(context, readings, record, Direction::Falling, attempt)? {
-        Met::At(seen, gate) => (seen, gate),
-        Met::Again => return Some(again(context, record, Direction::Falling, attempt)),
-    };
-    let part = record.track?;
-    if record.release.is_none_or(|ramp| ramp.fine.is_none()) {
-        record.forget(Parameter::ReleaseVoltage);
-    }
-    match &mut record.release {
-        Some(ramp) => ramp.fine = Some(seen),
-        None => record.release = Some(Ramp::fine_only(seen)),
-    }
-    let ramps = record.release?;
-    let reading = fine_reading(context, (ramps, gate), part, Direction::Falling);
-    let samples: Vec<_> = readings.gates.iter().flatten().collect();
-    record.found(Parameter::ReleaseVoltage, reading, samples);
-    None
+    board.armature = Armature::Released;
+    board.ramp = Some(SentRamp { start, span, takes });
+    (acts, board)
 }

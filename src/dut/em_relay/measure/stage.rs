@@ -1,11 +1,8 @@
 //! The stages of a test and their order.
 
-use super::{
-    Context, TestRecord, coil, contact, kelvin, operate, operate_fine, release, search, timing,
-};
+use super::Context;
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::act::Act;
-use crate::dut::em_relay::supply::Supply;
+
 use crate::dut::em_relay::threshold::Direction;
 use std::collections::VecDeque;
 
@@ -80,7 +77,7 @@ impl Stage {
         }
     }
 
-    /// What its time is booked on.
+    /// The account on which the record books its time.
     pub fn measures(self) -> &'static str {
         match self {
             Self::Kelvin => "kelvin",
@@ -111,27 +108,5 @@ impl Stage {
                 Stage::TimedRelease
             }
         }
-    }
-}
-
-/// What is done in a stage, written down before it begins.
-pub(super) fn acts(
-    stage: Stage,
-    context: &Context,
-    supply: &mut Supply,
-    record: &mut TestRecord,
-) -> Vec<Act> {
-    match stage {
-        Stage::Kelvin => kelvin::acts(),
-        Stage::NcContact => contact::acts_nc(context, supply, record),
-        Stage::Coil => coil::acts(context, supply, record),
-        Stage::Search(direction) => search::acts(context, supply, record, direction),
-        Stage::OperateCoarse => operate::acts_coarse(context, supply, record),
-        Stage::OperateFine(_) => operate_fine::acts(context, supply, record),
-        Stage::TimedOperate => timing::acts_operate(context, supply, record),
-        Stage::TimedRelease => timing::acts_release(context, supply, record),
-        Stage::ReleaseCoarse => release::acts_coarse(context, supply, record),
-        Stage::ReleaseFine(_) => release::acts_fine(context, supply, record),
-        Stage::Off => coil::acts_off(context, supply, record),
     }
 }

@@ -7,8 +7,7 @@ mod sampling;
 mod stages;
 mod whole;
 
-use super::{Stop, TestRecord};
-
+use super::{Stop, TestState};
 use crate::dcon::{Channel, Command};
 use crate::dut::em_relay::points::{AnalogIn, Counter};
 use crate::dut::em_relay::readings::{BoardInputs, CoilScan, Readings};
@@ -103,23 +102,23 @@ fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
     }
 }
 
-/// Record of a part whose temperature is known.
-fn at_23_c() -> TestRecord {
-    let mut record = TestRecord::default();
-    record.track = Some(Celsius(23.0));
-    record
+/// Test of a part whose temperature is known.
+fn at_23_c() -> TestState {
+    let mut state = TestState::new(&context());
+    state.record.track = Some(Celsius(23.0));
+    state
 }
 
 /// Bin that an early end sends the part to, and why; `None` while nothing ended the test.
-fn ended(record: &TestRecord) -> Option<(Bin, String)> {
-    record.why_stopped().map(|stop| match stop {
+fn ended(state: &TestState) -> Option<(Bin, String)> {
+    state.record.why_stopped().map(|stop| match stop {
         Stop::Fail(reason) => (reason.bin(), reason.to_string()),
         Stop::Void(why) | Stop::Trouble(why) => (Bin::Retest, why.to_string()),
     })
 }
 
-fn assert_ends(record: &TestRecord, bin: Bin, word: &str) {
-    let (found, why) = ended(record).unwrap();
+fn assert_ends(state: &TestState, bin: Bin, word: &str) {
+    let (found, why) = ended(state).unwrap();
     assert_eq!(found, bin, "{why}");
     assert!(why.contains(word), "{why}");
 }

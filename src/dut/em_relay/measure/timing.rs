@@ -1,10 +1,11 @@
 //! Timed operation at exactly nominal voltage and timed release into the recipe's clamp, each with its
-//! bounce; the closure it ends on is then read for its contact resistance.
+//! bounce and the contact resistance of the closure that it ends on.
 
+use super::board::{Armature, BoardState, drive_off};
 use super::coil::rest;
 use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, reversed};
-use super::operate::dropped;
-use super::{Context, OFF, Stage, TestRecord, board};
+use super::state::TestState;
+use super::{Context, OFF, Stage, TestRecord, set};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::contact::resistance;
@@ -14,11 +15,10 @@ use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
 use crate::dut::em_relay::readings::Readings;
-use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::timing::{bounce_ms, counts, gate_ms};
 use crate::units::{Span, Volt};
 
-/// Slowest operation or release that is still waited for.
+/// Slowest operation or release that the stage waits for.
 const LONGEST: Span = Span::ms(60);
 /// The window closes 20 ms after the latch; gate 1 counts bounce until then.
 const WINDOW_AFTER_LATCH: Span = Span::ms(21);
@@ -28,16 +28,12 @@ const GATE_SKEW: u32 = 4;
 /// that the source asks for.
 const SOURCE_FLOWS: Span = Span::ms(11);
 
-/// Counters are read after ARM, here unless the NC stage has done so: before ARM a window may still be open that an
+/// Reads the counters after ARM unless the NC stage has done so: before ARM a window may still be open that an
 /// early end has left.
-pub(super) fn acts_operate(
-    context: &Context,
-    supply: &mut Supply,
-    record: &mut TestRecord,
-) -> Vec<Act> {
-    let mut acts = dropped(record);
-    let off = OFF.max(std::mem::take(&mut record.still_ramping));
-    acts.extend([board(&[
+pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
+    let mut acts = drive_off(board.armature);
+    acts.extend([set(&[
         (SourceOn, false),
         (SourceReverse, false),
         (RampMode, false),
@@ -45,53 +41,64 @@ pub(super) fn acts_operate(
         (EventNoBreak, false),
         (Arm, true),
     ])]);
-    if !std::mem::take(&mut record.counted) {
+    if board.armature != Armature::ReadyForTiming {
         acts.extend([
             supply.step_to(Volt(context.relay.part.nominal_v)),
             Act::Read(Read::Gates),
         ]);
     }
     acts.extend([
-        Act::RampSinceMark(off),
-        board(&[(CoilDrive, true), (SourceOn, true)]),
+        Act::RampSinceMark(OFF.max(board.still_ramping)),
+        set(&[(CoilDrive, true), (SourceOn, true)]),
     ]);
     acts.extend(until_made());
     acts.extend(drop_of_closure(context));
     acts.extend(reversed(context));
-    acts
+    let left = BoardState {
+        supply,
+        armature: Armature::Unknown,
+        still_ramping: Span(0),
+        ..board
+    };
+    (acts, left)
 }
 
-/// After a timed operation its counters are taken over: the latch keeps both gates shut until ARM.
-pub(super) fn acts_release(
-    context: &Context,
-    supply: &mut Supply,
-    record: &mut TestRecord,
-) -> Vec<Act> {
-    let mut acts = Vec::new();
-    if !record.operated {
-        acts.extend(dropped(record));
-        acts.extend([
-            // Nobody reads this closure: no current is to leave its mark on the contact.
-            board(&[(RampMode, false), (EventNoBreak, false), (SourceOn, false)]),
-            supply.step_to(Volt(context.relay.part.nominal_v)),
-            board(&[(CoilDrive, true), (SelectNo, true)]),
-            Act::Wait(Span::ms(40)),
-        ]);
-    }
-    let counted = std::mem::take(&mut record.operated);
-    acts.extend([board(&[
+/// After a timed operation its counters still hold: the latch keeps both gates shut until ARM.
+pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
+    let counted = board.armature == Armature::Operated;
+    let (mut acts, mut board) = match counted {
+        true => (Vec::new(), board),
+        false => operated(context, board),
+    };
+    assert_eq!(board.armature, Armature::Operated, "nothing to release");
+    acts.extend([set(&[
         (SourceOn, false),
         (SourceReverse, false),
         (SelectNo, false),
         (Arm, true),
     ])]);
     acts.extend((!counted).then_some(Act::Read(Read::Gates)));
-    acts.push(board(&[(CoilDrive, false), (SourceOn, true)]));
+    acts.push(set(&[(CoilDrive, false), (SourceOn, true)]));
     acts.extend(until_made());
     // With the coil off the supply is free, and until the window closes so is the bus.
-    acts.extend(rest(context, supply));
+    acts.extend(rest(context, &mut board.supply));
     acts.extend(drop_of_closure(context));
-    acts
+    board.armature = Armature::Rested;
+    (acts, board)
+}
+
+/// Operates the armature at nominal voltage. The test does not read this closure: no current is to leave its mark on the
+/// contact.
+fn operated(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
+    let mut acts = drive_off(board.armature);
+    acts.extend([
+        set(&[(RampMode, false), (EventNoBreak, false), (SourceOn, false)]),
+        board.supply.step_to(Volt(context.relay.part.nominal_v)),
+        set(&[(CoilDrive, true), (SelectNo, true)]),
+        Act::Wait(Span::ms(40)),
+    ]);
+    board.armature = Armature::Operated;
+    (acts, board)
 }
 
 // ARM rises in the same word as a selection: it clears window and latch, and no selection starts them.
@@ -107,7 +114,7 @@ fn until_made() -> [Act; 2] {
     ]
 }
 
-/// Gates once the window has closed, then the forward drop. The source has been asked for before the
+/// Gates once the window has closed, then the forward drop. The source was switched on before the
 /// contact made: the board lets it flow once the contact has been closed for 5 ms. It drives the same way
 /// as the contact monitor, so that gate 1 does not take it for an open contact.
 fn drop_of_closure(context: &Context) -> [Act; 6] {
@@ -115,13 +122,13 @@ fn drop_of_closure(context: &Context) -> [Act; 6] {
         Act::WaitSinceMark(WINDOW_AFTER_LATCH),
         Act::Read(Read::Gates),
         Act::Read(Read::Board),
-        board(&[(Arm, false)]),
+        set(&[(Arm, false)]),
         Act::ConvertSinceMark(SOURCE_FLOWS + SOURCE_SETTLES + context.fresh(1)),
         Act::Read(Read::Drop),
     ]
 }
 
-/// Both gates of a stage as time and bounce; `false` when the counters were not read twice.
+/// Records time and bounce from both gates of a stage; ends the test where the counters do not give them.
 fn time_and_bounce(
     context: &Context,
     readings: &Readings,
@@ -160,11 +167,12 @@ fn time_and_bounce(
 pub(super) fn conclude_operate(
     context: &Context,
     readings: &Readings,
-    record: &mut TestRecord,
+    state: &mut TestState,
 ) -> Option<Stage> {
     if readings.seen.first() != Some(&true) {
-        return not_made(readings, record);
+        return not_made(readings, state);
     }
+    let record = &mut state.record;
     time_and_bounce(
         context,
         readings,
@@ -172,7 +180,7 @@ pub(super) fn conclude_operate(
         Parameter::OperateBounce,
         record,
     );
-    record.operated = true;
+    state.board.armature = Armature::Operated;
     match closure(context, readings) {
         Ok(closure) => {
             let u = closure.u_v(context.reading_u_v());
@@ -190,8 +198,9 @@ pub(super) fn conclude_operate(
 
 /// A relay that is late, or one whose contact does not move: that may lie at the coil, which is then measured
 /// before the part is judged.
-fn not_made(readings: &Readings, record: &mut TestRecord) -> Option<Stage> {
-    record.unmoved = match readings.boards.last() {
+fn not_made(readings: &Readings, state: &mut TestState) -> Option<Stage> {
+    let TestState { plan, record, .. } = state;
+    plan.unmoved = match readings.boards.last() {
         Some(board) if board.no_closed => {
             record.stop(Finding::OperatesTooLate);
             None
@@ -203,15 +212,17 @@ fn not_made(readings: &Readings, record: &mut TestRecord) -> Option<Stage> {
             None
         }
     };
-    record.unmoved.map(|_| Stage::Coil)
+    plan.unmoved.map(|_| Stage::Coil)
 }
 
 pub(super) fn conclude_release(
     context: &Context,
     readings: &Readings,
-    record: &mut TestRecord,
+    state: &mut TestState,
 ) -> Option<Stage> {
+    let record = &mut state.record;
     if readings.seen.first() != Some(&true) {
+        state.board.armature = Armature::Unknown;
         record.stop(Finding::ReleasesTooLate);
         return None;
     }
@@ -222,13 +233,12 @@ pub(super) fn conclude_release(
         Parameter::ReleaseBounce,
         record,
     );
-    (record.released, record.rested) = (true, true);
     let compliance = readings.boards.iter().any(|board| board.compliance);
     match (
         drop_of(readings.drops.first(), compliance),
-        record.drop_zero,
+        state.plan.drop_zero,
     ) {
-        (Ok(drop), Some(zero)) => add_nc(context, drop - zero, &readings.drops, record),
+        (Ok(drop), Some(zero)) => add_nc(context, drop - zero, &readings.drops, state),
         (Ok(_), None) => record.stop(Finding::DropWithoutZero),
         (Err(unread), _) => record.stop(unread.of(Contact::Nc)),
     }

@@ -3,8 +3,8 @@
 //! A trial is a list of acts that ends with a look at the contacts, and a conclusion that either has the
 //! threshold or names the next level. Between `untouched` and `changed` lies the threshold.
 //!
-//! A level is held until the armature has had its chance: growth at the fold takes 5.7 ms per decade, so
-//! 20 ms tell 16 mV, 30 ms less than 1 mV. A trial from rest approaches in two steps, as fine ramps do.
+//! A trial holds its level until the armature has had its chance: growth at the fold takes 5.7 ms per decade, so
+//! 20 ms resolve 16 mV, 30 ms less than 1 mV. A trial from rest approaches in two steps, as fine ramps do.
 
 mod bisection;
 mod outcome;
@@ -13,6 +13,7 @@ mod staircase;
 mod trial;
 
 use super::pace::Pace;
+use super::plan::Plan;
 use super::{Context, TestRecord};
 use crate::dut::em_relay::lag::Shown;
 use crate::dut::em_relay::threshold::Direction;
@@ -28,7 +29,7 @@ const WIDE: f64 = 6.0;
 /// A coarse ramp has overshot by as many times what it overshoots on other parts: a dragging hinge by the most.
 const MOST_LAG: f64 = 3.5;
 const LEAST_LAG: f64 = 0.3;
-/// No release threshold is looked for below this fraction of nominal.
+/// The search goes no lower than this fraction of nominal.
 const LOWEST: f64 = 0.02;
 /// Number of the attempt of a fine ramp that a search has placed.
 pub(super) const AFTER_SEARCH: u8 = 2;
@@ -62,11 +63,29 @@ pub enum Next {
     Found(Volt, Volt),
     /// The limit is kept.
     Proven,
-    /// Nothing is proven, or the interval does not hold the threshold: ramps must tell.
+    /// Nothing is proven, or the interval does not hold the threshold: ramps must measure it.
     Ramp,
 }
 
 impl Search {
+    /// The search that the plan has under way in this direction, or a new one. Panics while the temperature of the part is
+    /// not known.
+    pub(super) fn under_way(
+        context: &Context,
+        plan: &Plan,
+        record: &TestRecord,
+        direction: Direction,
+    ) -> Self {
+        let begun = plan.search.filter(|it| it.direction == direction);
+        begun.unwrap_or_else(|| {
+            let Some(part) = record.track else {
+                panic!("a search for a threshold of a part of unknown temperature");
+            };
+            let strategy = context.strategy(parameter(direction));
+            Self::new(context, strategy, direction, part)
+        })
+    }
+
     /// Over the interval that the lot leaves open.
     fn new(context: &Context, strategy: Strategy, direction: Direction, part: Celsius) -> Self {
         let test = &context.relay.test;
@@ -96,7 +115,7 @@ impl Search {
         search
     }
 
-    /// A wide one by halves, to place a fine ramp where the coarse one has told nothing, or something wrong.
+    /// A wide one by halves, to place a fine ramp where the coarse one has shown nothing, or something wrong.
     pub fn placing(context: &Context, record: &TestRecord, direction: Direction) -> Self {
         let (near, end) =
             overshot(context, record, direction).unwrap_or_else(|| far(context, direction));
@@ -155,17 +174,13 @@ impl Search {
 
 /// Between the ends of what a coarse ramp may have overshot by, if there was one.
 fn overshot(context: &Context, record: &TestRecord, direction: Direction) -> Option<(Volt, Volt)> {
-    let (ramp, lag) = match direction {
-        Direction::Rising => (record.operate, context.operate_lag()),
-        Direction::Falling => (record.release, context.release_lag()),
-    };
-    let indicated = ramp?.coarse.indicated;
-    let lag_v = lag.coarse.of(&Shown::NOTHING).volts;
+    let indicated = record.ramp(direction)?.coarse.indicated;
+    let lag_v = context.lag(direction).coarse.of(&Shown::NOTHING).volts;
     let [near, end] = [MOST_LAG, LEAST_LAG].map(|lags| indicated - Volt(lags * lag_v));
     (near.0.is_finite() && near.0 > 0.0).then_some((near, end))
 }
 
-/// Far to both sides of the lot; no release threshold is looked for near nothing.
+/// Far to both sides of the lot, but not below [`LOWEST`].
 fn far(context: &Context, direction: Direction) -> (Volt, Volt) {
     let test = &context.relay.test;
     let (centre, sd) = match direction {

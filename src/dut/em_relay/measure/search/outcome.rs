@@ -1,45 +1,51 @@
 //! What a trial leads to: another one, a value, a proof, or ramps after all.
 
-use super::{AFTER_SEARCH, Next, parameter};
+use super::{AFTER_SEARCH, Next, Search, parameter};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
+use crate::dut::em_relay::measure::board::Armature;
 use crate::dut::em_relay::measure::ramp::Expected;
-use crate::dut::em_relay::measure::{Context, Stage, TestRecord};
+use crate::dut::em_relay::measure::state::TestState;
+use crate::dut::em_relay::measure::{Context, Stage};
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::Judgement;
 use crate::gauge::budget::{Budget, Reading, resolution};
 use crate::rig::sample::CountSample;
-use crate::units::{Span, Volt};
+use crate::units::Volt;
 
 pub(in crate::dut::em_relay::measure) fn conclude(
     context: &Context,
     readings: &Readings,
-    record: &mut TestRecord,
+    state: &mut TestState,
     direction: Direction,
 ) -> Option<Stage> {
-    let (Some(seen), Some(mut search)) = (readings.boards.last(), record.search) else {
-        record.stop(Finding::BoardNotRead);
+    let Some(seen) = readings.boards.last() else {
+        state.record.stop(Finding::BoardNotRead);
         return None;
     };
+    let mut search = Search::under_way(context, &state.plan, &state.record, direction);
     let rising = direction == Direction::Rising;
     let next = search.after(seen.no_closed == rising);
-    record.operated = rising && seen.no_closed;
-    record.still_ramping = Span(0);
+    if rising && seen.no_closed {
+        state.board.armature = Armature::Operated;
+    }
     if let Next::Try(level) = next {
         search.at = level;
-        record.search = Some(search);
+        state.plan.search = Some(search);
         return Some(Stage::Search(direction));
     }
-    record.search = None;
+    state.plan.search = None;
     if context.strategy(parameter(direction)).ramps() {
-        return placed(context, record, direction, next);
+        return placed(context, state, direction, next);
     }
     match next {
-        Next::Found(volts, step) => found(context, record, direction, volts, step, &readings.gates),
+        Next::Found(volts, step) => {
+            found(context, state, direction, (volts, step), &readings.gates)
+        }
         Next::Proven => {
             let judgement = (parameter(direction), Judgement::Pass);
-            record.proven.push(judgement);
+            state.record.proven.push(judgement);
         }
         Next::Ramp if rising => return Some(Stage::OperateCoarse),
         Next::Ramp => return Some(Stage::ReleaseCoarse),
@@ -48,18 +54,21 @@ pub(in crate::dut::em_relay::measure) fn conclude(
     None
 }
 
-/// The fine ramp goes where a search in its service has found the threshold.
+/// The fine ramp goes where the search that was to place it has found the threshold.
 fn placed(
     context: &Context,
-    record: &mut TestRecord,
+    state: &mut TestState,
     direction: Direction,
     next: Next,
 ) -> Option<Stage> {
     let Next::Found(volts, step) = next else {
-        record.stop(Finding::SearchWithoutThreshold(direction));
+        state
+            .record
+            .stop(Finding::SearchWithoutThreshold(direction));
         return None;
     };
-    *record.expected(direction) = Some(near(context, direction, volts, step));
+    let expected = near(context, direction, volts, step);
+    state.plan.expect(direction, expected);
     Some(match direction {
         Direction::Rising => Stage::OperateFine(AFTER_SEARCH),
         Direction::Falling => Stage::ReleaseFine(AFTER_SEARCH),
@@ -68,23 +77,24 @@ fn placed(
 
 /// Where a fine ramp will show a threshold that levels have found.
 fn near(context: &Context, direction: Direction, volts: Volt, step: Volt) -> Expected {
-    let lag = match direction {
-        Direction::Rising => context.operate_lag(),
-        Direction::Falling => context.release_lag(),
-    };
-    Expected::new(volts + Volt(lag.fine_v.value), step.0.abs().max(0.010))
+    Expected::new(
+        volts + Volt(context.lag(direction).fine_v.value),
+        step.0.abs().max(0.010),
+    )
 }
 
 fn found(
     context: &Context,
-    record: &mut TestRecord,
+    state: &mut TestState,
     direction: Direction,
-    volts: Volt,
-    step: Volt,
+    (volts, step): (Volt, Volt),
     samples: &[[CountSample; 2]],
 ) {
-    let Some(part) = record.track else { return };
-    *record.expected(direction) = Some(near(context, direction, volts, step));
+    let Some(part) = state.record.track else {
+        return;
+    };
+    let expected = near(context, direction, volts, step);
+    state.plan.expect(direction, expected);
     let value = volts.0 * to_reference(part, context.reference_temperature());
     let (level, kelvin) = (
         context.calibration.level,
@@ -100,5 +110,6 @@ fn found(
         .with("strategy", resolution(step.0))
         .with_random("repeatability", context.operation_v());
     let reading = Reading { value, budget };
-    record.found(parameter(direction), reading, samples.iter().flatten());
+    let samples = samples.iter().flatten();
+    state.record.found(parameter(direction), reading, samples);
 }

@@ -1,11 +1,11 @@
 //! The acts of one trial: from rest or from a sealed armature to a level, and a look at the contacts.
 
-use super::{REACH, Search, parameter};
+use super::{REACH, Search};
 use crate::dut::em_relay::act::{Act, Read};
-use crate::dut::em_relay::measure::operate::dropped;
+use crate::dut::em_relay::measure::board::{Armature, BoardState, drive_off};
 use crate::dut::em_relay::measure::operate_fine::APPROACH;
 use crate::dut::em_relay::measure::pace::Pace;
-use crate::dut::em_relay::measure::{Context, INTERLOCK, OFF, TestRecord, board};
+use crate::dut::em_relay::measure::{Context, INTERLOCK, OFF, TestRecord, set};
 use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
 };
@@ -20,55 +20,41 @@ const SEAL: f64 = 0.95;
 
 pub(in crate::dut::em_relay::measure) fn acts(
     context: &Context,
-    supply: &mut Supply,
-    record: &mut TestRecord,
-    direction: Direction,
-) -> Vec<Act> {
-    record.armed = false;
-    let Some(part) = record.track else {
-        return Vec::new();
+    board: BoardState,
+    record: &TestRecord,
+    search: Search,
+) -> (Vec<Act>, BoardState) {
+    let pace = Pace::of(record);
+    let (mut acts, mut board) = match (search.begins_anew(), search.direction) {
+        (true, Direction::Rising) => from_rest(board, pace, search.at),
+        (true, Direction::Falling) => {
+            let ramped = record.operate.is_some() && search.trials == 0;
+            from_sealed(context, board, ramped)
+        }
+        (false, Direction::Rising | Direction::Falling) => (Vec::new(), board),
     };
-    let known = record.search.filter(|search| search.direction == direction);
-    let search = known.unwrap_or_else(|| {
-        Search::new(
-            context,
-            context.strategy(parameter(direction)),
-            direction,
-            part,
-        )
-    });
-    record.search = Some(search);
-    let test = &context.relay.test;
-    let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);
-    let mut acts = Vec::new();
-    if search.begins_anew() {
-        acts.extend(match direction {
-            Direction::Rising => from_rest(supply, record, search.at),
-            Direction::Falling => from_sealed(context, supply, record, near),
-        });
-    }
+    assert_eq!(board.armature, Armature::Unknown, "a trial is driven");
     acts.extend([
-        supply.step_to(search.at),
-        Act::Wait(search.dwell(Pace::of(record))),
+        board.supply.step_to(search.at),
+        Act::Wait(search.dwell(pace)),
         Act::Read(Read::Board),
         Act::Mark,
     ]);
-    acts
+    (acts, board)
 }
 
 /// Off until the armature is back and both ramps are down, then two steps towards `at`: a single one from zero picks up
 /// some 30 mV below the threshold.
-fn from_rest(supply: &mut Supply, record: &mut TestRecord, at: Volt) -> Vec<Act> {
-    let pace = Pace::of(record);
-    let mut acts = dropped(record);
+fn from_rest(board: BoardState, pace: Pace, at: Volt) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
+    let mut acts = drive_off(board.armature);
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
-    let still_ramping = std::mem::take(&mut record.still_ramping);
     acts.extend([
         coarse,
         Act::Wait(takes),
-        Act::RampSinceMark(OFF.max(pace.approaches()).max(still_ramping)),
+        Act::RampSinceMark(OFF.max(pace.approaches()).max(board.still_ramping)),
         supply.step_to(at * APPROACH),
-        board(&[
+        set(&[
             (RampMode, false),
             (SelectNo, true),
             (EventNoBreak, false),
@@ -76,28 +62,24 @@ fn from_rest(supply: &mut Supply, record: &mut TestRecord, at: Volt) -> Vec<Act>
         ]),
         Act::Wait(pace.approaches()),
     ]);
-    acts
+    (acts, driven(board, supply))
 }
 
-/// Operated and sealed at 0.95 of nominal.
-fn from_sealed(
-    context: &Context,
-    supply: &mut Supply,
-    record: &mut TestRecord,
-    near: Volt,
-) -> Vec<Act> {
-    (record.operated, record.released) = (false, false);
-    let still_ramping = std::mem::take(&mut record.still_ramping);
+/// Operated and sealed at 0.95 of nominal, then down to the near end of the lot. The coarse output comes down first if
+/// an operate ramp has left it up.
+fn from_sealed(context: &Context, board: BoardState, ramped: bool) -> (Vec<Act>, BoardState) {
+    let (mut supply, test) = (board.supply, &context.relay.test);
+    let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);
     let mut acts = Vec::new();
     let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
-    if record.operate.is_some() && record.search.is_none_or(|search| search.trials == 0) {
+    if ramped {
         acts.extend([coarse, Act::Wait(takes)]);
     }
     acts.extend([
         // What still falls would seal at more than nominal.
-        Act::Wait(still_ramping),
+        Act::Wait(board.still_ramping),
         supply.step_to(Volt(SEAL * context.relay.part.nominal_v)),
-        board(&[
+        set(&[
             (SourceOn, false),
             (SourceReverse, false),
             (RampMode, true),
@@ -110,5 +92,15 @@ fn from_sealed(
         supply.step_to(near),
         Act::Wait(SEALS),
     ]);
-    acts
+    (acts, driven(board, supply))
+}
+
+/// The drive is on, and whether the armature follows is for the trial to see.
+fn driven(board: BoardState, supply: Supply) -> BoardState {
+    BoardState {
+        supply,
+        armature: Armature::Unknown,
+        still_ramping: Span(0),
+        ..board
+    }
 }

@@ -1,6 +1,6 @@
-//! One ramp after another: where the supply stands when the next one begins.
+//! One ramp after another: where the supply is when the next one begins.
 
-use super::super::{Stage, operate_fine, release, search};
+use super::super::{Stage, fine};
 use super::{PULLED, RESTING, at_23_c, context, watched};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::Act;
@@ -10,7 +10,7 @@ use crate::dut::em_relay::lag::{LagLaw, Shown};
 use crate::dut::em_relay::measure::pace::Pace;
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::points::DigitalOut;
-use crate::dut::em_relay::supply::Supply;
+
 use crate::dut::em_relay::tests::golden_parts;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::budget::{Budget, Reading};
@@ -43,15 +43,18 @@ fn until_armed(acts: &[Act]) -> Span {
 fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
     for (sd_v, gate_ms) in [(0.008, 75.0), (0.025, 75.0), (0.06, 80.0)] {
         let context = context();
-        let mut supply = Supply::new(&context.calibration);
-        let mut record = at_23_c();
-        record.expected_release = Some(Expected::new(Volt(0.7), sd_v));
-        record.expected_operate = Some(Expected::new(Volt(6.7), 0.03));
-        let way = record.expected_release.unwrap().falling();
-        release::acts_fine(&context, &mut supply, &mut record);
+        let mut state = at_23_c();
+        state
+            .plan
+            .expect(Direction::Falling, Expected::new(Volt(0.7), sd_v));
+        state
+            .plan
+            .expect(Direction::Rising, Expected::new(Volt(6.7), 0.03));
+        let way = state.plan.expected(Direction::Falling).unwrap().falling();
+        state.enter(Stage::ReleaseFine(0), &context);
         let event = watched(true, RESTING, gate_ms);
-        release::conclude_fine(&context, &event, &mut record, 0);
-        let acts = operate_fine::acts(&context, &mut supply, &mut record);
+        fine::conclude(&context, &event, &mut state, (Direction::Falling, 0));
+        let acts = state.enter(Stage::OperateFine(0), &context);
         let falls_ms = (way.span.0 - 0.045) / 1.5 * 1e3 - gate_ms;
         // The word that arms and the approach take longer; a ramp stands while they do.
         let armed_ms = until_armed(&acts).as_seconds() * 1e3;
@@ -63,14 +66,15 @@ fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
 #[test]
 fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
     let context = context();
-    let mut supply = Supply::new(&context.calibration);
-    let mut record = at_23_c();
-    record.expected_release = Some(Expected::new(Volt(1.9), 0.1));
-    release::acts_fine(&context, &mut supply, &mut record);
+    let mut state = at_23_c();
+    state
+        .plan
+        .expect(Direction::Falling, Expected::new(Volt(1.9), 0.1));
+    state.enter(Stage::ReleaseFine(0), &context);
     let missed = watched(true, RESTING, 10.0);
-    let next = release::conclude_fine(&context, &missed, &mut record, 0);
+    let next = fine::conclude(&context, &missed, &mut state, (Direction::Falling, 0));
     assert_eq!(next, Some(Stage::Search(Direction::Falling)));
-    let acts = search::acts(&context, &mut supply, &mut record, Direction::Falling);
+    let acts = state.enter(Stage::Search(Direction::Falling), &context);
     let driven = |act: &Act| matches!(act, Act::Board(outputs) if outputs.contains(&(DigitalOut::CoilDrive, true)));
     let at = acts.iter().position(driven).unwrap();
     // 0.7 V at 1.5 V/s, of which 10 ms had passed.
@@ -81,18 +85,31 @@ fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
 fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
     let wait_ms = |rising: bool| {
         let context = context();
-        let mut supply = Supply::new(&context.calibration);
-        let mut record = at_23_c();
-        record.expected_release = Some(Expected::new(Volt(2.3), 0.03));
-        record.expected_operate = Some(Expected::new(Volt(7.8), 0.02));
+        let mut state = at_23_c();
+        state
+            .plan
+            .expect(Direction::Falling, Expected::new(Volt(2.3), 0.03));
+        state
+            .plan
+            .expect(Direction::Rising, Expected::new(Volt(7.8), 0.02));
         if rising {
-            operate_fine::acts(&context, &mut supply, &mut record);
-            operate_fine::conclude(&context, &watched(true, PULLED, 60.0), &mut record, 0);
+            state.enter(Stage::OperateFine(0), &context);
+            fine::conclude(
+                &context,
+                &watched(true, PULLED, 60.0),
+                &mut state,
+                (Direction::Rising, 0),
+            );
         } else {
-            release::acts_fine(&context, &mut supply, &mut record);
-            release::conclude_fine(&context, &watched(true, RESTING, 60.0), &mut record, 0);
+            state.enter(Stage::ReleaseFine(0), &context);
+            fine::conclude(
+                &context,
+                &watched(true, RESTING, 60.0),
+                &mut state,
+                (Direction::Falling, 0),
+            );
         }
-        until_armed(&release::acts_fine(&context, &mut supply, &mut record)).as_seconds() * 1e3
+        until_armed(&state.enter(Stage::ReleaseFine(0), &context)).as_seconds() * 1e3
     };
     // A repetition from nothing to 0.15 V at 1.5 V/s; to 0.28 V from 0.2 V, of which 74 ms were still to come.
     let (falling, rising) = (wait_ms(false), wait_ms(true));
@@ -135,13 +152,15 @@ fn a_part_of_the_lot_has_no_certificate_to_be_looked_for_at() {
 #[test]
 fn a_slow_armature_gets_more_time_and_a_longer_run_up() {
     let of = |operate_ms: f64| {
-        let mut record = at_23_c();
+        let mut state = at_23_c();
         let reading = Reading {
             value: operate_ms,
             budget: Budget::default(),
         };
-        record.found::<CountSample>(Parameter::OperateTime, reading, []);
-        Pace::of(&record)
+        state
+            .record
+            .found::<CountSample>(Parameter::OperateTime, reading, []);
+        Pace::of(&state.record)
     };
     let (usual, slow) = (of(4.7), of(9.4));
     assert_eq!(
@@ -151,7 +170,11 @@ fn a_slow_armature_gets_more_time_and_a_longer_run_up() {
     assert!((usual.run_up(1.5).0 - 0.060).abs() < 1e-3, "{usual:?}");
     assert!((slow.run_up(1.5).0 - 0.120).abs() < 2e-3, "{slow:?}");
     assert_eq!(of(1e9), of(20.0), "within reason");
-    assert_eq!(Pace::of(&at_23_c()), of(5.0), "one that has shown nothing");
+    assert_eq!(
+        Pace::of(&at_23_c().record),
+        of(5.0),
+        "one that has shown nothing"
+    );
 }
 
 /// Results of a part of the lot.

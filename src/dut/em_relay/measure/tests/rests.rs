@@ -3,7 +3,7 @@
 use super::super::{coil, contact, kelvin};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, good, scan};
 use crate::dut::em_relay::Parameter;
-use crate::dut::em_relay::measure::TestRecord;
+use crate::dut::em_relay::measure::TestState;
 use crate::dut::em_relay::readings::{BoardInputs, CoilScan, Readings};
 use crate::dut::em_relay::recipe::CoilChannels;
 use crate::dut::verdict::Bin;
@@ -11,14 +11,14 @@ use crate::rig::sample::{Quality, Sample};
 use crate::units::Celsius;
 use std::sync::Arc;
 
-fn kelvin_of(boards: Vec<BoardInputs>) -> TestRecord {
+fn kelvin_of(boards: Vec<BoardInputs>) -> TestState {
     let readings = Readings {
         boards,
         ..Readings::default()
     };
-    let mut record = TestRecord::default();
-    assert_eq!(kelvin::conclude(&context(), &readings, &mut record), None);
-    record
+    let mut state = TestState::new(&context());
+    assert_eq!(kelvin::conclude(&readings, &mut state), None);
+    state
 }
 
 fn pins(open: &[usize]) -> BoardInputs {
@@ -53,8 +53,8 @@ fn the_pin_map_tells_missing_pins_turned_parts_and_stuck_contacts_apart() {
         (nc_open, Bin::Contact, "NC open at rest"),
     ];
     for (board, bin, word) in cases {
-        let record = kelvin_of(vec![board]);
-        assert_ends(&record, bin, word);
+        let state = kelvin_of(vec![board]);
+        assert_ends(&state, bin, word);
     }
     assert_eq!(ended(&kelvin_of(vec![RESTING])), None);
 }
@@ -74,19 +74,19 @@ fn a_part_of_unknown_temperature_or_unread_pins_is_void() {
             track,
             ..Readings::default()
         };
-        let mut record = TestRecord::default();
-        contact::conclude_nc(&context(), &readings, &mut record);
-        assert_eq!(record.track, known);
+        let mut state = TestState::new(&context());
+        contact::conclude_nc(&context(), &readings, &mut state);
+        assert_eq!(state.record.track, known);
         match known {
-            Some(_) => assert_eq!(ended(&record), None),
-            None => assert_ends(&record, Bin::Retest, "temperature"),
+            Some(_) => assert_eq!(ended(&state), None),
+            None => assert_ends(&state, Bin::Retest, "temperature"),
         }
     }
-    let record = kelvin_of(Vec::new());
-    assert_ends(&record, Bin::Retest, "board not read");
+    let state = kelvin_of(Vec::new());
+    assert_ends(&state, Bin::Retest, "board not read");
 }
 
-fn nc_of(forward: Sample, reverse: Option<Sample>, compliance: bool) -> TestRecord {
+fn nc_of(forward: Sample, reverse: Option<Sample>, compliance: bool) -> TestState {
     let board = BoardInputs {
         compliance,
         ..RESTING
@@ -97,9 +97,9 @@ fn nc_of(forward: Sample, reverse: Option<Sample>, compliance: bool) -> TestReco
         track: vec![good(23.0, 1.0)],
         ..Readings::default()
     };
-    let mut record = at_23_c();
-    contact::conclude_nc(&context(), &readings, &mut record);
-    record
+    let mut state = at_23_c();
+    contact::conclude_nc(&context(), &readings, &mut state);
+    state
 }
 
 #[test]
@@ -107,12 +107,18 @@ fn both_polarities_give_the_contact_resistance_and_the_zero_of_the_drop() {
     let zero = 0.015;
     let forward = drop_of(Quality::Good, 1.1 + zero);
     let reverse = drop_of(Quality::Good, -1.1 + zero);
-    let record = nc_of(forward, Some(reverse), false);
-    assert_eq!(ended(&record), None);
-    let nc = record.result(Parameter::ContactResistanceNc).unwrap();
+    let state = nc_of(forward, Some(reverse), false);
+    assert_eq!(ended(&state), None);
+    let nc = state.record.result(Parameter::ContactResistanceNc).unwrap();
     assert!((nc.value - 22.0).abs() < 1e-9);
-    assert!((record.drop_zero.unwrap().0 - zero).abs() < 1e-12);
-    assert_eq!(record.evidence(Parameter::ContactResistanceNc).count(), 2);
+    assert!((state.plan.drop_zero.unwrap().0 - zero).abs() < 1e-12);
+    assert_eq!(
+        state
+            .record
+            .evidence(Parameter::ContactResistanceNc)
+            .count(),
+        2
+    );
 }
 
 #[test]
@@ -152,24 +158,24 @@ fn a_drop_that_is_no_number_says_why_by_the_compliance_of_the_source() {
         ),
     ];
     for (forward, reverse, compliance, bin, word) in cases {
-        let record = nc_of(forward, Some(reverse), compliance);
-        assert_ends(&record, bin, word);
-        assert_ends(&record, bin, "NC contact");
-        assert_eq!(record.attempts(Parameter::ContactResistanceNc), 0);
+        let state = nc_of(forward, Some(reverse), compliance);
+        assert_ends(&state, bin, word);
+        assert_ends(&state, bin, "NC contact");
+        assert_eq!(state.record.attempts(Parameter::ContactResistanceNc), 0);
     }
     let half = nc_of(fine(), None, false);
     assert_ends(&half, Bin::Retest, "not readable");
 }
 
-fn coil_of(scans: Vec<CoilScan>, celsius: f64) -> TestRecord {
+fn coil_of(scans: Vec<CoilScan>, celsius: f64) -> TestState {
     let readings = Readings {
         coil: scans,
         ..Readings::default()
     };
-    let mut record = at_23_c();
-    record.track = Some(Celsius(celsius));
-    coil::conclude(&context(), &readings, &mut record);
-    record
+    let mut state = at_23_c();
+    state.record.track = Some(Celsius(celsius));
+    coil::conclude(&context(), &readings, &mut state);
+    state
 }
 
 fn with(quality: Quality, of: fn(&mut CoilScan) -> &mut Option<Sample>) -> CoilScan {
@@ -180,11 +186,11 @@ fn with(quality: Quality, of: fn(&mut CoilScan) -> &mut Option<Sample>) -> CoilS
 
 #[test]
 fn a_coil_is_reported_at_the_reference_temperature() {
-    let record = coil_of(vec![scan(5.0, 0.0125)], 23.0);
-    let coil = record.result(Parameter::CoilResistance).unwrap();
+    let state = coil_of(vec![scan(5.0, 0.0125)], 23.0);
+    let coil = state.record.result(Parameter::CoilResistance).unwrap();
     assert!((coil.value - 400.0).abs() < 1e-9 && coil.expanded() < 1.0);
     let warm = coil_of(vec![scan(5.0, 0.0125)], 28.0);
-    let coil = warm.result(Parameter::CoilResistance).unwrap();
+    let coil = warm.record.result(Parameter::CoilResistance).unwrap();
     assert!((coil.value - 400.0 * 257.5 / 262.5).abs() < 1e-9);
 }
 
@@ -207,9 +213,9 @@ fn open_shorted_and_unreadable_coils_are_told_apart() {
         (masked, Bin::Retest, "no voltage or current"),
     ];
     for (scan, bin, word) in cases {
-        let record = coil_of(vec![scan], 23.0);
-        assert_ends(&record, bin, word);
-        assert_eq!(record.attempts(Parameter::CoilResistance), 0);
+        let state = coil_of(vec![scan], 23.0);
+        assert_ends(&state, bin, word);
+        assert_eq!(state.record.attempts(Parameter::CoilResistance), 0);
     }
 }
 
@@ -226,9 +232,9 @@ fn a_coil_of_low_resistance_is_read_on_the_wide_channel() {
         coil: vec![scan],
         ..Readings::default()
     };
-    let mut record = at_23_c();
-    coil::conclude(&context, &readings, &mut record);
-    let coil = record.result(Parameter::CoilResistance).unwrap();
+    let mut state = at_23_c();
+    coil::conclude(&context, &readings, &mut state);
+    let coil = state.record.result(Parameter::CoilResistance).unwrap();
     assert!((coil.value - 100.0).abs() < 1e-9);
 }
 
@@ -254,9 +260,9 @@ fn a_test_ends_void_unless_the_current_is_seen_to_be_gone() {
             currents: current.into_iter().collect(),
             ..Readings::default()
         };
-        let mut record = at_23_c();
-        coil::conclude_off(&readings, &mut record);
-        let bin = ended(&record).map(|(bin, _)| bin);
+        let mut state = at_23_c();
+        coil::conclude_off(&readings, &mut state);
+        let bin = ended(&state).map(|(bin, _)| bin);
         assert_eq!(bin, void.then_some(Bin::Retest));
     }
 }

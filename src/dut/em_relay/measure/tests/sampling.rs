@@ -1,6 +1,6 @@
 //! How often coil and contacts are looked at, as the recipe asks.
 
-use super::super::{Stage, Test, acts};
+use super::super::{Stage, Test};
 use super::{at_23_c, context, good, scan};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::{Act, Read};
@@ -9,7 +9,6 @@ use crate::dut::em_relay::points::DigitalOut::{SourceOn, SourceReverse};
 use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::recipe::Strategies;
 use crate::dut::em_relay::sampling::Polarities;
-use crate::dut::em_relay::supply::Supply;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
 use crate::station::tests::Shop;
@@ -24,8 +23,7 @@ fn with(change: impl Fn(&mut Strategies)) -> Context {
 }
 
 fn acts_of(stage: Stage, context: &Context) -> Vec<Act> {
-    let mut supply = Supply::new(&context.calibration);
-    acts(stage, context, &mut supply, &mut at_23_c())
+    at_23_c().enter(stage, context)
 }
 
 /// The direction of the source at each reading of the drop.
@@ -73,14 +71,14 @@ fn a_coil_is_scanned_as_often_as_its_recipe_says_and_the_mean_is_less_in_doubt()
     };
     assert_eq!([scans(&context()), scans(&four)], [1, 4]);
     let reading = |times: usize| {
-        let mut record = at_23_c();
+        let mut state = at_23_c();
         let readings = Readings {
             coil: vec![scan(5.0, 0.0125); times],
             track: vec![good(23.0, 1.0)],
             ..Readings::default()
         };
-        coil::conclude(&four, &readings, &mut record);
-        record.result(Parameter::CoilResistance).unwrap()
+        coil::conclude(&four, &readings, &mut state);
+        state.record.result(Parameter::CoilResistance).unwrap()
     };
     let u = |reading: &Reading| reading.budget.0[0].u;
     assert!((u(&reading(1)) / u(&reading(4)) - 2.0).abs() < 1e-9);
@@ -101,10 +99,10 @@ fn after(context: Context, closures: usize, mohm: f64) -> Test {
                 value: mohm,
                 budget,
             };
-            test.record.found::<Sample>(parameter, reading, []);
+            test.state.record.found::<Sample>(parameter, reading, []);
         }
     }
-    test.record.nc_drops = vec![Volt(mohm / per_v); closures + 1];
+    test.state.plan.nc_drops = vec![Volt(mohm / per_v); closures + 1];
     test
 }
 

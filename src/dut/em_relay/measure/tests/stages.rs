@@ -1,40 +1,47 @@
 //! Conclusions on a moving armature: ramps, timed operation and release.
 
-use super::super::{Ramp, Stage, coil, operate, operate_fine, release, timing};
+use super::super::board::{Armature, SentRamp};
+use super::super::{Ramp, Stage, coil, fine, operate, release, timing};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, gates, scan, watched};
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::lag::{LagLaw, Shown};
 use crate::dut::em_relay::measure::ramp::Expected;
-use crate::dut::em_relay::measure::{Context, TestRecord};
+use crate::dut::em_relay::measure::{Context, TestState};
 use crate::dut::em_relay::points::DigitalOut;
 use crate::dut::em_relay::readings::{BoardInputs, Readings};
-use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::{Parameter, Strategy};
 use crate::dut::verdict::Bin;
 use crate::rig::sample::Quality;
-use crate::units::Volt;
+use crate::units::{Span, Volt};
 use std::sync::Arc;
 
-fn ramp_from(start: f64, span: f64) -> TestRecord {
-    let mut record = at_23_c();
-    record.ramp_start = Some(Volt(start));
-    record.ramp_span = Some(Volt(span));
-    record.expected_operate = Some(Expected::new(Volt(7.9), 0.02));
-    record.expected_release = record.expected_operate;
-    record
+fn ramp_from(start: f64, span: f64) -> TestState {
+    let mut state = at_23_c();
+    state.board.ramp = Some(SentRamp {
+        start: Volt(start),
+        span: Volt(span),
+        takes: Span(0),
+    });
+    state
+        .plan
+        .expect(Direction::Rising, Expected::new(Volt(7.9), 0.02));
+    state
+        .plan
+        .expect(Direction::Falling, Expected::new(Volt(7.9), 0.02));
+    state
 }
 
 #[test]
 fn the_coarse_ramp_places_the_fine_one_by_its_learned_lag() {
-    let mut record = ramp_from(5.0, 6.0);
+    let mut state = ramp_from(5.0, 6.0);
     let readings = watched(true, PULLED, 40.0);
-    let next = operate::conclude_coarse(&context(), &readings, &mut record);
-    assert_eq!((next, ended(&record)), (None, None));
+    let next = operate::conclude_coarse(&context(), &readings, &mut state);
+    assert_eq!((next, ended(&state)), (None, None));
     let seen = 5.0 + 0.05 + 96.0 * 0.04;
-    let coarse = record.operate.unwrap().coarse.indicated;
+    let coarse = state.record.operate.unwrap().coarse.indicated;
     assert!((coarse.0 - seen).abs() < 1e-9);
-    let expected = record.expected_operate.unwrap();
+    let expected = state.plan.expected(Direction::Rising).unwrap();
     assert!((expected.centre.0 - (seen - 0.85)).abs() < 1e-9);
 }
 
@@ -44,11 +51,11 @@ fn a_coarse_ramp_without_a_make_is_a_high_threshold_unless_the_contact_made_unse
         (RESTING, Bin::Voltage, "above the coarse ramp"),
         (PULLED, Bin::Retest, "outside the window"),
     ] {
-        let mut record = ramp_from(5.0, 6.0);
+        let mut state = ramp_from(5.0, 6.0);
         let silent = watched(false, board, 0.0);
-        let next = operate::conclude_coarse(&context(), &silent, &mut record);
+        let next = operate::conclude_coarse(&context(), &silent, &mut state);
         assert_eq!(next, None);
-        assert_ends(&record, bin, word);
+        assert_ends(&state, bin, word);
     }
 }
 
@@ -60,58 +67,63 @@ fn a_contact_that_does_not_move_at_nominal_voltage_is_stuck_unless_the_coil_is_t
     };
     for (board, word) in [(RESTING, "NC does not open"), (between, "NO does not make")] {
         for (ampere, bin, word) in [(0.0125, Bin::Contact, word), (0.0, Bin::Coil, "coil open")] {
-            let mut record = at_23_c();
+            let mut state = at_23_c();
             let unmoved = watched(false, board, 0.0);
-            let next = timing::conclude_operate(&context(), &unmoved, &mut record);
-            assert_eq!((next, ended(&record)), (Some(Stage::Coil), None));
+            let next = timing::conclude_operate(&context(), &unmoved, &mut state);
+            assert_eq!((next, ended(&state)), (Some(Stage::Coil), None));
             let readings = Readings {
                 coil: vec![scan(5.0, ampere)],
                 ..Readings::default()
             };
-            coil::conclude(&context(), &readings, &mut record);
-            assert_ends(&record, bin, word);
+            coil::conclude(&context(), &readings, &mut state);
+            assert_ends(&state, bin, word);
         }
     }
-    let mut record = at_23_c();
-    timing::conclude_operate(&context(), &Readings::default(), &mut record);
-    assert_ends(&record, Bin::Retest, "not read");
+    let mut state = at_23_c();
+    timing::conclude_operate(&context(), &Readings::default(), &mut state);
+    assert_ends(&state, Bin::Retest, "not read");
 }
 
 #[test]
 fn a_fine_ramp_that_meets_its_event_gives_the_threshold() {
-    let mut record = ramp_from(7.8, 0.2);
-    record.operate = Some(Ramp {
-        coarse: record.shown(Volt(8.8), Direction::Rising),
+    let mut state = ramp_from(7.8, 0.2);
+    state.record.operate = Some(Ramp {
+        coarse: state.record.shown(Volt(8.8), Direction::Rising),
         fine: None,
     });
     let readings = watched(true, PULLED, 40.0);
-    let next = operate_fine::conclude(&context(), &readings, &mut record, 0);
-    assert_eq!((next, ended(&record)), (None, None));
-    let result = record.result(Parameter::OperateVoltage).unwrap();
+    let next = fine::conclude(&context(), &readings, &mut state, (Direction::Rising, 0));
+    assert_eq!((next, ended(&state)), (None, None));
+    let result = state.record.result(Parameter::OperateVoltage).unwrap();
     assert!((result.value - 7.91).abs() < 1e-9 && result.expanded() < 0.02);
-    let mut record = ramp_from(2.5, 0.2);
+    let mut state = ramp_from(2.5, 0.2);
     let readings = watched(true, RESTING, 60.0);
-    let next = release::conclude_fine(&context(), &readings, &mut record, 0);
-    assert_eq!((next, ended(&record)), (None, None));
-    let result = record.result(Parameter::ReleaseVoltage).unwrap();
+    let next = fine::conclude(&context(), &readings, &mut state, (Direction::Falling, 0));
+    assert_eq!((next, ended(&state)), (None, None));
+    let result = state.record.result(Parameter::ReleaseVoltage).unwrap();
     assert!((result.value - 2.36).abs() < 1e-9 && result.expanded() < 0.02);
 }
 
 #[test]
 fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
     let miss = |readings: &Readings| {
-        let mut record = ramp_from(7.8, 0.2);
+        let mut state = ramp_from(7.8, 0.2);
         for attempt in 0..4 {
-            let next = operate_fine::conclude(&context(), readings, &mut record, attempt);
+            let next = fine::conclude(
+                &context(),
+                readings,
+                &mut state,
+                (Direction::Rising, attempt),
+            );
             let searched = Some(Stage::Search(Direction::Rising));
             let again = Some(Stage::OperateFine(attempt + 1));
             assert_eq!(next, if attempt == 1 { searched } else { again });
-            assert_eq!(ended(&record), None);
+            assert_eq!(ended(&state), None);
         }
-        let centre = record.expected_operate.unwrap().centre;
-        let last = operate_fine::conclude(&context(), readings, &mut record, 4);
+        let centre = state.plan.expected(Direction::Rising).unwrap().centre;
+        let last = fine::conclude(&context(), readings, &mut state, (Direction::Rising, 4));
         assert_eq!(last, None);
-        assert_ends(&record, Bin::Retest, "not found in 5 fine ramps");
+        assert_ends(&state, Bin::Retest, "not found in 5 fine ramps");
         centre
     };
     assert!(miss(&watched(false, RESTING, 30.0)) > Volt(7.9), "later");
@@ -120,36 +132,36 @@ fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
 
 #[test]
 fn an_event_before_the_searched_interval_is_that_of_the_step_and_looked_for_lower() {
-    let mut record = ramp_from(7.8, 0.2);
+    let mut state = ramp_from(7.8, 0.2);
     let readings = watched(true, PULLED, 2.0);
-    let next = operate_fine::conclude(&context(), &readings, &mut record, 0);
+    let next = fine::conclude(&context(), &readings, &mut state, (Direction::Rising, 0));
     assert_eq!(next, Some(Stage::OperateFine(1)));
-    assert_eq!(record.attempts(Parameter::OperateVoltage), 0);
-    let centre = record.expected_operate.unwrap().centre;
+    assert_eq!(state.record.attempts(Parameter::OperateVoltage), 0);
+    let centre = state.plan.expected(Direction::Rising).unwrap().centre;
     assert!(centre < Volt(7.9), "{centre}");
 }
 
 #[test]
 fn a_release_that_came_too_early_is_looked_for_higher() {
     for (board, higher) in [(RESTING, true), (PULLED, false)] {
-        let mut record = ramp_from(8.0, 0.2);
+        let mut state = ramp_from(8.0, 0.2);
         let readings = watched(false, board, 30.0);
-        let next = release::conclude_fine(&context(), &readings, &mut record, 0);
+        let next = fine::conclude(&context(), &readings, &mut state, (Direction::Falling, 0));
         assert_eq!(next, Some(Stage::ReleaseFine(1)));
-        let centre = record.expected_release.unwrap().centre;
+        let centre = state.plan.expected(Direction::Falling).unwrap().centre;
         assert_eq!(centre > Volt(7.9), higher, "{centre}");
     }
 }
 
 #[test]
 fn an_event_after_the_ramp_has_stopped_is_looked_for_around_its_end() {
-    let mut record = ramp_from(7.8, 0.1);
+    let mut state = ramp_from(7.8, 0.1);
     let readings = watched(true, PULLED, 80.0);
-    let next = operate_fine::conclude(&context(), &readings, &mut record, 0);
+    let next = fine::conclude(&context(), &readings, &mut state, (Direction::Rising, 0));
     assert_eq!(next, Some(Stage::OperateFine(1)));
-    let expected = record.expected_operate.unwrap();
+    let expected = state.plan.expected(Direction::Rising).unwrap();
     assert!((expected.centre.0 - 7.9).abs() < 1e-9);
-    assert_eq!(record.attempts(Parameter::OperateVoltage), 0);
+    assert_eq!(state.record.attempts(Parameter::OperateVoltage), 0);
 }
 
 #[test]
@@ -161,17 +173,17 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
         // It ends after 41.1 ms, and its last step may have been made.
         watched(true, RESTING, 40.6),
     ] {
-        let mut record = ramp_from(4.0, 4.0);
-        let next = release::conclude_coarse(&context(), &readings, &mut record);
+        let mut state = ramp_from(4.0, 4.0);
+        let next = release::conclude_coarse(&context(), &readings, &mut state);
         assert_eq!(next, Some(Stage::Search(Direction::Falling)));
-        assert_eq!(record.release, None);
+        assert_eq!(state.record.release, None);
     }
-    let mut record = ramp_from(4.0, 4.0);
+    let mut state = ramp_from(4.0, 4.0);
     let readings = watched(true, RESTING, 25.0);
-    release::conclude_coarse(&context(), &readings, &mut record);
-    let coarse = record.release.unwrap().coarse.indicated;
+    release::conclude_coarse(&context(), &readings, &mut state);
+    let coarse = state.record.release.unwrap().coarse.indicated;
     assert!((coarse.0 - (4.0 - 0.05 - 2.4)).abs() < 1e-9);
-    let expected = record.expected_release.unwrap();
+    let expected = state.plan.expected(Direction::Falling).unwrap();
     assert!((expected.centre.0 - (coarse.0 + 1.05)).abs() < 1e-9);
     let start = expected.falling().start;
     assert!(start > expected.centre);
@@ -179,9 +191,9 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
 
 #[test]
 fn a_coarse_release_of_a_coil_of_few_volts_is_told_down_to_the_last_step_of_its_ramp() {
-    let mut record = ramp_from(4.0, 4.0);
-    release::conclude_coarse(&context(), &watched(true, RESTING, 40.0), &mut record);
-    let coarse = record.release.unwrap().coarse.indicated;
+    let mut state = ramp_from(4.0, 4.0);
+    release::conclude_coarse(&context(), &watched(true, RESTING, 40.0), &mut state);
+    let coarse = state.record.release.unwrap().coarse.indicated;
     assert!((coarse.0 - 0.11).abs() < 1e-9);
 }
 
@@ -198,53 +210,53 @@ fn timed(seen: bool, counts: [u32; 2]) -> Readings {
 
 #[test]
 fn a_timed_operation_gives_time_bounce_and_the_contact_it_ends_on() {
-    let mut record = at_23_c();
-    timing::conclude_operate(&context(), &timed(true, [236, 252]), &mut record);
-    assert_eq!(ended(&record), None);
+    let mut state = at_23_c();
+    timing::conclude_operate(&context(), &timed(true, [236, 252]), &mut state);
+    assert_eq!(ended(&state), None);
     for (parameter, value) in [
         (Parameter::OperateTime, 4.72),
         (Parameter::OperateBounce, 0.32),
         (Parameter::ContactResistanceNo, 18.0),
     ] {
-        let found = record.result(parameter).unwrap().value;
+        let found = state.record.result(parameter).unwrap().value;
         assert!((found - value).abs() < 1e-9, "{parameter}: {found}");
-        assert!(record.evidence(parameter).count() > 0, "{parameter}");
+        assert!(state.record.evidence(parameter).count() > 0, "{parameter}");
     }
 }
 
 #[test]
 fn a_timed_release_adds_its_closure_to_the_nc_contact() {
-    let mut record = at_23_c();
-    record.drop_zero = Some(Volt(0.1));
-    record.nc_drops = vec![Volt(1.2)];
-    timing::conclude_release(&context(), &timed(true, [145, 150]), &mut record);
-    assert_eq!(ended(&record), None);
-    let time = record.result(Parameter::ReleaseTime).unwrap().value;
+    let mut state = at_23_c();
+    state.plan.drop_zero = Some(Volt(0.1));
+    state.plan.nc_drops = vec![Volt(1.2)];
+    timing::conclude_release(&context(), &timed(true, [145, 150]), &mut state);
+    assert_eq!(ended(&state), None);
+    let time = state.record.result(Parameter::ReleaseTime).unwrap().value;
     assert!((time - 2.9).abs() < 1e-9);
-    let nc = record.result(Parameter::ContactResistanceNc).unwrap();
+    let nc = state.record.result(Parameter::ContactResistanceNc).unwrap();
     assert!((nc.value - 20.0).abs() < 1e-9, "mean of 24 and 16");
 }
 
 #[test]
 fn a_contact_that_never_makes_fails_by_time_and_an_unread_counter_is_void() {
     type Conclude =
-        fn(&crate::dut::em_relay::measure::Context, &Readings, &mut TestRecord) -> Option<Stage>;
+        fn(&crate::dut::em_relay::measure::Context, &Readings, &mut TestState) -> Option<Stage>;
     let stages: [(Conclude, &str); 2] = [
         (timing::conclude_operate, "operate_time_ms"),
         (timing::conclude_release, "release_time_ms"),
     ];
     for (conclude, word) in stages {
-        let mut record = at_23_c();
-        conclude(&context(), &timed(false, [3000, 3000]), &mut record);
-        assert_ends(&record, Bin::Time, word);
-        let mut record = at_23_c();
+        let mut state = at_23_c();
+        conclude(&context(), &timed(false, [3000, 3000]), &mut state);
+        assert_ends(&state, Bin::Time, word);
+        let mut state = at_23_c();
         let mut unread = timed(true, [236, 252]);
         unread.gates.truncate(1);
-        conclude(&context(), &unread, &mut record);
-        assert_ends(&record, Bin::Retest, "gate counters");
-        let mut record = at_23_c();
-        conclude(&context(), &timed(true, [0, 0]), &mut record);
-        assert_ends(&record, Bin::Retest, "0 and 0 counts");
+        conclude(&context(), &unread, &mut state);
+        assert_ends(&state, Bin::Retest, "gate counters");
+        let mut state = at_23_c();
+        conclude(&context(), &timed(true, [0, 0]), &mut state);
+        assert_ends(&state, Bin::Retest, "0 and 0 counts");
     }
 }
 
@@ -253,13 +265,13 @@ fn a_closure_with_the_source_in_compliance_fails_by_contact() {
     let mut readings = timed(true, [236, 252]);
     readings.boards[0].compliance = true;
     readings.drops[0] = drop_of(Quality::OverRange, 0.0);
-    let mut record = at_23_c();
-    timing::conclude_operate(&context(), &readings, &mut record);
-    assert_ends(&record, Bin::Contact, "NO contact");
-    let mut record = at_23_c();
-    record.drop_zero = Some(Volt(0.0));
-    timing::conclude_release(&context(), &readings, &mut record);
-    assert_ends(&record, Bin::Contact, "NC contact");
+    let mut state = at_23_c();
+    timing::conclude_operate(&context(), &readings, &mut state);
+    assert_ends(&state, Bin::Contact, "NO contact");
+    let mut state = at_23_c();
+    state.plan.drop_zero = Some(Volt(0.0));
+    timing::conclude_release(&context(), &readings, &mut state);
+    assert_ends(&state, Bin::Contact, "NC contact");
 }
 
 /// The default context on the strategy `ramp`, with a law taught by parts of which each millisecond of operate time
@@ -292,27 +304,27 @@ fn on_the_ramp() -> Context {
 }
 
 /// A coarse ramp after so many counts of operate time.
-fn coarse_after(context: &Context, counts: u32) -> (TestRecord, Option<Stage>) {
-    let mut record = ramp_from(5.0, 6.0);
-    record.drop_zero = Some(Volt(0.0));
-    timing::conclude_operate(context, &timed(true, [counts, counts]), &mut record);
-    timing::conclude_release(context, &timed(true, [145, 150]), &mut record);
+fn coarse_after(context: &Context, counts: u32) -> (TestState, Option<Stage>) {
+    let mut state = ramp_from(5.0, 6.0);
+    state.plan.drop_zero = Some(Volt(0.0));
+    timing::conclude_operate(context, &timed(true, [counts, counts]), &mut state);
+    timing::conclude_release(context, &timed(true, [145, 150]), &mut state);
     let readings = Readings {
         coil: vec![scan(5.0, 0.0125)],
         ..Readings::default()
     };
-    coil::conclude(context, &readings, &mut record);
-    let next = operate::conclude_coarse(context, &watched(true, PULLED, 40.0), &mut record);
-    (record, next)
+    coil::conclude(context, &readings, &mut state);
+    let next = operate::conclude_coarse(context, &watched(true, PULLED, 40.0), &mut state);
+    (state, next)
 }
 
 #[test]
 fn a_coarse_value_is_corrected_by_the_operate_time_of_the_same_part() {
     let context = on_the_ramp();
     for (counts, slower_ms) in [(235, 0.0), (245, 0.2)] {
-        let (record, next) = coarse_after(&context, counts);
-        assert_eq!((next, ended(&record)), (None, None));
-        let corrected = record.result(Parameter::OperateVoltage).unwrap();
+        let (state, next) = coarse_after(&context, counts);
+        assert_eq!((next, ended(&state)), (None, None));
+        let corrected = state.record.result(Parameter::OperateVoltage).unwrap();
         let expected = 8.89 - (0.85 + 0.096 * slower_ms);
         let off = corrected.value - expected;
         assert!(off.abs() < 2e-3, "{off} V");
@@ -322,41 +334,41 @@ fn a_coarse_value_is_corrected_by_the_operate_time_of_the_same_part() {
 
 #[test]
 fn a_part_unlike_those_that_taught_the_law_is_measured_by_the_fine_ramp() {
-    let (record, next) = coarse_after(&on_the_ramp(), 420);
-    assert_eq!((next, ended(&record)), (Some(Stage::OperateFine(0)), None));
-    assert_eq!(record.attempts(Parameter::OperateVoltage), 0);
-    let expected = record.expected_operate.unwrap();
+    let (state, next) = coarse_after(&on_the_ramp(), 420);
+    assert_eq!((next, ended(&state)), (Some(Stage::OperateFine(0)), None));
+    assert_eq!(state.record.attempts(Parameter::OperateVoltage), 0);
+    let expected = state.plan.expected(Direction::Rising).unwrap();
     assert!(expected.half_width > Volt(0.01), "{expected:?}");
 }
 
-/// What the source was told last before an output is switched on.
+/// The last word to the source before an output is switched on.
 fn source_before(switched: DigitalOut, acts: &[Act]) -> Option<bool> {
     let words = acts.iter().filter_map(|act| match act {
         Act::Board(word) => Some(word),
         _ => None,
     });
-    let mut told = None;
+    let mut last = None;
     for word in words {
         let source = word.iter().find(|it| it.0 == DigitalOut::SourceOn);
-        told = source.map(|it| it.1).or(told);
+        last = source.map(|it| it.1).or(last);
         if word.contains(&(switched, true)) {
-            return told;
+            return last;
         }
     }
     panic!("{switched:?} is never switched on");
 }
 
 #[test]
-fn a_closure_that_nobody_reads_carries_no_current() {
+fn a_closure_that_is_not_read_carries_no_current() {
     let context = context();
-    let mut supply = Supply::new(&context.calibration);
     let mut after_a_release = at_23_c();
-    after_a_release.released = true;
-    let timed = timing::acts_release(&context, &mut supply, &mut after_a_release);
+    after_a_release.board.armature = Armature::Released;
+    let timed = after_a_release.enter(Stage::TimedRelease, &context);
     assert_eq!(source_before(DigitalOut::CoilDrive, &timed), Some(false));
     let mut after_an_operation = at_23_c();
-    after_an_operation.operated = true;
-    after_an_operation.expected_release = Some(Expected::new(Volt(2.3), 0.01));
-    let fine = release::acts_fine(&context, &mut supply, &mut after_an_operation);
+    after_an_operation.board.armature = Armature::Operated;
+    let expected = Expected::new(Volt(2.3), 0.01);
+    after_an_operation.plan.expect(Direction::Falling, expected);
+    let fine = after_an_operation.enter(Stage::ReleaseFine(0), &context);
     assert_eq!(source_before(DigitalOut::RampMode, &fine), Some(false));
 }

@@ -1,12 +1,12 @@
 //! The acts of all stages against the rules of the interface board, and how a test ends early.
 
-use super::super::{Progress, Stage, Test, TestRecord, acts, order};
+use super::super::{Armature, Progress, Stage, Test, TestRecord, TestState, order};
 use super::{at_23_c, context};
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::points::{AnalogOut, DigitalOut};
-use crate::dut::em_relay::supply::Supply;
+use crate::dut::em_relay::threshold::Direction;
 use crate::dut::em_relay::{Parameter, parameter};
 use crate::dut::reason::{Code, Reason};
 use crate::dut::verdict::{Bin, Verdict};
@@ -17,24 +17,62 @@ use crate::rig::sample::Sample;
 use crate::station::tests::Shop;
 use crate::units::{Span, Volt};
 
+/// Each stage in the order of a good part: its acts, and what they leave the armature doing.
+fn stages_of_a_good_part() -> Vec<(Stage, Vec<Act>, Armature)> {
+    let context = context();
+    let mut state = at_23_c();
+    let expected = |volts| Expected::new(Volt(volts), 0.01);
+    state.plan.expect(Direction::Rising, expected(7.88));
+    state.plan.expect(Direction::Falling, expected(2.35));
+    let stages = std::iter::once(Stage::Kelvin).chain(order(&context));
+    let enter = |stage| {
+        let acts = state.enter(stage, &context);
+        let left = state.board.armature;
+        if let Stage::TimedOperate | Stage::OperateCoarse | Stage::OperateFine(_) = stage {
+            state.board.armature = Armature::Operated;
+        }
+        (stage, acts, left)
+    };
+    stages.map(enter).collect()
+}
+
 /// Acts of every stage in the order of a good part.
 fn all_acts() -> Vec<(Stage, Vec<Act>)> {
-    let context = context();
-    let mut supply = Supply::new(&context.calibration);
-    let mut record = at_23_c();
-    std::iter::once(Stage::Kelvin)
-        .chain(order(&context))
-        .map(|stage| {
-            record.expected_operate = Some(Expected::new(Volt(7.88), 0.01));
-            record.expected_release = Some(Expected::new(Volt(2.35), 0.01));
-            record.operated = matches!(
-                stage,
-                Stage::ReleaseCoarse | Stage::ReleaseFine(_) | Stage::TimedRelease
-            );
-            record.released = matches!(stage, Stage::OperateFine(_) | Stage::TimedOperate);
-            (stage, acts(stage, &context, &mut supply, &mut record))
-        })
-        .collect()
+    let stages = stages_of_a_good_part().into_iter();
+    stages.map(|(stage, acts, _)| (stage, acts)).collect()
+}
+
+#[test]
+fn each_stage_says_how_it_leaves_the_board() {
+    let left = stages_of_a_good_part().into_iter();
+    let left: Vec<_> = left.map(|(stage, _, armature)| (stage, armature)).collect();
+    let expected = [
+        (Stage::Kelvin, Armature::Unknown),
+        (Stage::NcContact, Armature::ReadyForTiming),
+        (Stage::TimedOperate, Armature::Unknown),
+        (Stage::TimedRelease, Armature::Rested),
+        (Stage::Coil, Armature::ReadyForRamp),
+        (Stage::OperateCoarse, Armature::Unknown),
+        (Stage::ReleaseCoarse, Armature::Released),
+        (Stage::OperateFine(0), Armature::Unknown),
+        (Stage::ReleaseFine(0), Armature::Released),
+        (Stage::Off, Armature::Rested),
+    ];
+    assert_eq!(left, expected);
+}
+
+#[test]
+fn a_stage_that_was_given_up_leaves_nothing_to_build_on() {
+    let mut test = Test::begin(context(), Shop::at_rest().now);
+    test.state.board.armature = Armature::Released;
+    test.abandon("module answers ?AA".into());
+    assert_eq!(test.state.board.armature, Armature::Unknown);
+}
+
+#[test]
+#[should_panic(expected = "a fine ramp without an expectation")]
+fn no_fine_ramp_is_sent_without_an_expectation() {
+    at_23_c().enter(Stage::OperateFine(0), &context());
 }
 
 #[test]
@@ -199,11 +237,11 @@ fn a_rig_in_trouble_has_proven_no_part_bad() {
     let mut test = fails_at(&Job::Restarts);
     let mut record = TestRecord::default();
     record.stop(Finding::NoDoesNotMake);
-    test.record = record.clone();
+    test.state.record = record.clone();
     assert_eq!(test.verdict().name(), "fail");
     record.trouble("module answers ?AA".into());
     record.trouble("and again".into());
-    test.record = record;
+    test.state.record = record;
     assert_eq!(
         test.verdict(),
         Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")])
@@ -214,11 +252,11 @@ fn a_rig_in_trouble_has_proven_no_part_bad() {
 fn the_level_is_written_anew_after_a_test_that_ended_early() {
     let context = context();
     let writes = |ends: fn(&mut TestRecord)| {
-        let mut supply = Supply::new(&context.calibration);
-        supply.step_to(Volt(context.relay.test.prebias_v));
-        let mut record = TestRecord::default();
-        ends(&mut record);
-        let acts = acts(Stage::Off, &context, &mut supply, &mut record);
+        let mut state = TestState::new(&context);
+        let prebias = Volt(context.relay.test.prebias_v);
+        state.board.supply.step_to(prebias);
+        ends(&mut state.record);
+        let acts = state.enter(Stage::Off, &context);
         let level = |act: &&Act| matches!(act, Act::Supply(to) if to.iter().any(|(it, _)| *it == AnalogOut::SupplyLevel));
         acts.iter().filter(level).count()
     };
@@ -244,11 +282,11 @@ fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
 
 #[test]
 fn the_first_cause_of_an_early_end_stays() {
-    let mut record = at_23_c();
+    let mut record = TestRecord::default();
     record.stop(Finding::CoilOpen);
     record.stop(Finding::CoilCurrentRemains);
     let mut test = Test::begin(context(), Shop::at_rest().now);
-    test.record = record;
+    test.state.record = record;
     let reason = Finding::CoilOpen.into();
     assert_eq!(test.verdict(), Verdict::Fail(vec![reason]));
 }
@@ -260,7 +298,7 @@ fn measured(values: &[(Parameter, f64)]) -> Test {
             value: *value,
             budget: Budget::default().with("test", 0.005),
         };
-        test.record.found::<Sample>(*parameter, reading, []);
+        test.state.record.found::<Sample>(*parameter, reading, []);
     }
     test
 }
