@@ -188,7 +188,11 @@ fn a_recipe_is_refused_by_the_point_that_the_rig_lacks() {
     workshop.change(RIG, latch, "");
     for command in COMMANDS {
         let said = workshop.run(command).with_status(2);
-        assert!(said.stderr.contains("no digital_in latch"), "{said}");
+        assert!(
+            said.stderr
+                .contains("found no [digital_in].latch in rig.toml"),
+            "{said}"
+        );
         assert!(said.stderr.contains("config/recipes/jzc-22f-0"), "{said}");
     }
 }

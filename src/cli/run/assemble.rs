@@ -44,7 +44,7 @@ pub fn cycle(
     let plant = setup.plant;
     let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
     let wiring = Arc::clone(&plant.wiring);
-    let points = Points::resolve(&wiring).context("config/rig.toml")?;
+    let points = Points::resolve(&wiring)?;
     let recipe = Arc::clone(setup.recipe);
     let strokes = Strokes {
         length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),

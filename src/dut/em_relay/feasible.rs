@@ -29,7 +29,7 @@ const COUNTS: u8 = 0x50;
 /// The first fault.
 pub fn check(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<(), Fault> {
     let points = Points::resolve(wiring).map_err(|missing| {
-        let expected = "a rig with every point that its test needs";
+        let expected = "every point that its test needs";
         Fault::new("test", missing, expected)
     })?;
     for (key, strategy) in recipe.test.strategy.each() {

@@ -146,7 +146,7 @@ const SWITCHES: [Switch; DigitalOut::COUNT] = {
 
 /// The rig has not what a test needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("the rig has no {section} {name}")]
+#[error("no [{section}].{name} in rig.toml")]
 pub struct Missing {
     /// Section of `config/rig.toml` where it would stand.
     pub section: &'static str,
