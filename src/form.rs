@@ -44,8 +44,8 @@ pub enum Form {
 pub struct Points {
     /// Those that every rig has.
     pub must: &'static [&'static str],
-    /// Those that a rig may lack, kind of device by kind.
-    pub may: &'static [&'static [&'static str]],
+    /// Those that a rig may lack.
+    pub may: fn() -> Vec<&'static str>,
     /// Whether the file itself may name others.
     pub free: bool,
     /// What each entry must look like.
@@ -55,8 +55,8 @@ pub struct Points {
 impl Points {
     /// Every name but the free ones.
     pub fn names(&self) -> Vec<&'static str> {
-        let may = self.may.iter().copied().flatten();
-        self.must.iter().chain(may).copied().collect()
+        let must = self.must.iter().copied();
+        must.chain((self.may)()).collect()
     }
 }
 

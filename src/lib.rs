@@ -9,7 +9,7 @@
 //! - [`guard`]: every motion passes it and comes out cleared or refused with numbers.
 //! - [`rig`]: named points instead of addresses; process image; drive.
 //! - [`gauge`]: readings with their uncertainty.
-//! - [`instrument`]: acts on the measuring line, and what was read.
+//! - [`instrument`]: acts on wired points, and what was read.
 //! - [`dut`]: a kind of device is one folder: recipe, calibration, procedure, verdict.
 //! - [`station`]: the sequence: feed, clamp, test, sort; parts and trouble.
 //! - [`cycle`]: one turn of the rig, top to bottom.

@@ -45,7 +45,7 @@ fn write_inner(path: &str, form: &Form, text: &mut String) {
 }
 
 fn points_in_words(points: &Points) -> String {
-    let may: Vec<&str> = points.may.iter().copied().flatten().copied().collect();
+    let may = (points.may)();
     let sentence = |is_so: bool, words: String| is_so.then_some(words);
     let words = [
         sentence(

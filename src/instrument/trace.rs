@@ -161,46 +161,4 @@ impl Trace {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::dut::em_relay::points::{AnalogOut, DigitalOut, Points};
-    use crate::station::tests::Shop;
-
-    #[test]
-    fn a_poll_that_changes_nothing_takes_two_looks() {
-        let mut trace = Trace::default();
-        for at in 0..100 {
-            let made = at >= 90;
-            trace.word("board", &[made, !made, false, true], RigTime(at));
-        }
-        let looks: Vec<(u64, f64)> = trace
-            .looks()
-            .iter()
-            .map(|look| (look.at.0, look.value))
-            .collect();
-        let [open, made] = [0b1010, 0b1001].map(f64::from);
-        assert_eq!(looks, [(0, open), (89, open), (90, made), (99, made)]);
-    }
-
-    #[test]
-    fn what_was_asked_is_told_and_what_is_too_much_is_not() {
-        let wiring = Shop::unread().wiring;
-        let points = Points::resolve(&wiring).unwrap();
-        let mut trace = Trace::default();
-        let levels = [
-            (points.source(AnalogOut::SupplyLevel), Volt(1.0)),
-            (points.source(AnalogOut::SupplyFine), Volt(0.5)),
-        ];
-        trace.asked(&wiring, &levels, RigTime(7));
-        for (at, output) in [(8, DigitalOut::CoilDrive), (9, DigitalOut::Arm)] {
-            trace.switched(&wiring, &[(points.output(output), true)], RigTime(at));
-        }
-        let names: Vec<_> = trace.looks().iter().map(|it| it.signal.name).collect();
-        assert_eq!(names, ["supply_level", "supply_fine", "coil_drive"]);
-        let mut much = trace.clone();
-        (0..MOST).for_each(|_| much.asked(&wiring, &levels, RigTime(11)));
-        assert_eq!(much.looks().len(), MOST);
-        trace.append(much);
-        assert_eq!(trace.looks().len(), MOST);
-    }
-}
+mod tests;

@@ -10,7 +10,7 @@ use super::declared::{Declared, InputNames};
 use super::fault::Fault;
 use super::model::Terminals;
 use super::modules::resolve_modules;
-use super::point::{Fixture, Quantity, Switch};
+use super::point::{DigitalIn, DigitalOut, Fixture, Quantity, Switch};
 use super::reaction::check_reaction;
 use super::settings::{ActuatorSettings, ChannelSettings, RigSettings};
 use super::wiring::{AnalogTerminal, Line, Module, ModuleId, StrokeLimits, Terminal, Wiring};
@@ -68,6 +68,15 @@ impl Wiring {
             strokes,
             axis,
         };
+        assert!(
+            DigitalIn::ALL
+                .iter()
+                .all(|it| wiring.input_name(*it) == it.name())
+                && DigitalOut::ALL
+                    .iter()
+                    .all(|it| wiring.switch((*it).into()).name == it.name()),
+            "points of the machine stand first in their tables"
+        );
         check_beams(&wiring, settings)?;
         check_masks(&wiring)?;
         check_reaction(&wiring)?;

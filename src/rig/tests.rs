@@ -4,6 +4,7 @@
 mod commission;
 mod drive;
 mod image;
+mod reaction;
 
 use super::settings::RigSettings;
 use super::wiring::{LineId, Wiring};

@@ -182,6 +182,22 @@ fn the_default_configuration_passes_its_check() {
 }
 
 #[test]
+fn a_recipe_is_refused_by_the_point_that_the_rig_lacks() {
+    let workshop = Workshop::new("no-latch");
+    let latch = "latch             = { module = \"board_di\", channel = 8, active = \"low\" }\n";
+    workshop.change(RIG, latch, "");
+    for command in COMMANDS {
+        let said = workshop.run(command).with_status(2);
+        assert!(
+            said.stderr
+                .contains("found no [digital_in].latch in rig.toml"),
+            "{said}"
+        );
+        assert!(said.stderr.contains("config/recipes/jzc-22f-0"), "{said}");
+    }
+}
+
+#[test]
 fn a_schema_is_json() {
     let workshop = Workshop::new("schemas");
     for name in ["rig", "golden", "recipe"] {

@@ -56,7 +56,7 @@ pub fn cycle(
         accuracy: &plant.accuracy,
         reference_parts: &plant.golden,
     };
-    let device = Device::new(Arc::clone(&recipe), &rig, calibration).context("config/rig.toml")?;
+    let device = Device::new(Arc::clone(&recipe), &rig, calibration)?;
     let plan = Plan {
         stays: controls.stays,
         between_lots: controls.between_lots,

@@ -4,22 +4,57 @@ mod measuring;
 mod modules;
 mod points;
 
-use crate::dut::em_relay::points as em_relay;
+use crate::dut::FIXTURES;
 use crate::form::{Form, Key, Points, key, optional};
 use crate::rig::axis::Bin;
-use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::rig::point::{DigitalIn, DigitalOut, Fixture};
 use measuring::{ACCURACY, CALIBRATION, REFERENCE};
 use modules::{BUS, LINE, MODULE, SAFETY};
 use points::{ACTUATOR, ACTUATORS, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION};
 
 /// Points that only kinds of device declare.
-const fn of_kinds(may: &'static [&'static [&'static str]], entry: &'static Form) -> Form {
+const fn of_kinds(may: fn() -> Vec<&'static str>, entry: &'static Form) -> Form {
     Form::Points(Points {
         must: &[],
         may,
         free: false,
         entry,
     })
+}
+
+/// What the kinds declare, each name once.
+fn declared(names: impl Fn(&Fixture) -> Vec<&'static str>) -> Vec<&'static str> {
+    let mut all: Vec<&str> = Vec::new();
+    for name in FIXTURES.iter().flat_map(names) {
+        if !all.contains(&name) {
+            all.push(name);
+        }
+    }
+    all
+}
+
+fn digital_in() -> Vec<&'static str> {
+    declared(|kind| kind.digital_in.to_vec())
+}
+
+fn digital_out() -> Vec<&'static str> {
+    declared(|kind| kind.digital_out.iter().map(|it| it.name).collect())
+}
+
+fn analog_in() -> Vec<&'static str> {
+    declared(|kind| kind.analog_in.iter().map(|it| it.name).collect())
+}
+
+fn analog_out() -> Vec<&'static str> {
+    declared(|kind| kind.analog_out.to_vec())
+}
+
+fn temperature() -> Vec<&'static str> {
+    declared(|kind| kind.temperature.to_vec())
+}
+
+fn counter() -> Vec<&'static str> {
+    declared(|kind| kind.counter.to_vec())
 }
 
 /// The whole file.
@@ -50,25 +85,25 @@ pub const FILE: &[Key] = &[
     ),
     optional(
         "analog_in",
-        of_kinds(&[&em_relay::QUANTITY_NAMES], &Form::Table(ANALOG_IN)),
+        of_kinds(analog_in, &Form::Table(ANALOG_IN)),
         "rig",
         "analog inputs by point",
     ),
     optional(
         "temperature",
-        of_kinds(&[em_relay::FIXTURE.temperature], &Form::Table(CHANNEL)),
+        of_kinds(temperature, &Form::Table(CHANNEL)),
         "rig",
         "thermometers by point",
     ),
     optional(
         "analog_out",
-        of_kinds(&[em_relay::FIXTURE.analog_out], &Form::Table(ANALOG_OUT)),
+        of_kinds(analog_out, &Form::Table(ANALOG_OUT)),
         "rig",
         "analog outputs by point",
     ),
     optional(
         "counter",
-        of_kinds(&[em_relay::FIXTURE.counter], &Form::Table(CHANNEL)),
+        of_kinds(counter, &Form::Table(CHANNEL)),
         "rig",
         "gated counters by point",
     ),
@@ -76,7 +111,7 @@ pub const FILE: &[Key] = &[
         "digital_in",
         Form::Points(Points {
             must: DigitalIn::NAMES,
-            may: &[em_relay::DigitalIn::NAMES],
+            may: digital_in,
             free: true,
             entry: &Form::Table(DIGITAL_IN),
         }),
@@ -87,7 +122,7 @@ pub const FILE: &[Key] = &[
         "digital_out",
         Form::Points(Points {
             must: DigitalOut::NAMES,
-            may: &[em_relay::DigitalOut::NAMES],
+            may: digital_out,
             free: false,
             entry: &Form::Table(CHANNEL),
         }),

@@ -78,8 +78,8 @@ fn a_rig_without_the_coil_board_refuses_each_of_its_recipes() {
     let refused = refused(&without_the_coil_board());
     assert_eq!(refused.len(), 4);
     for message in refused {
-        let why = "[test]: found the rig has no digital_in kelvin_coil_a, \
-                   expected a rig with every point that its test needs";
+        let why = "[test]: found no [digital_in].kelvin_coil_a in rig.toml, \
+                   expected every point that its test needs";
         assert!(message.ends_with(why), "{message}");
         assert!(message.contains("recipes/jzc-22f-0"), "{message}");
     }
@@ -126,7 +126,7 @@ fn a_recipe_is_refused_by_the_first_point_that_is_missing() {
         ("temperature", "track_temperature"),
     ] {
         let refused = refused(&without(|known, _| known == name));
-        let why = format!("the rig has no {section} {name}, expected");
+        let why = format!("found no [{section}].{name} in rig.toml, expected");
         assert!(refused.iter().all(|it| it.contains(&why)), "{refused:?}");
     }
 }

@@ -117,3 +117,6 @@ impl Points {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -36,7 +36,7 @@ pub fn check(
     accuracy: &AccuracySettings,
 ) -> Result<(), Fault> {
     let points = Points::resolve(wiring).map_err(|missing| {
-        let expected = "a rig with every point that its test needs";
+        let expected = "every point that its test needs";
         Fault::new("test", missing, expected)
     })?;
     for (key, strategy) in recipe.test.strategy.each() {

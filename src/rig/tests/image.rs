@@ -75,6 +75,21 @@ fn every_point_is_asked_for_at_its_own_terminal() {
 }
 
 #[test]
+fn two_kinds_may_declare_the_same_point() {
+    let settings = toml::from_str(include_str!("../../../config/rig.toml")).unwrap();
+    let twice = [crate::dut::FIXTURES, crate::dut::FIXTURES].concat();
+    let both = Wiring::resolve(&settings, &twice).unwrap();
+    assert_eq!(
+        both.digital_inputs().count(),
+        wiring().digital_inputs().count()
+    );
+    assert_eq!(
+        texts(&both, &[Point::Analog(analog(&both, "contact_drop"))]),
+        ["#090"]
+    );
+}
+
+#[test]
 fn points_of_one_module_are_read_in_one_transaction_where_it_can() {
     let wiring = wiring();
     let input = |name| Point::Input(wiring.digital_input(name).unwrap());
