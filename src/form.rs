@@ -31,6 +31,8 @@ pub enum Form {
     Table(&'static [Key]),
     /// A table of entries with free names (lower case, digits, underscore), all of one form.
     Named(&'static Form),
+    /// The same, with these names among them.
+    NamedWith(&'static [&'static str], &'static Form),
     /// A table with exactly these names, all of one form.
     Each(&'static [&'static str], &'static Form),
     /// A list of entries of one form.
@@ -142,7 +144,9 @@ impl Form {
             }
             Self::Flag => "true or false".to_owned(),
             Self::Numbers(count, range) => format!("a list of {count}, each {}", range.expected()),
-            Self::Table(_) | Self::Named(_) | Self::Each(..) => "a table".to_owned(),
+            Self::Table(_) | Self::Named(_) | Self::NamedWith(..) | Self::Each(..) => {
+                "a table".to_owned()
+            }
             Self::List(_) => "a list".to_owned(),
         }
     }
@@ -150,7 +154,7 @@ impl Form {
     /// Whether the value is a table.
     pub fn is_table(&self) -> bool {
         match self {
-            Self::Table(_) | Self::Named(_) | Self::Each(..) => true,
+            Self::Table(_) | Self::Named(_) | Self::NamedWith(..) | Self::Each(..) => true,
             Self::Text
             | Self::Choice(_)
             | Self::Hex(_)

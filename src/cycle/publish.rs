@@ -230,7 +230,7 @@ fn token(part: &Part) -> Token {
     Token {
         kind: kind.into(),
         name,
-        bin: part.bin.map_or("", Bin::name).into(),
+        bin: part.bin.as_ref().map_or("", Bin::name).into(),
         interrupted: part.interrupted.clone().unwrap_or_default(),
     }
 }

@@ -7,8 +7,9 @@
 
 use super::em_relay::parameter::Parameter;
 use super::recipe::{Limit, Rule};
+use crate::dut::em_relay::bins;
 use crate::gauge::budget::Reading;
-pub use crate::rig::axis::Bin;
+pub use crate::rig::bin::Bin;
 use serde::Serialize;
 use std::fmt;
 
@@ -75,26 +76,20 @@ pub fn judge(reading: &Reading, limit: &Limit, rule: Rule) -> Judgement {
 /// Bin of a part that fails `parameter`.
 pub fn bin_of(parameter: Parameter) -> Bin {
     match parameter {
-        Parameter::CoilResistance => Bin::Coil,
-        Parameter::OperateVoltage | Parameter::ReleaseVoltage => Bin::Voltage,
+        Parameter::CoilResistance => bins::COIL,
+        Parameter::OperateVoltage | Parameter::ReleaseVoltage => bins::VOLTAGE,
         Parameter::OperateTime
         | Parameter::ReleaseTime
         | Parameter::OperateBounce
-        | Parameter::ReleaseBounce => Bin::Time,
-        Parameter::ContactResistanceNo | Parameter::ContactResistanceNc => Bin::Contact,
+        | Parameter::ReleaseBounce => bins::TIME,
+        Parameter::ContactResistanceNo | Parameter::ContactResistanceNc => bins::CONTACT,
     }
 }
 
 /// Rank when several limits fail: the smallest wins.
-fn rank(bin: Bin) -> u8 {
-    match bin {
-        Bin::Coil => 0,
-        Bin::Contact => 1,
-        Bin::Voltage => 2,
-        Bin::Time => 3,
-        Bin::Retest => 4,
-        Bin::Pass => 5,
-    }
+fn rank(bin: Bin) -> usize {
+    let known = bins::BY_RANK.into_iter().position(|known| known == bin);
+    known.unwrap_or(bins::BY_RANK.len())
 }
 
 /// Why a part fails, and the bin this alone would send it to.
@@ -130,13 +125,13 @@ impl Verdict {
     /// Where the part belongs.
     pub fn bin(&self) -> Bin {
         match self {
-            Verdict::Pass => Bin::Pass,
+            Verdict::Pass => Bin::PASS,
             Verdict::Fail(reasons) => reasons
                 .iter()
                 .map(|reason| reason.bin)
                 .min_by_key(|bin| rank(*bin))
-                .unwrap_or(Bin::Retest),
-            Verdict::Void(_) => Bin::Retest,
+                .unwrap_or(Bin::RETEST),
+            Verdict::Void(_) => Bin::RETEST,
         }
     }
 
@@ -266,7 +261,7 @@ mod tests {
             .map(|p| (*p, Judgement::Pass))
             .collect();
         assert_eq!(of_part(&all), Verdict::Pass);
-        assert_eq!(of_part(&all[1..]).bin(), Bin::Retest);
+        assert_eq!(of_part(&all[1..]).bin(), Bin::RETEST);
     }
 
     #[test]
@@ -276,7 +271,7 @@ mod tests {
             (Parameter::OperateVoltage, Judgement::Fail(Side::High)),
             (Parameter::ContactResistanceNo, Judgement::Fail(Side::High)),
         ];
-        assert_eq!(of_part(&failed).bin(), Bin::Contact);
-        assert_eq!(of_part(&failed[..2]).bin(), Bin::Voltage);
+        assert_eq!(of_part(&failed).bin(), bins::CONTACT);
+        assert_eq!(of_part(&failed[..2]).bin(), bins::VOLTAGE);
     }
 }

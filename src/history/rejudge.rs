@@ -99,7 +99,7 @@ pub fn rejudged(part: &Part, curves: &[Curve], basis: Basis, recipe: &Recipe) ->
             let bin = part.bin.as_deref().and_then(Bin::from_name);
             let reason = Reason {
                 text: (*first).clone(),
-                bin: bin.unwrap_or(Bin::Retest),
+                bin: bin.unwrap_or(Bin::RETEST),
             };
             let limits = match by_values {
                 Verdict::Fail(reasons) => reasons,

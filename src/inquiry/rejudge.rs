@@ -25,7 +25,7 @@ pub struct Again {
     /// The one by this recipe.
     pub verdict: &'static str,
     /// The bin it asks for.
-    pub bin: &'static str,
+    pub bin: String,
     /// Why it is not a pass.
     pub reasons: Vec<String>,
 }
@@ -147,7 +147,7 @@ impl Rejudging {
             seq: part.seq,
             recipe: self.recipe.name.clone(),
             verdict: verdict.name(),
-            bin: verdict.bin().name(),
+            bin: verdict.bin().to_string(),
             reasons: verdict.reasons(),
             verdict_was: part.verdict,
         })

@@ -127,7 +127,7 @@ fn clamped(turn: &mut Turn, beside: Beside) -> Clamp {
         return Clamp::Probing;
     };
     if let Some(part) = turn.ledger.nest.as_mut().filter(|part| part.bin.is_none()) {
-        part.bin = Some(Bin::Retest);
+        part.bin = Some(Bin::RETEST);
         let judged = Judged::interrupted(part.clone(), &why, beside.bench, turn.now);
         turn.wants.judged.push(judged);
     }
@@ -192,7 +192,7 @@ fn judged(turn: &mut Turn, bench: &Bench, test: Test) {
     };
     part.test = part.probed_at.map(|at| Second(now.since(at).as_seconds()));
     part.bin = Some(match part.kind {
-        Kind::Golden(_) => Bin::Retest,
+        Kind::Golden(_) => Bin::RETEST,
         Kind::Lot(_) => verdict.bin(),
     });
     turn.wants.judged.push(Judged {

@@ -264,7 +264,7 @@ mod tests {
         ledger.enter_nest(None);
         assert!(ledger.balances() && ledger.inside() == 1);
         ledger.lift();
-        ledger.drop_over(Bin::Pass, RigTime(0), 0);
+        ledger.drop_over(Bin::PASS, RigTime(0), 0);
         assert!(ledger.balances() && ledger.inside() == 1);
         let landed = ledger.land().expect("it was falling");
         assert_eq!(landed.part.kind, Kind::Lot(1));

@@ -91,7 +91,7 @@ pub const JOGS: [(&str, Move); 15] = {
         ("gripper_open", Move::GripperOpen),
         ("axis_nest", Move::AxisTo(AxisStation::Nest)),
         ("axis_park", Move::AxisTo(AxisStation::Park)),
-        ("axis_retest", Move::AxisTo(AxisStation::Bin(Bin::Retest))),
+        ("axis_retest", Move::AxisTo(AxisStation::Bin(Bin::RETEST))),
     ]
 };
 

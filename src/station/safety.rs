@@ -145,8 +145,8 @@ impl Station {
 
     fn full_bins(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let mut alarms = Vec::new();
-        for bin in Bin::ALL {
-            let beam = self.table.beam(*bin);
+        for bin in self.table.bins() {
+            let beam = self.table.beam(bin);
             let dark = image.input(beam, now, SENSOR_AGE) == Some(true);
             let since = self.dark.iter().find(|(known, _)| *known == beam);
             match (dark, since.map(|(_, since)| *since)) {
@@ -276,7 +276,7 @@ impl Station {
                 .get_or_insert_with(|| why.to_owned())
                 .clone();
             let ordinal = part.ordinal;
-            if part.bin.replace(Bin::Retest).is_some() {
+            if part.bin.replace(Bin::RETEST).is_some() {
                 wants.interrupted.push(Interrupted { ordinal, why });
                 continue;
             }

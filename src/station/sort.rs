@@ -76,7 +76,7 @@ impl Sort {
                     .gripper
                     .as_ref()
                     .and_then(|part| part.bin)
-                    .unwrap_or(Bin::Retest);
+                    .unwrap_or(Bin::RETEST);
                 turn.drive(Move::AxisTo(AxisStation::Bin(bin)));
                 Sort::Carrying(bin)
             }

@@ -219,7 +219,7 @@ impl Station {
             .interrupted
             .get_or_insert_with(|| BY_A_RESET.into())
             .clone();
-        if part.bin.replace(Bin::Retest).is_none() {
+        if part.bin.replace(Bin::RETEST).is_none() {
             let judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
             wants.judged.push(judged);
         } else if !told {

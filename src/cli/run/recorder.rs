@@ -252,7 +252,7 @@ impl<'a> Recorder<'a> {
         let mut reasons = part.judged.verdict.reasons();
         reasons.push(reason.clone());
         let before = std::mem::replace(&mut part.judged.verdict, Verdict::Void(reasons));
-        part.judged.part.bin = Some(Bin::Retest);
+        part.judged.part.bin = Some(Bin::RETEST);
         if kind == "lot" {
             if let Some(count) = self.counts.verdicts.get_mut(before.name()) {
                 *count -= 1;
@@ -328,7 +328,8 @@ impl<'a> Recorder<'a> {
             return;
         }
         self.last_landed = Some(landed.at);
-        *self.counts.bins.entry(landed.bin.name()).or_insert(0) += 1;
+        let bin = landed.bin.to_string();
+        *self.counts.bins.entry(bin).or_insert(0) += 1;
         if self.controls.between_lots.is_none() {
             let show = |view: &mut View| screen::landed(view, &self.counts);
             self.controls.view.send_modify(show);

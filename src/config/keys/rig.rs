@@ -5,7 +5,6 @@ mod modules;
 mod points;
 
 use crate::form::{Form, Key, key};
-use crate::rig::axis::Bin;
 use crate::rig::point::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Temperature};
 use measuring::{ACCURACY, CALIBRATION, REFERENCE};
 use modules::{BUS, LINE, MODULE, SAFETY};
@@ -87,7 +86,7 @@ pub const FILE: &[Key] = &[
     ),
     key(
         "bin",
-        Form::Each(Bin::NAMES, &Form::Table(BIN)),
+        Form::NamedWith(&["pass", "retest"], &Form::Table(BIN)),
         "rig, station",
         "bins by name",
     ),

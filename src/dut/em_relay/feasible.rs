@@ -1,8 +1,9 @@
 //! Can these modules measure what the recipe demands, and is it worth judging?
 //!
-//! Checked before anything moves. A strategy needs outputs that step or slew, a counter that counts and
+//! Checked before anything moves. A relay that fails needs the bin of its cause. A strategy needs outputs that step or slew, a counter that counts and
 //! channels that are converted; a limit needs an uncertainty that leaves something of it.
 
+use super::bins;
 use super::coil::relative_per_kelvin;
 use super::settings::AccuracySettings;
 use super::{Parameter, Strategy};
@@ -27,6 +28,10 @@ const COUNTS: u8 = 0x50;
 /// # Errors
 /// The first fault.
 pub fn check(recipe: &Recipe, wiring: &Wiring, accuracy: &AccuracySettings) -> Result<(), Fault> {
+    if let Some(missing) = bins::BY_RANK.iter().find(|bin| !wiring.axis.has(**bin)) {
+        let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{missing}");
+        return Err(Fault::new("kind", "\"em_relay\"", expected));
+    }
     for (key, strategy) in recipe.test.strategy.each() {
         let key = format!("test.strategy.{key}");
         if let Some(why) = hindrance(strategy, wiring, accuracy) {

@@ -3,6 +3,7 @@
 //! | question | file |
 //! |---|---|
 //! | what is measured, in which unit | [`parameter`] |
+//! | where a part that fails goes | [`bins`] |
 //! | the order of a test, a file per stage | [`measure`] |
 //! | how a threshold is found, and whether modules and uncertainty allow it | [`strategy`], [`feasible`] |
 //! | how often coil and contacts are read | [`sampling`] |
@@ -14,6 +15,7 @@
 //! | contact resistance | [`contact`] |
 //! | contact of the probes at the coil | [`probe_contact`] |
 
+pub mod bins;
 pub mod calibration;
 pub mod coil;
 pub mod contact;

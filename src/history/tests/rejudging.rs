@@ -2,7 +2,8 @@
 
 use super::super::*;
 use crate::config::load_recipe;
-use crate::dut::{Bin, Recipe, Verdict};
+use crate::dut::em_relay::bins;
+use crate::dut::{Recipe, Verdict};
 use std::path::Path;
 
 fn recipe() -> Recipe {
@@ -45,7 +46,7 @@ fn the_limits_of_the_other_recipe_decide_with_the_stored_uncertainty() {
     let bad = by_values(&part(9.1, "pass", &[]), &recipe);
     assert_eq!(
         (bad.bin(), bad.reasons()),
-        (Bin::Voltage, vec!["operate_voltage_v high".to_owned()])
+        (bins::VOLTAGE, vec!["operate_voltage_v high".to_owned()])
     );
     let doubtful = by_values(&part(8.99, "pass", &[]), &recipe);
     assert_eq!(doubtful.reasons(), ["operate_voltage_v high not proven"]);
@@ -59,7 +60,7 @@ fn what_no_value_says_stays() {
     let again = by_values(&open, &recipe);
     assert_eq!(
         (again.bin(), again.reasons()),
-        (Bin::Coil, vec!["coil open".to_owned()])
+        (bins::COIL, vec!["coil open".to_owned()])
     );
     let void = by_values(&part(8.0, "void", &["reply refused"]), &recipe);
     assert_eq!(void, Verdict::Void(vec!["reply refused".into()]));
@@ -144,7 +145,7 @@ fn a_part_without_a_value_fails_where_its_curves_prove_it_and_is_void_where_they
     let strict = rejudged(&high, &never_made(), basis, &recipe);
     assert_eq!(
         (strict.bin(), strict.reasons()),
-        (Bin::Voltage, vec!["operate_voltage_v high".to_owned()])
+        (bins::VOLTAGE, vec!["operate_voltage_v high".to_owned()])
     );
     let generous = rejudged(&high, &never_made(), basis, &generous());
     assert_eq!(

@@ -1,7 +1,7 @@
 //! What the writer keeps, and what it refuses.
 
 use super::*;
-use crate::dut::verdict::Bin;
+use crate::dut::em_relay::bins;
 use crate::station::inside::Inside;
 
 #[test]
@@ -48,7 +48,7 @@ fn what_is_inside_is_known_to_the_next_run_of_the_same_rig() {
     let mut store = file.store();
     let inside = Inside {
         nest: true,
-        falling: Some(Bin::Coil),
+        falling: Some(bins::COIL),
         ..Inside::default()
     };
     for inside in [Inside::default(), inside] {

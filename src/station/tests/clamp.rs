@@ -116,7 +116,7 @@ fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
     let why = Verdict::Void(vec!["measure 05: silent".into()]);
     assert_eq!(
         (&judged.verdict, judged.part.bin),
-        (&why, Some(Bin::Retest))
+        (&why, Some(Bin::RETEST))
     );
     assert_eq!(judged.part.test, Some(Second(0.04)));
     let part = nest.shop.ledger.nest.as_ref();
@@ -136,7 +136,7 @@ fn a_golden_part_that_could_not_be_judged_is_tested_three_times_and_ends_in_rete
     }
     assert!(matches!(clamp, Clamp::Judged));
     let part = &nest.shop.wants.judged[0].part;
-    assert_eq!(part.bin, Some(Bin::Retest));
+    assert_eq!(part.bin, Some(Bin::RETEST));
     assert_eq!(format!("{:?}", part.kind), "Golden(\"G-12-1\")");
 }
 
@@ -217,6 +217,6 @@ fn a_part_that_was_interrupted_is_clamped_and_not_tested() {
     let part = nest.shop.ledger.nest.as_ref().unwrap();
     assert_eq!(
         (part.bin, nest.shop.wants.judged.len()),
-        (Some(Bin::Retest), 1)
+        (Some(Bin::RETEST), 1)
     );
 }

@@ -1,7 +1,7 @@
 //! What a run before left inside is where it was, or farther on, or told.
 
 use super::Shop;
-use crate::dut::verdict::Bin;
+use crate::dut::em_relay::bins;
 use crate::rig::point::DigitalIn;
 use crate::station::inside::Inside;
 use crate::station::ledger::Ledger;
@@ -69,7 +69,7 @@ fn the_place_that_held_the_part_is_named() {
 #[test]
 fn a_part_that_was_let_go_is_told_with_its_bin_unless_the_fingers_hold_it_still() {
     let falling = Inside {
-        falling: Some(Bin::Coil),
+        falling: Some(bins::COIL),
         ..left(0b010)
     };
     let told = falling.missing(&seen(0b010));

@@ -1,5 +1,6 @@
 //! Every part is in exactly one place, and the places add up.
 
+use crate::dut::em_relay::bins;
 use crate::dut::verdict::Bin;
 use crate::station::ledger::{Kind, Ledger};
 use crate::units::RigTime;
@@ -15,7 +16,7 @@ fn with_part_in_gripper() -> Ledger {
 #[test]
 fn four_parts_may_be_inside_at_once_one_in_each_place() {
     let mut ledger = with_part_in_gripper();
-    ledger.drop_over(Bin::Pass, RigTime(5), 3);
+    ledger.drop_over(Bin::PASS, RigTime(5), 3);
     ledger.enter_pocket();
     ledger.enter_nest(None);
     ledger.lift();
@@ -46,7 +47,7 @@ fn parts_are_numbered_in_the_order_in_which_they_enter_the_nest() {
         assert_eq!((part.ordinal, part.kind), (ordinal, kind));
         assert_eq!((part.bin, part.test, part.probed_at), (None, None, None));
         ledger.lift();
-        ledger.drop_over(Bin::Retest, RigTime(0), 0);
+        ledger.drop_over(Bin::RETEST, RigTime(0), 0);
         ledger.land();
     }
     assert_eq!(ledger.lot_parts(), 2);
@@ -56,8 +57,8 @@ fn parts_are_numbered_in_the_order_in_which_they_enter_the_nest() {
 #[test]
 fn a_lost_part_is_counted_as_lost_and_never_as_binned() {
     let mut ledger = with_part_in_gripper();
-    ledger.drop_over(Bin::Coil, RigTime(0), 0);
-    assert_eq!(ledger.lose_falling().unwrap().bin, Bin::Coil);
+    ledger.drop_over(bins::COIL, RigTime(0), 0);
+    assert_eq!(ledger.lose_falling().unwrap().bin, bins::COIL);
     assert_eq!((ledger.went_out, ledger.lost, ledger.inside()), (0, 1, 0));
     assert!(ledger.balances());
 }
@@ -73,7 +74,7 @@ fn nothing_lands_and_nothing_is_lost_when_nothing_falls() {
 #[test]
 fn an_empty_gripper_that_opens_lets_no_part_fall() {
     let mut ledger = Ledger::default();
-    ledger.drop_over(Bin::Pass, RigTime(0), 0);
+    ledger.drop_over(Bin::PASS, RigTime(0), 0);
     assert!(ledger.falling.is_none() && ledger.balances());
 }
 

@@ -3,6 +3,7 @@
 use super::instruments::golden_parts;
 use super::shop::mechanism;
 use super::{Shop, bench};
+use crate::dut::em_relay::bins;
 use crate::dut::verdict::Bin;
 use crate::instrument::act::{Job, JobDone, Read};
 use crate::rig::axis::AxisStation;
@@ -33,9 +34,9 @@ impl Specimen {
     /// Where it belongs.
     pub fn bin(self) -> Bin {
         match self {
-            Self::MissingPin => Bin::Retest,
-            Self::StuckNo => Bin::Contact,
-            Self::OpenCoil => Bin::Coil,
+            Self::MissingPin => Bin::RETEST,
+            Self::StuckNo => bins::CONTACT,
+            Self::OpenCoil => bins::COIL,
         }
     }
 }

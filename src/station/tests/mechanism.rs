@@ -2,15 +2,17 @@
 
 use super::Shop;
 use super::shop::{LENGTH_MM, TIMEOUT};
+use crate::dut::em_relay::bins;
 use crate::guard::{Actuator, PartPlaces, Position};
-use crate::rig::axis::{AxisStation, Bin};
+use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use crate::station::mechanism::SENSOR_AGE;
 use crate::station::moves::Move;
 use crate::station::trouble::Alarm;
 use crate::units::{RigTime, Span};
 
-const TO_PASS: Move = Move::AxisTo(AxisStation::Bin(Bin::Pass));
+const TO_PASS: Move = Move::AxisTo(AxisStation::Bin(Bin::PASS));
 
 fn position(shop: &Shop, actuator: Actuator) -> Position {
     shop.mechanism.position(actuator, shop.now, &shop.image)
@@ -74,7 +76,7 @@ fn an_actuator_under_way_is_anywhere_between_where_it_was_and_where_it_goes() {
 fn an_axis_under_way_spans_only_the_stations_it_passes() {
     let mut shop = Shop::at_rest();
     shop.carried_out(TO_PASS);
-    let coil = Move::AxisTo(AxisStation::Bin(Bin::Coil));
+    let coil = Move::AxisTo(AxisStation::Bin(bins::COIL));
     shop.mechanism.driven(coil, shop.now, &shop.image);
     let between = Position::Between {
         from_mm: 150.0,

@@ -115,7 +115,7 @@ fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so
     until(&mut machine, State::Stopped);
     give(&mut machine, Command::Reset);
     until(&mut machine, State::Idle);
-    assert_eq!(machine.landed, [(1, Bin::Retest)]);
+    assert_eq!(machine.landed, [(1, Bin::RETEST)]);
     let told = |what: &str| {
         machine
             .told

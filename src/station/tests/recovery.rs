@@ -203,7 +203,7 @@ fn a_part_that_was_to_fall_and_is_seen_in_the_fingers_is_neither_found_nor_lost(
     for in_the_fingers in [true, false] {
         let mut shop = Shop::at_rest();
         shop.ledger = ledger(0b100);
-        shop.ledger.drop_over(Bin::Pass, shop.now, 0);
+        shop.ledger.drop_over(Bin::PASS, shop.now, 0);
         shop.set(DigitalIn::GripperPart, in_the_fingers);
         shop.set(DigitalIn::GripperOpen, !in_the_fingers);
         shop.scan();

@@ -42,7 +42,7 @@ fn an_open_safety_input_makes_everything_safe_and_voids_the_part_inside() {
         let why = Verdict::Void(vec![format!("interrupted: {code}")]);
         assert_eq!(
             (&judged.verdict, judged.part.bin),
-            (&why, Some(Bin::Retest))
+            (&why, Some(Bin::RETEST))
         );
         assert!(machine.station.ledger().balances());
         assert_eq!(machine.station.state(), "ended");

@@ -1,6 +1,7 @@
 //! A part is let go only over its bin, when it is recorded, and its beam must see it: once.
 
 use super::Shop;
+use crate::dut::em_relay::bins;
 use crate::dut::verdict::Bin;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
@@ -110,33 +111,33 @@ fn the_fingers_stand_around_the_part_once_z_is_down() {
 
 #[test]
 fn a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest() {
-    for bin in Bin::ALL {
-        let mut shop = loaded(*bin);
-        assert_eq!(step(Sort::Loaded, &mut shop, false), Sort::Carrying(*bin));
-        let station = AxisStation::Bin(*bin);
+    for bin in Shop::at_rest().wiring.axis.bins() {
+        let mut shop = loaded(bin);
+        assert_eq!(step(Sort::Loaded, &mut shop, false), Sort::Carrying(bin));
+        let station = AxisStation::Bin(bin);
         assert_eq!(shop.wants.motions, [Move::AxisTo(station)]);
     }
-    let mut shop = loaded(Bin::Pass);
+    let mut shop = loaded(Bin::PASS);
     if let Some(part) = &mut shop.ledger.gripper {
         part.bin = None;
     }
     let sort = step(Sort::Loaded, &mut shop, false);
-    assert_eq!(sort, Sort::Carrying(Bin::Retest));
+    assert_eq!(sort, Sort::Carrying(Bin::RETEST));
 }
 
 #[test]
 fn a_part_is_let_go_only_when_its_record_is_durable() {
-    let (sort, mut shop) = over(Bin::Pass, 3);
+    let (sort, mut shop) = over(Bin::PASS, 3);
     for recorded in [0, 1] {
         shop.recorded = recorded;
         let next = step(sort, &mut shop, false);
-        assert_eq!(next == Sort::LettingGo(Bin::Pass, 3), recorded == 1);
+        assert_eq!(next == Sort::LettingGo(Bin::PASS, 3), recorded == 1);
     }
 }
 
 #[test]
 fn a_part_is_in_the_fingers_until_their_opening_is_driven() {
-    let (sort, mut shop) = over(Bin::Pass, 3);
+    let (sort, mut shop) = over(Bin::PASS, 3);
     shop.recorded = 1;
     let asked = step(sort, &mut shop, false);
     let waiting = step(asked, &mut shop, false);
@@ -152,15 +153,15 @@ fn a_part_is_in_the_fingers_until_their_opening_is_driven() {
 
 #[test]
 fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
-    let mut shop = loaded(Bin::Time);
+    let mut shop = loaded(bins::TIME);
     shop.recorded = 1;
-    beam(&mut shop, Bin::Time, 5);
+    beam(&mut shop, bins::TIME, 5);
     let since = shop.now;
-    let sort = step(Sort::OverBin(Bin::Time, since), &mut shop, false);
-    assert_eq!(sort, Sort::OverBin(Bin::Time, since), "read too early");
+    let sort = step(Sort::OverBin(bins::TIME, since), &mut shop, false);
+    assert_eq!(sort, Sort::OverBin(bins::TIME, since), "read too early");
     assert_eq!(shop.wants.beam, Some(DigitalIn::BeamTime));
     shop.after(1);
-    beam(&mut shop, Bin::Time, 5);
+    beam(&mut shop, bins::TIME, 5);
     let asked = step(sort, &mut shop, false);
     let_go(asked, &mut shop);
     let falling = shop.ledger.falling.as_ref();
@@ -169,13 +170,13 @@ fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
 
 #[test]
 fn a_part_is_not_let_go_while_the_one_before_still_falls() {
-    let (sort, mut shop) = over(Bin::Pass, 0);
+    let (sort, mut shop) = over(Bin::PASS, 0);
     shop.recorded = 2;
     let mut before = Shop::at_rest().ledger;
     before.enter_pocket();
     before.enter_nest(None);
     before.lift();
-    before.drop_over(Bin::Coil, shop.now, 0);
+    before.drop_over(bins::COIL, shop.now, 0);
     shop.ledger.falling = before.falling;
     assert_eq!(step(sort, &mut shop, false), sort);
     assert!(shop.wants.motions.is_empty());
@@ -184,22 +185,22 @@ fn a_part_is_not_let_go_while_the_one_before_still_falls() {
 #[test]
 fn one_count_of_the_beam_lands_the_part_even_across_the_wrap() {
     for (before, after) in [(3, 4), (u16::MAX, 0)] {
-        let (sort, mut shop) = falling(Bin::Voltage, before);
-        beam(&mut shop, Bin::Voltage, after);
+        let (sort, mut shop) = falling(bins::VOLTAGE, before);
+        beam(&mut shop, bins::VOLTAGE, after);
         let sort = step(sort, &mut shop, false);
         assert_eq!((sort, &*shop.wants.motions), (Sort::Returning, &[HOME][..]));
         assert!(shop.wants.landed.is_empty(), "a second body may follow");
         shop.after(79);
-        beam(&mut shop, Bin::Voltage, after);
+        beam(&mut shop, bins::VOLTAGE, after);
         step(sort, &mut shop, false);
         assert!(shop.wants.landed.is_empty());
         shop.after(1);
         step(sort, &mut shop, false);
         assert!(shop.wants.landed.is_empty(), "that count is too old");
-        beam(&mut shop, Bin::Voltage, after);
+        beam(&mut shop, bins::VOLTAGE, after);
         step(sort, &mut shop, false);
         let landed = &shop.wants.landed[0];
-        assert_eq!((landed.bin, landed.part.ordinal), (Bin::Voltage, 1));
+        assert_eq!((landed.bin, landed.part.ordinal), (bins::VOLTAGE, 1));
         assert!(shop.ledger.falling.is_none() && shop.ledger.balances());
     }
 }
@@ -207,11 +208,11 @@ fn one_count_of_the_beam_lands_the_part_even_across_the_wrap() {
 #[test]
 fn a_second_body_behind_the_part_is_an_alarm() {
     for bodies in [2, 3] {
-        let (sort, mut shop) = falling(Bin::Pass, 10);
-        beam(&mut shop, Bin::Pass, 11);
+        let (sort, mut shop) = falling(Bin::PASS, 10);
+        beam(&mut shop, Bin::PASS, 11);
         step(sort, &mut shop, false);
         shop.after(20);
-        beam(&mut shop, Bin::Pass, 10 + bodies);
+        beam(&mut shop, Bin::PASS, 10 + bodies);
         step(sort, &mut shop, false);
         assert_eq!(shop.alarms(), ["bin_beam"], "{bodies}");
         assert_eq!(shop.wants.landed.len(), 1, "the part itself is in the bin");
@@ -220,11 +221,11 @@ fn a_second_body_behind_the_part_is_an_alarm() {
 
 #[test]
 fn a_part_that_its_beam_does_not_see_is_lost_after_a_second_and_a_half() {
-    let (sort, mut shop) = falling(Bin::Pass, 10);
+    let (sort, mut shop) = falling(Bin::PASS, 10);
     let since = shop.ledger.falling.as_ref().map(|f| f.since).unwrap();
     shop.now = RigTime(since.0 + 1_500_000);
     shop.scan();
-    beam(&mut shop, Bin::Pass, 10);
+    beam(&mut shop, Bin::PASS, 10);
     let sort = step(sort, &mut shop, false);
     assert!(shop.alarms().is_empty());
     shop.after(1);
@@ -236,11 +237,11 @@ fn a_part_that_its_beam_does_not_see_is_lost_after_a_second_and_a_half() {
 
 #[test]
 fn a_count_read_before_the_fingers_opened_says_nothing() {
-    let (sort, mut shop) = over(Bin::Pass, 10);
+    let (sort, mut shop) = over(Bin::PASS, 10);
     shop.recorded = 1;
     let asked = step(sort, &mut shop, false);
     let sort = let_go(asked, &mut shop);
-    beam(&mut shop, Bin::Pass, 11);
+    beam(&mut shop, Bin::PASS, 11);
     step(sort, &mut shop, false);
     assert!(shop.wants.landed.is_empty());
     let falling = shop.ledger.falling.as_ref().unwrap();
@@ -249,7 +250,7 @@ fn a_count_read_before_the_fingers_opened_says_nothing() {
 
 #[test]
 fn open_fingers_go_back_when_they_are_seen_empty() {
-    let (sort, mut shop) = falling(Bin::Pass, 0);
+    let (sort, mut shop) = falling(Bin::PASS, 0);
     shop.set(DigitalIn::GripperPart, true);
     shop.scan();
     assert_eq!(step(sort, &mut shop, false), Sort::Opening);
@@ -262,7 +263,7 @@ fn open_fingers_go_back_when_they_are_seen_empty() {
 
 #[test]
 fn a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told() {
-    let (sort, mut shop) = falling(Bin::Pass, 0);
+    let (sort, mut shop) = falling(Bin::PASS, 0);
     shop.set(DigitalIn::GripperPart, true);
     shop.after(500);
     assert_eq!(step(sort, &mut shop, false), Sort::Opening);
@@ -273,7 +274,7 @@ fn a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told() {
 
 /// The fingers were to open, and then everything went safe: their sensor goes on showing the part.
 fn never_opened() -> Shop {
-    let (sort, mut shop) = over(Bin::Pass, 3);
+    let (sort, mut shop) = over(Bin::PASS, 3);
     shop.recorded = 1;
     let asked = step(sort, &mut shop, false);
     let_go(asked, &mut shop);
@@ -292,12 +293,12 @@ fn a_part_whose_fingers_never_opened_is_theirs_and_not_lost() {
     let mut shop = never_opened();
     time_is_over(&mut shop);
     shop.scan();
-    beam(&mut shop, Bin::Pass, 3);
+    beam(&mut shop, Bin::PASS, 3);
     step(Sort::Returning, &mut shop, false);
     assert!(shop.alarms().is_empty(), "{:?}", shop.alarms());
     assert!(shop.ledger.falling.is_none() && shop.ledger.lost == 0);
     let part = shop.ledger.gripper.as_ref().unwrap();
-    assert_eq!((part.ordinal, part.bin), (1, Some(Bin::Pass)));
+    assert_eq!((part.ordinal, part.bin), (1, Some(Bin::PASS)));
 }
 
 #[test]
@@ -315,7 +316,7 @@ fn nobody_declares_a_part_lost_who_cannot_see_the_fingers() {
 
 #[test]
 fn fingers_that_take_the_next_part_do_not_bring_the_fallen_one_back() {
-    let (sort, mut shop) = falling(Bin::Pass, 10);
+    let (sort, mut shop) = falling(Bin::PASS, 10);
     step(sort, &mut shop, false);
     shop.set(DigitalIn::GripperPart, true);
     time_is_over(&mut shop);

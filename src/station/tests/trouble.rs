@@ -1,6 +1,6 @@
 //! The catalogue knows every alarm, in both languages, once.
 
-use crate::dut::Bin;
+use super::wiring;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
 use crate::station::catalogue::{entry, every};
@@ -104,15 +104,13 @@ fn what_a_chinese_text_is_about_is_named_in_chinese() {
     let begins_chinese = |text: &str| text.starts_with(|c| ('\u{4e00}'..='\u{9fff}').contains(&c));
     let places = ["pocket", "nest", "gripper"]
         .map(|place| [Alarm::part_found(place), Alarm::part_lost(place)]);
-    let bins = Bin::ALL
-        .iter()
+    let axis = &wiring().axis;
+    let bins = axis
+        .bins()
         .map(|bin| [Alarm::beam(bin.name(), 2), Alarm::bin_full(bin.name())]);
     let after = Span::ms(900);
-    let moves = MOVES.into_iter().chain(
-        Bin::ALL
-            .iter()
-            .map(|bin| Move::AxisTo(AxisStation::Bin(*bin))),
-    );
+    let to_bins = axis.bins().map(|bin| Move::AxisTo(AxisStation::Bin(bin)));
+    let moves = MOVES.into_iter().chain(to_bins);
     let moved = moves.map(|it| {
         [
             Alarm::not_reached(it, after),

@@ -91,18 +91,18 @@ impl Line {
                 it.samples = vec![reply(at_us), reply(at_us + 3_000)];
             }
         }
-        let bin = verdict.bin().name();
+        let bin = verdict.bin();
         PartRecord {
             lot: lot.to_owned(),
             seq,
             serial: None,
             verdict: verdict.name().to_owned(),
-            bin: bin.to_owned(),
+            bin: bin.to_string(),
             reasons: verdict.reasons(),
             judged_at_us: at_us,
             test_s: 0.95 + 0.02 * draws.normal(),
             cycle_s: Some(cycle_us as f64 / 1e6),
-            landed_bin: Some(bin.to_owned()),
+            landed_bin: Some(bin.to_string()),
             landed_at_us: Some(at_us + 900_000),
             kind: "lot".to_owned(),
             measurements,

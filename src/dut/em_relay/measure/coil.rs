@@ -3,11 +3,11 @@
 
 use super::{Bench, Findings, INTERLOCK, OFF, Stage, board};
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::coil::{resistance, to_reference};
 use crate::dut::em_relay::probe_contact::in_series;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::recipe::CoilChannels;
-use crate::dut::verdict::Bin;
 use crate::instrument::act::{Act, CoilScan, Read, Readings};
 use crate::rig::point::AnalogIn;
 use crate::rig::point::DigitalOut::{
@@ -147,7 +147,7 @@ pub(super) fn conclude(
             return None;
         }
         if current.quality == Quality::OverRange {
-            findings.fail("coil_resistance_ohm low: current over range", Bin::Coil);
+            findings.fail("coil_resistance_ohm low: current over range", bins::COIL);
             return None;
         }
         let offset = Volt(calibration.coil_input.offset_v.value);
@@ -162,7 +162,7 @@ pub(super) fn conclude(
         CoilChannels::CoarseCurrent => calibration.ohm_wide,
     };
     if scans.iter().all(|(_, current)| current.abs() < NO_CURRENT) {
-        findings.fail("coil open", Bin::Coil);
+        findings.fail("coil open", bins::COIL);
         return None;
     }
     let part = findings.track?;
@@ -173,10 +173,10 @@ pub(super) fn conclude(
             findings.probe_contact = probe_contact(bench, &readings.coil, coil);
             findings.found(Parameter::CoilResistance, reading, &samples);
         }
-        None => findings.fail("coil open", Bin::Coil),
+        None => findings.fail("coil open", bins::COIL),
     }
     if let Some(unmoved) = findings.unmoved.take() {
-        findings.fail(unmoved, Bin::Contact);
+        findings.fail(unmoved, bins::CONTACT);
     }
     None
 }

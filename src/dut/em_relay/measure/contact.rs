@@ -3,10 +3,10 @@
 
 use super::{Bench, Findings, INTERLOCK, Stage, board};
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::contact::{Closure, resistance, u_with_later_v};
 use crate::dut::em_relay::sampling::Polarities;
 use crate::dut::em_relay::supply::Supply;
-use crate::dut::verdict::Bin;
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalOut::{Arm, KelvinTest, SourceOn, SourceReverse};
 use crate::rig::sample::{Quality, Sample};
@@ -92,10 +92,10 @@ impl Unread {
         match self {
             Unread::Missing => findings.void(format!("{which} drop not readable")),
             Unread::OverRange => {
-                findings.fail(&format!("{which} resistance over range"), Bin::Contact)
+                findings.fail(&format!("{which} resistance over range"), bins::CONTACT)
             }
             Unread::OpenContact => {
-                findings.fail(&format!("{which} open or far too high"), Bin::Contact)
+                findings.fail(&format!("{which} open or far too high"), bins::CONTACT)
             }
         }
     }

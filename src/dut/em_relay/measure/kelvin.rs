@@ -7,7 +7,7 @@
 //! | five good, NC open or NO closed | a contact that does not rest: fail, contact |
 
 use super::{Bench, Findings, Stage, board};
-use crate::dut::verdict::Bin;
+use crate::dut::em_relay::bins;
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalOut::KelvinTest;
 use crate::units::Span;
@@ -35,8 +35,8 @@ pub(super) fn conclude(_: &Bench, readings: &Readings, findings: &mut Findings) 
     let open: Vec<usize> = (0..5).filter(|pin| !seen.kelvin[*pin]).collect();
     match open.as_slice() {
         [] if seen.nc_closed && !seen.no_closed => {}
-        [] if seen.no_closed => findings.fail("contact stuck: NO closed at rest", Bin::Contact),
-        [] => findings.fail("contact stuck: NC open at rest", Bin::Contact),
+        [] if seen.no_closed => findings.fail("contact stuck: NO closed at rest", bins::CONTACT),
+        [] => findings.fail("contact stuck: NC open at rest", bins::CONTACT),
         [COM] => findings.void("part turned or COM probe without contact"),
         [pin] => findings.void(format!(
             "no Kelvin contact at {}: missing pin or dirty probe",

@@ -3,9 +3,9 @@
 use super::indication::gate0;
 use super::ramp::{after_coarse, stopped_at};
 use super::{Bench, Findings, INTERLOCK, OFF, Ramp, Stage, board};
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::supply::{RAMP_MARGIN, Supply};
 use crate::dut::em_relay::threshold::{Direction, indicated};
-use crate::dut::verdict::Bin;
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalIn;
 use crate::rig::point::DigitalOut::{
@@ -86,7 +86,7 @@ pub(super) fn conclude_coarse(
             }
             Some(_) => findings.fail(
                 "operate_voltage_v high: above the coarse ramp",
-                Bin::Voltage,
+                bins::VOLTAGE,
             ),
             None => findings.void("interface board not read"),
         }

@@ -112,7 +112,7 @@ fn at_23_c() -> Findings {
 fn ended(findings: &Findings) -> Option<(Bin, String)> {
     findings.why_stopped().map(|stop| match stop {
         Stop::Fail(reason) => (reason.bin, reason.text.clone()),
-        Stop::Void(why) | Stop::Trouble(why) => (Bin::Retest, why.clone()),
+        Stop::Void(why) | Stop::Trouble(why) => (Bin::RETEST, why.clone()),
     })
 }
 

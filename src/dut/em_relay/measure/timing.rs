@@ -6,10 +6,10 @@ use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, r
 use super::operate::dropped;
 use super::{Bench, Findings, OFF, Stage, board};
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::contact::resistance;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::timing::{bounce_ms, counts, gate_ms};
-use crate::dut::verdict::Bin;
 use crate::instrument::act::{Act, Read, Readings};
 use crate::rig::point::DigitalIn;
 use crate::rig::point::DigitalOut::{
@@ -193,7 +193,7 @@ pub(super) fn conclude_operate(
 fn not_made(readings: &Readings, findings: &mut Findings) -> Option<Stage> {
     findings.unmoved = match readings.boards.last() {
         Some(board) if board.no_closed => {
-            findings.fail("operate_time_ms high: NO makes too late", Bin::Time);
+            findings.fail("operate_time_ms high: NO makes too late", bins::TIME);
             None
         }
         Some(board) if board.nc_closed => {
@@ -216,7 +216,7 @@ pub(super) fn conclude_release(
     if readings.seen.first() != Some(&true) {
         findings.fail(
             "release_time_ms high: NC does not make after switch-off",
-            Bin::Time,
+            bins::TIME,
         );
         return None;
     }

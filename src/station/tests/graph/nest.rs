@@ -74,7 +74,7 @@ fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
     }
     if let Some(part) = &mut ledger.nest {
         part.interrupted = interrupted.then(|| "by a reset".to_owned());
-        part.bin = judged.then_some(Bin::Retest);
+        part.bin = judged.then_some(Bin::RETEST);
     }
     ledger
 }

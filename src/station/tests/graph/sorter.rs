@@ -28,16 +28,16 @@ fn name(sort: Sort) -> &'static str {
 /// Every state, and the point of the axis that it has to do with.
 fn states(shop: &Shop) -> [(Sort, AxisStation); 9] {
     let over = RigTime(shop.now.0 - 500);
-    let bin = AxisStation::Bin(Bin::Pass);
+    let bin = AxisStation::Bin(Bin::PASS);
     [
         (Sort::Returning, AxisStation::Nest),
         (Sort::OverNest, AxisStation::Nest),
         (Sort::Lowering, AxisStation::Nest),
         (Sort::AtPart, AxisStation::Nest),
         (Sort::Loaded, bin),
-        (Sort::Carrying(Bin::Pass), bin),
-        (Sort::OverBin(Bin::Pass, over), bin),
-        (Sort::LettingGo(Bin::Pass, 0), bin),
+        (Sort::Carrying(Bin::PASS), bin),
+        (Sort::OverBin(Bin::PASS, over), bin),
+        (Sort::LettingGo(Bin::PASS, 0), bin),
         (Sort::Opening, bin),
     ]
 }
@@ -58,7 +58,7 @@ fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
         Sort::Loaded | Sort::Carrying(_) | Sort::OverBin(..) | Sort::LettingGo(..)
     );
     if falling {
-        ledger.drop_over(Bin::Pass, since, 0);
+        ledger.drop_over(Bin::PASS, since, 0);
     }
     if carries {
         ledger.enter_pocket();
@@ -66,7 +66,7 @@ fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
         ledger.lift();
     }
     if let Some(part) = &mut ledger.gripper {
-        part.bin = Some(Bin::Pass);
+        part.bin = Some(Bin::PASS);
     }
     ledger
 }
@@ -87,11 +87,11 @@ fn the_sorter_is_the_drawing() {
                 shop.set(DigitalIn::PusherRetracted, pusher);
                 shop.set(DigitalIn::GripperOpen, gripper == Seen::Rest);
                 shop.set(DigitalIn::GripperPart, part);
-                shop.set(table.beam(Bin::Pass), dark);
+                shop.set(table.beam(Bin::PASS), dark);
                 shop.after(1);
                 for [counted, testing, resting, falling, late, recorded] in truths() {
                     if counted {
-                        shop.beam(table.beam(Bin::Pass), 0);
+                        shop.beam(table.beam(Bin::PASS), 0);
                     }
                     let (sort, _) = states(&shop)[number];
                     let ago = if late { Span::ms(501) } else { Span::ms(500) };

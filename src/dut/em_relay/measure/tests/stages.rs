@@ -2,6 +2,7 @@
 
 use super::super::{Ramp, Stage, coil, operate, operate_fine, release, timing};
 use super::{PULLED, RESTING, assert_ends, at_23_c, bench, drop_of, ended, gates, scan, watched};
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::lag::{LagLaw, Shown};
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Bench, Findings};
@@ -40,8 +41,8 @@ fn the_coarse_ramp_places_the_fine_one_by_its_learned_lag() {
 #[test]
 fn a_coarse_ramp_without_a_make_is_a_high_threshold_unless_the_contact_made_unseen() {
     for (board, bin, word) in [
-        (RESTING, Bin::Voltage, "above the coarse ramp"),
-        (PULLED, Bin::Retest, "outside the window"),
+        (RESTING, bins::VOLTAGE, "above the coarse ramp"),
+        (PULLED, Bin::RETEST, "outside the window"),
     ] {
         let mut findings = ramp_from(5.0, 6.0);
         let silent = watched(false, board, 0.0);
@@ -58,7 +59,10 @@ fn a_contact_that_does_not_move_at_nominal_voltage_is_stuck_unless_the_coil_is_t
         ..RESTING
     };
     for (board, word) in [(RESTING, "NC does not open"), (between, "NO does not make")] {
-        for (ampere, bin, word) in [(0.0125, Bin::Contact, word), (0.0, Bin::Coil, "coil open")] {
+        for (ampere, bin, word) in [
+            (0.0125, bins::CONTACT, word),
+            (0.0, bins::COIL, "coil open"),
+        ] {
             let mut findings = at_23_c();
             let unmoved = watched(false, board, 0.0);
             let next = timing::conclude_operate(&bench(), &unmoved, &mut findings);
@@ -73,7 +77,7 @@ fn a_contact_that_does_not_move_at_nominal_voltage_is_stuck_unless_the_coil_is_t
     }
     let mut findings = at_23_c();
     timing::conclude_operate(&bench(), &Readings::default(), &mut findings);
-    assert_ends(&findings, Bin::Retest, "not read");
+    assert_ends(&findings, Bin::RETEST, "not read");
 }
 
 #[test]
@@ -110,7 +114,7 @@ fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
         let centre = findings.expected_operate.unwrap().centre;
         let last = operate_fine::conclude(&bench(), readings, &mut findings, 4);
         assert_eq!(last, None);
-        assert_ends(&findings, Bin::Retest, "not found in 5 fine ramps");
+        assert_ends(&findings, Bin::RETEST, "not found in 5 fine ramps");
         centre
     };
     assert!(miss(&watched(false, RESTING, 30.0)) > Volt(7.9), "later");
@@ -235,15 +239,15 @@ fn a_contact_that_never_makes_fails_by_time_and_an_unread_counter_is_void() {
     for (conclude, word) in stages {
         let mut findings = at_23_c();
         conclude(&bench(), &timed(false, [3000, 3000]), &mut findings);
-        assert_ends(&findings, Bin::Time, word);
+        assert_ends(&findings, bins::TIME, word);
         let mut findings = at_23_c();
         let mut unread = timed(true, [236, 252]);
         unread.gates.truncate(1);
         conclude(&bench(), &unread, &mut findings);
-        assert_ends(&findings, Bin::Retest, "gate counters");
+        assert_ends(&findings, Bin::RETEST, "gate counters");
         let mut findings = at_23_c();
         conclude(&bench(), &timed(true, [0, 0]), &mut findings);
-        assert_ends(&findings, Bin::Retest, "0 and 0 counts");
+        assert_ends(&findings, Bin::RETEST, "0 and 0 counts");
     }
 }
 
@@ -254,11 +258,11 @@ fn a_closure_with_the_source_in_compliance_fails_by_contact() {
     readings.drops[0] = drop_of(Quality::OverRange, 0.0);
     let mut findings = at_23_c();
     timing::conclude_operate(&bench(), &readings, &mut findings);
-    assert_ends(&findings, Bin::Contact, "NO contact");
+    assert_ends(&findings, bins::CONTACT, "NO contact");
     let mut findings = at_23_c();
     findings.drop_zero = Some(Volt(0.0));
     timing::conclude_release(&bench(), &readings, &mut findings);
-    assert_ends(&findings, Bin::Contact, "NC contact");
+    assert_ends(&findings, bins::CONTACT, "NC contact");
 }
 
 /// The default bench on the strategy `ramp`, with a law taught by parts of which each millisecond of operate time

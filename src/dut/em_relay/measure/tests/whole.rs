@@ -2,6 +2,7 @@
 
 use super::super::{Findings, Progress, Stage, Test, acts, order};
 use super::{at_23_c, bench};
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::supply::Supply;
 use crate::dut::em_relay::{Parameter, parameter};
@@ -190,7 +191,7 @@ fn a_rig_in_trouble_has_proven_no_part_bad() {
     let mut findings = Findings::default();
     findings.fail(
         "operate_voltage_v high: above the coarse ramp",
-        Bin::Voltage,
+        bins::VOLTAGE,
     );
     test.findings = findings.clone();
     assert_eq!(test.verdict().name(), "fail");
@@ -225,7 +226,7 @@ fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
     let test = fails_at(&Job::Read(Read::Board));
     let why = Verdict::Void(vec!["module answers ?AA".into()]);
     assert_eq!(test.verdict(), why);
-    assert_eq!(test.verdict().bin(), Bin::Retest);
+    assert_eq!(test.verdict().bin(), Bin::RETEST);
     let restarted = fails_at(&Job::Read(Read::Resets));
     assert_eq!(restarted.verdict().name(), "void");
     assert_eq!(restarted.stage(), Stage::Off);
@@ -234,13 +235,13 @@ fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
 #[test]
 fn the_first_cause_of_an_early_end_stays() {
     let mut findings = at_23_c();
-    findings.fail("coil open", Bin::Coil);
+    findings.fail("coil open", bins::COIL);
     findings.void("coil current not gone after the test");
     let mut test = Test::begin(bench(), Shop::at_rest().now);
     test.findings = findings;
     let reason = Reason {
         text: "coil open".into(),
-        bin: Bin::Coil,
+        bin: bins::COIL,
     };
     assert_eq!(test.verdict(), Verdict::Fail(vec![reason]));
 }
