@@ -25,6 +25,9 @@ pub use traffic::LineEnds;
 use crate::bus::{Answer, LineError, Pace};
 use crate::dcon::{self, Command};
 use crate::guard::Guard;
+use crate::handling::NestId;
+use crate::handling::inside::Inside;
+use crate::handling::wants::{NestDone, NestJob};
 use crate::hmi::Asked;
 use crate::instrument::act::{Job, JobDone, Read};
 use crate::rig::drive::Outputs;
@@ -33,7 +36,6 @@ use crate::rig::level::Correction;
 use crate::rig::point::{AnalogIn, Counter, DigitalIn, Temperature};
 use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
-use crate::station::inside::Inside;
 use crate::station::packml;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Inputs, Wants};
@@ -86,6 +88,8 @@ pub struct Cycle {
     patience: Patience,
     outside: Outside,
     job_done: Option<JobDone>,
+    /// The nest whose job is under way, or was last.
+    job_nest: NestId,
     bus_alarm: Option<Alarm>,
     profile: Profile,
     /// Only safe values are written.
@@ -130,6 +134,7 @@ impl Cycle {
             guard,
             outside,
             job_done: None,
+            job_nest: NestId::FIRST,
             bus_alarm: None,
             profile: Profile::default(),
             making_safe: false,
@@ -171,17 +176,17 @@ impl Cycle {
             self.pressed(&mut wants, now);
             self.record(now, &mut wants);
             clock = Instant::now();
-            self.publish(now, wants.ending.is_some());
+            self.publish(now, wants.record.ending.is_some());
             lap(&mut self.profile.publish_s, &mut clock);
-            if wants.verify {
+            if wants.rig.verify {
                 self.verify().await;
             }
-            if let Some(ending) = wants.ending.take() {
+            if let Some(ending) = wants.record.ending.take() {
                 self.make_safe().await;
                 return (ending, self.profile);
             }
-            if self.job_done.is_none() && wants.wake_at.is_none_or(|at| at > now) {
-                self.wait(now, wants.wake_at).await;
+            if self.job_done.is_none() && wants.rig.wake_at.is_none_or(|at| at > now) {
+                self.wait(now, wants.rig.wake_at).await;
             }
         }
     }
@@ -296,7 +301,10 @@ impl Cycle {
             settled: self.outputs.all_settled(),
             verified: std::mem::take(&mut self.verified),
             image: &self.image,
-            job: self.job_done.take(),
+            job: self.job_done.take().map(|done| NestDone {
+                nest: self.job_nest,
+                done,
+            }),
             recorded: self.outside.recorded.load(Ordering::Acquire),
             bus: self.bus_alarm.take(),
             stop: self.outside.stop.load(Ordering::Acquire),
@@ -306,7 +314,7 @@ impl Cycle {
 
     /// Each wanted motion passes the guard, one after the other, and is driven or refused.
     fn clear(&mut self, now: RigTime, wants: &mut Wants) {
-        for movement in std::mem::take(&mut wants.motions) {
+        for movement in std::mem::take(&mut wants.rig.motions) {
             let situation = self.station.situation(now, &self.image);
             match self.guard.clear(&self.station.motion(movement), &situation) {
                 Ok(cleared) => {
@@ -326,29 +334,30 @@ impl Cycle {
                 }
             }
         }
-        if let Some(jog) = wants.jog.take() {
+        if let Some(jog) = wants.rig.jog.take() {
             wants.answers[jog.answer] = self.jog(jog.movement, now);
         }
     }
 
     /// Outputs become commands; the measuring line gets its job.
     fn apply(&mut self, now: RigTime, wants: &mut Wants) {
-        if wants.safe {
+        if wants.rig.safe {
             self.outputs.everything_safe();
             for module in self.traffic.drop_all() {
                 self.outputs.confirmed(module);
             }
         }
-        for (point, on) in wants.outputs.drain(..) {
+        for (point, on) in wants.rig.outputs.drain(..) {
             if let Err(needs) = self.outputs.set(point, on) {
                 self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
             }
         }
-        self.traffic.suspect(wants.suspicious);
+        self.traffic.suspect(wants.rig.suspicious);
         self.traffic
-            .watch_beam(wants.beam.map(|beam| self.wiring.read_events(beam)));
-        let is_job = wants.job.is_some();
-        if let Some(job) = wants.job.take() {
+            .watch_beam(wants.rig.beam.map(|beam| self.wiring.read_events(beam)));
+        let is_job = wants.rig.job.is_some();
+        if let Some(NestJob { nest, job }) = wants.rig.job.take() {
+            self.job_nest = nest;
             self.start(job, now);
         }
         for write in self.outputs.writes() {
@@ -423,37 +432,37 @@ impl Cycle {
     }
 
     fn record(&mut self, now: RigTime, wants: &mut Wants) {
-        for judged in wants.judged.drain(..) {
+        for judged in wants.record.parts.judged.drain(..) {
             self.tell(Event::Judged(Box::new(judged)));
         }
-        for left in wants.left.drain(..) {
+        for left in wants.record.parts.left.drain(..) {
             self.tell(Event::Left(left));
         }
-        for landed in wants.landed.drain(..) {
+        for landed in wants.record.parts.landed.drain(..) {
             self.tell(Event::Landed(landed));
         }
-        if let Some(checked) = wants.checked.take() {
+        if let Some(checked) = wants.record.checked.take() {
             self.tell(Event::Checked(checked, now));
         }
-        if let Some(calibration) = wants.calibrated.take() {
+        if let Some(calibration) = wants.record.calibrated.take() {
             self.tell(Event::Calibrated(Box::new(calibration)));
         }
-        if wants.lot_began {
+        if wants.record.lot_began {
             self.tell(Event::LotBegan(now));
         }
-        for interrupted in wants.interrupted.drain(..) {
+        for interrupted in wants.record.parts.interrupted.drain(..) {
             self.tell(Event::Interrupted(interrupted));
         }
-        for alarm in wants.alarms.drain(..) {
+        for alarm in wants.record.alarms.drain(..) {
             self.tell(Event::Alarm(alarm, now));
         }
-        if wants.alarms_changed {
+        if wants.record.alarms_changed {
             let standing = self.station.annunciator().standing().to_vec();
             self.tell(Event::Standing(standing, now));
         }
         let inside = self.station.ledger().to_look_for();
         let moved = std::mem::replace(&mut self.inside, inside) != inside;
-        if moved || wants.ending.is_some() {
+        if moved || wants.record.ending.is_some() {
             self.tell(Event::Inside(inside, self.station.uses()));
         }
         let state = self.station.outer();

@@ -12,6 +12,7 @@ use crate::dut::em_relay::bins;
 use crate::dut::recipe::Recipe;
 use crate::rig::axis::AxisTable;
 use crate::rig::bin::Bin;
+use crate::rig::point::DigitalIn;
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::Wiring;
 use std::path::PathBuf;
@@ -292,6 +293,7 @@ fn a_rig_may_have_fewer_bins_or_others() {
     assert!(!fewer.has(bins::COIL) && fewer.has(Bin::RETEST));
     let other = rig_of(&changed(RIG, "coil    = { point", "grade_2 = { point"));
     assert_eq!(names(&other)[1], "grade_2");
+    assert_eq!(other.beam(Bin::named("grade_2")), DigitalIn::BeamCoil);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Orders of screens: taken in, handed to the station, answered; and motions by hand.
 
 use super::{Cycle, Event, publish};
+use crate::handling::moves::Move;
 use crate::hmi::Asked;
-use crate::station::moves::Move;
 use crate::station::orders::{Order, Refused};
 use crate::station::wants::Wants;
 use crate::units::RigTime;

@@ -3,12 +3,12 @@
 use super::Cycle;
 use crate::dut::verdict::Bin;
 use crate::guard::{Actuator, Position};
+use crate::handling::ledger::{Kind, Part};
+use crate::handling::mechanism::SENSOR_AGE;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::Station;
 use crate::station::annunciator::Standing;
 use crate::station::catalogue::{self, Stops};
-use crate::station::ledger::{Kind, Part};
-use crate::station::mechanism::SENSOR_AGE;
 use crate::station::orders::{self, Order, Refused};
 use crate::station::packml::{Command, Mode};
 use crate::units::{RigTime, Span};

@@ -3,8 +3,8 @@
 use super::Store;
 use super::error::{Doing, Result};
 use super::store::source;
+use crate::handling::inside::Inside;
 use crate::rig::bin::Bin;
-use crate::station::inside::Inside;
 use rusqlite::{OptionalExtension, Transaction, params};
 
 /// As it was written down last.

@@ -5,7 +5,8 @@ use super::annunciator::Standing;
 use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::trouble::Alarm;
-use super::wants::{Ending, Jog, Wants};
+use super::wants::{Ending, Wants};
+use crate::handling::wants::Jog;
 use crate::rig::image::Image;
 use crate::units::{RigTime, Span};
 
@@ -29,11 +30,11 @@ impl Station {
             Order::Jog(movement) => {
                 self.may_jog()?;
                 let answer = wants.answers.len();
-                wants.jog = Some(Jog { movement, answer });
+                wants.rig.jog = Some(Jog { movement, answer });
             }
             Order::Step => {
                 self.may_step()?;
-                wants.motions.extend(self.stepwise.pop_front());
+                wants.rig.motions.extend(self.line.stepwise.pop_front());
             }
             Order::LampTest => self.lamps.test(now),
             Order::Leave => {
@@ -108,7 +109,7 @@ impl Station {
         if self.mode == Mode::Manual {
             return Err(Refused::wrong_mode("start", self.mode, Mode::Production));
         }
-        if !self.homed {
+        if !self.line.homed {
             return Err(Refused::new(
                 "actuators were moved by hand since the reset; stop and reset first",
                 "复位后执行机构被手动移动过；请先停止并复位",
@@ -134,7 +135,7 @@ impl Station {
         if !matches!(self.state, State::Stopped | State::Idle | State::Complete) {
             return Err(self.not_at_rest());
         }
-        if self.ledger.nest.is_some() || self.ledger.gripper.is_some() {
+        if self.line.ledger.nest.is_some() || self.line.ledger.gripper.is_some() {
             return Err(Refused::new(
                 "a part of this lot is inside; reset first, so that it gets into its bin",
                 "机内还有本批次的零件；请先复位，使其进入料仓",
@@ -208,7 +209,7 @@ impl Station {
                 format!("未回原点：点动需要复位后处于 Idle 状态；当前状态为 {state}"),
             ));
         }
-        if self.mechanism.moving().next().is_some() {
+        if self.line.mechanism.moving().next().is_some() {
             return Err(Refused::new(
                 "the motion before has not arrived",
                 "上一个动作尚未到位",
@@ -225,7 +226,7 @@ impl Station {
         if self.mode != Mode::Maintenance {
             return Err(Refused::wrong_mode("step", self.mode, Mode::Maintenance));
         }
-        if self.stepwise.is_empty() {
+        if self.line.stepwise.is_empty() {
             return Err(Refused::new(
                 "no motion waits for a step",
                 "没有等待单步的动作",
@@ -236,7 +237,7 @@ impl Station {
 
     /// An actuator was moved by hand: home is not home any more.
     pub fn jogged(&mut self) {
-        self.homed = false;
+        self.line.homed = false;
     }
 
     fn leave(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {

@@ -1,6 +1,6 @@
 //! Names of places, bins, motions and steps in Chinese, for texts of alarms; the words are those of the screen.
 
-use super::moves::Move;
+use crate::handling::Move;
 use crate::rig::axis::AxisStation;
 
 /// A place of the ledger, a bin, an actuator or a step; anything else, a module of the plant say, keeps its name.

@@ -12,13 +12,15 @@
 //!   mean over the last parts is beyond its limit.
 
 use super::Station;
-use super::ledger::Kind;
 use super::trouble::Alarm;
-use super::wants::{Checked, Judged, Wants};
+use super::wants::{Checked, Wants};
 use crate::dut::em_relay::golden;
 use crate::dut::em_relay::probe_contact::Trend;
 use crate::dut::em_relay::settings::GoldenPart;
 use crate::dut::verdict::Verdict;
+use crate::handling::ledger::Kind;
+use crate::handling::wants::Judged;
+use crate::handling::wear::Uses;
 use crate::units::{Ohm, RigTime, Span};
 use serde::Deserialize;
 use std::collections::VecDeque;
@@ -69,32 +71,6 @@ pub struct WearSettings {
     pub jaw_closings: Option<u64>,
     /// Of the probes at the coil: resistance in series of both force contacts, ohm.
     pub probe_contact_ohm: Option<f64>,
-}
-
-/// Uses of what wears.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Uses {
-    /// Times that the probes rose.
-    pub probe_touches: u64,
-    /// Times that the jaws closed.
-    pub jaw_closings: u64,
-}
-
-impl Uses {
-    /// Each with the name of its counter.
-    pub fn each(&self) -> [(&'static str, u64); 2] {
-        [
-            ("probe_touches", self.probe_touches),
-            ("jaw_closings", self.jaw_closings),
-        ]
-    }
-
-    fn with(self, more: Self) -> Self {
-        Self {
-            probe_touches: self.probe_touches + more.probe_touches,
-            jaw_closings: self.jaw_closings + more.jaw_closings,
-        }
-    }
 }
 
 /// Where the gates stand.
@@ -166,12 +142,12 @@ impl Station {
     pub(super) fn look_for_check(&mut self, now: RigTime, wants: &mut Wants) {
         let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
         if !self.is_calibrating() && self.bench.calibration.due_at_us <= at_us {
-            return wants.trouble.push(Alarm::calibration_overdue());
+            return wants.notes.trouble.push(Alarm::calibration_overdue());
         }
         if self.gates.checking || self.is_calibrating() || !self.wants_more() {
             return;
         }
-        let (parts, settings) = (self.ledger.lot_parts(), &self.plan.lot.golden_check);
+        let (parts, settings) = (self.line.ledger.lot_parts(), &self.plan.lot.golden_check);
         if self.gates.good.is_none() {
             // What the run began with counts as good: its calibration, or the check before the first part.
             self.gates.good(now, parts);
@@ -179,9 +155,8 @@ impl Station {
             self.begin_check();
         } else if self.gates.due_by_time(settings, now) {
             self.begin_check();
-            wants
-                .trouble
-                .extend(self.next_serial().map(Alarm::golden_check_due));
+            let trouble = &mut wants.notes.trouble;
+            trouble.extend(self.next_serial().map(Alarm::golden_check_due));
         }
     }
 
@@ -197,7 +172,7 @@ impl Station {
 
     /// The part in the nest is measured by the slow strategy.
     pub(super) fn is_thorough(&self) -> bool {
-        match self.ledger.nest.as_ref().map(|part| &part.kind) {
+        match self.line.ledger.nest.as_ref().map(|part| &part.kind) {
             Some(Kind::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
             Some(Kind::Golden(_)) => self.gates.checking,
             None => false,
@@ -219,7 +194,7 @@ impl Station {
             text: read.clone().err().unwrap_or_else(|| serial.to_owned()),
         });
         match read {
-            Ok(()) => self.gates.good(judged.at, self.ledger.lot_parts()),
+            Ok(()) => self.gates.good(judged.at, self.line.ledger.lot_parts()),
             Err(why) => {
                 self.begin_check();
                 wants.trouble.push(Alarm::golden_check_failed(&why));
@@ -243,7 +218,7 @@ impl Station {
 
     /// Uses of what wears in this run.
     pub fn uses(&self) -> Uses {
-        self.mechanism.uses()
+        self.line.mechanism.uses()
     }
 
     /// Resistance in series of both force contacts of the coil, mean over the last parts of the lot.
@@ -268,7 +243,7 @@ impl Station {
 
     /// Counters at their limit, each told once.
     pub(super) fn worn(&mut self) -> Vec<Alarm> {
-        let uses = self.plan.worn.with(self.mechanism.uses());
+        let uses = self.plan.worn.with(self.line.mechanism.uses());
         let limits = &self.plan.lot.wear;
         let each = [
             ("probes", uses.probe_touches, limits.probe_touches),

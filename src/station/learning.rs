@@ -1,17 +1,19 @@
 //! What the station learns before and during a lot: factors from the references, lags from golden parts,
 //! and from every good part where the next fine ramp goes.
 
-use super::Station;
-use super::gates::Told;
-use super::ledger::Kind;
+use super::gates::{Gates, Told};
 use super::trouble::Alarm;
-use super::wants::{Judged, Wants};
+use super::wants::Wants;
+use super::{Plan, Station};
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::calibration::Lags;
 use crate::dut::em_relay::measure::bench::UNTAUGHT_FINE_V;
 use crate::dut::em_relay::settings::GoldenPart;
 use crate::dut::em_relay::{golden, reference};
 use crate::dut::verdict::Verdict;
+use crate::handling::Ledger;
+use crate::handling::ledger::Kind;
+use crate::handling::wants::Judged;
 use crate::instrument::act::Runner;
 use crate::units::RigTime;
 use std::collections::VecDeque;
@@ -51,22 +53,22 @@ impl Station {
     /// What the parts judged in this turn say of the rig and of the lot.
     pub(super) fn learn(&mut self, wants: &mut Wants) {
         let mut told = Told::default();
-        for judged in &wants.judged {
+        for judged in &wants.record.parts.judged {
             match &judged.part.kind {
                 Kind::Golden(serial) if self.gates.is_checking() => {
                     self.check(judged, serial, &mut told);
                 }
                 Kind::Golden(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
-                Kind::Golden(_) => self.learn_from(judged, &mut wants.calibrated, &mut told),
+                Kind::Golden(_) => self.learn_from(judged, &mut wants.record.calibrated, &mut told),
                 Kind::Lot(_) => {
                     self.count_discards(judged, &mut told);
                     self.follow_probes(judged);
-                    self.learn_from(judged, &mut wants.calibrated, &mut told);
+                    self.learn_from(judged, &mut wants.record.calibrated, &mut told);
                 }
             }
         }
-        wants.trouble.extend(told.trouble);
-        wants.checked = told.checked;
+        wants.notes.trouble.extend(told.trouble);
+        wants.record.checked = told.checked;
     }
 
     /// Golden parts teach the lags, every part the place of the fine ramp.
@@ -110,10 +112,14 @@ impl Station {
     }
 
     /// Certificate of the golden part in the nest, while golden parts teach and are not checked.
-    pub(super) fn teaching(&self) -> Option<&GoldenPart> {
-        match self.ledger.nest.as_ref().map(|part| &part.kind) {
-            Some(Kind::Golden(serial)) if !self.gates.is_checking() => {
-                self.plan.golden.iter().find(|part| part.serial == *serial)
+    pub(super) fn teaching<'a>(
+        plan: &'a Plan,
+        gates: &Gates,
+        ledger: &Ledger,
+    ) -> Option<&'a GoldenPart> {
+        match ledger.nest.as_ref().map(|part| &part.kind) {
+            Some(Kind::Golden(serial)) if !gates.is_checking() => {
+                plan.golden.iter().find(|part| part.serial == *serial)
             }
             Some(Kind::Golden(_) | Kind::Lot(_)) | None => None,
         }
@@ -123,8 +129,8 @@ impl Station {
     pub(super) fn end_golden_run(&mut self, wants: &mut Wants) {
         if self.referenced && self.golden_left.is_empty() && self.is_calibrating() {
             let mut told = Told::default();
-            self.take_lags(true, &mut wants.calibrated, &mut told);
-            wants.trouble.extend(told.trouble);
+            self.take_lags(true, &mut wants.record.calibrated, &mut told);
+            wants.notes.trouble.extend(told.trouble);
         }
     }
 

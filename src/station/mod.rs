@@ -4,10 +4,10 @@
 //! `async`. It may be called at any time and as often as one likes; deadlines are kept in the states.
 //!
 //! The outer machine is [`packml`]; what a state does is in `states`, who may ask for what in `asked`.
-//! 1. `Resetting`: [`recovery`] brings every actuator to its rest end and discharges what is found inside;
-//! 2. `Starting`: without a valid calibration probes up in the empty nest, [`reference`] measurements;
-//! 3. `Execute`: golden parts when there is no calibration, then the lot behind its [`gates`]. [`feed`], [`clamp`] (with the
-//!    [`test`]) and [`sort`] overlap; parts are handed over in the [`ledger`];
+//! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
+//! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
+//! 3. `Execute`: golden parts when there is no calibration, then the lot behind its [`gates`], through the
+//!    [`crate::handling::feeder`];
 //! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go as far as they can rest.
 //!
 //! Trouble: an [`trouble::Alarm`] stops what the [`catalogue`] says and stands in the [`annunciator`] until its
@@ -22,55 +22,41 @@ pub mod annunciator;
 mod asked;
 pub mod catalogue;
 mod chinese;
-pub mod clamp;
-pub mod feed;
 pub mod gates;
-pub mod inside;
 mod lamps;
 mod learning;
-pub mod ledger;
-pub mod mechanism;
-pub mod moves;
+mod line;
 pub mod orders;
 pub mod packml;
 mod panel;
 mod patience;
 mod produce;
-pub mod recovery;
 mod safety;
-pub mod sort;
 mod states;
 pub mod trouble;
-pub mod turn;
 pub mod wants;
-mod watch;
 
 use crate::dut::em_relay::golden::GoldenRun;
 use crate::dut::em_relay::lag::LagLaw;
 use crate::dut::em_relay::measure::Bench;
 use crate::dut::em_relay::measure::bench::untaught;
 use crate::dut::em_relay::settings::GoldenPart;
-use crate::guard::{PartPlaces, Situation};
+use crate::guard::{Motion, Situation};
+use crate::handling::inside::Inside;
+use crate::handling::wear::Uses;
+use crate::handling::{Feeder, Ledger, Mechanism, Move};
 use crate::instrument::act::Runner;
 use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
 use crate::units::RigTime;
 use annunciator::Annunciator;
-use clamp::Clamp;
-use feed::Feed;
-use gates::{Gates, LotSettings, Uses};
-use inside::Inside;
+use gates::{Gates, LotSettings};
 use lamps::Lamps;
-use ledger::Ledger;
-use mechanism::Mechanism;
-use moves::Move;
+use line::Line;
 use packml::{Mode, State};
 use panel::Panel;
 use patience::Patience;
-use recovery::Recovery;
-use sort::Sort;
 use std::collections::VecDeque;
-use turn::Turn;
 use wants::{Inputs, Wants};
 
 /// What a run is to do.
@@ -120,37 +106,22 @@ enum Start {
 pub struct Station {
     plan: Plan,
     bench: Bench,
-    table: AxisTable,
     state: State,
     entered: RigTime,
     mode: Mode,
-    recovery: Recovery,
-    /// Every actuator was brought home and nothing was moved by hand or made safe since.
-    homed: bool,
+    line: Line,
     start: Start,
     /// References were measured in this run.
     referenced: bool,
     began: Option<RigTime>,
     /// Safety inputs were read since the start or since the modules were verified.
     sensed: bool,
-    feed: Feed,
-    /// The escapement may have let a part through when the sequence was cut off.
-    releasing: bool,
-    clamp: Clamp,
-    sort: Sort,
-    ledger: Ledger,
-    mechanism: Mechanism,
     annunciator: Annunciator,
     patience: Patience,
     panel: Panel,
     /// When the emergency-stop chain was last seen open.
     chain_open: Option<RigTime>,
     lamps: Lamps,
-    dark: Vec<(crate::rig::point::DigitalIn, RigTime)>,
-    /// Motions that wait for a step in maintenance.
-    stepwise: VecDeque<Move>,
-    /// Motions that wait until no end sensor is in doubt.
-    postponed: Vec<Move>,
     /// A person asked for the suspension; it does not end by itself.
     suspended_by_order: bool,
     asked_verify: bool,
@@ -164,7 +135,6 @@ pub struct Station {
     coarse: (LagLaw, LagLaw),
     /// The same of parts of this lot alone.
     of_lot: (LagLaw, LagLaw),
-    last_left: Option<RigTime>,
     lot_began: bool,
     /// Nobody has started anything yet: the first start is the program's own.
     fresh: bool,
@@ -191,29 +161,18 @@ impl Station {
             state: plan.between_lots.unwrap_or(State::Stopped),
             plan,
             bench,
-            table,
             entered: RigTime(0),
             mode: Mode::Production,
-            recovery: Recovery::default(),
-            homed: false,
+            line: Line::new(Feeder::new(table), ledger, mechanism),
             start: Start::Begin,
             referenced: false,
             began: None,
             sensed: false,
-            feed: Feed::Empty,
-            releasing: false,
-            clamp: Clamp::Empty,
-            sort: Sort::Returning,
-            ledger,
-            mechanism,
             annunciator: Annunciator::default(),
             patience: Patience::default(),
             panel: Panel::default(),
             chain_open: None,
             lamps: Lamps::default(),
-            dark: Vec::new(),
-            stepwise: VecDeque::new(),
-            postponed: Vec::new(),
             suspended_by_order: false,
             asked_verify: false,
             verified: None,
@@ -223,7 +182,6 @@ impl Station {
             golden_run: GoldenRun::default(),
             coarse: known,
             of_lot: untaught(),
-            last_left: None,
             lot_began: false,
             stopping: false,
             ended: false,
@@ -236,12 +194,12 @@ impl Station {
 
     /// The part ledger.
     pub fn ledger(&self) -> &Ledger {
-        &self.ledger
+        &self.line.ledger
     }
 
     /// Sensors and motions.
     pub fn mechanism(&self) -> &Mechanism {
-        &self.mechanism
+        &self.line.mechanism
     }
 
     /// Alarms that stand.
@@ -266,7 +224,7 @@ impl Station {
 
     /// Strokes, touches and bounces since the start, by name.
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
-        self.mechanism.wear()
+        self.line.mechanism.wear()
     }
 
     /// State of the outer machine.
@@ -284,10 +242,10 @@ impl Station {
         match self.state {
             _ if self.ended => "ended".into(),
             State::Resetting if !self.sensed => "waiting for sensors".into(),
-            State::Resetting if !self.homed => "homing".into(),
+            State::Resetting if !self.line.homed => "homing".into(),
             State::Resetting => "discharging".into(),
             State::Starting => "calibrating".into(),
-            State::Execute | State::Completing => match self.clamp.test() {
+            State::Execute | State::Completing => match self.line.feeder.test() {
                 Some(test) => format!("testing: {:?}", test.stage()),
                 None if self.lot_began => "running".into(),
                 None if self.golden_left.is_empty() => "running".into(),
@@ -331,55 +289,35 @@ impl Station {
         }
         self.look(now, &inputs, stuck, &mut wants);
         self.raise_all(now, &mut wants);
-        if !wants.safe && !self.ended {
+        if !wants.rig.safe && !self.ended {
             self.act(now, inputs, &mut wants);
             self.raise_all(now, &mut wants);
         }
-        self.postpone(now, &mut wants);
-        debug_assert!(self.ledger.balances(), "a part is in two places or in none");
+        self.line.postpone(now, &mut wants);
+        let balances = self.line.ledger.balances();
+        assert!(balances, "a part is in two places or in none");
         self.annunciator.unshelve(now);
-        wants.alarms_changed |= self.annunciator.take_changed();
+        wants.record.alarms_changed |= self.annunciator.take_changed();
         let stack = self
             .lamps
-            .show(now, self.state, self.annunciator.standing(), wants.safe);
-        wants.outputs.extend(stack);
+            .show(now, self.state, self.annunciator.standing(), wants.rig.safe);
+        wants.rig.outputs.extend(stack);
         wants
     }
 
     /// A motion was cleared and driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
-        self.mechanism.driven(movement, now, image);
-        self.sort = self.sort.driven(movement, &mut self.ledger, now);
+        self.line.driven(movement, now, image);
     }
 
     /// The motion as the guard knows it.
-    pub fn motion(&self, movement: Move) -> crate::guard::Motion {
-        movement.motion(self.mechanism.strokes())
+    pub fn motion(&self, movement: Move) -> Motion {
+        movement.motion(self.line.mechanism.strokes())
     }
 
     /// Situation for the guard.
     pub fn situation(&self, now: RigTime, image: &Image) -> Situation {
-        let pushing = matches!(self.feed, Feed::Pushing);
-        let parts = PartPlaces {
-            pocket: self.ledger.pocket && !pushing,
-            on_pusher: self.ledger.pocket && pushing,
-            nest: self.ledger.nest.is_some() && !matches!(self.clamp, Clamp::Lifting),
-            gripper: self.ledger.gripper.is_some() || matches!(self.clamp, Clamp::Lifting),
-        };
-        self.mechanism.situation(parts, now, image)
-    }
-
-    fn turn<'a>(&'a mut self, now: RigTime, inputs: &'a Inputs, wants: &'a mut Wants) -> Turn<'a> {
-        Turn {
-            now,
-            image: inputs.image,
-            mechanism: &self.mechanism,
-            ledger: &mut self.ledger,
-            wants,
-            golden: &mut self.golden_left,
-            recorded: inputs.recorded,
-            resting: matches!(self.state, State::Holding | State::Suspending),
-        }
+        self.line.situation(now, image)
     }
 }
 

@@ -3,15 +3,15 @@
 use super::Station;
 use super::annunciator::Standing;
 use super::catalogue::{self, Goes, Stops};
-use super::clamp::Clamp;
-use super::feed::Feed;
-use super::mechanism::SENSOR_AGE;
-use super::moves::Move;
 use super::packml::{self, Command, On, State};
-use super::sort::{self, Sort};
 use super::trouble::Alarm;
-use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
-use crate::dut::verdict::{Bin, Verdict};
+use super::wants::{Ending, Inputs, Wants};
+use crate::dut::verdict::Verdict;
+use crate::handling::Move;
+use crate::handling::mechanism::SENSOR_AGE;
+use crate::handling::trouble::Trouble;
+use crate::handling::wants::{Interrupted, Judged};
+use crate::rig::bin::Bin;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};
@@ -33,47 +33,41 @@ impl Station {
         stuck: Vec<Alarm>,
         wants: &mut Wants,
     ) {
-        let mut found = self.mechanism.update(now, inputs.image);
-        wants.motions.extend(found.motions);
-        wants.suspicious = self.mechanism.is_suspicious(now);
-        self.still_in_nest(now, inputs.image, &mut found.alarms);
+        let mut found = self.line.mechanism.update(now, inputs.image);
+        wants.rig.motions.extend(found.motions);
+        wants.rig.suspicious = self.line.mechanism.is_suspicious(now);
+        self.still_in_nest(now, inputs.image, &mut found.trouble);
         let mut there = self.safety(now, inputs.image);
         there.extend(stuck);
         there.extend(self.full_bins(now, inputs.image));
         there.extend(self.still_starved(now, inputs.image));
         self.annunciator.sensed(&there);
+        let trouble = &mut wants.notes.trouble;
         if !packml::is_aborted(self.state) {
-            wants.trouble.extend(found.alarms);
+            trouble.extend(found.trouble.into_iter().map(Alarm::from));
         }
-        wants.trouble.extend(inputs.bus.clone());
-        wants.trouble.extend(there);
-        wants.trouble.extend(self.worn());
-        let table = self.table.clone();
-        sort::confirm(&mut self.turn(now, inputs, wants), &table);
-        if !self.dark.is_empty() {
+        trouble.extend(inputs.bus.clone());
+        trouble.extend(there);
+        trouble.extend(self.worn());
+        let golden = &mut self.golden_left;
+        let (feeder, _, mut turn) = self.line.at(now, inputs, wants, golden, false);
+        feeder.confirm(&mut turn);
+        wants.notes.take_over();
+        if !self.line.dark.is_empty() {
             self.patience.wait_for_bin();
         }
-        let patience = self.patience.look(
-            now,
-            self.state,
-            self.mode,
-            &self.feed,
-            &self.clamp,
-            self.sort,
-        );
-        wants.trouble.extend(patience);
+        let feeder = &self.line.feeder;
+        let late = self.patience.look(now, self.state, self.mode, feeder);
+        wants.notes.trouble.extend(late);
     }
 
     /// Fingers that lost their part before it was handed over have left it in the nest.
-    fn still_in_nest(&self, now: RigTime, image: &Image, alarms: &mut [Alarm]) {
-        let there = self.ledger.gripper.is_none()
+    fn still_in_nest(&self, now: RigTime, image: &Image, found: &mut [Trouble]) {
+        let there = self.line.ledger.gripper.is_none()
             && image.input(DigitalIn::NestPresent, now, SENSOR_AGE) == Some(true);
-        let dropped = Alarm::part_dropped();
-        for alarm in alarms
-            .iter_mut()
-            .filter(|alarm| there && **alarm == dropped)
-        {
-            *alarm = Alarm::part_stuck();
+        let dropped = found.iter_mut().filter(|one| **one == Trouble::Dropped);
+        for one in dropped.filter(|_| there) {
+            *one = Trouble::Stuck;
         }
     }
 
@@ -145,17 +139,16 @@ impl Station {
 
     fn full_bins(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let mut alarms = Vec::new();
-        for bin in self.table.bins() {
-            let beam = self.table.beam(bin);
+        for (bin, beam) in self.line.feeder.beams() {
             let dark = image.input(beam, now, SENSOR_AGE) == Some(true);
-            let since = self.dark.iter().find(|(known, _)| *known == beam);
+            let since = self.line.dark.iter().find(|(known, _)| *known == beam);
             match (dark, since.map(|(_, since)| *since)) {
-                (true, None) => self.dark.push((beam, now)),
+                (true, None) => self.line.dark.push((beam, now)),
                 (true, Some(since)) if now.since(since) >= FULL => {
                     alarms.push(Alarm::bin_full(bin.name()));
                 }
                 (true, Some(_)) | (false, None) => {}
-                (false, Some(_)) => self.dark.retain(|(known, _)| *known != beam),
+                (false, Some(_)) => self.line.dark.retain(|(known, _)| *known != beam),
             }
         }
         alarms
@@ -174,22 +167,22 @@ impl Station {
 
     /// A motion that the guard refused: in homing another one goes first, else it is an alarm.
     pub fn refused(&mut self, movement: Move, refusal: &str, now: RigTime, wants: &mut Wants) {
-        if self.state == State::Resetting && self.recovery.refused(movement) {
+        if self.state == State::Resetting && self.line.recovery.refused(movement) {
             return;
         }
-        wants.trouble.push(Alarm::refused(movement, refusal));
+        wants.notes.trouble.push(Alarm::refused(movement, refusal));
         self.raise_all(now, wants);
         let standing = self.annunciator.standing();
-        let stack = self.lamps.show(now, self.state, standing, wants.safe);
-        wants.outputs.extend(stack);
-        wants.alarms_changed |= self.annunciator.take_changed();
+        let stack = self.lamps.show(now, self.state, standing, wants.rig.safe);
+        wants.rig.outputs.extend(stack);
+        wants.record.alarms_changed |= self.annunciator.take_changed();
     }
 
     /// Alarms of this turn into the list; what is left in the wants is what came anew.
     pub(super) fn raise_all(&mut self, now: RigTime, wants: &mut Wants) {
-        for alarm in std::mem::take(&mut wants.trouble) {
+        for alarm in std::mem::take(&mut wants.notes.trouble) {
             if self.annunciator.raise(&alarm, now) {
-                wants.alarms.push(alarm.clone());
+                wants.record.alarms.push(alarm.clone());
             }
             self.react(&alarm, now, wants);
         }
@@ -241,32 +234,18 @@ impl Station {
 
     /// Nothing is known of any position from here on.
     pub(super) fn make_safe(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
-        wants.motions.clear();
-        wants.jog = None;
-        wants.job = None;
-        wants.safe = true;
+        wants.rig.motions.clear();
+        wants.rig.jog = None;
+        wants.rig.job = None;
+        wants.rig.safe = true;
         self.interrupt(why, now, wants);
-        self.releasing |= matches!(self.feed, Feed::Releasing { .. } | Feed::Closing { .. });
-        self.feed = self.feed_at_rest();
-        self.clamp = Clamp::Empty;
-        self.sort = Sort::Returning;
-        self.stepwise.clear();
-        self.postponed.clear();
-        self.mechanism.forget();
-        self.homed = false;
-    }
-
-    pub(super) fn feed_at_rest(&self) -> Feed {
-        if self.ledger.pocket {
-            Feed::Ready
-        } else {
-            Feed::Empty
-        }
+        self.line.cut_off();
     }
 
     /// Parts in nest and gripper go to retest; one that was judged gets that into its row.
     fn interrupt(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
-        let ledger = &mut self.ledger;
+        let ledger = &mut self.line.ledger;
+        let parts = &mut wants.record.parts;
         for part in ledger.nest.iter_mut().chain(&mut ledger.gripper) {
             if part.interrupted.is_some() && part.bin.is_some() {
                 continue;
@@ -277,16 +256,16 @@ impl Station {
                 .clone();
             let ordinal = part.ordinal;
             if part.bin.replace(Bin::RETEST).is_some() {
-                wants.interrupted.push(Interrupted { ordinal, why });
+                parts.interrupted.push(Interrupted { ordinal, why });
                 continue;
             }
             let mut judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
-            if let Clamp::Testing(test) = &self.clamp {
+            if let Some(test) = self.line.feeder.test() {
                 judged.findings = test.findings.clone();
                 judged.judgements = test.judgements();
             }
             debug_assert!(matches!(judged.verdict, Verdict::Void(_)));
-            wants.judged.push(judged);
+            parts.judged.push(judged);
         }
     }
 

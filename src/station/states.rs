@@ -1,17 +1,18 @@
 //! What each state of the outer machine does in a turn, and how it is left.
 
 use super::catalogue::Stops;
-use super::moves::Move;
 use super::packml::{self, Command, On, State};
-use super::recovery::Recovery;
 use super::safety::{FIRST_SCAN, safety_was_read};
-use super::sort::Sort;
 use super::trouble::Alarm;
-use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
+use super::wants::{Ending, Inputs, Wants};
 use super::{Start, Station};
 use crate::dut::em_relay::reference;
-use crate::dut::verdict::Bin;
+use crate::handling::feeder::Permits;
+use crate::handling::recovery::Recovery;
+use crate::handling::wants::{Interrupted, Judged, NestJob};
+use crate::handling::{Move, NestId};
 use crate::instrument::act::{Doing, Runner};
+use crate::rig::bin::Bin;
 use crate::units::{RigTime, Span};
 
 /// Outputs that did not confirm their safe value in this time are told, and the abort goes on without.
@@ -71,15 +72,15 @@ impl Station {
 
     /// The run is over. Nobody will look for a part that is on its way to its bin: it is told.
     pub(super) fn end(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
-        if let Some(falling) = self.ledger.lose_falling() {
+        if let Some(falling) = self.line.ledger.lose_falling() {
             let alarm = Alarm::beam_unread(falling.bin.name());
             if self.annunciator.raise(&alarm, now) {
-                wants.alarms.push(alarm);
-                wants.alarms_changed |= self.annunciator.take_changed();
+                wants.record.alarms.push(alarm);
+                wants.record.alarms_changed |= self.annunciator.take_changed();
             }
         }
-        wants.safe = true;
-        wants.ending = Some(ending);
+        wants.rig.safe = true;
+        wants.record.ending = Some(ending);
         self.ended = true;
     }
 
@@ -101,11 +102,11 @@ impl Station {
         self.state = to;
         self.entered = RigTime(now.0.max(1));
         self.patience.forget();
-        wants.wake_at = Some(now);
+        wants.rig.wake_at = Some(now);
         match to {
             State::Resetting => {
-                self.recovery = Recovery::default();
-                self.homed = false;
+                self.line.recovery = Recovery::default();
+                self.line.homed = false;
             }
             State::Starting => {
                 self.fresh = false;
@@ -143,18 +144,26 @@ impl Station {
             State::Starting => self.begin(now, &inputs, wants),
             State::Execute => {
                 self.look_for_check(now, wants);
-                self.produce(now, inputs, wants, self.wants_more(), true);
+                let permits = Permits {
+                    release: self.wants_more(),
+                    push: true,
+                };
+                self.produce(now, inputs, wants, permits);
                 let done = !self.wants_more() && !self.gates.is_checking();
                 if self.state == State::Execute && done {
                     self.done(now, wants);
                 }
             }
             State::Completing => self.finish(now, inputs, wants, true),
-            State::Stopping if self.homed => self.finish(now, inputs, wants, false),
+            State::Stopping if self.line.homed => self.finish(now, inputs, wants, false),
             State::Holding | State::Suspending => {
-                self.produce(now, inputs, wants, false, false);
+                let permits = Permits {
+                    release: false,
+                    push: false,
+                };
+                self.produce(now, inputs, wants, permits);
                 let resting = matches!(self.state, State::Holding | State::Suspending);
-                if resting && self.is_at_rest() {
+                if resting && self.line.is_at_rest() {
                     self.done(now, wants);
                 }
             }
@@ -175,45 +184,41 @@ impl Station {
         if !self.sensed {
             return;
         }
-        if self.homed {
+        if self.line.homed {
             return self.finish(now, inputs, wants, false);
         }
-        let (mut recovery, releasing) = (self.recovery.clone(), self.releasing);
-        if recovery.drive_reset(now) {
-            self.mechanism.drive_reset(now);
+        if self.line.recovery.drive_reset(now) {
+            self.line.mechanism.drive_reset(now);
         }
-        let home = recovery.step(&mut self.turn(now, &inputs, wants), releasing);
-        self.recovery = recovery;
+        let golden = &mut self.golden_left;
+        let (feeder, recovery, mut turn) = self.line.at(now, &inputs, wants, golden, false);
+        let home = recovery.step(&mut turn, feeder.is_releasing());
+        wants.notes.take_over();
         if home {
-            self.homed = true;
-            self.releasing = false;
+            self.line.homed = true;
             self.take_up(now, wants);
         }
     }
 
     /// The sequence goes on from the parts that are inside.
     fn take_up(&mut self, now: RigTime, wants: &mut Wants) {
-        self.feed = self.feed_at_rest();
-        self.clamp = super::Clamp::Empty;
-        self.sort = Sort::Returning;
-        self.last_left = None;
+        self.line.feeder.take_up(&self.line.ledger);
         if self.gates.is_checking() {
             self.begin_check();
         }
         self.end_golden_run(wants);
         self.take_up_gripped(now, wants);
-        for part in self.ledger.nest.iter_mut() {
+        for part in self.line.ledger.nest.iter_mut() {
             part.interrupted.get_or_insert_with(|| BY_A_RESET.into());
         }
-        wants.wake_at = Some(now);
+        wants.rig.wake_at = Some(now);
     }
 
     /// What the fingers hold goes to retest, and its row says why; one that they never let go had a row for its bin.
     fn take_up_gripped(&mut self, now: RigTime, wants: &mut Wants) {
-        let Some(part) = &mut self.ledger.gripper else {
+        let Some(part) = &mut self.line.ledger.gripper else {
             return;
         };
-        self.sort = Sort::Loaded;
         let told = part.interrupted.is_some();
         let why = part
             .interrupted
@@ -221,10 +226,11 @@ impl Station {
             .clone();
         if part.bin.replace(Bin::RETEST).is_none() {
             let judged = Judged::interrupted(part.clone(), &why, &self.bench, now);
-            wants.judged.push(judged);
+            wants.record.parts.judged.push(judged);
         } else if !told {
             let ordinal = part.ordinal;
-            wants.interrupted.push(Interrupted { ordinal, why });
+            let interrupted = &mut wants.record.parts.interrupted;
+            interrupted.push(Interrupted { ordinal, why });
         }
     }
 
@@ -234,11 +240,12 @@ impl Station {
         }
         match std::mem::replace(&mut self.start, Start::Begin) {
             Start::Begin => {
-                wants.motions.push(Move::ProbesUp);
+                wants.rig.motions.push(Move::ProbesUp);
                 self.start = Start::Up;
             }
             Start::Up => {
                 let up = self
+                    .line
                     .mechanism
                     .has_arrived(Move::ProbesUp, now, inputs.image);
                 self.start = if up {
@@ -247,11 +254,12 @@ impl Station {
                 } else {
                     Start::Up
                 };
-                wants.wake_at = up.then_some(now);
+                wants.rig.wake_at = up.then_some(now);
             }
             Start::References(runner) => self.measure(now, inputs, runner, wants),
             Start::Down => {
                 if self
+                    .line
                     .mechanism
                     .has_arrived(Move::ProbesDown, now, inputs.image)
                 {
@@ -271,17 +279,21 @@ impl Station {
         mut runner: Box<Runner>,
         wants: &mut Wants,
     ) {
-        match runner.step(now, inputs.job.as_ref(), inputs.image) {
-            Doing::Job(job) => wants.job = Some(job),
-            Doing::Wait(until) => wants.wake_at = Some(until),
+        let done = inputs.job.as_ref().map(|job| &job.done);
+        match runner.step(now, done, inputs.image) {
+            Doing::Job(job) => {
+                let nest = NestId::FIRST;
+                wants.rig.job = Some(NestJob { nest, job });
+            }
+            Doing::Wait(until) => wants.rig.wake_at = Some(until),
             Doing::Busy => {}
-            Doing::Trouble(why) => wants.trouble.push(Alarm::calibration(&why)),
+            Doing::Trouble(why) => wants.notes.trouble.push(Alarm::calibration(&why)),
             Doing::Done => {
                 if let Err(why) = self.conclude_references(now, &runner) {
-                    wants.trouble.push(Alarm::calibration(&why));
+                    wants.notes.trouble.push(Alarm::calibration(&why));
                     return;
                 }
-                wants.motions.push(Move::ProbesDown);
+                wants.rig.motions.push(Move::ProbesDown);
                 self.start = Start::Down;
                 return;
             }
@@ -292,8 +304,12 @@ impl Station {
     /// The parts inside to the end; `push`: the one in the pocket too.
     fn finish(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants, push: bool) {
         let (state, recorded) = (self.state, inputs.recorded);
-        self.produce(now, inputs, wants, false, push);
-        if self.state == state && self.is_finished(push, recorded, wants) {
+        let permits = Permits {
+            release: false,
+            push,
+        };
+        self.produce(now, inputs, wants, permits);
+        if self.state == state && self.line.is_finished(push, recorded, wants) {
             self.done(now, wants);
         }
     }
@@ -302,7 +318,7 @@ impl Station {
         if inputs.settled {
             self.done(now, wants);
         } else if now.since(self.entered) > SAFE_WITHIN {
-            wants.trouble.push(Alarm::not_safe());
+            wants.notes.trouble.push(Alarm::not_safe());
             self.done(now, wants);
         }
     }
@@ -319,7 +335,7 @@ impl Station {
             }
         } else if !self.asked_verify {
             self.asked_verify = true;
-            wants.verify = true;
+            wants.rig.verify = true;
         }
     }
 }

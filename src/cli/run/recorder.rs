@@ -18,14 +18,15 @@ use crate::cycle::{Event, Profile};
 use crate::dut::Recipe;
 use crate::dut::em_relay::Calibration;
 use crate::dut::verdict::{Bin, Verdict};
+use crate::handling::inside::Inside;
+use crate::handling::ledger::Kind;
+use crate::handling::wants::{Interrupted, Judged, Landed};
+use crate::handling::wear::Uses;
 use crate::history::{
     CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
     snapshot_hash,
 };
-use crate::station::gates::Uses;
-use crate::station::inside::Inside;
-use crate::station::ledger::Kind;
-use crate::station::wants::{Ending, Interrupted, Judged, Landed};
+use crate::station::wants::Ending;
 use crate::units::RigTime;
 use crate::view::View;
 use anyhow::Context;

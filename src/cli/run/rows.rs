@@ -3,11 +3,11 @@
 use super::recorder::Setup;
 use crate::dut::em_relay::Parameter;
 use crate::dut::verdict::{Judgement, Verdict};
+use crate::handling::ledger::Kind;
+use crate::handling::wants::Judged;
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
 use crate::instrument::trace::Trace;
 use crate::rig::point::{AnalogIn, Counter};
-use crate::station::ledger::Kind;
-use crate::station::wants::Judged;
 use crate::units::RigTime;
 use serde_json::{Map, Value, json};
 

@@ -4,7 +4,7 @@
 use super::counts::Counts;
 use super::recorder::Setup;
 use super::rows;
-use crate::station::wants::Judged;
+use crate::handling::wants::Judged;
 use crate::view::{LastPart, LineView, RecentPart, View};
 use std::collections::BTreeMap;
 

@@ -2,8 +2,8 @@
 
 use super::counts::Counts;
 use crate::dut::em_relay::Parameter;
+use crate::handling::wants::Judged;
 use crate::quality::Spread;
-use crate::station::wants::Judged;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;

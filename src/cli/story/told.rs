@@ -5,12 +5,12 @@
 
 use super::script::{Awaited, Line, Script};
 use crate::cycle::{Event, PANEL};
+use crate::handling::ledger::{Kind, Part};
+use crate::handling::wants::Landed;
 use crate::rig::bin::Bin;
 use crate::station::annunciator::Standing;
 use crate::station::catalogue;
-use crate::station::ledger::{Kind, Part};
 use crate::station::trouble::Alarm;
-use crate::station::wants::Landed;
 use crate::units::RigTime;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::dut::em_relay::bins;
-use crate::station::inside::Inside;
+use crate::handling::inside::Inside;
 
 #[test]
 fn a_part_is_kept_down_to_the_raw_reply() {

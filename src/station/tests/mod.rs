@@ -2,35 +2,13 @@
 #![allow(clippy::unwrap_used)]
 
 mod annunciator;
-mod clamp;
-mod feed;
 mod gates;
-mod graph;
-mod inside;
-mod instruments;
-mod ledger;
 mod machine;
-mod mechanism;
 mod orders;
 mod packml;
 mod panel;
-mod recovery;
 mod run;
 mod safety;
-mod shop;
-mod sort;
 mod trouble;
 
-pub(crate) use instruments::{bench, golden_parts};
-pub(crate) use shop::Shop;
-
-use crate::rig::settings::RigSettings;
-use crate::rig::wiring::Wiring;
-use std::sync::Arc;
-
-const RIG: &str = include_str!("../../../config/rig.toml");
-
-fn wiring() -> Arc<Wiring> {
-    let settings: RigSettings = toml::from_str(RIG).unwrap();
-    Arc::new(Wiring::resolve(&settings).unwrap())
-}
+pub(crate) use crate::handling::tests::{Shop, bench, golden_parts};

@@ -1,10 +1,11 @@
 //! The catalogue knows every alarm, in both languages, once.
 
-use super::wiring;
+use crate::handling::moves::Move;
+use crate::handling::tests::wiring;
+use crate::handling::trouble::Trouble;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
 use crate::station::catalogue::{entry, every};
-use crate::station::moves::Move;
 use crate::station::trouble::Alarm;
 use crate::units::Span;
 
@@ -85,6 +86,19 @@ fn every_alarm_that_the_station_can_raise_is_in_the_catalogue() {
             crate::station::catalogue::entry(&alarm.code).map(|one| one.code) == Some(entry.code)
         });
         assert!(used, "nothing raises {}", entry.code);
+    }
+}
+
+#[test]
+fn a_stroke_that_does_not_arrive_is_told_with_its_sensors() {
+    for movement in MOVES {
+        let alarm = Alarm::from(Trouble::NotReached(movement, Span::ms(900)));
+        let code = format!("{}_not_reached", movement.actuator_key());
+        assert_eq!(alarm.code, code);
+        for (point, _) in movement.arrival() {
+            assert!(alarm.text_en.contains(point.name()), "{}", alarm.text_en);
+            assert!(alarm.text_zh.contains(point.name()), "{}", alarm.text_zh);
+        }
     }
 }
 

@@ -8,7 +8,7 @@
 //! jaws are open, the probes down and the gripper up; the guard checks the same in millimetres.
 
 use super::moves::Move;
-use super::trouble::Alarm;
+use super::trouble::Trouble;
 use super::turn::Turn;
 use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};
@@ -101,11 +101,11 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
         return Feed::Releasing { since, attempt };
     }
     turn.drive(Move::EscapementHold);
-    turn.alarm(
+    turn.tell(
         match (attempt < TRIES, turn.seen(DigitalIn::TrackLevel, true)) {
-            (true, _) => Alarm::retried(Move::EscapementRelease, ARRIVES),
-            (false, true) => Alarm::no_part(),
-            (false, false) => Alarm::magazine_empty(),
+            (true, _) => Trouble::Retried(Move::EscapementRelease, ARRIVES),
+            (false, true) => Trouble::NoPart,
+            (false, false) => Trouble::MagazineEmpty,
         },
     );
     Feed::Closing { attempts: attempt }
@@ -124,7 +124,7 @@ fn pushed(turn: &mut Turn) -> Feed {
             Feed::Retracting
         }
         Some(false) => {
-            turn.alarm(Alarm::nest_empty());
+            turn.tell(Trouble::NestEmpty);
             Feed::Pushing
         }
         None => Feed::Pushing,

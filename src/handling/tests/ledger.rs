@@ -1,8 +1,8 @@
 //! Every part is in exactly one place, and the places add up.
 
 use crate::dut::em_relay::bins;
-use crate::dut::verdict::Bin;
-use crate::station::ledger::{Kind, Ledger};
+use crate::handling::ledger::{Kind, Ledger};
+use crate::rig::bin::Bin;
 use crate::units::RigTime;
 
 fn with_part_in_gripper() -> Ledger {

@@ -2,11 +2,11 @@
 
 use super::Shop;
 use crate::dut::em_relay::bins;
-use crate::dut::verdict::Bin;
+use crate::handling::moves::Move;
+use crate::handling::sort::{Sort, confirm};
 use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::moves::Move;
-use crate::station::sort::{Sort, confirm};
 use crate::units::RigTime;
 
 const HOME: Move = Move::AxisTo(AxisStation::Nest);
@@ -55,7 +55,7 @@ fn falling(bin: Bin, count: u16) -> (Sort, Shop) {
     let (sort, mut shop) = over(bin, count);
     shop.recorded = 1;
     let sort = step(sort, &mut shop, false);
-    assert_eq!(shop.wants.motions, [Move::GripperOpen]);
+    assert_eq!(shop.wants.rig.motions, [Move::GripperOpen]);
     let sort = let_go(sort, &mut shop);
     shop.carried_out(Move::GripperOpen);
     (sort, shop)
@@ -90,7 +90,7 @@ fn z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open() {
         assert_eq!(step(Sort::Returning, &mut shop, running), Sort::OverNest);
         let sort = step(Sort::OverNest, &mut shop, running);
         assert_eq!(sort == Sort::Lowering, comes, "{running} {sensor:?}");
-        assert_eq!(shop.wants.motions.contains(&Move::SortDown), comes);
+        assert_eq!(shop.wants.rig.motions.contains(&Move::SortDown), comes);
     }
 }
 
@@ -115,7 +115,7 @@ fn a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest() {
         let mut shop = loaded(bin);
         assert_eq!(step(Sort::Loaded, &mut shop, false), Sort::Carrying(bin));
         let station = AxisStation::Bin(bin);
-        assert_eq!(shop.wants.motions, [Move::AxisTo(station)]);
+        assert_eq!(shop.wants.rig.motions, [Move::AxisTo(station)]);
     }
     let mut shop = loaded(Bin::PASS);
     if let Some(part) = &mut shop.ledger.gripper {
@@ -159,7 +159,7 @@ fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
     let since = shop.now;
     let sort = step(Sort::OverBin(bins::TIME, since), &mut shop, false);
     assert_eq!(sort, Sort::OverBin(bins::TIME, since), "read too early");
-    assert_eq!(shop.wants.beam, Some(DigitalIn::BeamTime));
+    assert_eq!(shop.wants.rig.beam, Some(DigitalIn::BeamTime));
     shop.after(1);
     beam(&mut shop, bins::TIME, 5);
     let asked = step(sort, &mut shop, false);
@@ -179,7 +179,7 @@ fn a_part_is_not_let_go_while_the_one_before_still_falls() {
     before.drop_over(bins::COIL, shop.now, 0);
     shop.ledger.falling = before.falling;
     assert_eq!(step(sort, &mut shop, false), sort);
-    assert!(shop.wants.motions.is_empty());
+    assert!(shop.wants.rig.motions.is_empty());
 }
 
 #[test]
@@ -188,18 +188,24 @@ fn one_count_of_the_beam_lands_the_part_even_across_the_wrap() {
         let (sort, mut shop) = falling(bins::VOLTAGE, before);
         beam(&mut shop, bins::VOLTAGE, after);
         let sort = step(sort, &mut shop, false);
-        assert_eq!((sort, &*shop.wants.motions), (Sort::Returning, &[HOME][..]));
-        assert!(shop.wants.landed.is_empty(), "a second body may follow");
+        assert_eq!(
+            (sort, &*shop.wants.rig.motions),
+            (Sort::Returning, &[HOME][..])
+        );
+        assert!(
+            shop.wants.parts.landed.is_empty(),
+            "a second body may follow"
+        );
         shop.after(79);
         beam(&mut shop, bins::VOLTAGE, after);
         step(sort, &mut shop, false);
-        assert!(shop.wants.landed.is_empty());
+        assert!(shop.wants.parts.landed.is_empty());
         shop.after(1);
         step(sort, &mut shop, false);
-        assert!(shop.wants.landed.is_empty(), "that count is too old");
+        assert!(shop.wants.parts.landed.is_empty(), "that count is too old");
         beam(&mut shop, bins::VOLTAGE, after);
         step(sort, &mut shop, false);
-        let landed = &shop.wants.landed[0];
+        let landed = &shop.wants.parts.landed[0];
         assert_eq!((landed.bin, landed.part.ordinal), (bins::VOLTAGE, 1));
         assert!(shop.ledger.falling.is_none() && shop.ledger.balances());
     }
@@ -215,7 +221,11 @@ fn a_second_body_behind_the_part_is_an_alarm() {
         beam(&mut shop, Bin::PASS, 10 + bodies);
         step(sort, &mut shop, false);
         assert_eq!(shop.alarms(), ["bin_beam"], "{bodies}");
-        assert_eq!(shop.wants.landed.len(), 1, "the part itself is in the bin");
+        assert_eq!(
+            shop.wants.parts.landed.len(),
+            1,
+            "the part itself is in the bin"
+        );
     }
 }
 
@@ -243,7 +253,7 @@ fn a_count_read_before_the_fingers_opened_says_nothing() {
     let sort = let_go(asked, &mut shop);
     beam(&mut shop, Bin::PASS, 11);
     step(sort, &mut shop, false);
-    assert!(shop.wants.landed.is_empty());
+    assert!(shop.wants.parts.landed.is_empty());
     let falling = shop.ledger.falling.as_ref().unwrap();
     assert_eq!(falling.seen, None);
 }
@@ -254,11 +264,11 @@ fn open_fingers_go_back_when_they_are_seen_empty() {
     shop.set(DigitalIn::GripperPart, true);
     shop.scan();
     assert_eq!(step(sort, &mut shop, false), Sort::Opening);
-    assert!(shop.wants.motions.is_empty());
+    assert!(shop.wants.rig.motions.is_empty());
     shop.set(DigitalIn::GripperPart, false);
     shop.scan();
     assert_eq!(step(sort, &mut shop, false), Sort::Returning);
-    assert_eq!(shop.wants.motions, [HOME]);
+    assert_eq!(shop.wants.rig.motions, [HOME]);
 }
 
 #[test]
@@ -311,7 +321,10 @@ fn nobody_declares_a_part_lost_who_cannot_see_the_fingers() {
     shop.set(DigitalIn::GripperPart, false);
     shop.scan();
     step(Sort::Returning, &mut shop, false);
-    assert_eq!((shop.alarms(), shop.ledger.lost), (vec!["bin_beam"], 1));
+    assert_eq!(
+        (shop.alarms(), shop.ledger.lost),
+        (vec!["bin_beam".to_owned()], 1)
+    );
 }
 
 #[test]
@@ -322,5 +335,8 @@ fn fingers_that_take_the_next_part_do_not_bring_the_fallen_one_back() {
     time_is_over(&mut shop);
     shop.scan();
     step(Sort::AtPart, &mut shop, true);
-    assert_eq!((shop.alarms(), shop.ledger.lost), (vec!["bin_beam"], 1));
+    assert_eq!(
+        (shop.alarms(), shop.ledger.lost),
+        (vec!["bin_beam".to_owned()], 1)
+    );
 }

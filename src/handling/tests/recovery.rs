@@ -1,12 +1,12 @@
 //! Homing in an order that can be proved clear; parts are where they are seen.
 
 use super::Shop;
-use crate::dut::verdict::Bin;
+use crate::handling::ledger::{Kind, Ledger};
+use crate::handling::moves::Move;
+use crate::handling::recovery::Recovery;
 use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
-use crate::station::ledger::{Kind, Ledger};
-use crate::station::moves::Move;
-use crate::station::recovery::Recovery;
 
 const ORDER: [Move; 7] = [
     Move::SortUp,
@@ -43,7 +43,7 @@ fn carried_out(shop: &mut Shop) -> Vec<Move> {
         if recovery.step(&mut shop.turn(), false) {
             break;
         }
-        let motions = shop.wants.motions.clone();
+        let motions = shop.wants.rig.motions.clone();
         assert!(motions.len() < 2, "one at a time");
         if motions.is_empty() {
             shop.after(20);
@@ -86,8 +86,8 @@ fn the_drive_is_reset_and_its_servo_on_before_anything_moves() {
     let mut outputs = Vec::new();
     for _ in 0..4 {
         recovery.step(&mut shop.turn(), false);
-        assert!(shop.wants.motions.is_empty());
-        outputs.append(&mut shop.wants.outputs);
+        assert!(shop.wants.rig.motions.is_empty());
+        outputs.append(&mut shop.wants.rig.outputs);
         shop.after(20);
     }
     let expected = [
@@ -104,7 +104,7 @@ fn nothing_moves_before_the_places_of_parts_were_looked_at() {
     let mut recovery = Recovery::default();
     for _ in 0..3 {
         assert!(!recovery.step(&mut shop.turn(), false));
-        assert!(shop.wants.motions.is_empty() && shop.wants.outputs.is_empty());
+        assert!(shop.wants.rig.motions.is_empty() && shop.wants.rig.outputs.is_empty());
     }
 }
 
@@ -114,17 +114,17 @@ fn a_motion_that_the_guard_refuses_waits_until_the_others_are_home() {
     shop.stands(Move::SortUp);
     shop.scan();
     let mut recovery = Recovery::default();
-    while shop.wants.motions.is_empty() {
+    while shop.wants.rig.motions.is_empty() {
         recovery.step(&mut shop.turn(), false);
         shop.after(20);
     }
-    assert_eq!(shop.wants.motions, [Move::ProbesDown]);
+    assert_eq!(shop.wants.rig.motions, [Move::ProbesDown]);
     assert!(recovery.refused(Move::ProbesDown), "another one goes first");
     recovery.step(&mut shop.turn(), false);
-    assert_eq!(shop.wants.motions, [Move::PusherRetract]);
+    assert_eq!(shop.wants.rig.motions, [Move::PusherRetract]);
     let mut again = true;
     for _ in 0..6 {
-        let asked = shop.wants.motions.clone();
+        let asked = shop.wants.rig.motions.clone();
         again = asked.iter().all(|movement| recovery.refused(*movement));
         recovery.step(&mut shop.turn(), false);
     }
@@ -149,7 +149,7 @@ fn a_part_that_nobody_knows_is_found_and_fingers_that_hold_one_stay_closed() {
         assert_eq!(opened, place != "gripper", "{place}");
         let ledger = &shop.ledger;
         assert!(ledger.balances() && ledger.found == 1 && ledger.inside() == 1);
-        let why = |part: &Option<crate::station::ledger::Part>| {
+        let why = |part: &Option<crate::handling::ledger::Part>| {
             part.as_ref().and_then(|part| part.interrupted.clone())
         };
         let told = why(&ledger.nest).or(why(&ledger.gripper));

@@ -6,7 +6,7 @@
 //! part that was let go is lost only when the fingers were seen empty; one that they still show is theirs again.
 
 use super::inside::Inside;
-use crate::dut::verdict::Bin;
+use crate::rig::bin::Bin;
 use crate::units::{RigTime, Second};
 
 /// Why a part that nobody knows is not tested.

@@ -2,13 +2,14 @@
 
 use super::{Graph, SEEN, show, truths};
 use crate::dut::em_relay::measure::{Bench, Test};
-use crate::dut::verdict::Bin;
+use crate::handling::ledger::Ledger;
+use crate::handling::nest::{Nest, NestContext, NestState, TestTerms};
+use crate::handling::place::NestId;
+use crate::handling::sort::Sort;
+use crate::handling::tests::{Shop, bench};
 use crate::instrument::act::JobDone;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::clamp::{Beside, Clamp};
-use crate::station::ledger::Ledger;
-use crate::station::sort::Sort;
-use crate::station::tests::{Shop, bench};
 
 const STATES: [&str; 9] = [
     "Empty",
@@ -23,17 +24,17 @@ const STATES: [&str; 9] = [
 ];
 
 /// The state of this name; a test that is over has only its switching off before it.
-fn state(name: &str, shop: &Shop, bench: &Bench) -> Clamp {
+fn state(name: &str, shop: &Shop, bench: &Bench) -> NestState {
     match name {
-        "Empty" => Clamp::Empty,
-        "Clamping" => Clamp::Clamping,
-        "Probing" => Clamp::Probing,
-        "Testing" => Clamp::Testing(Box::new(Test::begin(bench.clone(), shop.now))),
-        "TestOver" => Clamp::Testing(Box::new(failed(shop, bench))),
-        "Judged" => Clamp::Judged,
-        "Gripping" => Clamp::Gripping,
-        "Unclamping" => Clamp::Unclamping,
-        "Lifting" => Clamp::Lifting,
+        "Empty" => NestState::Empty,
+        "Clamping" => NestState::Clamping,
+        "Probing" => NestState::Probing,
+        "Testing" => NestState::Testing(Box::new(Test::begin(bench.clone(), shop.now))),
+        "TestOver" => NestState::Testing(Box::new(failed(shop, bench))),
+        "Judged" => NestState::Judged,
+        "Gripping" => NestState::Gripping,
+        "Unclamping" => NestState::Unclamping,
+        "Lifting" => NestState::Lifting,
         other => panic!("{other}"),
     }
 }
@@ -52,16 +53,16 @@ fn silent(shop: &Shop) -> JobDone {
     }
 }
 
-fn name(clamp: &Clamp) -> &'static str {
-    match clamp {
-        Clamp::Empty => "Empty",
-        Clamp::Clamping => "Clamping",
-        Clamp::Probing => "Probing",
-        Clamp::Testing(_) => "Testing",
-        Clamp::Judged => "Judged",
-        Clamp::Gripping => "Gripping",
-        Clamp::Unclamping => "Unclamping",
-        Clamp::Lifting => "Lifting",
+fn name(state: &NestState) -> &'static str {
+    match state {
+        NestState::Empty => "Empty",
+        NestState::Clamping => "Clamping",
+        NestState::Probing => "Probing",
+        NestState::Testing(_) => "Testing",
+        NestState::Judged => "Judged",
+        NestState::Gripping => "Gripping",
+        NestState::Unclamping => "Unclamping",
+        NestState::Lifting => "Lifting",
     }
 }
 
@@ -108,21 +109,29 @@ fn the_nest_is_the_drawing() {
                 shop.after(1);
                 for from in STATES {
                     for [part, interrupted, judged, around, resting] in truths() {
-                        let clamp = state(from, &shop, &bench);
+                        let mut nest = Nest {
+                            id: NestId::FIRST,
+                            state: state(from, &shop, &bench),
+                        };
                         let job = (from == "TestOver").then(|| silent(&shop));
                         shop.ledger = ledger(from, part, interrupted, judged);
                         let mut sort = if around { Sort::AtPart } else { Sort::OverNest };
                         let mut turn = shop.turn();
                         turn.resting = resting;
-                        let beside = Beside {
-                            job,
-                            bench: &bench,
+                        let context = NestContext {
+                            done: job,
+                            terms: TestTerms {
+                                bench: &bench,
+                                thorough: false,
+                                probe_contact: None,
+                                golden: None,
+                            },
                             sort: &mut sort,
                             last_left: &mut None,
                         };
-                        let next = clamp.step(&mut turn, beside);
+                        nest.step(&mut turn, context);
                         let drawn = if from == "TestOver" { "Testing" } else { from };
-                        graph.add(drawn, name(&next), &shop.wants);
+                        graph.add(drawn, name(&nest.state), &shop.wants);
                         assert!(shop.ledger.balances());
                     }
                 }
@@ -130,7 +139,7 @@ fn the_nest_is_the_drawing() {
         }
     }
     graph.is("nest", include_str!("../golden/nest.dot"), 81 * 4 * 9 * 32);
-    graph.is_told_by(FACTS, include_str!("../clamp.rs"));
+    graph.is_told_by(FACTS, include_str!("../nest.rs"));
 }
 
 /// From, to, and the test that walks there.

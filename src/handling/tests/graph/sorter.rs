@@ -1,14 +1,14 @@
 //! The sorter: nine states, eleven inputs, and what falls.
 
 use super::{Graph, SEEN, Seen, show, truths};
-use crate::dut::verdict::Bin;
+use crate::handling::ledger::Ledger;
+use crate::handling::moves::Move;
+use crate::handling::sort::Sort;
+use crate::handling::tests::Shop;
+use crate::handling::tests::shop::Asked;
 use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::ledger::Ledger;
-use crate::station::moves::Move;
-use crate::station::sort::Sort;
-use crate::station::tests::Shop;
-use crate::station::wants::Wants;
 use crate::units::{RigTime, Span};
 
 fn name(sort: Sort) -> &'static str {
@@ -104,7 +104,7 @@ fn the_sorter_is_the_drawing() {
                     assert!(shop.ledger.balances());
                     if matches!(sort, Sort::LettingGo(..)) && !falling {
                         let driven = sort.driven(Move::GripperOpen, &mut shop.ledger, shop.now);
-                        graph.add(name(sort), name(driven), &Wants::default());
+                        graph.add(name(sort), name(driven), &Asked::default());
                         assert!(shop.ledger.balances());
                     }
                 }

@@ -1,10 +1,10 @@
 //! The feed: eight states, eleven inputs.
 
 use super::{Graph, SEEN, show, truths};
+use crate::handling::feed::{Feed, TRIES};
+use crate::handling::ledger::Ledger;
+use crate::handling::tests::Shop;
 use crate::rig::point::DigitalIn;
-use crate::station::feed::{Feed, TRIES};
-use crate::station::ledger::Ledger;
-use crate::station::tests::Shop;
 use crate::units::Span;
 
 fn name(feed: Feed) -> String {

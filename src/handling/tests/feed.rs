@@ -2,10 +2,10 @@
 
 use super::Shop;
 use super::instruments::golden_parts;
+use crate::handling::feed::Feed;
+use crate::handling::ledger::Kind;
+use crate::handling::moves::Move;
 use crate::rig::point::DigitalIn;
-use crate::station::feed::Feed;
-use crate::station::ledger::Kind;
-use crate::station::moves::Move;
 use crate::units::Span;
 
 fn step(feed: Feed, shop: &mut Shop, wanted: bool) -> Feed {
@@ -25,7 +25,7 @@ fn ready() -> (Feed, Shop) {
 fn a_part_goes_from_track_to_nest_and_gets_its_number_there() {
     let mut shop = Shop::at_rest();
     let feed = step(Feed::Empty, &mut shop, true);
-    assert_eq!(shop.wants.motions, [Move::EscapementRelease]);
+    assert_eq!(shop.wants.rig.motions, [Move::EscapementRelease]);
     shop.carried_out(Move::EscapementRelease);
     let feed = step(feed, &mut shop, true);
     assert!(matches!(feed, Feed::Releasing { .. }));
@@ -33,21 +33,21 @@ fn a_part_goes_from_track_to_nest_and_gets_its_number_there() {
     shop.after(50);
     let feed = step(feed, &mut shop, true);
     assert_eq!(
-        (feed, &*shop.wants.motions),
+        (feed, &*shop.wants.rig.motions),
         (Feed::Holding, &[Move::EscapementHold][..])
     );
     shop.carried_out(Move::EscapementHold);
     let feed = step(feed, &mut shop, true);
     let feed = step(feed, &mut shop, true);
     assert_eq!(
-        (feed, &*shop.wants.motions),
+        (feed, &*shop.wants.rig.motions),
         (Feed::Pushing, &[Move::PusherExtend][..])
     );
     shop.set(DigitalIn::NestPresent, true);
     shop.carried_out(Move::PusherExtend);
     let feed = step(feed, &mut shop, true);
     assert_eq!(
-        (feed, &*shop.wants.motions),
+        (feed, &*shop.wants.rig.motions),
         (Feed::Retracting, &[Move::PusherRetract][..])
     );
     assert_eq!(
@@ -67,7 +67,7 @@ fn no_part_is_released_when_none_is_wanted_or_the_pusher_is_not_back() {
     shop.set(DigitalIn::PusherRetracted, false);
     shop.scan();
     assert_eq!(step(Feed::Empty, &mut shop, true), Feed::Empty);
-    assert!(shop.wants.motions.is_empty());
+    assert!(shop.wants.rig.motions.is_empty());
 }
 
 #[test]
@@ -78,16 +78,16 @@ fn a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm() {
         shop.scan();
         let mut feed = step(Feed::Empty, &mut shop, true);
         for attempt in 1..=3 {
-            assert_eq!(shop.wants.motions, [Move::EscapementRelease]);
+            assert_eq!(shop.wants.rig.motions, [Move::EscapementRelease]);
             let since = shop.now;
             shop.carried_out(Move::EscapementRelease);
             shop.now = since + Span::ms(1500);
             shop.scan();
             feed = step(feed, &mut shop, true);
-            assert!(shop.wants.motions.is_empty() && shop.alarms().is_empty());
+            assert!(shop.wants.rig.motions.is_empty() && shop.alarms().is_empty());
             shop.after(1);
             feed = step(feed, &mut shop, true);
-            assert_eq!(shop.wants.motions, [Move::EscapementHold]);
+            assert_eq!(shop.wants.rig.motions, [Move::EscapementHold]);
             let told = shop.alarms();
             let expected = if attempt < 3 {
                 "escapement_retried"
@@ -129,7 +129,7 @@ fn the_pusher_starts_only_into_a_nest_that_is_free_in_every_respect() {
         }
         shop.scan();
         assert_eq!(step(feed, &mut shop, true), Feed::Ready, "{what}");
-        assert!(shop.wants.motions.is_empty(), "{what}");
+        assert!(shop.wants.rig.motions.is_empty(), "{what}");
     }
     let (feed, mut shop) = ready();
     shop.now = shop.now + crate::units::Span::ms(401);

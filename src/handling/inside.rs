@@ -5,9 +5,10 @@
 //! still. Sensors alone say where parts are; what is known from before moves nothing.
 
 use super::ledger::Ledger;
+use super::place::{NestId, Place};
 use super::recovery::Seen;
-use super::trouble::Alarm;
-use crate::dut::verdict::Bin;
+use super::trouble::Trouble;
+use crate::rig::bin::Bin;
 
 /// Places that held a part when they were written down last.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -40,7 +41,7 @@ impl Inside {
     }
 
     /// Parts that are not seen where they were left, nor where they could have got to since.
-    pub fn missing(self, seen: &Seen) -> Vec<Alarm> {
+    pub fn missing(self, seen: &Seen) -> Vec<Trouble> {
         let Seen {
             mut pocket,
             mut nest,
@@ -54,14 +55,14 @@ impl Inside {
         // Jaws keep a part from which the fingers have slid off.
         let set_down = self.gripper && !held && claim(&mut nest);
         let gone = [
-            ("gripper", self.gripper && !held && !set_down),
-            ("nest", self.nest && !stayed),
-            ("pocket", self.pocket && !waits),
+            (Place::Gripper, self.gripper && !held && !set_down),
+            (Place::Nest(NestId::FIRST), self.nest && !stayed),
+            (Place::Pocket, self.pocket && !waits),
         ];
         let gone = gone.into_iter().filter(|(_, is_gone)| *is_gone);
-        fell.map(|bin| Alarm::fall_unseen(bin.name()))
+        fell.map(Trouble::FallUnseen)
             .into_iter()
-            .chain(gone.map(|(place, _)| Alarm::part_gone(place)))
+            .chain(gone.map(|(place, _)| Trouble::Gone(place)))
             .collect()
     }
 }

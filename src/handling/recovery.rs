@@ -15,7 +15,8 @@
 
 use super::ledger::Ledger;
 use super::moves::Move;
-use super::trouble::Alarm;
+use super::place::{NestId, Place};
+use super::trouble::Trouble;
 use super::turn::Turn;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::{DigitalIn, DigitalOut};
@@ -72,7 +73,7 @@ impl Recovery {
         match self.stage {
             Stage::Looking => {
                 if Seen::of(turn).is_some() {
-                    turn.wants.outputs.push((DigitalOut::AxisReset, true));
+                    turn.rig.outputs.push((DigitalOut::AxisReset, true));
                     self.stage = Stage::Drive(turn.now);
                 }
             }
@@ -81,7 +82,7 @@ impl Recovery {
             Stage::Up => {
                 if let Some(seen) = Seen::of(turn) {
                     pushed(turn, &seen);
-                    reconcile(turn.ledger, &seen, releasing, &mut turn.wants.trouble);
+                    reconcile(turn.ledger, &seen, releasing, turn.trouble);
                     self.leave_gripped(turn.ledger);
                     (self.stage, self.asked) = (Stage::Home, None);
                 }
@@ -112,12 +113,12 @@ impl Recovery {
         let taken = since + DRIVE_RESET;
         let looked = turn.image.input_at(DigitalIn::AxisAlarm) >= Some(taken);
         if turn.now < taken {
-            turn.wants.wake_at = Some(taken);
+            turn.rig.wake_at = Some(taken);
         } else if looked && turn.seen(DigitalIn::AxisAlarm, true) {
-            turn.alarm(Alarm::axis_drive());
+            turn.tell(Trouble::AxisDrive);
         } else if looked {
-            turn.wants.outputs.push((DigitalOut::AxisReset, false));
-            turn.wants.outputs.push((DigitalOut::AxisServoOn, true));
+            turn.rig.outputs.push((DigitalOut::AxisReset, false));
+            turn.rig.outputs.push((DigitalOut::AxisServoOn, true));
             self.stage = Stage::Up;
         }
     }
@@ -186,40 +187,40 @@ fn pushed(turn: &mut Turn, seen: &Seen) {
 }
 
 /// Brings the ledger to what is seen, z being up. Parts in nest and gripper are interrupted by this.
-pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, alarms: &mut Vec<Alarm>) {
-    alarms.extend(std::mem::take(&mut ledger.left).missing(seen));
+pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, trouble: &mut Vec<Trouble>) {
+    trouble.extend(std::mem::take(&mut ledger.left).missing(seen));
     hand_over(ledger, seen);
     match (ledger.gripper.is_some(), seen.gripper) {
         (true, false) => {
             ledger.lose_gripper();
-            alarms.push(Alarm::part_lost("gripper"));
+            trouble.push(Trouble::Lost(Place::Gripper));
         }
         (false, true) => {
             ledger.find_in_gripper();
-            alarms.push(Alarm::part_found("gripper"));
+            trouble.push(Trouble::Found(Place::Gripper));
         }
         (true, true) | (false, false) => {}
     }
     match (ledger.nest.is_some(), seen.nest) {
         (true, false) => {
             ledger.lose_nest();
-            alarms.push(Alarm::part_lost("nest"));
+            trouble.push(Trouble::Lost(Place::Nest(NestId::FIRST)));
         }
         (false, true) => {
             ledger.find_in_nest();
-            alarms.push(Alarm::part_found("nest"));
+            trouble.push(Trouble::Found(Place::Nest(NestId::FIRST)));
         }
         (true, true) | (false, false) => {}
     }
     match (ledger.pocket, seen.pocket) {
         (true, false) => {
             ledger.lose_pocket();
-            alarms.push(Alarm::part_lost("pocket"));
+            trouble.push(Trouble::Lost(Place::Pocket));
         }
         (false, true) if releasing => ledger.enter_pocket(),
         (false, true) => {
             ledger.find_in_pocket();
-            alarms.push(Alarm::part_found("pocket"));
+            trouble.push(Trouble::Found(Place::Pocket));
         }
         (true, true) | (false, false) => {}
     }

@@ -11,11 +11,11 @@
 
 use super::ledger::Ledger;
 use super::moves::Move;
-use super::trouble::Alarm;
+use super::trouble::Trouble;
 use super::turn::Turn;
 use super::wants::Landed;
-use crate::dut::verdict::Bin;
 use crate::rig::axis::{AxisStation, AxisTable};
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};
 
@@ -86,7 +86,7 @@ impl Sort {
             Sort::Carrying(bin) => Sort::Carrying(bin),
             Sort::OverBin(bin, since) => over_bin(turn, table, bin, since),
             Sort::LettingGo(bin, before) => {
-                turn.wants.beam = Some(table.beam(bin));
+                turn.rig.beam = Some(table.beam(bin));
                 Sort::LettingGo(bin, before)
             }
             Sort::Opening if turn.arrived(Move::GripperOpen) => opened(turn),
@@ -124,7 +124,7 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
     if turn.ledger.falling.is_some() || turn.seen(beam, true) {
         return stay;
     }
-    turn.wants.beam = Some(beam);
+    turn.rig.beam = Some(beam);
     let durable = turn
         .ledger
         .gripper
@@ -152,7 +152,7 @@ fn opened(turn: &mut Turn) -> Sort {
     let sticks = falling.is_some_and(|it| it.seen.is_none() && turn.now.since(it.since) > STICKS);
     if sticks && turn.seen(DigitalIn::GripperPart, true) {
         turn.ledger.keep_hold();
-        turn.alarm(Alarm::part_sticks());
+        turn.tell(Trouble::Sticks);
     }
     Sort::Opening
 }
@@ -167,7 +167,7 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     falling.has_left |= seen_empty;
     let (bin, since, before) = (falling.bin, falling.since, falling.beam_before);
     let beam = table.beam(bin);
-    turn.wants.beam = Some(beam);
+    turn.rig.beam = Some(beam);
     let count = turn
         .image
         .events(beam)
@@ -180,7 +180,7 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
         }
         Some((_, 1)) => {}
         Some((_, several)) if several > 1 => {
-            turn.alarm(Alarm::beam(bin.name(), several));
+            turn.tell(Trouble::Beam(bin, several));
             landed(turn, bin);
         }
         Some(_) | None if now.since(since) > FALL => overdue(turn, bin),
@@ -194,7 +194,7 @@ fn overdue(turn: &mut Turn, bin: Bin) {
     let falling = turn.ledger.falling.as_ref();
     if falling.is_some_and(|it| it.has_left) {
         turn.ledger.lose_falling();
-        turn.alarm(Alarm::beam(bin.name(), 0));
+        turn.tell(Trouble::Beam(bin, 0));
     } else if turn.seen(DigitalIn::GripperPart, true)
         && !turn.mechanism.is_moving(Move::GripperOpen)
     {
@@ -204,7 +204,7 @@ fn overdue(turn: &mut Turn, bin: Bin) {
 
 fn landed(turn: &mut Turn, bin: Bin) {
     if let Some(landed) = turn.ledger.land() {
-        turn.wants.landed.push(Landed {
+        turn.parts.landed.push(Landed {
             part: landed.part,
             bin,
             at: turn.now,

@@ -1,0 +1,274 @@
+//! Nest: clamp the part, bring the probes, test it, hand it to the gripper.
+//!
+//! ```text
+//! empty -> clamping -> probing -> testing -> judged -> gripping -> unclamping -> lifting -> empty
+//! ```
+//! Jaws close while the pusher goes back; probes rise only after it is back. The fingers close while the
+//! probes go down, the jaws open only when both are done, and the part changes hands when z is up.
+
+use super::ledger::Kind;
+use super::moves::Move;
+use super::place::NestId;
+use super::sort::Sort;
+use super::trouble::Trouble;
+use super::turn::Turn;
+use super::wants::{Judged, Left, NestDone, NestJob};
+use crate::dut::em_relay::measure::{Bench, Progress, Stop, Test};
+use crate::dut::em_relay::settings::GoldenPart;
+use crate::instrument::act::{Doing, JobDone};
+use crate::rig::bin::Bin;
+use crate::rig::point::DigitalIn;
+use crate::units::{Ohm, RigTime, Second};
+
+/// A golden part that could not be judged is tested so often in all: what it teaches holds for every part after it, and
+/// one reset status that was lost, or one reply refused, is no reason to calibrate anew.
+const GOLDEN_TESTS: u8 = 3;
+
+/// Where a nest stands.
+#[derive(Debug)]
+pub enum NestState {
+    /// No part, jaws open, probes down.
+    Empty,
+    /// Jaws close, pusher goes back.
+    Clamping,
+    /// Probes rise.
+    Probing,
+    /// The part is under test.
+    Testing(Box<Test>),
+    /// Judged; waits for the gripper.
+    Judged,
+    /// Fingers close, probes go down.
+    Gripping,
+    /// Jaws open.
+    Unclamping,
+    /// The part goes up with z.
+    Lifting,
+}
+
+/// One nest.
+#[derive(Debug)]
+pub struct Nest {
+    /// Which one.
+    pub id: NestId,
+    /// Where it stands.
+    pub state: NestState,
+}
+
+/// What the part in the nest is tested by.
+#[derive(Debug, Clone, Copy)]
+pub struct TestTerms<'a> {
+    /// Recipe, calibration and what was learned.
+    pub bench: &'a Bench,
+    /// Every result is a mean of the slow strategy.
+    pub thorough: bool,
+    /// Resistance in series of both force contacts, mean over the last parts.
+    pub probe_contact: Option<Ohm>,
+    /// Certificate of the part, when it is a golden one that teaches.
+    pub golden: Option<&'a GoldenPart>,
+}
+
+impl TestTerms<'_> {
+    fn bench(&self) -> Bench {
+        Bench {
+            thorough: self.thorough,
+            probe_contact: self.probe_contact,
+            golden: self.golden.cloned(),
+            ..self.bench.clone()
+        }
+    }
+}
+
+/// What a nest needs beside the turn.
+pub struct NestContext<'a> {
+    /// Answer to the job of this nest, once.
+    pub done: Option<JobDone>,
+    /// What to test by.
+    pub terms: TestTerms<'a>,
+    /// State of the sorter.
+    pub sort: &'a mut Sort,
+    /// When the part before left the nest.
+    pub last_left: &'a mut Option<RigTime>,
+}
+
+impl Nest {
+    /// An empty one.
+    pub fn new(id: NestId) -> Self {
+        Self {
+            id,
+            state: NestState::Empty,
+        }
+    }
+
+    /// One turn.
+    pub fn step(&mut self, turn: &mut Turn, context: NestContext) {
+        if let Some(next) = self.next(turn, context) {
+            self.state = next;
+        }
+    }
+
+    /// The state that follows, when it is another one.
+    fn next(&mut self, turn: &mut Turn, mut context: NestContext) -> Option<NestState> {
+        match &mut self.state {
+            NestState::Empty => turn.ledger.nest.is_some().then(|| {
+                turn.drive(Move::ClampClose);
+                NestState::Clamping
+            }),
+            NestState::Clamping => (turn.arrived(Move::ClampClose)
+                && turn.arrived(Move::PusherRetract))
+            .then(|| clamped(turn, &context)),
+            NestState::Probing => turn
+                .arrived(Move::ProbesUp)
+                .then(|| begin(self.id, turn, &context)),
+            NestState::Testing(test) => {
+                let done = context.done.take();
+                testing(self.id, turn, &context, test, done.as_ref()).then_some(NestState::Judged)
+            }
+            NestState::Judged => (context.sort.is_at_part(turn) && !turn.resting).then(|| {
+                turn.drive(Move::ProbesDown);
+                turn.drive(Move::GripperClose);
+                NestState::Gripping
+            }),
+            NestState::Gripping => {
+                (turn.arrived(Move::ProbesDown) && turn.arrived(Move::GripperClose)).then(|| {
+                    turn.drive(Move::ClampOpen);
+                    NestState::Unclamping
+                })
+            }
+            NestState::Unclamping => turn.arrived(Move::ClampOpen).then(|| {
+                turn.drive(Move::SortUp);
+                NestState::Lifting
+            }),
+            NestState::Lifting => (turn.arrived(Move::SortUp)
+                && turn.seen(DigitalIn::NestPresent, false))
+            .then(|| lifted(turn, context)),
+        }
+    }
+
+    /// The test under way, for screens.
+    pub fn test(&self) -> Option<&Test> {
+        match &self.state {
+            NestState::Testing(test) => Some(test),
+            NestState::Empty
+            | NestState::Clamping
+            | NestState::Probing
+            | NestState::Judged
+            | NestState::Gripping
+            | NestState::Unclamping
+            | NestState::Lifting => None,
+        }
+    }
+}
+
+/// A part that was interrupted is not tested; it goes on to retest, with a row when it has none yet.
+fn clamped(turn: &mut Turn, context: &NestContext) -> NestState {
+    let interrupted = turn
+        .ledger
+        .nest
+        .as_ref()
+        .and_then(|part| part.interrupted.clone());
+    let Some(why) = interrupted else {
+        turn.drive(Move::ProbesUp);
+        return NestState::Probing;
+    };
+    if let Some(part) = turn.ledger.nest.as_mut().filter(|part| part.bin.is_none()) {
+        part.bin = Some(Bin::RETEST);
+        let judged = Judged::interrupted(part.clone(), &why, &context.terms.bench(), turn.now);
+        turn.parts.judged.push(judged);
+    }
+    NestState::Judged
+}
+
+fn begin(id: NestId, turn: &mut Turn, context: &NestContext) -> NestState {
+    if let Some(part) = &mut turn.ledger.nest {
+        part.probed_at = Some(turn.now);
+    }
+    let mut test = Box::new(Test::begin(context.terms.bench(), turn.now));
+    if testing(id, turn, context, &mut test, None) {
+        return NestState::Judged;
+    }
+    NestState::Testing(test)
+}
+
+/// True when the part is judged.
+fn testing(
+    id: NestId,
+    turn: &mut Turn,
+    context: &NestContext,
+    test: &mut Test,
+    done: Option<&JobDone>,
+) -> bool {
+    match test.step(turn.now, done, turn.image) {
+        Progress::Doing(Doing::Job(job)) => {
+            assert!(turn.rig.job.is_none(), "two jobs in one turn");
+            turn.rig.job = Some(NestJob { nest: id, job });
+        }
+        Progress::Doing(Doing::Wait(until)) => turn.rig.wake_at = Some(until),
+        Progress::Doing(Doing::Busy | Doing::Done | Doing::Trouble(_)) => {}
+        Progress::Judged => {
+            if let Some(again) = worth_another(turn, test) {
+                turn.tell(again);
+                let number = test.number() + 1;
+                *test = Test::begin(context.terms.bench(), turn.now).another(number);
+                return testing(id, turn, context, test, None);
+            }
+            judged(turn, context.terms.bench(), test);
+            return true;
+        }
+    }
+    false
+}
+
+/// What to tell before a golden part is tested again, if it is.
+fn worth_another(turn: &Turn, test: &Test) -> Option<Trouble> {
+    let Kind::Golden(serial) = &turn.ledger.nest.as_ref()?.kind else {
+        return None;
+    };
+    // What ran to its end proves nothing either while the lags are being taught, and is all that is wanted.
+    let (Stop::Void(why) | Stop::Trouble(why)) = test.findings.why_stopped()? else {
+        return None;
+    };
+    (test.number() < GOLDEN_TESTS).then(|| Trouble::GoldenRepeated(serial.clone(), why.clone()))
+}
+
+fn judged(turn: &mut Turn, bench: Bench, test: &mut Test) {
+    let verdict = test.verdict();
+    let judgements = test.judgements();
+    let now = turn.now;
+    let Some(part) = &mut turn.ledger.nest else {
+        return;
+    };
+    part.test = part.probed_at.map(|at| Second(now.since(at).as_seconds()));
+    part.bin = Some(match part.kind {
+        Kind::Golden(_) => Bin::RETEST,
+        Kind::Lot(_) => verdict.bin(),
+    });
+    turn.parts.judged.push(Judged {
+        part: part.clone(),
+        verdict,
+        judgements,
+        findings: std::mem::take(&mut test.findings),
+        bench,
+        at: now,
+    });
+}
+
+fn lifted(turn: &mut Turn, context: NestContext) -> NestState {
+    turn.ledger.lift();
+    if let Some(part) = &turn.ledger.gripper {
+        let cycle = context
+            .last_left
+            .map(|before| Second(turn.now.since(before).as_seconds()));
+        turn.parts.left.push(Left {
+            ordinal: part.ordinal,
+            cycle,
+        });
+    }
+    *context.last_left = Some(turn.now);
+    context.sort.carry();
+    NestState::Empty
+}
+
+/// The answer to the job of this nest; another nest's answer stays for that one.
+pub(super) fn answer_for(id: NestId, job: &mut Option<NestDone>) -> Option<JobDone> {
+    job.take_if(|job| job.nest == id).map(|job| job.done)
+}
