@@ -196,30 +196,13 @@ fn buttons(station: &Station) -> Vec<Button> {
 }
 
 fn places(station: &Station) -> BTreeMap<String, Token> {
-    let ledger = station.ledger();
-    let mut places = BTreeMap::new();
-    if ledger.pocket {
-        let kind = "unnumbered".into();
-        places.insert(
-            "pocket".into(),
-            Token {
-                kind,
-                ..Token::default()
-            },
-        );
-    }
-    let falling = ledger.falling.as_ref().map(|falling| &falling.part);
-    let parts = [
-        ("nest", ledger.nest.as_ref()),
-        ("gripper", ledger.gripper.as_ref()),
-        ("falling", falling),
-    ];
-    for (place, part) in parts {
-        if let Some(part) = part {
-            places.insert(place.into(), token(part));
-        }
-    }
-    places
+    let unnumbered = || Token {
+        kind: "unnumbered".into(),
+        ..Token::default()
+    };
+    let each = station.ledger().each();
+    each.map(|(place, part)| (place.name().to_owned(), part.map_or_else(unnumbered, token)))
+        .collect()
 }
 
 fn token(part: &Part) -> Token {

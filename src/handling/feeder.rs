@@ -6,7 +6,7 @@ use super::feed::Feed;
 use super::ledger::Ledger;
 use super::moves::Move;
 use super::nest::{self, Nest, NestContext, NestState, TestTerms};
-use super::place::NestId;
+use super::place::{NestId, Place};
 use super::sort::{self, Sort};
 use super::turn::Turn;
 use super::wants::NestDone;
@@ -75,7 +75,8 @@ impl Feeder {
             is_new |= was_empty && !matches!(nest.state, NestState::Empty);
         }
         assert!(job.is_none(), "the job of a nest that is not there");
-        self.feed = self.feed.step(turn, permits.release, permits.push);
+        let free = self.nests[0].id;
+        self.feed = self.feed.step(turn, free, permits.release, permits.push);
         is_new
     }
 
@@ -100,13 +101,13 @@ impl Feeder {
         self.releasing = false;
         self.last_left = None;
         self.stand_still(ledger);
-        if ledger.gripper.is_some() {
+        if ledger.holds(Place::Gripper) {
             self.sort = Sort::Loaded;
         }
     }
 
     fn stand_still(&mut self, ledger: &Ledger) {
-        self.feed = match ledger.pocket {
+        self.feed = match ledger.holds(Place::Pocket) {
             true => Feed::Ready,
             false => Feed::Empty,
         };
@@ -151,11 +152,12 @@ impl Feeder {
         let pushing = self.feed == Feed::Pushing;
         let lifts = |nest: &Nest| matches!(nest.state, NestState::Lifting);
         let lifting = self.nests.iter().any(lifts);
+        let waits = ledger.holds(Place::Pocket);
         PartPlaces {
-            pocket: ledger.pocket && !pushing,
-            on_pusher: ledger.pocket && pushing,
-            nest: ledger.nest.is_some() && !lifting,
-            gripper: ledger.gripper.is_some() || lifting,
+            pocket: waits && !pushing,
+            on_pusher: waits && pushing,
+            nest: ledger.holds(Place::NEST) && !lifting,
+            gripper: ledger.holds(Place::Gripper) || lifting,
         }
     }
 

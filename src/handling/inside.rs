@@ -5,7 +5,7 @@
 //! still. Sensors alone say where parts are; what is known from before moves nothing.
 
 use super::ledger::Ledger;
-use super::place::{NestId, Place};
+use super::place::Place;
 use super::recovery::Seen;
 use super::trouble::Trouble;
 use crate::rig::bin::Bin;
@@ -27,10 +27,10 @@ impl Inside {
     /// As the ledger has it.
     pub fn of(ledger: &Ledger) -> Self {
         Self {
-            pocket: ledger.pocket,
-            nest: ledger.nest.is_some(),
-            gripper: ledger.gripper.is_some(),
-            falling: ledger.falling.as_ref().map(|it| it.bin),
+            pocket: ledger.holds(Place::Pocket),
+            nest: ledger.holds(Place::NEST),
+            gripper: ledger.holds(Place::Gripper),
+            falling: ledger.fall().map(|it| it.bin),
         }
     }
 
@@ -56,7 +56,7 @@ impl Inside {
         let set_down = self.gripper && !held && claim(&mut nest);
         let gone = [
             (Place::Gripper, self.gripper && !held && !set_down),
-            (Place::Nest(NestId::FIRST), self.nest && !stayed),
+            (Place::NEST, self.nest && !stayed),
             (Place::Pocket, self.pocket && !waits),
         ];
         let gone = gone.into_iter().filter(|(_, is_gone)| *is_gone);

@@ -1,13 +1,15 @@
-//! The part ledger: every part is in exactly one place, from the pocket to a bin.
+//! The part ledger: which part is in which place, from magazine or hand to a bin.
 //!
-//! A place hands its part over; it never copies one. `in = out + inside` at every instant.
+//! A place hands its part over; it never copies one. `in = out + inside + lost` at every instant.
 //!
 //! An opening of the fingers that was driven may still not come: the module that should open them has tripped. So a
 //! part that was let go is lost only when the fingers were seen empty; one that they still show is theirs again.
 
 use super::inside::Inside;
+use super::place::{NestId, Place};
 use crate::rig::bin::Bin;
 use crate::units::{RigTime, Second};
+use std::collections::BTreeMap;
 
 /// Why a part that nobody knows is not tested.
 const FOUND: &str = "found inside at the reset";
@@ -38,11 +40,9 @@ pub struct Part {
     pub interrupted: Option<String>,
 }
 
-/// A part that was let go, on its way down a chute once it [has left](Self::has_left) the fingers.
+/// How the part in [`Place::Falling`] falls; it is on its way down once it [has left](Self::has_left) the fingers.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Falling {
-    /// Which part.
-    pub part: Part,
+pub struct Fall {
     /// Bin it was let go over.
     pub bin: Bin,
     /// When the opening of the fingers was driven.
@@ -55,27 +55,29 @@ pub struct Falling {
     pub seen: Option<RigTime>,
 }
 
+/// What a place holds.
+#[derive(Debug, Clone)]
+enum Held {
+    /// A part without a number yet; `found`: it does not belong to this run.
+    Unnumbered { found: bool },
+    /// A part with its numbers.
+    Numbered(Part),
+}
+
 /// Places and counts.
 #[derive(Debug, Clone, Default)]
 pub struct Ledger {
-    /// A part in the pocket; it has no number before it enters the nest.
-    pub pocket: bool,
-    /// In the nest.
-    pub nest: Option<Part>,
-    /// In the gripper.
-    pub gripper: Option<Part>,
-    /// Between gripper and beam.
-    pub falling: Option<Falling>,
-    /// Parts that came into the pocket.
+    places: BTreeMap<Place, Held>,
+    /// There while a part is in [`Place::Falling`].
+    fall: Option<Fall>,
+    /// Parts that came into the pocket or a socket.
     pub came_in: u64,
-    /// Parts that a beam confirmed.
+    /// Parts that a beam confirmed, or a person took out.
     pub went_out: u64,
     /// Parts that are declared lost by an alarm.
     pub lost: u64,
     /// Parts that belong to no run; they are part of `came_in`.
     pub found: u64,
-    /// The part in the pocket is one of them.
-    pub pocket_found: bool,
     /// What a run before left inside, until somebody has looked.
     pub left: Inside,
     numbered: u64,
@@ -100,12 +102,66 @@ impl Ledger {
         }
     }
 
-    /// Parts between pocket and beam.
+    /// Whether a part is there.
+    pub fn holds(&self, place: Place) -> bool {
+        self.places.contains_key(&place)
+    }
+
+    /// The part that is there; `None` as long as it has no number, too.
+    pub fn part(&self, place: Place) -> Option<&Part> {
+        match self.places.get(&place)? {
+            Held::Numbered(part) => Some(part),
+            Held::Unnumbered { .. } => None,
+        }
+    }
+
+    /// The same, to write down what becomes of it.
+    pub fn part_mut(&mut self, place: Place) -> Option<&mut Part> {
+        match self.places.get_mut(&place)? {
+            Held::Numbered(part) => Some(part),
+            Held::Unnumbered { .. } => None,
+        }
+    }
+
+    /// Every place that holds a part, with the part once it has a number.
+    pub fn each(&self) -> impl Iterator<Item = (Place, Option<&Part>)> {
+        self.places.keys().map(|place| (*place, self.part(*place)))
+    }
+
+    /// Parts that jaws or fingers hold.
+    pub fn held_mut(&mut self) -> impl Iterator<Item = &mut Part> {
+        let held = |place: &Place| match place {
+            Place::Nest(_) | Place::Gripper => true,
+            Place::Pocket | Place::Falling | Place::Socket(_) => false,
+        };
+        let places = self.places.iter_mut();
+        places.filter_map(move |(place, it)| match it {
+            Held::Numbered(part) => held(place).then_some(part),
+            Held::Unnumbered { .. } => None,
+        })
+    }
+
+    /// The part of the pocket does not belong to this run.
+    pub fn is_pocket_found(&self) -> bool {
+        match self.places.get(&Place::Pocket) {
+            Some(Held::Unnumbered { found }) => *found,
+            Some(Held::Numbered(_)) | None => false,
+        }
+    }
+
+    /// How the part falls that was let go last, until its beam has seen it.
+    pub fn fall(&self) -> Option<&Fall> {
+        self.fall.as_ref()
+    }
+
+    /// The same, to write down what is seen of it.
+    pub fn fall_mut(&mut self) -> Option<&mut Fall> {
+        self.fall.as_mut()
+    }
+
+    /// Parts between magazine and beam.
     pub fn inside(&self) -> u64 {
-        u64::from(self.pocket)
-            + u64::from(self.nest.is_some())
-            + u64::from(self.gripper.is_some())
-            + u64::from(self.falling.is_some())
+        self.places.len() as u64
     }
 
     /// `in = out + inside + lost`.
@@ -115,23 +171,121 @@ impl Ledger {
 
     /// A part has come into the empty pocket.
     pub fn enter_pocket(&mut self) {
-        assert!(!self.pocket, "a part came into an occupied pocket");
-        self.pocket = true;
         self.came_in += 1;
+        self.put(Place::Pocket, Held::Unnumbered { found: false });
     }
 
     /// The part of the pocket is now in the nest and gets its number; `golden` names a golden part.
-    pub fn enter_nest(&mut self, golden: Option<String>) {
+    pub fn enter_nest(&mut self, nest: NestId, golden: Option<String>) {
+        let found = self.is_pocket_found();
         assert!(
-            self.pocket && self.nest.is_none(),
-            "pocket to nest without a part or a place"
+            !(found && golden.is_some()),
+            "a found part is no golden one"
         );
-        self.pocket = false;
-        let interrupted = std::mem::take(&mut self.pocket_found).then(|| FOUND.to_owned());
-        self.nest = Some(self.numbered(golden, interrupted));
+        self.take(Place::Pocket);
+        let part = self.number(golden, found.then(|| FOUND.to_owned()));
+        self.put(Place::Nest(nest), Held::Numbered(part));
     }
 
-    fn numbered(&mut self, golden: Option<String>, interrupted: Option<String>) -> Part {
+    /// A person has put a part into an empty socket; `golden` names a golden part.
+    pub fn fill_socket(&mut self, socket: u16, golden: Option<String>) {
+        self.came_in += 1;
+        let part = self.number(golden, None);
+        self.put(Place::Socket(socket), Held::Numbered(part));
+    }
+
+    /// A person has taken the judged part out of a socket and put it into its bin.
+    pub fn unload_socket(&mut self, socket: u16) -> Part {
+        let Held::Numbered(part) = self.take(Place::Socket(socket)) else {
+            panic!("a part without a number in socket {socket}");
+        };
+        assert!(part.bin.is_some(), "unloaded before it was judged");
+        self.went_out += 1;
+        self.check();
+        part
+    }
+
+    /// A part that nobody knows is in the empty place.
+    pub fn find(&mut self, place: Place) {
+        self.came_in += 1;
+        self.found += 1;
+        let held = match place {
+            Place::Pocket => Held::Unnumbered { found: true },
+            Place::Nest(_) | Place::Gripper | Place::Falling | Place::Socket(_) => {
+                Held::Numbered(self.number(None, Some(FOUND.to_owned())))
+            }
+        };
+        self.put(place, held);
+    }
+
+    /// The part of a place, if there is one, is nowhere; true when there was one.
+    pub fn lose(&mut self, place: Place) -> bool {
+        let gone = self.places.remove(&place).is_some();
+        self.lost += u64::from(gone);
+        if place == Place::Falling {
+            self.fall = None;
+        }
+        self.check();
+        gone
+    }
+
+    /// The part of the nest is now in the gripper.
+    pub fn lift(&mut self, nest: NestId) {
+        self.hand_over(Place::Nest(nest), Place::Gripper);
+    }
+
+    /// The part of the gripper lies in the nest again.
+    pub fn set_down(&mut self, nest: NestId) {
+        self.hand_over(Place::Gripper, Place::Nest(nest));
+    }
+
+    /// The gripper has let its part go over `bin`; an empty one lets none fall.
+    pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
+        assert!(self.fall.is_none(), "two parts on their way down");
+        if !self.holds(Place::Gripper) {
+            return;
+        }
+        self.fall = Some(Fall {
+            bin,
+            since,
+            has_left: false,
+            beam_before,
+            seen: None,
+        });
+        self.hand_over(Place::Gripper, Place::Falling);
+    }
+
+    /// The part that was to fall is still in the fingers: it sticks to them, or they never opened.
+    pub fn keep_hold(&mut self) {
+        self.fall = None;
+        self.hand_over(Place::Falling, Place::Gripper);
+    }
+
+    /// The beam saw the falling part, if there is one.
+    pub fn land(&mut self) -> Option<Part> {
+        if !self.holds(Place::Falling) {
+            return None;
+        }
+        self.fall = None;
+        let Held::Numbered(part) = self.take(Place::Falling) else {
+            panic!("a part without a number was let go");
+        };
+        self.went_out += 1;
+        self.check();
+        Some(part)
+    }
+
+    /// Parts of the run's own that came in.
+    pub fn own(&self) -> u64 {
+        self.came_in - self.found
+    }
+
+    /// Parts of the lot that have entered a nest.
+    pub fn lot_parts(&self) -> u64 {
+        self.lot_numbered
+    }
+
+    fn number(&mut self, golden: Option<String>, interrupted: Option<String>) -> Part {
         self.numbered += 1;
         let kind = match golden {
             Some(serial) => Kind::Golden(serial),
@@ -140,6 +294,7 @@ impl Ledger {
                 Kind::Lot(self.lot_numbered)
             }
         };
+        assert!(self.lot_numbered <= self.numbered, "numbers given twice");
         Part {
             kind,
             ordinal: self.numbered,
@@ -150,135 +305,27 @@ impl Ledger {
         }
     }
 
-    /// A part that nobody knows is in the pocket.
-    pub fn find_in_pocket(&mut self) {
-        self.enter_pocket();
-        self.pocket_found = true;
-        self.found += 1;
+    fn hand_over(&mut self, from: Place, to: Place) {
+        let part = self.take(from);
+        self.put(to, part);
     }
 
-    /// A part that nobody knows is in the empty nest.
-    pub fn find_in_nest(&mut self) {
-        assert!(self.nest.is_none(), "found a second part in the nest");
-        self.nest = Some(self.find());
-    }
-
-    /// A part that nobody knows is in the gripper.
-    pub fn find_in_gripper(&mut self) {
-        assert!(self.gripper.is_none(), "found a second part in the gripper");
-        self.gripper = Some(self.find());
-    }
-
-    fn find(&mut self) -> Part {
-        self.came_in += 1;
-        self.found += 1;
-        self.numbered(None, Some(FOUND.to_owned()))
-    }
-
-    /// The part of the gripper lies in the nest again.
-    pub fn set_down(&mut self) {
-        assert!(self.nest.is_none(), "set down on another part");
-        self.nest = self.gripper.take();
-    }
-
-    /// The part of the pocket is nowhere.
-    pub fn lose_pocket(&mut self) {
-        self.lost += u64::from(std::mem::take(&mut self.pocket));
-        self.pocket_found = false;
-    }
-
-    /// The part of the nest is nowhere.
-    pub fn lose_nest(&mut self) -> Option<Part> {
-        self.lost += u64::from(self.nest.is_some());
-        self.nest.take()
-    }
-
-    /// The part of the gripper is nowhere.
-    pub fn lose_gripper(&mut self) -> Option<Part> {
-        self.lost += u64::from(self.gripper.is_some());
-        self.gripper.take()
-    }
-
-    /// Parts of the run's own that came into the pocket.
-    pub fn own(&self) -> u64 {
-        self.came_in - self.found
-    }
-
-    /// The part of the nest is now in the gripper.
-    pub fn lift(&mut self) {
-        assert!(self.gripper.is_none(), "two parts in the gripper");
-        self.gripper = self.nest.take();
-        assert!(self.gripper.is_some(), "lifted from an empty nest");
-    }
-
-    /// The gripper has let its part go over `bin`.
-    pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
-        assert!(self.falling.is_none(), "two parts on their way down");
-        if let Some(part) = self.gripper.take() {
-            self.falling = Some(Falling {
-                part,
-                bin,
-                since,
-                has_left: false,
-                beam_before,
-                seen: None,
-            });
+    fn take(&mut self, place: Place) -> Held {
+        match self.places.remove(&place) {
+            Some(part) => part,
+            None => panic!("no part to take from the {}", place.name()),
         }
     }
 
-    /// The part that was to fall is still in the fingers: it sticks to them, or they never opened.
-    pub fn keep_hold(&mut self) {
-        assert!(self.gripper.is_none(), "kept hold of a second part");
-        self.gripper = self.falling.take().map(|falling| falling.part);
+    fn put(&mut self, place: Place, part: Held) {
+        let before = self.places.insert(place, part);
+        assert!(before.is_none(), "a second part in the {}", place.name());
+        self.check();
     }
 
-    /// The beam saw the falling part.
-    pub fn land(&mut self) -> Option<Falling> {
-        let falling = self.falling.take()?;
-        self.went_out += 1;
-        Some(falling)
-    }
-
-    /// The part that was falling never reached its beam.
-    pub fn lose_falling(&mut self) -> Option<Falling> {
-        let falling = self.falling.take()?;
-        self.lost += 1;
-        Some(falling)
-    }
-
-    /// Parts of the lot that have entered the nest.
-    pub fn lot_parts(&self) -> u64 {
-        self.lot_numbered
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_part_is_in_exactly_one_place_from_pocket_to_bin() {
-        let mut ledger = Ledger::default();
-        ledger.enter_pocket();
-        assert!(ledger.balances() && ledger.inside() == 1);
-        ledger.enter_nest(None);
-        assert!(ledger.balances() && ledger.inside() == 1);
-        ledger.lift();
-        ledger.drop_over(Bin::PASS, RigTime(0), 0);
-        assert!(ledger.balances() && ledger.inside() == 1);
-        let landed = ledger.land().expect("it was falling");
-        assert_eq!(landed.part.kind, Kind::Lot(1));
-        assert!(ledger.balances() && ledger.inside() == 0);
-    }
-
-    #[test]
-    fn golden_parts_have_no_number_of_the_lot() {
-        let mut ledger = Ledger::default();
-        ledger.enter_pocket();
-        ledger.enter_nest(Some("G-12-1".into()));
-        ledger.lift();
-        ledger.enter_pocket();
-        ledger.enter_nest(None);
-        assert_eq!(ledger.nest.map(|part| part.kind), Some(Kind::Lot(1)));
+    fn check(&self) {
+        assert!(self.balances(), "a part is in two places or in none");
+        let falls = self.holds(Place::Falling);
+        assert_eq!(falls, self.fall.is_some(), "a fall without its part");
     }
 }

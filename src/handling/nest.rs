@@ -8,7 +8,7 @@
 
 use super::ledger::Kind;
 use super::moves::Move;
-use super::place::NestId;
+use super::place::{NestId, Place};
 use super::sort::Sort;
 use super::trouble::Trouble;
 use super::turn::Turn;
@@ -109,13 +109,13 @@ impl Nest {
     /// The state that follows, when it is another one.
     fn next(&mut self, turn: &mut Turn, mut context: NestContext) -> Option<NestState> {
         match &mut self.state {
-            NestState::Empty => turn.ledger.nest.is_some().then(|| {
+            NestState::Empty => turn.ledger.holds(Place::Nest(self.id)).then(|| {
                 turn.drive(Move::ClampClose);
                 NestState::Clamping
             }),
             NestState::Clamping => (turn.arrived(Move::ClampClose)
                 && turn.arrived(Move::PusherRetract))
-            .then(|| clamped(turn, &context)),
+            .then(|| clamped(self.id, turn, &context)),
             NestState::Probing => turn
                 .arrived(Move::ProbesUp)
                 .then(|| begin(self.id, turn, &context)),
@@ -140,7 +140,7 @@ impl Nest {
             }),
             NestState::Lifting => (turn.arrived(Move::SortUp)
                 && turn.seen(DigitalIn::NestPresent, false))
-            .then(|| lifted(turn, context)),
+            .then(|| lifted(self.id, turn, context)),
         }
     }
 
@@ -160,17 +160,14 @@ impl Nest {
 }
 
 /// A part that was interrupted is not tested; it goes on to retest, with a row when it has none yet.
-fn clamped(turn: &mut Turn, context: &NestContext) -> NestState {
-    let interrupted = turn
-        .ledger
-        .nest
-        .as_ref()
-        .and_then(|part| part.interrupted.clone());
+fn clamped(id: NestId, turn: &mut Turn, context: &NestContext) -> NestState {
+    let part = turn.ledger.part_mut(Place::Nest(id));
+    let interrupted = part.as_ref().and_then(|part| part.interrupted.clone());
     let Some(why) = interrupted else {
         turn.drive(Move::ProbesUp);
         return NestState::Probing;
     };
-    if let Some(part) = turn.ledger.nest.as_mut().filter(|part| part.bin.is_none()) {
+    if let Some(part) = part.filter(|part| part.bin.is_none()) {
         part.bin = Some(Bin::RETEST);
         let judged = Judged::interrupted(part.clone(), &why, &context.terms.bench(), turn.now);
         turn.parts.judged.push(judged);
@@ -179,7 +176,7 @@ fn clamped(turn: &mut Turn, context: &NestContext) -> NestState {
 }
 
 fn begin(id: NestId, turn: &mut Turn, context: &NestContext) -> NestState {
-    if let Some(part) = &mut turn.ledger.nest {
+    if let Some(part) = turn.ledger.part_mut(Place::Nest(id)) {
         part.probed_at = Some(turn.now);
     }
     let mut test = Box::new(Test::begin(context.terms.bench(), turn.now));
@@ -205,13 +202,13 @@ fn testing(
         Progress::Doing(Doing::Wait(until)) => turn.rig.wake_at = Some(until),
         Progress::Doing(Doing::Busy | Doing::Done | Doing::Trouble(_)) => {}
         Progress::Judged => {
-            if let Some(again) = worth_another(turn, test) {
+            if let Some(again) = worth_another(id, turn, test) {
                 turn.tell(again);
                 let number = test.number() + 1;
                 *test = Test::begin(context.terms.bench(), turn.now).another(number);
                 return testing(id, turn, context, test, None);
             }
-            judged(turn, context.terms.bench(), test);
+            judged(id, turn, context.terms.bench(), test);
             return true;
         }
     }
@@ -219,8 +216,8 @@ fn testing(
 }
 
 /// What to tell before a golden part is tested again, if it is.
-fn worth_another(turn: &Turn, test: &Test) -> Option<Trouble> {
-    let Kind::Golden(serial) = &turn.ledger.nest.as_ref()?.kind else {
+fn worth_another(id: NestId, turn: &Turn, test: &Test) -> Option<Trouble> {
+    let Kind::Golden(serial) = &turn.ledger.part(Place::Nest(id))?.kind else {
         return None;
     };
     // What ran to its end proves nothing either while the lags are being taught, and is all that is wanted.
@@ -230,12 +227,12 @@ fn worth_another(turn: &Turn, test: &Test) -> Option<Trouble> {
     (test.number() < GOLDEN_TESTS).then(|| Trouble::GoldenRepeated(serial.clone(), why.clone()))
 }
 
-fn judged(turn: &mut Turn, bench: Bench, test: &mut Test) {
+fn judged(id: NestId, turn: &mut Turn, bench: Bench, test: &mut Test) {
     let verdict = test.verdict();
     let judgements = test.judgements();
     let now = turn.now;
-    let Some(part) = &mut turn.ledger.nest else {
-        return;
+    let Some(part) = turn.ledger.part_mut(Place::Nest(id)) else {
+        panic!("a part was judged that is not in its nest");
     };
     part.test = part.probed_at.map(|at| Second(now.since(at).as_seconds()));
     part.bin = Some(match part.kind {
@@ -252,9 +249,9 @@ fn judged(turn: &mut Turn, bench: Bench, test: &mut Test) {
     });
 }
 
-fn lifted(turn: &mut Turn, context: NestContext) -> NestState {
-    turn.ledger.lift();
-    if let Some(part) = &turn.ledger.gripper {
+fn lifted(id: NestId, turn: &mut Turn, context: NestContext) -> NestState {
+    turn.ledger.lift(id);
+    if let Some(part) = turn.ledger.part(Place::Gripper) {
         let cycle = context
             .last_left
             .map(|before| Second(turn.now.since(before).as_seconds()));

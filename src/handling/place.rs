@@ -25,6 +25,9 @@ pub enum Place {
 }
 
 impl Place {
+    /// The nest of a rig that has one.
+    pub const NEST: Self = Self::Nest(NestId::FIRST);
+
     /// The name in alarms and views; every nest is `nest`.
     pub const fn name(self) -> &'static str {
         match self {

@@ -132,7 +132,7 @@ impl Recovery {
 
     /// Fingers that hold a part stay closed, and the axis takes it to its bin from where it stands.
     fn leave_gripped(&mut self, ledger: &Ledger) {
-        if ledger.gripper.is_some() {
+        if ledger.holds(Place::Gripper) {
             self.left
                 .retain(|one| !matches!(one, Move::GripperOpen | Move::AxisTo(_)));
         }
@@ -176,13 +176,13 @@ impl Seen {
 /// The pusher had brought the part of the pocket when the sequence was cut off: it is the one in the nest, and not
 /// the one that the fingers have lost.
 fn pushed(turn: &mut Turn, seen: &Seen) {
-    let gone = turn.ledger.pocket && !seen.pocket;
-    if gone && turn.ledger.nest.is_none() && seen.nest {
-        let golden = match turn.ledger.pocket_found {
+    let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
+    if gone && !turn.ledger.holds(Place::NEST) && seen.nest {
+        let golden = match turn.ledger.is_pocket_found() {
             true => None,
             false => turn.next_golden(),
         };
-        turn.ledger.enter_nest(golden);
+        turn.ledger.enter_nest(NestId::FIRST, golden);
     }
 }
 
@@ -190,52 +190,38 @@ fn pushed(turn: &mut Turn, seen: &Seen) {
 pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, trouble: &mut Vec<Trouble>) {
     trouble.extend(std::mem::take(&mut ledger.left).missing(seen));
     hand_over(ledger, seen);
-    match (ledger.gripper.is_some(), seen.gripper) {
-        (true, false) => {
-            ledger.lose_gripper();
-            trouble.push(Trouble::Lost(Place::Gripper));
+    let places = [
+        (Place::Gripper, seen.gripper),
+        (Place::NEST, seen.nest),
+        (Place::Pocket, seen.pocket),
+    ];
+    for (place, is_seen) in places {
+        match (ledger.holds(place), is_seen) {
+            (true, false) => {
+                ledger.lose(place);
+                trouble.push(Trouble::Lost(place));
+            }
+            (false, true) if releasing && place == Place::Pocket => ledger.enter_pocket(),
+            (false, true) => {
+                ledger.find(place);
+                trouble.push(Trouble::Found(place));
+            }
+            (true, true) | (false, false) => {}
         }
-        (false, true) => {
-            ledger.find_in_gripper();
-            trouble.push(Trouble::Found(Place::Gripper));
-        }
-        (true, true) | (false, false) => {}
-    }
-    match (ledger.nest.is_some(), seen.nest) {
-        (true, false) => {
-            ledger.lose_nest();
-            trouble.push(Trouble::Lost(Place::Nest(NestId::FIRST)));
-        }
-        (false, true) => {
-            ledger.find_in_nest();
-            trouble.push(Trouble::Found(Place::Nest(NestId::FIRST)));
-        }
-        (true, true) | (false, false) => {}
-    }
-    match (ledger.pocket, seen.pocket) {
-        (true, false) => {
-            ledger.lose_pocket();
-            trouble.push(Trouble::Lost(Place::Pocket));
-        }
-        (false, true) if releasing => ledger.enter_pocket(),
-        (false, true) => {
-            ledger.find_in_pocket();
-            trouble.push(Trouble::Found(Place::Pocket));
-        }
-        (true, true) | (false, false) => {}
+        assert_eq!(ledger.holds(place), is_seen, "not what is seen");
     }
 }
 
 /// Parts that had moved on when the sequence was cut off, were set down again, or never let go.
 fn hand_over(ledger: &mut Ledger, seen: &Seen) {
-    let may_be_held = ledger.falling.as_ref().is_some_and(|it| !it.has_left);
+    let may_be_held = ledger.fall().is_some_and(|it| !it.has_left);
     if may_be_held && seen.gripper {
         ledger.keep_hold();
     }
-    let (nest, gripper) = (ledger.nest.is_some(), ledger.gripper.is_some());
+    let (nest, gripper) = (ledger.holds(Place::NEST), ledger.holds(Place::Gripper));
     if nest && !gripper && !seen.nest && seen.gripper {
-        ledger.lift();
+        ledger.lift(NestId::FIRST);
     } else if gripper && !nest && !seen.gripper && seen.nest {
-        ledger.set_down();
+        ledger.set_down(NestId::FIRST);
     }
 }

@@ -11,6 +11,7 @@
 
 use super::ledger::Ledger;
 use super::moves::Move;
+use super::place::Place;
 use super::trouble::Trouble;
 use super::turn::Turn;
 use super::wants::Landed;
@@ -73,8 +74,7 @@ impl Sort {
             Sort::Loaded => {
                 let bin = turn
                     .ledger
-                    .gripper
-                    .as_ref()
+                    .part(Place::Gripper)
                     .and_then(|part| part.bin)
                     .unwrap_or(Bin::RETEST);
                 turn.drive(Move::AxisTo(AxisStation::Bin(bin)));
@@ -121,14 +121,13 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
     let stay = Sort::OverBin(bin, since);
     let beam = table.beam(bin);
     // A beam that stays dark is a full chute.
-    if turn.ledger.falling.is_some() || turn.seen(beam, true) {
+    if turn.ledger.fall().is_some() || turn.seen(beam, true) {
         return stay;
     }
     turn.rig.beam = Some(beam);
     let durable = turn
         .ledger
-        .gripper
-        .as_ref()
+        .part(Place::Gripper)
         .is_some_and(|part| part.ordinal <= turn.recorded);
     let before = turn
         .image
@@ -148,7 +147,7 @@ fn opened(turn: &mut Turn) -> Sort {
         turn.drive(Move::AxisTo(AxisStation::Nest));
         return Sort::Returning;
     }
-    let falling = turn.ledger.falling.as_ref();
+    let falling = turn.ledger.fall();
     let sticks = falling.is_some_and(|it| it.seen.is_none() && turn.now.since(it.since) > STICKS);
     if sticks && turn.seen(DigitalIn::GripperPart, true) {
         turn.ledger.keep_hold();
@@ -161,7 +160,7 @@ fn opened(turn: &mut Turn) -> Sort {
 pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     let now = turn.now;
     let seen_empty = turn.seen(DigitalIn::GripperPart, false);
-    let Some(falling) = &mut turn.ledger.falling else {
+    let Some(falling) = turn.ledger.fall_mut() else {
         return;
     };
     falling.has_left |= seen_empty;
@@ -191,9 +190,9 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
 /// The beam has seen nothing: what has left the fingers is lost, what they still show was never let go. Who cannot
 /// see them waits until they can be seen.
 fn overdue(turn: &mut Turn, bin: Bin) {
-    let falling = turn.ledger.falling.as_ref();
+    let falling = turn.ledger.fall();
     if falling.is_some_and(|it| it.has_left) {
-        turn.ledger.lose_falling();
+        turn.ledger.lose(Place::Falling);
         turn.tell(Trouble::Beam(bin, 0));
     } else if turn.seen(DigitalIn::GripperPart, true)
         && !turn.mechanism.is_moving(Move::GripperOpen)
@@ -203,9 +202,9 @@ fn overdue(turn: &mut Turn, bin: Bin) {
 }
 
 fn landed(turn: &mut Turn, bin: Bin) {
-    if let Some(landed) = turn.ledger.land() {
+    if let Some(part) = turn.ledger.land() {
         turn.parts.landed.push(Landed {
-            part: landed.part,
+            part,
             bin,
             at: turn.now,
         });

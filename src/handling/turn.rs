@@ -3,6 +3,7 @@
 use super::ledger::Ledger;
 use super::mechanism::{Mechanism, SENSOR_AGE};
 use super::moves::Move;
+use super::place::{NestId, Place};
 use super::trouble::Trouble;
 use super::wants::{Commands, PartEvents};
 use crate::dut::em_relay::settings::GoldenPart;
@@ -62,8 +63,8 @@ impl Turn<'_> {
     }
 
     /// True when a part may be pushed into the nest.
-    pub fn nest_is_free(&self) -> bool {
-        self.ledger.nest.is_none()
+    pub fn nest_is_free(&self, nest: NestId) -> bool {
+        !self.ledger.holds(Place::Nest(nest))
             && self.seen(DigitalIn::NestPresent, false)
             && self.arrived(Move::ClampOpen)
             && self.arrived(Move::ProbesDown)

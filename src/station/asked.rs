@@ -6,6 +6,7 @@ use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::trouble::Alarm;
 use super::wants::{Ending, Wants};
+use crate::handling::Place;
 use crate::handling::wants::Jog;
 use crate::rig::image::Image;
 use crate::units::{RigTime, Span};
@@ -135,7 +136,7 @@ impl Station {
         if !matches!(self.state, State::Stopped | State::Idle | State::Complete) {
             return Err(self.not_at_rest());
         }
-        if self.line.ledger.nest.is_some() || self.line.ledger.gripper.is_some() {
+        if self.line.ledger.holds(Place::NEST) || self.line.ledger.holds(Place::Gripper) {
             return Err(Refused::new(
                 "a part of this lot is inside; reset first, so that it gets into its bin",
                 "机内还有本批次的零件；请先复位，使其进入料仓",

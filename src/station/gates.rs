@@ -18,6 +18,7 @@ use crate::dut::em_relay::golden;
 use crate::dut::em_relay::probe_contact::Trend;
 use crate::dut::em_relay::settings::GoldenPart;
 use crate::dut::verdict::Verdict;
+use crate::handling::Place;
 use crate::handling::ledger::Kind;
 use crate::handling::wants::Judged;
 use crate::handling::wear::Uses;
@@ -172,7 +173,7 @@ impl Station {
 
     /// The part in the nest is measured by the slow strategy.
     pub(super) fn is_thorough(&self) -> bool {
-        match self.line.ledger.nest.as_ref().map(|part| &part.kind) {
+        match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
             Some(Kind::Golden(_)) => self.gates.checking,
             None => false,

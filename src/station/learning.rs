@@ -11,9 +11,9 @@ use crate::dut::em_relay::measure::bench::UNTAUGHT_FINE_V;
 use crate::dut::em_relay::settings::GoldenPart;
 use crate::dut::em_relay::{golden, reference};
 use crate::dut::verdict::Verdict;
-use crate::handling::Ledger;
 use crate::handling::ledger::Kind;
 use crate::handling::wants::Judged;
+use crate::handling::{Ledger, Place};
 use crate::instrument::act::Runner;
 use crate::units::RigTime;
 use std::collections::VecDeque;
@@ -117,7 +117,7 @@ impl Station {
         gates: &Gates,
         ledger: &Ledger,
     ) -> Option<&'a GoldenPart> {
-        match ledger.nest.as_ref().map(|part| &part.kind) {
+        match ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Golden(serial)) if !gates.is_checking() => {
                 plan.golden.iter().find(|part| part.serial == *serial)
             }

@@ -6,7 +6,7 @@ use crate::guard::Situation;
 use crate::handling::mechanism::DEBOUNCE;
 use crate::handling::recovery::Recovery;
 use crate::handling::turn::Turn;
-use crate::handling::{Feeder, Ledger, Mechanism, Move};
+use crate::handling::{Feeder, Ledger, Mechanism, Move, Place};
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use crate::units::RigTime;
@@ -105,15 +105,15 @@ impl Line {
     /// Every part stands where it may wait.
     pub fn is_at_rest(&self) -> bool {
         self.feeder.is_at_rest(!self.dark.is_empty())
-            && self.ledger.falling.is_none()
+            && !self.ledger.holds(Place::Falling)
             && self.mechanism.moving().next().is_none()
     }
 
     /// Nothing inside but, without `pocket`, a part that waits there; rows of the last one are durable.
     pub fn is_finished(&self, pocket: bool, recorded: u64, wants: &Wants) -> bool {
         let ledger = &self.ledger;
-        let empty = ledger.nest.is_none() && ledger.gripper.is_none() && ledger.falling.is_none();
-        let waiting = ledger.pocket && (pocket || ledger.pocket_found);
+        let empty = ledger.each().all(|(place, _)| place == Place::Pocket);
+        let waiting = ledger.holds(Place::Pocket) && (pocket || ledger.is_pocket_found());
         let mut judged = wants.record.parts.judged.iter();
         let durable = judged.all(|judged| judged.part.ordinal <= recorded);
         empty && !waiting && durable && self.feeder.is_empty_handed()

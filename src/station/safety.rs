@@ -7,10 +7,10 @@ use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
 use super::wants::{Ending, Inputs, Wants};
 use crate::dut::verdict::Verdict;
-use crate::handling::Move;
 use crate::handling::mechanism::SENSOR_AGE;
 use crate::handling::trouble::Trouble;
 use crate::handling::wants::{Interrupted, Judged};
+use crate::handling::{Move, Place};
 use crate::rig::bin::Bin;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
@@ -63,7 +63,7 @@ impl Station {
 
     /// Fingers that lost their part before it was handed over have left it in the nest.
     fn still_in_nest(&self, now: RigTime, image: &Image, found: &mut [Trouble]) {
-        let there = self.line.ledger.gripper.is_none()
+        let there = !self.line.ledger.holds(Place::Gripper)
             && image.input(DigitalIn::NestPresent, now, SENSOR_AGE) == Some(true);
         let dropped = found.iter_mut().filter(|one| **one == Trouble::Dropped);
         for one in dropped.filter(|_| there) {
@@ -244,9 +244,8 @@ impl Station {
 
     /// Parts in nest and gripper go to retest; one that was judged gets that into its row.
     fn interrupt(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
-        let ledger = &mut self.line.ledger;
         let parts = &mut wants.record.parts;
-        for part in ledger.nest.iter_mut().chain(&mut ledger.gripper) {
+        for part in self.line.ledger.held_mut() {
             if part.interrupted.is_some() && part.bin.is_some() {
                 continue;
             }

@@ -10,7 +10,7 @@ use crate::dut::em_relay::reference;
 use crate::handling::feeder::Permits;
 use crate::handling::recovery::Recovery;
 use crate::handling::wants::{Interrupted, Judged, NestJob};
-use crate::handling::{Move, NestId};
+use crate::handling::{Move, NestId, Place};
 use crate::instrument::act::{Doing, Runner};
 use crate::rig::bin::Bin;
 use crate::units::{RigTime, Span};
@@ -72,8 +72,10 @@ impl Station {
 
     /// The run is over. Nobody will look for a part that is on its way to its bin: it is told.
     pub(super) fn end(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
-        if let Some(falling) = self.line.ledger.lose_falling() {
-            let alarm = Alarm::beam_unread(falling.bin.name());
+        let over = self.line.ledger.fall().map(|fall| fall.bin);
+        if let Some(bin) = over {
+            self.line.ledger.lose(Place::Falling);
+            let alarm = Alarm::beam_unread(bin.name());
             if self.annunciator.raise(&alarm, now) {
                 wants.record.alarms.push(alarm);
                 wants.record.alarms_changed |= self.annunciator.take_changed();
@@ -208,7 +210,7 @@ impl Station {
         }
         self.end_golden_run(wants);
         self.take_up_gripped(now, wants);
-        for part in self.line.ledger.nest.iter_mut() {
+        if let Some(part) = self.line.ledger.part_mut(Place::NEST) {
             part.interrupted.get_or_insert_with(|| BY_A_RESET.into());
         }
         wants.rig.wake_at = Some(now);
@@ -216,7 +218,7 @@ impl Station {
 
     /// What the fingers hold goes to retest, and its row says why; one that they never let go had a row for its bin.
     fn take_up_gripped(&mut self, now: RigTime, wants: &mut Wants) {
-        let Some(part) = &mut self.line.ledger.gripper else {
+        let Some(part) = self.line.ledger.part_mut(Place::Gripper) else {
             return;
         };
         let told = part.interrupted.is_some();

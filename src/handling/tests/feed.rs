@@ -5,11 +5,12 @@ use super::instruments::golden_parts;
 use crate::handling::feed::Feed;
 use crate::handling::ledger::Kind;
 use crate::handling::moves::Move;
+use crate::handling::place::{NestId, Place};
 use crate::rig::point::DigitalIn;
 use crate::units::Span;
 
 fn step(feed: Feed, shop: &mut Shop, wanted: bool) -> Feed {
-    feed.step(&mut shop.turn(), wanted, true)
+    feed.step(&mut shop.turn(), NestId::FIRST, wanted, true)
 }
 
 /// A part waits in the pocket, escapement closed.
@@ -51,7 +52,7 @@ fn a_part_goes_from_track_to_nest_and_gets_its_number_there() {
         (Feed::Retracting, &[Move::PusherRetract][..])
     );
     assert_eq!(
-        shop.ledger.nest.as_ref().map(|part| part.kind.clone()),
+        shop.ledger.part(Place::NEST).map(|part| part.kind.clone()),
         Some(Kind::Lot(1))
     );
     assert_eq!(step(feed, &mut shop, true), Feed::Retracting);
@@ -109,7 +110,7 @@ fn a_part_left_in_the_pocket_is_fed_before_another_is_let_in() {
     shop.scan();
     let feed = step(Feed::Empty, &mut shop, true);
     assert!(matches!(feed, Feed::Ready));
-    assert!(shop.ledger.pocket && shop.ledger.came_in == 1);
+    assert!(shop.ledger.holds(Place::Pocket) && shop.ledger.came_in == 1);
 }
 
 #[test]
@@ -141,7 +142,7 @@ fn the_pusher_starts_only_into_a_nest_that_is_free_in_every_respect() {
 #[test]
 fn the_ledger_keeps_a_second_part_out_of_the_nest_whatever_the_sensor_says() {
     let (feed, mut shop) = ready();
-    shop.ledger.enter_nest(None);
+    shop.ledger.enter_nest(NestId::FIRST, None);
     shop.ledger.enter_pocket();
     assert_eq!(step(feed, &mut shop, true), Feed::Ready);
 }
@@ -153,7 +154,7 @@ fn a_pusher_at_an_empty_nest_is_an_alarm() {
     shop.carried_out(Move::PusherExtend);
     assert_eq!(step(feed, &mut shop, true), Feed::Pushing);
     assert_eq!(shop.alarms(), ["part_not_in_nest"]);
-    assert!(shop.ledger.pocket && shop.ledger.nest.is_none());
+    assert!(shop.ledger.holds(Place::Pocket) && !shop.ledger.holds(Place::NEST));
 }
 
 #[test]
@@ -165,7 +166,7 @@ fn golden_parts_come_first_in_the_order_of_the_magazine() {
     shop.carried_out(Move::PusherExtend);
     step(feed, &mut shop, true);
     assert_eq!(
-        shop.ledger.nest.as_ref().map(|part| part.kind.clone()),
+        shop.ledger.part(Place::NEST).map(|part| part.kind.clone()),
         Some(Kind::Golden("G-12-1".into()))
     );
     assert_eq!(shop.golden.len(), 4);

@@ -5,6 +5,7 @@ use crate::dut::verdict::{Bin, Verdict};
 use crate::handling::moves::Move;
 use crate::handling::nest::{self, NestContext, NestState, TestTerms};
 use crate::handling::place::NestId;
+use crate::handling::place::Place;
 use crate::handling::sort::Sort;
 use crate::handling::wants::NestJob;
 use crate::instrument::act::{Job, JobDone};
@@ -25,7 +26,7 @@ impl Nest {
         let mut shop = Shop::at_rest();
         shop.carried_out(Move::AxisTo(AxisStation::Nest));
         shop.ledger.enter_pocket();
-        shop.ledger.enter_nest(golden);
+        shop.ledger.enter_nest(NestId::FIRST, golden);
         shop.set(DigitalIn::NestPresent, true);
         shop.stands(Move::PusherExtend);
         shop.scan();
@@ -120,7 +121,7 @@ fn the_test_begins_with_the_pins_once_the_probes_are_up() {
     let state = nest.testing();
     assert!(matches!(state, NestState::Testing(_)));
     assert_eq!(nest.shop.wants.rig.job, Some(pins()));
-    let part = nest.shop.ledger.nest.as_ref().unwrap();
+    let part = nest.shop.ledger.part(Place::NEST).unwrap();
     assert_eq!(part.probed_at, Some(nest.shop.now));
 }
 
@@ -136,7 +137,7 @@ fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
         (&why, Some(Bin::RETEST))
     );
     assert_eq!(judged.part.test, Some(Second(0.04)));
-    let part = nest.shop.ledger.nest.as_ref();
+    let part = nest.shop.ledger.part(Place::NEST);
     assert_eq!(part, Some(&judged.part));
 }
 
@@ -197,12 +198,12 @@ fn the_part_changes_hands_when_z_is_up_and_the_nest_is_seen_empty() {
     let state = lift(&mut nest);
     let state = nest.step(state, None);
     assert!(matches!(state, NestState::Lifting), "nest still occupied");
-    assert!(nest.shop.ledger.gripper.is_none());
+    assert!(!nest.shop.ledger.holds(Place::Gripper));
     nest.shop.set(DigitalIn::NestPresent, false);
     nest.shop.after(8);
     let state = nest.step(state, None);
     assert!(matches!(state, NestState::Empty));
-    assert!(nest.shop.ledger.gripper.is_some() && nest.shop.ledger.nest.is_none());
+    assert!(nest.shop.ledger.holds(Place::Gripper) && !nest.shop.ledger.holds(Place::NEST));
     assert_eq!(nest.sort, Sort::Loaded);
 }
 
@@ -224,14 +225,14 @@ fn the_first_part_has_no_cycle_and_the_next_counts_from_it() {
 #[test]
 fn a_part_that_was_interrupted_is_clamped_and_not_tested() {
     let mut nest = Nest::loaded(None);
-    let part = nest.shop.ledger.nest.as_mut().unwrap();
+    let part = nest.shop.ledger.part_mut(Place::NEST).unwrap();
     part.interrupted = Some("emergency_stop".into());
     let state = nest.step(NestState::Empty, None);
     nest.shop.carried_out(Move::ClampClose);
     nest.shop.carried_out(Move::PusherRetract);
     let state = nest.step(state, None);
     assert!(matches!(state, NestState::Judged) && nest.motions().is_empty());
-    let part = nest.shop.ledger.nest.as_ref().unwrap();
+    let part = nest.shop.ledger.part(Place::NEST).unwrap();
     assert_eq!(
         (part.bin, nest.shop.wants.parts.judged.len()),
         (Some(Bin::RETEST), 1)

@@ -3,6 +3,7 @@
 use super::Shop;
 use crate::handling::ledger::{Kind, Ledger};
 use crate::handling::moves::Move;
+use crate::handling::place::{NestId, Place};
 use crate::handling::recovery::Recovery;
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
@@ -75,7 +76,7 @@ fn a_part_that_the_pusher_had_brought_to_the_nest_is_neither_lost_nor_found() {
     shop.set(DigitalIn::NestPresent, true);
     shop.scan();
     carried_out(&mut shop);
-    assert!(!shop.ledger.pocket && shop.ledger.nest.is_some());
+    assert!(!shop.ledger.holds(Place::Pocket) && shop.ledger.holds(Place::NEST));
     assert_eq!((shop.ledger.lost, shop.ledger.found), (0, 0));
 }
 
@@ -149,11 +150,9 @@ fn a_part_that_nobody_knows_is_found_and_fingers_that_hold_one_stay_closed() {
         assert_eq!(opened, place != "gripper", "{place}");
         let ledger = &shop.ledger;
         assert!(ledger.balances() && ledger.found == 1 && ledger.inside() == 1);
-        let why = |part: &Option<crate::handling::ledger::Part>| {
-            part.as_ref().and_then(|part| part.interrupted.clone())
-        };
-        let told = why(&ledger.nest).or(why(&ledger.gripper));
-        assert!(told.is_some() || ledger.pocket_found, "{place}");
+        let mut parts = ledger.each().filter_map(|(_, part)| part);
+        let told = parts.any(|part| part.interrupted.is_some());
+        assert!(told || ledger.is_pocket_found(), "{place}");
     }
 }
 
@@ -176,7 +175,11 @@ fn after_homing_the_ledger_says_what_the_sensors_say_whatever_it_said_before() {
             shop.scan();
             carried_out(&mut shop);
             let after = &shop.ledger;
-            let places = [after.pocket, after.nest.is_some(), after.gripper.is_some()];
+            let places = [
+                after.holds(Place::Pocket),
+                after.holds(Place::NEST),
+                after.holds(Place::Gripper),
+            ];
             let wanted = [1, 2, 4].map(|bit| seen & bit != 0);
             assert_eq!(places, wanted, "{before:03b} {seen:03b}");
             assert!(after.balances(), "{before:03b} {seen:03b}");
@@ -193,7 +196,7 @@ fn a_part_that_had_been_pushed_is_not_taken_for_the_one_that_the_fingers_lost() 
     shop.set(DigitalIn::NestPresent, true);
     shop.scan();
     carried_out(&mut shop);
-    let kind = shop.ledger.nest.as_ref().map(|part| part.kind.clone());
+    let kind = shop.ledger.part(Place::NEST).map(|part| part.kind.clone());
     assert_eq!(kind, Some(Kind::Lot(2)), "the first one fell");
     assert_eq!((shop.ledger.lost, shop.ledger.found), (1, 0));
 }
@@ -210,7 +213,7 @@ fn a_part_that_was_to_fall_and_is_seen_in_the_fingers_is_neither_found_nor_lost(
         carried_out(&mut shop);
         let ledger = &shop.ledger;
         assert_eq!((ledger.lost, ledger.found, ledger.inside()), (0, 0, 1));
-        assert_eq!(ledger.gripper.is_some(), in_the_fingers);
+        assert_eq!(ledger.holds(Place::Gripper), in_the_fingers);
     }
 }
 
@@ -218,12 +221,12 @@ fn ledger(places: u8) -> Ledger {
     let mut ledger = Ledger::default();
     if places & 4 != 0 {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
-        ledger.lift();
+        ledger.enter_nest(NestId::FIRST, None);
+        ledger.lift(NestId::FIRST);
     }
     if places & 2 != 0 {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
+        ledger.enter_nest(NestId::FIRST, None);
     }
     if places & 1 != 0 {
         ledger.enter_pocket();

@@ -3,6 +3,7 @@
 use super::Shop;
 use crate::dut::em_relay::bins;
 use crate::handling::moves::Move;
+use crate::handling::place::{NestId, Place};
 use crate::handling::sort::{Sort, confirm};
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
@@ -27,9 +28,9 @@ fn beam(shop: &mut Shop, bin: Bin, count: u16) {
 fn loaded(bin: Bin) -> Shop {
     let mut shop = Shop::at_rest();
     shop.ledger.enter_pocket();
-    shop.ledger.enter_nest(None);
-    shop.ledger.lift();
-    if let Some(part) = &mut shop.ledger.gripper {
+    shop.ledger.enter_nest(NestId::FIRST, None);
+    shop.ledger.lift(NestId::FIRST);
+    if let Some(part) = shop.ledger.part_mut(Place::Gripper) {
         part.bin = Some(bin);
     }
     shop.stands(Move::GripperClose);
@@ -118,7 +119,7 @@ fn a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest() {
         assert_eq!(shop.wants.rig.motions, [Move::AxisTo(station)]);
     }
     let mut shop = loaded(Bin::PASS);
-    if let Some(part) = &mut shop.ledger.gripper {
+    if let Some(part) = shop.ledger.part_mut(Place::Gripper) {
         part.bin = None;
     }
     let sort = step(Sort::Loaded, &mut shop, false);
@@ -146,9 +147,9 @@ fn a_part_is_in_the_fingers_until_their_opening_is_driven() {
         waiting.driven(Move::SortUp, &mut shop.ledger, shop.now),
         waiting
     );
-    assert!(shop.ledger.gripper.is_some() && shop.ledger.falling.is_none());
+    assert!(shop.ledger.holds(Place::Gripper) && shop.ledger.fall().is_none());
     let_go(waiting, &mut shop);
-    assert!(shop.ledger.gripper.is_none() && shop.ledger.falling.is_some());
+    assert!(!shop.ledger.holds(Place::Gripper) && shop.ledger.fall().is_some());
 }
 
 #[test]
@@ -164,7 +165,7 @@ fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
     beam(&mut shop, bins::TIME, 5);
     let asked = step(sort, &mut shop, false);
     let_go(asked, &mut shop);
-    let falling = shop.ledger.falling.as_ref();
+    let falling = shop.ledger.fall();
     assert_eq!(falling.map(|falling| falling.beam_before), Some(5));
 }
 
@@ -172,12 +173,10 @@ fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
 fn a_part_is_not_let_go_while_the_one_before_still_falls() {
     let (sort, mut shop) = over(Bin::PASS, 0);
     shop.recorded = 2;
-    let mut before = Shop::at_rest().ledger;
-    before.enter_pocket();
-    before.enter_nest(None);
-    before.lift();
-    before.drop_over(bins::COIL, shop.now, 0);
-    shop.ledger.falling = before.falling;
+    shop.ledger.drop_over(bins::COIL, shop.now, 0);
+    shop.ledger.enter_pocket();
+    shop.ledger.enter_nest(NestId::FIRST, None);
+    shop.ledger.lift(NestId::FIRST);
     assert_eq!(step(sort, &mut shop, false), sort);
     assert!(shop.wants.rig.motions.is_empty());
 }
@@ -207,7 +206,7 @@ fn one_count_of_the_beam_lands_the_part_even_across_the_wrap() {
         step(sort, &mut shop, false);
         let landed = &shop.wants.parts.landed[0];
         assert_eq!((landed.bin, landed.part.ordinal), (bins::VOLTAGE, 1));
-        assert!(shop.ledger.falling.is_none() && shop.ledger.balances());
+        assert!(shop.ledger.fall().is_none() && shop.ledger.balances());
     }
 }
 
@@ -232,7 +231,7 @@ fn a_second_body_behind_the_part_is_an_alarm() {
 #[test]
 fn a_part_that_its_beam_does_not_see_is_lost_after_a_second_and_a_half() {
     let (sort, mut shop) = falling(Bin::PASS, 10);
-    let since = shop.ledger.falling.as_ref().map(|f| f.since).unwrap();
+    let since = shop.ledger.fall().map(|f| f.since).unwrap();
     shop.now = RigTime(since.0 + 1_500_000);
     shop.scan();
     beam(&mut shop, Bin::PASS, 10);
@@ -254,7 +253,7 @@ fn a_count_read_before_the_fingers_opened_says_nothing() {
     beam(&mut shop, Bin::PASS, 11);
     step(sort, &mut shop, false);
     assert!(shop.wants.parts.landed.is_empty());
-    let falling = shop.ledger.falling.as_ref().unwrap();
+    let falling = shop.ledger.fall().unwrap();
     assert_eq!(falling.seen, None);
 }
 
@@ -278,7 +277,7 @@ fn a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told() {
     shop.after(500);
     assert_eq!(step(sort, &mut shop, false), Sort::Opening);
     assert_eq!(shop.alarms(), ["part_stuck"]);
-    assert!(shop.ledger.falling.is_none() && shop.ledger.gripper.is_some());
+    assert!(shop.ledger.fall().is_none() && shop.ledger.holds(Place::Gripper));
     assert!(shop.ledger.balances());
 }
 
@@ -294,7 +293,7 @@ fn never_opened() -> Shop {
 
 /// Nothing came by the beam in time.
 fn time_is_over(shop: &mut Shop) {
-    let since = shop.ledger.falling.as_ref().map(|it| it.since).unwrap();
+    let since = shop.ledger.fall().map(|it| it.since).unwrap();
     shop.now = RigTime(since.0 + 1_500_001);
 }
 
@@ -306,8 +305,8 @@ fn a_part_whose_fingers_never_opened_is_theirs_and_not_lost() {
     beam(&mut shop, Bin::PASS, 3);
     step(Sort::Returning, &mut shop, false);
     assert!(shop.alarms().is_empty(), "{:?}", shop.alarms());
-    assert!(shop.ledger.falling.is_none() && shop.ledger.lost == 0);
-    let part = shop.ledger.gripper.as_ref().unwrap();
+    assert!(shop.ledger.fall().is_none() && shop.ledger.lost == 0);
+    let part = shop.ledger.part(Place::Gripper).unwrap();
     assert_eq!((part.ordinal, part.bin), (1, Some(Bin::PASS)));
 }
 
@@ -317,7 +316,7 @@ fn nobody_declares_a_part_lost_who_cannot_see_the_fingers() {
     time_is_over(&mut shop);
     step(Sort::Returning, &mut shop, false);
     assert!(shop.alarms().is_empty());
-    assert!(shop.ledger.falling.is_some() && shop.ledger.lost == 0);
+    assert!(shop.ledger.fall().is_some() && shop.ledger.lost == 0);
     shop.set(DigitalIn::GripperPart, false);
     shop.scan();
     step(Sort::Returning, &mut shop, false);

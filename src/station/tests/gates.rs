@@ -8,6 +8,7 @@ use crate::dut::em_relay::measure::Findings;
 use crate::dut::em_relay::settings::GoldenPart;
 use crate::gauge::budget::{Budget, Reading};
 use crate::handling::ledger::Kind;
+use crate::handling::place::Place;
 use crate::handling::wear::Uses;
 use crate::rig::sample::Sample;
 use crate::station::gates::{CheckSettings, LotSettings, WearSettings};
@@ -153,8 +154,7 @@ fn a_golden_part_that_was_interrupted_has_said_nothing() {
     while machine
         .station
         .ledger()
-        .nest
-        .as_ref()
+        .part(Place::NEST)
         .is_none_or(|part| matches!(part.kind, Kind::Lot(_)))
     {
         machine.turn();

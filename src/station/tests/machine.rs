@@ -334,7 +334,7 @@ impl Machine {
     }
 
     fn arrive(&mut self, movement: Move) {
-        let held = self.station.ledger().falling.is_some();
+        let held = self.station.ledger().fall().is_some();
         self.shop.stands(movement);
         match movement {
             Move::EscapementRelease if !self.magazine.is_empty() => {

@@ -104,7 +104,7 @@ fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() 
 #[test]
 fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so() {
     let mut machine = Machine::attended(Some(1), vec![Specimen::StuckNo]);
-    while machine.station.ledger().falling.is_none() {
+    while machine.station.ledger().fall().is_none() {
         machine.turn();
     }
     // The module that drives the fingers has tripped: they never open.

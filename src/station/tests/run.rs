@@ -2,6 +2,7 @@
 
 use super::machine::{Machine, Specimen, quiet, station};
 use crate::handling::moves::Move;
+use crate::handling::place::Place;
 use crate::station::wants::{Ending, Inputs};
 
 const MIXED: [Specimen; 4] = [
@@ -46,7 +47,7 @@ fn an_order_to_stop_finishes_the_parts_inside() {
     let ended = machine.run();
     assert_eq!(ended.record.ending, Some(Ending::Stopped));
     let ledger = machine.station.ledger();
-    assert!(ledger.nest.is_none() && ledger.gripper.is_none() && ledger.falling.is_none());
+    assert!(!ledger.holds(Place::NEST) && !ledger.holds(Place::Gripper) && ledger.fall().is_none());
     assert_eq!(ledger.went_out as usize, machine.landed.len());
     assert!(ledger.went_out < 5);
 }

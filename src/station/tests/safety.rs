@@ -77,7 +77,7 @@ fn trouble_of_a_line_ends_the_run_like_an_emergency_stop() {
 #[test]
 fn a_part_that_is_on_its_way_to_its_bin_when_the_run_ends_is_told() {
     let mut machine = Machine::new(Some(2), vec![Specimen::StuckNo; 2]);
-    while machine.station.ledger().falling.is_none() {
+    while machine.station.ledger().fall().is_none() {
         machine.turn();
     }
     machine.bus = Some(Alarm::bus("line motion is silent"));

@@ -5,6 +5,7 @@ use crate::dut::em_relay::measure::{Bench, Test};
 use crate::handling::ledger::Ledger;
 use crate::handling::nest::{Nest, NestContext, NestState, TestTerms};
 use crate::handling::place::NestId;
+use crate::handling::place::Place;
 use crate::handling::sort::Sort;
 use crate::handling::tests::{Shop, bench};
 use crate::instrument::act::JobDone;
@@ -71,9 +72,9 @@ fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
     let mut ledger = Ledger::default();
     if part || from != "Empty" {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
+        ledger.enter_nest(NestId::FIRST, None);
     }
-    if let Some(part) = &mut ledger.nest {
+    if let Some(part) = ledger.part_mut(Place::NEST) {
         part.interrupted = interrupted.then(|| "by a reset".to_owned());
         part.bin = judged.then_some(Bin::RETEST);
     }

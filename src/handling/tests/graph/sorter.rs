@@ -3,6 +3,7 @@
 use super::{Graph, SEEN, Seen, show, truths};
 use crate::handling::ledger::Ledger;
 use crate::handling::moves::Move;
+use crate::handling::place::{NestId, Place};
 use crate::handling::sort::Sort;
 use crate::handling::tests::Shop;
 use crate::handling::tests::shop::Asked;
@@ -47,8 +48,8 @@ fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
     let mut ledger = Ledger::default();
     let mut lift = || {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
-        ledger.lift();
+        ledger.enter_nest(NestId::FIRST, None);
+        ledger.lift(NestId::FIRST);
     };
     if falling {
         lift();
@@ -62,10 +63,10 @@ fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
     }
     if carries {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
-        ledger.lift();
+        ledger.enter_nest(NestId::FIRST, None);
+        ledger.lift(NestId::FIRST);
     }
-    if let Some(part) = &mut ledger.gripper {
+    if let Some(part) = ledger.part_mut(Place::Gripper) {
         part.bin = Some(Bin::PASS);
     }
     ledger
