@@ -28,7 +28,6 @@ use crate::guard::Guard;
 use crate::handling::NestId;
 use crate::handling::inside::Inside;
 use crate::handling::wants::{NestDone, NestJob};
-use crate::hmi::Asked;
 use crate::instrument::act::{Job, JobDone, Read};
 use crate::rig::drive::Outputs;
 use crate::rig::image::Image;
@@ -40,7 +39,7 @@ use crate::station::packml;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Inputs, Wants};
 use crate::units::{RigTime, Span};
-use crate::view::{self, View};
+use crate::view::{self, OrderRequest, View};
 pub use desk::PANEL;
 pub use event::Event;
 use patience::Patience;
@@ -67,7 +66,7 @@ pub struct Outside {
     /// Set when the operator does not want to wait for the parts inside.
     pub abort: Arc<AtomicBool>,
     /// Orders of screens, each with the way back for its answer.
-    pub orders: mpsc::Receiver<Asked>,
+    pub orders: mpsc::Receiver<OrderRequest>,
     /// Wall clock at rig time zero, microseconds since 1970 UTC.
     pub epoch_us: i64,
     /// Set when the history can no longer be written: the rig must not go on.
@@ -95,7 +94,7 @@ pub struct Cycle {
     /// Only safe values are written.
     making_safe: bool,
     /// Orders of this turn, waiting for their answers.
-    asked: Vec<Asked>,
+    asked: Vec<OrderRequest>,
     /// Nobody can send orders any more.
     orders_closed: bool,
     verified: bool,

@@ -2,11 +2,10 @@
 
 use super::{Cycle, Event, publish};
 use crate::handling::moves::Move;
-use crate::hmi::Asked;
 use crate::station::orders::{Order, Refused};
 use crate::station::wants::Wants;
 use crate::units::RigTime;
-use crate::view::{self, Answered, By, NotTaken};
+use crate::view::{self, Answered, By, NotTaken, OrderRequest};
 
 /// Origin of what is ordered with a button at the machine.
 pub const PANEL: &str = "panel";
@@ -64,7 +63,7 @@ impl Cycle {
     }
 
     /// Answers whoever asked, and tells the audit.
-    fn say(&self, asked: Asked, answer: Result<(), Refused>, now: RigTime) {
+    fn say(&self, asked: OrderRequest, answer: Result<(), Refused>, now: RigTime) {
         let answered = Answered {
             order: asked.order.clone(),
             by: asked.by.clone(),
