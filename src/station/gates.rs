@@ -134,9 +134,9 @@ impl Station {
     /// A golden part comes next: nothing else is judged before one has read as certified.
     pub(super) fn begin_check(&mut self) {
         let next: VecDeque<GoldenPart> = self.plan.golden.first().cloned().into_iter().collect();
-        self.golden_planned += next.len().saturating_sub(self.golden_left.len()) as u64;
-        self.gates.checking = !next.is_empty();
-        self.golden_left = next;
+        self.lot.golden_planned += next.len().saturating_sub(self.lot.golden_left.len()) as u64;
+        self.lot.gates.checking = !next.is_empty();
+        self.lot.golden_left = next;
     }
 
     /// Looks whether a golden check is due while parts are being made.
@@ -145,16 +145,16 @@ impl Station {
         if !self.is_calibrating() && self.bench.calibration.due_at_us <= at_us {
             return wants.notes.trouble.push(Alarm::calibration_overdue());
         }
-        if self.gates.checking || self.is_calibrating() || !self.wants_more() {
+        if self.lot.gates.checking || self.is_calibrating() || !self.wants_more() {
             return;
         }
         let (parts, settings) = (self.line.ledger.lot_parts(), &self.plan.lot.golden_check);
-        if self.gates.good.is_none() {
+        if self.lot.gates.good.is_none() {
             // What the run began with counts as good: its calibration, or the check before the first part.
-            self.gates.good(now, parts);
-        } else if self.gates.due_by_parts(settings, parts) {
+            self.lot.gates.good(now, parts);
+        } else if self.lot.gates.due_by_parts(settings, parts) {
             self.begin_check();
-        } else if self.gates.due_by_time(settings, now) {
+        } else if self.lot.gates.due_by_time(settings, now) {
             self.begin_check();
             let trouble = &mut wants.notes.trouble;
             trouble.extend(self.next_serial().map(Alarm::golden_check_due));
@@ -162,20 +162,24 @@ impl Station {
     }
 
     fn next_serial(&self) -> Option<&str> {
-        self.golden_left.front().map(|part| part.serial.as_str())
+        self.lot
+            .golden_left
+            .front()
+            .map(|part| part.serial.as_str())
     }
 
     /// Golden parts that teach the lags are still to come or have not taught them yet.
     pub(super) fn is_calibrating(&self) -> bool {
         let lags = self.bench.calibration.lags;
-        !self.golden_left.is_empty() || lags.is_none_or(|lags| !lags.operate.fine_v.u.is_finite())
+        !self.lot.golden_left.is_empty()
+            || lags.is_none_or(|lags| !lags.operate.fine_v.u.is_finite())
     }
 
     /// The part in the nest is measured by the slow strategy.
     pub(super) fn is_thorough(&self) -> bool {
         match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
-            Some(Kind::Golden(_)) => self.gates.checking,
+            Some(Kind::Golden(_)) => self.lot.gates.checking,
             None => false,
         }
     }
@@ -195,7 +199,7 @@ impl Station {
             text: read.clone().err().unwrap_or_else(|| serial.to_owned()),
         });
         match read {
-            Ok(()) => self.gates.good(judged.at, self.line.ledger.lot_parts()),
+            Ok(()) => self.lot.gates.good(judged.at, self.line.ledger.lot_parts()),
             Err(why) => {
                 self.begin_check();
                 wants.trouble.push(Alarm::golden_check_failed(&why));
@@ -207,8 +211,8 @@ impl Station {
     pub(super) fn count_discards(&mut self, judged: &Judged, wants: &mut Told) {
         let failed = matches!(judged.verdict, Verdict::Fail(_));
         let (limit_pct, count) = (self.plan.lot.discard_limit_pct, self.plan.count);
-        if self.gates.discards(failed, limit_pct, count) {
-            let (failed, judged) = (self.gates.failed, self.gates.judged);
+        if self.lot.gates.discards(failed, limit_pct, count) {
+            let (failed, judged) = (self.lot.gates.failed, self.lot.gates.judged);
             wants.trouble.push(Alarm::discard_limit(
                 failed,
                 judged,
@@ -224,22 +228,22 @@ impl Station {
 
     /// Resistance in series of both force contacts of the coil, mean over the last parts of the lot.
     pub fn probe_contact(&self) -> Option<Ohm> {
-        self.gates.probe_contact.mean()
+        self.lot.gates.probe_contact.mean()
     }
 
     /// How well the probes have met this part.
     pub(super) fn follow_probes(&mut self, judged: &Judged) {
         if let Some(ohm) = judged.findings.probe_contact {
-            self.gates.probe_contact.add(ohm);
+            self.lot.gates.probe_contact.add(ohm);
         }
     }
 
     /// The limit of the probes' contact is passed, told once until it is kept again.
     fn fouled(&mut self) -> Option<Alarm> {
         let limit_ohm = self.plan.lot.wear.probe_contact_ohm?;
-        let Ohm(mean) = self.gates.probe_contact.settled()?;
-        let told = std::mem::replace(&mut self.gates.fouled, mean > limit_ohm);
-        (self.gates.fouled && !told).then(|| Alarm::probe_contact(mean, limit_ohm))
+        let Ohm(mean) = self.lot.gates.probe_contact.settled()?;
+        let told = std::mem::replace(&mut self.lot.gates.fouled, mean > limit_ohm);
+        (self.lot.gates.fouled && !told).then(|| Alarm::probe_contact(mean, limit_ohm))
     }
 
     /// Counters at their limit, each told once.
@@ -253,9 +257,9 @@ impl Station {
         let mut alarms: Vec<Alarm> = self.fouled().into_iter().collect();
         for (what, count, limit) in each {
             if let Some(limit) = limit.filter(|limit| count >= *limit)
-                && !self.gates.worn.contains(&what)
+                && !self.lot.gates.worn.contains(&what)
             {
-                self.gates.worn.push(what);
+                self.lot.gates.worn.push(what);
                 alarms.push(Alarm::worn(what, count, limit));
             }
         }

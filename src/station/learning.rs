@@ -41,8 +41,8 @@ impl Station {
         self.plan.calibrated = false;
         self.referenced = false;
         let all: VecDeque<_> = self.plan.golden.iter().cloned().collect();
-        self.golden_planned += all.len().saturating_sub(self.golden_left.len()) as u64;
-        self.golden_left = all;
+        self.lot.golden_planned += all.len().saturating_sub(self.lot.golden_left.len()) as u64;
+        self.lot.golden_left = all;
         self.golden_run = golden::GoldenRun::default();
         self.bench.calibration = Arc::new(Calibration {
             lags: None,
@@ -55,7 +55,7 @@ impl Station {
         let mut told = Told::default();
         for judged in &wants.record.parts.judged {
             match &judged.part.kind {
-                Kind::Golden(serial) if self.gates.is_checking() => {
+                Kind::Golden(serial) if self.lot.gates.is_checking() => {
                     self.check(judged, serial, &mut told);
                 }
                 Kind::Golden(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
@@ -127,7 +127,7 @@ impl Station {
 
     /// The last golden part was interrupted: what the others taught has to do, or the calibration has failed.
     pub(super) fn end_golden_run(&mut self, wants: &mut Wants) {
-        if self.referenced && self.golden_left.is_empty() && self.is_calibrating() {
+        if self.referenced && self.lot.golden_left.is_empty() && self.is_calibrating() {
             let mut told = Told::default();
             self.take_lags(true, &mut wants.record.calibrated, &mut told);
             wants.notes.trouble.extend(told.trouble);
@@ -165,7 +165,7 @@ impl Station {
             };
             return Ok((lags, false));
         }
-        if self.golden_left.is_empty() {
+        if self.lot.golden_left.is_empty() {
             let lags = self
                 .golden_run
                 .lags(&self.plan.golden, &bench.accuracy, self.coarse)?;

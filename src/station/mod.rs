@@ -26,6 +26,7 @@ pub mod gates;
 mod lamps;
 mod learning;
 mod line;
+mod machine;
 pub mod orders;
 pub mod packml;
 mod panel;
@@ -53,6 +54,7 @@ use annunciator::Annunciator;
 use gates::{Gates, LotSettings};
 use lamps::Lamps;
 use line::Line;
+use machine::Machine;
 use packml::{Mode, State};
 use panel::Panel;
 use patience::Patience;
@@ -106,40 +108,41 @@ enum Start {
 pub struct Station {
     plan: Plan,
     bench: Bench,
-    state: State,
-    entered: RigTime,
-    mode: Mode,
-    line: Line,
-    start: Start,
-    /// References were measured in this run.
-    referenced: bool,
-    began: Option<RigTime>,
-    /// Safety inputs were read since the start or since the modules were verified.
-    sensed: bool,
-    annunciator: Annunciator,
-    patience: Patience,
-    panel: Panel,
-    /// When the emergency-stop chain was last seen open.
-    chain_open: Option<RigTime>,
-    lamps: Lamps,
-    /// A person asked for the suspension; it does not end by itself.
-    suspended_by_order: bool,
-    asked_verify: bool,
-    /// When the modules were found as they should be, of this clearing.
-    verified: Option<RigTime>,
-    golden_left: VecDeque<GoldenPart>,
-    /// Golden parts that this run has asked for so far.
-    golden_planned: u64,
-    gates: Gates,
     golden_run: GoldenRun,
     coarse: (LagLaw, LagLaw),
     /// The same of parts of this lot alone.
     of_lot: (LagLaw, LagLaw),
-    lot_began: bool,
-    /// Nobody has started anything yet: the first start is the program's own.
-    fresh: bool,
-    stopping: bool,
-    ended: bool,
+    start: Start,
+    /// References were measured in this run.
+    referenced: bool,
+    machine: Machine,
+    line: Line,
+    lot: LotControl,
+    alarms: Alarms,
+}
+
+/// What the lot lets be judged next.
+#[derive(Debug)]
+struct LotControl {
+    gates: Gates,
+    golden_left: VecDeque<GoldenPart>,
+    /// Golden parts that this run has asked for so far.
+    golden_planned: u64,
+    /// Calibration and golden parts are over.
+    began: bool,
+}
+
+/// What watches the machine, and what shows it to a person beside it.
+#[derive(Debug, Default)]
+struct Alarms {
+    annunciator: Annunciator,
+    patience: Patience,
+    panel: Panel,
+    lamps: Lamps,
+    /// When the emergency-stop chain was last seen open.
+    chain_open: Option<RigTime>,
+    /// Safety inputs were read since the start or since the modules were verified.
+    sensed: bool,
 }
 
 impl Station {
@@ -157,34 +160,22 @@ impl Station {
         });
         let ledger = Ledger::after(plan.left);
         let mut station = Self {
-            fresh: true,
-            state: plan.between_lots.unwrap_or(State::Stopped),
+            machine: Machine::new(plan.between_lots.unwrap_or(State::Stopped)),
+            line: Line::new(Feeder::new(table), ledger, mechanism),
+            lot: LotControl {
+                gates: Gates::default(),
+                golden_planned: golden_left.len() as u64,
+                golden_left,
+                began: false,
+            },
+            alarms: Alarms::default(),
             plan,
             bench,
-            entered: RigTime(0),
-            mode: Mode::Production,
-            line: Line::new(Feeder::new(table), ledger, mechanism),
-            start: Start::Begin,
-            referenced: false,
-            began: None,
-            sensed: false,
-            annunciator: Annunciator::default(),
-            patience: Patience::default(),
-            panel: Panel::default(),
-            chain_open: None,
-            lamps: Lamps::default(),
-            suspended_by_order: false,
-            asked_verify: false,
-            verified: None,
-            golden_planned: golden_left.len() as u64,
-            golden_left,
-            gates: Gates::default(),
             golden_run: GoldenRun::default(),
             coarse: known,
             of_lot: untaught(),
-            lot_began: false,
-            stopping: false,
-            ended: false,
+            start: Start::Begin,
+            referenced: false,
         };
         if station.plan.calibrated && station.plan.lot.golden_check.at_start {
             station.begin_check();
@@ -204,12 +195,12 @@ impl Station {
 
     /// Alarms that stand.
     pub fn annunciator(&self) -> &Annunciator {
-        &self.annunciator
+        &self.alarms.annunciator
     }
 
     /// The same, to put in what a run before left unseen.
     pub fn annunciator_mut(&mut self) -> &mut Annunciator {
-        &mut self.annunciator
+        &mut self.alarms.annunciator
     }
 
     /// A person is at a screen.
@@ -229,26 +220,26 @@ impl Station {
 
     /// State of the outer machine.
     pub fn outer(&self) -> State {
-        self.state
+        self.machine.state
     }
 
     /// What the machine is used for.
     pub fn mode(&self) -> Mode {
-        self.mode
+        self.machine.mode
     }
 
     /// What the station is doing, in words for a screen.
     pub fn state(&self) -> String {
-        match self.state {
-            _ if self.ended => "ended".into(),
-            State::Resetting if !self.sensed => "waiting for sensors".into(),
+        match self.machine.state {
+            _ if self.machine.ended => "ended".into(),
+            State::Resetting if !self.alarms.sensed => "waiting for sensors".into(),
             State::Resetting if !self.line.homed => "homing".into(),
             State::Resetting => "discharging".into(),
             State::Starting => "calibrating".into(),
             State::Execute | State::Completing => match self.line.feeder.test() {
                 Some(test) => format!("testing: {:?}", test.stage()),
-                None if self.lot_began => "running".into(),
-                None if self.golden_left.is_empty() => "running".into(),
+                None if self.lot.began => "running".into(),
+                None if self.lot.golden_left.is_empty() => "running".into(),
                 None => "golden parts".into(),
             },
             State::Stopped
@@ -263,44 +254,47 @@ impl Station {
             | State::Stopping
             | State::Aborting
             | State::Aborted
-            | State::Clearing => self.state.name().to_lowercase(),
+            | State::Clearing => self.machine.state.name().to_lowercase(),
         }
     }
 
     /// One turn.
     pub fn step(&mut self, now: RigTime, mut inputs: Inputs) -> Wants {
         let mut wants = Wants::default();
-        if self.ended {
+        if self.machine.ended {
             return wants;
         }
         if inputs.verified {
             // What was read before the modules were asked is stale by now, and no trouble.
-            (self.sensed, self.began) = (false, Some(now));
+            (self.alarms.sensed, self.machine.began) = (false, Some(now));
         }
-        self.began.get_or_insert(now);
+        self.machine.began.get_or_insert(now);
         for order in std::mem::take(&mut inputs.orders) {
             let answer = self.order(order, now, &mut wants);
             wants.answers.push(answer);
         }
         let stuck = self.pressed(now, inputs.image, &mut wants);
         self.by_itself(now, &inputs, &mut wants);
-        if self.ended {
+        if self.machine.ended {
             return wants;
         }
         self.look(now, &inputs, stuck, &mut wants);
         self.raise_all(now, &mut wants);
-        if !wants.rig.safe && !self.ended {
+        if !wants.rig.safe && !self.machine.ended {
             self.act(now, inputs, &mut wants);
             self.raise_all(now, &mut wants);
         }
         self.line.postpone(now, &mut wants);
         let balances = self.line.ledger.balances();
         assert!(balances, "a part is in two places or in none");
-        self.annunciator.unshelve(now);
-        wants.record.alarms_changed |= self.annunciator.take_changed();
-        let stack = self
-            .lamps
-            .show(now, self.state, self.annunciator.standing(), wants.rig.safe);
+        self.alarms.annunciator.unshelve(now);
+        wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
+        let stack = self.alarms.lamps.show(
+            now,
+            self.machine.state,
+            self.alarms.annunciator.standing(),
+            wants.rig.safe,
+        );
         wants.rig.outputs.extend(stack);
         wants
     }

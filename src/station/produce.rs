@@ -1,7 +1,7 @@
 //! The sequence in a turn, and what the lot wants of it.
 
 use super::Station;
-use super::packml::{Mode, State};
+use super::packml::Mode;
 use super::wants::{Inputs, Wants};
 use crate::handling::feeder::Permits;
 use crate::handling::nest::TestTerms;
@@ -21,19 +21,19 @@ impl Station {
         let terms = TestTerms {
             thorough: self.is_thorough(),
             probe_contact: self.probe_contact(),
-            golden: Self::teaching(&self.plan, &self.gates, &self.line.ledger),
+            golden: Self::teaching(&self.plan, &self.lot.gates, &self.line.ledger),
             bench: &self.bench,
         };
         let before = wants.rig.motions.len();
-        let resting = matches!(self.state, State::Holding | State::Suspending);
+        let resting = self.machine.is_coming_to_rest();
         let (feeder, _, mut turn) =
             self.line
-                .at(now, &inputs, wants, &mut self.golden_left, resting);
+                .at(now, &inputs, wants, &mut self.lot.golden_left, resting);
         if feeder.step(&mut turn, job, terms, permits) {
             self.line.mechanism.new_part();
         }
         wants.notes.take_over();
-        if self.mode == Mode::Maintenance {
+        if self.machine.mode == Mode::Maintenance {
             let motions = wants.rig.motions.drain(before..);
             self.line.stepwise.extend(motions);
         }
@@ -43,8 +43,8 @@ impl Station {
     fn note_begin(&mut self, wants: &mut Wants) {
         let lags = self.bench.calibration.lags;
         let known = lags.is_some_and(|lags| lags.operate.fine_v.u.is_finite());
-        if !self.lot_began && self.golden_left.is_empty() && known {
-            self.lot_began = true;
+        if !self.lot.began && self.lot.golden_left.is_empty() && known {
+            self.lot.began = true;
             wants.record.lot_began = true;
         }
     }
@@ -53,6 +53,6 @@ impl Station {
     pub(super) fn wants_more(&self) -> bool {
         self.plan
             .count
-            .is_none_or(|count| self.line.ledger.own() < self.golden_planned + count)
+            .is_none_or(|count| self.line.ledger.own() < self.lot.golden_planned + count)
     }
 }

@@ -41,23 +41,26 @@ impl Station {
         there.extend(stuck);
         there.extend(self.full_bins(now, inputs.image));
         there.extend(self.still_starved(now, inputs.image));
-        self.annunciator.sensed(&there);
+        self.alarms.annunciator.sensed(&there);
         let trouble = &mut wants.notes.trouble;
-        if !packml::is_aborted(self.state) {
+        if !packml::is_aborted(self.machine.state) {
             trouble.extend(found.trouble.into_iter().map(Alarm::from));
         }
         trouble.extend(inputs.bus.clone());
         trouble.extend(there);
         trouble.extend(self.worn());
-        let golden = &mut self.golden_left;
+        let golden = &mut self.lot.golden_left;
         let (feeder, _, mut turn) = self.line.at(now, inputs, wants, golden, false);
         feeder.confirm(&mut turn);
         wants.notes.take_over();
         if !self.line.dark.is_empty() {
-            self.patience.wait_for_bin();
+            self.alarms.patience.wait_for_bin();
         }
         let feeder = &self.line.feeder;
-        let late = self.patience.look(now, self.state, self.mode, feeder);
+        let late = self
+            .alarms
+            .patience
+            .look(now, self.machine.state, self.machine.mode, feeder);
         wants.notes.trouble.extend(late);
     }
 
@@ -93,7 +96,7 @@ impl Station {
                 "气压不足。请检查气源。",
             ),
         ];
-        let late = now.since(self.began.unwrap_or(now)) > FIRST_SCAN;
+        let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
         let (mut alarms, mut unread) = (Vec::new(), Vec::new());
         for (point, code, en, zh) in inputs {
             let seen = match point {
@@ -101,7 +104,7 @@ impl Station {
                 other => image.input(other, now, SENSOR_AGE),
             };
             if point == DigitalIn::EmergencyStopOk && seen == Some(false) {
-                self.chain_open = Some(now);
+                self.alarms.chain_open = Some(now);
             }
             match seen {
                 Some(true) => {}
@@ -120,20 +123,20 @@ impl Station {
                 .iter()
                 .all(|point| image.input(*point, now, SENSOR_AGE).is_some());
         if let Some(point) = unread.first()
-            && (late || self.sensed)
+            && (late || self.alarms.sensed)
         {
             alarms.push(Alarm::stale(*point));
         }
-        self.sensed |= all;
+        self.alarms.sensed |= all;
         alarms
     }
 
     /// The emergency stop vents the air, and after its release the pressure needs a while: no trouble of its own, as
     /// long as nothing is to move.
     fn is_vented(&self, now: RigTime) -> bool {
-        let rests = packml::is_aborted(self.state)
-            || matches!(self.state, State::Stopped | State::Complete);
-        let since = self.chain_open.map(|at| now.since(at));
+        let rests = packml::is_aborted(self.machine.state)
+            || matches!(self.machine.state, State::Stopped | State::Complete);
+        let since = self.alarms.chain_open.map(|at| now.since(at));
         since == Some(Span(0)) || rests && since.is_some_and(|since| since <= PRESSURE_RETURNS)
     }
 
@@ -155,7 +158,7 @@ impl Station {
     }
 
     fn still_starved(&self, now: RigTime, image: &Image) -> Option<Alarm> {
-        let standing = self.annunciator.standing().iter();
+        let standing = self.alarms.annunciator.standing().iter();
         let starved = standing
             .filter(|one| one.is_active())
             .any(|one| one.alarm.code == "magazine_empty");
@@ -167,21 +170,24 @@ impl Station {
 
     /// A motion that the guard refused: in homing another one goes first, else it is an alarm.
     pub fn refused(&mut self, movement: Move, refusal: &str, now: RigTime, wants: &mut Wants) {
-        if self.state == State::Resetting && self.line.recovery.refused(movement) {
+        if self.machine.state == State::Resetting && self.line.recovery.refused(movement) {
             return;
         }
         wants.notes.trouble.push(Alarm::refused(movement, refusal));
         self.raise_all(now, wants);
-        let standing = self.annunciator.standing();
-        let stack = self.lamps.show(now, self.state, standing, wants.rig.safe);
+        let standing = self.alarms.annunciator.standing();
+        let stack = self
+            .alarms
+            .lamps
+            .show(now, self.machine.state, standing, wants.rig.safe);
         wants.rig.outputs.extend(stack);
-        wants.record.alarms_changed |= self.annunciator.take_changed();
+        wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
     }
 
     /// Alarms of this turn into the list; what is left in the wants is what came anew.
     pub(super) fn raise_all(&mut self, now: RigTime, wants: &mut Wants) {
         for alarm in std::mem::take(&mut wants.notes.trouble) {
-            if self.annunciator.raise(&alarm, now) {
+            if self.alarms.annunciator.raise(&alarm, now) {
                 wants.record.alarms.push(alarm.clone());
             }
             self.react(&alarm, now, wants);
@@ -192,12 +198,14 @@ impl Station {
         let Some(entry) = catalogue::entry(&alarm.code) else {
             return self.abort(&alarm.code, now, wants);
         };
-        if catalogue::NEEDS_CALIBRATION.contains(&entry.code) && !packml::is_aborted(self.state) {
+        if catalogue::NEEDS_CALIBRATION.contains(&entry.code)
+            && !packml::is_aborted(self.machine.state)
+        {
             self.recalibrate();
         }
         match entry.stops {
             Stops::Abort => {
-                let parked = matches!(self.state, State::Stopped | State::Complete);
+                let parked = matches!(self.machine.state, State::Stopped | State::Complete);
                 if !(parked && entry.goes == Goes::BySensor) {
                     self.abort(&alarm.code, now, wants);
                 }
@@ -205,8 +213,8 @@ impl Station {
             Stops::Hold if !self.plan.stays => self.abort(&alarm.code, now, wants),
             Stops::Hold => self.rest(Command::Hold, now, wants),
             Stops::Suspend => {
-                if self.state == State::Execute {
-                    self.suspended_by_order = false;
+                if self.machine.state == State::Execute {
+                    self.machine.suspended_by_order = false;
                 }
                 self.rest(Command::Suspend, now, wants);
             }
@@ -215,14 +223,14 @@ impl Station {
     }
 
     fn rest(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
-        if packml::next(self.state, On::Command(command)).is_some() {
+        if packml::next(self.machine.state, On::Command(command)).is_some() {
             self.enter(command, now, wants);
         }
     }
 
     /// Outputs safe at once, parts inside interrupted. Without a person there the run is over.
     pub(super) fn abort(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
-        if packml::is_aborted(self.state) || self.ended {
+        if packml::is_aborted(self.machine.state) || self.machine.ended {
             return;
         }
         self.make_safe(why, now, wants);
@@ -270,7 +278,7 @@ impl Station {
 
     /// The alarm whose sensor still shows its cause, for a clear or reset that comes too early.
     pub(super) fn cause(&self) -> Option<&Standing> {
-        self.annunciator.still_sensed()
+        self.alarms.annunciator.still_sensed()
     }
 }
 

@@ -25,28 +25,28 @@ const ALONE: Span = Span::ms(60_000);
 impl Station {
     /// Orders that nobody has to give when nobody is there, and the end of the program.
     pub(super) fn by_itself(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
-        if self.ended {
+        if self.machine.ended {
             return;
         }
-        if inputs.stop && !self.stopping {
-            self.stopping = true;
-            if packml::next(self.state, On::Command(Command::Stop)).is_some() {
+        if inputs.stop && !self.machine.stopping {
+            self.machine.stopping = true;
+            if packml::next(self.machine.state, On::Command(Command::Stop)).is_some() {
                 self.enter(Command::Stop, now, wants);
             }
         }
-        if inputs.abort && !packml::is_aborted(self.state) {
+        if inputs.abort && !packml::is_aborted(self.machine.state) {
             self.make_safe("stopped by the operator", now, wants);
             self.end(Ending::Stopped, now, wants);
         }
         let rests = matches!(
-            self.state,
+            self.machine.state,
             State::Stopped | State::Complete | State::Aborted
         );
-        match (self.stopping, self.plan.stays, self.state) {
+        match (self.machine.stopping, self.plan.stays, self.machine.state) {
             (true, ..) if rests => {
                 self.make_safe("stopped", now, wants);
-                let aborted = packml::is_aborted(self.state);
-                let in_trouble = aborted && !self.annunciator.standing().is_empty();
+                let aborted = packml::is_aborted(self.machine.state);
+                let in_trouble = aborted && !self.alarms.annunciator.standing().is_empty();
                 self.end(
                     if in_trouble {
                         Ending::Alarm
@@ -58,11 +58,11 @@ impl Station {
                 );
             }
             (false, ..) if self.is_between_lots() => {}
-            (false, _, State::Stopped) if self.entered == RigTime(0) => {
+            (false, _, State::Stopped) if self.machine.entered == RigTime(0) => {
                 self.enter(Command::Reset, now, wants)
             }
-            (false, _, State::Idle) if self.fresh => self.enter(Command::Start, now, wants),
-            (false, false, State::Suspended) if now.since(self.entered) > ALONE => {
+            (false, _, State::Idle) if self.machine.fresh => self.enter(Command::Start, now, wants),
+            (false, false, State::Suspended) if now.since(self.machine.entered) > ALONE => {
                 self.make_safe("suspended for too long", now, wants);
                 self.end(Ending::Alarm, now, wants);
             }
@@ -76,34 +76,33 @@ impl Station {
         if let Some(bin) = over {
             self.line.ledger.lose(Place::Falling);
             let alarm = Alarm::beam_unread(bin.name());
-            if self.annunciator.raise(&alarm, now) {
+            if self.alarms.annunciator.raise(&alarm, now) {
                 wants.record.alarms.push(alarm);
-                wants.record.alarms_changed |= self.annunciator.take_changed();
+                wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
             }
         }
         wants.rig.safe = true;
         wants.record.ending = Some(ending);
-        self.ended = true;
+        self.machine.ended = true;
     }
 
     /// Enters the state that a command leads to; the caller has looked whether it may.
     pub(super) fn enter(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
-        if let Some(to) = packml::next(self.state, On::Command(command)) {
-            self.go(to, now, wants);
+        if let Some(to) = self.machine.follow(On::Command(command), now) {
+            self.entered(to, now, wants);
         }
     }
 
     /// The state has done what it is for.
     fn done(&mut self, now: RigTime, wants: &mut Wants) {
-        if let Some(to) = packml::next(self.state, On::Done) {
-            self.go(to, now, wants);
+        if let Some(to) = self.machine.follow(On::Done, now) {
+            self.entered(to, now, wants);
         }
     }
 
-    fn go(&mut self, to: State, now: RigTime, wants: &mut Wants) {
-        self.state = to;
-        self.entered = RigTime(now.0.max(1));
-        self.patience.forget();
+    /// What a state begins with.
+    fn entered(&mut self, to: State, now: RigTime, wants: &mut Wants) {
+        self.alarms.patience.forget();
         wants.rig.wake_at = Some(now);
         match to {
             State::Resetting => {
@@ -111,10 +110,10 @@ impl Station {
                 self.line.homed = false;
             }
             State::Starting => {
-                self.fresh = false;
+                self.machine.fresh = false;
                 self.start = Start::Begin;
             }
-            State::Clearing => (self.asked_verify, self.verified) = (false, None),
+            State::Clearing => (self.machine.asked_verify, self.machine.verified) = (false, None),
             State::Stopped | State::Complete => self.make_safe("stopped", now, wants),
             State::Idle
             | State::Execute
@@ -130,7 +129,7 @@ impl Station {
             | State::Aborted => {}
         }
         if to == State::Complete {
-            let ending = if self.stopping {
+            let ending = if self.machine.stopping {
                 Ending::Stopped
             } else {
                 Ending::Complete
@@ -141,7 +140,7 @@ impl Station {
 
     /// The outer machine's turn.
     pub(super) fn act(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
-        match self.state {
+        match self.machine.state {
             State::Resetting => self.reset(now, inputs, wants),
             State::Starting => self.begin(now, &inputs, wants),
             State::Execute => {
@@ -151,8 +150,8 @@ impl Station {
                     push: true,
                 };
                 self.produce(now, inputs, wants, permits);
-                let done = !self.wants_more() && !self.gates.is_checking();
-                if self.state == State::Execute && done {
+                let done = !self.wants_more() && !self.lot.gates.is_checking();
+                if self.machine.state == State::Execute && done {
                     self.done(now, wants);
                 }
             }
@@ -164,16 +163,15 @@ impl Station {
                     push: false,
                 };
                 self.produce(now, inputs, wants, permits);
-                let resting = matches!(self.state, State::Holding | State::Suspending);
-                if resting && self.line.is_at_rest() {
+                if self.machine.is_coming_to_rest() && self.line.is_at_rest() {
                     self.done(now, wants);
                 }
             }
             State::Aborting => self.wait_for_safe(now, &inputs, wants),
             State::Clearing => self.clear(now, &inputs, wants),
             State::Suspended => {
-                let cause = self.annunciator.stopping(Stops::Suspend).is_some();
-                if !cause && !self.suspended_by_order {
+                let cause = self.alarms.annunciator.stopping(Stops::Suspend).is_some();
+                if !cause && !self.machine.suspended_by_order {
                     self.enter(Command::Unsuspend, now, wants);
                 }
             }
@@ -183,7 +181,7 @@ impl Station {
     }
 
     fn reset(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
-        if !self.sensed {
+        if !self.alarms.sensed {
             return;
         }
         if self.line.homed {
@@ -192,7 +190,7 @@ impl Station {
         if self.line.recovery.drive_reset(now) {
             self.line.mechanism.drive_reset(now);
         }
-        let golden = &mut self.golden_left;
+        let golden = &mut self.lot.golden_left;
         let (feeder, recovery, mut turn) = self.line.at(now, &inputs, wants, golden, false);
         let home = recovery.step(&mut turn, feeder.is_releasing());
         wants.notes.take_over();
@@ -205,7 +203,7 @@ impl Station {
     /// The sequence goes on from the parts that are inside.
     fn take_up(&mut self, now: RigTime, wants: &mut Wants) {
         self.line.feeder.take_up(&self.line.ledger);
-        if self.gates.is_checking() {
+        if self.lot.gates.is_checking() {
             self.begin_check();
         }
         self.end_golden_run(wants);
@@ -305,13 +303,13 @@ impl Station {
 
     /// The parts inside to the end; `push`: the one in the pocket too.
     fn finish(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants, push: bool) {
-        let (state, recorded) = (self.state, inputs.recorded);
+        let (state, recorded) = (self.machine.state, inputs.recorded);
         let permits = Permits {
             release: false,
             push,
         };
         self.produce(now, inputs, wants, permits);
-        if self.state == state && self.line.is_finished(push, recorded, wants) {
+        if self.machine.state == state && self.line.is_finished(push, recorded, wants) {
             self.done(now, wants);
         }
     }
@@ -319,7 +317,7 @@ impl Station {
     fn wait_for_safe(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
         if inputs.settled {
             self.done(now, wants);
-        } else if now.since(self.entered) > SAFE_WITHIN {
+        } else if now.since(self.machine.entered) > SAFE_WITHIN {
             wants.notes.trouble.push(Alarm::not_safe());
             self.done(now, wants);
         }
@@ -329,14 +327,14 @@ impl Station {
     /// read.
     fn clear(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
         if inputs.verified {
-            self.verified = Some(now);
+            self.machine.verified = Some(now);
         }
-        if let Some(at) = self.verified {
+        if let Some(at) = self.machine.verified {
             if safety_was_read(inputs.image, at) || now.since(at) > FIRST_SCAN {
                 self.done(now, wants);
             }
-        } else if !self.asked_verify {
-            self.asked_verify = true;
+        } else if !self.machine.asked_verify {
+            self.machine.asked_verify = true;
             wants.rig.verify = true;
         }
     }
