@@ -91,6 +91,8 @@ pub struct Cycle {
     job_nest: NestId,
     bus_alarm: Option<Alarm>,
     profile: Profile,
+    /// When the last turn began.
+    turned_at: RigTime,
     /// Only safe values are written.
     making_safe: bool,
     /// Orders of this turn, waiting for their answers.
@@ -121,6 +123,7 @@ impl Cycle {
         lines: Vec<LineEnds>,
         outside: Outside,
     ) -> Self {
+        assert_eq!(lines.len(), wiring.lines.len(), "a line without its task");
         Self {
             image: Image::new(Arc::clone(&wiring)),
             outputs: Outputs::new(Arc::clone(&wiring)),
@@ -136,6 +139,7 @@ impl Cycle {
             job_nest: NestId::FIRST,
             bus_alarm: None,
             profile: Profile::default(),
+            turned_at: RigTime(0),
             making_safe: false,
             asked: Vec::new(),
             orders_closed: false,
@@ -181,6 +185,7 @@ impl Cycle {
                 self.verify().await;
             }
             if let Some(ending) = wants.record.ending.take() {
+                assert!(wants.rig.safe, "a run ends and outputs are on");
                 self.make_safe().await;
                 return (ending, self.profile);
             }
@@ -192,6 +197,8 @@ impl Cycle {
 
     /// Answers that have come in go into the process image.
     fn scan(&mut self, now: RigTime) {
+        assert!(now >= self.turned_at, "the clock of the rig went back");
+        self.turned_at = now;
         while let Some((line, purpose, answer)) = self.traffic.next_answer() {
             self.take(line, purpose, answer);
         }
@@ -208,6 +215,10 @@ impl Cycle {
     }
 
     fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
+        assert!(
+            answer.answered_at >= answer.asked_at,
+            "answered before it was asked"
+        );
         // Reading the reset status clears it, so it is never asked twice: where its reply is lost, whoever asked, nobody knows
         // whether the module has restarted under the part, which is void.
         let is_status = matches!(
@@ -313,6 +324,8 @@ impl Cycle {
 
     /// Each wanted motion passes the guard, one after the other, and is driven or refused.
     fn clear(&mut self, now: RigTime, wants: &mut Wants) {
+        let moves = !wants.rig.motions.is_empty() || wants.rig.jog.is_some();
+        assert!(!(wants.rig.safe && moves), "outputs go safe and one moves");
         for movement in std::mem::take(&mut wants.rig.motions) {
             let situation = self.station.situation(now, &self.image);
             match self.guard.clear(&self.station.motion(movement), &situation) {
@@ -334,6 +347,7 @@ impl Cycle {
             }
         }
         if let Some(jog) = wants.rig.jog.take() {
+            assert!(jog.answer < wants.answers.len(), "a jog without its order");
             wants.answers[jog.answer] = self.jog(jog.movement, now);
         }
     }
@@ -356,6 +370,8 @@ impl Cycle {
             .watch_beam(wants.rig.beam.map(|beam| self.wiring.read_events(beam)));
         let is_job = wants.rig.job.is_some();
         if let Some(NestJob { nest, job }) = wants.rig.job.take() {
+            assert!(!wants.rig.safe, "outputs go safe and a job begins");
+            assert!(self.job_done.is_none(), "the answer before was not heard");
             self.job_nest = nest;
             self.start(job, now);
         }
@@ -483,6 +499,7 @@ impl Cycle {
 
     /// Until an answer, the station's own deadline, or the next scan.
     async fn wait(&mut self, now: RigTime, wake_at: Option<RigTime>) {
+        assert!(wake_at.is_none_or(|at| at > now), "a deadline in the past");
         let until = wake_at
             .unwrap_or(now + IDLE)
             .min(self.traffic.next_due(now).unwrap_or(now + IDLE))

@@ -34,10 +34,13 @@ impl Cycle {
                 Err(why) => self.say(asked, Err(why), now),
             }
         }
+        assert_eq!(orders.len(), self.asked.len(), "an order lost its way back");
         orders
     }
 
     pub(super) fn answer(&mut self, wants: &mut Wants, now: RigTime) {
+        let (orders, answers) = (self.asked.len(), wants.answers.len());
+        assert_eq!(orders, answers, "orders without their answers");
         let asked: Vec<_> = self.asked.drain(..).collect();
         for (asked, answer) in asked.into_iter().zip(wants.answers.drain(..)) {
             self.say(asked, answer, now);

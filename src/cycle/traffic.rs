@@ -17,6 +17,9 @@ use std::sync::Arc;
 use std::task::Poll;
 use tokio::sync::mpsc;
 
+/// More commands than this wait on no line: every question of a verification, several times over.
+const DEEPEST: usize = 2_000;
+
 fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
     wiring
         .modules_on(line)
@@ -188,6 +191,7 @@ impl Traffic {
         }
         if let Some(slot) = self.slots.iter_mut().find(|slot| slot.ends.line == line) {
             slot.queue.push_back((command, purpose));
+            assert!(slot.queue.len() <= DEEPEST, "a queue grows without end");
         }
     }
 
@@ -221,6 +225,7 @@ impl Traffic {
 
     /// A new measuring job.
     pub fn begin_job(&mut self) {
+        assert!(self.job.is_none(), "two measuring jobs at once");
         self.job = Some(JobUnderway::default());
     }
 
@@ -337,6 +342,7 @@ impl Traffic {
             else {
                 continue;
             };
+            assert!(slot.busy.is_some(), "an answer that nobody asked for");
             let purpose = slot.busy.take().unwrap_or(Purpose::Check);
             return Some((slot.ends.line, purpose, answer));
         }

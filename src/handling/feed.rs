@@ -83,6 +83,7 @@ impl Feed {
 }
 
 fn release(turn: &mut Turn, attempt: u8) -> Feed {
+    assert!((1..=TRIES).contains(&attempt), "called {attempt} times");
     turn.drive(Move::EscapementRelease);
     Feed::Releasing {
         since: turn.now,

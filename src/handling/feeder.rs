@@ -75,6 +75,7 @@ impl Feeder {
             is_new |= was_empty && !matches!(nest.state, NestState::Empty);
         }
         assert!(job.is_none(), "the job of a nest that is not there");
+        assert!(!self.nests.is_empty(), "a feeder without a nest");
         let free = self.nests[0].id;
         self.feed = self.feed.step(turn, free, permits.release, permits.push);
         is_new

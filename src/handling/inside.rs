@@ -60,6 +60,10 @@ impl Inside {
             (Place::Pocket, self.pocket && !waits),
         ];
         let gone = gone.into_iter().filter(|(_, is_gone)| *is_gone);
+        let left = [self.pocket, self.nest, self.gripper, self.falling.is_some()];
+        let seen_again = [held, stayed, waits, set_down, never_opened];
+        let count = |these: &[bool]| these.iter().filter(|it| **it).count();
+        assert!(count(&seen_again) <= count(&left), "one part seen as two");
         fell.map(Trouble::FallUnseen)
             .into_iter()
             .chain(gone.map(|(place, _)| Trouble::Gone(place)))

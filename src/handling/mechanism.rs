@@ -211,6 +211,8 @@ impl Mechanism {
             since: now,
             from,
         });
+        let actuators = Actuator::ALL.len();
+        assert!(self.underway.len() < actuators, "one actuator moves twice");
         if let Some(station) = movement.station() {
             self.axis_at = Some(station);
         }
@@ -262,6 +264,10 @@ impl Mechanism {
         let movement = underway.movement;
         let limit = self.timeout_of(movement);
         let tried = self.tried.iter().filter(|one| **one == movement).count();
+        assert!(
+            tried <= usize::from(RETRIES),
+            "{movement:?} tried too often"
+        );
         match movement.way_back() {
             Some(back) if tried < usize::from(RETRIES) => {
                 self.tried.push(movement);

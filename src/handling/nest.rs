@@ -176,6 +176,7 @@ fn clamped(id: NestId, turn: &mut Turn, context: &NestContext) -> NestState {
 }
 
 fn begin(id: NestId, turn: &mut Turn, context: &NestContext) -> NestState {
+    assert!(turn.ledger.holds(Place::Nest(id)), "a test without a part");
     if let Some(part) = turn.ledger.part_mut(Place::Nest(id)) {
         part.probed_at = Some(turn.now);
     }
@@ -252,6 +253,7 @@ fn judged(id: NestId, turn: &mut Turn, bench: Bench, test: &mut Test) {
 fn lifted(id: NestId, turn: &mut Turn, context: NestContext) -> NestState {
     turn.ledger.lift(id);
     if let Some(part) = turn.ledger.part(Place::Gripper) {
+        assert!(part.bin.is_some(), "an unjudged part leaves its nest");
         let cycle = context
             .last_left
             .map(|before| Second(turn.now.since(before).as_seconds()));
@@ -260,7 +262,8 @@ fn lifted(id: NestId, turn: &mut Turn, context: NestContext) -> NestState {
             cycle,
         });
     }
-    *context.last_left = Some(turn.now);
+    let before = context.last_left.replace(turn.now);
+    assert!(before <= Some(turn.now), "the part before left later");
     context.sort.carry();
     NestState::Empty
 }

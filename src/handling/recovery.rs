@@ -102,6 +102,8 @@ impl Recovery {
         if self.asked != Some(movement) || self.stage != Stage::Home {
             return false;
         }
+        let first = self.left.front();
+        assert_eq!(first, Some(&movement), "homing asked for another one");
         self.asked = None;
         self.refused += 1;
         self.left.rotate_left(1);

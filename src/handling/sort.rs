@@ -118,6 +118,7 @@ impl Sort {
 
 /// Lets the part go once its rows are durable and the beam's count before is known.
 fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sort {
+    assert!(since <= turn.now, "over the bin in the future");
     let stay = Sort::OverBin(bin, since);
     let beam = table.beam(bin);
     // A beam that stays dark is a full chute.
@@ -165,6 +166,7 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     };
     falling.has_left |= seen_empty;
     let (bin, since, before) = (falling.bin, falling.since, falling.beam_before);
+    assert!(since <= now, "let go in the future");
     let beam = table.beam(bin);
     turn.rig.beam = Some(beam);
     let count = turn

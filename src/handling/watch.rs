@@ -32,6 +32,7 @@ impl Watch {
     /// The end of a motion was seen.
     pub fn stands(&mut self, movement: Move) {
         self.left(movement.actuator_key());
+        assert!(self.stands.len() < 7, "more stand than there are actuators");
         self.stands.push(Stand {
             movement,
             left_since: None,

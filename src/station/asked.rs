@@ -58,6 +58,7 @@ impl Station {
             Order::Shelve(code, minutes) => {
                 let minutes = shelf_minutes(Some(minutes));
                 let until = now + Span::ms(u64::from(minutes) * 60_000);
+                assert!(until > now, "shelved for no time");
                 if !self.alarms.annunciator.shelve(&code, until) {
                     return Err(no_alarm());
                 }

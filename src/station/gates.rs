@@ -12,6 +12,7 @@
 //!   mean over the last parts is beyond its limit.
 
 use super::Station;
+use super::packml::State;
 use super::trouble::Alarm;
 use super::wants::{Checked, Wants};
 use crate::dut::em_relay::golden;
@@ -101,6 +102,8 @@ impl Gates {
 
     /// The rig reads as certified now.
     pub(super) fn good(&mut self, now: RigTime, parts: u64) {
+        let before = self.good.map_or(0, |(_, parts)| parts);
+        assert!(parts >= before, "fewer parts of the lot than before");
         self.checking = false;
         self.good = Some((now, parts));
     }
@@ -121,6 +124,7 @@ impl Gates {
     fn discards(&mut self, failed: bool, limit_pct: Option<f64>, count: Option<u64>) -> bool {
         self.judged += 1;
         self.failed += u64::from(failed);
+        assert!(self.failed <= self.judged, "more failed than judged");
         let size = count.unwrap_or(self.judged).max(self.judged);
         let known = count.is_some() || self.judged >= ENOUGH;
         let over = limit_pct.is_some_and(|pct| self.failed as f64 > size as f64 * pct / 100.0);
@@ -141,6 +145,8 @@ impl Station {
 
     /// Looks whether a golden check is due while parts are being made.
     pub(super) fn look_for_check(&mut self, now: RigTime, wants: &mut Wants) {
+        let executes = self.machine.state == State::Execute;
+        assert!(executes, "a check is looked for while nothing is made");
         let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
         if !self.is_calibrating() && self.bench.calibration.due_at_us <= at_us {
             return wants.notes.trouble.push(Alarm::calibration_overdue());

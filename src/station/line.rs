@@ -52,6 +52,7 @@ impl Line {
         golden: &'a mut VecDeque<GoldenPart>,
         resting: bool,
     ) -> (&'a mut Feeder, &'a mut Recovery, Turn<'a>) {
+        assert!(wants.notes.feeder.is_empty(), "trouble was left over");
         let turn = Turn {
             now,
             image: inputs.image,
@@ -65,6 +66,16 @@ impl Line {
             resting,
         };
         (&mut self.feeder, &mut self.recovery, turn)
+    }
+
+    /// Checks what holds after every turn.
+    pub fn check(&self) {
+        let ledger = &self.ledger;
+        assert!(ledger.balances(), "a part is in two places or in none");
+        let places = self.feeder.nests().len() as u64 + 3;
+        assert!(ledger.inside() <= places, "more parts than places");
+        let beams = self.feeder.beams().count();
+        assert!(self.dark.len() <= beams, "a dark beam of no bin");
     }
 
     /// Every output has gone safe: nothing is known of any position from here on.

@@ -7,6 +7,8 @@ use crate::units::RigTime;
 #[derive(Debug)]
 pub(super) struct Machine {
     pub state: State,
+    /// When the station had its last turn.
+    turned_at: RigTime,
     /// When the state was entered; zero before the first turn.
     pub entered: RigTime,
     pub mode: Mode,
@@ -31,6 +33,7 @@ impl Machine {
     pub fn new(state: State) -> Self {
         Self {
             state,
+            turned_at: RigTime(0),
             entered: RigTime(0),
             mode: Mode::Production,
             began: None,
@@ -41,6 +44,13 @@ impl Machine {
             asked_verify: false,
             verified: None,
         }
+    }
+
+    /// Takes note of a turn.
+    pub fn turn(&mut self, now: RigTime) {
+        assert!(!self.ended, "a turn after the end");
+        assert!(now >= self.turned_at, "the clock of the rig went back");
+        self.turned_at = now;
     }
 
     /// Goes where the cause leads to; `None` when the state does not know it.

@@ -132,6 +132,14 @@ struct LotControl {
     began: bool,
 }
 
+impl LotControl {
+    /// Checks what holds after every turn.
+    fn check(&self) {
+        let left = self.golden_left.len() as u64;
+        assert!(self.golden_planned >= left, "golden parts nobody planned");
+    }
+}
+
 /// What watches the machine, and what shows it to a person beside it.
 #[derive(Debug, Default)]
 struct Alarms {
@@ -264,6 +272,8 @@ impl Station {
         if self.machine.ended {
             return wants;
         }
+        self.machine.turn(now);
+        let ordered = inputs.orders.len();
         if inputs.verified {
             // What was read before the modules were asked is stale by now, and no trouble.
             (self.alarms.sensed, self.machine.began) = (false, Some(now));
@@ -285,8 +295,6 @@ impl Station {
             self.raise_all(now, &mut wants);
         }
         self.line.postpone(now, &mut wants);
-        let balances = self.line.ledger.balances();
-        assert!(balances, "a part is in two places or in none");
         self.alarms.annunciator.unshelve(now);
         wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
         let stack = self.alarms.lamps.show(
@@ -296,6 +304,11 @@ impl Station {
             wants.rig.safe,
         );
         wants.rig.outputs.extend(stack);
+        self.line.check();
+        self.lot.check();
+        wants.check(now, ordered);
+        let ends = wants.record.ending.is_some();
+        assert_eq!(ends, self.machine.ended, "the end and its event differ");
         wants
     }
 

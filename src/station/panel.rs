@@ -89,6 +89,7 @@ impl Button {
             Some((seen, since)) if seen == down => since,
             Some(_) | None => at,
         };
+        assert!(since <= at, "a button changed after it was sampled");
         self.seen = Some((down, since));
         if at.since(since) < SETTLED {
             return false;

@@ -62,6 +62,8 @@ impl Patience {
             self.forget();
             return None;
         }
+        let machines = feeder.nests().len() + 2;
+        assert!(self.since.len() <= machines, "a clock of no machine");
         let mut late = None;
         for step in steps(feeder) {
             let began = self.began(step, now);

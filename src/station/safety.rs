@@ -7,6 +7,7 @@ use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
 use super::wants::{Ending, Inputs, Wants};
 use crate::dut::verdict::Verdict;
+use crate::handling::ledger::Part;
 use crate::handling::mechanism::SENSOR_AGE;
 use crate::handling::trouble::Trouble;
 use crate::handling::wants::{Interrupted, Judged};
@@ -271,9 +272,15 @@ impl Station {
                 judged.findings = test.findings.clone();
                 judged.judgements = test.judgements();
             }
-            debug_assert!(matches!(judged.verdict, Verdict::Void(_)));
+            assert!(
+                matches!(judged.verdict, Verdict::Void(_)),
+                "judged after all"
+            );
             parts.judged.push(judged);
         }
+        let to_retest = |part: &mut Part| part.bin == Some(Bin::RETEST);
+        let all = self.line.ledger.held_mut().all(to_retest);
+        assert!(all, "an interrupted part goes elsewhere");
     }
 
     /// The alarm whose sensor still shows its cause, for a clear or reset that comes too early.

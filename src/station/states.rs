@@ -81,6 +81,10 @@ impl Station {
                 wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
             }
         }
+        assert!(
+            self.line.ledger.fall().is_none(),
+            "a part falls on after the end"
+        );
         wants.rig.safe = true;
         wants.record.ending = Some(ending);
         self.machine.ended = true;
@@ -195,6 +199,8 @@ impl Station {
         let home = recovery.step(&mut turn, feeder.is_releasing());
         wants.notes.take_over();
         if home {
+            let moves = self.line.mechanism.moving().next();
+            assert_eq!(moves, None, "home, and something moves");
             self.line.homed = true;
             self.take_up(now, wants);
         }
@@ -330,6 +336,7 @@ impl Station {
             self.machine.verified = Some(now);
         }
         if let Some(at) = self.machine.verified {
+            assert!(at <= now, "verified in the future");
             if safety_was_read(inputs.image, at) || now.since(at) > FIRST_SCAN {
                 self.done(now, wants);
             }

@@ -7,6 +7,7 @@ use crate::dut::em_relay::Calibration;
 use crate::handling::trouble::Trouble;
 use crate::handling::wants::{Commands, NestDone, PartEvents};
 use crate::rig::image::Image;
+use crate::units::RigTime;
 
 /// What the station is told in a turn beside the time.
 #[derive(Debug)]
@@ -80,6 +81,11 @@ pub(super) struct Notes {
 }
 
 impl Notes {
+    /// Nothing is left to become an alarm.
+    fn is_done(&self) -> bool {
+        self.trouble.is_empty() && self.feeder.is_empty()
+    }
+
     /// Trouble of the feeder takes its place behind what was noted before.
     pub fn take_over(&mut self) {
         self.trouble.extend(self.feeder.drain(..).map(Alarm::from));
@@ -98,4 +104,35 @@ pub struct Wants {
     /// Orders of the buttons at the machine, each with its answer.
     pub pressed: Vec<(Command, Result<(), Refused>)>,
     pub(super) notes: Notes,
+}
+
+impl Wants {
+    /// Checks what the receivers of a turn rely on; it had so many orders.
+    pub(super) fn check(&self, now: RigTime, orders: usize) {
+        let rig = &self.rig;
+        assert_eq!(self.answers.len(), orders, "orders without their answers");
+        assert!(
+            rig.wake_at.is_none_or(|at| at >= now),
+            "a deadline in the past"
+        );
+        if rig.safe {
+            assert!(
+                rig.motions.is_empty(),
+                "outputs go safe and {:?}",
+                rig.motions
+            );
+            assert!(rig.job.is_none(), "outputs go safe and a job begins");
+            assert!(rig.jog.is_none(), "outputs go safe and a person moves one");
+        }
+        if let Some(jog) = rig.jog {
+            assert!(jog.answer < self.answers.len(), "a jog without its order");
+        }
+        let ends = self.record.ending.is_some();
+        assert!(!ends || rig.safe, "a run ends and outputs are on");
+        for judged in &self.record.parts.judged {
+            let ordinal = judged.part.ordinal;
+            assert!(judged.part.bin.is_some(), "part {ordinal} has no bin");
+        }
+        assert!(self.notes.is_done(), "trouble that became no alarm");
+    }
 }

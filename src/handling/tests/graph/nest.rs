@@ -67,7 +67,7 @@ fn name(state: &NestState) -> &'static str {
     }
 }
 
-/// A part is in the nest in every state but the first, where it may be.
+/// A part is in the nest in every state but the first, where it may be; it is judged before it is gripped.
 fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
     let mut ledger = Ledger::default();
     if part || from != "Empty" {
@@ -76,7 +76,8 @@ fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
     }
     if let Some(part) = ledger.part_mut(Place::NEST) {
         part.interrupted = interrupted.then(|| "by a reset".to_owned());
-        part.bin = judged.then_some(Bin::RETEST);
+        let is_over = matches!(from, "Judged" | "Gripping" | "Unclamping" | "Lifting");
+        part.bin = (judged || is_over).then_some(Bin::RETEST);
     }
     ledger
 }
