@@ -25,7 +25,9 @@ pub use traffic::LineEnds;
 use crate::bus::{Answer, LineError, Pace};
 use crate::dcon::{self, Command};
 use crate::guard::Guard;
-use crate::hmi::Asked;
+use crate::handling::NestId;
+use crate::handling::inside::Inside;
+use crate::handling::wants::{NestDone, NestJob};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::drive::Outputs;
 use crate::rig::image::Image;
@@ -33,12 +35,11 @@ use crate::rig::level::Correction;
 use crate::rig::point::DigitalIn;
 use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
-use crate::station::inside::Inside;
 use crate::station::packml;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Inputs, Wants};
 use crate::units::{RigTime, Span};
-use crate::view::{self, View};
+use crate::view::{self, OrderRequest, View};
 pub use desk::PANEL;
 pub use event::Event;
 use patience::Patience;
@@ -65,7 +66,7 @@ pub struct Outside {
     /// Set when the operator does not want to wait for the parts inside.
     pub abort: Arc<AtomicBool>,
     /// Orders of screens, each with the way back for its answer.
-    pub orders: mpsc::Receiver<Asked>,
+    pub orders: mpsc::Receiver<OrderRequest>,
     /// Wall clock at rig time zero, microseconds since 1970 UTC.
     pub epoch_us: i64,
     /// Set when the history can no longer be written: the rig must not go on.
@@ -86,12 +87,16 @@ pub struct Cycle {
     patience: Patience,
     outside: Outside,
     job_done: Option<JobDone>,
+    /// The nest whose job is under way, or was last.
+    job_nest: NestId,
     bus_alarm: Option<Alarm>,
     profile: Profile,
+    /// When the last turn began.
+    turned_at: RigTime,
     /// Only safe values are written.
     making_safe: bool,
     /// Orders of this turn, waiting for their answers.
-    asked: Vec<Asked>,
+    asked: Vec<OrderRequest>,
     /// Nobody can send orders any more.
     orders_closed: bool,
     verified: bool,
@@ -118,6 +123,7 @@ impl Cycle {
         lines: Vec<LineEnds>,
         outside: Outside,
     ) -> Self {
+        assert_eq!(lines.len(), wiring.lines.len(), "a line without its task");
         Self {
             image: Image::new(Arc::clone(&wiring)),
             outputs: Outputs::new(Arc::clone(&wiring)),
@@ -130,8 +136,10 @@ impl Cycle {
             guard,
             outside,
             job_done: None,
+            job_nest: NestId::FIRST,
             bus_alarm: None,
             profile: Profile::default(),
+            turned_at: RigTime(0),
             making_safe: false,
             asked: Vec::new(),
             orders_closed: false,
@@ -171,23 +179,26 @@ impl Cycle {
             self.pressed(&mut wants, now);
             self.record(now, &mut wants);
             clock = Instant::now();
-            self.publish(now, wants.ending.is_some());
+            self.publish(now, wants.record.ending.is_some());
             lap(&mut self.profile.publish_s, &mut clock);
-            if wants.verify {
+            if wants.rig.verify {
                 self.verify().await;
             }
-            if let Some(ending) = wants.ending.take() {
+            if let Some(ending) = wants.record.ending.take() {
+                assert!(wants.rig.safe, "a run ends and outputs are on");
                 self.make_safe().await;
                 return (ending, self.profile);
             }
-            if self.job_done.is_none() && wants.wake_at.is_none_or(|at| at > now) {
-                self.wait(now, wants.wake_at).await;
+            if self.job_done.is_none() && wants.rig.wake_at.is_none_or(|at| at > now) {
+                self.wait(now, wants.rig.wake_at).await;
             }
         }
     }
 
     /// Answers that have come in go into the process image.
     fn scan(&mut self, now: RigTime) {
+        assert!(now >= self.turned_at, "the clock of the rig went back");
+        self.turned_at = now;
         while let Some((line, purpose, answer)) = self.traffic.next_answer() {
             self.take(line, purpose, answer);
         }
@@ -204,6 +215,10 @@ impl Cycle {
     }
 
     fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
+        assert!(
+            answer.answered_at >= answer.asked_at,
+            "answered before it was asked"
+        );
         // Reading the reset status clears it, so it is never asked twice: where its reply is lost, whoever asked, nobody knows
         // whether the module has restarted under the part, which is void.
         let is_status = matches!(
@@ -296,7 +311,10 @@ impl Cycle {
             settled: self.outputs.all_settled(),
             verified: std::mem::take(&mut self.verified),
             image: &self.image,
-            job: self.job_done.take(),
+            job: self.job_done.take().map(|done| NestDone {
+                nest: self.job_nest,
+                done,
+            }),
             recorded: self.outside.recorded.load(Ordering::Acquire),
             bus: self.bus_alarm.take(),
             stop: self.outside.stop.load(Ordering::Acquire),
@@ -306,7 +324,9 @@ impl Cycle {
 
     /// Each wanted motion passes the guard, one after the other, and is driven or refused.
     fn clear(&mut self, now: RigTime, wants: &mut Wants) {
-        for movement in std::mem::take(&mut wants.motions) {
+        let moves = !wants.rig.motions.is_empty() || wants.rig.jog.is_some();
+        assert!(!(wants.rig.safe && moves), "outputs go safe and one moves");
+        for movement in std::mem::take(&mut wants.rig.motions) {
             let situation = self.station.situation(now, &self.image);
             match self.guard.clear(&self.station.motion(movement), &situation) {
                 Ok(cleared) => {
@@ -326,29 +346,33 @@ impl Cycle {
                 }
             }
         }
-        if let Some(jog) = wants.jog.take() {
+        if let Some(jog) = wants.rig.jog.take() {
+            assert!(jog.answer < wants.answers.len(), "a jog without its order");
             wants.answers[jog.answer] = self.jog(jog.movement, now);
         }
     }
 
     /// Outputs become commands; the measuring lines get their job.
     fn apply(&mut self, now: RigTime, wants: &mut Wants) {
-        if wants.safe {
+        if wants.rig.safe {
             self.outputs.everything_safe();
             for module in self.traffic.drop_all() {
                 self.outputs.confirmed(module);
             }
         }
-        for (point, on) in wants.outputs.drain(..) {
+        for (point, on) in wants.rig.outputs.drain(..) {
             if let Err(needs) = self.outputs.set(point, on) {
                 self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
             }
         }
-        self.traffic.suspect(wants.suspicious);
+        self.traffic.suspect(wants.rig.suspicious);
         self.traffic
-            .watch_beam(wants.beam.map(|beam| self.wiring.read_events(beam)));
-        let is_job = wants.job.is_some();
-        if let Some(job) = wants.job.take() {
+            .watch_beam(wants.rig.beam.map(|beam| self.wiring.read_events(beam)));
+        let is_job = wants.rig.job.is_some();
+        if let Some(NestJob { nest, job }) = wants.rig.job.take() {
+            assert!(!wants.rig.safe, "outputs go safe and a job begins");
+            assert!(self.job_done.is_none(), "the answer before was not heard");
+            self.job_nest = nest;
             self.start(job);
         }
         for write in self.outputs.writes() {
@@ -404,37 +428,37 @@ impl Cycle {
     }
 
     fn record(&mut self, now: RigTime, wants: &mut Wants) {
-        for judged in wants.judged.drain(..) {
+        for judged in wants.record.parts.judged.drain(..) {
             self.tell(Event::Judged(Box::new(judged)));
         }
-        for left in wants.left.drain(..) {
+        for left in wants.record.parts.left.drain(..) {
             self.tell(Event::Left(left));
         }
-        for landed in wants.landed.drain(..) {
+        for landed in wants.record.parts.landed.drain(..) {
             self.tell(Event::Landed(landed));
         }
-        if let Some(checked) = wants.checked.take() {
+        if let Some(checked) = wants.record.checked.take() {
             self.tell(Event::Checked(checked, now));
         }
-        if let Some(calibration) = wants.calibrated.take() {
+        if let Some(calibration) = wants.record.calibrated.take() {
             self.tell(Event::Calibrated(Box::new(calibration)));
         }
-        if wants.lot_began {
+        if wants.record.lot_began {
             self.tell(Event::LotBegan(now));
         }
-        for interrupted in wants.interrupted.drain(..) {
+        for interrupted in wants.record.parts.interrupted.drain(..) {
             self.tell(Event::Interrupted(interrupted));
         }
-        for alarm in wants.alarms.drain(..) {
+        for alarm in wants.record.alarms.drain(..) {
             self.tell(Event::Alarm(alarm, now));
         }
-        if wants.alarms_changed {
+        if wants.record.alarms_changed {
             let standing = self.station.annunciator().standing().to_vec();
             self.tell(Event::Standing(standing, now));
         }
         let inside = self.station.ledger().to_look_for();
         let moved = std::mem::replace(&mut self.inside, inside) != inside;
-        if moved || wants.ending.is_some() {
+        if moved || wants.record.ending.is_some() {
             self.tell(Event::Inside(inside, self.station.uses()));
         }
         let state = self.station.outer();
@@ -456,6 +480,7 @@ impl Cycle {
 
     /// Until an answer, the station's own deadline, or the next scan.
     async fn wait(&mut self, now: RigTime, wake_at: Option<RigTime>) {
+        assert!(wake_at.is_none_or(|at| at > now), "a deadline in the past");
         let until = wake_at
             .unwrap_or(now + IDLE)
             .min(self.traffic.next_due(now).unwrap_or(now + IDLE))

@@ -31,6 +31,8 @@ pub enum Form {
     Table(&'static [Key]),
     /// A table of entries with free names (lower case, digits, underscore), all of one form.
     Named(&'static Form),
+    /// The same, with these names among them.
+    NamedWith(&'static [&'static str], &'static Form),
     /// A table with exactly these names, all of one form.
     Each(&'static [&'static str], &'static Form),
     /// A table of points.
@@ -165,9 +167,11 @@ impl Form {
             }
             Self::Flag => "true or false".to_owned(),
             Self::Numbers(count, range) => format!("a list of {count}, each {}", range.expected()),
-            Self::Table(_) | Self::Named(_) | Self::Each(..) | Self::Points(_) => {
-                "a table".to_owned()
-            }
+            Self::Table(_)
+            | Self::Named(_)
+            | Self::NamedWith(..)
+            | Self::Each(..)
+            | Self::Points(_) => "a table".to_owned(),
             Self::List(_) => "a list".to_owned(),
         }
     }
@@ -175,7 +179,11 @@ impl Form {
     /// Whether the value is a table.
     pub fn is_table(&self) -> bool {
         match self {
-            Self::Table(_) | Self::Named(_) | Self::Each(..) | Self::Points(_) => true,
+            Self::Table(_)
+            | Self::Named(_)
+            | Self::NamedWith(..)
+            | Self::Each(..)
+            | Self::Points(_) => true,
             Self::Text
             | Self::Choice(_)
             | Self::Hex(_)

@@ -11,7 +11,8 @@
 //! - [`gauge`]: readings with their uncertainty.
 //! - [`instrument`]: acts on wired points, and what was read.
 //! - [`dut`]: a kind of device is one folder: recipe, calibration, procedure, verdict.
-//! - [`station`]: the sequence: feed, clamp, test, sort; parts and trouble.
+//! - [`handling`]: how parts get to the nest and into bins.
+//! - [`station`]: the sequence: outer machine, lot, orders, alarms.
 //! - [`cycle`]: one turn of the rig, top to bottom.
 //! - [`history`]: SQLite; [`quality`]: statistics that stay right.
 //! - [`report`]: print, spreadsheet, process card, charts.
@@ -29,6 +30,7 @@ pub mod dut;
 pub mod form;
 pub mod gauge;
 pub mod guard;
+pub mod handling;
 pub mod history;
 pub mod hmi;
 pub mod inquiry;

@@ -4,12 +4,14 @@ mod machine;
 mod mimic;
 mod motion;
 mod order;
+mod request;
 mod traffic;
 
 pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
 pub use mimic::{Mimic, MimicBody};
 pub use motion::{MotionView, RefusedView, StrokeView};
 pub use order::{Answered, By, LOT_ORDERS, NotTaken, ORDERS, Order};
+pub use request::{Answer, OrderRequest};
 pub use traffic::{LineTraffic, Message};
 
 use crate::dut::Reason;

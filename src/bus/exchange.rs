@@ -44,6 +44,7 @@ impl Frame {
     }
 
     pub(super) fn bytes(&self) -> &[u8] {
+        debug_assert!(self.length <= FRAME_LIMIT, "a frame beyond its end");
         &self.bytes[..self.length]
     }
 
@@ -104,6 +105,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         deadline: RigTime,
         frame: &mut Frame,
     ) -> io::Result<Heard> {
+        assert!(!request.is_empty(), "an empty request");
         frame.clear();
         let mut timer = pin!(self.pace.sleep(deadline));
         if !self.write(request, timer.as_mut()).await? {
@@ -133,6 +135,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         deadline: RigTime,
         mut in_step: impl FnMut(&[u8]) -> bool,
     ) -> io::Result<Named> {
+        assert!(question.address().is_some(), "nobody to name itself");
         let mut request = Vec::with_capacity(8);
         question.encode(with_checksum, &mut request);
         let mut named = Named {
@@ -211,6 +214,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
                 self.read_now(piece).await?
             }
         };
+        assert!(count.is_none_or(|count| count <= piece.len()), "overrun");
         match count {
             Some(0) => Err(io::ErrorKind::UnexpectedEof.into()),
             count => Ok(count),

@@ -34,6 +34,7 @@ impl Histogram {
 
     /// Upper edge of the class that holds the share `share` (0 to 1) of all; none before the first.
     pub fn percentile(&self, share: f64) -> Option<Span> {
+        assert!((0.0..=1.0).contains(&share), "no share: {share}");
         let wanted = (self.total as f64 * share).ceil().max(1.0) as u64;
         let mut seen = 0u64;
         let class = self.classes.iter().position(|count| {

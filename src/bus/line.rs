@@ -5,7 +5,7 @@ use super::owing::Owing;
 use super::talk::{Talk, Times, Trouble};
 use super::trust::Trust;
 use super::{Answer, LineError, LineSettings, Pace, PortError, Request};
-use crate::dcon::{Command, Common, Reply};
+use crate::dcon::{Command, Common, FRAME_LIMIT, Reply};
 use crate::units::{RigTime, Span};
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::mpsc;
@@ -65,6 +65,8 @@ pub async fn run_reopening<O: Ports>(
     };
     while let Some(request) = requests.recv().await {
         let answer = line.serve(request).await;
+        assert_eq!(answer.ticket, request.ticket, "the answer to another one");
+        assert_eq!(answer.command, request.command, "another was asked");
         if answers.send(answer).await.is_err() {
             return;
         }
@@ -126,6 +128,8 @@ impl<O: Ports> Line<O> {
         let command = asked.command;
         self.request.clear();
         command.encode(self.settings.checksum, &mut self.request);
+        assert_eq!(self.request.last(), Some(&b'\r'), "a request without end");
+        assert!(self.request.len() <= FRAME_LIMIT, "a request too long");
         let mut tries_used = 0u8;
         let last = loop {
             tries_used += 1;
@@ -143,6 +147,11 @@ impl<O: Ports> Line<O> {
             answered_at,
             outcome,
         } = last;
+        assert!(answered_at >= asked_at, "answered before it was asked");
+        assert!(
+            tries_used == 1 || tries_used <= asked.tries,
+            "asked more often than allowed"
+        );
         Answer {
             ticket: asked.ticket,
             command,
@@ -219,6 +228,7 @@ impl<O: Ports> Line<O> {
         self.lost_because = reason;
         self.reopen_at = self.pace.now() + self.backoff;
         let longest = Span::ms(self.settings.reopen_longest_ms);
+        assert!(self.backoff > Span(0), "a port opened without rest");
         self.backoff = (self.backoff + self.backoff).min(longest);
     }
 

@@ -19,6 +19,9 @@ use crate::units::{RigTime, Span};
 /// module is known to have needed it.
 const HORIZON: Span = Span::ms(1_000);
 
+/// More than this is never owed at once: each has taken a time-out, and is forgotten after the horizon.
+const MOST: usize = 10_000;
+
 /// Questions whose replies name their module, change nothing, and are understood by every module. The replies look
 /// different: three bytes in hex, a product, a version.
 const QUESTIONS: [Common; 3] = [Common::ReadConfig, Common::ReadFirmware, Common::ReadName];
@@ -36,6 +39,9 @@ impl Owing {
     /// `command` was sent, and is not answered at `now`.
     pub(super) fn owed(&mut self, command: Command, now: RigTime) {
         self.0.retain(|(_, until)| *until > now);
+        let latest = self.0.last().map(|(_, until)| *until);
+        assert!(latest <= Some(now + HORIZON), "owed in another order");
+        assert!(self.0.len() < MOST, "a line owes without end");
         self.0.push((command, now + HORIZON));
     }
 
@@ -63,11 +69,12 @@ impl Owing {
         if !names(module, frame) {
             return false;
         }
-        let mut place = 0;
+        let (before, mut place) = (self.0.len(), 0);
         self.0.retain(|(owed, _)| {
             place += 1;
             place > oldest + 1 || !asked(owed)
         });
+        assert!(self.0.len() < before, "settled and still owed");
         true
     }
 

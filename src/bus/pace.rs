@@ -86,6 +86,7 @@ impl Pace {
     /// Keeps virtual time from passing faster than `speed` times the wall clock, for ever. Time lost on a busy machine is
     /// not made up for: the rig gets slow there, never late.
     pub async fn hold_back(self, speed: f64) {
+        assert!(speed > 0.0 && speed.is_finite(), "a clock that stands");
         let wall = Duration::from_micros(HOLD.0).div_f64(speed);
         loop {
             let began = std::time::Instant::now();

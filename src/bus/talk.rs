@@ -148,8 +148,11 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
                 .attempt(command, address, request, frame, times)
                 .await?;
             answers.push(next);
+            assert_eq!(answers.len(), heard.len() + 1, "an answer unheard");
+            assert!(answers.len() <= 3, "asked a fourth time");
             let apart_ms = self.now().since(begun).0.div_ceil(1_000);
             if let Some(place) = command.believed(&answers, apart_ms) {
+                assert!(place < answers.len(), "believed what was not heard");
                 if let Some(earlier) = heard.into_iter().nth(place) {
                     (*frame, *times) = earlier;
                 }

@@ -42,6 +42,7 @@ impl Trust {
     /// A reply was whole, and confirmed if it had to be.
     pub(super) fn whole(&mut self, Address(module): Address) {
         let left = &mut self.0[usize::from(module)];
+        assert!(*left <= PROBATION, "on probation for longer than that");
         *left = left.saturating_sub(1);
     }
 }

@@ -83,7 +83,8 @@ impl File {
     fn form(&self, path: &str, node: &Node, form: &Form) -> Result<(), ConfigError> {
         match form {
             Form::Table(keys) => self.table(path, node, keys),
-            Form::Named(entry) => self.named(path, node, entry),
+            Form::Named(entry) => self.named(path, node, &[], entry),
+            Form::NamedWith(names, entry) => self.named(path, node, names, entry),
             Form::Each(names, entry) => self.each(path, node, names, entry),
             Form::Points(points) => self.points(path, node, points),
             Form::List(entry) => self.list(path, node, entry),
@@ -121,7 +122,13 @@ impl File {
         }
     }
 
-    fn named(&self, path: &str, node: &Node, form: &Form) -> Result<(), ConfigError> {
+    fn named(
+        &self,
+        path: &str,
+        node: &Node,
+        needed: &[&str],
+        form: &Form,
+    ) -> Result<(), ConfigError> {
         for (name, entry) in self.entries(path, node)? {
             let own = join(path, name);
             if !is_plain_name(name) {
@@ -130,7 +137,7 @@ impl File {
             }
             self.form(&own, entry, form)?;
         }
-        Ok(())
+        self.all_there(path, node, needed, form)
     }
 
     fn each(
@@ -146,6 +153,17 @@ impl File {
             }
             self.form(&join(path, name), entry, form)?;
         }
+        self.all_there(path, node, names, form)
+    }
+
+    /// Names the first of `names` that the table lacks.
+    fn all_there(
+        &self,
+        path: &str,
+        node: &Node,
+        names: &[&str],
+        form: &Form,
+    ) -> Result<(), ConfigError> {
         match names.iter().find(|name| node.get(name).is_none()) {
             Some(missing) => Err(self.missing(path, missing, form)),
             None => Ok(()),

@@ -30,7 +30,9 @@ fn write_inner(path: &str, form: &Form, text: &mut String) {
     match form {
         Form::Table(keys) => write_rows(&format!("{path}."), keys, text),
         Form::Named(inner) => write_inner(&format!("{path}.NAME"), inner, text),
-        Form::Each(_, inner) => write_inner(&format!("{path}.NAME"), inner, text),
+        Form::NamedWith(_, inner) | Form::Each(_, inner) => {
+            write_inner(&format!("{path}.NAME"), inner, text)
+        }
         Form::Points(points) => write_inner(&format!("{path}.NAME"), points.entry, text),
         Form::List(inner) => write_inner(&format!("{path}[]"), inner, text),
         Form::Text
@@ -65,6 +67,10 @@ fn points_in_words(points: &Points) -> String {
 fn what(form: &Form) -> String {
     match form {
         Form::Named(_) => "tables with names of your choice".to_owned(),
+        Form::NamedWith(names, _) => format!(
+            "tables with names of your choice, {} among them",
+            names.join(" and ")
+        ),
         Form::Each(names, _) => format!("a table for each of {}", names.join(", ")),
         Form::Points(points) => points_in_words(points),
         Form::Text

@@ -56,6 +56,9 @@ fn form(form_of: &Form) -> Value {
         Form::Named(entry) => {
             json!({ "type": "object", "additionalProperties": form(entry), "propertyNames": { "pattern": "^[a-z0-9_]+$" } })
         }
+        Form::NamedWith(names, entry) => {
+            json!({ "type": "object", "additionalProperties": form(entry), "propertyNames": { "pattern": "^[a-z0-9_]+$" }, "required": names })
+        }
         Form::Each(names, entry) => {
             let properties: Map<String, Value> = names
                 .iter()

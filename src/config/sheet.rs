@@ -119,6 +119,7 @@ fn entry(form: &Form) -> Option<Entry> {
         | Form::Listed(_)
         | Form::Table(_)
         | Form::Named(_)
+        | Form::NamedWith(..)
         | Form::Each(..)
         | Form::Points(_)
         | Form::List(_) => None,

@@ -9,8 +9,10 @@ use super::check::File;
 use super::error::ConfigError;
 use super::keys;
 use super::recipes::parse_recipe;
+use crate::dut::em_relay::bins;
 use crate::dut::recipe::Recipe;
-use crate::rig::axis::Bin;
+use crate::rig::axis::AxisTable;
+use crate::rig::bin::Bin;
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::Wiring;
 use std::path::PathBuf;
@@ -203,7 +205,7 @@ fn a_beam_may_have_any_name() {
     let text = RIG.replace("beam_pass", "good_parts_fall_here");
     let wiring = rig(&text).unwrap();
     let beam = wiring.digital_input("good_parts_fall_here").unwrap();
-    assert_eq!(wiring.axis.beam(Bin::Pass), beam);
+    assert_eq!(wiring.axis.beam(Bin::PASS), beam);
 }
 
 #[test]
@@ -302,6 +304,51 @@ fn two_bins_at_one_point_of_the_axis_are_refused() {
         &format!(
             "[bin].coil.point: found 2, expected a point of its own (line {line}: [bin].pass.point)"
         ),
+    );
+}
+
+/// The default rig without one of its bins.
+fn without_bin(name: &str) -> String {
+    let lines = RIG.lines();
+    let kept = lines.filter(|line| !(line.starts_with(name) && line.contains("beam = ")));
+    kept.map(|line| format!("{line}\n")).collect()
+}
+
+#[test]
+fn a_rig_may_have_fewer_bins_or_others() {
+    let rig_of = |text: &str| rig(text).unwrap().axis;
+    let names = |axis: &AxisTable| axis.bins().map(|bin| bin.to_string()).collect::<Vec<_>>();
+    let fewer = rig_of(&without_bin("coil"));
+    assert_eq!(
+        names(&fewer),
+        ["pass", "voltage", "time", "contact", "retest"]
+    );
+    assert!(!fewer.has(bins::COIL) && fewer.has(Bin::RETEST));
+    let other = rig_of(&changed(RIG, "coil    = { point", "grade_2 = { point"));
+    assert_eq!(names(&other)[1], "grade_2");
+    let wired = rig(RIG).unwrap().axis;
+    assert_eq!(other.beam(Bin::named("grade_2")), wired.beam(bins::COIL));
+}
+
+#[test]
+fn a_rig_without_pass_or_retest_is_refused() {
+    for name in ["pass", "retest"] {
+        let text = without_bin(name);
+        let expected = format!(
+            "config/rig.toml:{}: [bin].{name}: found nothing, expected a table",
+            line_of(&text, "[bin]")
+        );
+        assert_eq!(rig(&text).unwrap_err().to_string(), expected);
+    }
+}
+
+#[test]
+fn a_name_too_long_for_a_bin_is_refused() {
+    refused(
+        "coil    = { point",
+        "sixteen_letters_ = { point",
+        "sixteen_letters_ = { point",
+        "[bin].sixteen_letters_: found the name \"sixteen_letters_\", expected a name of at most 15 characters: a to z, 0 to 9 and _",
     );
 }
 

@@ -155,5 +155,7 @@ async fn ask(wiring: &Wiring, pace: &Pace, traffic: &mut Traffic) -> Result<Vec<
             }
         }
     }
+    let open: usize = pending.values().map(Vec::len).sum();
+    assert_eq!(open, 0, "a question without its answer");
     Ok(all)
 }

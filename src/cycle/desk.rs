@@ -1,12 +1,11 @@
 //! Orders of screens: taken in, handed to the station, answered; and motions by hand.
 
 use super::{Cycle, Event, publish};
-use crate::hmi::Asked;
-use crate::station::moves::Move;
+use crate::handling::moves::Move;
 use crate::station::orders::{Order, Refused};
 use crate::station::wants::Wants;
 use crate::units::RigTime;
-use crate::view::{self, Answered, By, NotTaken};
+use crate::view::{self, Answered, By, NotTaken, OrderRequest};
 
 /// Origin of what is ordered with a button at the machine.
 pub const PANEL: &str = "panel";
@@ -35,10 +34,13 @@ impl Cycle {
                 Err(why) => self.say(asked, Err(why), now),
             }
         }
+        assert_eq!(orders.len(), self.asked.len(), "an order lost its way back");
         orders
     }
 
     pub(super) fn answer(&mut self, wants: &mut Wants, now: RigTime) {
+        let (orders, answers) = (self.asked.len(), wants.answers.len());
+        assert_eq!(orders, answers, "orders without their answers");
         let asked: Vec<_> = self.asked.drain(..).collect();
         for (asked, answer) in asked.into_iter().zip(wants.answers.drain(..)) {
             self.say(asked, answer, now);
@@ -64,7 +66,7 @@ impl Cycle {
     }
 
     /// Answers whoever asked, and tells the audit.
-    fn say(&self, asked: Asked, answer: Result<(), Refused>, now: RigTime) {
+    fn say(&self, asked: OrderRequest, answer: Result<(), Refused>, now: RigTime) {
         let answered = Answered {
             order: asked.order.clone(),
             by: asked.by.clone(),

@@ -1,12 +1,13 @@
 //! What a run leaves for the history.
 
 use crate::dut::Calibration;
+use crate::handling::inside::Inside;
+use crate::handling::wants::{Interrupted, Judged, Landed, Left};
+use crate::handling::wear::Uses;
 use crate::station::annunciator::Standing;
-use crate::station::gates::Uses;
-use crate::station::inside::Inside;
 use crate::station::packml;
 use crate::station::trouble::Alarm;
-use crate::station::wants::{Checked, Interrupted, Judged, Landed, Left};
+use crate::station::wants::Checked;
 use crate::units::RigTime;
 use crate::view::Answered;
 

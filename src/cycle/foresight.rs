@@ -2,7 +2,7 @@
 
 use super::Cycle;
 use crate::guard::{Position, Refusal, Situation};
-use crate::station::moves::Move;
+use crate::handling::moves::Move;
 use crate::station::orders;
 use crate::units::RigTime;
 use crate::view::{MotionView, RefusedView, StrokeView};

@@ -3,12 +3,12 @@
 use super::Cycle;
 use crate::dut::verdict::Bin;
 use crate::guard::{Actuator, Position};
+use crate::handling::ledger::{Kind, Part};
+use crate::handling::mechanism::SENSOR_AGE;
 use crate::rig::point::DigitalInput;
 use crate::station::Station;
 use crate::station::annunciator::Standing;
 use crate::station::catalogue::{self, Stops};
-use crate::station::ledger::{Kind, Part};
-use crate::station::mechanism::SENSOR_AGE;
 use crate::station::orders::{self, Order, Refused};
 use crate::station::packml::{Command, Mode};
 use crate::units::{RigTime, Span};
@@ -196,30 +196,13 @@ fn buttons(station: &Station) -> Vec<Button> {
 }
 
 fn places(station: &Station) -> BTreeMap<String, Token> {
-    let ledger = station.ledger();
-    let mut places = BTreeMap::new();
-    if ledger.pocket {
-        let kind = "unnumbered".into();
-        places.insert(
-            "pocket".into(),
-            Token {
-                kind,
-                ..Token::default()
-            },
-        );
-    }
-    let falling = ledger.falling.as_ref().map(|falling| &falling.part);
-    let parts = [
-        ("nest", ledger.nest.as_ref()),
-        ("gripper", ledger.gripper.as_ref()),
-        ("falling", falling),
-    ];
-    for (place, part) in parts {
-        if let Some(part) = part {
-            places.insert(place.into(), token(part));
-        }
-    }
-    places
+    let unnumbered = || Token {
+        kind: "unnumbered".into(),
+        ..Token::default()
+    };
+    let each = station.ledger().each();
+    each.map(|(place, part)| (place.name().to_owned(), part.map_or_else(unnumbered, token)))
+        .collect()
 }
 
 fn token(part: &Part) -> Token {
@@ -230,7 +213,7 @@ fn token(part: &Part) -> Token {
     Token {
         kind: kind.into(),
         name,
-        bin: part.bin.map_or("", Bin::name).into(),
+        bin: part.bin.as_ref().map_or("", Bin::name).into(),
         interrupted: part.interrupted.clone().unwrap_or_default(),
     }
 }

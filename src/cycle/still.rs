@@ -12,6 +12,7 @@ impl Cycle {
     /// Asks every module whether it is as wired; what has tripped while its host was silent is made ready.
     pub(super) async fn verify(&mut self) {
         self.quiet().await;
+        assert!(self.traffic.is_quiet(), "verified while a line is in use");
         match commission::verify(&self.wiring, &self.pace, &mut self.traffic).await {
             Ok(tripped) => {
                 self.verified = true;

@@ -8,7 +8,6 @@ use super::underway::JobUnderway;
 use crate::bus::{Answer, Request};
 use crate::dcon::{Command, Common};
 use crate::instrument::act::JobDone;
-use crate::rig::axis::Bin;
 use crate::rig::point::{DigitalIn, DigitalInput};
 use crate::rig::wiring::{LineId, ModuleId, Wiring};
 use crate::units::{RigTime, Span};
@@ -17,6 +16,9 @@ use std::future::poll_fn;
 use std::sync::Arc;
 use std::task::Poll;
 use tokio::sync::mpsc;
+
+/// More commands than this wait on no line: every question of a verification, several times over.
+const DEEPEST: usize = 2_000;
 
 fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
     wiring
@@ -30,7 +32,7 @@ fn reset_questions(wiring: &Wiring, line: LineId) -> Vec<Command> {
 /// Modules of a line that carry inputs of the machine or beams, by address; those of a fixture are read by its acts.
 fn scanned_modules(wiring: &Wiring, line: LineId) -> Vec<ModuleId> {
     let machine = DigitalIn::ALL.iter().copied().map(DigitalInput::from);
-    let beams = Bin::ALL.iter().map(|bin| wiring.axis.beam(*bin));
+    let beams = wiring.axis.bins().map(|bin| wiring.axis.beam(bin));
     let modules = machine.chain(beams).map(|it| wiring.digital_in(it).module);
     let modules: BTreeSet<ModuleId> = modules.collect();
     let here = |module: &ModuleId| wiring.module(*module).line == line;
@@ -191,6 +193,7 @@ impl Traffic {
         }
         if let Some(slot) = self.slots.iter_mut().find(|slot| slot.ends.line == line) {
             slot.queue.push_back((command, purpose));
+            assert!(slot.queue.len() <= DEEPEST, "a queue grows without end");
         }
     }
 
@@ -224,6 +227,7 @@ impl Traffic {
 
     /// A new measuring job.
     pub fn begin_job(&mut self) {
+        assert!(self.job.is_none(), "two measuring jobs at once");
         self.job = Some(JobUnderway::default());
     }
 
@@ -340,6 +344,7 @@ impl Traffic {
             else {
                 continue;
             };
+            assert!(slot.busy.is_some(), "an answer that nobody asked for");
             let purpose = slot.busy.take().unwrap_or(Purpose::Check);
             return Some((slot.ends.line, purpose, answer));
         }

@@ -78,10 +78,10 @@ impl Procedure {
         }
     }
 
-    /// The same, once the part is judged.
-    pub fn into_record(self) -> TestRecord {
+    /// Hands over what was found, once the part is judged.
+    pub fn take_record(&mut self) -> TestRecord {
         match self {
-            Self::EmRelay(test) => test.into_record(),
+            Self::EmRelay(test) => test.take_record(),
         }
     }
 }

@@ -94,9 +94,9 @@ impl Reason {
             Code::OutsideLimit(characteristic) | Code::NotProven(characteristic) => {
                 characteristic.bin()
             }
-            Code::EmRelay(finding) => finding.bin().unwrap_or(Bin::Retest),
+            Code::EmRelay(finding) => finding.bin().unwrap_or(Bin::RETEST),
             Code::NotMeasured(_) | Code::Interrupted | Code::RigTrouble | Code::Unclassified => {
-                Bin::Retest
+                Bin::RETEST
             }
         }
     }

@@ -3,20 +3,16 @@
 //! Several failures go to the bin of the first in the order coil, contact, voltage, time.
 
 use super::characteristic::Characteristic;
+use super::em_relay::bins;
 use super::reason::{Code, Reason};
 use crate::gauge::Judgement;
-pub use crate::rig::axis::Bin;
+pub use crate::rig::bin::Bin;
 
 /// Rank when several limits fail: the smallest wins.
-pub(super) fn rank(bin: Bin) -> u8 {
-    match bin {
-        Bin::Coil => 0,
-        Bin::Contact => 1,
-        Bin::Voltage => 2,
-        Bin::Time => 3,
-        Bin::Retest => 4,
-        Bin::Pass => 5,
-    }
+pub(super) fn rank(bin: Bin) -> usize {
+    let by_rank = bins::BY_RANK;
+    let known = by_rank.into_iter().position(|known| known == bin);
+    known.unwrap_or(by_rank.len())
 }
 
 /// What is said of a part.
@@ -78,13 +74,13 @@ impl Verdict {
     /// Where the part belongs.
     pub fn bin(&self) -> Bin {
         match self {
-            Self::Pass => Bin::Pass,
+            Self::Pass => Bin::PASS,
             Self::Fail(reasons) => reasons
                 .iter()
                 .map(Reason::bin)
                 .min_by_key(|bin| rank(*bin))
-                .unwrap_or(Bin::Retest),
-            Self::Void(_) => Bin::Retest,
+                .unwrap_or(Bin::RETEST),
+            Self::Void(_) => Bin::RETEST,
         }
     }
 
@@ -116,7 +112,7 @@ mod tests {
     fn a_part_passes_only_when_every_result_passes() {
         let judged: Vec<_> = all().into_iter().map(|it| (it, Judgement::Pass)).collect();
         assert_eq!(Verdict::of(&all(), &judged), Verdict::Pass);
-        assert_eq!(Verdict::of(&all(), &judged[1..]).bin(), Bin::Retest);
+        assert_eq!(Verdict::of(&all(), &judged[1..]).bin(), Bin::RETEST);
     }
 
     #[test]
@@ -127,7 +123,7 @@ mod tests {
             Parameter::ContactResistanceNo,
         ]
         .map(|it| (Characteristic::EmRelay(it), Judgement::Fail(Side::High)));
-        assert_eq!(Verdict::of(&all(), &failed).bin(), Bin::Contact);
-        assert_eq!(Verdict::of(&all(), &failed[..2]).bin(), Bin::Voltage);
+        assert_eq!(Verdict::of(&all(), &failed).bin(), bins::CONTACT);
+        assert_eq!(Verdict::of(&all(), &failed[..2]).bin(), bins::VOLTAGE);
     }
 }

@@ -3,8 +3,8 @@
 use super::Store;
 use super::error::{Doing, Result};
 use super::store::source;
-use crate::dut::verdict::Bin;
-use crate::station::inside::Inside;
+use crate::handling::inside::Inside;
+use crate::rig::bin::Bin;
 use rusqlite::{OptionalExtension, Transaction, params};
 
 /// As it was written down last.
@@ -25,7 +25,7 @@ pub(super) fn keep(tx: &Transaction<'_>, it: &InsideRecord) -> Result<()> {
     } = it.inside;
     tx.execute(
         "INSERT OR REPLACE INTO inside (source, pocket, nest, gripper, falling) VALUES (?1, ?2, ?3, ?4, ?5)",
-        params![source(it.simulated), pocket, nest, gripper, falling.map(Bin::name)],
+        params![source(it.simulated), pocket, nest, gripper, falling.as_ref().map(Bin::name)],
     )
     .doing("recording what is inside")?;
     Ok(())

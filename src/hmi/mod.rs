@@ -46,9 +46,9 @@ mod recipes;
 mod router;
 mod trace;
 
-use crate::view::Mimic;
+use crate::view::{Mimic, OrderRequest};
 pub use gate::Gate;
-pub use orders::{Asked, WAITING};
+pub use orders::WAITING;
 pub use trace::Traffic;
 
 use std::net::SocketAddr;
@@ -77,7 +77,7 @@ pub struct Shared {
     /// The last traffic of the lines.
     pub traffic: Traffic,
     /// To the cycle, which answers each order in its next turn.
-    pub orders: mpsc::Sender<Asked>,
+    pub orders: mpsc::Sender<OrderRequest>,
 }
 
 /// Answers on `listener` until `ended` turns true or its sender is gone, then at most [`GRACE`] longer.

@@ -9,7 +9,7 @@ use super::access::{Person, Role};
 use super::error::HmiError;
 use super::router::Desk;
 use super::{gate, origin};
-use crate::view::{By, LOT_ORDERS, NotTaken, ORDERS, Order};
+use crate::view::{Answer, By, LOT_ORDERS, ORDERS, Order, OrderRequest};
 use axum::Json;
 use axum::extract::rejection::{ExtensionRejection, JsonRejection};
 use axum::extract::{ConnectInfo, State};
@@ -20,26 +20,6 @@ use tokio::sync::oneshot;
 
 /// Orders that wait for the next turn; more at once than fingers on a panel.
 pub const WAITING: usize = 16;
-
-/// An order on its way to the cycle.
-#[derive(Debug)]
-pub struct Asked {
-    /// What is wanted.
-    pub order: Order,
-    /// Who wants it.
-    pub by: By,
-    /// It is not to be taken, for this reason; it comes for the audit alone.
-    pub denied: Option<String>,
-    /// The way back.
-    pub answer: oneshot::Sender<Result<(), NotTaken>>,
-}
-
-impl Asked {
-    /// Answers; a screen that has gone away misses nothing that it could use.
-    pub fn say(self, answer: Result<(), NotTaken>) {
-        let _ = self.answer.send(answer);
-    }
-}
 
 /// Body of the answer.
 #[derive(Debug, Serialize)]
@@ -104,26 +84,15 @@ fn allowed(person: &Person, order: &Order) -> Result<&'static str, HmiError> {
         })
 }
 
-async fn give(desk: &Desk, order: Order, by: By) -> Option<Result<(), NotTaken>> {
+async fn give(desk: &Desk, order: Order, by: By) -> Option<Answer> {
     let (answer, answered) = oneshot::channel();
-    let asked = Asked {
-        order,
-        by,
-        denied: None,
-        answer,
-    };
-    desk.shared.orders.try_send(asked).ok()?;
+    let request = OrderRequest::new(order, by, move |it| drop(answer.send(it)));
+    desk.shared.orders.try_send(request).ok()?;
     answered.await.ok()
 }
 
 /// For the audit; a controller that has ended or is too busy to listen writes none.
 fn note(desk: &Desk, order: Order, by: By, why: String) {
-    let (answer, _nobody_waits) = oneshot::channel();
-    let asked = Asked {
-        order,
-        by,
-        denied: Some(why),
-        answer,
-    };
-    let _ = desk.shared.orders.try_send(asked);
+    let request = OrderRequest::denied(order, by, why);
+    let _ = desk.shared.orders.try_send(request);
 }

@@ -16,8 +16,8 @@ mod routes;
 mod shutdown;
 
 use super::access::{Register, Role};
-use super::{Asked, Gate, Shared, Traffic, WAITING, router};
-use crate::view::{LastPart, LineTraffic, Message, Mimic, MimicBody, NotTaken, View};
+use super::{Gate, Shared, Traffic, WAITING, router};
+use crate::view::{LastPart, LineTraffic, Message, Mimic, MimicBody, NotTaken, OrderRequest, View};
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
@@ -41,7 +41,7 @@ struct Bench {
     /// Orders that came for the audit alone.
     denied: Denied,
     controller: JoinHandle<()>,
-    orders: mpsc::Sender<Asked>,
+    orders: mpsc::Sender<OrderRequest>,
     router: Router,
     db: PathBuf,
     gate: Gate,
@@ -137,7 +137,11 @@ impl Bench {
 }
 
 /// Takes `stop` and the orders of maintenance, and nothing else.
-async fn controller(mut asked: mpsc::Receiver<Asked>, stop: Arc<AtomicBool>, denied: Denied) {
+async fn controller(
+    mut asked: mpsc::Receiver<OrderRequest>,
+    stop: Arc<AtomicBool>,
+    denied: Denied,
+) {
     while let Some(asked) = asked.recv().await {
         if let Some(why) = &asked.denied {
             denied.lock().unwrap().push(format!(

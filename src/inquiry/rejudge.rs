@@ -26,7 +26,7 @@ pub struct Again {
     /// The one by this recipe.
     pub verdict: &'static str,
     /// The bin it asks for.
-    pub bin: &'static str,
+    pub bin: String,
     /// Why it is not a pass.
     pub reasons: Vec<String>,
     /// Their codes, in the same order.
@@ -146,7 +146,7 @@ impl Rejudging {
             seq: part.seq,
             recipe: self.recipe.name.clone(),
             verdict: verdict.name(),
-            bin: verdict.bin().name(),
+            bin: verdict.bin().to_string(),
             reasons: verdict.texts(),
             reason_codes: verdict.reasons().to_vec(),
             verdict_was: part.verdict,

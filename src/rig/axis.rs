@@ -3,53 +3,11 @@
 //! The slide knows eight points, chosen by three outputs; it goes there on a rising edge of
 //! `axis_drive`. Positions are relative to the nest, along the line.
 
+use super::bin::Bin;
 use super::fault::Fault;
 use super::point::DigitalInput;
 use super::settings::{BinSettings, StationSettings};
 use std::collections::BTreeMap;
-
-/// Where a part ends, by the cause of its rejection.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Bin {
-    /// Good parts.
-    Pass,
-    /// Coil resistance out of limits.
-    Coil,
-    /// Operate or release voltage out of limits.
-    Voltage,
-    /// Times or bounce out of limits.
-    Time,
-    /// Contact resistance out of limits, stuck contact.
-    Contact,
-    /// Not judged.
-    Retest,
-}
-
-impl Bin {
-    /// Every bin, in the order of the line.
-    pub const ALL: &'static [Self] = &[
-        Self::Pass,
-        Self::Coil,
-        Self::Voltage,
-        Self::Time,
-        Self::Contact,
-        Self::Retest,
-    ];
-    /// The names of [`Self::ALL`].
-    pub const NAMES: &'static [&'static str] =
-        &["pass", "coil", "voltage", "time", "contact", "retest"];
-
-    /// The name used in files, rows and messages.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-
-    /// The bin of this name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        let index = Self::NAMES.iter().position(|known| *known == name)?;
-        Self::ALL.get(index).copied()
-    }
-}
 
 /// A place of the sort axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -82,27 +40,52 @@ pub struct AxisPoint {
     pub x_mm: f64,
 }
 
+/// A bin of this rig.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Chute {
+    bin: Bin,
+    point: AxisPoint,
+    beam: DigitalInput,
+}
+
 /// The points of the sort axis and the beams in the chutes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AxisTable {
     nest: AxisPoint,
     park: AxisPoint,
-    bins: [(AxisPoint, DigitalInput); 6],
+    /// In the order of the line.
+    chutes: Vec<Chute>,
 }
 
 impl AxisTable {
     /// The point of a station.
+    ///
+    /// # Panics
+    /// For a bin that the rig does not have.
     pub fn point(&self, station: AxisStation) -> AxisPoint {
         match station {
             AxisStation::Nest => self.nest,
             AxisStation::Park => self.park,
-            AxisStation::Bin(bin) => self.bins[bin as usize].0,
+            AxisStation::Bin(bin) => self.chute(bin).point,
         }
     }
 
     /// The beam in the chute of a bin.
+    ///
+    /// # Panics
+    /// For a bin that the rig does not have.
     pub fn beam(&self, bin: Bin) -> DigitalInput {
-        self.bins[bin as usize].1
+        self.chute(bin).beam
+    }
+
+    /// The bins of this rig, in the order of the line.
+    pub fn bins(&self) -> impl Iterator<Item = Bin> + '_ {
+        self.chutes.iter().map(|chute| chute.bin)
+    }
+
+    /// Whether the rig has this bin.
+    pub fn has(&self, bin: Bin) -> bool {
+        self.bins().any(|known| known == bin)
     }
 
     /// The station at a position, within a micrometre; `None` between stations.
@@ -112,11 +95,19 @@ impl AxisTable {
     }
 
     /// Every station.
-    pub fn stations(&self) -> impl Iterator<Item = AxisStation> + use<> {
-        let bins = Bin::ALL.iter().copied().map(AxisStation::Bin);
+    pub fn stations(&self) -> impl Iterator<Item = AxisStation> + '_ {
         [AxisStation::Nest, AxisStation::Park]
             .into_iter()
-            .chain(bins)
+            .chain(self.bins().map(AxisStation::Bin))
+    }
+
+    /// A recipe that needs a bin which is not there was refused before anything moved.
+    fn chute(&self, bin: Bin) -> &Chute {
+        let found = self.chutes.iter().find(|chute| chute.bin == bin);
+        match found {
+            Some(chute) => chute,
+            None => panic!("the rig has no bin {bin}"),
+        }
     }
 
     pub(super) fn resolve(
@@ -127,13 +118,18 @@ impl AxisTable {
         let mut taken = Taken::default();
         let nest = taken.station("nest", axis)?;
         let park = taken.station("park", axis)?;
-        let mut found = Vec::new();
-        for &bin in Bin::ALL {
-            found.push(taken.bin(bin, bins, &input)?);
+        for needed in [Bin::PASS, Bin::RETEST] {
+            if !bins.contains_key(needed.name()) {
+                return Err(Fault::new(format!("bin.{needed}"), "nothing", "a bin"));
+            }
         }
-        let bins = <[(AxisPoint, DigitalInput); 6]>::try_from(found)
-            .map_err(|found| Fault::new("bin", found.len(), "six bins"))?;
-        Ok(Self { nest, park, bins })
+        let mut in_order: Vec<_> = bins.iter().collect();
+        in_order.sort_by(|(_, one), (_, other)| one.x_mm.total_cmp(&other.x_mm));
+        let chutes = in_order
+            .into_iter()
+            .map(|(name, settings)| taken.chute(name, settings, &input))
+            .collect::<Result<_, _>>()?;
+        Ok(Self { nest, park, chutes })
     }
 }
 
@@ -163,15 +159,19 @@ impl Taken {
         )
     }
 
-    fn bin(
+    fn chute(
         &mut self,
-        bin: Bin,
-        bins: &BTreeMap<String, BinSettings>,
+        name: &str,
+        settings: &BinSettings,
         input: impl Fn(&str) -> Option<DigitalInput>,
-    ) -> Result<(AxisPoint, DigitalInput), Fault> {
-        let key = format!("bin.{}", bin.name());
-        let Some(settings) = bins.get(bin.name()) else {
-            return Err(Fault::new(key, "nothing", "a bin"));
+    ) -> Result<Chute, Fault> {
+        let key = format!("bin.{name}");
+        let Some(bin) = Bin::from_name(name) else {
+            let expected = format!(
+                "a name of at most {} characters: a to z, 0 to 9 and _",
+                Bin::LONGEST
+            );
+            return Err(Fault::new(key, format!("the name \"{name}\""), expected));
         };
         let point = self.point(
             key.clone(),
@@ -182,7 +182,7 @@ impl Taken {
         )?;
         let name = &settings.beam;
         let beam = self.beam(format!("{key}.beam"), name, input(name))?;
-        Ok((point, beam))
+        Ok(Chute { bin, point, beam })
     }
 
     fn point(&mut self, key: String, point: AxisPoint) -> Result<AxisPoint, Fault> {

@@ -1,7 +1,6 @@
 //! Which points this rig has: those of the machine, those that kinds of device declare and the file wires, the beams
 //! that bins name. Their order here is their place in the tables of the wiring.
 
-use super::axis::Bin;
 use super::fault::Fault;
 use super::point::{DigitalIn, DigitalInput, DigitalOut, Fixture, Quantity, Switch};
 use super::settings::RigSettings;
@@ -21,10 +20,8 @@ impl InputNames {
         let declared = fixtures.iter().flat_map(|it| it.digital_in).copied();
         add_wired(&mut names, settings, declared.clone());
         let before_beams = names.len();
-        let bins = Bin::ALL
-            .iter()
-            .filter_map(|bin| settings.bin.get(bin.name()));
-        add_wired(&mut names, settings, bins.map(|bin| bin.beam.as_str()));
+        let beams = settings.bin.values().map(|bin| bin.beam.as_str());
+        add_wired(&mut names, settings, beams);
         Self {
             names,
             before_beams,

@@ -286,8 +286,8 @@ fn check_ports(lines: &[Line]) -> Result<(), Fault> {
 
 /// A beam is read by an event counter: a falling part is too quick for a scan.
 fn check_beams(wiring: &Wiring, settings: &RigSettings) -> Result<(), Fault> {
-    for bin in super::axis::Bin::ALL {
-        let beam = wiring.axis.beam(*bin);
+    for bin in wiring.axis.bins() {
+        let beam = wiring.axis.beam(bin);
         let model = wiring.module(wiring.digital_in(beam).module).model;
         if !model.counts_events() {
             let found = settings

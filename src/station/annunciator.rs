@@ -112,6 +112,12 @@ impl Annunciator {
         } else {
             Condition::Unacknowledged
         };
+        assert!(!alarm.code.is_empty(), "an alarm without a code");
+        let twice = self
+            .standing
+            .iter()
+            .filter(|one| one.alarm.code == alarm.code);
+        assert!(twice.count() <= 1, "{} stands twice", alarm.code);
         let known = self
             .standing
             .iter_mut()
@@ -177,6 +183,11 @@ impl Annunciator {
             }
         }
         self.standing.retain(|one| one.count > 0);
+        let active = self
+            .standing
+            .iter()
+            .any(|one| one.is_active() && is_gone(one));
+        assert!(!active, "an alarm stands whose cause is gone");
     }
 
     /// A person has seen the alarm of this code, or all; false when there is none.

@@ -5,7 +5,9 @@ use super::annunciator::Standing;
 use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::trouble::Alarm;
-use super::wants::{Ending, Jog, Wants};
+use super::wants::{Ending, Wants};
+use crate::handling::Place;
+use crate::handling::wants::Jog;
 use crate::rig::image::Image;
 use crate::units::{RigTime, Span};
 
@@ -24,18 +26,18 @@ impl Station {
             }
             Order::Mode(mode) => {
                 self.may_change_mode()?;
-                self.mode = mode;
+                self.machine.mode = mode;
             }
             Order::Jog(movement) => {
                 self.may_jog()?;
                 let answer = wants.answers.len();
-                wants.jog = Some(Jog { movement, answer });
+                wants.rig.jog = Some(Jog { movement, answer });
             }
             Order::Step => {
                 self.may_step()?;
-                wants.motions.extend(self.stepwise.pop_front());
+                wants.rig.motions.extend(self.line.stepwise.pop_front());
             }
-            Order::LampTest => self.lamps.test(now),
+            Order::LampTest => self.alarms.lamps.test(now),
             Order::Leave => {
                 self.may_leave()?;
                 self.leave(Ending::Stopped, now, wants);
@@ -49,14 +51,15 @@ impl Station {
                 }
             }
             Order::Acknowledge(code) => {
-                if !self.annunciator.acknowledge(code.as_deref()) && code.is_some() {
+                if !self.alarms.annunciator.acknowledge(code.as_deref()) && code.is_some() {
                     return Err(no_alarm());
                 }
             }
             Order::Shelve(code, minutes) => {
                 let minutes = shelf_minutes(Some(minutes));
                 let until = now + Span::ms(u64::from(minutes) * 60_000);
-                if !self.annunciator.shelve(&code, until) {
+                assert!(until > now, "shelved for no time");
+                if !self.alarms.annunciator.shelve(&code, until) {
                     return Err(no_alarm());
                 }
             }
@@ -66,11 +69,11 @@ impl Station {
 
     /// Buttons at the machine: their orders are answered here; what is stuck is given back.
     pub(super) fn pressed(&mut self, now: RigTime, image: &Image, wants: &mut Wants) -> Vec<Alarm> {
-        let (commands, stuck) = self.panel.look(now, image, self.state);
+        let (commands, stuck) = self.alarms.panel.look(now, image, self.machine.state);
         for command in commands {
             let answer = self.order(Order::Command(command), now, wants);
             // Nobody is there to start again.
-            self.stopping |= command == Command::Stop && !self.plan.stays;
+            self.machine.stopping |= command == Command::Stop && !self.plan.stays;
             wants.pressed.push((command, answer));
         }
         stuck
@@ -81,8 +84,8 @@ impl Station {
     /// # Errors
     /// The reason why not.
     pub fn may(&self, command: Command) -> Result<(), Refused> {
-        if packml::next(self.state, On::Command(command)).is_none() {
-            return Err(Refused::wrong_state(command, self.state));
+        if packml::next(self.machine.state, On::Command(command)).is_none() {
+            return Err(Refused::wrong_state(command, self.machine.state));
         }
         match command {
             Command::Reset | Command::Clear => match self.cause() {
@@ -90,7 +93,10 @@ impl Station {
                 None => Ok(()),
             },
             Command::Start => self.may_start(),
-            Command::Unsuspend => match self.annunciator.stopping(super::catalogue::Stops::Suspend)
+            Command::Unsuspend => match self
+                .alarms
+                .annunciator
+                .stopping(super::catalogue::Stops::Suspend)
             {
                 Some(cause) => Err(still_there(cause)),
                 None => Ok(()),
@@ -105,10 +111,14 @@ impl Station {
     }
 
     fn may_start(&self) -> Result<(), Refused> {
-        if self.mode == Mode::Manual {
-            return Err(Refused::wrong_mode("start", self.mode, Mode::Production));
+        if self.machine.mode == Mode::Manual {
+            return Err(Refused::wrong_mode(
+                "start",
+                self.machine.mode,
+                Mode::Production,
+            ));
         }
-        if !self.homed {
+        if !self.line.homed {
             return Err(Refused::new(
                 "actuators were moved by hand since the reset; stop and reset first",
                 "复位后执行机构被手动移动过；请先停止并复位",
@@ -128,13 +138,20 @@ impl Station {
     /// # Errors
     /// The reason why not.
     pub fn may_leave(&self) -> Result<(), Refused> {
-        if self.mode != Mode::Production {
-            return Err(Refused::wrong_mode("start", self.mode, Mode::Production));
+        if self.machine.mode != Mode::Production {
+            return Err(Refused::wrong_mode(
+                "start",
+                self.machine.mode,
+                Mode::Production,
+            ));
         }
-        if !matches!(self.state, State::Stopped | State::Idle | State::Complete) {
+        if !matches!(
+            self.machine.state,
+            State::Stopped | State::Idle | State::Complete
+        ) {
             return Err(self.not_at_rest());
         }
-        if self.ledger.nest.is_some() || self.ledger.gripper.is_some() {
+        if self.line.ledger.holds(Place::NEST) || self.line.ledger.holds(Place::Gripper) {
             return Err(Refused::new(
                 "a part of this lot is inside; reset first, so that it gets into its bin",
                 "机内还有本批次的零件；请先复位，使其进入料仓",
@@ -144,7 +161,7 @@ impl Station {
     }
 
     fn not_at_rest(&self) -> Refused {
-        let state = self.state.name();
+        let state = self.machine.state.name();
         Refused::new(
             format!(
                 "another lot can be begun in Stopped, Idle and Complete; the machine is in {state}{}",
@@ -159,9 +176,9 @@ impl Station {
 
     /// What a person does first, in both languages.
     fn way_out(&self) -> (&'static str, &'static str) {
-        if packml::is_aborted(self.state) {
+        if packml::is_aborted(self.machine.state) {
             ("; clear it first", "；请先清除")
-        } else if packml::next(self.state, On::Command(Command::Stop)).is_some() {
+        } else if packml::next(self.machine.state, On::Command(Command::Stop)).is_some() {
             ("; stop it first", "；请先停止")
         } else {
             ("", "")
@@ -181,10 +198,10 @@ impl Station {
     /// # Errors
     /// The reason why not.
     pub fn may_change_mode(&self) -> Result<(), Refused> {
-        if packml::may_change_mode(self.state) {
+        if packml::may_change_mode(self.machine.state) {
             return Ok(());
         }
-        let state = self.state.name();
+        let state = self.machine.state.name();
         Err(Refused::new(
             format!(
                 "the mode can be changed in Stopped, Idle, Complete and Aborted; the machine is in {state}"
@@ -198,17 +215,17 @@ impl Station {
     /// # Errors
     /// The reason why not.
     pub fn may_jog(&self) -> Result<(), Refused> {
-        if self.mode == Mode::Production {
-            return Err(Refused::wrong_mode("jog", self.mode, Mode::Manual));
+        if self.machine.mode == Mode::Production {
+            return Err(Refused::wrong_mode("jog", self.machine.mode, Mode::Manual));
         }
-        if self.state != State::Idle {
-            let state = self.state.name();
+        if self.machine.state != State::Idle {
+            let state = self.machine.state.name();
             return Err(Refused::new(
                 format!("unhomed: jogging needs Idle after a reset; the machine is in {state}"),
                 format!("未回原点：点动需要复位后处于 Idle 状态；当前状态为 {state}"),
             ));
         }
-        if self.mechanism.moving().next().is_some() {
+        if self.line.mechanism.moving().next().is_some() {
             return Err(Refused::new(
                 "the motion before has not arrived",
                 "上一个动作尚未到位",
@@ -222,10 +239,14 @@ impl Station {
     /// # Errors
     /// The reason why not.
     pub fn may_step(&self) -> Result<(), Refused> {
-        if self.mode != Mode::Maintenance {
-            return Err(Refused::wrong_mode("step", self.mode, Mode::Maintenance));
+        if self.machine.mode != Mode::Maintenance {
+            return Err(Refused::wrong_mode(
+                "step",
+                self.machine.mode,
+                Mode::Maintenance,
+            ));
         }
-        if self.stepwise.is_empty() {
+        if self.line.stepwise.is_empty() {
             return Err(Refused::new(
                 "no motion waits for a step",
                 "没有等待单步的动作",
@@ -236,7 +257,7 @@ impl Station {
 
     /// An actuator was moved by hand: home is not home any more.
     pub fn jogged(&mut self) {
-        self.homed = false;
+        self.line.homed = false;
     }
 
     fn leave(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
@@ -245,11 +266,11 @@ impl Station {
     }
 
     fn command(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
-        self.fresh = false;
+        self.machine.fresh = false;
         match command {
             Command::Abort => return self.abort("abort ordered", now, wants),
-            Command::Clear | Command::Unhold | Command::Reset => self.annunciator.cleared(),
-            Command::Suspend => self.suspended_by_order = true,
+            Command::Clear | Command::Unhold | Command::Reset => self.alarms.annunciator.cleared(),
+            Command::Suspend => self.machine.suspended_by_order = true,
             Command::Start
             | Command::Stop
             | Command::Hold

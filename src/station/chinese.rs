@@ -1,7 +1,6 @@
 //! Names of places, bins, motions and steps in Chinese, for texts of alarms; the words are those of the screen.
 
-use super::moves::Move;
-use crate::dut::Bin;
+use crate::handling::Move;
 use crate::rig::axis::AxisStation;
 
 /// A place of the ledger, a bin, an actuator or a step; anything else, a module of the plant say, keeps its name.
@@ -20,16 +19,16 @@ pub fn name(of: &str) -> &str {
     }
 }
 
-/// A bin by its name.
+/// A bin by its name; one that a plant has named itself keeps that.
 pub fn bin(name: &str) -> &str {
-    match Bin::from_name(name) {
-        Some(Bin::Pass) => "合格",
-        Some(Bin::Coil) => "线圈",
-        Some(Bin::Contact) => "触点",
-        Some(Bin::Voltage) => "电压",
-        Some(Bin::Time) => "时间",
-        Some(Bin::Retest) => "复测",
-        None => name,
+    match name {
+        "pass" => "合格",
+        "coil" => "线圈",
+        "contact" => "触点",
+        "voltage" => "电压",
+        "time" => "时间",
+        "retest" => "复测",
+        other => other,
     }
 }
 

@@ -12,10 +12,14 @@
 //!   mean over the last parts is beyond its limit.
 
 use super::Station;
-use super::ledger::Kind;
+use super::packml::State;
 use super::trouble::Alarm;
-use super::wants::{Checked, Judged, Wants};
+use super::wants::{Checked, Wants};
 use crate::dut::verdict::Verdict;
+use crate::handling::Place;
+use crate::handling::ledger::Kind;
+use crate::handling::wants::Judged;
+use crate::handling::wear::Uses;
 use crate::units::{Ohm, RigTime, Span};
 use serde::Deserialize;
 use std::collections::VecDeque;
@@ -68,32 +72,6 @@ pub struct WearSettings {
     pub probe_contact_ohm: Option<f64>,
 }
 
-/// Uses of what wears.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Uses {
-    /// Times that the probes rose.
-    pub probe_touches: u64,
-    /// Times that the jaws closed.
-    pub jaw_closings: u64,
-}
-
-impl Uses {
-    /// Each with the name of its counter.
-    pub fn each(&self) -> [(&'static str, u64); 2] {
-        [
-            ("probe_touches", self.probe_touches),
-            ("jaw_closings", self.jaw_closings),
-        ]
-    }
-
-    fn with(self, more: Self) -> Self {
-        Self {
-            probe_touches: self.probe_touches + more.probe_touches,
-            jaw_closings: self.jaw_closings + more.jaw_closings,
-        }
-    }
-}
-
 /// Where the gates stand.
 #[derive(Debug, Default)]
 pub(super) struct Gates {
@@ -119,6 +97,8 @@ impl Gates {
 
     /// The rig reads as certified now.
     pub(super) fn good(&mut self, now: RigTime, parts: u64) {
+        let before = self.good.map_or(0, |(_, parts)| parts);
+        assert!(parts >= before, "fewer parts of the lot than before");
         self.checking = false;
         self.good = Some((now, parts));
     }
@@ -139,6 +119,7 @@ impl Gates {
     fn discards(&mut self, failed: bool, limit_pct: Option<f64>, count: Option<u64>) -> bool {
         self.judged += 1;
         self.failed += u64::from(failed);
+        assert!(self.failed <= self.judged, "more failed than judged");
         let size = count.unwrap_or(self.judged).max(self.judged);
         let known = count.is_some() || self.judged >= ENOUGH;
         let over = limit_pct.is_some_and(|pct| self.failed as f64 > size as f64 * pct / 100.0);
@@ -152,48 +133,49 @@ impl Station {
     /// A golden part comes next: nothing else is judged before one has read as certified.
     pub(super) fn begin_check(&mut self) {
         let next: VecDeque<String> = self.plan.golden.first().cloned().into_iter().collect();
-        self.golden_planned += next.len().saturating_sub(self.golden_left.len()) as u64;
-        self.gates.checking = !next.is_empty();
-        self.golden_left = next;
+        self.lot.golden_planned += next.len().saturating_sub(self.lot.golden_left.len()) as u64;
+        self.lot.gates.checking = !next.is_empty();
+        self.lot.golden_left = next;
     }
 
     /// Looks whether a golden check is due while parts are being made.
     pub(super) fn look_for_check(&mut self, now: RigTime, wants: &mut Wants) {
+        let executes = self.machine.state == State::Execute;
+        assert!(executes, "a check is looked for while nothing is made");
         let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
         if !self.is_calibrating() && self.device.due_at_us() <= at_us {
-            return wants.trouble.push(Alarm::calibration_overdue());
+            return wants.notes.trouble.push(Alarm::calibration_overdue());
         }
-        if self.gates.checking || self.is_calibrating() || !self.wants_more() {
+        if self.lot.gates.checking || self.is_calibrating() || !self.wants_more() {
             return;
         }
-        let (parts, settings) = (self.ledger.lot_parts(), &self.plan.lot.golden_check);
-        if self.gates.good.is_none() {
+        let (parts, settings) = (self.line.ledger.lot_parts(), &self.plan.lot.golden_check);
+        if self.lot.gates.good.is_none() {
             // What the run began with counts as good: its calibration, or the check before the first part.
-            self.gates.good(now, parts);
-        } else if self.gates.due_by_parts(settings, parts) {
+            self.lot.gates.good(now, parts);
+        } else if self.lot.gates.due_by_parts(settings, parts) {
             self.begin_check();
-        } else if self.gates.due_by_time(settings, now) {
+        } else if self.lot.gates.due_by_time(settings, now) {
             self.begin_check();
-            wants
-                .trouble
-                .extend(self.next_serial().map(Alarm::golden_check_due));
+            let trouble = &mut wants.notes.trouble;
+            trouble.extend(self.next_serial().map(Alarm::golden_check_due));
         }
     }
 
     fn next_serial(&self) -> Option<&str> {
-        self.golden_left.front().map(String::as_str)
+        self.lot.golden_left.front().map(String::as_str)
     }
 
     /// Golden parts that teach the lags are still to come or have not taught them yet.
     pub(super) fn is_calibrating(&self) -> bool {
-        !self.golden_left.is_empty() || !self.device.is_calibrated()
+        !self.lot.golden_left.is_empty() || !self.device.is_calibrated()
     }
 
     /// The part in the nest is measured by the slow strategy.
     pub(super) fn is_thorough(&self) -> bool {
-        match self.ledger.nest.as_ref().map(|part| &part.kind) {
+        match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
             Some(Kind::Lot(seq)) => *seq <= self.plan.lot.first_article_parts,
-            Some(Kind::Golden(_)) => self.gates.checking,
+            Some(Kind::Golden(_)) => self.lot.gates.checking,
             None => false,
         }
     }
@@ -212,7 +194,7 @@ impl Station {
             },
         });
         match read {
-            Ok(()) => self.gates.good(judged.at, self.ledger.lot_parts()),
+            Ok(()) => self.lot.gates.good(judged.at, self.line.ledger.lot_parts()),
             Err(why) => {
                 self.begin_check();
                 wants
@@ -226,8 +208,8 @@ impl Station {
     pub(super) fn count_discards(&mut self, judged: &Judged, wants: &mut Told) {
         let failed = matches!(judged.verdict, Verdict::Fail(_));
         let (limit_pct, count) = (self.plan.lot.discard_limit_pct, self.plan.count);
-        if self.gates.discards(failed, limit_pct, count) {
-            let (failed, judged) = (self.gates.failed, self.gates.judged);
+        if self.lot.gates.discards(failed, limit_pct, count) {
+            let (failed, judged) = (self.lot.gates.failed, self.lot.gates.judged);
             wants.trouble.push(Alarm::discard_limit(
                 failed,
                 judged,
@@ -238,7 +220,7 @@ impl Station {
 
     /// Uses of what wears in this run.
     pub fn uses(&self) -> Uses {
-        self.mechanism.uses()
+        self.line.mechanism.uses()
     }
 
     /// Resistance of the probes in series with the part, mean over the last parts of the lot.
@@ -250,13 +232,13 @@ impl Station {
     fn fouled(&mut self) -> Option<Alarm> {
         let limit_ohm = self.plan.lot.wear.probe_contact_ohm?;
         let Ohm(mean) = self.device.settled_probe_contact()?;
-        let told = std::mem::replace(&mut self.gates.fouled, mean > limit_ohm);
-        (self.gates.fouled && !told).then(|| Alarm::probe_contact(mean, limit_ohm))
+        let told = std::mem::replace(&mut self.lot.gates.fouled, mean > limit_ohm);
+        (self.lot.gates.fouled && !told).then(|| Alarm::probe_contact(mean, limit_ohm))
     }
 
     /// Counters at their limit, each told once.
     pub(super) fn worn(&mut self) -> Vec<Alarm> {
-        let uses = self.plan.worn.with(self.mechanism.uses());
+        let uses = self.plan.worn.with(self.line.mechanism.uses());
         let limits = &self.plan.lot.wear;
         let each = [
             ("probes", uses.probe_touches, limits.probe_touches),
@@ -265,9 +247,9 @@ impl Station {
         let mut alarms: Vec<Alarm> = self.fouled().into_iter().collect();
         for (what, count, limit) in each {
             if let Some(limit) = limit.filter(|limit| count >= *limit)
-                && !self.gates.worn.contains(&what)
+                && !self.lot.gates.worn.contains(&what)
             {
-                self.gates.worn.push(what);
+                self.lot.gates.worn.push(what);
                 alarms.push(Alarm::worn(what, count, limit));
             }
         }

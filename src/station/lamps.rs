@@ -62,6 +62,8 @@ impl Lamps {
             (true, since) => since,
             (false, _) => None,
         };
+        let since = self.red_since.unwrap_or(now);
+        assert!(since <= now, "red since the future");
         let call = self.red_since.is_some_and(|since| now.since(since) < CALL);
         let testing = self.test_until.is_some_and(|until| now < until);
         let green = makes_parts(state);

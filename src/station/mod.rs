@@ -4,10 +4,10 @@
 //! `async`. It may be called at any time and as often as one likes; deadlines are kept in the states.
 //!
 //! The outer machine is [`packml`]; what a state does is in `states`, who may ask for what in `asked`.
-//! 1. `Resetting`: [`recovery`] brings every actuator to its rest end and discharges what is found inside;
-//! 2. `Starting`: without a valid calibration probes up in the empty nest, [`reference`] measurements;
-//! 3. `Execute`: golden parts when there is no calibration, then the lot behind its [`gates`]. [`feed`], [`clamp`] (with the
-//!    [`test`]) and [`sort`] overlap; parts are handed over in the [`ledger`];
+//! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
+//! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
+//! 3. `Execute`: golden parts when there is no calibration, then the lot behind its [`gates`], through the
+//!    [`crate::handling::feeder`];
 //! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go as far as they can rest.
 //!
 //! Trouble: an [`trouble::Alarm`] stops what the [`catalogue`] says and stands in the [`annunciator`] until its
@@ -22,52 +22,39 @@ pub mod annunciator;
 mod asked;
 pub mod catalogue;
 mod chinese;
-pub mod clamp;
-pub mod feed;
 pub mod gates;
-pub mod inside;
 mod lamps;
 mod learning;
-pub mod ledger;
-pub mod mechanism;
-pub mod moves;
+mod line;
+mod machine;
 pub mod orders;
 pub mod packml;
 mod panel;
 mod patience;
 mod produce;
-pub mod recovery;
 mod safety;
-pub mod sort;
 mod states;
 pub mod trouble;
-pub mod turn;
 pub mod wants;
-mod watch;
 
 use crate::dut::Device;
-use crate::guard::{PartPlaces, Situation};
+use crate::guard::{Motion, Situation};
+use crate::handling::inside::Inside;
+use crate::handling::wear::Uses;
+use crate::handling::{Feeder, Ledger, Mechanism, Move};
 use crate::instrument::act::Runner;
 use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
 use crate::units::RigTime;
 use annunciator::Annunciator;
-use clamp::Clamp;
-use feed::Feed;
-use gates::{Gates, LotSettings, Uses};
-use inside::Inside;
+use gates::{Gates, LotSettings};
 use lamps::Lamps;
-use ledger::Ledger;
-use mechanism::Mechanism;
-use moves::Move;
+use line::Line;
+use machine::Machine;
 use packml::{Mode, State};
 use panel::Panel;
 use patience::Patience;
-use recovery::Recovery;
-use sort::Sort;
 use std::collections::VecDeque;
-use std::sync::Arc;
-use turn::Turn;
 use wants::{Inputs, Wants};
 
 /// What a run is to do.
@@ -115,53 +102,46 @@ enum Start {
 pub struct Station {
     plan: Plan,
     /// The kind under test, with what parts have taught.
-    device: Arc<Device>,
-    table: AxisTable,
-    state: State,
-    entered: RigTime,
-    mode: Mode,
-    recovery: Recovery,
-    /// Every actuator was brought home and nothing was moved by hand or made safe since.
-    homed: bool,
+    device: Device,
     start: Start,
     /// References were measured in this run.
     referenced: bool,
-    began: Option<RigTime>,
-    /// Safety inputs were read since the start or since the modules were verified.
-    sensed: bool,
-    feed: Feed,
-    /// The escapement may have let a part through when the sequence was cut off.
-    releasing: bool,
-    clamp: Clamp,
-    sort: Sort,
-    ledger: Ledger,
-    mechanism: Mechanism,
-    annunciator: Annunciator,
-    patience: Patience,
-    panel: Panel,
-    /// When the emergency-stop chain was last seen open.
-    chain_open: Option<RigTime>,
-    lamps: Lamps,
-    dark: Vec<(crate::rig::point::DigitalInput, RigTime)>,
-    /// Motions that wait for a step in maintenance.
-    stepwise: VecDeque<Move>,
-    /// Motions that wait until no end sensor is in doubt.
-    postponed: Vec<Move>,
-    /// A person asked for the suspension; it does not end by itself.
-    suspended_by_order: bool,
-    asked_verify: bool,
-    /// When the modules were found as they should be, of this clearing.
-    verified: Option<RigTime>,
+    machine: Machine,
+    line: Line,
+    lot: LotControl,
+    alarms: Alarms,
+}
+
+/// What the lot lets be judged next.
+#[derive(Debug)]
+struct LotControl {
+    gates: Gates,
     golden_left: VecDeque<String>,
     /// Golden parts that this run has asked for so far.
     golden_planned: u64,
-    gates: Gates,
-    last_left: Option<RigTime>,
-    lot_began: bool,
-    /// Nobody has started anything yet: the first start is the program's own.
-    fresh: bool,
-    stopping: bool,
-    ended: bool,
+    /// Calibration and golden parts are over.
+    began: bool,
+}
+
+impl LotControl {
+    /// Checks what holds after every turn.
+    fn check(&self) {
+        let left = self.golden_left.len() as u64;
+        assert!(self.golden_planned >= left, "golden parts nobody planned");
+    }
+}
+
+/// What watches the machine, and what shows it to a person beside it.
+#[derive(Debug, Default)]
+struct Alarms {
+    annunciator: Annunciator,
+    patience: Patience,
+    panel: Panel,
+    lamps: Lamps,
+    /// When the emergency-stop chain was last seen open.
+    chain_open: Option<RigTime>,
+    /// Safety inputs were read since the start or since the modules were verified.
+    sensed: bool,
 }
 
 impl Station {
@@ -174,43 +154,19 @@ impl Station {
         };
         let ledger = Ledger::after(plan.left);
         let mut station = Self {
-            fresh: true,
-            state: plan.between_lots.unwrap_or(State::Stopped),
+            machine: Machine::new(plan.between_lots.unwrap_or(State::Stopped)),
+            line: Line::new(Feeder::new(table), ledger, mechanism),
+            lot: LotControl {
+                gates: Gates::default(),
+                golden_planned: golden_left.len() as u64,
+                golden_left,
+                began: false,
+            },
+            alarms: Alarms::default(),
             plan,
-            device: Arc::new(device),
-            table,
-            entered: RigTime(0),
-            mode: Mode::Production,
-            recovery: Recovery::default(),
-            homed: false,
+            device,
             start: Start::Begin,
             referenced: false,
-            began: None,
-            sensed: false,
-            feed: Feed::Empty,
-            releasing: false,
-            clamp: Clamp::Empty,
-            sort: Sort::Returning,
-            ledger,
-            mechanism,
-            annunciator: Annunciator::default(),
-            patience: Patience::default(),
-            panel: Panel::default(),
-            chain_open: None,
-            lamps: Lamps::default(),
-            dark: Vec::new(),
-            stepwise: VecDeque::new(),
-            postponed: Vec::new(),
-            suspended_by_order: false,
-            asked_verify: false,
-            verified: None,
-            golden_planned: golden_left.len() as u64,
-            golden_left,
-            gates: Gates::default(),
-            last_left: None,
-            lot_began: false,
-            stopping: false,
-            ended: false,
         };
         if station.plan.calibrated && station.plan.lot.golden_check.at_start {
             station.begin_check();
@@ -220,22 +176,22 @@ impl Station {
 
     /// The part ledger.
     pub fn ledger(&self) -> &Ledger {
-        &self.ledger
+        &self.line.ledger
     }
 
     /// Sensors and motions.
     pub fn mechanism(&self) -> &Mechanism {
-        &self.mechanism
+        &self.line.mechanism
     }
 
     /// Alarms that stand.
     pub fn annunciator(&self) -> &Annunciator {
-        &self.annunciator
+        &self.alarms.annunciator
     }
 
     /// The same, to put in what a run before left unseen.
     pub fn annunciator_mut(&mut self) -> &mut Annunciator {
-        &mut self.annunciator
+        &mut self.alarms.annunciator
     }
 
     /// A person is at a screen.
@@ -250,31 +206,31 @@ impl Station {
 
     /// Strokes, touches and bounces since the start, by name.
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
-        self.mechanism.wear()
+        self.line.mechanism.wear()
     }
 
     /// State of the outer machine.
     pub fn outer(&self) -> State {
-        self.state
+        self.machine.state
     }
 
     /// What the machine is used for.
     pub fn mode(&self) -> Mode {
-        self.mode
+        self.machine.mode
     }
 
     /// What the station is doing, in words for a screen.
     pub fn state(&self) -> String {
-        match self.state {
-            _ if self.ended => "ended".into(),
-            State::Resetting if !self.sensed => "waiting for sensors".into(),
-            State::Resetting if !self.homed => "homing".into(),
+        match self.machine.state {
+            _ if self.machine.ended => "ended".into(),
+            State::Resetting if !self.alarms.sensed => "waiting for sensors".into(),
+            State::Resetting if !self.line.homed => "homing".into(),
             State::Resetting => "discharging".into(),
             State::Starting => "calibrating".into(),
-            State::Execute | State::Completing => match self.clamp.test() {
+            State::Execute | State::Completing => match self.line.feeder.test() {
                 Some(test) => format!("testing: {}", test.stage()),
-                None if self.lot_began => "running".into(),
-                None if self.golden_left.is_empty() => "running".into(),
+                None if self.lot.began => "running".into(),
+                None if self.lot.golden_left.is_empty() => "running".into(),
                 None => "golden parts".into(),
             },
             State::Stopped
@@ -289,81 +245,69 @@ impl Station {
             | State::Stopping
             | State::Aborting
             | State::Aborted
-            | State::Clearing => self.state.name().to_lowercase(),
+            | State::Clearing => self.machine.state.name().to_lowercase(),
         }
     }
 
     /// One turn.
     pub fn step(&mut self, now: RigTime, mut inputs: Inputs) -> Wants {
         let mut wants = Wants::default();
-        if self.ended {
+        if self.machine.ended {
             return wants;
         }
+        self.machine.turn(now);
+        let ordered = inputs.orders.len();
         if inputs.verified {
             // What was read before the modules were asked is stale by now, and no trouble.
-            (self.sensed, self.began) = (false, Some(now));
+            (self.alarms.sensed, self.machine.began) = (false, Some(now));
         }
-        self.began.get_or_insert(now);
+        self.machine.began.get_or_insert(now);
         for order in std::mem::take(&mut inputs.orders) {
             let answer = self.order(order, now, &mut wants);
             wants.answers.push(answer);
         }
         let stuck = self.pressed(now, inputs.image, &mut wants);
         self.by_itself(now, &inputs, &mut wants);
-        if self.ended {
+        if self.machine.ended {
             return wants;
         }
         self.look(now, &inputs, stuck, &mut wants);
         self.raise_all(now, &mut wants);
-        if !wants.safe && !self.ended {
+        if !wants.rig.safe && !self.machine.ended {
             self.act(now, inputs, &mut wants);
             self.raise_all(now, &mut wants);
         }
-        self.postpone(now, &mut wants);
-        debug_assert!(self.ledger.balances(), "a part is in two places or in none");
-        self.annunciator.unshelve(now);
-        wants.alarms_changed |= self.annunciator.take_changed();
-        let stack = self
-            .lamps
-            .show(now, self.state, self.annunciator.standing(), wants.safe);
-        wants.outputs.extend(stack);
+        self.line.postpone(now, &mut wants);
+        self.alarms.annunciator.unshelve(now);
+        wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
+        let stack = self.alarms.lamps.show(
+            now,
+            self.machine.state,
+            self.alarms.annunciator.standing(),
+            wants.rig.safe,
+        );
+        wants.rig.outputs.extend(stack);
+        self.line.check();
+        self.lot.check();
+        wants.check(now, ordered);
+        let ends = wants.record.ending.is_some();
+        assert_eq!(ends, self.machine.ended, "the end and its event differ");
         wants
     }
 
     /// A motion was cleared and driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
-        self.mechanism.driven(movement, now, image);
-        self.sort = self.sort.driven(movement, &mut self.ledger, now);
+        self.line.driven(movement, now, image);
     }
 
     /// The motion as the guard knows it.
-    pub fn motion(&self, movement: Move) -> crate::guard::Motion {
-        movement.motion(self.mechanism.strokes())
+    pub fn motion(&self, movement: Move) -> Motion {
+        movement.motion(self.line.mechanism.strokes())
     }
 
     /// Situation for the guard.
     pub fn situation(&self, now: RigTime, image: &Image) -> Situation {
-        let pushing = matches!(self.feed, Feed::Pushing);
-        let parts = PartPlaces {
-            pocket: self.ledger.pocket && !pushing,
-            on_pusher: self.ledger.pocket && pushing,
-            nest: self.ledger.nest.is_some() && !matches!(self.clamp, Clamp::Lifting),
-            gripper: self.ledger.gripper.is_some() || matches!(self.clamp, Clamp::Lifting),
-        };
-        self.mechanism.situation(parts, now, image)
-    }
-
-    fn turn<'a>(&'a mut self, now: RigTime, inputs: &'a Inputs, wants: &'a mut Wants) -> Turn<'a> {
-        Turn {
-            now,
-            image: inputs.image,
-            mechanism: &self.mechanism,
-            ledger: &mut self.ledger,
-            wants,
-            golden: &mut self.golden_left,
-            recorded: inputs.recorded,
-            resting: matches!(self.state, State::Holding | State::Suspending),
-        }
+        self.line.situation(now, image)
     }
 }
 

@@ -3,8 +3,8 @@
 //! Every order is answered in the turn in which it comes: taken, or refused with the reason in English
 //! and Chinese. The same reasons stand beside the disabled buttons of a screen.
 
-use super::moves::Move;
 use super::packml::{self, Command, Mode, State};
+use crate::handling::Move;
 
 /// One order.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,8 +74,8 @@ impl Refused {
 
 /// Motions that may be jogged, with their names in orders.
 pub const JOGS: [(&str, Move); 15] = {
-    use crate::dut::verdict::Bin;
     use crate::rig::axis::AxisStation;
+    use crate::rig::bin::Bin;
     [
         ("escapement_release", Move::EscapementRelease),
         ("escapement_hold", Move::EscapementHold),
@@ -91,7 +91,7 @@ pub const JOGS: [(&str, Move); 15] = {
         ("gripper_open", Move::GripperOpen),
         ("axis_nest", Move::AxisTo(AxisStation::Nest)),
         ("axis_park", Move::AxisTo(AxisStation::Park)),
-        ("axis_retest", Move::AxisTo(AxisStation::Bin(Bin::Retest))),
+        ("axis_retest", Move::AxisTo(AxisStation::Bin(Bin::RETEST))),
     ]
 };
 

@@ -14,9 +14,9 @@
 //!
 //! Times are those of the samples, so that one sample, however long it stands, never settles anything.
 
-use super::mechanism::SENSOR_AGE;
 use super::packml::{Command, State};
 use super::trouble::Alarm;
+use crate::handling::mechanism::SENSOR_AGE;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};
@@ -89,6 +89,7 @@ impl Button {
             Some((seen, since)) if seen == down => since,
             Some(_) | None => at,
         };
+        assert!(since <= at, "a button changed after it was sampled");
         self.seen = Some((down, since));
         if at.since(since) < SETTLED {
             return false;

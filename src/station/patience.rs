@@ -13,65 +13,103 @@
 //! The others wait for their neighbours, which have a deadline, or for parts, which are nobody's fault.
 //! A bin that is full stops the clock over the bin; in maintenance nothing is late.
 
-use super::clamp::Clamp;
-use super::feed::Feed;
 use super::packml::{Mode, State};
-use super::sort::Sort;
 use super::trouble::Alarm;
+use crate::handling::Feeder;
+use crate::handling::feed::Feed;
+use crate::handling::nest::NestState;
+use crate::handling::place::NestId;
+use crate::handling::sort::Sort;
 use crate::units::{RigTime, Span};
 
-/// Since when feed, nest and sorter are in their step.
+/// What waits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Who {
+    Feed,
+    Nest(NestId),
+    Sort,
+}
+
+/// A step under way.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    who: Who,
+    name: &'static str,
+    limit: Option<Span>,
+}
+
+/// Since when feed, nests and sorter are in their step.
 #[derive(Debug, Default)]
 pub struct Patience {
-    since: [Option<(&'static str, RigTime)>; 3],
+    since: Vec<(Who, &'static str, RigTime)>,
 }
 
 impl Patience {
     /// A new state of the outer machine: every clock begins anew.
     pub fn forget(&mut self) {
-        self.since = [None; 3];
+        self.since.clear();
     }
 
-    /// The first step that waits for too long.
+    /// The last of the steps that wait for too long.
     pub fn look(
         &mut self,
         now: RigTime,
         state: State,
         mode: Mode,
-        feed: &Feed,
-        clamp: &Clamp,
-        sort: Sort,
+        feeder: &Feeder,
     ) -> Option<Alarm> {
         if !runs(state) || mode == Mode::Maintenance {
             self.forget();
             return None;
         }
+        let machines = feeder.nests().len() + 2;
+        assert!(self.since.len() <= machines, "a clock of no machine");
         let mut late = None;
-        for (since, (name, limit)) in
-            self.since
-                .iter_mut()
-                .zip([of_feed(*feed), of_clamp(clamp), of_sort(sort)])
-        {
-            let began = match *since {
-                Some((known, began)) if known == name => began,
-                Some(_) | None => now,
-            };
-            *since = Some((name, began));
+        for step in steps(feeder) {
+            let began = self.began(step, now);
+            assert!(began <= now, "{} began in the future", step.name);
             let waited = now.since(began);
-            if limit.is_some_and(|limit| waited > limit) {
-                late = Some(match clamp {
-                    Clamp::Lifting if name == "lifting" => Alarm::part_stuck(),
-                    _other => Alarm::step_too_long(name, waited),
+            if step.limit.is_some_and(|limit| waited > limit) {
+                late = Some(match step.name {
+                    LIFTING => Alarm::part_stuck(),
+                    name => Alarm::step_too_long(name, waited),
                 });
             }
         }
         late
     }
 
+    /// Since when a step lasts; one that is new begins now.
+    fn began(&mut self, step: Step, now: RigTime) -> RigTime {
+        match self.since.iter_mut().find(|(who, ..)| *who == step.who) {
+            Some((_, name, began)) => {
+                if *name != step.name {
+                    (*name, *began) = (step.name, now);
+                }
+                *began
+            }
+            None => {
+                self.since.push((step.who, step.name, now));
+                now
+            }
+        }
+    }
+
     /// A bin is full: what waits over it is not late.
     pub fn wait_for_bin(&mut self) {
-        self.since[2] = None;
+        self.since.retain(|(who, ..)| *who != Who::Sort);
     }
+}
+
+/// The step whose end is a part that stays behind.
+const LIFTING: &str = "lifting";
+
+fn steps(feeder: &Feeder) -> impl Iterator<Item = Step> {
+    let step = |who, (name, limit)| Step { who, name, limit };
+    let nests = feeder.nests().iter();
+    std::iter::once(step(Who::Feed, of_feed(feeder.feed())))
+        .chain(nests.map(move |nest| step(Who::Nest(nest.id), of_nest(&nest.state))))
+        .chain([step(Who::Sort, of_sort(feeder.sort()))])
 }
 
 /// The sequence turns in these states.
@@ -100,17 +138,17 @@ fn of_feed(feed: Feed) -> (&'static str, Option<Span>) {
     }
 }
 
-fn of_clamp(clamp: &Clamp) -> (&'static str, Option<Span>) {
+fn of_nest(nest: &NestState) -> (&'static str, Option<Span>) {
     let stroke = Some(Span::ms(6000));
-    match clamp {
-        Clamp::Empty => ("nest empty", None),
-        Clamp::Clamping => ("clamping", stroke),
-        Clamp::Probing => ("probing", stroke),
-        Clamp::Testing(_) => ("testing", Some(Span::ms(60_000))),
-        Clamp::Judged => ("waiting for the gripper", Some(Span::ms(15_000))),
-        Clamp::Gripping => ("gripping", stroke),
-        Clamp::Unclamping => ("unclamping", stroke),
-        Clamp::Lifting => ("lifting", Some(Span::ms(2500))),
+    match nest {
+        NestState::Empty => ("nest empty", None),
+        NestState::Clamping => ("clamping", stroke),
+        NestState::Probing => ("probing", stroke),
+        NestState::Testing(_) => ("testing", Some(Span::ms(60_000))),
+        NestState::Judged => ("waiting for the gripper", Some(Span::ms(15_000))),
+        NestState::Gripping => ("gripping", stroke),
+        NestState::Unclamping => ("unclamping", stroke),
+        NestState::Lifting => (LIFTING, Some(Span::ms(2500))),
     }
 }
 

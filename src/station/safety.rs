@@ -3,15 +3,16 @@
 use super::Station;
 use super::annunciator::Standing;
 use super::catalogue::{self, Goes, Stops};
-use super::clamp::Clamp;
-use super::feed::Feed;
-use super::mechanism::SENSOR_AGE;
-use super::moves::Move;
 use super::packml::{self, Command, On, State};
-use super::sort::{self, Sort};
 use super::trouble::Alarm;
-use super::wants::{Ending, Inputs, Interrupted, Judged, Wants};
-use crate::dut::verdict::{Bin, Verdict};
+use super::wants::{Ending, Inputs, Wants};
+use crate::dut::verdict::Verdict;
+use crate::handling::ledger::Part;
+use crate::handling::mechanism::SENSOR_AGE;
+use crate::handling::trouble::Trouble;
+use crate::handling::wants::{Interrupted, Judged};
+use crate::handling::{Move, Place};
+use crate::rig::bin::Bin;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};
@@ -33,47 +34,44 @@ impl Station {
         stuck: Vec<Alarm>,
         wants: &mut Wants,
     ) {
-        let mut found = self.mechanism.update(now, inputs.image);
-        wants.motions.extend(found.motions);
-        wants.suspicious = self.mechanism.is_suspicious(now);
-        self.still_in_nest(now, inputs.image, &mut found.alarms);
+        let mut found = self.line.mechanism.update(now, inputs.image);
+        wants.rig.motions.extend(found.motions);
+        wants.rig.suspicious = self.line.mechanism.is_suspicious(now);
+        self.still_in_nest(now, inputs.image, &mut found.trouble);
         let mut there = self.safety(now, inputs.image);
         there.extend(stuck);
         there.extend(self.full_bins(now, inputs.image));
         there.extend(self.still_starved(now, inputs.image));
-        self.annunciator.sensed(&there);
-        if !packml::is_aborted(self.state) {
-            wants.trouble.extend(found.alarms);
+        self.alarms.annunciator.sensed(&there);
+        let trouble = &mut wants.notes.trouble;
+        if !packml::is_aborted(self.machine.state) {
+            trouble.extend(found.trouble.into_iter().map(Alarm::from));
         }
-        wants.trouble.extend(inputs.bus.clone());
-        wants.trouble.extend(there);
-        wants.trouble.extend(self.worn());
-        let table = self.table.clone();
-        sort::confirm(&mut self.turn(now, inputs, wants), &table);
-        if !self.dark.is_empty() {
-            self.patience.wait_for_bin();
+        trouble.extend(inputs.bus.clone());
+        trouble.extend(there);
+        trouble.extend(self.worn());
+        let golden = &mut self.lot.golden_left;
+        let (feeder, _, mut turn) = self.line.at(now, inputs, wants, golden, false);
+        feeder.confirm(&mut turn);
+        wants.notes.take_over();
+        if !self.line.dark.is_empty() {
+            self.alarms.patience.wait_for_bin();
         }
-        let patience = self.patience.look(
-            now,
-            self.state,
-            self.mode,
-            &self.feed,
-            &self.clamp,
-            self.sort,
-        );
-        wants.trouble.extend(patience);
+        let feeder = &self.line.feeder;
+        let late = self
+            .alarms
+            .patience
+            .look(now, self.machine.state, self.machine.mode, feeder);
+        wants.notes.trouble.extend(late);
     }
 
     /// Fingers that lost their part before it was handed over have left it in the nest.
-    fn still_in_nest(&self, now: RigTime, image: &Image, alarms: &mut [Alarm]) {
-        let there = self.ledger.gripper.is_none()
+    fn still_in_nest(&self, now: RigTime, image: &Image, found: &mut [Trouble]) {
+        let there = !self.line.ledger.holds(Place::Gripper)
             && image.input(DigitalIn::NestPresent, now, SENSOR_AGE) == Some(true);
-        let dropped = Alarm::part_dropped();
-        for alarm in alarms
-            .iter_mut()
-            .filter(|alarm| there && **alarm == dropped)
-        {
-            *alarm = Alarm::part_stuck();
+        let dropped = found.iter_mut().filter(|one| **one == Trouble::Dropped);
+        for one in dropped.filter(|_| there) {
+            *one = Trouble::Stuck;
         }
     }
 
@@ -99,7 +97,7 @@ impl Station {
                 "气压不足。请检查气源。",
             ),
         ];
-        let late = now.since(self.began.unwrap_or(now)) > FIRST_SCAN;
+        let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
         let (mut alarms, mut unread) = (Vec::new(), Vec::new());
         for (point, code, en, zh) in inputs {
             let seen = match point {
@@ -107,7 +105,7 @@ impl Station {
                 other => image.input(other, now, SENSOR_AGE),
             };
             if point == DigitalIn::EmergencyStopOk && seen == Some(false) {
-                self.chain_open = Some(now);
+                self.alarms.chain_open = Some(now);
             }
             match seen {
                 Some(true) => {}
@@ -126,43 +124,42 @@ impl Station {
                 .iter()
                 .all(|point| image.input(*point, now, SENSOR_AGE).is_some());
         if let Some(point) = unread.first()
-            && (late || self.sensed)
+            && (late || self.alarms.sensed)
         {
             alarms.push(Alarm::stale(*point));
         }
-        self.sensed |= all;
+        self.alarms.sensed |= all;
         alarms
     }
 
     /// The emergency stop vents the air, and after its release the pressure needs a while: no trouble of its own, as
     /// long as nothing is to move.
     fn is_vented(&self, now: RigTime) -> bool {
-        let rests = packml::is_aborted(self.state)
-            || matches!(self.state, State::Stopped | State::Complete);
-        let since = self.chain_open.map(|at| now.since(at));
+        let rests = packml::is_aborted(self.machine.state)
+            || matches!(self.machine.state, State::Stopped | State::Complete);
+        let since = self.alarms.chain_open.map(|at| now.since(at));
         since == Some(Span(0)) || rests && since.is_some_and(|since| since <= PRESSURE_RETURNS)
     }
 
     fn full_bins(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let mut alarms = Vec::new();
-        for bin in Bin::ALL {
-            let beam = self.table.beam(*bin);
+        for (bin, beam) in self.line.feeder.beams() {
             let dark = image.input(beam, now, SENSOR_AGE) == Some(true);
-            let since = self.dark.iter().find(|(known, _)| *known == beam);
+            let since = self.line.dark.iter().find(|(known, _)| *known == beam);
             match (dark, since.map(|(_, since)| *since)) {
-                (true, None) => self.dark.push((beam, now)),
+                (true, None) => self.line.dark.push((beam, now)),
                 (true, Some(since)) if now.since(since) >= FULL => {
                     alarms.push(Alarm::bin_full(bin.name()));
                 }
                 (true, Some(_)) | (false, None) => {}
-                (false, Some(_)) => self.dark.retain(|(known, _)| *known != beam),
+                (false, Some(_)) => self.line.dark.retain(|(known, _)| *known != beam),
             }
         }
         alarms
     }
 
     fn still_starved(&self, now: RigTime, image: &Image) -> Option<Alarm> {
-        let standing = self.annunciator.standing().iter();
+        let standing = self.alarms.annunciator.standing().iter();
         let starved = standing
             .filter(|one| one.is_active())
             .any(|one| one.alarm.code == "magazine_empty");
@@ -174,22 +171,25 @@ impl Station {
 
     /// A motion that the guard refused: in homing another one goes first, else it is an alarm.
     pub fn refused(&mut self, movement: Move, refusal: &str, now: RigTime, wants: &mut Wants) {
-        if self.state == State::Resetting && self.recovery.refused(movement) {
+        if self.machine.state == State::Resetting && self.line.recovery.refused(movement) {
             return;
         }
-        wants.trouble.push(Alarm::refused(movement, refusal));
+        wants.notes.trouble.push(Alarm::refused(movement, refusal));
         self.raise_all(now, wants);
-        let standing = self.annunciator.standing();
-        let stack = self.lamps.show(now, self.state, standing, wants.safe);
-        wants.outputs.extend(stack);
-        wants.alarms_changed |= self.annunciator.take_changed();
+        let standing = self.alarms.annunciator.standing();
+        let stack = self
+            .alarms
+            .lamps
+            .show(now, self.machine.state, standing, wants.rig.safe);
+        wants.rig.outputs.extend(stack);
+        wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
     }
 
     /// Alarms of this turn into the list; what is left in the wants is what came anew.
     pub(super) fn raise_all(&mut self, now: RigTime, wants: &mut Wants) {
-        for alarm in std::mem::take(&mut wants.trouble) {
-            if self.annunciator.raise(&alarm, now) {
-                wants.alarms.push(alarm.clone());
+        for alarm in std::mem::take(&mut wants.notes.trouble) {
+            if self.alarms.annunciator.raise(&alarm, now) {
+                wants.record.alarms.push(alarm.clone());
             }
             self.react(&alarm, now, wants);
         }
@@ -199,12 +199,14 @@ impl Station {
         let Some(entry) = catalogue::entry(&alarm.code) else {
             return self.abort(&alarm.code, now, wants);
         };
-        if catalogue::NEEDS_CALIBRATION.contains(&entry.code) && !packml::is_aborted(self.state) {
+        if catalogue::NEEDS_CALIBRATION.contains(&entry.code)
+            && !packml::is_aborted(self.machine.state)
+        {
             self.recalibrate();
         }
         match entry.stops {
             Stops::Abort => {
-                let parked = matches!(self.state, State::Stopped | State::Complete);
+                let parked = matches!(self.machine.state, State::Stopped | State::Complete);
                 if !(parked && entry.goes == Goes::BySensor) {
                     self.abort(&alarm.code, now, wants);
                 }
@@ -212,8 +214,8 @@ impl Station {
             Stops::Hold if !self.plan.stays => self.abort(&alarm.code, now, wants),
             Stops::Hold => self.rest(Command::Hold, now, wants),
             Stops::Suspend => {
-                if self.state == State::Execute {
-                    self.suspended_by_order = false;
+                if self.machine.state == State::Execute {
+                    self.machine.suspended_by_order = false;
                 }
                 self.rest(Command::Suspend, now, wants);
             }
@@ -222,14 +224,14 @@ impl Station {
     }
 
     fn rest(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
-        if packml::next(self.state, On::Command(command)).is_some() {
+        if packml::next(self.machine.state, On::Command(command)).is_some() {
             self.enter(command, now, wants);
         }
     }
 
     /// Outputs safe at once, parts inside interrupted. Without a person there the run is over.
     pub(super) fn abort(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
-        if packml::is_aborted(self.state) || self.ended {
+        if packml::is_aborted(self.machine.state) || self.machine.ended {
             return;
         }
         self.make_safe(why, now, wants);
@@ -241,33 +243,18 @@ impl Station {
 
     /// Nothing is known of any position from here on.
     pub(super) fn make_safe(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
-        wants.motions.clear();
-        wants.jog = None;
-        wants.job = None;
-        wants.safe = true;
+        wants.rig.motions.clear();
+        wants.rig.jog = None;
+        wants.rig.job = None;
+        wants.rig.safe = true;
         self.interrupt(why, now, wants);
-        self.releasing |= matches!(self.feed, Feed::Releasing { .. } | Feed::Closing { .. });
-        self.feed = self.feed_at_rest();
-        self.clamp = Clamp::Empty;
-        self.sort = Sort::Returning;
-        self.stepwise.clear();
-        self.postponed.clear();
-        self.mechanism.forget();
-        self.homed = false;
-    }
-
-    pub(super) fn feed_at_rest(&self) -> Feed {
-        if self.ledger.pocket {
-            Feed::Ready
-        } else {
-            Feed::Empty
-        }
+        self.line.cut_off();
     }
 
     /// Parts in nest and gripper go to retest; one that was judged gets that into its row.
     fn interrupt(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
-        let ledger = &mut self.ledger;
-        for part in ledger.nest.iter_mut().chain(&mut ledger.gripper) {
+        let parts = &mut wants.record.parts;
+        for part in self.line.ledger.held_mut() {
             if part.interrupted.is_some() && part.bin.is_some() {
                 continue;
             }
@@ -276,23 +263,29 @@ impl Station {
                 .get_or_insert_with(|| why.to_owned())
                 .clone();
             let ordinal = part.ordinal;
-            if part.bin.replace(Bin::Retest).is_some() {
-                wants.interrupted.push(Interrupted { ordinal, why });
+            if part.bin.replace(Bin::RETEST).is_some() {
+                parts.interrupted.push(Interrupted { ordinal, why });
                 continue;
             }
             let mut judged = Judged::interrupted(part.clone(), &why, now);
-            if let Clamp::Testing(test) = &self.clamp {
+            if let Some(test) = self.line.feeder.test() {
                 judged.record = test.record().clone();
                 judged.judgements = test.judgements();
             }
-            debug_assert!(matches!(judged.verdict, Verdict::Void(_)));
-            wants.judged.push(judged);
+            assert!(
+                matches!(judged.verdict, Verdict::Void(_)),
+                "judged after all"
+            );
+            parts.judged.push(judged);
         }
+        let to_retest = |part: &mut Part| part.bin == Some(Bin::RETEST);
+        let all = self.line.ledger.held_mut().all(to_retest);
+        assert!(all, "an interrupted part goes elsewhere");
     }
 
     /// The alarm whose sensor still shows its cause, for a clear or reset that comes too early.
     pub(super) fn cause(&self) -> Option<&Standing> {
-        self.annunciator.still_sensed()
+        self.alarms.annunciator.still_sensed()
     }
 }
 

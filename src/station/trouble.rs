@@ -4,7 +4,8 @@
 mod parts;
 
 use super::chinese;
-use super::moves::Move;
+use crate::handling::Move;
+use crate::handling::trouble::Trouble;
 use crate::rig::point::DigitalIn;
 use crate::units::Span;
 use serde::Serialize;
@@ -18,6 +19,30 @@ pub struct Alarm {
     pub text_en: String,
     /// The same, Chinese.
     pub text_zh: String,
+}
+
+impl From<Trouble> for Alarm {
+    fn from(trouble: Trouble) -> Self {
+        match trouble {
+            Trouble::NotReached(movement, limit) => Self::not_reached(movement, limit),
+            Trouble::Retried(movement, limit) => Self::retried(movement, limit),
+            Trouble::LeftEnd(movement) => Self::left_end(movement),
+            Trouble::BothEnds(movement) => Self::both_ends(movement),
+            Trouble::AxisDrive => Self::axis_drive(),
+            Trouble::NoPart => Self::no_part(),
+            Trouble::MagazineEmpty => Self::magazine_empty(),
+            Trouble::NestEmpty => Self::nest_empty(),
+            Trouble::Beam(bin, seen) => Self::beam(bin.name(), seen),
+            Trouble::Found(place) => Self::part_found(place.name()),
+            Trouble::Lost(place) => Self::part_lost(place.name()),
+            Trouble::Gone(place) => Self::part_gone(place.name()),
+            Trouble::FallUnseen(bin) => Self::fall_unseen(bin.name()),
+            Trouble::Dropped => Self::part_dropped(),
+            Trouble::Sticks => Self::part_sticks(),
+            Trouble::Stuck => Self::part_stuck(),
+            Trouble::GoldenRepeated(serial, why) => Self::golden_repeated(&serial, &why),
+        }
+    }
 }
 
 impl Alarm {

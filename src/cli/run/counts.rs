@@ -8,7 +8,7 @@ pub struct Counts {
     /// Judged parts of the lot by verdict.
     pub verdicts: BTreeMap<&'static str, u64>,
     /// Confirmed parts of the lot by bin.
-    pub bins: BTreeMap<&'static str, u64>,
+    pub bins: BTreeMap<String, u64>,
     /// Alarms of the run.
     pub alarms: u64,
 }

@@ -1,12 +1,12 @@
 //! Rows of a run beside its parts: the state of its lot, alarms and what becomes of them, golden checks, wear.
 
+use crate::handling::inside::Inside;
+use crate::handling::wear::Uses;
 use crate::history::{
     AlarmChange, AlarmChangeRecord, AlarmRecord, GoldenCheckRecord, InsideRecord, LotState,
     LotStateRecord, OrderRecord, Row, WearRecord,
 };
 use crate::station::annunciator::Standing;
-use crate::station::gates::Uses;
-use crate::station::inside::Inside;
 use crate::station::orders::shelf_minutes;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Checked, Ending};

@@ -3,9 +3,9 @@
 use super::Controls;
 use super::recorder::Setup;
 use crate::dut::Calibration;
+use crate::handling::inside::Inside;
+use crate::handling::wear::Uses;
 use crate::history::{AlarmLeft, Store};
-use crate::station::gates::Uses;
-use crate::station::inside::Inside;
 use anyhow::Context;
 
 /// What a run takes over.

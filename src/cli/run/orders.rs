@@ -5,7 +5,7 @@ use crate::bus::Pace;
 #[cfg(feature = "sim")]
 use crate::cli::story::Play;
 use crate::cycle::Event;
-use crate::hmi::Asked;
+use crate::view::OrderRequest;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use tokio::sync::mpsc;
@@ -17,7 +17,7 @@ pub enum Orders {
     /// Nobody: the station resets and starts by itself.
     Nobody,
     /// Whoever is at a screen.
-    Screens(mpsc::Receiver<Asked>),
+    Screens(mpsc::Receiver<OrderRequest>),
     /// A script, which also meddles with the simulated rig and tells what it saw.
     #[cfg(feature = "sim")]
     Script(Play),
@@ -26,13 +26,13 @@ pub enum Orders {
 /// Where orders come in, and who looks on.
 pub struct Desk {
     /// Orders for the cycle.
-    pub orders: mpsc::Receiver<Asked>,
+    pub orders: mpsc::Receiver<OrderRequest>,
     /// Hears every event of the run.
     pub onlooker: Option<mpsc::UnboundedSender<Event>>,
     /// A script under way; it gives the exit status.
     pub playing: Option<JoinHandle<i32>>,
     /// Kept, so that the cycle does not take a silent desk for a closed one.
-    _nobody: Option<mpsc::Sender<Asked>>,
+    _nobody: Option<mpsc::Sender<OrderRequest>>,
 }
 
 impl Desk {

@@ -17,14 +17,15 @@ use crate::config::Plant;
 use crate::cycle::{Event, Profile};
 use crate::dut::Recipe;
 use crate::dut::{Bin, Calibration, Reason, Verdict};
+use crate::handling::inside::Inside;
+use crate::handling::ledger::Kind;
+use crate::handling::wants::{Interrupted, Judged, Landed};
+use crate::handling::wear::Uses;
 use crate::history::{
     CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
     snapshot_hash,
 };
-use crate::station::gates::Uses;
-use crate::station::inside::Inside;
-use crate::station::ledger::Kind;
-use crate::station::wants::{Ending, Interrupted, Judged, Landed};
+use crate::station::wants::Ending;
 use crate::units::RigTime;
 use crate::view::View;
 use anyhow::Context;
@@ -251,7 +252,7 @@ impl<'a> Recorder<'a> {
         let mut reasons = part.judged.verdict.reasons().to_vec();
         reasons.push(reason.clone());
         let before = std::mem::replace(&mut part.judged.verdict, Verdict::Void(reasons));
-        part.judged.part.bin = Some(Bin::Retest);
+        part.judged.part.bin = Some(Bin::RETEST);
         if kind == "lot" {
             if let Some(count) = self.counts.verdicts.get_mut(before.name()) {
                 *count -= 1;
@@ -327,7 +328,8 @@ impl<'a> Recorder<'a> {
             return;
         }
         self.last_landed = Some(landed.at);
-        *self.counts.bins.entry(landed.bin.name()).or_insert(0) += 1;
+        let bin = landed.bin.to_string();
+        *self.counts.bins.entry(bin).or_insert(0) += 1;
         if self.controls.between_lots.is_none() {
             let show = |view: &mut View| screen::landed(view, &self.counts);
             self.controls.view.send_modify(show);

@@ -2,8 +2,8 @@
 
 use crate::dut::Characteristic;
 use crate::gauge::Reading;
+use crate::handling::wants::Judged;
 use crate::rig::sample::Origin;
-use crate::station::wants::Judged;
 
 /// Result: the mean of its repetitions.
 pub fn result(judged: &Judged, of: Characteristic) -> Option<Reading> {

@@ -4,10 +4,10 @@ use super::recorder::Setup;
 use super::results::{attempts, evidence, result, usable};
 use crate::dut::{Characteristic, Judgement, Verdict};
 use crate::gauge::{Limit, Reading};
+use crate::handling::ledger::Kind;
+use crate::handling::wants::Judged;
 use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
 use crate::instrument::trace::Trace;
-use crate::station::ledger::Kind;
-use crate::station::wants::Judged;
 use crate::units::RigTime;
 use serde_json::{Map, Value, json};
 

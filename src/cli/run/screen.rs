@@ -4,7 +4,7 @@
 use super::counts::Counts;
 use super::recorder::Setup;
 use super::rows;
-use crate::station::wants::Judged;
+use crate::handling::wants::Judged;
 use crate::view::{LastPart, LineView, RecentPart, View};
 use std::collections::BTreeMap;
 
@@ -38,7 +38,7 @@ pub fn between(view: &mut View, setup: &Setup) {
 
 /// A beam has confirmed a part of the lot.
 pub fn landed(view: &mut View, counts: &Counts) {
-    view.bins = named(&counts.bins);
+    view.bins.clone_from(&counts.bins);
 }
 
 /// The part judged last, and the counts with it.
@@ -59,7 +59,10 @@ pub fn judged(
     let last = LastPart {
         seq: rows::number(&judged.part.kind, 0).0,
         verdict: judged.verdict.name().into(),
-        bin: judged.part.bin.map_or("", |bin| bin.name()).into(),
+        bin: judged
+            .part
+            .bin
+            .map_or_else(String::new, |bin| bin.to_string()),
         reasons: judged.verdict.texts(),
         reason_codes: judged.verdict.reasons().to_vec(),
         values: numbers("values"),

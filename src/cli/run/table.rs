@@ -3,8 +3,8 @@
 use super::counts::Counts;
 use super::results::usable;
 use crate::dut::{Characteristic, Kind};
+use crate::handling::wants::Judged;
 use crate::quality::Spread;
-use crate::station::wants::Judged;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -15,8 +15,7 @@ use crate::cli::rig::RigArgs;
 use crate::cli::run::{RunArgs, gate};
 use crate::config::Plant;
 use crate::history::{Archive, Decision, Identity, Store};
-use crate::hmi::Asked;
-use crate::view::{By, NotTaken, Order};
+use crate::view::{By, NotTaken, Order, OrderRequest};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::{mpsc, oneshot};
@@ -33,7 +32,7 @@ pub enum Next {
 /// The run under way.
 #[derive(Debug, Default)]
 struct Desk {
-    orders: Option<mpsc::Sender<Asked>>,
+    orders: Option<mpsc::Sender<OrderRequest>>,
     lot: Option<String>,
     next: Option<Next>,
 }
@@ -65,7 +64,7 @@ impl Office {
     }
 
     /// From now on orders go to this run.
-    pub fn sits_at(&self, orders: mpsc::Sender<Asked>, lot: Option<&str>) {
+    pub fn sits_at(&self, orders: mpsc::Sender<OrderRequest>, lot: Option<&str>) {
         *self.desk() = Desk {
             orders: Some(orders),
             lot: lot.map(str::to_owned),
@@ -79,7 +78,7 @@ impl Office {
     }
 
     /// Until nobody can order anything any more.
-    pub async fn work(self, mut asked: mpsc::Receiver<Asked>) {
+    pub async fn work(self, mut asked: mpsc::Receiver<OrderRequest>) {
         while let Some(asked) = asked.recv().await {
             if asked.denied.is_some() || !is_about_lots(&asked.order) {
                 self.pass(asked);
@@ -93,7 +92,7 @@ impl Office {
         }
     }
 
-    async fn attend(&self, asked: Asked) {
+    async fn attend(&self, asked: OrderRequest) {
         let (order, by) = (asked.order.clone(), asked.by.clone());
         let decision = Decision::ordered(&order.order);
         let ours = order.lot.is_some() && self.desk().lot == order.lot;
@@ -153,7 +152,7 @@ impl Office {
     }
 
     /// What no run has to do with goes into the history.
-    async fn write(&self, asked: Asked) {
+    async fn write(&self, asked: OrderRequest) {
         let (db, simulated) = (self.0.db.clone(), self.0.rig.sim);
         let (order, by) = (asked.order.clone(), asked.by.clone());
         let write = move || match Decision::ordered(&order.order) {
@@ -167,26 +166,18 @@ impl Office {
     }
 
     /// Refused, and so told to the audit.
-    fn refuse(&self, asked: Asked, why: NotTaken) {
-        let (answer, _nobody_waits) = oneshot::channel();
-        self.pass(Asked {
-            order: asked.order.clone(),
-            by: asked.by.clone(),
-            denied: Some(why.en.clone()),
-            answer,
-        });
+    fn refuse(&self, asked: OrderRequest, why: NotTaken) {
+        let (order, by) = (asked.order.clone(), asked.by.clone());
+        self.pass(OrderRequest::denied(order, by, why.en.clone()));
         asked.say(Err(why));
     }
 
     /// To the run under way, whose answer goes back; whether it was taken.
-    async fn pass_on(&self, asked: Asked) -> bool {
+    async fn pass_on(&self, asked: OrderRequest) -> bool {
         let (answer, answered) = oneshot::channel();
-        self.pass(Asked {
-            order: asked.order.clone(),
-            by: asked.by.clone(),
-            denied: None,
-            answer,
-        });
+        let (order, by) = (asked.order.clone(), asked.by.clone());
+        let way_back = move |it| drop(answer.send(it));
+        self.pass(OrderRequest::new(order, by, way_back));
         let answer = answered.await.unwrap_or_else(|_| Err(not_now()));
         let taken = answer.is_ok();
         asked.say(answer);
@@ -194,7 +185,7 @@ impl Office {
     }
 
     /// To the run under way.
-    fn pass(&self, asked: Asked) {
+    fn pass(&self, asked: OrderRequest) {
         let orders = self.desk().orders.clone();
         let given = match orders {
             Some(orders) => orders.try_send(asked).map_err(|it| it.into_inner()),

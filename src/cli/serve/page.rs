@@ -2,7 +2,7 @@
 
 use super::Controls;
 use crate::hmi::{self, access};
-use crate::view::Mimic;
+use crate::view::{Mimic, OrderRequest};
 use anyhow::Context;
 use std::path::Path;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ impl Page {
         listener: std::net::TcpListener,
         config: &Path,
         controls: &Controls,
-        orders: mpsc::Sender<hmi::Asked>,
+        orders: mpsc::Sender<OrderRequest>,
         db: &Path,
         mimic: Mimic,
     ) -> anyhow::Result<Self> {

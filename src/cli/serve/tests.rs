@@ -3,27 +3,22 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::hmi::Asked;
-use crate::view::{By, Order, View};
+use crate::view::{By, Order, OrderRequest, View};
 use tokio::sync::{oneshot, watch};
 
 async fn until(view: &mut watch::Receiver<View>, test: impl Fn(&View) -> bool) {
     view.wait_for(|view| test(view)).await.unwrap();
 }
 
-async fn reset(orders: &mpsc::Sender<Asked>) {
+async fn reset(orders: &mpsc::Sender<OrderRequest>) {
     let (answer, answered) = oneshot::channel();
     let order = Order {
         order: "reset".into(),
         ..Order::default()
     };
-    let asked = Asked {
-        order,
-        by: By::default(),
-        denied: None,
-        answer,
-    };
-    orders.send(asked).await.unwrap();
+    let way_back = move |it| drop(answer.send(it));
+    let request = OrderRequest::new(order, By::default(), way_back);
+    orders.send(request).await.unwrap();
     assert_eq!(answered.await.unwrap(), Ok(()));
 }
 

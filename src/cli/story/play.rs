@@ -5,11 +5,10 @@ use super::told::Told;
 use crate::bus::Pace;
 use crate::cli::DONE;
 use crate::cycle::Event;
-use crate::hmi::Asked;
-use crate::station::ledger::Kind;
+use crate::handling::ledger::Kind;
 use crate::station::packml::State;
 use crate::units::{RigTime, Span};
-use crate::view::{By, Order};
+use crate::view::{By, Order, OrderRequest};
 use rigsim::SharedRig;
 use rigsim::journal::Entry;
 use serde_json::json;
@@ -56,7 +55,7 @@ impl Play {
     pub async fn run(
         self,
         mut events: mpsc::UnboundedReceiver<Event>,
-        orders: mpsc::Sender<Asked>,
+        orders: mpsc::Sender<OrderRequest>,
         rig: SharedRig,
         pace: Pace,
         stop: Arc<AtomicBool>,
@@ -125,7 +124,7 @@ fn kept(file: File, entries: &Receiver<Entry>) -> std::io::Result<()> {
 
 async fn play(
     deed: &Deed,
-    orders: &mpsc::Sender<Asked>,
+    orders: &mpsc::Sender<OrderRequest>,
     rig: &SharedRig,
     pace: Pace,
     told: &mut Told,
@@ -143,21 +142,18 @@ async fn play(
 }
 
 /// The station's answer; the reason why not.
-async fn ask(order: &Order, orders: &mpsc::Sender<Asked>) -> Result<(), String> {
+async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), String> {
     let (answer, answered) = oneshot::channel();
     let order = order.clone();
     let gone = |_| "the run has ended".to_owned();
+    let by = By {
+        who: "script".to_owned(),
+        role: "engineer".to_owned(),
+        origin: "story".to_owned(),
+    };
+    let way_back = move |it| drop(answer.send(it));
     orders
-        .send(Asked {
-            order,
-            by: By {
-                who: "script".to_owned(),
-                role: "engineer".to_owned(),
-                origin: "story".to_owned(),
-            },
-            denied: None,
-            answer,
-        })
+        .send(OrderRequest::new(order, by, way_back))
         .await
         .map_err(|_| "the run has ended".to_owned())?;
     answered.await.map_err(gone)?.map_err(|why| why.en)

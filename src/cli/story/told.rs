@@ -5,11 +5,12 @@
 
 use super::script::{Awaited, Line, Script};
 use crate::cycle::{Event, PANEL};
+use crate::handling::ledger::{Kind, Part};
+use crate::handling::wants::Landed;
+use crate::rig::bin::Bin;
 use crate::station::annunciator::Standing;
 use crate::station::catalogue;
-use crate::station::ledger::{Kind, Part};
 use crate::station::trouble::Alarm;
-use crate::station::wants::Landed;
 use crate::units::RigTime;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,7 +26,7 @@ pub struct Told {
     explained: BTreeSet<String>,
     /// Alarms whose cause is there.
     active: BTreeSet<String>,
-    bins: BTreeMap<&'static str, u64>,
+    bins: BTreeMap<Bin, u64>,
 }
 
 impl Told {
@@ -163,7 +164,7 @@ impl Told {
     }
 
     fn landed(&mut self, landed: &Landed) {
-        let (part, bin) = (&landed.part, landed.bin.name());
+        let (part, bin) = (&landed.part, landed.bin);
         if let (Kind::Lot(_), Some((name, verdict))) = (&part.kind, self.parts.get(&part.ordinal)) {
             let text = format!("{name:<9} {verdict}, in bin {bin}");
             *self.bins.entry(bin).or_insert(0) += 1;

@@ -6,7 +6,6 @@ mod points;
 
 use crate::dut::FIXTURES;
 use crate::form::{Form, Key, Points, key, optional};
-use crate::rig::axis::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut, Fixture};
 use measuring::{ACCURACY, CALIBRATION, REFERENCE};
 use modules::{BUS, LINE, MODULE, SAFETY};
@@ -143,7 +142,7 @@ pub const FILE: &[Key] = &[
     ),
     key(
         "bin",
-        Form::Each(Bin::NAMES, &Form::Table(BIN)),
+        Form::NamedWith(&["pass", "retest"], &Form::Table(BIN)),
         "rig, station",
         "bins by name",
     ),

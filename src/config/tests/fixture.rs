@@ -3,7 +3,6 @@
 use super::RIG;
 use crate::config::{Plant, load_recipe, recipe_names};
 use crate::dut::FIXTURES;
-use crate::rig::axis::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use std::path::Path;
 use toml::{Table, Value};
@@ -99,7 +98,7 @@ fn the_machine_resolves_without_the_coil_board() {
         let handle = wiring.digital_output(point.name()).unwrap();
         assert_eq!(handle.of_machine(), Some(*point));
     }
-    let beams = Bin::ALL.iter().map(|bin| wiring.axis.beam(*bin));
+    let beams = wiring.axis.bins().map(|bin| wiring.axis.beam(bin));
     assert!(
         beams
             .map(|beam| wiring.input_name(beam))
@@ -107,7 +106,7 @@ fn the_machine_resolves_without_the_coil_board() {
     );
     assert_eq!(
         wiring.digital_inputs().count(),
-        DigitalIn::COUNT + Bin::ALL.len()
+        DigitalIn::COUNT + wiring.axis.bins().count()
     );
     assert_eq!(
         wiring.emergency_stop_line(),

@@ -50,6 +50,22 @@ fn the_whole_plant_is_loaded_from_its_folder() {
 }
 
 #[test]
+fn a_recipe_is_refused_without_its_bins() {
+    let copy = Copy::with("rig.toml", |text| {
+        text.replace("\ncoil    =", "\ngrade_2 =")
+    });
+    let plant = Plant::load(copy.0.path()).unwrap();
+    let recipe = load_recipe(copy.0.path(), "jzc-22f-012").unwrap();
+    let message = plant.admit(&recipe).unwrap_err().to_string();
+    assert!(
+        message.ends_with(
+            "jzc-22f-012.toml:3: kind: found \"em_relay\", expected a rig with the bins of this kind: rig.toml has no bin.coil"
+        ),
+        "{message}"
+    );
+}
+
+#[test]
 fn an_unknown_recipe_is_refused_with_the_known_ones() {
     let copy = Copy::with("", str::to_owned);
     assert_eq!(recipe_names(copy.0.path()), ["jzc-22f-012"]);

@@ -3,6 +3,7 @@
 //! Checked before anything moves. A strategy needs outputs that step or slew, a counter that counts and
 //! channels that are converted; a limit needs an uncertainty that leaves something of it.
 
+use super::bins;
 use super::coil::relative_per_kelvin;
 use super::recipe::RelayRecipe;
 use super::settings::AccuracySettings;
@@ -35,6 +36,10 @@ pub fn check(
     wiring: &Wiring,
     accuracy: &AccuracySettings,
 ) -> Result<(), Fault> {
+    if let Some(missing) = bins::BY_RANK.iter().find(|bin| !wiring.axis.has(**bin)) {
+        let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{missing}");
+        return Err(Fault::new("kind", "\"em_relay\"", expected));
+    }
     let points = Points::resolve(wiring).map_err(|missing| {
         let expected = "every point that its test needs";
         Fault::new("test", missing, expected)

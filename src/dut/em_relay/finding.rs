@@ -1,7 +1,7 @@
 //! What a test of a relay finds beside its figures: the part is bad, or could not be judged.
 
-use super::Parameter;
 use super::threshold::Direction;
+use super::{Parameter, bins};
 use crate::dut::reason::{Code, Reason};
 use crate::dut::verdict::Bin;
 use crate::dut::words::Words;
@@ -178,49 +178,49 @@ impl Finding {
         use Contact::{Nc, No};
         use Direction::{Falling, Rising};
         match self {
-            Self::CoilOpen => Entry::fail("coil_open", "coil open", Bin::Coil).zh("线圈开路"),
+            Self::CoilOpen => Entry::fail("coil_open", "coil open", bins::COIL).zh("线圈开路"),
             Self::CoilCurrentOverRange => Entry::fail(
                 "coil_current_over_range",
                 "coil_resistance_ohm low: current over range",
-                Bin::Coil,
+                bins::COIL,
             )
             .proves(Parameter::CoilResistance, Side::Low)
             .said("too low: current over range", "过低：电流超量程"),
             Self::NoClosedAtRest => Entry::fail(
                 "no_closed_at_rest",
                 "contact stuck: NO closed at rest",
-                Bin::Contact,
+                bins::CONTACT,
             )
             .zh("触点粘连：静止时常开触点闭合"),
             Self::NcOpenAtRest => Entry::fail(
                 "nc_open_at_rest",
                 "contact stuck: NC open at rest",
-                Bin::Contact,
+                bins::CONTACT,
             )
             .zh("触点故障：静止时常闭触点断开"),
             Self::NcDoesNotOpen => Entry::fail(
                 "nc_does_not_open",
                 "contact stuck: NC does not open at nominal voltage",
-                Bin::Contact,
+                bins::CONTACT,
             )
             .zh("触点粘连：额定电压下常闭触点不断开"),
             Self::NoDoesNotMake => Entry::fail(
                 "no_does_not_make",
                 "contact stuck: NO does not make at nominal voltage",
-                Bin::Contact,
+                bins::CONTACT,
             )
             .zh("触点故障：额定电压下常开触点不闭合"),
             Self::OperatesTooLate => Entry::fail(
                 "operates_too_late",
                 "operate_time_ms high: NO makes too late",
-                Bin::Time,
+                bins::TIME,
             )
             .proves(Parameter::OperateTime, Side::High)
             .said("high: NO makes too late", "过高：常开触点闭合过迟"),
             Self::ReleasesTooLate => Entry::fail(
                 "releases_too_late",
                 "release_time_ms high: NC does not make after switch-off",
-                Bin::Time,
+                bins::TIME,
             )
             .proves(Parameter::ReleaseTime, Side::High)
             .said(
@@ -230,29 +230,29 @@ impl Finding {
             Self::AboveCoarseRamp => Entry::fail(
                 "above_coarse_ramp",
                 "operate_voltage_v high: above the coarse ramp",
-                Bin::Voltage,
+                bins::VOLTAGE,
             )
             .proves(Parameter::OperateVoltage, Side::High)
             .said("above the ramp", "超出扫描范围"),
             Self::ContactOverRange(No) => Entry::fail(
                 "no_contact_over_range",
                 "NO contact resistance over range",
-                Bin::Contact,
+                bins::CONTACT,
             ),
             Self::ContactOverRange(Nc) => Entry::fail(
                 "nc_contact_over_range",
                 "NC contact resistance over range",
-                Bin::Contact,
+                bins::CONTACT,
             ),
             Self::ContactOpen(No) => Entry::fail(
                 "no_contact_open",
                 "NO contact open or far too high",
-                Bin::Contact,
+                bins::CONTACT,
             ),
             Self::ContactOpen(Nc) => Entry::fail(
                 "nc_contact_open",
                 "NC contact open or far too high",
-                Bin::Contact,
+                bins::CONTACT,
             ),
             Self::Misoriented => {
                 Entry::void("misoriented", "part turned or COM probe without contact")

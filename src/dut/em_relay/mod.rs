@@ -4,6 +4,7 @@
 //! |---|---|
 //! | what outlives one part: recipe, factors, what parts have taught | [`device`] |
 //! | what is measured, in which unit | [`parameter`] |
+//! | where a part that fails goes | [`bins`] |
 //! | what the part is, how it is measured | [`recipe`] |
 //! | what a test finds beside figures | [`finding`] |
 //! | the order of a test, a file per stage | [`measure`] |
@@ -22,6 +23,7 @@
 //! | figures of made-up relays, for trying a history | [`made_up`] |
 
 pub mod act;
+pub mod bins;
 pub mod calibration;
 pub mod card;
 pub mod coil;

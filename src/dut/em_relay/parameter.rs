@@ -1,7 +1,7 @@
 //! The nine characteristics of a relay, as data.
 
+use super::bins;
 use crate::dut::characteristic::{Characteristic, Definition};
-use crate::dut::verdict::Bin;
 use crate::gauge::repetition::SpokenOf;
 use std::fmt;
 
@@ -66,7 +66,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
         name_en: "Coil resistance",
         name_zh: "线圈电阻",
         spoken_of: SpokenOf::Part,
-        bin: Bin::Coil,
+        bin: bins::COIL,
     },
     Definition {
         key: "operate_voltage_v",
@@ -74,7 +74,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
         name_en: "Operate voltage",
         name_zh: "动作电压",
         spoken_of: SpokenOf::Part,
-        bin: Bin::Voltage,
+        bin: bins::VOLTAGE,
     },
     Definition {
         key: "release_voltage_v",
@@ -82,7 +82,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
         name_en: "Release voltage",
         name_zh: "释放电压",
         spoken_of: SpokenOf::Part,
-        bin: Bin::Voltage,
+        bin: bins::VOLTAGE,
     },
     Definition {
         key: "operate_time_ms",
@@ -90,7 +90,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
         name_en: "Operate time",
         name_zh: "动作时间",
         spoken_of: SpokenOf::Operation,
-        bin: Bin::Time,
+        bin: bins::TIME,
     },
     Definition {
         key: "release_time_ms",
@@ -98,7 +98,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
         name_en: "Release time",
         name_zh: "释放时间",
         spoken_of: SpokenOf::Operation,
-        bin: Bin::Time,
+        bin: bins::TIME,
     },
     Definition {
         key: "operate_bounce_ms",
@@ -106,7 +106,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
         name_en: "Operate bounce",
         name_zh: "动作回跳",
         spoken_of: SpokenOf::Operation,
-        bin: Bin::Time,
+        bin: bins::TIME,
     },
     Definition {
         key: "release_bounce_ms",
@@ -114,7 +114,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
         name_en: "Release bounce",
         name_zh: "释放回跳",
         spoken_of: SpokenOf::Operation,
-        bin: Bin::Time,
+        bin: bins::TIME,
     },
     Definition {
         key: "contact_resistance_no_mohm",
@@ -122,7 +122,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
         name_en: "Contact resistance NO",
         name_zh: "常开触点电阻",
         spoken_of: SpokenOf::Closures,
-        bin: Bin::Contact,
+        bin: bins::CONTACT,
     },
     Definition {
         key: "contact_resistance_nc_mohm",
@@ -130,7 +130,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
         name_en: "Contact resistance NC",
         name_zh: "常闭触点电阻",
         spoken_of: SpokenOf::Closures,
-        bin: Bin::Contact,
+        bin: bins::CONTACT,
     },
 ];
 

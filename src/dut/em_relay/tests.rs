@@ -10,7 +10,7 @@ use crate::dut::em_relay::points::Points;
 use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
 use crate::dut::recipe::{DeviceRecipe, Recipe};
 use crate::gauge::Factor;
-use crate::station::tests::wiring;
+use crate::handling::tests::wiring;
 use serde::Deserialize;
 use std::sync::Arc;
 

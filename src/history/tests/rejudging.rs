@@ -2,10 +2,11 @@
 
 use super::super::*;
 use crate::config::load_recipe;
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::recipe::RelayRecipe;
 use crate::dut::recipe::DeviceRecipe;
 use crate::dut::rejudge::Basis;
-use crate::dut::{Bin, Reason, Recipe, Verdict};
+use crate::dut::{Reason, Recipe, Verdict};
 use crate::instrument::curve::Curve;
 use std::path::Path;
 
@@ -54,7 +55,7 @@ fn the_limits_of_the_other_recipe_decide_with_the_stored_uncertainty() {
     let bad = by_values(&part(9.1, "pass", &[]), &recipe);
     assert_eq!(
         (bad.bin(), bad.texts()),
-        (Bin::Voltage, vec!["operate_voltage_v high".to_owned()])
+        (bins::VOLTAGE, vec!["operate_voltage_v high".to_owned()])
     );
     let doubtful = by_values(&part(8.99, "pass", &[]), &recipe);
     assert_eq!(doubtful.texts(), ["operate_voltage_v high not proven"]);
@@ -68,7 +69,7 @@ fn what_no_value_says_stays() {
     let again = by_values(&open, &recipe);
     assert_eq!(
         (again.bin(), again.texts()),
-        (Bin::Coil, vec!["coil open".to_owned()])
+        (bins::COIL, vec!["coil open".to_owned()])
     );
     let void = by_values(&part(8.0, "void", &["reply refused"]), &recipe);
     assert_eq!(
@@ -152,7 +153,7 @@ fn a_part_without_a_value_fails_where_its_curves_prove_it_and_is_void_where_they
     let strict = rejudged(&high, &never_made(), basis, &recipe);
     assert_eq!(
         (strict.bin(), strict.texts()),
-        (Bin::Voltage, vec!["operate_voltage_v high".to_owned()])
+        (bins::VOLTAGE, vec!["operate_voltage_v high".to_owned()])
     );
     let generous = rejudged(&high, &never_made(), basis, &generous());
     assert_eq!(

@@ -1,8 +1,8 @@
 //! What the writer keeps, and what it refuses.
 
 use super::*;
-use crate::dut::verdict::Bin;
-use crate::station::inside::Inside;
+use crate::dut::em_relay::bins;
+use crate::handling::inside::Inside;
 
 #[test]
 fn a_part_is_kept_down_to_the_raw_reply() {
@@ -76,7 +76,7 @@ fn what_is_inside_is_known_to_the_next_run_of_the_same_rig() {
     let mut store = file.store();
     let inside = Inside {
         nest: true,
-        falling: Some(Bin::Coil),
+        falling: Some(bins::COIL),
         ..Inside::default()
     };
     for inside in [Inside::default(), inside] {

@@ -1,9 +1,9 @@
 //! The runner carries acts out one after the other and says where the time went.
 
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut};
+use crate::handling::tests::Shop;
 use crate::instrument::act::{Act, Doing, Job, JobDone, Read, Runner, Spent};
 use crate::rig::point::Point;
-use crate::station::tests::Shop;
 use crate::units::{RigTime, Span, Volt};
 
 fn done(at: RigTime) -> JobDone {

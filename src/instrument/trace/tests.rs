@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::dut::em_relay::points::{AnalogOut, DigitalOut, Points};
-use crate::station::tests::Shop;
+use crate::handling::tests::Shop;
 
 #[test]
 fn a_poll_that_changes_nothing_takes_two_looks() {

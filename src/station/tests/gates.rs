@@ -7,9 +7,11 @@ use crate::dut::em_relay::golden::check;
 use crate::dut::em_relay::measure::TestRecord;
 use crate::dut::em_relay::settings::GoldenPart;
 use crate::gauge::budget::{Budget, Reading};
+use crate::handling::ledger::Kind;
+use crate::handling::place::Place;
+use crate::handling::wear::Uses;
 use crate::rig::sample::Sample;
-use crate::station::gates::{CheckSettings, LotSettings, Uses, WearSettings};
-use crate::station::ledger::Kind;
+use crate::station::gates::{CheckSettings, LotSettings, WearSettings};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, State};
 use crate::station::wants::Ending;
@@ -79,12 +81,19 @@ fn kinds(machine: &mut Machine) -> Vec<String> {
     let mut kinds = Vec::new();
     for _ in 0..20_000 {
         let wants = machine.turn();
-        kinds.extend(wants.judged.iter().map(|one| match &one.part.kind {
-            Kind::Golden(_) => "golden".to_owned(),
-            Kind::Lot(seq) => seq.to_string(),
-        }));
+        kinds.extend(
+            wants
+                .record
+                .parts
+                .judged
+                .iter()
+                .map(|one| match &one.part.kind {
+                    Kind::Golden(_) => "golden".to_owned(),
+                    Kind::Lot(seq) => seq.to_string(),
+                }),
+        );
         let rests = machine.station.outer() == State::Held;
-        if wants.ending.is_some() || rests {
+        if wants.record.ending.is_some() || rests {
             break;
         }
     }
@@ -105,7 +114,7 @@ fn nothing_but_a_golden_part_is_judged_after_a_check_that_failed() {
 #[test]
 fn without_a_person_a_check_that_failed_ends_the_run() {
     let mut machine = checked(after_parts(2), false);
-    assert_eq!(machine.run().ending, Some(Ending::Alarm));
+    assert_eq!(machine.run().record.ending, Some(Ending::Alarm));
 }
 
 #[test]
@@ -145,8 +154,7 @@ fn a_golden_part_that_was_interrupted_has_said_nothing() {
     while machine
         .station
         .ledger()
-        .nest
-        .as_ref()
+        .part(Place::NEST)
         .is_none_or(|part| matches!(part.kind, Kind::Lot(_)))
     {
         machine.turn();
@@ -199,11 +207,12 @@ fn wear_of_earlier_runs_counts() {
         let wants = machine.turn();
         told.extend(
             wants
+                .record
                 .alarms
                 .iter()
                 .map(|alarm| (alarm.code.clone(), machine.station.uses().probe_touches)),
         );
-        if wants.ending.is_some() {
+        if wants.record.ending.is_some() {
             break;
         }
     }
@@ -219,6 +228,7 @@ fn a_calibration_that_runs_out_stops_the_lot_and_the_next_start_calibrates() {
     machine.calibration_runs_out();
     let told: Vec<String> = machine
         .turn()
+        .record
         .alarms
         .into_iter()
         .map(|alarm| alarm.code)

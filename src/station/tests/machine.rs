@@ -1,16 +1,19 @@
 //! A machine whose actuators always arrive and whose parts are bad in a known way, with its station.
 
-use super::shop::mechanism;
 use super::{Shop, context, device, device_of};
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::points::{self, AnalogIn};
-use crate::dut::verdict::Bin;
+use crate::handling::inside::Inside;
+use crate::handling::moves::Move;
+use crate::handling::tests::mechanism_of;
+use crate::handling::wants::{NestDone, NestJob};
+use crate::handling::wear::Uses;
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::image::Image;
 use crate::rig::point::{DigitalIn, DigitalInput, DigitalOut, Point};
-use crate::station::gates::{LotSettings, Uses};
-use crate::station::inside::Inside;
-use crate::station::moves::Move;
+use crate::station::gates::LotSettings;
 use crate::station::orders::{Order, Refused};
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Inputs, Wants};
@@ -33,9 +36,9 @@ impl Specimen {
     /// Where it belongs.
     pub fn bin(self) -> Bin {
         match self {
-            Self::MissingPin => Bin::Retest,
-            Self::StuckNo => Bin::Contact,
-            Self::OpenCoil => Bin::Coil,
+            Self::MissingPin => Bin::RETEST,
+            Self::StuckNo => bins::CONTACT,
+            Self::OpenCoil => bins::COIL,
         }
     }
 }
@@ -44,7 +47,7 @@ impl Specimen {
 pub struct Told {
     pub now: RigTime,
     pub image: Image,
-    pub job: Option<JobDone>,
+    pub job: Option<NestDone>,
     pub recorded: u64,
     pub bus: Option<Alarm>,
     pub stop: bool,
@@ -63,7 +66,7 @@ pub struct Machine {
     pub sticking: Option<&'static str>,
     magazine: VecDeque<Specimen>,
     under_way: Vec<(RigTime, Move)>,
-    job: Option<Job>,
+    job: Option<NestJob>,
     reversed: bool,
     axis: AxisStation,
     beams: BTreeMap<DigitalInput, u16>,
@@ -121,7 +124,7 @@ fn plan(count: Option<u64>) -> Plan {
 }
 
 fn of_plan(plan: Plan, shop: &Shop) -> Station {
-    let mechanism = mechanism(&shop.wiring);
+    let mechanism = mechanism_of(&shop.wiring);
     Station::new(plan, device(), shop.wiring.axis.clone(), mechanism)
 }
 
@@ -201,7 +204,7 @@ impl Machine {
         let mut context = context();
         std::sync::Arc::make_mut(&mut context.calibration).due_at_us =
             i64::try_from(self.shop.now.0).unwrap();
-        self.station.device = std::sync::Arc::new(device_of(context));
+        self.station.device = device_of(context);
     }
 
     /// What wears was used so often before.
@@ -244,7 +247,10 @@ impl Machine {
 
     /// A turn on what was read before.
     pub fn turn_without_scan(&mut self) -> Wants {
-        let job = self.job.take().map(|job| self.answer(&job));
+        let job = self.job.take().map(|NestJob { nest, job }| NestDone {
+            nest,
+            done: self.answer(&job),
+        });
         let image = self.shop.image.clone();
         let (now, recorded, stop) = (self.shop.now, self.recorded, self.stop);
         let bus = self.bus.take();
@@ -263,13 +269,13 @@ impl Machine {
         };
         let mut wants = self.station.step(now, inputs);
         self.answers.append(&mut wants.answers);
-        self.verify = wants.verify;
-        self.ending = wants.ending.clone().or(self.ending.take());
-        self.last_outputs.clone_from(&wants.outputs);
-        if wants.safe {
+        self.verify = wants.rig.verify;
+        self.ending = wants.record.ending.clone().or(self.ending.take());
+        self.last_outputs.clone_from(&wants.rig.outputs);
+        if wants.rig.safe {
             self.make_safe();
         }
-        for movement in &wants.motions {
+        for movement in &wants.rig.motions {
             self.drive(*movement);
         }
         self.obey(&wants);
@@ -280,7 +286,7 @@ impl Machine {
             recorded,
             bus,
             stop,
-            driven: wants.motions.clone(),
+            driven: wants.rig.motions.clone(),
             wants: format!("{wants:?}"),
         });
         wants
@@ -302,18 +308,18 @@ impl Machine {
     }
 
     fn obey(&mut self, wants: &Wants) {
-        if wants.job.is_some() {
+        if wants.rig.job.is_some() {
             assert!(self.job.is_none(), "two jobs at once");
-            self.job.clone_from(&wants.job);
+            self.job.clone_from(&wants.rig.job);
         }
-        self.beam = wants.beam;
-        for judged in &wants.judged {
+        self.beam = wants.rig.beam;
+        for judged in &wants.record.parts.judged {
             self.recorded = judged.part.ordinal;
         }
-        let landed = wants.landed.iter();
+        let landed = wants.record.parts.landed.iter();
         self.landed
             .extend(landed.map(|landed| (landed.part.ordinal, landed.bin)));
-        self.left += wants.left.len();
+        self.left += wants.record.parts.left.len();
     }
 
     fn drive(&mut self, movement: Move) {
@@ -329,7 +335,7 @@ impl Machine {
     }
 
     fn arrive(&mut self, movement: Move) {
-        let held = self.station.ledger().falling.is_some();
+        let held = self.station.ledger().fall().is_some();
         self.shop.stands(movement);
         match movement {
             Move::EscapementRelease if !self.magazine.is_empty() => {
@@ -415,7 +421,7 @@ impl Machine {
         for _ in 0..10_000 {
             let wants = self.turn();
             assert!(self.station.ledger().balances());
-            if wants.ending.is_some() {
+            if wants.record.ending.is_some() {
                 return wants;
             }
         }

@@ -1,7 +1,7 @@
 //! Orders at a screen: what is taken, what is refused and why, and what a person can bring about.
 
 use super::machine::{Machine, Specimen};
-use crate::dut::verdict::Bin;
+use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, Mode, State};
@@ -69,7 +69,7 @@ fn a_held_line_keeps_its_parts_and_goes_on() {
     let inside = machine.station.ledger().inside();
     assert!(inside > 0);
     for _ in 0..300 {
-        assert!(machine.turn().motions.is_empty(), "a held line moves");
+        assert!(machine.turn().rig.motions.is_empty(), "a held line moves");
     }
     give(&mut machine, Command::Unhold);
     until(&mut machine, State::Complete);
@@ -82,7 +82,7 @@ fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() 
     testing(&mut machine);
     machine.shop.set(DigitalIn::EmergencyStopOk, false);
     let wants = machine.turn();
-    assert!(wants.safe && wants.motions.is_empty());
+    assert!(wants.rig.safe && wants.rig.motions.is_empty());
     until(&mut machine, State::Aborted);
     let early = machine.order(Order::Command(Command::Clear)).unwrap_err();
     assert!(early.en.contains("still there"), "{}", early.en);
@@ -91,7 +91,7 @@ fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() 
     give(&mut machine, Command::Clear);
     until(&mut machine, State::Stopped);
     for _ in 0..50 {
-        assert!(machine.turn().motions.is_empty(), "clear moves nothing");
+        assert!(machine.turn().rig.motions.is_empty(), "clear moves nothing");
     }
     give(&mut machine, Command::Reset);
     until(&mut machine, State::Idle);
@@ -104,7 +104,7 @@ fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() 
 #[test]
 fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so() {
     let mut machine = Machine::attended(Some(1), vec![Specimen::StuckNo]);
-    while machine.station.ledger().falling.is_none() {
+    while machine.station.ledger().fall().is_none() {
         machine.turn();
     }
     // The module that drives the fingers has tripped: they never open.
@@ -115,7 +115,7 @@ fn a_part_that_the_fingers_did_not_let_go_goes_to_retest_and_its_one_row_says_so
     until(&mut machine, State::Stopped);
     give(&mut machine, Command::Reset);
     until(&mut machine, State::Idle);
-    assert_eq!(machine.landed, [(1, Bin::Retest)]);
+    assert_eq!(machine.landed, [(1, Bin::RETEST)]);
     let told = |what: &str| {
         machine
             .told
@@ -146,7 +146,7 @@ fn every_command_is_taken_or_refused_with_a_reason_in_both_languages() {
 fn jogging_needs_the_mode_and_a_homed_machine() {
     let mut machine = attended(1);
     machine.turn();
-    let jog = || Order::Jog(crate::station::moves::Move::PusherExtend);
+    let jog = || Order::Jog(crate::handling::moves::Move::PusherExtend);
     let why = machine.order(jog()).unwrap_err();
     assert!(why.en.contains("manual"), "{}", why.en);
     give(&mut machine, Command::Stop);
@@ -207,7 +207,7 @@ fn a_lamp_test_lights_everything_and_ends() {
     let mut dark = false;
     for _ in 0..800 {
         let wants = machine.turn();
-        dark |= wants.outputs.contains(&(DigitalOut::LampRed, false));
+        dark |= wants.rig.outputs.contains(&(DigitalOut::LampRed, false));
     }
     assert!(dark);
 }
@@ -240,7 +240,7 @@ fn an_empty_magazine_suspends_the_line_until_there_are_parts_again() {
 fn between_lots_nothing_begins_by_itself_and_there_is_nothing_to_start() {
     let mut machine = Machine::between_lots();
     for _ in 0..500 {
-        assert!(machine.turn().motions.is_empty(), "nobody asked for it");
+        assert!(machine.turn().rig.motions.is_empty(), "nobody asked for it");
     }
     assert_eq!(machine.station.outer(), State::Stopped);
     give(&mut machine, Command::Reset);

@@ -132,7 +132,7 @@ fn with_nobody_at_a_screen_the_stop_button_ends_the_run() {
     let mut machine = Machine::new(None, vec![Specimen::MissingPin; 50]);
     turns(&mut machine, 2_000);
     machine.shop.set(DigitalIn::ButtonStop, true);
-    let ending = (0..6_000).find_map(|_| machine.turn().ending);
+    let ending = (0..6_000).find_map(|_| machine.turn().record.ending);
     assert_eq!(ending, Some(Ending::Stopped));
     assert!(machine.station.ledger().balances());
 }

@@ -1,7 +1,8 @@
 //! Whole runs: every part lands, a stop finishes what is inside, the same inputs give the same wants.
 
 use super::machine::{Machine, Specimen, quiet, station};
-use crate::station::moves::Move;
+use crate::handling::moves::Move;
+use crate::handling::place::Place;
 use crate::station::wants::{Ending, Inputs};
 
 const MIXED: [Specimen; 4] = [
@@ -15,8 +16,8 @@ const MIXED: [Specimen; 4] = [
 fn every_part_of_a_lot_lands_in_its_bin_in_order_and_the_run_is_complete() {
     let mut machine = Machine::new(Some(4), MIXED.to_vec());
     let ended = machine.run();
-    assert_eq!(ended.ending, Some(Ending::Complete));
-    assert!(ended.safe && ended.alarms.is_empty());
+    assert_eq!(ended.record.ending, Some(Ending::Complete));
+    assert!(ended.rig.safe && ended.record.alarms.is_empty());
     let expected: Vec<_> = (1..).zip(MIXED.map(Specimen::bin)).collect();
     assert_eq!(machine.landed, expected);
     assert_eq!((machine.left, machine.station.ledger().inside()), (4, 0));
@@ -27,7 +28,7 @@ fn the_next_part_waits_in_the_pocket_while_one_is_tested() {
     let mut machine = Machine::new(Some(4), MIXED.to_vec());
     let mut most = 0;
     for _ in 0..10_000 {
-        let ended = machine.turn().ending.is_some();
+        let ended = machine.turn().record.ending.is_some();
         most = most.max(machine.station.ledger().inside());
         if ended {
             break;
@@ -44,9 +45,9 @@ fn an_order_to_stop_finishes_the_parts_inside() {
     }
     machine.stop = true;
     let ended = machine.run();
-    assert_eq!(ended.ending, Some(Ending::Stopped));
+    assert_eq!(ended.record.ending, Some(Ending::Stopped));
     let ledger = machine.station.ledger();
-    assert!(ledger.nest.is_none() && ledger.gripper.is_none() && ledger.falling.is_none());
+    assert!(!ledger.holds(Place::NEST) && !ledger.holds(Place::Gripper) && ledger.fall().is_none());
     assert_eq!(ledger.went_out as usize, machine.landed.len());
     assert!(ledger.went_out < 5);
 }
@@ -60,11 +61,14 @@ fn a_second_order_to_stop_waits_for_nobody_at_any_instant_of_a_cycle() {
         }
         (0..turns).for_each(|_| drop(machine.turn()));
         machine.stop = true;
-        assert_eq!(machine.turn().ending, None, "{turns} turns");
+        assert_eq!(machine.turn().record.ending, None, "{turns} turns");
         machine.abort = true;
         let wants = machine.turn();
-        assert_eq!(wants.ending, Some(Ending::Stopped), "{turns} turns");
-        assert!(wants.safe && wants.motions.is_empty(), "{turns}: {wants:?}");
+        assert_eq!(wants.record.ending, Some(Ending::Stopped), "{turns} turns");
+        assert!(
+            wants.rig.safe && wants.rig.motions.is_empty(),
+            "{turns}: {wants:?}"
+        );
     }
 }
 
@@ -73,7 +77,9 @@ fn more_turns_than_needed_change_nothing() {
     let mut once = Machine::new(Some(4), MIXED.to_vec());
     once.run();
     let mut twice = Machine::new(Some(4), MIXED.to_vec());
-    while twice.turn().ending.is_none() && twice.turn_without_scan().ending.is_none() {}
+    while twice.turn().record.ending.is_none() && twice.turn_without_scan().record.ending.is_none()
+    {
+    }
     assert_eq!(once.landed, twice.landed);
     let driven = |machine: &Machine| -> Vec<Move> {
         let told = machine.told.iter();

@@ -1,7 +1,8 @@
 //! Trouble makes everything safe, ends the run and voids the part inside.
 
 use super::machine::{Machine, Specimen};
-use crate::dut::{Bin, Reason, Verdict};
+use crate::dut::{Reason, Verdict};
+use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Wants};
@@ -20,11 +21,14 @@ fn under_test() -> Machine {
 }
 
 fn assert_safe(wants: &Wants, code: &str) {
-    assert!(wants.safe, "{code}");
-    assert!(wants.motions.is_empty() && wants.job.is_none(), "{code}");
-    assert!(wants.outputs.contains(&(DigitalOut::LampRed, true)));
-    assert_eq!(wants.ending, Some(Ending::Alarm));
-    assert_eq!(wants.alarms[0].code, code);
+    assert!(wants.rig.safe, "{code}");
+    assert!(
+        wants.rig.motions.is_empty() && wants.rig.job.is_none(),
+        "{code}"
+    );
+    assert!(wants.rig.outputs.contains(&(DigitalOut::LampRed, true)));
+    assert_eq!(wants.record.ending, Some(Ending::Alarm));
+    assert_eq!(wants.record.alarms[0].code, code);
 }
 
 #[test]
@@ -38,11 +42,11 @@ fn an_open_safety_input_makes_everything_safe_and_voids_the_part_inside() {
         machine.shop.set(point, false);
         let wants = machine.turn();
         assert_safe(&wants, code);
-        let judged = &wants.judged[0];
+        let judged = &wants.record.parts.judged[0];
         let why = Verdict::Void(vec![Reason::interrupted(code)]);
         assert_eq!(
             (&judged.verdict, judged.part.bin),
-            (&why, Some(Bin::Retest))
+            (&why, Some(Bin::RETEST))
         );
         assert!(machine.station.ledger().balances());
         assert_eq!(machine.station.state(), "ended");
@@ -67,21 +71,29 @@ fn trouble_of_a_line_ends_the_run_like_an_emergency_stop() {
     machine.bus = Some(Alarm::bus("line motion is silent"));
     let wants = machine.turn();
     assert_safe(&wants, "bus_trouble");
-    assert_eq!(wants.judged.len(), 1);
+    assert_eq!(wants.record.parts.judged.len(), 1);
 }
 
 #[test]
 fn a_part_that_is_on_its_way_to_its_bin_when_the_run_ends_is_told() {
     let mut machine = Machine::new(Some(2), vec![Specimen::StuckNo; 2]);
-    while machine.station.ledger().falling.is_none() {
+    while machine.station.ledger().fall().is_none() {
         machine.turn();
     }
     machine.bus = Some(Alarm::bus("line motion is silent"));
     let wants = machine.turn();
-    let codes: Vec<&str> = wants.alarms.iter().map(|it| it.code.as_str()).collect();
+    let codes: Vec<&str> = wants
+        .record
+        .alarms
+        .iter()
+        .map(|it| it.code.as_str())
+        .collect();
     assert_eq!(codes, ["bus_trouble", "bin_beam"]);
-    assert!(wants.alarms[1].text_en.contains("contact"), "{wants:?}");
-    assert!(wants.alarms_changed && wants.ending == Some(Ending::Alarm));
+    assert!(
+        wants.record.alarms[1].text_en.contains("contact"),
+        "{wants:?}"
+    );
+    assert!(wants.record.alarms_changed && wants.record.ending == Some(Ending::Alarm));
     let ledger = machine.station.ledger();
     assert!(ledger.balances() && ledger.lost == 1);
 }
@@ -90,13 +102,13 @@ fn a_part_that_is_on_its_way_to_its_bin_when_the_run_ends_is_told() {
 fn a_refused_motion_makes_everything_safe() {
     let mut machine = under_test();
     let mut wants = Wants::default();
-    let movement = crate::station::moves::Move::PusherExtend;
+    let movement = crate::handling::moves::Move::PusherExtend;
     let now = machine.shop.now;
     machine
         .station
         .refused(movement, "probes are up", now, &mut wants);
     assert_safe(&wants, "motion_refused");
-    assert!(wants.alarms[0].text_en.contains("probes are up"));
+    assert!(wants.record.alarms[0].text_en.contains("probes are up"));
 }
 
 #[test]
@@ -107,11 +119,11 @@ fn safety_inputs_that_are_no_longer_read_are_trouble() {
         machine.turn();
     }
     machine.shop.now = machine.shop.now + machine.shop.wiring.emergency_stop_max_age();
-    assert!(machine.turn_without_scan().alarms.is_empty());
+    assert!(machine.turn_without_scan().record.alarms.is_empty());
     machine.shop.now = machine.shop.now + Span(1);
     let wants = machine.turn_without_scan();
     assert_safe(&wants, "sensor_stale");
-    let stale = &wants.alarms[0].text_en;
+    let stale = &wants.record.alarms[0].text_en;
     assert!(stale.contains("emergency_stop_ok"), "{stale}");
 }
 
@@ -120,10 +132,12 @@ fn before_the_first_scan_the_station_waits_but_not_for_ever() {
     let mut machine = Machine::new(Some(1), Vec::new());
     machine.shop = super::Shop::unread();
     let wants = machine.turn_without_scan();
-    assert!(wants.motions.is_empty() && wants.job.is_none() && wants.alarms.is_empty());
+    assert!(
+        wants.rig.motions.is_empty() && wants.rig.job.is_none() && wants.record.alarms.is_empty()
+    );
     assert_eq!(machine.station.state(), "waiting for sensors");
     machine.shop.now = machine.shop.now + Span::ms(3000);
-    assert!(machine.turn_without_scan().alarms.is_empty());
+    assert!(machine.turn_without_scan().record.alarms.is_empty());
     machine.shop.now = machine.shop.now + Span(1);
     assert_safe(&machine.turn_without_scan(), "sensor_stale");
 }
@@ -134,7 +148,10 @@ fn an_actuator_that_sticks_ends_the_run_under_its_name() {
     machine.sticking = Some("pusher");
     let ended = machine.run();
     assert_safe(&ended, "pusher_not_reached");
-    assert!(ended.judged.is_empty(), "no part was in the nest");
+    assert!(
+        ended.record.parts.judged.is_empty(),
+        "no part was in the nest"
+    );
 }
 
 #[test]
@@ -144,8 +161,8 @@ fn an_empty_magazine_that_nobody_fills_ends_the_run_after_a_minute() {
     let start = machine.shop.now;
     let ending = loop {
         let wants = machine.turn();
-        told.extend(wants.alarms.iter().map(|alarm| alarm.code.clone()));
-        if let Some(ending) = wants.ending {
+        told.extend(wants.record.alarms.iter().map(|alarm| alarm.code.clone()));
+        if let Some(ending) = wants.record.ending {
             break ending;
         }
         assert!(machine.shop.now.since(start) < Span::ms(120_000));
@@ -162,7 +179,14 @@ fn told(machine: &mut Machine, ms: u64) -> Vec<String> {
     let end = machine.shop.now + Span::ms(ms);
     let mut told = Vec::new();
     while machine.shop.now < end {
-        told.extend(machine.turn().alarms.into_iter().map(|alarm| alarm.code));
+        told.extend(
+            machine
+                .turn()
+                .record
+                .alarms
+                .into_iter()
+                .map(|alarm| alarm.code),
+        );
     }
     told
 }

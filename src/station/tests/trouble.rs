@@ -1,10 +1,11 @@
 //! The catalogue knows every alarm, in both languages, once.
 
-use crate::dut::Bin;
+use crate::handling::moves::Move;
+use crate::handling::tests::wiring;
+use crate::handling::trouble::Trouble;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
 use crate::station::catalogue::{entry, every};
-use crate::station::moves::Move;
 use crate::station::trouble::Alarm;
 use crate::units::Span;
 
@@ -89,6 +90,19 @@ fn every_alarm_that_the_station_can_raise_is_in_the_catalogue() {
 }
 
 #[test]
+fn a_stroke_that_does_not_arrive_is_told_with_its_sensors() {
+    for movement in MOVES {
+        let alarm = Alarm::from(Trouble::NotReached(movement, Span::ms(900)));
+        let code = format!("{}_not_reached", movement.actuator_key());
+        assert_eq!(alarm.code, code);
+        for (point, _) in movement.arrival() {
+            assert!(alarm.text_en.contains(point.name()), "{}", alarm.text_en);
+            assert!(alarm.text_zh.contains(point.name()), "{}", alarm.text_zh);
+        }
+    }
+}
+
+#[test]
 fn cause_consequence_and_action_are_told_in_both_languages() {
     let chinese = |text: &str| text.chars().any(|c| ('\u{4e00}'..='\u{9fff}').contains(&c));
     for entry in every() {
@@ -104,15 +118,13 @@ fn what_a_chinese_text_is_about_is_named_in_chinese() {
     let begins_chinese = |text: &str| text.starts_with(|c| ('\u{4e00}'..='\u{9fff}').contains(&c));
     let places = ["pocket", "nest", "gripper"]
         .map(|place| [Alarm::part_found(place), Alarm::part_lost(place)]);
-    let bins = Bin::ALL
-        .iter()
+    let axis = &wiring().axis;
+    let bins = axis
+        .bins()
         .map(|bin| [Alarm::beam(bin.name(), 2), Alarm::bin_full(bin.name())]);
     let after = Span::ms(900);
-    let moves = MOVES.into_iter().chain(
-        Bin::ALL
-            .iter()
-            .map(|bin| Move::AxisTo(AxisStation::Bin(*bin))),
-    );
+    let to_bins = axis.bins().map(|bin| Move::AxisTo(AxisStation::Bin(bin)));
+    let moves = MOVES.into_iter().chain(to_bins);
     let moved = moves.map(|it| {
         [
             Alarm::not_reached(it, after),

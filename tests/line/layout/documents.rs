@@ -97,7 +97,7 @@ fn quoted(document: &Source) -> Vec<(usize, String)> {
     found
 }
 
-/// `src/station/{feed,clamp}.rs` is two paths; NAME and * stand for any name: then the folder must exist.
+/// `src/handling/{feed,nest}.rs` is two paths; NAME and * stand for any name: then the folder must exist.
 fn paths(quoted: &str) -> Vec<String> {
     if !ROOTS.iter().any(|start| quoted.starts_with(start)) || quoted.contains(char::is_whitespace)
     {
@@ -120,8 +120,8 @@ fn paths(quoted: &str) -> Vec<String> {
 #[test]
 fn a_path_in_a_document_is_taken_apart() {
     assert_eq!(
-        paths("src/station/{feed,clamp}.rs"),
-        ["src/station/feed.rs", "src/station/clamp.rs"]
+        paths("src/handling/{feed,nest}.rs"),
+        ["src/handling/feed.rs", "src/handling/nest.rs"]
     );
     assert_eq!(paths("config/recipes/NAME.toml"), ["config/recipes"]);
     assert_eq!(paths("src/cycle.rs:12"), ["src/cycle.rs"]);

@@ -13,6 +13,7 @@ const PURE: &[&str] = &[
     "rig",
     "instrument",
     "dut",
+    "handling",
     "station",
     "quality",
     "plan",
@@ -41,7 +42,15 @@ const OUTSIDE: &[&str] = &[
 ];
 
 /// Matches without `_`: a new state of the machine must be thought of everywhere.
-const TOTAL: &[&str] = &["station", "guard", "cycle", "gauge", "instrument", "dut"];
+const TOTAL: &[&str] = &[
+    "handling",
+    "station",
+    "guard",
+    "cycle",
+    "gauge",
+    "instrument",
+    "dut",
+];
 
 #[test]
 fn pure_modules_have_no_clock_no_file_no_socket_no_async_and_no_log() {

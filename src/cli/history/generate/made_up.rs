@@ -86,7 +86,7 @@ impl Line {
                 it.samples = vec![reply(at_us), reply(at_us + 3_000)];
             }
         }
-        let bin = verdict.bin().name();
+        let bin = verdict.bin().to_string();
         PartRecord {
             lot: lot.to_owned(),
             seq,

@@ -4,11 +4,10 @@
 
 use super::dice::Dice;
 use crate::bus::Pace;
-use crate::hmi::Asked;
 use crate::station::orders::JOGS;
 use crate::station::packml::State;
 use crate::units::{RigTime, Span};
-use crate::view::{By, ORDERS, Order, View};
+use crate::view::{By, ORDERS, Order, OrderRequest, View};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::{mpsc, oneshot, watch};
@@ -33,7 +32,7 @@ pub struct Operator {
     /// What is seen.
     pub view: watch::Receiver<View>,
     /// Where orders go.
-    pub orders: mpsc::Sender<Asked>,
+    pub orders: mpsc::Sender<OrderRequest>,
     /// Rig time.
     pub pace: Pace,
     /// Ends the program after the parts inside.
@@ -109,17 +108,13 @@ impl Operator {
     async fn give(&self, state: String, order: Order) -> Option<()> {
         let (answer, answered) = oneshot::channel();
         let word = order.order.clone();
-        let asked = Asked {
-            order,
-            by: By {
-                who: "storm".to_owned(),
-                role: "engineer".to_owned(),
-                origin: "study".to_owned(),
-            },
-            denied: None,
-            answer,
+        let by = By {
+            who: "storm".to_owned(),
+            role: "engineer".to_owned(),
+            origin: "study".to_owned(),
         };
-        self.orders.send(asked).await.ok()?;
+        let request = OrderRequest::new(order, by, move |it| drop(answer.send(it)));
+        self.orders.send(request).await.ok()?;
         let answer = answered.await.ok()?;
         let said = Said {
             at: self.pace.now(),

@@ -5,8 +5,8 @@ use super::{Act, Read};
 use crate::dcon::Command;
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter};
 use crate::dut::em_relay::readings::Readings;
+use crate::handling::tests::Shop;
 use crate::instrument::act::{self, Doing, Job, JobDone, Runner};
-use crate::station::tests::Shop;
 use crate::units::{Span, Volt};
 
 const FINE: [AnalogIn; 2] = [AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrentFine];

@@ -1,6 +1,7 @@
 //! What a recipe may not ask of modules that cannot give it, and what is not worth judging.
 #![allow(clippy::unwrap_used)]
 
+use super::super::bins;
 use super::super::settings::AccuracySettings;
 use super::super::{Parameter, Strategy};
 use super::{hindrance, nominal_v_per_s};
@@ -80,6 +81,23 @@ fn the_default_plant_performs_every_strategy() {
     assert_eq!(rate(AnalogOut::SupplyCoarse), 96.0);
     assert_eq!(rate(AnalogOut::SupplyFine), 1.5);
     assert_eq!(rate(AnalogOut::SupplyLevel), 0.0);
+}
+
+#[test]
+fn a_rig_without_a_bin_for_relays_is_refused() {
+    let (_, accuracy) = plant();
+    let recipe = recipe(Strategy::ALL[0]);
+    for bin in bins::BY_RANK {
+        let mut settings: RigSettings = toml::from_str(RIG).unwrap();
+        settings.bin.remove(bin.name());
+        let wiring = Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap();
+        let fault = recipe.feasible(&wiring, &accuracy).unwrap_err();
+        assert_eq!(fault.key, "kind");
+        assert!(
+            fault.expected.ends_with(&format!("no bin.{bin}")),
+            "{fault}"
+        );
+    }
 }
 
 #[test]

@@ -137,9 +137,9 @@ impl Test {
         &self.state.record
     }
 
-    /// The record of a test that is over.
-    pub fn into_record(self) -> TestRecord {
-        self.state.record
+    /// Hands over what was found; the test is over.
+    pub fn take_record(&mut self) -> TestRecord {
+        std::mem::take(&mut self.state.record)
     }
 
     /// Goes on as far as it can.

@@ -113,7 +113,7 @@ fn at_23_c() -> TestState {
 fn ended(state: &TestState) -> Option<(Bin, String)> {
     state.record.why_stopped().map(|stop| match stop {
         Stop::Fail(reason) => (reason.bin(), reason.to_string()),
-        Stop::Void(why) | Stop::Trouble(why) => (Bin::Retest, why.to_string()),
+        Stop::Void(why) | Stop::Trouble(why) => (Bin::RETEST, why.to_string()),
     })
 }
 

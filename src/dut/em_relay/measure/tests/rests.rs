@@ -3,6 +3,7 @@
 use super::super::{coil, contact, kelvin};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, good, scan};
 use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::measure::TestState;
 use crate::dut::em_relay::readings::{BoardInputs, CoilScan, Readings};
 use crate::dut::em_relay::recipe::CoilChannels;
@@ -40,17 +41,17 @@ fn the_pin_map_tells_missing_pins_turned_parts_and_stuck_contacts_apart() {
         ..RESTING
     };
     let cases: [(BoardInputs, Bin, &str); 11] = [
-        (pins(&[0]), Bin::Retest, "coil A"),
-        (pins(&[1]), Bin::Retest, "coil B"),
-        (pins(&[2]), Bin::Retest, "turned"),
-        (pins(&[3]), Bin::Retest, "NO"),
-        (pins(&[4]), Bin::Retest, "NC"),
-        (pins(&[0, 1]), Bin::Retest, "coil A, coil B"),
-        (pins(&[2, 4]), Bin::Retest, "COM, NC"),
-        (pins(&[0, 1, 2, 3, 4]), Bin::Retest, "coil A"),
-        (PULLED, Bin::Contact, "NO closed at rest"),
-        (welded, Bin::Contact, "NO closed at rest"),
-        (nc_open, Bin::Contact, "NC open at rest"),
+        (pins(&[0]), Bin::RETEST, "coil A"),
+        (pins(&[1]), Bin::RETEST, "coil B"),
+        (pins(&[2]), Bin::RETEST, "turned"),
+        (pins(&[3]), Bin::RETEST, "NO"),
+        (pins(&[4]), Bin::RETEST, "NC"),
+        (pins(&[0, 1]), Bin::RETEST, "coil A, coil B"),
+        (pins(&[2, 4]), Bin::RETEST, "COM, NC"),
+        (pins(&[0, 1, 2, 3, 4]), Bin::RETEST, "coil A"),
+        (PULLED, bins::CONTACT, "NO closed at rest"),
+        (welded, bins::CONTACT, "NO closed at rest"),
+        (nc_open, bins::CONTACT, "NC open at rest"),
     ];
     for (board, bin, word) in cases {
         let state = kelvin_of(vec![board]);
@@ -79,11 +80,11 @@ fn a_part_of_unknown_temperature_or_unread_pins_is_void() {
         assert_eq!(state.record.track, known);
         match known {
             Some(_) => assert_eq!(ended(&state), None),
-            None => assert_ends(&state, Bin::Retest, "temperature"),
+            None => assert_ends(&state, Bin::RETEST, "temperature"),
         }
     }
     let state = kelvin_of(Vec::new());
-    assert_ends(&state, Bin::Retest, "board not read");
+    assert_ends(&state, Bin::RETEST, "board not read");
 }
 
 fn nc_of(forward: Sample, reverse: Option<Sample>, compliance: bool) -> TestState {
@@ -130,30 +131,30 @@ fn a_drop_that_is_no_number_says_why_by_the_compliance_of_the_source() {
             of(Quality::OverRange),
             fine(),
             false,
-            Bin::Contact,
+            bins::CONTACT,
             "over range",
         ),
-        (of(Quality::OverRange), fine(), true, Bin::Contact, "open"),
+        (of(Quality::OverRange), fine(), true, bins::CONTACT, "open"),
         (
             fine(),
             of(Quality::UnderRange),
             false,
-            Bin::Contact,
+            bins::CONTACT,
             "over range",
         ),
-        (fine(), of(Quality::UnderRange), true, Bin::Contact, "open"),
+        (fine(), of(Quality::UnderRange), true, bins::CONTACT, "open"),
         (
             of(Quality::Blank),
             fine(),
             true,
-            Bin::Retest,
+            Bin::RETEST,
             "not readable",
         ),
         (
             fine(),
             of(Quality::Blank),
             false,
-            Bin::Retest,
+            Bin::RETEST,
             "not readable",
         ),
     ];
@@ -164,7 +165,7 @@ fn a_drop_that_is_no_number_says_why_by_the_compliance_of_the_source() {
         assert_eq!(state.record.attempts(Parameter::ContactResistanceNc), 0);
     }
     let half = nc_of(fine(), None, false);
-    assert_ends(&half, Bin::Retest, "not readable");
+    assert_ends(&half, Bin::RETEST, "not readable");
 }
 
 fn coil_of(scans: Vec<CoilScan>, celsius: f64) -> TestState {
@@ -204,13 +205,13 @@ fn open_shorted_and_unreadable_coils_are_told_apart() {
         ..scan(5.0, 0.0125)
     };
     let cases = [
-        (scan(5.0, 0.0), Bin::Coil, "coil open"),
-        (scan(5.0, 0.0002), Bin::Coil, "coil open"),
-        (scan(5.0, -0.0002), Bin::Coil, "coil open"),
-        (over, Bin::Coil, "over range"),
-        (volts_over, Bin::Retest, "not readable"),
-        (volts_blank, Bin::Retest, "not readable"),
-        (masked, Bin::Retest, "no voltage or current"),
+        (scan(5.0, 0.0), bins::COIL, "coil open"),
+        (scan(5.0, 0.0002), bins::COIL, "coil open"),
+        (scan(5.0, -0.0002), bins::COIL, "coil open"),
+        (over, bins::COIL, "over range"),
+        (volts_over, Bin::RETEST, "not readable"),
+        (volts_blank, Bin::RETEST, "not readable"),
+        (masked, Bin::RETEST, "no voltage or current"),
     ];
     for (scan, bin, word) in cases {
         let state = coil_of(vec![scan], 23.0);
@@ -263,6 +264,6 @@ fn a_test_ends_void_unless_the_current_is_seen_to_be_gone() {
         let mut state = at_23_c();
         coil::conclude_off(&readings, &mut state);
         let bin = ended(&state).map(|(bin, _)| bin);
-        assert_eq!(bin, void.then_some(Bin::Retest));
+        assert_eq!(bin, void.then_some(Bin::RETEST));
     }
 }

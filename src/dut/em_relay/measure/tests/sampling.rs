@@ -10,8 +10,8 @@ use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::recipe::Strategies;
 use crate::dut::em_relay::sampling::Polarities;
 use crate::gauge::budget::{Budget, Reading};
+use crate::handling::tests::Shop;
 use crate::rig::sample::Sample;
-use crate::station::tests::Shop;
 use crate::units::Volt;
 use std::sync::Arc;
 

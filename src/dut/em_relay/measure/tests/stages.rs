@@ -4,6 +4,7 @@ use super::super::board::{Armature, SentRamp};
 use super::super::{Ramp, Stage, coil, fine, operate, release, timing};
 use super::{PULLED, RESTING, assert_ends, at_23_c, context, drop_of, ended, gates, scan, watched};
 use crate::dut::em_relay::act::Act;
+use crate::dut::em_relay::bins;
 use crate::dut::em_relay::lag::{LagLaw, Shown};
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::measure::{Context, TestState};
@@ -48,8 +49,8 @@ fn the_coarse_ramp_places_the_fine_one_by_its_learned_lag() {
 #[test]
 fn a_coarse_ramp_without_a_make_is_a_high_threshold_unless_the_contact_made_unseen() {
     for (board, bin, word) in [
-        (RESTING, Bin::Voltage, "above the coarse ramp"),
-        (PULLED, Bin::Retest, "outside the window"),
+        (RESTING, bins::VOLTAGE, "above the coarse ramp"),
+        (PULLED, Bin::RETEST, "outside the window"),
     ] {
         let mut state = ramp_from(5.0, 6.0);
         let silent = watched(false, board, 0.0);
@@ -66,7 +67,10 @@ fn a_contact_that_does_not_move_at_nominal_voltage_is_stuck_unless_the_coil_is_t
         ..RESTING
     };
     for (board, word) in [(RESTING, "NC does not open"), (between, "NO does not make")] {
-        for (ampere, bin, word) in [(0.0125, Bin::Contact, word), (0.0, Bin::Coil, "coil open")] {
+        for (ampere, bin, word) in [
+            (0.0125, bins::CONTACT, word),
+            (0.0, bins::COIL, "coil open"),
+        ] {
             let mut state = at_23_c();
             let unmoved = watched(false, board, 0.0);
             let next = timing::conclude_operate(&context(), &unmoved, &mut state);
@@ -81,7 +85,7 @@ fn a_contact_that_does_not_move_at_nominal_voltage_is_stuck_unless_the_coil_is_t
     }
     let mut state = at_23_c();
     timing::conclude_operate(&context(), &Readings::default(), &mut state);
-    assert_ends(&state, Bin::Retest, "not read");
+    assert_ends(&state, Bin::RETEST, "not read");
 }
 
 #[test]
@@ -123,7 +127,7 @@ fn a_fine_ramp_that_misses_is_placed_anew_five_times_at_most() {
         let centre = state.plan.expected(Direction::Rising).unwrap().centre;
         let last = fine::conclude(&context(), readings, &mut state, (Direction::Rising, 4));
         assert_eq!(last, None);
-        assert_ends(&state, Bin::Retest, "not found in 5 fine ramps");
+        assert_ends(&state, Bin::RETEST, "not found in 5 fine ramps");
         centre
     };
     assert!(miss(&watched(false, RESTING, 30.0)) > Volt(7.9), "later");
@@ -248,15 +252,15 @@ fn a_contact_that_never_makes_fails_by_time_and_an_unread_counter_is_void() {
     for (conclude, word) in stages {
         let mut state = at_23_c();
         conclude(&context(), &timed(false, [3000, 3000]), &mut state);
-        assert_ends(&state, Bin::Time, word);
+        assert_ends(&state, bins::TIME, word);
         let mut state = at_23_c();
         let mut unread = timed(true, [236, 252]);
         unread.gates.truncate(1);
         conclude(&context(), &unread, &mut state);
-        assert_ends(&state, Bin::Retest, "gate counters");
+        assert_ends(&state, Bin::RETEST, "gate counters");
         let mut state = at_23_c();
         conclude(&context(), &timed(true, [0, 0]), &mut state);
-        assert_ends(&state, Bin::Retest, "0 and 0 counts");
+        assert_ends(&state, Bin::RETEST, "0 and 0 counts");
     }
 }
 
@@ -267,11 +271,11 @@ fn a_closure_with_the_source_in_compliance_fails_by_contact() {
     readings.drops[0] = drop_of(Quality::OverRange, 0.0);
     let mut state = at_23_c();
     timing::conclude_operate(&context(), &readings, &mut state);
-    assert_ends(&state, Bin::Contact, "NO contact");
+    assert_ends(&state, bins::CONTACT, "NO contact");
     let mut state = at_23_c();
     state.plan.drop_zero = Some(Volt(0.0));
     timing::conclude_release(&context(), &readings, &mut state);
-    assert_ends(&state, Bin::Contact, "NC contact");
+    assert_ends(&state, bins::CONTACT, "NC contact");
 }
 
 /// The default context on the strategy `ramp`, with a law taught by parts of which each millisecond of operate time

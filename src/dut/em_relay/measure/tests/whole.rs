@@ -11,10 +11,10 @@ use crate::dut::em_relay::{Parameter, parameter};
 use crate::dut::reason::{Code, Reason};
 use crate::dut::verdict::{Bin, Verdict};
 use crate::gauge::budget::{Budget, Reading};
+use crate::handling::tests::Shop;
 use crate::instrument::act::{Doing, Job, JobDone};
 use crate::rig::point::Point;
 use crate::rig::sample::Sample;
-use crate::station::tests::Shop;
 use crate::units::{Span, Volt};
 
 /// Each stage in the order of a good part: its acts, and what they leave the armature doing.
@@ -274,7 +274,7 @@ fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
     let test = fails_at(&board());
     let why = Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")]);
     assert_eq!(test.verdict(), why);
-    assert_eq!(test.verdict().bin(), Bin::Retest);
+    assert_eq!(test.verdict().bin(), Bin::RETEST);
     let restarted = fails_at(&Job::Restarts);
     assert_eq!(restarted.verdict().name(), "void");
     assert_eq!(restarted.stage(), Stage::Off);

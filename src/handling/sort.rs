@@ -11,11 +11,12 @@
 
 use super::ledger::Ledger;
 use super::moves::Move;
-use super::trouble::Alarm;
+use super::place::Place;
+use super::trouble::Trouble;
 use super::turn::Turn;
 use super::wants::Landed;
-use crate::dut::verdict::Bin;
 use crate::rig::axis::{AxisStation, AxisTable};
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};
 
@@ -73,10 +74,9 @@ impl Sort {
             Sort::Loaded => {
                 let bin = turn
                     .ledger
-                    .gripper
-                    .as_ref()
+                    .part(Place::Gripper)
                     .and_then(|part| part.bin)
-                    .unwrap_or(Bin::Retest);
+                    .unwrap_or(Bin::RETEST);
                 turn.drive(Move::AxisTo(AxisStation::Bin(bin)));
                 Sort::Carrying(bin)
             }
@@ -86,7 +86,7 @@ impl Sort {
             Sort::Carrying(bin) => Sort::Carrying(bin),
             Sort::OverBin(bin, since) => over_bin(turn, table, bin, since),
             Sort::LettingGo(bin, before) => {
-                turn.wants.beam = Some(table.beam(bin));
+                turn.rig.beam = Some(table.beam(bin));
                 Sort::LettingGo(bin, before)
             }
             Sort::Opening if turn.arrived(Move::GripperOpen) => opened(turn),
@@ -118,17 +118,17 @@ impl Sort {
 
 /// Lets the part go once its rows are durable and the beam's count before is known.
 fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sort {
+    assert!(since <= turn.now, "over the bin in the future");
     let stay = Sort::OverBin(bin, since);
     let beam = table.beam(bin);
     // A beam that stays dark is a full chute.
-    if turn.ledger.falling.is_some() || turn.seen(beam, true) {
+    if turn.ledger.fall().is_some() || turn.seen(beam, true) {
         return stay;
     }
-    turn.wants.beam = Some(beam);
+    turn.rig.beam = Some(beam);
     let durable = turn
         .ledger
-        .gripper
-        .as_ref()
+        .part(Place::Gripper)
         .is_some_and(|part| part.ordinal <= turn.recorded);
     let before = turn
         .image
@@ -148,11 +148,11 @@ fn opened(turn: &mut Turn) -> Sort {
         turn.drive(Move::AxisTo(AxisStation::Nest));
         return Sort::Returning;
     }
-    let falling = turn.ledger.falling.as_ref();
+    let falling = turn.ledger.fall();
     let sticks = falling.is_some_and(|it| it.seen.is_none() && turn.now.since(it.since) > STICKS);
     if sticks && turn.seen(DigitalIn::GripperPart, true) {
         turn.ledger.keep_hold();
-        turn.alarm(Alarm::part_sticks());
+        turn.tell(Trouble::Sticks);
     }
     Sort::Opening
 }
@@ -161,13 +161,14 @@ fn opened(turn: &mut Turn) -> Sort {
 pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     let now = turn.now;
     let seen_empty = turn.seen(DigitalIn::GripperPart, false);
-    let Some(falling) = &mut turn.ledger.falling else {
+    let Some(falling) = turn.ledger.fall_mut() else {
         return;
     };
     falling.has_left |= seen_empty;
     let (bin, since, before) = (falling.bin, falling.since, falling.beam_before);
+    assert!(since <= now, "let go in the future");
     let beam = table.beam(bin);
-    turn.wants.beam = Some(beam);
+    turn.rig.beam = Some(beam);
     let count = turn
         .image
         .events(beam)
@@ -180,7 +181,7 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
         }
         Some((_, 1)) => {}
         Some((_, several)) if several > 1 => {
-            turn.alarm(Alarm::beam(bin.name(), several));
+            turn.tell(Trouble::Beam(bin, several));
             landed(turn, bin);
         }
         Some(_) | None if now.since(since) > FALL => overdue(turn, bin),
@@ -191,10 +192,10 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
 /// The beam has seen nothing: what has left the fingers is lost, what they still show was never let go. Who cannot
 /// see them waits until they can be seen.
 fn overdue(turn: &mut Turn, bin: Bin) {
-    let falling = turn.ledger.falling.as_ref();
+    let falling = turn.ledger.fall();
     if falling.is_some_and(|it| it.has_left) {
-        turn.ledger.lose_falling();
-        turn.alarm(Alarm::beam(bin.name(), 0));
+        turn.ledger.lose(Place::Falling);
+        turn.tell(Trouble::Beam(bin, 0));
     } else if turn.seen(DigitalIn::GripperPart, true)
         && !turn.mechanism.is_moving(Move::GripperOpen)
     {
@@ -203,9 +204,9 @@ fn overdue(turn: &mut Turn, bin: Bin) {
 }
 
 fn landed(turn: &mut Turn, bin: Bin) {
-    if let Some(landed) = turn.ledger.land() {
-        turn.wants.landed.push(Landed {
-            part: landed.part,
+    if let Some(part) = turn.ledger.land() {
+        turn.parts.landed.push(Landed {
+            part,
             bin,
             at: turn.now,
         });

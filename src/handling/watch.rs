@@ -6,7 +6,7 @@
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
 use super::moves::Move;
-use super::trouble::Alarm;
+use super::trouble::Trouble;
 use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use crate::units::RigTime;
@@ -32,6 +32,7 @@ impl Watch {
     /// The end of a motion was seen.
     pub fn stands(&mut self, movement: Move) {
         self.left(movement.actuator_key());
+        assert!(self.stands.len() < 7, "more stand than there are actuators");
         self.stands.push(Stand {
             movement,
             left_since: None,
@@ -68,14 +69,14 @@ impl Watch {
     }
 
     /// One look; what has been wrong for long enough is an alarm, and no longer watched.
-    pub fn look(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
+    pub fn look(&mut self, now: RigTime, image: &Image) -> Vec<Trouble> {
         let seen = |point: DigitalIn| image.input(point, now, SENSOR_AGE);
-        let mut alarms = Vec::new();
+        let mut trouble = Vec::new();
         let since = self.drive_reset.zip(image.input_at(DigitalIn::AxisAlarm));
         let watched = since.is_some_and(|(reset, read)| read >= reset);
         if watched && seen(DigitalIn::AxisAlarm) == Some(true) {
             self.drive_reset = None;
-            alarms.push(Alarm::axis_drive());
+            trouble.push(Trouble::AxisDrive);
         }
         let bounces = &mut self.bounces;
         self.stands.retain_mut(|stand| {
@@ -93,19 +94,19 @@ impl Watch {
                 lasts(&mut stand.both_since, both, now, bounces),
             );
             match (both, left) {
-                (true, _) => alarms.push(Alarm::both_ends(movement)),
-                (false, true) => alarms.push(gone(movement)),
+                (true, _) => trouble.push(Trouble::BothEnds(movement)),
+                (false, true) => trouble.push(gone(movement)),
                 (false, false) => return true,
             }
             false
         });
-        alarms
+        trouble
     }
 }
 
-fn gone(movement: Move) -> Alarm {
+fn gone(movement: Move) -> Trouble {
     match movement {
-        Move::GripperClose => Alarm::part_dropped(),
+        Move::GripperClose => Trouble::Dropped,
         Move::EscapementRelease
         | Move::EscapementHold
         | Move::PusherExtend
@@ -117,7 +118,7 @@ fn gone(movement: Move) -> Alarm {
         | Move::AxisTo(_)
         | Move::SortDown
         | Move::SortUp
-        | Move::GripperOpen => Alarm::left_end(movement),
+        | Move::GripperOpen => Trouble::LeftEnd(movement),
     }
 }
 

@@ -1,11 +1,13 @@
 //! A part is let go only over its bin, when it is recorded, and its beam must see it: once.
 
 use super::Shop;
-use crate::dut::verdict::Bin;
+use crate::dut::em_relay::bins;
+use crate::handling::moves::Move;
+use crate::handling::place::{NestId, Place};
+use crate::handling::sort::{Sort, confirm};
 use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::moves::Move;
-use crate::station::sort::{Sort, confirm};
 use crate::units::RigTime;
 
 const HOME: Move = Move::AxisTo(AxisStation::Nest);
@@ -26,9 +28,9 @@ fn beam(shop: &mut Shop, bin: Bin, count: u16) {
 fn loaded(bin: Bin) -> Shop {
     let mut shop = Shop::at_rest();
     shop.ledger.enter_pocket();
-    shop.ledger.enter_nest(None);
-    shop.ledger.lift();
-    if let Some(part) = &mut shop.ledger.gripper {
+    shop.ledger.enter_nest(NestId::FIRST, None);
+    shop.ledger.lift(NestId::FIRST);
+    if let Some(part) = shop.ledger.part_mut(Place::Gripper) {
         part.bin = Some(bin);
     }
     shop.stands(Move::GripperClose);
@@ -54,7 +56,7 @@ fn falling(bin: Bin, count: u16) -> (Sort, Shop) {
     let (sort, mut shop) = over(bin, count);
     shop.recorded = 1;
     let sort = step(sort, &mut shop, false);
-    assert_eq!(shop.wants.motions, [Move::GripperOpen]);
+    assert_eq!(shop.wants.rig.motions, [Move::GripperOpen]);
     let sort = let_go(sort, &mut shop);
     shop.carried_out(Move::GripperOpen);
     (sort, shop)
@@ -89,7 +91,7 @@ fn z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open() {
         assert_eq!(step(Sort::Returning, &mut shop, running), Sort::OverNest);
         let sort = step(Sort::OverNest, &mut shop, running);
         assert_eq!(sort == Sort::Lowering, comes, "{running} {sensor:?}");
-        assert_eq!(shop.wants.motions.contains(&Move::SortDown), comes);
+        assert_eq!(shop.wants.rig.motions.contains(&Move::SortDown), comes);
     }
 }
 
@@ -110,33 +112,33 @@ fn the_fingers_stand_around_the_part_once_z_is_down() {
 
 #[test]
 fn a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest() {
-    for bin in Bin::ALL {
-        let mut shop = loaded(*bin);
-        assert_eq!(step(Sort::Loaded, &mut shop, false), Sort::Carrying(*bin));
-        let station = AxisStation::Bin(*bin);
-        assert_eq!(shop.wants.motions, [Move::AxisTo(station)]);
+    for bin in Shop::at_rest().wiring.axis.bins() {
+        let mut shop = loaded(bin);
+        assert_eq!(step(Sort::Loaded, &mut shop, false), Sort::Carrying(bin));
+        let station = AxisStation::Bin(bin);
+        assert_eq!(shop.wants.rig.motions, [Move::AxisTo(station)]);
     }
-    let mut shop = loaded(Bin::Pass);
-    if let Some(part) = &mut shop.ledger.gripper {
+    let mut shop = loaded(Bin::PASS);
+    if let Some(part) = shop.ledger.part_mut(Place::Gripper) {
         part.bin = None;
     }
     let sort = step(Sort::Loaded, &mut shop, false);
-    assert_eq!(sort, Sort::Carrying(Bin::Retest));
+    assert_eq!(sort, Sort::Carrying(Bin::RETEST));
 }
 
 #[test]
 fn a_part_is_let_go_only_when_its_record_is_durable() {
-    let (sort, mut shop) = over(Bin::Pass, 3);
+    let (sort, mut shop) = over(Bin::PASS, 3);
     for recorded in [0, 1] {
         shop.recorded = recorded;
         let next = step(sort, &mut shop, false);
-        assert_eq!(next == Sort::LettingGo(Bin::Pass, 3), recorded == 1);
+        assert_eq!(next == Sort::LettingGo(Bin::PASS, 3), recorded == 1);
     }
 }
 
 #[test]
 fn a_part_is_in_the_fingers_until_their_opening_is_driven() {
-    let (sort, mut shop) = over(Bin::Pass, 3);
+    let (sort, mut shop) = over(Bin::PASS, 3);
     shop.recorded = 1;
     let asked = step(sort, &mut shop, false);
     let waiting = step(asked, &mut shop, false);
@@ -145,86 +147,95 @@ fn a_part_is_in_the_fingers_until_their_opening_is_driven() {
         waiting.driven(Move::SortUp, &mut shop.ledger, shop.now),
         waiting
     );
-    assert!(shop.ledger.gripper.is_some() && shop.ledger.falling.is_none());
+    assert!(shop.ledger.holds(Place::Gripper) && shop.ledger.fall().is_none());
     let_go(waiting, &mut shop);
-    assert!(shop.ledger.gripper.is_none() && shop.ledger.falling.is_some());
+    assert!(!shop.ledger.holds(Place::Gripper) && shop.ledger.fall().is_some());
 }
 
 #[test]
 fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
-    let mut shop = loaded(Bin::Time);
+    let mut shop = loaded(bins::TIME);
     shop.recorded = 1;
-    beam(&mut shop, Bin::Time, 5);
+    beam(&mut shop, bins::TIME, 5);
     let since = shop.now;
-    let sort = step(Sort::OverBin(Bin::Time, since), &mut shop, false);
-    assert_eq!(sort, Sort::OverBin(Bin::Time, since), "read too early");
-    assert_eq!(shop.wants.beam, Some(shop.wiring.axis.beam(Bin::Time)));
+    let sort = step(Sort::OverBin(bins::TIME, since), &mut shop, false);
+    assert_eq!(sort, Sort::OverBin(bins::TIME, since), "read too early");
+    let watched = shop.wiring.axis.beam(bins::TIME);
+    assert_eq!(shop.wants.rig.beam, Some(watched));
     shop.after(1);
-    beam(&mut shop, Bin::Time, 5);
+    beam(&mut shop, bins::TIME, 5);
     let asked = step(sort, &mut shop, false);
     let_go(asked, &mut shop);
-    let falling = shop.ledger.falling.as_ref();
+    let falling = shop.ledger.fall();
     assert_eq!(falling.map(|falling| falling.beam_before), Some(5));
 }
 
 #[test]
 fn a_part_is_not_let_go_while_the_one_before_still_falls() {
-    let (sort, mut shop) = over(Bin::Pass, 0);
+    let (sort, mut shop) = over(Bin::PASS, 0);
     shop.recorded = 2;
-    let mut before = Shop::at_rest().ledger;
-    before.enter_pocket();
-    before.enter_nest(None);
-    before.lift();
-    before.drop_over(Bin::Coil, shop.now, 0);
-    shop.ledger.falling = before.falling;
+    shop.ledger.drop_over(bins::COIL, shop.now, 0);
+    shop.ledger.enter_pocket();
+    shop.ledger.enter_nest(NestId::FIRST, None);
+    shop.ledger.lift(NestId::FIRST);
     assert_eq!(step(sort, &mut shop, false), sort);
-    assert!(shop.wants.motions.is_empty());
+    assert!(shop.wants.rig.motions.is_empty());
 }
 
 #[test]
 fn one_count_of_the_beam_lands_the_part_even_across_the_wrap() {
     for (before, after) in [(3, 4), (u16::MAX, 0)] {
-        let (sort, mut shop) = falling(Bin::Voltage, before);
-        beam(&mut shop, Bin::Voltage, after);
+        let (sort, mut shop) = falling(bins::VOLTAGE, before);
+        beam(&mut shop, bins::VOLTAGE, after);
         let sort = step(sort, &mut shop, false);
-        assert_eq!((sort, &*shop.wants.motions), (Sort::Returning, &[HOME][..]));
-        assert!(shop.wants.landed.is_empty(), "a second body may follow");
+        assert_eq!(
+            (sort, &*shop.wants.rig.motions),
+            (Sort::Returning, &[HOME][..])
+        );
+        assert!(
+            shop.wants.parts.landed.is_empty(),
+            "a second body may follow"
+        );
         shop.after(79);
-        beam(&mut shop, Bin::Voltage, after);
+        beam(&mut shop, bins::VOLTAGE, after);
         step(sort, &mut shop, false);
-        assert!(shop.wants.landed.is_empty());
+        assert!(shop.wants.parts.landed.is_empty());
         shop.after(1);
         step(sort, &mut shop, false);
-        assert!(shop.wants.landed.is_empty(), "that count is too old");
-        beam(&mut shop, Bin::Voltage, after);
+        assert!(shop.wants.parts.landed.is_empty(), "that count is too old");
+        beam(&mut shop, bins::VOLTAGE, after);
         step(sort, &mut shop, false);
-        let landed = &shop.wants.landed[0];
-        assert_eq!((landed.bin, landed.part.ordinal), (Bin::Voltage, 1));
-        assert!(shop.ledger.falling.is_none() && shop.ledger.balances());
+        let landed = &shop.wants.parts.landed[0];
+        assert_eq!((landed.bin, landed.part.ordinal), (bins::VOLTAGE, 1));
+        assert!(shop.ledger.fall().is_none() && shop.ledger.balances());
     }
 }
 
 #[test]
 fn a_second_body_behind_the_part_is_an_alarm() {
     for bodies in [2, 3] {
-        let (sort, mut shop) = falling(Bin::Pass, 10);
-        beam(&mut shop, Bin::Pass, 11);
+        let (sort, mut shop) = falling(Bin::PASS, 10);
+        beam(&mut shop, Bin::PASS, 11);
         step(sort, &mut shop, false);
         shop.after(20);
-        beam(&mut shop, Bin::Pass, 10 + bodies);
+        beam(&mut shop, Bin::PASS, 10 + bodies);
         step(sort, &mut shop, false);
         assert_eq!(shop.alarms(), ["bin_beam"], "{bodies}");
-        assert_eq!(shop.wants.landed.len(), 1, "the part itself is in the bin");
+        assert_eq!(
+            shop.wants.parts.landed.len(),
+            1,
+            "the part itself is in the bin"
+        );
     }
 }
 
 #[test]
 fn a_part_that_its_beam_does_not_see_is_lost_after_a_second_and_a_half() {
-    let (sort, mut shop) = falling(Bin::Pass, 10);
-    let since = shop.ledger.falling.as_ref().map(|f| f.since).unwrap();
+    let (sort, mut shop) = falling(Bin::PASS, 10);
+    let since = shop.ledger.fall().map(|f| f.since).unwrap();
     shop.now = RigTime(since.0 + 1_500_000);
     shop.scan();
-    beam(&mut shop, Bin::Pass, 10);
+    beam(&mut shop, Bin::PASS, 10);
     let sort = step(sort, &mut shop, false);
     assert!(shop.alarms().is_empty());
     shop.after(1);
@@ -236,44 +247,44 @@ fn a_part_that_its_beam_does_not_see_is_lost_after_a_second_and_a_half() {
 
 #[test]
 fn a_count_read_before_the_fingers_opened_says_nothing() {
-    let (sort, mut shop) = over(Bin::Pass, 10);
+    let (sort, mut shop) = over(Bin::PASS, 10);
     shop.recorded = 1;
     let asked = step(sort, &mut shop, false);
     let sort = let_go(asked, &mut shop);
-    beam(&mut shop, Bin::Pass, 11);
+    beam(&mut shop, Bin::PASS, 11);
     step(sort, &mut shop, false);
-    assert!(shop.wants.landed.is_empty());
-    let falling = shop.ledger.falling.as_ref().unwrap();
+    assert!(shop.wants.parts.landed.is_empty());
+    let falling = shop.ledger.fall().unwrap();
     assert_eq!(falling.seen, None);
 }
 
 #[test]
 fn open_fingers_go_back_when_they_are_seen_empty() {
-    let (sort, mut shop) = falling(Bin::Pass, 0);
+    let (sort, mut shop) = falling(Bin::PASS, 0);
     shop.set(DigitalIn::GripperPart, true);
     shop.scan();
     assert_eq!(step(sort, &mut shop, false), Sort::Opening);
-    assert!(shop.wants.motions.is_empty());
+    assert!(shop.wants.rig.motions.is_empty());
     shop.set(DigitalIn::GripperPart, false);
     shop.scan();
     assert_eq!(step(sort, &mut shop, false), Sort::Returning);
-    assert_eq!(shop.wants.motions, [HOME]);
+    assert_eq!(shop.wants.rig.motions, [HOME]);
 }
 
 #[test]
 fn a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told() {
-    let (sort, mut shop) = falling(Bin::Pass, 0);
+    let (sort, mut shop) = falling(Bin::PASS, 0);
     shop.set(DigitalIn::GripperPart, true);
     shop.after(500);
     assert_eq!(step(sort, &mut shop, false), Sort::Opening);
     assert_eq!(shop.alarms(), ["part_stuck"]);
-    assert!(shop.ledger.falling.is_none() && shop.ledger.gripper.is_some());
+    assert!(shop.ledger.fall().is_none() && shop.ledger.holds(Place::Gripper));
     assert!(shop.ledger.balances());
 }
 
 /// The fingers were to open, and then everything went safe: their sensor goes on showing the part.
 fn never_opened() -> Shop {
-    let (sort, mut shop) = over(Bin::Pass, 3);
+    let (sort, mut shop) = over(Bin::PASS, 3);
     shop.recorded = 1;
     let asked = step(sort, &mut shop, false);
     let_go(asked, &mut shop);
@@ -283,7 +294,7 @@ fn never_opened() -> Shop {
 
 /// Nothing came by the beam in time.
 fn time_is_over(shop: &mut Shop) {
-    let since = shop.ledger.falling.as_ref().map(|it| it.since).unwrap();
+    let since = shop.ledger.fall().map(|it| it.since).unwrap();
     shop.now = RigTime(since.0 + 1_500_001);
 }
 
@@ -292,12 +303,12 @@ fn a_part_whose_fingers_never_opened_is_theirs_and_not_lost() {
     let mut shop = never_opened();
     time_is_over(&mut shop);
     shop.scan();
-    beam(&mut shop, Bin::Pass, 3);
+    beam(&mut shop, Bin::PASS, 3);
     step(Sort::Returning, &mut shop, false);
     assert!(shop.alarms().is_empty(), "{:?}", shop.alarms());
-    assert!(shop.ledger.falling.is_none() && shop.ledger.lost == 0);
-    let part = shop.ledger.gripper.as_ref().unwrap();
-    assert_eq!((part.ordinal, part.bin), (1, Some(Bin::Pass)));
+    assert!(shop.ledger.fall().is_none() && shop.ledger.lost == 0);
+    let part = shop.ledger.part(Place::Gripper).unwrap();
+    assert_eq!((part.ordinal, part.bin), (1, Some(Bin::PASS)));
 }
 
 #[test]
@@ -306,20 +317,26 @@ fn nobody_declares_a_part_lost_who_cannot_see_the_fingers() {
     time_is_over(&mut shop);
     step(Sort::Returning, &mut shop, false);
     assert!(shop.alarms().is_empty());
-    assert!(shop.ledger.falling.is_some() && shop.ledger.lost == 0);
+    assert!(shop.ledger.fall().is_some() && shop.ledger.lost == 0);
     shop.set(DigitalIn::GripperPart, false);
     shop.scan();
     step(Sort::Returning, &mut shop, false);
-    assert_eq!((shop.alarms(), shop.ledger.lost), (vec!["bin_beam"], 1));
+    assert_eq!(
+        (shop.alarms(), shop.ledger.lost),
+        (vec!["bin_beam".to_owned()], 1)
+    );
 }
 
 #[test]
 fn fingers_that_take_the_next_part_do_not_bring_the_fallen_one_back() {
-    let (sort, mut shop) = falling(Bin::Pass, 10);
+    let (sort, mut shop) = falling(Bin::PASS, 10);
     step(sort, &mut shop, false);
     shop.set(DigitalIn::GripperPart, true);
     time_is_over(&mut shop);
     shop.scan();
     step(Sort::AtPart, &mut shop, true);
-    assert_eq!((shop.alarms(), shop.ledger.lost), (vec!["bin_beam"], 1));
+    assert_eq!(
+        (shop.alarms(), shop.ledger.lost),
+        (vec!["bin_beam".to_owned()], 1)
+    );
 }

@@ -7,10 +7,10 @@
 //! again), an actuator that leaves the end where it stood, both end sensors on at once, the drive's alarm. A
 //! sensor that flickers for less than [`DEBOUNCE`] is believed to bounce and counted.
 
-use super::gates::Uses;
 use super::moves::{Move, Strokes};
-use super::trouble::Alarm;
+use super::trouble::Trouble;
 use super::watch::Watch;
+use super::wear::Uses;
 use crate::guard::{Actuator, PartPlaces, PartSize, Position, Situation};
 use crate::rig::axis::AxisStation;
 use crate::rig::image::Image;
@@ -53,7 +53,7 @@ struct Again {
 #[derive(Debug, Default)]
 pub struct Found {
     /// Trouble.
-    pub alarms: Vec<Alarm>,
+    pub trouble: Vec<Trouble>,
     /// Motions of a second try.
     pub motions: Vec<Move>,
 }
@@ -104,11 +104,11 @@ impl Mechanism {
         if self.is_moving(movement) {
             return false;
         }
-        let at_end = self.sensed(movement, now, image);
-        match movement {
-            Move::AxisTo(station) => at_end && self.axis_at == Some(station),
-            _other => at_end,
-        }
+        let sent_there = match movement.station() {
+            Some(station) => self.axis_at == Some(station),
+            None => true,
+        };
+        sent_there && self.sensed(movement, now, image)
     }
 
     fn sensed(&self, movement: Move, now: RigTime, image: &Image) -> bool {
@@ -211,7 +211,9 @@ impl Mechanism {
             since: now,
             from,
         });
-        if let Move::AxisTo(station) = movement {
+        let actuators = Actuator::ALL.len();
+        assert!(self.underway.len() < actuators, "one actuator moves twice");
+        if let Some(station) = movement.station() {
             self.axis_at = Some(station);
         }
     }
@@ -228,7 +230,7 @@ impl Mechanism {
                 self.underway.push(underway);
             }
         }
-        found.alarms.extend(self.watch.look(now, image));
+        found.trouble.extend(self.watch.look(now, image));
         found
     }
 
@@ -262,14 +264,18 @@ impl Mechanism {
         let movement = underway.movement;
         let limit = self.timeout_of(movement);
         let tried = self.tried.iter().filter(|one| **one == movement).count();
+        assert!(
+            tried <= usize::from(RETRIES),
+            "{movement:?} tried too often"
+        );
         match movement.way_back() {
             Some(back) if tried < usize::from(RETRIES) => {
                 self.tried.push(movement);
                 self.again.push(Again { movement, back });
-                found.alarms.push(Alarm::retried(movement, limit));
+                found.trouble.push(Trouble::Retried(movement, limit));
                 found.motions.push(back);
             }
-            Some(_) | None => found.alarms.push(Alarm::not_reached(movement, limit)),
+            Some(_) | None => found.trouble.push(Trouble::NotReached(movement, limit)),
         }
         self.underway.push(underway);
     }

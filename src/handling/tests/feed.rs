@@ -2,14 +2,15 @@
 
 use super::Shop;
 use super::device;
+use crate::handling::feed::Feed;
+use crate::handling::ledger::Kind;
+use crate::handling::moves::Move;
+use crate::handling::place::{NestId, Place};
 use crate::rig::point::DigitalIn;
-use crate::station::feed::Feed;
-use crate::station::ledger::Kind;
-use crate::station::moves::Move;
 use crate::units::Span;
 
 fn step(feed: Feed, shop: &mut Shop, wanted: bool) -> Feed {
-    feed.step(&mut shop.turn(), wanted, true)
+    feed.step(&mut shop.turn(), NestId::FIRST, wanted, true)
 }
 
 /// A part waits in the pocket, escapement closed.
@@ -25,7 +26,7 @@ fn ready() -> (Feed, Shop) {
 fn a_part_goes_from_track_to_nest_and_gets_its_number_there() {
     let mut shop = Shop::at_rest();
     let feed = step(Feed::Empty, &mut shop, true);
-    assert_eq!(shop.wants.motions, [Move::EscapementRelease]);
+    assert_eq!(shop.wants.rig.motions, [Move::EscapementRelease]);
     shop.carried_out(Move::EscapementRelease);
     let feed = step(feed, &mut shop, true);
     assert!(matches!(feed, Feed::Releasing { .. }));
@@ -33,25 +34,25 @@ fn a_part_goes_from_track_to_nest_and_gets_its_number_there() {
     shop.after(50);
     let feed = step(feed, &mut shop, true);
     assert_eq!(
-        (feed, &*shop.wants.motions),
+        (feed, &*shop.wants.rig.motions),
         (Feed::Holding, &[Move::EscapementHold][..])
     );
     shop.carried_out(Move::EscapementHold);
     let feed = step(feed, &mut shop, true);
     let feed = step(feed, &mut shop, true);
     assert_eq!(
-        (feed, &*shop.wants.motions),
+        (feed, &*shop.wants.rig.motions),
         (Feed::Pushing, &[Move::PusherExtend][..])
     );
     shop.set(DigitalIn::NestPresent, true);
     shop.carried_out(Move::PusherExtend);
     let feed = step(feed, &mut shop, true);
     assert_eq!(
-        (feed, &*shop.wants.motions),
+        (feed, &*shop.wants.rig.motions),
         (Feed::Retracting, &[Move::PusherRetract][..])
     );
     assert_eq!(
-        shop.ledger.nest.as_ref().map(|part| part.kind.clone()),
+        shop.ledger.part(Place::NEST).map(|part| part.kind.clone()),
         Some(Kind::Lot(1))
     );
     assert_eq!(step(feed, &mut shop, true), Feed::Retracting);
@@ -67,7 +68,7 @@ fn no_part_is_released_when_none_is_wanted_or_the_pusher_is_not_back() {
     shop.set(DigitalIn::PusherRetracted, false);
     shop.scan();
     assert_eq!(step(Feed::Empty, &mut shop, true), Feed::Empty);
-    assert!(shop.wants.motions.is_empty());
+    assert!(shop.wants.rig.motions.is_empty());
 }
 
 #[test]
@@ -78,16 +79,16 @@ fn a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm() {
         shop.scan();
         let mut feed = step(Feed::Empty, &mut shop, true);
         for attempt in 1..=3 {
-            assert_eq!(shop.wants.motions, [Move::EscapementRelease]);
+            assert_eq!(shop.wants.rig.motions, [Move::EscapementRelease]);
             let since = shop.now;
             shop.carried_out(Move::EscapementRelease);
             shop.now = since + Span::ms(1500);
             shop.scan();
             feed = step(feed, &mut shop, true);
-            assert!(shop.wants.motions.is_empty() && shop.alarms().is_empty());
+            assert!(shop.wants.rig.motions.is_empty() && shop.alarms().is_empty());
             shop.after(1);
             feed = step(feed, &mut shop, true);
-            assert_eq!(shop.wants.motions, [Move::EscapementHold]);
+            assert_eq!(shop.wants.rig.motions, [Move::EscapementHold]);
             let told = shop.alarms();
             let expected = if attempt < 3 {
                 "escapement_retried"
@@ -109,7 +110,7 @@ fn a_part_left_in_the_pocket_is_fed_before_another_is_let_in() {
     shop.scan();
     let feed = step(Feed::Empty, &mut shop, true);
     assert!(matches!(feed, Feed::Ready));
-    assert!(shop.ledger.pocket && shop.ledger.came_in == 1);
+    assert!(shop.ledger.holds(Place::Pocket) && shop.ledger.came_in == 1);
 }
 
 #[test]
@@ -129,7 +130,7 @@ fn the_pusher_starts_only_into_a_nest_that_is_free_in_every_respect() {
         }
         shop.scan();
         assert_eq!(step(feed, &mut shop, true), Feed::Ready, "{what}");
-        assert!(shop.wants.motions.is_empty(), "{what}");
+        assert!(shop.wants.rig.motions.is_empty(), "{what}");
     }
     let (feed, mut shop) = ready();
     shop.now = shop.now + crate::units::Span::ms(401);
@@ -141,7 +142,7 @@ fn the_pusher_starts_only_into_a_nest_that_is_free_in_every_respect() {
 #[test]
 fn the_ledger_keeps_a_second_part_out_of_the_nest_whatever_the_sensor_says() {
     let (feed, mut shop) = ready();
-    shop.ledger.enter_nest(None);
+    shop.ledger.enter_nest(NestId::FIRST, None);
     shop.ledger.enter_pocket();
     assert_eq!(step(feed, &mut shop, true), Feed::Ready);
 }
@@ -153,7 +154,7 @@ fn a_pusher_at_an_empty_nest_is_an_alarm() {
     shop.carried_out(Move::PusherExtend);
     assert_eq!(step(feed, &mut shop, true), Feed::Pushing);
     assert_eq!(shop.alarms(), ["part_not_in_nest"]);
-    assert!(shop.ledger.pocket && shop.ledger.nest.is_none());
+    assert!(shop.ledger.holds(Place::Pocket) && !shop.ledger.holds(Place::NEST));
 }
 
 #[test]
@@ -165,7 +166,7 @@ fn golden_parts_come_first_in_the_order_of_the_magazine() {
     shop.carried_out(Move::PusherExtend);
     step(feed, &mut shop, true);
     assert_eq!(
-        shop.ledger.nest.as_ref().map(|part| part.kind.clone()),
+        shop.ledger.part(Place::NEST).map(|part| part.kind.clone()),
         Some(Kind::Golden("G-12-1".into()))
     );
     assert_eq!(shop.golden.len(), 4);

@@ -10,9 +10,10 @@ mod nest;
 mod sorter;
 
 use super::Shop;
+use super::shop::Asked;
+use crate::handling::moves::Move;
 use crate::rig::point::DigitalIn;
-use crate::station::moves::Move;
-use crate::station::wants::Wants;
+
 use std::collections::BTreeSet;
 
 /// What was seen to follow upon what.
@@ -24,13 +25,12 @@ struct Graph {
 
 impl Graph {
     /// One step from a state to another, and what it asked for.
-    fn add(&mut self, from: &str, to: &str, wants: &Wants) {
+    fn add(&mut self, from: &str, to: &str, asked: &Asked) {
         self.steps += 1;
-        let alarms = wants.trouble.iter().map(|alarm| alarm.code.clone());
-        let motions = wants.motions.iter().map(|movement| named(*movement));
-        let asked: Vec<String> = motions.chain(alarms).collect();
-        if from != to || !asked.is_empty() {
-            let label = asked.join(", ");
+        let motions = asked.rig.motions.iter().map(|movement| named(*movement));
+        let told: Vec<String> = motions.chain(asked.alarms()).collect();
+        if from != to || !told.is_empty() {
+            let label = told.join(", ");
             self.edges
                 .insert(format!("  {from} -> {to} [label=\"{label}\"];\n"));
         }

@@ -8,7 +8,8 @@
 //! jaws are open, the probes down and the gripper up; the guard checks the same in millimetres.
 
 use super::moves::Move;
-use super::trouble::Alarm;
+use super::place::NestId;
+use super::trouble::Trouble;
 use super::turn::Turn;
 use crate::rig::point::DigitalIn;
 use crate::units::{RigTime, Span};
@@ -47,8 +48,8 @@ pub enum Feed {
 
 impl Feed {
     /// One turn. `wanted`: a further part may enter the pocket; `push`: the one that waits there may
-    /// go to the nest.
-    pub fn step(self, turn: &mut Turn, wanted: bool, push: bool) -> Feed {
+    /// go to `nest`.
+    pub fn step(self, turn: &mut Turn, nest: NestId, wanted: bool, push: bool) -> Feed {
         match self {
             Feed::Empty if wanted && turn.seen(DigitalIn::PocketPresent, true) => {
                 // Left there by the run before: it is fed like any other.
@@ -68,12 +69,12 @@ impl Feed {
             Feed::Closing { attempts } => Feed::Closing { attempts },
             Feed::Holding if turn.arrived(Move::EscapementHold) => Feed::Ready,
             Feed::Holding => Feed::Holding,
-            Feed::Ready if turn.nest_is_free() && (push || turn.ledger.pocket_found) => {
+            Feed::Ready if turn.nest_is_free(nest) && (push || turn.ledger.is_pocket_found()) => {
                 turn.drive(Move::PusherExtend);
                 Feed::Pushing
             }
             Feed::Ready => Feed::Ready,
-            Feed::Pushing if turn.arrived(Move::PusherExtend) => pushed(turn),
+            Feed::Pushing if turn.arrived(Move::PusherExtend) => pushed(turn, nest),
             Feed::Pushing => Feed::Pushing,
             Feed::Retracting if turn.arrived(Move::PusherRetract) => Feed::Empty,
             Feed::Retracting => Feed::Retracting,
@@ -82,6 +83,7 @@ impl Feed {
 }
 
 fn release(turn: &mut Turn, attempt: u8) -> Feed {
+    assert!((1..=TRIES).contains(&attempt), "called {attempt} times");
     turn.drive(Move::EscapementRelease);
     Feed::Releasing {
         since: turn.now,
@@ -101,30 +103,30 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
         return Feed::Releasing { since, attempt };
     }
     turn.drive(Move::EscapementHold);
-    turn.alarm(
+    turn.tell(
         match (attempt < TRIES, turn.seen(DigitalIn::TrackLevel, true)) {
-            (true, _) => Alarm::retried(Move::EscapementRelease, ARRIVES),
-            (false, true) => Alarm::no_part(),
-            (false, false) => Alarm::magazine_empty(),
+            (true, _) => Trouble::Retried(Move::EscapementRelease, ARRIVES),
+            (false, true) => Trouble::NoPart,
+            (false, false) => Trouble::MagazineEmpty,
         },
     );
     Feed::Closing { attempts: attempt }
 }
 
-fn pushed(turn: &mut Turn) -> Feed {
+fn pushed(turn: &mut Turn, nest: NestId) -> Feed {
     match turn.input(DigitalIn::NestPresent) {
         Some(true) => {
-            let golden = if turn.ledger.pocket_found {
+            let golden = if turn.ledger.is_pocket_found() {
                 None
             } else {
                 turn.next_golden()
             };
-            turn.ledger.enter_nest(golden);
+            turn.ledger.enter_nest(nest, golden);
             turn.drive(Move::PusherRetract);
             Feed::Retracting
         }
         Some(false) => {
-            turn.alarm(Alarm::nest_empty());
+            turn.tell(Trouble::NestEmpty);
             Feed::Pushing
         }
         None => Feed::Pushing,

@@ -1,14 +1,15 @@
 //! The sorter: nine states, eleven inputs, and what falls.
 
 use super::{Graph, SEEN, Seen, show, truths};
-use crate::dut::verdict::Bin;
+use crate::handling::ledger::Ledger;
+use crate::handling::moves::Move;
+use crate::handling::place::{NestId, Place};
+use crate::handling::sort::Sort;
+use crate::handling::tests::Shop;
+use crate::handling::tests::shop::Asked;
 use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::ledger::Ledger;
-use crate::station::moves::Move;
-use crate::station::sort::Sort;
-use crate::station::tests::Shop;
-use crate::station::wants::Wants;
 use crate::units::{RigTime, Span};
 
 fn name(sort: Sort) -> &'static str {
@@ -28,16 +29,16 @@ fn name(sort: Sort) -> &'static str {
 /// Every state, and the point of the axis that it has to do with.
 fn states(shop: &Shop) -> [(Sort, AxisStation); 9] {
     let over = RigTime(shop.now.0 - 500);
-    let bin = AxisStation::Bin(Bin::Pass);
+    let bin = AxisStation::Bin(Bin::PASS);
     [
         (Sort::Returning, AxisStation::Nest),
         (Sort::OverNest, AxisStation::Nest),
         (Sort::Lowering, AxisStation::Nest),
         (Sort::AtPart, AxisStation::Nest),
         (Sort::Loaded, bin),
-        (Sort::Carrying(Bin::Pass), bin),
-        (Sort::OverBin(Bin::Pass, over), bin),
-        (Sort::LettingGo(Bin::Pass, 0), bin),
+        (Sort::Carrying(Bin::PASS), bin),
+        (Sort::OverBin(Bin::PASS, over), bin),
+        (Sort::LettingGo(Bin::PASS, 0), bin),
         (Sort::Opening, bin),
     ]
 }
@@ -47,8 +48,8 @@ fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
     let mut ledger = Ledger::default();
     let mut lift = || {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
-        ledger.lift();
+        ledger.enter_nest(NestId::FIRST, None);
+        ledger.lift(NestId::FIRST);
     };
     if falling {
         lift();
@@ -58,15 +59,15 @@ fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
         Sort::Loaded | Sort::Carrying(_) | Sort::OverBin(..) | Sort::LettingGo(..)
     );
     if falling {
-        ledger.drop_over(Bin::Pass, since, 0);
+        ledger.drop_over(Bin::PASS, since, 0);
     }
     if carries {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
-        ledger.lift();
+        ledger.enter_nest(NestId::FIRST, None);
+        ledger.lift(NestId::FIRST);
     }
-    if let Some(part) = &mut ledger.gripper {
-        part.bin = Some(Bin::Pass);
+    if let Some(part) = ledger.part_mut(Place::Gripper) {
+        part.bin = Some(Bin::PASS);
     }
     ledger
 }
@@ -87,11 +88,11 @@ fn the_sorter_is_the_drawing() {
                 shop.set(DigitalIn::PusherRetracted, pusher);
                 shop.set(DigitalIn::GripperOpen, gripper == Seen::Rest);
                 shop.set(DigitalIn::GripperPart, part);
-                shop.set(table.beam(Bin::Pass), dark);
+                shop.set(table.beam(Bin::PASS), dark);
                 shop.after(1);
                 for [counted, testing, resting, falling, late, recorded] in truths() {
                     if counted {
-                        shop.beam(table.beam(Bin::Pass), 0);
+                        shop.beam(table.beam(Bin::PASS), 0);
                     }
                     let (sort, _) = states(&shop)[number];
                     let ago = if late { Span::ms(501) } else { Span::ms(500) };
@@ -104,7 +105,7 @@ fn the_sorter_is_the_drawing() {
                     assert!(shop.ledger.balances());
                     if matches!(sort, Sort::LettingGo(..)) && !falling {
                         let driven = sort.driven(Move::GripperOpen, &mut shop.ledger, shop.now);
-                        graph.add(name(sort), name(driven), &Wants::default());
+                        graph.add(name(sort), name(driven), &Asked::default());
                         assert!(shop.ledger.balances());
                     }
                 }

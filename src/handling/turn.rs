@@ -3,14 +3,15 @@
 use super::ledger::Ledger;
 use super::mechanism::{Mechanism, SENSOR_AGE};
 use super::moves::Move;
-use super::trouble::Alarm;
-use super::wants::Wants;
+use super::place::{NestId, Place};
+use super::trouble::Trouble;
+use super::wants::{Commands, PartEvents};
 use crate::rig::image::Image;
 use crate::rig::point::{DigitalIn, DigitalInput};
 use crate::units::RigTime;
 use std::collections::VecDeque;
 
-/// One turn of the station.
+/// One turn of the feeder.
 pub struct Turn<'a> {
     /// Time of this turn.
     pub now: RigTime,
@@ -20,8 +21,12 @@ pub struct Turn<'a> {
     pub mechanism: &'a Mechanism,
     /// Where the parts are.
     pub ledger: &'a mut Ledger,
-    /// What this turn asks for.
-    pub wants: &'a mut Wants,
+    /// What this turn asks of the rig.
+    pub rig: &'a mut Commands,
+    /// What has happened to parts in this turn.
+    pub parts: &'a mut PartEvents,
+    /// Trouble seen in this turn.
+    pub trouble: &'a mut Vec<Trouble>,
     /// Golden parts still to come, in the order of the magazine.
     pub golden: &'a mut VecDeque<String>,
     /// Ordinal up to which parts are durably recorded.
@@ -33,12 +38,12 @@ pub struct Turn<'a> {
 impl Turn<'_> {
     /// Asks for a motion.
     pub fn drive(&mut self, movement: Move) {
-        self.wants.motions.push(movement);
+        self.rig.motions.push(movement);
     }
 
-    /// Raises an alarm.
-    pub fn alarm(&mut self, alarm: Alarm) {
-        self.wants.trouble.push(alarm);
+    /// Tells of trouble.
+    pub fn tell(&mut self, trouble: Trouble) {
+        self.trouble.push(trouble);
     }
 
     /// True when the sensors show the end of the motion, nothing of it is under way or asked for.
@@ -57,8 +62,8 @@ impl Turn<'_> {
     }
 
     /// True when a part may be pushed into the nest.
-    pub fn nest_is_free(&self) -> bool {
-        self.ledger.nest.is_none()
+    pub fn nest_is_free(&self, nest: NestId) -> bool {
+        !self.ledger.holds(Place::Nest(nest))
             && self.seen(DigitalIn::NestPresent, false)
             && self.arrived(Move::ClampOpen)
             && self.arrived(Move::ProbesDown)

@@ -5,9 +5,10 @@
 //! still. Sensors alone say where parts are; what is known from before moves nothing.
 
 use super::ledger::Ledger;
+use super::place::Place;
 use super::recovery::Seen;
-use super::trouble::Alarm;
-use crate::dut::verdict::Bin;
+use super::trouble::Trouble;
+use crate::rig::bin::Bin;
 
 /// Places that held a part when they were written down last.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -26,10 +27,10 @@ impl Inside {
     /// As the ledger has it.
     pub fn of(ledger: &Ledger) -> Self {
         Self {
-            pocket: ledger.pocket,
-            nest: ledger.nest.is_some(),
-            gripper: ledger.gripper.is_some(),
-            falling: ledger.falling.as_ref().map(|it| it.bin),
+            pocket: ledger.holds(Place::Pocket),
+            nest: ledger.holds(Place::NEST),
+            gripper: ledger.holds(Place::Gripper),
+            falling: ledger.fall().map(|it| it.bin),
         }
     }
 
@@ -40,7 +41,7 @@ impl Inside {
     }
 
     /// Parts that are not seen where they were left, nor where they could have got to since.
-    pub fn missing(self, seen: &Seen) -> Vec<Alarm> {
+    pub fn missing(self, seen: &Seen) -> Vec<Trouble> {
         let Seen {
             mut pocket,
             mut nest,
@@ -54,14 +55,18 @@ impl Inside {
         // Jaws keep a part from which the fingers have slid off.
         let set_down = self.gripper && !held && claim(&mut nest);
         let gone = [
-            ("gripper", self.gripper && !held && !set_down),
-            ("nest", self.nest && !stayed),
-            ("pocket", self.pocket && !waits),
+            (Place::Gripper, self.gripper && !held && !set_down),
+            (Place::NEST, self.nest && !stayed),
+            (Place::Pocket, self.pocket && !waits),
         ];
         let gone = gone.into_iter().filter(|(_, is_gone)| *is_gone);
-        fell.map(|bin| Alarm::fall_unseen(bin.name()))
+        let left = [self.pocket, self.nest, self.gripper, self.falling.is_some()];
+        let seen_again = [held, stayed, waits, set_down, never_opened];
+        let count = |these: &[bool]| these.iter().filter(|it| **it).count();
+        assert!(count(&seen_again) <= count(&left), "one part seen as two");
+        fell.map(Trouble::FallUnseen)
             .into_iter()
-            .chain(gone.map(|(place, _)| Alarm::part_gone(place)))
+            .chain(gone.map(|(place, _)| Trouble::Gone(place)))
             .collect()
     }
 }

@@ -2,15 +2,17 @@
 
 use super::Shop;
 use super::shop::{LENGTH_MM, TIMEOUT};
+use crate::dut::em_relay::bins;
 use crate::guard::{Actuator, PartPlaces, Position};
-use crate::rig::axis::{AxisStation, Bin};
+use crate::handling::mechanism::SENSOR_AGE;
+use crate::handling::moves::Move;
+use crate::handling::trouble::Trouble;
+use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::mechanism::SENSOR_AGE;
-use crate::station::moves::Move;
-use crate::station::trouble::Alarm;
 use crate::units::{RigTime, Span};
 
-const TO_PASS: Move = Move::AxisTo(AxisStation::Bin(Bin::Pass));
+const TO_PASS: Move = Move::AxisTo(AxisStation::Bin(Bin::PASS));
 
 fn position(shop: &Shop, actuator: Actuator) -> Position {
     shop.mechanism.position(actuator, shop.now, &shop.image)
@@ -74,7 +76,7 @@ fn an_actuator_under_way_is_anywhere_between_where_it_was_and_where_it_goes() {
 fn an_axis_under_way_spans_only_the_stations_it_passes() {
     let mut shop = Shop::at_rest();
     shop.carried_out(TO_PASS);
-    let coil = Move::AxisTo(AxisStation::Bin(Bin::Coil));
+    let coil = Move::AxisTo(AxisStation::Bin(bins::COIL));
     shop.mechanism.driven(coil, shop.now, &shop.image);
     let between = Position::Between {
         from_mm: 150.0,
@@ -124,22 +126,19 @@ fn a_reading_from_before_the_motion_does_not_show_its_end() {
 }
 
 /// Trouble that an update finds.
-fn seen(shop: &mut Shop) -> Vec<Alarm> {
-    shop.mechanism.update(shop.now, &shop.image).alarms
+fn seen(shop: &mut Shop) -> Vec<Trouble> {
+    shop.mechanism.update(shop.now, &shop.image).trouble
 }
 
 /// The stroke goes back and forth once more, and fails again.
-fn second_try(shop: &mut Shop, movement: Move, back: Move, first: &[Alarm]) -> Vec<Alarm> {
-    assert_eq!(
-        first[0].code,
-        format!("{}_retried", movement.actuator_key())
-    );
+fn second_try(shop: &mut Shop, movement: Move, back: Move, first: &[Trouble]) -> Vec<Trouble> {
+    assert_eq!(first[0], Trouble::Retried(movement, TIMEOUT));
     shop.mechanism.driven(back, shop.now, &shop.image);
     shop.stands(back);
     shop.after(50);
     let found = shop.mechanism.update(shop.now, &shop.image);
     assert_eq!(found.motions, [movement], "forth again");
-    assert!(found.alarms.is_empty() && shop.mechanism.is_moving(movement));
+    assert!(found.trouble.is_empty() && shop.mechanism.is_moving(movement));
     for (point, state) in movement.arrival() {
         shop.set(*point, !state);
     }
@@ -164,17 +163,11 @@ fn an_actuator_that_takes_too_long_is_an_alarm_with_its_name() {
         assert!(seen(&mut shop).is_empty(), "the look is from before");
         shop.scan();
         let first = seen(&mut shop);
-        let alarm = match movement.way_back() {
+        let told = match movement.way_back() {
             Some(back) => second_try(&mut shop, movement, back, &first),
             None => first,
         };
-        let alarm = &alarm[0];
-        let code = format!("{}_not_reached", movement.actuator_key());
-        assert_eq!(alarm.code, code);
-        for (point, _) in movement.arrival() {
-            assert!(alarm.text_en.contains(point.name()), "{}", alarm.text_en);
-            assert!(alarm.text_zh.contains(point.name()), "{}", alarm.text_zh);
-        }
+        assert_eq!(told, [Trouble::NotReached(movement, TIMEOUT)]);
     }
 }
 

@@ -15,7 +15,8 @@
 
 use super::ledger::Ledger;
 use super::moves::Move;
-use super::trouble::Alarm;
+use super::place::{NestId, Place};
+use super::trouble::Trouble;
 use super::turn::Turn;
 use crate::rig::axis::AxisStation;
 use crate::rig::point::{DigitalIn, DigitalOut};
@@ -72,7 +73,7 @@ impl Recovery {
         match self.stage {
             Stage::Looking => {
                 if Seen::of(turn).is_some() {
-                    turn.wants.outputs.push((DigitalOut::AxisReset, true));
+                    turn.rig.outputs.push((DigitalOut::AxisReset, true));
                     self.stage = Stage::Drive(turn.now);
                 }
             }
@@ -81,7 +82,7 @@ impl Recovery {
             Stage::Up => {
                 if let Some(seen) = Seen::of(turn) {
                     pushed(turn, &seen);
-                    reconcile(turn.ledger, &seen, releasing, &mut turn.wants.trouble);
+                    reconcile(turn.ledger, &seen, releasing, turn.trouble);
                     self.leave_gripped(turn.ledger);
                     (self.stage, self.asked) = (Stage::Home, None);
                 }
@@ -101,6 +102,8 @@ impl Recovery {
         if self.asked != Some(movement) || self.stage != Stage::Home {
             return false;
         }
+        let first = self.left.front();
+        assert_eq!(first, Some(&movement), "homing asked for another one");
         self.asked = None;
         self.refused += 1;
         self.left.rotate_left(1);
@@ -112,12 +115,12 @@ impl Recovery {
         let taken = since + DRIVE_RESET;
         let looked = turn.image.input_at(DigitalIn::AxisAlarm) >= Some(taken);
         if turn.now < taken {
-            turn.wants.wake_at = Some(taken);
+            turn.rig.wake_at = Some(taken);
         } else if looked && turn.seen(DigitalIn::AxisAlarm, true) {
-            turn.alarm(Alarm::axis_drive());
+            turn.tell(Trouble::AxisDrive);
         } else if looked {
-            turn.wants.outputs.push((DigitalOut::AxisReset, false));
-            turn.wants.outputs.push((DigitalOut::AxisServoOn, true));
+            turn.rig.outputs.push((DigitalOut::AxisReset, false));
+            turn.rig.outputs.push((DigitalOut::AxisServoOn, true));
             self.stage = Stage::Up;
         }
     }
@@ -131,7 +134,7 @@ impl Recovery {
 
     /// Fingers that hold a part stay closed, and the axis takes it to its bin from where it stands.
     fn leave_gripped(&mut self, ledger: &Ledger) {
-        if ledger.gripper.is_some() {
+        if ledger.holds(Place::Gripper) {
             self.left
                 .retain(|one| !matches!(one, Move::GripperOpen | Move::AxisTo(_)));
         }
@@ -175,66 +178,52 @@ impl Seen {
 /// The pusher had brought the part of the pocket when the sequence was cut off: it is the one in the nest, and not
 /// the one that the fingers have lost.
 fn pushed(turn: &mut Turn, seen: &Seen) {
-    let gone = turn.ledger.pocket && !seen.pocket;
-    if gone && turn.ledger.nest.is_none() && seen.nest {
-        let golden = match turn.ledger.pocket_found {
+    let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
+    if gone && !turn.ledger.holds(Place::NEST) && seen.nest {
+        let golden = match turn.ledger.is_pocket_found() {
             true => None,
             false => turn.next_golden(),
         };
-        turn.ledger.enter_nest(golden);
+        turn.ledger.enter_nest(NestId::FIRST, golden);
     }
 }
 
 /// Brings the ledger to what is seen, z being up. Parts in nest and gripper are interrupted by this.
-pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, alarms: &mut Vec<Alarm>) {
-    alarms.extend(std::mem::take(&mut ledger.left).missing(seen));
+pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, trouble: &mut Vec<Trouble>) {
+    trouble.extend(std::mem::take(&mut ledger.left).missing(seen));
     hand_over(ledger, seen);
-    match (ledger.gripper.is_some(), seen.gripper) {
-        (true, false) => {
-            ledger.lose_gripper();
-            alarms.push(Alarm::part_lost("gripper"));
+    let places = [
+        (Place::Gripper, seen.gripper),
+        (Place::NEST, seen.nest),
+        (Place::Pocket, seen.pocket),
+    ];
+    for (place, is_seen) in places {
+        match (ledger.holds(place), is_seen) {
+            (true, false) => {
+                ledger.lose(place);
+                trouble.push(Trouble::Lost(place));
+            }
+            (false, true) if releasing && place == Place::Pocket => ledger.enter_pocket(),
+            (false, true) => {
+                ledger.find(place);
+                trouble.push(Trouble::Found(place));
+            }
+            (true, true) | (false, false) => {}
         }
-        (false, true) => {
-            ledger.find_in_gripper();
-            alarms.push(Alarm::part_found("gripper"));
-        }
-        (true, true) | (false, false) => {}
-    }
-    match (ledger.nest.is_some(), seen.nest) {
-        (true, false) => {
-            ledger.lose_nest();
-            alarms.push(Alarm::part_lost("nest"));
-        }
-        (false, true) => {
-            ledger.find_in_nest();
-            alarms.push(Alarm::part_found("nest"));
-        }
-        (true, true) | (false, false) => {}
-    }
-    match (ledger.pocket, seen.pocket) {
-        (true, false) => {
-            ledger.lose_pocket();
-            alarms.push(Alarm::part_lost("pocket"));
-        }
-        (false, true) if releasing => ledger.enter_pocket(),
-        (false, true) => {
-            ledger.find_in_pocket();
-            alarms.push(Alarm::part_found("pocket"));
-        }
-        (true, true) | (false, false) => {}
+        assert_eq!(ledger.holds(place), is_seen, "not what is seen");
     }
 }
 
 /// Parts that had moved on when the sequence was cut off, were set down again, or never let go.
 fn hand_over(ledger: &mut Ledger, seen: &Seen) {
-    let may_be_held = ledger.falling.as_ref().is_some_and(|it| !it.has_left);
+    let may_be_held = ledger.fall().is_some_and(|it| !it.has_left);
     if may_be_held && seen.gripper {
         ledger.keep_hold();
     }
-    let (nest, gripper) = (ledger.nest.is_some(), ledger.gripper.is_some());
+    let (nest, gripper) = (ledger.holds(Place::NEST), ledger.holds(Place::Gripper));
     if nest && !gripper && !seen.nest && seen.gripper {
-        ledger.lift();
+        ledger.lift(NestId::FIRST);
     } else if gripper && !nest && !seen.gripper && seen.nest {
-        ledger.set_down();
+        ledger.set_down(NestId::FIRST);
     }
 }

@@ -1,12 +1,13 @@
 //! Homing in an order that can be proved clear; parts are where they are seen.
 
 use super::Shop;
-use crate::dut::verdict::Bin;
+use crate::handling::ledger::{Kind, Ledger};
+use crate::handling::moves::Move;
+use crate::handling::place::{NestId, Place};
+use crate::handling::recovery::Recovery;
 use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
-use crate::station::ledger::{Kind, Ledger};
-use crate::station::moves::Move;
-use crate::station::recovery::Recovery;
 
 const ORDER: [Move; 7] = [
     Move::SortUp,
@@ -43,7 +44,7 @@ fn carried_out(shop: &mut Shop) -> Vec<Move> {
         if recovery.step(&mut shop.turn(), false) {
             break;
         }
-        let motions = shop.wants.motions.clone();
+        let motions = shop.wants.rig.motions.clone();
         assert!(motions.len() < 2, "one at a time");
         if motions.is_empty() {
             shop.after(20);
@@ -75,7 +76,7 @@ fn a_part_that_the_pusher_had_brought_to_the_nest_is_neither_lost_nor_found() {
     shop.set(DigitalIn::NestPresent, true);
     shop.scan();
     carried_out(&mut shop);
-    assert!(!shop.ledger.pocket && shop.ledger.nest.is_some());
+    assert!(!shop.ledger.holds(Place::Pocket) && shop.ledger.holds(Place::NEST));
     assert_eq!((shop.ledger.lost, shop.ledger.found), (0, 0));
 }
 
@@ -86,8 +87,8 @@ fn the_drive_is_reset_and_its_servo_on_before_anything_moves() {
     let mut outputs = Vec::new();
     for _ in 0..4 {
         recovery.step(&mut shop.turn(), false);
-        assert!(shop.wants.motions.is_empty());
-        outputs.append(&mut shop.wants.outputs);
+        assert!(shop.wants.rig.motions.is_empty());
+        outputs.append(&mut shop.wants.rig.outputs);
         shop.after(20);
     }
     let expected = [
@@ -104,7 +105,7 @@ fn nothing_moves_before_the_places_of_parts_were_looked_at() {
     let mut recovery = Recovery::default();
     for _ in 0..3 {
         assert!(!recovery.step(&mut shop.turn(), false));
-        assert!(shop.wants.motions.is_empty() && shop.wants.outputs.is_empty());
+        assert!(shop.wants.rig.motions.is_empty() && shop.wants.rig.outputs.is_empty());
     }
 }
 
@@ -114,17 +115,17 @@ fn a_motion_that_the_guard_refuses_waits_until_the_others_are_home() {
     shop.stands(Move::SortUp);
     shop.scan();
     let mut recovery = Recovery::default();
-    while shop.wants.motions.is_empty() {
+    while shop.wants.rig.motions.is_empty() {
         recovery.step(&mut shop.turn(), false);
         shop.after(20);
     }
-    assert_eq!(shop.wants.motions, [Move::ProbesDown]);
+    assert_eq!(shop.wants.rig.motions, [Move::ProbesDown]);
     assert!(recovery.refused(Move::ProbesDown), "another one goes first");
     recovery.step(&mut shop.turn(), false);
-    assert_eq!(shop.wants.motions, [Move::PusherRetract]);
+    assert_eq!(shop.wants.rig.motions, [Move::PusherRetract]);
     let mut again = true;
     for _ in 0..6 {
-        let asked = shop.wants.motions.clone();
+        let asked = shop.wants.rig.motions.clone();
         again = asked.iter().all(|movement| recovery.refused(*movement));
         recovery.step(&mut shop.turn(), false);
     }
@@ -149,11 +150,9 @@ fn a_part_that_nobody_knows_is_found_and_fingers_that_hold_one_stay_closed() {
         assert_eq!(opened, place != "gripper", "{place}");
         let ledger = &shop.ledger;
         assert!(ledger.balances() && ledger.found == 1 && ledger.inside() == 1);
-        let why = |part: &Option<crate::station::ledger::Part>| {
-            part.as_ref().and_then(|part| part.interrupted.clone())
-        };
-        let told = why(&ledger.nest).or(why(&ledger.gripper));
-        assert!(told.is_some() || ledger.pocket_found, "{place}");
+        let mut parts = ledger.each().filter_map(|(_, part)| part);
+        let told = parts.any(|part| part.interrupted.is_some());
+        assert!(told || ledger.is_pocket_found(), "{place}");
     }
 }
 
@@ -176,7 +175,11 @@ fn after_homing_the_ledger_says_what_the_sensors_say_whatever_it_said_before() {
             shop.scan();
             carried_out(&mut shop);
             let after = &shop.ledger;
-            let places = [after.pocket, after.nest.is_some(), after.gripper.is_some()];
+            let places = [
+                after.holds(Place::Pocket),
+                after.holds(Place::NEST),
+                after.holds(Place::Gripper),
+            ];
             let wanted = [1, 2, 4].map(|bit| seen & bit != 0);
             assert_eq!(places, wanted, "{before:03b} {seen:03b}");
             assert!(after.balances(), "{before:03b} {seen:03b}");
@@ -193,7 +196,7 @@ fn a_part_that_had_been_pushed_is_not_taken_for_the_one_that_the_fingers_lost() 
     shop.set(DigitalIn::NestPresent, true);
     shop.scan();
     carried_out(&mut shop);
-    let kind = shop.ledger.nest.as_ref().map(|part| part.kind.clone());
+    let kind = shop.ledger.part(Place::NEST).map(|part| part.kind.clone());
     assert_eq!(kind, Some(Kind::Lot(2)), "the first one fell");
     assert_eq!((shop.ledger.lost, shop.ledger.found), (1, 0));
 }
@@ -203,14 +206,14 @@ fn a_part_that_was_to_fall_and_is_seen_in_the_fingers_is_neither_found_nor_lost(
     for in_the_fingers in [true, false] {
         let mut shop = Shop::at_rest();
         shop.ledger = ledger(0b100);
-        shop.ledger.drop_over(Bin::Pass, shop.now, 0);
+        shop.ledger.drop_over(Bin::PASS, shop.now, 0);
         shop.set(DigitalIn::GripperPart, in_the_fingers);
         shop.set(DigitalIn::GripperOpen, !in_the_fingers);
         shop.scan();
         carried_out(&mut shop);
         let ledger = &shop.ledger;
         assert_eq!((ledger.lost, ledger.found, ledger.inside()), (0, 0, 1));
-        assert_eq!(ledger.gripper.is_some(), in_the_fingers);
+        assert_eq!(ledger.holds(Place::Gripper), in_the_fingers);
     }
 }
 
@@ -218,12 +221,12 @@ fn ledger(places: u8) -> Ledger {
     let mut ledger = Ledger::default();
     if places & 4 != 0 {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
-        ledger.lift();
+        ledger.enter_nest(NestId::FIRST, None);
+        ledger.lift(NestId::FIRST);
     }
     if places & 2 != 0 {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
+        ledger.enter_nest(NestId::FIRST, None);
     }
     if places & 1 != 0 {
         ledger.enter_pocket();

@@ -1,10 +1,11 @@
 //! The feed: eight states, eleven inputs.
 
 use super::{Graph, SEEN, show, truths};
+use crate::handling::feed::{Feed, TRIES};
+use crate::handling::ledger::Ledger;
+use crate::handling::place::{NestId, Place};
+use crate::handling::tests::Shop;
 use crate::rig::point::DigitalIn;
-use crate::station::feed::{Feed, TRIES};
-use crate::station::ledger::Ledger;
-use crate::station::tests::Shop;
 use crate::units::Span;
 
 fn name(feed: Feed) -> String {
@@ -45,10 +46,10 @@ fn ledger(feed: Feed, nest: bool, found: bool) -> Ledger {
     let mut ledger = Ledger::default();
     if nest {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
+        ledger.enter_nest(NestId::FIRST, None);
     }
     match (holds(feed), found) {
-        (true, true) => ledger.find_in_pocket(),
+        (true, true) => ledger.find(Place::Pocket),
         (true, false) => ledger.enter_pocket(),
         (false, _) => {}
     }
@@ -80,7 +81,7 @@ fn the_feed_is_the_drawing() {
                     // A part that is pushed comes into an empty nest: that is what the pusher waited for.
                     let nest = nest && feed != Feed::Pushing;
                     shop.ledger = ledger(feed, nest, found);
-                    let next = feed.step(&mut shop.turn(), wanted, push);
+                    let next = feed.step(&mut shop.turn(), NestId::FIRST, wanted, push);
                     graph.add(&name(feed), &name(next), &shop.wants);
                     assert!(shop.ledger.balances());
                 }

@@ -2,14 +2,15 @@
 
 use super::{Graph, SEEN, show, truths};
 use crate::dut::device::TestOrder;
-use crate::dut::verdict::Bin;
 use crate::dut::{Device, Procedure};
+use crate::handling::ledger::Ledger;
+use crate::handling::nest::{Nest, NestContext, NestState, TestTerms};
+use crate::handling::place::{NestId, Place};
+use crate::handling::sort::Sort;
+use crate::handling::tests::{Shop, device};
 use crate::instrument::act::JobDone;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::clamp::{Beside, Clamp};
-use crate::station::ledger::Ledger;
-use crate::station::sort::Sort;
-use crate::station::tests::{Shop, device};
 
 const STATES: [&str; 9] = [
     "Empty",
@@ -24,17 +25,17 @@ const STATES: [&str; 9] = [
 ];
 
 /// The state of this name; a test that is over has only its switching off before it.
-fn state(name: &str, shop: &Shop, device: &Device) -> Clamp {
+fn state(name: &str, shop: &Shop, device: &Device) -> NestState {
     match name {
-        "Empty" => Clamp::Empty,
-        "Clamping" => Clamp::Clamping,
-        "Probing" => Clamp::Probing,
-        "Testing" => Clamp::Testing(begun(shop, device)),
-        "TestOver" => Clamp::Testing(failed(shop, device)),
-        "Judged" => Clamp::Judged,
-        "Gripping" => Clamp::Gripping,
-        "Unclamping" => Clamp::Unclamping,
-        "Lifting" => Clamp::Lifting,
+        "Empty" => NestState::Empty,
+        "Clamping" => NestState::Clamping,
+        "Probing" => NestState::Probing,
+        "Testing" => NestState::Testing(begun(shop, device)),
+        "TestOver" => NestState::Testing(failed(shop, device)),
+        "Judged" => NestState::Judged,
+        "Gripping" => NestState::Gripping,
+        "Unclamping" => NestState::Unclamping,
+        "Lifting" => NestState::Lifting,
         other => panic!("{other}"),
     }
 }
@@ -62,29 +63,30 @@ fn silent(shop: &Shop) -> JobDone {
     }
 }
 
-fn name(clamp: &Clamp) -> &'static str {
-    match clamp {
-        Clamp::Empty => "Empty",
-        Clamp::Clamping => "Clamping",
-        Clamp::Probing => "Probing",
-        Clamp::Testing(_) => "Testing",
-        Clamp::Judged => "Judged",
-        Clamp::Gripping => "Gripping",
-        Clamp::Unclamping => "Unclamping",
-        Clamp::Lifting => "Lifting",
+fn name(state: &NestState) -> &'static str {
+    match state {
+        NestState::Empty => "Empty",
+        NestState::Clamping => "Clamping",
+        NestState::Probing => "Probing",
+        NestState::Testing(_) => "Testing",
+        NestState::Judged => "Judged",
+        NestState::Gripping => "Gripping",
+        NestState::Unclamping => "Unclamping",
+        NestState::Lifting => "Lifting",
     }
 }
 
-/// A part is in the nest in every state but the first, where it may be.
+/// A part is in the nest in every state but the first, where it may be; it is judged before it is gripped.
 fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
     let mut ledger = Ledger::default();
     if part || from != "Empty" {
         ledger.enter_pocket();
-        ledger.enter_nest(None);
+        ledger.enter_nest(NestId::FIRST, None);
     }
-    if let Some(part) = &mut ledger.nest {
+    if let Some(part) = ledger.part_mut(Place::NEST) {
         part.interrupted = interrupted.then(|| "by a reset".to_owned());
-        part.bin = judged.then_some(Bin::Retest);
+        let is_over = matches!(from, "Judged" | "Gripping" | "Unclamping" | "Lifting");
+        part.bin = (judged || is_over).then_some(Bin::RETEST);
     }
     ledger
 }
@@ -118,23 +120,28 @@ fn the_nest_is_the_drawing() {
                 shop.after(1);
                 for from in STATES {
                     for [part, interrupted, judged, around, resting] in truths() {
-                        let clamp = state(from, &shop, &device);
+                        let mut nest = Nest {
+                            id: NestId::FIRST,
+                            state: state(from, &shop, &device),
+                        };
                         let job = (from == "TestOver").then(|| silent(&shop));
                         shop.ledger = ledger(from, part, interrupted, judged);
                         let mut sort = if around { Sort::AtPart } else { Sort::OverNest };
                         let mut turn = shop.turn();
                         turn.resting = resting;
-                        let beside = Beside {
-                            job,
-                            device: &device,
-                            thorough: false,
-                            teaching: None,
+                        let context = NestContext {
+                            done: job,
+                            terms: TestTerms {
+                                device: &device,
+                                thorough: false,
+                                teaching: None,
+                            },
                             sort: &mut sort,
                             last_left: &mut None,
                         };
-                        let next = clamp.step(&mut turn, beside);
+                        nest.step(&mut turn, context);
                         let drawn = if from == "TestOver" { "Testing" } else { from };
-                        graph.add(drawn, name(&next), &shop.wants);
+                        graph.add(drawn, name(&nest.state), &shop.wants);
                         assert!(shop.ledger.balances());
                     }
                 }
@@ -142,7 +149,7 @@ fn the_nest_is_the_drawing() {
         }
     }
     graph.is("nest", include_str!("../golden/nest.dot"), 81 * 4 * 9 * 32);
-    graph.is_told_by(FACTS, include_str!("../clamp.rs"));
+    graph.is_told_by(FACTS, include_str!("../nest.rs"));
 }
 
 /// From, to, and the test that walks there.

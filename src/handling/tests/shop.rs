@@ -4,14 +4,16 @@ use super::wiring;
 use crate::dcon::{Bits, Command, Reply};
 use crate::dut::em_relay::points::{self, AnalogIn, Counter, Points};
 use crate::guard::{Actuator, PartSize};
+use crate::handling::ledger::Ledger;
+use crate::handling::mechanism::Mechanism;
+use crate::handling::moves::{Move, Strokes};
+use crate::handling::trouble::Trouble;
+use crate::handling::turn::Turn;
+use crate::handling::wants::{Commands, PartEvents};
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Point};
 use crate::rig::wiring::{ModuleId, Wiring};
-use crate::station::ledger::Ledger;
-use crate::station::mechanism::Mechanism;
-use crate::station::moves::{Move, Strokes};
-use crate::station::turn::Turn;
-use crate::station::wants::Wants;
+use crate::station::trouble::Alarm;
 use crate::units::{RigTime, Span};
 use std::collections::{BTreeSet, VecDeque};
 use std::sync::Arc;
@@ -34,6 +36,22 @@ const AT_REST: [DigitalIn; 11] = [
     DigitalIn::GripperOpen,
 ];
 
+/// What a turn asked for and told.
+#[derive(Debug, Default)]
+pub struct Asked {
+    pub rig: Commands,
+    pub parts: PartEvents,
+    pub trouble: Vec<Trouble>,
+}
+
+impl Asked {
+    /// Codes of the alarms that come of it.
+    pub fn alarms(&self) -> Vec<String> {
+        let alarms = self.trouble.iter().cloned().map(Alarm::from);
+        alarms.map(|alarm| alarm.code).collect()
+    }
+}
+
 /// Everything that a turn needs.
 pub struct Shop {
     pub wiring: Arc<Wiring>,
@@ -41,7 +59,7 @@ pub struct Shop {
     pub now: RigTime,
     pub mechanism: Mechanism,
     pub ledger: Ledger,
-    pub wants: Wants,
+    pub wants: Asked,
     pub golden: VecDeque<String>,
     pub recorded: u64,
     pub points: Points,
@@ -63,7 +81,7 @@ impl Shop {
             mechanism: mechanism(&wiring),
             wiring,
             ledger: Ledger::default(),
-            wants: Wants::default(),
+            wants: Asked::default(),
             golden: VecDeque::new(),
             recorded: 0,
         }
@@ -200,18 +218,20 @@ impl Shop {
         self.stands(movement);
         self.after(100);
         let found = self.mechanism.update(self.now, &self.image);
-        assert!(found.alarms.is_empty(), "{found:?}");
+        assert!(found.trouble.is_empty(), "{found:?}");
     }
 
     /// A turn that begins with empty wants.
     pub fn turn(&mut self) -> Turn<'_> {
-        self.wants = Wants::default();
+        self.wants = Asked::default();
         Turn {
             now: self.now,
             image: &self.image,
             mechanism: &self.mechanism,
             ledger: &mut self.ledger,
-            wants: &mut self.wants,
+            rig: &mut self.wants.rig,
+            parts: &mut self.wants.parts,
+            trouble: &mut self.wants.trouble,
             golden: &mut self.golden,
             recorded: self.recorded,
             resting: false,
@@ -219,12 +239,8 @@ impl Shop {
     }
 
     /// Codes of the alarms of the last turn.
-    pub fn alarms(&self) -> Vec<&str> {
-        self.wants
-            .trouble
-            .iter()
-            .map(|alarm| alarm.code.as_str())
-            .collect()
+    pub fn alarms(&self) -> Vec<String> {
+        self.wants.alarms()
     }
 }
 

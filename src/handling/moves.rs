@@ -177,6 +177,25 @@ impl Move {
         }
     }
 
+    /// The point of the sort axis that it goes to.
+    pub fn station(self) -> Option<AxisStation> {
+        match self {
+            Move::AxisTo(station) => Some(station),
+            Move::EscapementRelease
+            | Move::EscapementHold
+            | Move::PusherExtend
+            | Move::PusherRetract
+            | Move::ClampClose
+            | Move::ClampOpen
+            | Move::ProbesUp
+            | Move::ProbesDown
+            | Move::SortDown
+            | Move::SortUp
+            | Move::GripperClose
+            | Move::GripperOpen => None,
+        }
+    }
+
     /// Key of the actuator's time-out in `config/rig.toml`.
     pub fn actuator_key(self) -> &'static str {
         match self {

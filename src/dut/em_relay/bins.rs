@@ -1,0 +1,15 @@
+//! Bins of a relay that fails, one for each cause that a fitter can do something about.
+
+use crate::rig::bin::Bin;
+
+/// Coil resistance out of limits.
+pub const COIL: Bin = Bin::named("coil");
+/// Contact resistance out of limits, stuck contact.
+pub const CONTACT: Bin = Bin::named("contact");
+/// Operate or release voltage out of limits.
+pub const VOLTAGE: Bin = Bin::named("voltage");
+/// Times or bounce out of limits.
+pub const TIME: Bin = Bin::named("time");
+
+/// All of them, worst first: a relay that fails for several causes goes to the first.
+pub const BY_RANK: [Bin; 4] = [COIL, CONTACT, VOLTAGE, TIME];
