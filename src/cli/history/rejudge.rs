@@ -54,7 +54,7 @@ fn cells(part: Again) -> Vec<String> {
         part.seq.to_string(),
         part.verdict_was,
         part.verdict.into(),
-        part.bin.into(),
+        part.bin,
         part.reasons.join("; "),
     ]
 }
