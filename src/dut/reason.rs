@@ -136,17 +136,16 @@ impl Reason {
         Self::of_characteristic(text).unwrap_or_else(|| Self::unclassified(text))
     }
 
+    /// The reason of every kind that prints as this text.
     fn of_characteristic(text: &str) -> Option<Self> {
-        let (key, said) = text.split_once(' ')?;
-        let characteristic = Characteristic::from_key(key)?;
-        Some(match said {
-            "low" => Self::outside(characteristic, Side::Low),
-            "high" => Self::outside(characteristic, Side::High),
-            "low not proven" => Self::not_proven(characteristic, Side::Low),
-            "high not proven" => Self::not_proven(characteristic, Side::High),
-            "not measured" => Self::of(Code::NotMeasured(characteristic)),
-            _ => return None,
-        })
+        let (key, _) = text.split_once(' ')?;
+        let it = Characteristic::from_key(key)?;
+        let sides = [Side::Low, Side::High];
+        let limits = sides.map(|side| Self::outside(it, side)).into_iter();
+        let doubts = sides.map(|side| Self::not_proven(it, side));
+        let missing = Self::of(Code::NotMeasured(it));
+        let mut all = limits.chain(doubts).chain([missing]);
+        all.find(|reason| reason.to_string() == text)
     }
 }
 
