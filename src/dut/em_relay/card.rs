@@ -175,17 +175,3 @@ fn text(same: &'static str) -> Piece {
 fn within(parameters: &[Parameter]) -> Demand {
     Demand::Within(parameters.iter().map(|it| (*it).into()).collect())
 }
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used)]
-    use super::*;
-
-    #[test]
-    fn the_card_has_its_steps_in_their_order() {
-        let recipe = crate::config::load_recipe("config".as_ref(), "jzc-22f-012").unwrap();
-        let steps = Card::of(&recipe).steps;
-        let names: Vec<&str> = steps.iter().map(|it| it.name).collect();
-        assert_eq!(names, STEPS);
-    }
-}
