@@ -136,6 +136,7 @@ impl Reason {
         Self::of_characteristic(text).unwrap_or_else(|| Self::unclassified(text))
     }
 
+    /// The reason of every kind that prints as this text.
     fn of_characteristic(text: &str) -> Option<Self> {
         let (key, _) = text.split_once(' ')?;
         let characteristic = Characteristic::from_key(key)?;

@@ -7,8 +7,8 @@ use super::lot::{LotReport, ParameterValues};
 use super::spc::{Named, spc};
 use super::*;
 use crate::config::load_recipe;
-use crate::dut::Reason;
-use crate::dut::card::{CardSettings, Quota, STEPS};
+use crate::dut::card::{Card, CardSettings, Quota, STEPS};
+use crate::dut::{Reason, Recipe};
 use crate::history::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Shelf, Yield};
 use crate::quality::Limits;
 use crate::quality::chart::{individuals, shares};
@@ -212,9 +212,12 @@ fn a_lot_report_tells_both_yields_and_how_long_an_alarm_stood() {
     assert!(page.contains("0:01:00"));
 }
 
-fn process_card(language: Language) -> String {
+fn recipe() -> Recipe {
     let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("config");
-    let recipe = load_recipe(&config, "jzc-22f-012").unwrap();
+    load_recipe(&config, "jzc-22f-012").unwrap()
+}
+
+fn process_card(language: Language) -> String {
     let quota = Quota {
         machine_s: 0.25,
         auxiliary_s: 0.125,
@@ -229,7 +232,7 @@ fn process_card(language: Language) -> String {
         preparation_min: 15.0,
         quota: STEPS.iter().map(|it| ((*it).to_owned(), quota)).collect(),
     };
-    card(language, &recipe, &plant, "today")
+    card(language, &recipe(), &plant, "today")
 }
 
 #[test]
@@ -243,6 +246,12 @@ fn a_process_card_has_every_step_its_limits_and_the_sum_of_its_times() {
             assert!(page.contains(demand), "{demand}");
         }
     }
+}
+
+#[test]
+fn every_step_of_the_card_has_its_quota_by_name() {
+    let steps = Card::of(&recipe()).steps;
+    assert!(steps.iter().map(|it| it.name).eq(STEPS.iter().copied()));
 }
 
 #[test]

@@ -11,10 +11,7 @@ const UNTIL: Member = may("until", "Before, RFC 3339.");
 const VERDICT: Member = may("verdict", "`pass`, `fail`, `void`, `unjudged`.");
 const BIN: Member = may("bin", "Bin that the verdict asks for.");
 const KIND: Member = may("kind", "`lot` (without it), `golden`, `all`.");
-const PARAM: Member = may(
-    "param",
-    "Parameter key with its unit, `coil_resistance_ohm`.",
-);
+const PARAM: Member = may("param", "Parameter key with its unit, as in an export.");
 const MIN: Member = may("min", "Least value of `param`.");
 const MAX: Member = may("max", "Largest value of `param`.");
 const LIMIT: Member = may("limit", "So many at most.");

@@ -64,7 +64,6 @@ const TABLE: &[(&str, &[&str])] = &[
         "config",
         &[
             "units", "form", "dcon", "bus", "lpm", "guard", "rig", "gauge", "dut", "station",
-            "history", "quality", "report",
         ],
     ),
     (

@@ -2,6 +2,7 @@
 
 mod documents;
 mod imports;
+mod kinds;
 mod places;
 mod purity;
 mod tree;
