@@ -307,10 +307,12 @@ fn two_bins_at_one_point_of_the_axis_are_refused() {
     );
 }
 
-/// The default rig without one of its bins.
+/// The default rig without a bin and without the beam of its chute.
 fn without_bin(name: &str) -> String {
-    let lines = RIG.lines();
-    let kept = lines.filter(|line| !(line.starts_with(name) && line.contains("beam = ")));
+    let beam = format!("beam_{name} ");
+    let gone =
+        |line: &str| line.starts_with(name) && line.contains("beam = ") || line.starts_with(&beam);
+    let kept = RIG.lines().filter(|line| !gone(line));
     kept.map(|line| format!("{line}\n")).collect()
 }
 

@@ -89,7 +89,8 @@ fn a_rig_without_a_bin_for_relays_is_refused() {
     let recipe = recipe(Strategy::ALL[0]);
     for bin in bins::BY_RANK {
         let mut settings: RigSettings = toml::from_str(RIG).unwrap();
-        settings.bin.remove(bin.name());
+        let removed = settings.bin.remove(bin.name()).unwrap();
+        settings.digital_in.remove(&removed.beam);
         let wiring = Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap();
         let fault = recipe.feasible(&wiring, &accuracy).unwrap_err();
         assert_eq!(fault.key, "kind");
