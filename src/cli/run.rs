@@ -9,7 +9,6 @@ mod known;
 pub(super) mod lines;
 mod orders;
 pub(super) mod recorder;
-mod results;
 mod rows;
 mod screen;
 mod stage;

@@ -6,6 +6,7 @@ use super::em_relay::points::Missing;
 use super::em_relay::settings::{AccuracySettings, GoldenSet, ReferenceSettings};
 use super::procedure::Procedure;
 use super::recipe::{DeviceRecipe, Recipe};
+use super::record::TestRecord;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
 use crate::rig::wiring::Wiring;
@@ -156,7 +157,7 @@ impl Device {
     pub fn learn_reference(
         &mut self,
         serial: &str,
-        record: &em_relay::measure::TestRecord,
+        record: &TestRecord,
         last: bool,
     ) -> Result<Option<Calibration>, CalibrationFault> {
         match self {
@@ -178,7 +179,7 @@ impl Device {
     }
 
     /// Learns from a part of the lot that passed or not.
-    pub fn learn(&mut self, record: &em_relay::measure::TestRecord, pass: bool) {
+    pub fn learn(&mut self, record: &TestRecord, pass: bool) {
         match self {
             Self::EmRelay(relay) => relay.learn(record, pass),
         }
@@ -188,11 +189,7 @@ impl Device {
     ///
     /// # Errors
     /// Names what does not agree.
-    pub fn check(
-        &self,
-        serial: &str,
-        record: &em_relay::measure::TestRecord,
-    ) -> Result<(), CalibrationFault> {
+    pub fn check(&self, serial: &str, record: &TestRecord) -> Result<(), CalibrationFault> {
         match self {
             Self::EmRelay(relay) => Ok(relay.check(serial, record)?),
         }

@@ -13,6 +13,7 @@ pub mod made_up;
 pub mod procedure;
 pub mod reason;
 pub mod recipe;
+pub mod record;
 pub mod rejudge;
 pub mod verdict;
 pub mod words;
@@ -24,6 +25,7 @@ pub use device::Device;
 pub use procedure::Procedure;
 pub use reason::Reason;
 pub use recipe::Recipe;
+pub use record::TestRecord;
 pub use verdict::{Bin, Verdict};
 
 use crate::rig::point::Fixture;

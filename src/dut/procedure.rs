@@ -1,8 +1,9 @@
 //! A running test of any kind: stages made of acts, then a verdict.
 
 use super::Characteristic;
-use super::em_relay::measure::{self, TestRecord};
+use super::em_relay::measure;
 use super::reason::Reason;
+use super::record::{Own, Stop, TestRecord};
 use super::verdict::Verdict;
 use crate::gauge::Judgement;
 use crate::instrument::act::{Doing, JobDone};
@@ -51,8 +52,8 @@ impl Procedure {
     pub fn why_void(&self) -> Option<&Reason> {
         match self {
             Self::EmRelay(test) => match test.record().why_stopped()? {
-                measure::Stop::Void(why) | measure::Stop::Trouble(why) => Some(why),
-                measure::Stop::Fail(_) => None,
+                Stop::Void(why) | Stop::Trouble(why) => Some(why),
+                Stop::Fail(_) => None,
             },
         }
     }
@@ -72,16 +73,16 @@ impl Procedure {
     }
 
     /// What was found so far, with the replies behind it.
-    pub fn record(&self) -> &TestRecord {
+    pub fn record(&self) -> TestRecord {
         match self {
-            Self::EmRelay(test) => test.record(),
+            Self::EmRelay(test) => test.record().clone().of_any_kind(Own::EmRelay),
         }
     }
 
     /// Hands over what was found, once the part is judged.
     pub fn take_record(&mut self) -> TestRecord {
         match self {
-            Self::EmRelay(test) => test.take_record(),
+            Self::EmRelay(test) => test.take_record().of_any_kind(Own::EmRelay),
         }
     }
 }

@@ -101,6 +101,11 @@ impl Reason {
         }
     }
 
+    /// True when it proves the part bad.
+    pub fn is_failure(&self) -> bool {
+        self.bin() != Bin::RETEST
+    }
+
     /// The characteristic it speaks of, if it speaks of one.
     pub fn characteristic(&self) -> Option<Characteristic> {
         match self.code {

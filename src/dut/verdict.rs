@@ -5,6 +5,7 @@
 use super::characteristic::Characteristic;
 use super::em_relay::bins;
 use super::reason::{Code, Reason};
+use super::record::Stop;
 use crate::gauge::Judgement;
 pub use crate::rig::bin::Bin;
 
@@ -59,6 +60,30 @@ impl Verdict {
             Self::Pass
         } else {
             Self::Void(missing)
+        }
+    }
+
+    /// Returns the verdict of a part whose test ended early by `stop`, or did not. A proven failure outweighs whatever
+    /// ended the test, but for trouble of the rig.
+    pub fn after(
+        stop: Option<&Stop>,
+        expected: &[Characteristic],
+        judged: Vec<(Characteristic, Judgement)>,
+    ) -> Self {
+        let Some(stop) = stop else {
+            return Verdict::of(expected, &judged);
+        };
+        let proven = |(_, judgement): &(Characteristic, Judgement)| match judgement {
+            Judgement::Fail(_) => true,
+            Judgement::Pass | Judgement::Conditional(_) | Judgement::Void => false,
+        };
+        let failed: Vec<_> = judged.into_iter().filter(proven).collect();
+        match (stop, Verdict::of(expected, &failed)) {
+            (Stop::Trouble(why), _) => Self::Void(vec![why.clone()]),
+            (Stop::Fail(reason), Self::Fail(reasons)) => Verdict::failed(reason.clone(), reasons),
+            (Stop::Fail(reason), Verdict::Pass | Self::Void(_)) => Self::Fail(vec![reason.clone()]),
+            (Stop::Void(_), Self::Fail(reasons)) => Self::Fail(reasons),
+            (Stop::Void(why), Verdict::Pass | Self::Void(_)) => Self::Void(vec![why.clone()]),
         }
     }
 

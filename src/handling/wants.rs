@@ -3,8 +3,7 @@
 use super::ledger::Part;
 use super::moves::Move;
 use super::place::NestId;
-use crate::dut::em_relay::measure::TestRecord;
-use crate::dut::{Characteristic, Judgement, Reason, Verdict};
+use crate::dut::{Characteristic, Judgement, Reason, TestRecord, Verdict};
 use crate::instrument::act::{Job, JobDone};
 use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalInput, DigitalOut};

@@ -269,7 +269,7 @@ impl Station {
             }
             let mut judged = Judged::interrupted(part.clone(), &why, now);
             if let Some(test) = self.line.feeder.test() {
-                judged.record = test.record().clone();
+                judged.record = test.record();
                 judged.judgements = test.judgements();
             }
             assert!(

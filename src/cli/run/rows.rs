@@ -1,7 +1,6 @@
 //! A judged part as rows of the history and as a JSON object.
 
 use super::recorder::Setup;
-use super::results::{attempts, evidence, result, usable};
 use crate::dut::{Characteristic, Judgement, Verdict};
 use crate::gauge::{Limit, Reading};
 use crate::handling::ledger::Kind;
@@ -78,7 +77,7 @@ fn measurement(
     judged: &Judged,
     (characteristic, limit): (Characteristic, Limit),
 ) -> Option<MeasurementRecord> {
-    let reading = result(judged, characteristic)?;
+    let reading = judged.record.result(characteristic)?;
     let judgement = judged
         .judgements
         .iter()
@@ -104,9 +103,9 @@ fn measurement(
             Some(Judgement::Void) | None => "void",
         }
         .to_string(),
-        attempt: u32::try_from(attempts(judged, characteristic)).unwrap_or(u32::MAX),
+        attempt: u32::try_from(judged.record.attempts(characteristic)).unwrap_or(u32::MAX),
         budget: budget(&reading),
-        samples: evidence(judged, characteristic).map(sample).collect(),
+        samples: judged.record.evidence(characteristic).map(sample).collect(),
     })
 }
 
@@ -123,7 +122,7 @@ pub fn json(setup: &Setup, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> 
     let mut values = Map::new();
     let mut uncertainty = Map::new();
     for characteristic in setup.recipe.kind().characteristics() {
-        let Some(reading) = usable(judged, characteristic) else {
+        let Some(reading) = judged.record.usable(characteristic) else {
             continue;
         };
         let key = characteristic.key();

@@ -1,7 +1,6 @@
 //! Results and bins at the end of a run, for a person.
 
 use super::counts::Counts;
-use super::results::usable;
 use crate::dut::{Characteristic, Kind};
 use crate::handling::wants::Judged;
 use crate::quality::Spread;
@@ -19,7 +18,7 @@ impl Table {
     /// Takes in one part of this kind.
     pub fn add(&mut self, kind: Kind, judged: &Judged) {
         for characteristic in kind.characteristics() {
-            if let Some(reading) = usable(judged, characteristic) {
+            if let Some(reading) = judged.record.usable(characteristic) {
                 let values = self.values.entry(characteristic).or_default();
                 values.push(reading.value);
             }

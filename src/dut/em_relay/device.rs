@@ -8,7 +8,7 @@ use super::feasible::nominal_v_per_s;
 use super::golden::{self, GoldenRun, Misfit};
 use super::lag::LagLaw;
 use super::measure::context::{UNTAUGHT_FINE_V, untaught};
-use super::measure::{Context, Test, TestRecord};
+use super::measure::{Context, Seen, Test};
 use super::points::{AnalogIn, AnalogOut, Missing, Points};
 use super::probe_contact::Trend;
 use super::recipe::RelayRecipe;
@@ -16,6 +16,7 @@ use super::reference::{self, ReferenceFault};
 use super::settings::GoldenPart;
 use crate::dut::Recipe;
 use crate::dut::device::{Made, Rig, TestOrder};
+use crate::dut::record::{Own, TestRecord};
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
 use crate::units::{Ohm, RigTime};
@@ -162,13 +163,14 @@ impl Device {
         record: &TestRecord,
         last: bool,
     ) -> Result<Option<Calibration>, Misfit> {
-        self.learn_ramps(record, false);
+        let seen = seen(record);
+        self.learn_ramps(seen, false);
         let missing = || Misfit::NoCertificate {
             serial: serial.to_owned(),
         };
         let part = self.certificate(serial).ok_or_else(missing)?.clone();
         let reference = self.context.reference_temperature();
-        self.reference_parts.learn(&part, reference, record)?;
+        self.reference_parts.learn(&part, reference, record, seen)?;
         if last {
             return self.conclude_reference_parts().map(Some);
         }
@@ -195,11 +197,12 @@ impl Device {
 
     /// Learns from a part of the lot; one that did not `pass` would spoil the place of the ramp for all that follow.
     pub fn learn(&mut self, record: &TestRecord, pass: bool) {
-        if let Some(ohm) = record.probe_contact {
+        let seen = seen(record);
+        if let Some(ohm) = seen.probe_contact {
             self.probe_contact.add(ohm);
         }
         if pass {
-            self.learn_ramps(record, true);
+            self.learn_ramps(seen, true);
         }
         self.calibrate_lags(Lags {
             operate: self
@@ -240,10 +243,10 @@ impl Device {
         self.certificates.iter().find(|part| part.serial == serial)
     }
 
-    fn learn_ramps(&mut self, record: &TestRecord, of_lot: bool) {
+    fn learn_ramps(&mut self, seen: &Seen, of_lot: bool) {
         let both = [
-            (record.operate, &mut self.coarse.0, &mut self.of_lot.0),
-            (record.release, &mut self.coarse.1, &mut self.of_lot.1),
+            (seen.operate, &mut self.coarse.0, &mut self.of_lot.0),
+            (seen.release, &mut self.coarse.1, &mut self.of_lot.1),
         ];
         for (ramp, law, law_of_lot) in both {
             let Some((coarse, fine)) = ramp.and_then(|it| Some((it.coarse, it.fine?))) else {
@@ -269,5 +272,13 @@ impl Device {
 
     fn calibrate(&mut self, change: impl FnOnce(&mut Calibration)) {
         change(Arc::make_mut(&mut self.context.calibration));
+    }
+}
+
+/// What the test of a relay has seen.
+fn seen(record: &TestRecord) -> &Seen {
+    match &record.own {
+        Own::EmRelay(seen) => seen,
+        Own::Nothing => panic!("the record of a tested relay lacks what its test has seen"),
     }
 }

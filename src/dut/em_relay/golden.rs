@@ -3,7 +3,8 @@
 //! The coarse lag goes on learning from every good part of the lot that has shown both ramps;
 //! the fine lag, which enters every result, comes from the certificates alone.
 
-use super::measure::{Ramp, TestRecord};
+use super::measure::{Ramp, Seen};
+use crate::dut::TestRecord;
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::calibration::{Lag, Lags};
 use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
@@ -102,28 +103,28 @@ pub struct GoldenRun {
 
 impl GoldenRun {
     /// Takes in a tested golden part, or says why it cannot be used.
-    pub fn learn(
+    pub fn learn<T>(
         &mut self,
         part: &GoldenPart,
         reference: Celsius,
-        record: &TestRecord,
+        record: &TestRecord<T>,
+        seen: &Seen,
     ) -> Result<(), Misfit> {
         let serial = &part.serial;
         let without = |what| Misfit::Without {
             serial: serial.clone(),
             what,
         };
-        let track = record.track.ok_or_else(|| without("temperature"))?;
+        let track = seen.track.ok_or_else(|| without("temperature"))?;
         let fine = |ramp: Option<Ramp>| ramp.and_then(|ramp| ramp.fine);
         let over = |ramp: Option<Ramp>| {
             ramp.and_then(|it| Some((it.coarse.indicated - it.fine?).0))
                 .unwrap_or(f64::NAN)
         };
-        let operate = fine(record.operate).ok_or_else(|| without("operate voltage"))?;
-        let release = fine(record.release).ok_or_else(|| without("release voltage"))?;
+        let operate = fine(seen.operate).ok_or_else(|| without("operate voltage"))?;
+        let release = fine(seen.release).ok_or_else(|| without("release voltage"))?;
         check_coil(part, record)?;
-        record
-            .probe_contact
+        seen.probe_contact
             .into_iter()
             .for_each(|ohm| self.contact.add(ohm));
         let at_part = |certified: Certified| certified.value / to_reference(track, reference);
@@ -131,7 +132,7 @@ impl GoldenRun {
             serial: serial.clone(),
             operate: operate.0 - at_part(part.operate_voltage_v),
             release: release.0 - at_part(part.release_voltage_v),
-            coarse: [over(record.operate), over(record.release)],
+            coarse: [over(seen.operate), over(seen.release)],
         });
         Ok(())
     }
@@ -233,7 +234,7 @@ fn mean(parts: &[GoldenPart], certified: fn(&GoldenPart) -> Certified) -> f64 {
     parts.iter().map(|part| certified(part).value).sum::<f64>() / parts.len().max(1) as f64
 }
 
-fn check_coil(part: &GoldenPart, record: &TestRecord) -> Result<(), Misfit> {
+fn check_coil<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit> {
     let serial = &part.serial;
     let coil = record
         .result(Parameter::CoilResistance)
@@ -259,7 +260,7 @@ fn check_coil(part: &GoldenPart, record: &TestRecord) -> Result<(), Misfit> {
 const CHECK_K: f64 = 3.0;
 
 /// Compares what was measured on a golden part with its certificate; an error says what does not agree.
-pub fn check(part: &GoldenPart, record: &TestRecord) -> Result<(), Misfit> {
+pub fn check<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit> {
     let certified = [
         (Parameter::CoilResistance, part.coil_resistance_ohm, "ohm"),
         (Parameter::OperateVoltage, part.operate_voltage_v, "V"),

@@ -52,6 +52,7 @@ pub mod timing;
 pub use calibration::Calibration;
 pub use device::Device;
 pub use finding::Finding;
+pub use measure::Seen;
 pub use parameter::Parameter;
 pub use strategy::Strategy;
 

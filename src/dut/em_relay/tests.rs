@@ -1,4 +1,5 @@
 //! Recipe, golden parts and instruments that err by nothing.
+#![allow(clippy::unwrap_used)]
 
 use crate::dut;
 use crate::dut::em_relay::Calibration;

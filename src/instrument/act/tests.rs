@@ -1,4 +1,5 @@
 //! The runner carries acts out one after the other and says where the time went.
+#![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut};
 use crate::handling::tests::Shop;

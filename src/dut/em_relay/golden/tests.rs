@@ -1,4 +1,5 @@
 //! What golden parts teach, and which of them are refused.
+#![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::golden::{GoldenRun, interim};
@@ -18,9 +19,9 @@ const REFERENCE: Celsius = Celsius(23.0);
 fn tested(part: &GoldenPart, operate_v: f64, release_v: f64, coil_off_ohm: f64) -> TestRecord {
     let fine = |volts: f64| Some(Ramp::fine_only(Volt(volts)));
     let mut record = TestRecord::default();
-    record.track = Some(REFERENCE);
-    record.operate = fine(part.operate_voltage_v.value + operate_v);
-    record.release = fine(part.release_voltage_v.value + release_v);
+    record.own.track = Some(REFERENCE);
+    record.own.operate = fine(part.operate_voltage_v.value + operate_v);
+    record.own.release = fine(part.release_voltage_v.value + release_v);
     let reading = Reading {
         value: part.coil_resistance_ohm.value + coil_off_ohm,
         budget: Budget::default().with("test", 0.1),
@@ -33,7 +34,7 @@ fn run_of(operate_mv: &[f64], release_mv: f64) -> GoldenRun {
     let mut run = GoldenRun::default();
     for (part, mv) in golden_parts().iter().zip(operate_mv) {
         let record = tested(part, mv / 1e3, release_mv / 1e3, 0.0);
-        run.learn(part, REFERENCE, &record).unwrap();
+        run.learn(part, REFERENCE, &record, &record.own).unwrap();
     }
     run
 }
@@ -58,16 +59,16 @@ fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() 
     for part in &parts {
         let scale = (234.5 + 28.0) / (234.5 + 23.0);
         let mut record = tested(part, 0.0, 0.0, 0.0);
-        record.track = Some(warm);
-        record.operate = Some(Ramp {
+        record.own.track = Some(warm);
+        record.own.operate = Some(Ramp {
             coarse: Shown::NOTHING,
             fine: Some(Volt(part.operate_voltage_v.value * scale + 0.012)),
         });
-        record.release = Some(Ramp {
+        record.own.release = Some(Ramp {
             coarse: Shown::NOTHING,
             fine: Some(Volt(part.release_voltage_v.value * scale - 0.012)),
         });
-        run.learn(part, REFERENCE, &record).unwrap();
+        run.learn(part, REFERENCE, &record, &record.own).unwrap();
     }
     let lags = run.lags(&parts, &context().accuracy, untaught()).unwrap();
     assert!((lags.operate.fine_v.value - 0.012).abs() < 1e-9);
@@ -113,23 +114,23 @@ fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
         record
     };
     let cases = [
-        ("temperature", spoilt(|found| found.track = None)),
-        ("operate", spoilt(|found| found.operate = None)),
-        ("release", spoilt(|found| found.release = None)),
+        ("temperature", spoilt(|found| found.own.track = None)),
+        ("operate", spoilt(|found| found.own.operate = None)),
+        ("release", spoilt(|found| found.own.release = None)),
         (
             "release",
-            spoilt(|found| found.release = found.release.map(|r| Ramp { fine: None, ..r })),
+            spoilt(|found| found.own.release = found.own.release.map(|r| Ramp { fine: None, ..r })),
         ),
         ("coil", tested(&part, 0.014, -0.009, 3.0)),
         ("coil", tested(&part, 0.014, -0.009, -3.0)),
     ];
     for (what, record) in cases {
-        let refused = GoldenRun::default().learn(&part, REFERENCE, &record);
+        let refused = GoldenRun::default().learn(&part, REFERENCE, &record, &record.own);
         let why = refused.unwrap_err();
         let why = why.to_string();
         assert!(why.contains("G-12-2") && why.contains(what), "{why}");
     }
-    let learned = GoldenRun::default().learn(&part, REFERENCE, &good());
+    let learned = GoldenRun::default().learn(&part, REFERENCE, &good(), &good().own);
     assert_eq!(learned, Ok(()));
 }
 

@@ -175,12 +175,12 @@ pub(super) fn conclude(
         record.stop(Finding::CoilOpen);
         return None;
     }
-    let part = record.track?;
+    let part = record.own.track?;
     let reference = context.reference_temperature();
     match resistance(&scans, ohm, part, reference, context.scan_doubt()) {
         Some(reading) => {
             let coil = Ohm(reading.value / to_reference(part, reference));
-            record.probe_contact = probe_contact(context, &readings.coil, coil);
+            record.own.probe_contact = probe_contact(context, &readings.coil, coil);
             record.found(Parameter::CoilResistance, reading, &samples);
         }
         None => record.stop(Finding::CoilOpen),

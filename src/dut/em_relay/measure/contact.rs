@@ -118,7 +118,7 @@ pub(super) fn conclude_nc(
 ) -> Option<Stage> {
     match readings.track.first() {
         Some(track) if track.quality == Quality::Good && track.value.is_finite() => {
-            state.record.track = Some(Celsius(track.value));
+            state.record.own.track = Some(Celsius(track.value));
         }
         Some(_) | None => state.record.stop(Finding::TrackNotReadable),
     }

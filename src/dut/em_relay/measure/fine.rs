@@ -37,7 +37,7 @@ pub(super) fn conclude(
         state.board.armature = Armature::Operated;
     }
     let (record, parameter) = (&mut state.record, parameter(direction));
-    let part = record.track?;
+    let part = record.own.track?;
     if record
         .ramp(direction)
         .is_none_or(|ramp| ramp.fine.is_none())
@@ -67,7 +67,7 @@ fn meet(
         record,
     } = state;
     let (sent, searched) = (board.sent(), plan.interval(record, direction));
-    let (Some(gate), Some(_)) = (gate0(context, readings), record.track) else {
+    let (Some(gate), Some(_)) = (gate0(context, readings), record.own.track) else {
         record.stop(Finding::GatesNotRead);
         return None;
     };

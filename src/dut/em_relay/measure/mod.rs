@@ -58,7 +58,7 @@ use crate::rig::sample::CountSample;
 use crate::units::{RigTime, Span};
 use board::Armature;
 pub use context::Context;
-pub use record::{Evidence, Ramp, Stop, TestRecord};
+pub use record::{Ramp, Seen, TestRecord};
 pub use stage::Stage;
 use stage::order;
 use state::TestState;
@@ -261,7 +261,9 @@ impl Test {
 
     /// Verdict of the part.
     pub fn verdict(&self) -> Verdict {
-        verdict::verdict(self.state.record.why_stopped(), self.judgements())
+        let expected = Parameter::ALL.map(Characteristic::from);
+        let stop = self.state.record.why_stopped();
+        Verdict::after(stop, &expected, self.judgements())
     }
 }
 

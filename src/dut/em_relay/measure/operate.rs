@@ -110,7 +110,7 @@ pub(super) fn conclude_coarse(
     board.armature = Armature::Operated;
     board.still_ramping = turning(context, coarse - start);
     let shown = record.shown(coarse, Direction::Rising);
-    record.operate = Some(Ramp::coarse_only(shown));
+    record.own.operate = Some(Ramp::coarse_only(shown));
     after_coarse(context, readings, state, (shown, Direction::Rising))
         .then_some(Stage::OperateFine(0))
 }

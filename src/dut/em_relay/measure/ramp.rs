@@ -151,7 +151,7 @@ pub(super) fn after_coarse(
     state: &mut TestState,
     (seen, direction): (Shown, Direction),
 ) -> bool {
-    let Some(part) = state.record.track else {
+    let Some(part) = state.record.own.track else {
         return false;
     };
     let (lag, parameter) = (context.lag(direction), parameter(direction));

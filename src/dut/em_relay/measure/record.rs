@@ -1,46 +1,11 @@
-//! Record of a test: results, the replies they came from, where the time went, and why it ended early.
+//! What only the test of a relay sees beside its results: ramps, temperature, contact of the probes.
 
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::lag::Shown;
 use crate::dut::em_relay::threshold::Direction;
-use crate::dut::reason::{Code, Reason};
+use crate::dut::record;
 use crate::gauge::Judgement;
-use crate::gauge::budget::Reading;
-use crate::gauge::repetition::mean;
-use crate::instrument::act::Spent;
-use crate::instrument::trace::Trace;
-use crate::rig::sample::{CountSample, Origin, Sample};
-use crate::units::{Celsius, Ohm, Span, Volt};
-use std::collections::BTreeMap;
-
-/// What a result was made from: line, module, channel and raw text lead back to the bytes.
-pub trait Evidence {
-    /// Where it came from.
-    fn origin(&self) -> &Origin;
-}
-
-impl Evidence for Sample {
-    fn origin(&self) -> &Origin {
-        &self.origin
-    }
-}
-
-impl Evidence for CountSample {
-    fn origin(&self) -> &Origin {
-        &self.origin
-    }
-}
-
-/// Why a test ends before its last stage.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Stop {
-    /// The part is bad.
-    Fail(Reason),
-    /// It cannot be judged.
-    Void(Reason),
-    /// The rig was in trouble: what it has measured of the part so far, good or bad, proves nothing.
-    Trouble(Reason),
-}
+use crate::units::{Celsius, Ohm, Volt};
 
 /// A ramp as it was seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,84 +31,39 @@ impl Ramp {
     }
 }
 
-/// What a test has measured so far.
+/// What a test of a relay sees and no other kind has.
 #[derive(Debug, Clone, Default)]
-pub struct TestRecord {
-    readings: Vec<(Parameter, Reading)>,
-    evidence: Vec<(Parameter, Origin)>,
-    stop: Option<Stop>,
-    /// What was seen, sample by sample.
-    pub trace: Trace,
-    /// Where the time went.
-    pub spent: Spent,
+pub struct Seen {
     /// Force contacts of the coil in series, once it was measured.
     pub probe_contact: Option<Ohm>,
     /// Temperature of the magazine track when the test began.
     pub track: Option<Celsius>,
     /// Limits that were proven without a value.
     pub proven: Vec<(Parameter, Judgement)>,
-    /// Rig time by what it was spent on.
-    pub stages: BTreeMap<&'static str, Span>,
     /// Operate ramps.
     pub operate: Option<Ramp>,
     /// Release ramps.
     pub release: Option<Ramp>,
 }
 
+/// Record of the test of a relay.
+pub type TestRecord = record::TestRecord<Seen>;
+
 impl TestRecord {
     /// The ramps of a direction.
     pub fn ramp(&self, direction: Direction) -> Option<Ramp> {
         match direction {
-            Direction::Rising => self.operate,
-            Direction::Falling => self.release,
+            Direction::Rising => self.own.operate,
+            Direction::Falling => self.own.release,
         }
     }
 
     /// Keeps the ramps of a direction.
     pub fn keep_ramp(&mut self, direction: Direction, ramp: Ramp) {
         match direction {
-            Direction::Rising => self.operate = Some(ramp),
-            Direction::Falling => self.release = Some(ramp),
+            Direction::Rising => self.own.operate = Some(ramp),
+            Direction::Falling => self.own.release = Some(ramp),
         }
-    }
-
-    /// Books the time of a stage.
-    pub fn took(&mut self, what: &'static str, time: Span) {
-        *self.stages.entry(what).or_default() += time;
-    }
-
-    /// Adds one result of a stage with the replies it was made from.
-    pub fn found<'a, S: Evidence + 'a>(
-        &mut self,
-        parameter: Parameter,
-        reading: Reading,
-        samples: impl IntoIterator<Item = &'a S>,
-    ) {
-        self.readings.push((parameter, reading));
-        self.evidence.extend(
-            samples
-                .into_iter()
-                .map(|sample| (parameter, sample.origin().clone())),
-        );
-    }
-
-    /// Takes back the results of a parameter, which a later reading of more closures replaces.
-    pub fn forget(&mut self, parameter: Parameter) {
-        self.readings.retain(|(known, _)| *known != parameter);
-    }
-
-    /// Each result of a parameter, in the order they came.
-    pub fn each(&self, parameter: Parameter) -> impl Iterator<Item = &Reading> {
-        self.readings
-            .iter()
-            .filter(move |(known, _)| *known == parameter)
-            .map(|(_, reading)| reading)
-    }
-
-    /// Result of a parameter: the mean of its repetitions, which lie apart as far as the part scatters.
-    pub fn result(&self, parameter: Parameter) -> Option<Reading> {
-        let repetitions: Vec<Reading> = self.each(parameter).cloned().collect();
-        mean(&repetitions, parameter.definition().spoken_of)
     }
 
     /// What the part has shown by the end of a coarse ramp.
@@ -157,6 +77,7 @@ impl TestRecord {
             operate: match direction {
                 Direction::Rising => indicated,
                 Direction::Falling => self
+                    .own
                     .operate
                     .map_or(Volt(f64::NAN), |ramp| ramp.coarse.indicated),
             },
@@ -164,51 +85,5 @@ impl TestRecord {
             release_ms: value(Parameter::ReleaseTime),
             coil_ohm: value(Parameter::CoilResistance),
         }
-    }
-
-    /// How often a parameter was measured.
-    pub fn attempts(&self, parameter: Parameter) -> usize {
-        self.each(parameter).count()
-    }
-
-    /// Replies behind a parameter, in the order they came.
-    pub fn evidence(&self, parameter: Parameter) -> impl Iterator<Item = &Origin> {
-        self.evidence
-            .iter()
-            .filter(move |(known, _)| *known == parameter)
-            .map(|(_, e)| e)
-    }
-
-    /// Ends the test early by what a stage has found; the first finding stays.
-    pub fn stop(&mut self, found: impl Into<Reason>) {
-        let reason = found.into();
-        let stop = match reason.code {
-            Code::EmRelay(finding) if finding.bin().is_some() => Stop::Fail(reason),
-            Code::EmRelay(_)
-            | Code::OutsideLimit(_)
-            | Code::NotProven(_)
-            | Code::NotMeasured(_)
-            | Code::Interrupted
-            | Code::RigTrouble
-            | Code::Unclassified => Stop::Void(reason),
-        };
-        self.stop.get_or_insert(stop);
-    }
-
-    /// Ends the test early because the rig is in trouble, whatever the part has ended it by before.
-    pub fn trouble(&mut self, why: String) {
-        if !matches!(self.stop, Some(Stop::Trouble(_))) {
-            self.stop = Some(Stop::Trouble(Reason::rig_trouble(why)));
-        }
-    }
-
-    /// True once the test has ended early.
-    pub fn stopped(&self) -> bool {
-        self.stop.is_some()
-    }
-
-    /// Why it ended early.
-    pub fn why_stopped(&self) -> Option<&Stop> {
-        self.stop.as_ref()
     }
 }

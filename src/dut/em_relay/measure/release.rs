@@ -140,7 +140,7 @@ pub(super) fn conclude_coarse(
     };
     let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
     let shown = record.shown(coarse, Direction::Falling);
-    record.release = Some(Ramp::coarse_only(shown));
+    record.own.release = Some(Ramp::coarse_only(shown));
     after_coarse(context, readings, state, (shown, Direction::Falling))
         .then_some(Stage::ReleaseFine(0))
 }

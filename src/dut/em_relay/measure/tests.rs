@@ -7,11 +7,12 @@ mod sampling;
 mod stages;
 mod whole;
 
-use super::{Stop, TestState};
+use super::TestState;
 use crate::dcon::{Channel, Command};
 use crate::dut::em_relay::points::{AnalogIn, Counter};
 use crate::dut::em_relay::readings::{BoardInputs, CoilScan, Readings};
 use crate::dut::em_relay::tests::context;
+use crate::dut::record::Stop;
 use crate::dut::verdict::Bin;
 use crate::rig::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
 use crate::rig::wiring::{LineId, ModuleId};
@@ -105,7 +106,7 @@ fn watched(seen: bool, board: BoardInputs, gate_ms: f64) -> Readings {
 /// Test of a part whose temperature is known.
 fn at_23_c() -> TestState {
     let mut state = TestState::new(&context());
-    state.record.track = Some(Celsius(23.0));
+    state.record.own.track = Some(Celsius(23.0));
     state
 }
 

@@ -78,7 +78,7 @@ impl Search {
     ) -> Self {
         let begun = plan.search.filter(|it| it.direction == direction);
         begun.unwrap_or_else(|| {
-            let Some(part) = record.track else {
+            let Some(part) = record.own.track else {
                 panic!("a search for a threshold of a part of unknown temperature");
             };
             let strategy = context.strategy(parameter(direction));

@@ -45,7 +45,7 @@ pub(in crate::dut::em_relay::measure) fn conclude(
         }
         Next::Proven => {
             let judgement = (parameter(direction), Judgement::Pass);
-            state.record.proven.push(judgement);
+            state.record.own.proven.push(judgement);
         }
         Next::Ramp if rising => return Some(Stage::OperateCoarse),
         Next::Ramp => return Some(Stage::ReleaseCoarse),
@@ -90,7 +90,7 @@ fn found(
     (volts, step): (Volt, Volt),
     samples: &[[CountSample; 2]],
 ) {
-    let Some(part) = state.record.track else {
+    let Some(part) = state.record.own.track else {
         return;
     };
     let expected = near(context, direction, volts, step);

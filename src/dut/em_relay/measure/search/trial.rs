@@ -28,7 +28,7 @@ pub(in crate::dut::em_relay::measure) fn acts(
     let (mut acts, mut board) = match (search.begins_anew(), search.direction) {
         (true, Direction::Rising) => from_rest(board, pace, search.at),
         (true, Direction::Falling) => {
-            let ramped = record.operate.is_some() && search.trials == 0;
+            let ramped = record.own.operate.is_some() && search.trials == 0;
             from_sealed(context, board, ramped)
         }
         (false, Direction::Rising | Direction::Falling) => (Vec::new(), board),

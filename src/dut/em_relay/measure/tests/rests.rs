@@ -77,7 +77,7 @@ fn a_part_of_unknown_temperature_or_unread_pins_is_void() {
         };
         let mut state = TestState::new(&context());
         contact::conclude_nc(&context(), &readings, &mut state);
-        assert_eq!(state.record.track, known);
+        assert_eq!(state.record.own.track, known);
         match known {
             Some(_) => assert_eq!(ended(&state), None),
             None => assert_ends(&state, Bin::RETEST, "temperature"),
@@ -174,7 +174,7 @@ fn coil_of(scans: Vec<CoilScan>, celsius: f64) -> TestState {
         ..Readings::default()
     };
     let mut state = at_23_c();
-    state.record.track = Some(Celsius(celsius));
+    state.record.own.track = Some(Celsius(celsius));
     coil::conclude(&context(), &readings, &mut state);
     state
 }

@@ -40,7 +40,7 @@ fn the_coarse_ramp_places_the_fine_one_by_its_learned_lag() {
     let next = operate::conclude_coarse(&context(), &readings, &mut state);
     assert_eq!((next, ended(&state)), (None, None));
     let seen = 5.0 + 0.05 + 96.0 * 0.04;
-    let coarse = state.record.operate.unwrap().coarse.indicated;
+    let coarse = state.record.own.operate.unwrap().coarse.indicated;
     assert!((coarse.0 - seen).abs() < 1e-9);
     let expected = state.plan.expected(Direction::Rising).unwrap();
     assert!((expected.centre.0 - (seen - 0.85)).abs() < 1e-9);
@@ -91,7 +91,7 @@ fn a_contact_that_does_not_move_at_nominal_voltage_is_stuck_unless_the_coil_is_t
 #[test]
 fn a_fine_ramp_that_meets_its_event_gives_the_threshold() {
     let mut state = ramp_from(7.8, 0.2);
-    state.record.operate = Some(Ramp {
+    state.record.own.operate = Some(Ramp {
         coarse: state.record.shown(Volt(8.8), Direction::Rising),
         fine: None,
     });
@@ -180,12 +180,12 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
         let mut state = ramp_from(4.0, 4.0);
         let next = release::conclude_coarse(&context(), &readings, &mut state);
         assert_eq!(next, Some(Stage::Search(Direction::Falling)));
-        assert_eq!(state.record.release, None);
+        assert_eq!(state.record.own.release, None);
     }
     let mut state = ramp_from(4.0, 4.0);
     let readings = watched(true, RESTING, 25.0);
     release::conclude_coarse(&context(), &readings, &mut state);
-    let coarse = state.record.release.unwrap().coarse.indicated;
+    let coarse = state.record.own.release.unwrap().coarse.indicated;
     assert!((coarse.0 - (4.0 - 0.05 - 2.4)).abs() < 1e-9);
     let expected = state.plan.expected(Direction::Falling).unwrap();
     assert!((expected.centre.0 - (coarse.0 + 1.05)).abs() < 1e-9);
@@ -197,7 +197,7 @@ fn a_coarse_release_without_a_break_is_searched_by_halves() {
 fn a_coarse_release_of_a_coil_of_few_volts_is_told_down_to_the_last_step_of_its_ramp() {
     let mut state = ramp_from(4.0, 4.0);
     release::conclude_coarse(&context(), &watched(true, RESTING, 40.0), &mut state);
-    let coarse = state.record.release.unwrap().coarse.indicated;
+    let coarse = state.record.own.release.unwrap().coarse.indicated;
     assert!((coarse.0 - 0.11).abs() < 1e-9);
 }
 
