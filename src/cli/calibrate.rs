@@ -51,7 +51,12 @@ pub struct CalibrateArgs {
 /// Runs the command; the result is the exit status.
 pub fn run(config: &Path, db: &Path, args: &CalibrateArgs) -> anyhow::Result<i32> {
     let plant = Plant::load(config)?;
-    let nominal_v = load_recipe(config, &args.recipe)?.nominal_v();
+    let Some(nominal_v) = load_recipe(config, &args.recipe)?.rated_v() else {
+        bail!(
+            "--recipe {}: found a kind that needs no calibration, expected a relay",
+            args.recipe
+        );
+    };
     if plant.golden.of_nominal(nominal_v).next().is_none() {
         bail!(
             "{}: found no golden part of {nominal_v} V, expected at least 3",

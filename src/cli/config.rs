@@ -104,9 +104,13 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
     let recipe = load_recipe(dir, name)?;
     plant.admit(&recipe)?;
     let file = dir.join("recipes").join(format!("{name}.toml"));
-    let golden = match plant.golden.of_nominal(recipe.nominal_v()).count() {
-        0 => "NO GOLDEN PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
-        count => format!("{count} golden parts"),
+    let golden = match recipe
+        .rated_v()
+        .map(|volts| plant.golden.of_nominal(volts).count())
+    {
+        None => "no golden parts needed".to_owned(),
+        Some(0) => "NO GOLDEN PARTS of its coil voltage: a lot cannot be calibrated".to_owned(),
+        Some(count) => format!("{count} golden parts"),
     };
     let all = recipe.kind().characteristics().len();
     let judged = recipe

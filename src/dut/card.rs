@@ -1,9 +1,9 @@
 //! The operation process card of a recipe as data: what the kind says on it, and what the plant adds in `card.toml`.
 
 use super::characteristic::Characteristic;
-use super::em_relay;
 use super::recipe::{DeviceRecipe, Recipe};
 use super::words::Words;
+use super::{em_relay, resistor};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -89,6 +89,7 @@ impl Card {
     pub fn of(recipe: &Recipe) -> Self {
         match &recipe.device {
             DeviceRecipe::EmRelay(relay) => em_relay::card::card(relay),
+            DeviceRecipe::Resistor(resistor) => resistor::card::card(resistor),
         }
     }
 }

@@ -4,8 +4,8 @@
 //! same in recipes, rows, files and API.
 
 use super::Kind;
-use super::em_relay;
 use super::verdict::Bin;
+use super::{em_relay, resistor};
 use crate::gauge::repetition::SpokenOf;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
@@ -32,6 +32,8 @@ pub struct Definition {
 pub enum Characteristic {
     /// Of an electromagnetic relay.
     EmRelay(em_relay::Parameter),
+    /// Of a resistor.
+    Resistor(resistor::Parameter),
 }
 
 impl Characteristic {
@@ -49,6 +51,7 @@ impl Characteristic {
     pub fn definition(self) -> &'static Definition {
         match self {
             Self::EmRelay(parameter) => parameter.definition(),
+            Self::Resistor(parameter) => parameter.definition(),
         }
     }
 

@@ -2,13 +2,14 @@
 
 use super::calibration::Calibration;
 use super::em_relay;
-use super::em_relay::points::Missing;
 use super::em_relay::settings::{AccuracySettings, GoldenSet, ReferenceSettings};
 use super::procedure::Procedure;
 use super::recipe::{DeviceRecipe, Recipe};
 use super::record::TestRecord;
+use super::resistor;
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
+use crate::rig::point::MissingPoint;
 use crate::rig::wiring::Wiring;
 use crate::units::{Ohm, RigTime};
 use std::sync::Arc;
@@ -60,11 +61,15 @@ pub enum CalibrationFault {
     ReferencePart(#[from] em_relay::golden::Misfit),
 }
 
+const NO_REFERENCE_PARTS: &str = "a resistor has no reference parts, so none was planned";
+
 /// A kind of device on a rig: what outlives one part.
 #[derive(Debug, Clone)]
 pub enum Device {
     /// Electromagnetic relay.
     EmRelay(Box<em_relay::Device>),
+    /// Resistor: needs no calibration and learns nothing.
+    Resistor(Box<resistor::Device>),
 }
 
 impl Device {
@@ -76,7 +81,7 @@ impl Device {
         recipe: Arc<Recipe>,
         rig: &Rig,
         stored: Option<Calibration>,
-    ) -> Result<Self, Missing> {
+    ) -> Result<Self, MissingPoint> {
         match &recipe.device {
             DeviceRecipe::EmRelay(relay) => {
                 let stored = stored.map(|Calibration::EmRelay(factors)| factors);
@@ -84,20 +89,19 @@ impl Device {
                 let device = em_relay::Device::new(recipe, relay, rig, stored)?;
                 Ok(Self::EmRelay(Box::new(device)))
             }
+            DeviceRecipe::Resistor(resistor) => {
+                let resistor = Arc::new(resistor.clone());
+                let device = resistor::Device::new(recipe, resistor, rig)?;
+                Ok(Self::Resistor(Box::new(device)))
+            }
         }
     }
 
-    /// The factors in force.
-    pub fn calibration(&self) -> Calibration {
+    /// When the factors in force run out, microseconds since 1970 UTC; never for a kind that needs none.
+    pub fn due_at_us(&self) -> Option<i64> {
         match self {
-            Self::EmRelay(relay) => Calibration::EmRelay(relay.calibration().clone()),
-        }
-    }
-
-    /// When the factors in force run out, microseconds since 1970 UTC.
-    pub fn due_at_us(&self) -> i64 {
-        match self {
-            Self::EmRelay(relay) => relay.calibration().due_at_us,
+            Self::EmRelay(relay) => Some(relay.calibration().due_at_us),
+            Self::Resistor(_) => None,
         }
     }
 
@@ -105,6 +109,15 @@ impl Device {
     pub fn reference_serials(&self) -> Vec<String> {
         match self {
             Self::EmRelay(relay) => relay.reference_serials().map(str::to_owned).collect(),
+            Self::Resistor(_) => Vec::new(),
+        }
+    }
+
+    /// True when the kind measures references and reference parts before a lot.
+    pub fn needs_calibration(&self) -> bool {
+        match self {
+            Self::EmRelay(_) => true,
+            Self::Resistor(_) => false,
         }
     }
 
@@ -112,6 +125,7 @@ impl Device {
     pub fn is_calibrated(&self) -> bool {
         match self {
             Self::EmRelay(relay) => relay.is_calibrated(),
+            Self::Resistor(_) => true,
         }
     }
 
@@ -119,6 +133,7 @@ impl Device {
     pub fn reference_acts(&self) -> Vec<Act> {
         match self {
             Self::EmRelay(relay) => relay.reference_acts(),
+            Self::Resistor(_) => Vec::new(),
         }
     }
 
@@ -133,6 +148,7 @@ impl Device {
     ) -> Result<(), CalibrationFault> {
         match self {
             Self::EmRelay(relay) => Ok(relay.conclude_references(readings, made)?),
+            Self::Resistor(_) => Ok(()),
         }
     }
 
@@ -140,6 +156,7 @@ impl Device {
     pub fn forget_calibration(&mut self) {
         match self {
             Self::EmRelay(relay) => relay.forget_calibration(),
+            Self::Resistor(_) => {}
         }
     }
 
@@ -147,6 +164,7 @@ impl Device {
     pub fn begin(&self, order: &TestOrder, now: RigTime) -> Procedure {
         match self {
             Self::EmRelay(relay) => Procedure::EmRelay(Box::new(relay.begin(order, now))),
+            Self::Resistor(resistor) => Procedure::Resistor(Box::new(resistor.begin(order, now))),
         }
     }
 
@@ -165,6 +183,7 @@ impl Device {
                 let complete = relay.learn_reference(serial, record, last)?;
                 Ok(complete.map(Calibration::EmRelay))
             }
+            Self::Resistor(_) => panic!("{NO_REFERENCE_PARTS}"),
         }
     }
 
@@ -175,6 +194,7 @@ impl Device {
     pub fn conclude_reference_parts(&mut self) -> Result<Calibration, CalibrationFault> {
         match self {
             Self::EmRelay(relay) => Ok(Calibration::EmRelay(relay.conclude_reference_parts()?)),
+            Self::Resistor(_) => panic!("{NO_REFERENCE_PARTS}"),
         }
     }
 
@@ -182,6 +202,7 @@ impl Device {
     pub fn learn(&mut self, record: &TestRecord, pass: bool) {
         match self {
             Self::EmRelay(relay) => relay.learn(record, pass),
+            Self::Resistor(_) => {}
         }
     }
 
@@ -192,6 +213,7 @@ impl Device {
     pub fn check(&self, serial: &str, record: &TestRecord) -> Result<(), CalibrationFault> {
         match self {
             Self::EmRelay(relay) => Ok(relay.check(serial, record)?),
+            Self::Resistor(_) => panic!("{NO_REFERENCE_PARTS}"),
         }
     }
 
@@ -199,6 +221,7 @@ impl Device {
     pub fn probe_contact(&self) -> Option<Ohm> {
         match self {
             Self::EmRelay(relay) => relay.probe_contact(),
+            Self::Resistor(_) => None,
         }
     }
 
@@ -206,6 +229,7 @@ impl Device {
     pub fn settled_probe_contact(&self) -> Option<Ohm> {
         match self {
             Self::EmRelay(relay) => relay.settled_probe_contact(),
+            Self::Resistor(_) => None,
         }
     }
 }

@@ -1,8 +1,8 @@
 //! What made-up parts of a kind look like, for trying a history: how values scatter, and what a test would have seen.
 
 use super::characteristic::Characteristic;
-use super::em_relay;
 use super::recipe::{DeviceRecipe, Recipe};
+use super::{em_relay, resistor};
 use crate::gauge::Budget;
 use crate::instrument::trace::Signal;
 
@@ -37,6 +37,7 @@ pub struct Looks {
 pub fn scatter(recipe: &Recipe) -> Vec<(Characteristic, Scatter)> {
     match &recipe.device {
         DeviceRecipe::EmRelay(relay) => em_relay::made_up::scatter(relay),
+        DeviceRecipe::Resistor(_) => resistor::made_up::scatter(&recipe.limits),
     }
 }
 
@@ -44,5 +45,6 @@ pub fn scatter(recipe: &Recipe) -> Vec<(Characteristic, Scatter)> {
 pub fn evidence(recipe: &Recipe) -> Vec<Looks> {
     match &recipe.device {
         DeviceRecipe::EmRelay(_) => em_relay::made_up::evidence(),
+        DeviceRecipe::Resistor(_) => Vec::new(),
     }
 }

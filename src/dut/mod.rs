@@ -15,6 +15,7 @@ pub mod reason;
 pub mod recipe;
 pub mod record;
 pub mod rejudge;
+pub mod resistor;
 pub mod verdict;
 pub mod words;
 
@@ -38,16 +39,19 @@ pub const FIXTURES: &[Fixture] = &[em_relay::points::FIXTURE];
 pub enum Kind {
     /// Electromagnetic relay: coil, armature, changeover contact.
     EmRelay,
+    /// One resistor in a relay-size body: a fixture check.
+    Resistor,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 1] = [Self::EmRelay];
+    pub const ALL: [Self; 2] = [Self::EmRelay, Self::Resistor];
 
     /// Its name in recipes.
     pub const fn name(self) -> &'static str {
         match self {
             Self::EmRelay => "em_relay",
+            Self::Resistor => "resistor",
         }
     }
 
@@ -60,6 +64,7 @@ impl Kind {
     pub fn characteristics(self) -> Vec<Characteristic> {
         match self {
             Self::EmRelay => em_relay::Parameter::ALL.map(Characteristic::from).to_vec(),
+            Self::Resistor => resistor::Parameter::ALL.map(Characteristic::from).to_vec(),
         }
     }
 
@@ -67,6 +72,7 @@ impl Kind {
     pub fn findings(self) -> Vec<reason::Code> {
         match self {
             Self::EmRelay => em_relay::Finding::ALL.map(reason::Code::EmRelay).to_vec(),
+            Self::Resistor => resistor::Finding::ALL.map(reason::Code::Resistor).to_vec(),
         }
     }
 }

@@ -4,6 +4,7 @@ use super::Characteristic;
 use super::em_relay::measure;
 use super::reason::Reason;
 use super::record::{Own, Stop, TestRecord};
+use super::resistor;
 use super::verdict::Verdict;
 use crate::gauge::Judgement;
 use crate::instrument::act::{Doing, JobDone};
@@ -24,6 +25,8 @@ pub enum Progress {
 pub enum Procedure {
     /// Of an electromagnetic relay.
     EmRelay(Box<measure::Test>),
+    /// Of a resistor.
+    Resistor(Box<resistor::Test>),
 }
 
 impl Procedure {
@@ -31,6 +34,7 @@ impl Procedure {
     pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
         match self {
             Self::EmRelay(test) => test.step(now, done, image),
+            Self::Resistor(test) => test.step(now, done, image),
         }
     }
 
@@ -38,6 +42,7 @@ impl Procedure {
     pub fn number(&self) -> u8 {
         match self {
             Self::EmRelay(test) => test.number(),
+            Self::Resistor(test) => test.number(),
         }
     }
 
@@ -45,16 +50,19 @@ impl Procedure {
     pub fn stage(&self) -> String {
         match self {
             Self::EmRelay(test) => format!("{:?}", test.stage()),
+            Self::Resistor(test) => test.stage().to_owned(),
         }
     }
 
     /// Why the test could not be carried through, if it was not: the rig was in trouble or the part could not be seen.
     pub fn why_void(&self) -> Option<&Reason> {
-        match self {
-            Self::EmRelay(test) => match test.record().why_stopped()? {
-                Stop::Void(why) | Stop::Trouble(why) => Some(why),
-                Stop::Fail(_) => None,
-            },
+        let stop = match self {
+            Self::EmRelay(test) => test.record().why_stopped()?,
+            Self::Resistor(test) => test.record().why_stopped()?,
+        };
+        match stop {
+            Stop::Void(why) | Stop::Trouble(why) => Some(why),
+            Stop::Fail(_) => None,
         }
     }
 
@@ -62,6 +70,7 @@ impl Procedure {
     pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
         match self {
             Self::EmRelay(test) => test.judgements(),
+            Self::Resistor(test) => test.judgements(),
         }
     }
 
@@ -69,6 +78,7 @@ impl Procedure {
     pub fn verdict(&self) -> Verdict {
         match self {
             Self::EmRelay(test) => test.verdict(),
+            Self::Resistor(test) => test.verdict(),
         }
     }
 
@@ -76,6 +86,7 @@ impl Procedure {
     pub fn record(&self) -> TestRecord {
         match self {
             Self::EmRelay(test) => test.record().clone().of_any_kind(Own::EmRelay),
+            Self::Resistor(test) => test.record().clone().of_any_kind(|()| Own::Nothing),
         }
     }
 
@@ -83,6 +94,7 @@ impl Procedure {
     pub fn take_record(&mut self) -> TestRecord {
         match self {
             Self::EmRelay(test) => test.take_record().of_any_kind(Own::EmRelay),
+            Self::Resistor(test) => test.take_record(),
         }
     }
 }

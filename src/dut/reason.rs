@@ -5,9 +5,9 @@
 //! once each: where a history from before codes is migrated, and where a file of another system is imported.
 
 use super::characteristic::Characteristic;
-use super::em_relay;
 use super::verdict::Bin;
 use super::words::Words;
+use super::{em_relay, resistor};
 use crate::gauge::Side;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
@@ -28,6 +28,8 @@ pub enum Code {
     RigTrouble,
     /// What the test of an electromagnetic relay has found.
     EmRelay(em_relay::Finding),
+    /// What the test of a resistor has found.
+    Resistor(resistor::Finding),
     /// A text that has no code: imported, or older than this program knows; detail: the text.
     Unclassified,
 }
@@ -95,6 +97,7 @@ impl Reason {
                 characteristic.bin()
             }
             Code::EmRelay(finding) => finding.bin().unwrap_or(Bin::RETEST),
+            Code::Resistor(finding) => finding.bin().unwrap_or(Bin::RETEST),
             Code::NotMeasured(_) | Code::Interrupted | Code::RigTrouble | Code::Unclassified => {
                 Bin::RETEST
             }
@@ -111,6 +114,7 @@ impl Reason {
         match self.code {
             Code::OutsideLimit(it) | Code::NotProven(it) | Code::NotMeasured(it) => Some(it),
             Code::EmRelay(finding) => finding.proves().map(Characteristic::EmRelay),
+            Code::Resistor(finding) => finding.proves().map(Characteristic::Resistor),
             Code::Interrupted | Code::RigTrouble | Code::Unclassified => None,
         }
     }
@@ -168,6 +172,7 @@ impl Code {
             Self::Interrupted => "interrupted",
             Self::RigTrouble => "rig_trouble",
             Self::EmRelay(finding) => finding.code(),
+            Self::Resistor(finding) => finding.code(),
             Self::Unclassified => "unclassified",
         }
     }
@@ -180,7 +185,9 @@ impl Code {
             "interrupted" => Some(Self::Interrupted),
             "rig_trouble" => Some(Self::RigTrouble),
             "unclassified" => Some(Self::Unclassified),
-            finding => em_relay::Finding::from_code(finding).map(Self::EmRelay),
+            finding => em_relay::Finding::from_code(finding)
+                .map(Self::EmRelay)
+                .or_else(|| resistor::Finding::from_code(finding).map(Self::Resistor)),
         }
     }
 
@@ -189,6 +196,7 @@ impl Code {
     pub fn words(self) -> Option<Words> {
         match self {
             Self::EmRelay(finding) => finding.words(),
+            Self::Resistor(finding) => Some(finding.words()),
             Self::OutsideLimit(_)
             | Self::NotProven(_)
             | Self::NotMeasured(_)
@@ -219,6 +227,7 @@ impl fmt::Display for Reason {
             Code::NotMeasured(it) => write!(f, "{it} not measured"),
             Code::Interrupted => write!(f, "{INTERRUPTED}{}", self.detail),
             Code::EmRelay(finding) => f.write_str(&finding.text(&self.detail)),
+            Code::Resistor(finding) => f.write_str(finding.text()),
             Code::RigTrouble | Code::Unclassified => f.write_str(&self.detail),
         }
     }

@@ -8,6 +8,7 @@ use super::characteristic::Characteristic;
 use super::em_relay;
 use super::em_relay::recipe::RelayRecipe;
 use super::em_relay::settings::AccuracySettings;
+use super::resistor::recipe::ResistorRecipe;
 use crate::gauge::{Limit, Rule};
 use crate::rig::fault::Fault;
 use crate::rig::wiring::Wiring;
@@ -51,6 +52,8 @@ pub struct Decision {
 pub enum DeviceRecipe {
     /// Electromagnetic relay.
     EmRelay(RelayRecipe),
+    /// Resistor.
+    Resistor(ResistorRecipe),
 }
 
 /// Outside of a part as it lies in the nest.
@@ -91,6 +94,7 @@ impl Recipe {
     pub fn kind(&self) -> Kind {
         match self.device {
             DeviceRecipe::EmRelay(_) => Kind::EmRelay,
+            DeviceRecipe::Resistor(_) => Kind::Resistor,
         }
     }
 
@@ -98,13 +102,16 @@ impl Recipe {
     pub fn body(&self) -> Body {
         match &self.device {
             DeviceRecipe::EmRelay(relay) => relay.part.body(),
+            DeviceRecipe::Resistor(resistor) => resistor.body(),
         }
     }
 
-    /// Nominal voltage that a calibration and its reference parts must share with the recipe, V.
-    pub fn nominal_v(&self) -> f64 {
+    /// Nominal voltage that a calibration and its reference parts must share with the recipe, V; none for a kind that needs
+    /// neither.
+    pub fn rated_v(&self) -> Option<f64> {
         match &self.device {
-            DeviceRecipe::EmRelay(relay) => relay.part.nominal_v,
+            DeviceRecipe::EmRelay(relay) => Some(relay.part.nominal_v),
+            DeviceRecipe::Resistor(_) => None,
         }
     }
 
@@ -112,6 +119,7 @@ impl Recipe {
     pub fn reference_temperature_c(&self) -> f64 {
         match &self.device {
             DeviceRecipe::EmRelay(relay) => relay.part.reference_temperature_c,
+            DeviceRecipe::Resistor(resistor) => resistor.part.reference_temperature_c,
         }
     }
 
@@ -131,6 +139,7 @@ impl Recipe {
         }
         match &self.device {
             DeviceRecipe::EmRelay(relay) => relay.check(),
+            DeviceRecipe::Resistor(_) => Ok(()),
         }
     }
 
@@ -143,6 +152,7 @@ impl Recipe {
             DeviceRecipe::EmRelay(relay) => {
                 em_relay::feasible::check(relay, &self.limits, wiring, accuracy)
             }
+            DeviceRecipe::Resistor(resistor) => resistor.feasible(&self.limits, wiring),
         }
     }
 }

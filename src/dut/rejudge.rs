@@ -10,8 +10,8 @@ use crate::units::Celsius;
 pub struct Basis {
     /// What was measured.
     pub kind: Kind,
-    /// Nominal voltage of the part, V.
-    pub nominal_v: f64,
+    /// Nominal voltage of the part, V; none of a kind that has none.
+    pub nominal_v: Option<f64>,
     /// Temperature that results are brought to.
     pub reference: Celsius,
 }
@@ -37,7 +37,7 @@ impl Basis {
         };
         Some(Self {
             kind: kind.map_or(Some(Kind::EmRelay), Kind::from_name)?,
-            nominal_v: number("nominal_v")?,
+            nominal_v: number("nominal_v"),
             reference: Celsius(number("reference_temperature_c")?),
         })
     }
@@ -46,7 +46,7 @@ impl Basis {
     pub fn of_recipe(recipe: &Recipe) -> Self {
         Self {
             kind: recipe.kind(),
-            nominal_v: recipe.nominal_v(),
+            nominal_v: recipe.rated_v(),
             reference: Celsius(recipe.reference_temperature_c()),
         }
     }
@@ -60,10 +60,10 @@ impl Basis {
                 found: format!("was of kind {}", self.kind.name()),
             });
         }
-        let (wanted_v, measured_v) = (recipe.nominal_v(), self.nominal_v);
+        let (wanted_v, measured_v) = (recipe.rated_v()?, self.nominal_v?);
         let fits = (measured_v - wanted_v).abs() < 1e-6 * measured_v;
         (!fits).then(|| Misfit {
-            wanted: format!("the coil of {name} has {wanted_v} V"),
+            wanted: format!("{name} is rated {wanted_v} V"),
             found: format!("was measured at {measured_v} V"),
         })
     }
@@ -73,6 +73,7 @@ impl Basis {
         let wanted = Celsius(recipe.reference_temperature_c());
         match of {
             Characteristic::EmRelay(it) => em_relay::coil::factor(it, self.reference, wanted),
+            Characteristic::Resistor(_) => 1.0,
         }
     }
 }
@@ -80,13 +81,19 @@ impl Basis {
 /// Whether the curves prove that a characteristic without a value lies above `high`.
 pub fn above(curves: &[Curve], of: Characteristic, high: f64, recipe: &Recipe) -> bool {
     match of {
-        Characteristic::EmRelay(it) => evidence::above(curves, it, high, recipe.nominal_v()),
+        Characteristic::EmRelay(it) => recipe
+            .rated_v()
+            .is_some_and(|nominal_v| evidence::above(curves, it, high, nominal_v)),
+        Characteristic::Resistor(_) => false,
     }
 }
 
 /// Whether the curves say at all how great a characteristic without a value is at least.
 pub fn bounded(curves: &[Curve], of: Characteristic, recipe: &Recipe) -> bool {
     match of {
-        Characteristic::EmRelay(it) => evidence::at_least(curves, it, recipe.nominal_v()).is_some(),
+        Characteristic::EmRelay(it) => recipe
+            .rated_v()
+            .is_some_and(|nominal_v| evidence::at_least(curves, it, nominal_v).is_some()),
+        Characteristic::Resistor(_) => false,
     }
 }

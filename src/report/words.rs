@@ -56,7 +56,11 @@ impl Language {
             (Code::NotProven(_), None) => self.not_proven(side).to_owned(),
             (Code::NotMeasured(_), None) => self.of("not measured", "未测得").to_owned(),
             (
-                Code::EmRelay(_) | Code::Interrupted | Code::RigTrouble | Code::Unclassified,
+                Code::EmRelay(_)
+                | Code::Resistor(_)
+                | Code::Interrupted
+                | Code::RigTrouble
+                | Code::Unclassified,
                 None,
             ) => reason.to_string(),
         };

@@ -50,6 +50,8 @@ macro_rules! points {
 }
 pub(crate) use points;
 
+use thiserror::Error;
+
 points! {
     /// Contacts and sensors of the machine; `true` means the named thing is so, whatever the polarity of the wire.
     DigitalIn {
@@ -241,6 +243,16 @@ impl DigitalOut {
             | Self::Buzzer => false,
         }
     }
+}
+
+/// A point that a test needs and the rig does not have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("no [{section}].{name} in rig.toml")]
+pub struct MissingPoint {
+    /// Section of `config/rig.toml` where it would stand.
+    pub section: &'static str,
+    /// Name of the first point that is missing.
+    pub name: &'static str,
 }
 
 #[cfg(test)]

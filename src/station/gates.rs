@@ -143,7 +143,12 @@ impl Station {
         let executes = self.machine.state == State::Execute;
         assert!(executes, "a check is looked for while nothing is made");
         let at_us = self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX);
-        if !self.is_calibrating() && self.device.due_at_us() <= at_us {
+        if !self.is_calibrating()
+            && self
+                .device
+                .due_at_us()
+                .is_some_and(|due_us| due_us <= at_us)
+        {
             return wants.notes.trouble.push(Alarm::calibration_overdue());
         }
         if self.lot.gates.checking || self.is_calibrating() || !self.wants_more() {

@@ -65,7 +65,7 @@ pub fn cycle(
             Some(_) => Vec::new(),
             None => device.reference_serials(),
         },
-        calibrated,
+        calibrated: calibrated || !device.needs_calibration(),
         valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
         epoch_us: setup.epoch_us,
         simulated: setup.args.rig.sim,

@@ -150,8 +150,10 @@ fn pass_gates(
     recipe: &Recipe,
     args: &RunArgs,
 ) -> Result<(), NotAdmitted> {
-    let nominal_v = recipe.nominal_v();
-    if plant.lot.golden_check.any() && plant.golden.of_nominal(nominal_v).next().is_none() {
+    if let Some(nominal_v) = recipe.rated_v()
+        && plant.lot.golden_check.any()
+        && plant.golden.of_nominal(nominal_v).next().is_none()
+    {
         return Err(NotAdmitted::NoGoldenPart {
             file: plant.dir.join("lot.toml"),
             nominal_v,
@@ -188,7 +190,10 @@ pub fn uncalibrated(db: &Path, recipe: &Recipe, args: &RunArgs) -> anyhow::Resul
     if args.rig.sim {
         return Ok(None);
     }
-    calibrate::why_not(db, recipe.nominal_v())
+    match recipe.rated_v() {
+        Some(nominal_v) => calibrate::why_not(db, nominal_v),
+        None => Ok(None),
+    }
 }
 
 /// Alarm of a rig that takes no lot before it was calibrated again.

@@ -57,7 +57,10 @@ fn worn(store: &Store, simulated: bool) -> anyhow::Result<Uses> {
 
 /// The stored calibration, provided it is not overdue.
 fn valid_calibration(store: &Store, setup: &Setup) -> anyhow::Result<Option<Calibration>> {
-    let Some(record) = store.latest_calibration_of(false, setup.recipe.nominal_v())? else {
+    let Some(nominal_v) = setup.recipe.rated_v() else {
+        return Ok(None);
+    };
+    let Some(record) = store.latest_calibration_of(false, nominal_v)? else {
         return Ok(None);
     };
     let calibration: Calibration =

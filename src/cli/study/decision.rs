@@ -20,6 +20,7 @@ use crate::config::load_recipe;
 use crate::dut::em_relay::Parameter;
 use crate::quality::Spread;
 use crate::quality::spread::median;
+use anyhow::Context as _;
 use std::ops::RangeInclusive;
 
 /// Parts per million.
@@ -129,7 +130,11 @@ fn at_limit(order: &Order, lots: &[Lot]) -> anyhow::Result<Vec<Figure>> {
         return Ok(Vec::new());
     };
     let mean = limits.end() - usual.sd;
-    let of_lot = LOT_V / load_recipe(&order.config, &order.recipe)?.nominal_v();
+    let recipe = load_recipe(&order.config, &order.recipe)?;
+    let nominal_v = recipe
+        .rated_v()
+        .context("the study needs a recipe of a relay")?;
+    let of_lot = LOT_V / nominal_v;
     let variant = Variant {
         exact: false,
         world: vec![("lot.operate_v_mean", (mean * of_lot).into())],

@@ -42,10 +42,8 @@ fn the_whole_plant_is_loaded_from_its_folder() {
     assert_eq!(plant.reference.coil_ohm, 400.0);
     assert_eq!(plant.accuracy.conversions_per_s, 75.0);
     assert_eq!(
-        load_recipe(copy.0.path(), "jzc-22f-012")
-            .unwrap()
-            .nominal_v(),
-        12.0
+        load_recipe(copy.0.path(), "jzc-22f-012").unwrap().rated_v(),
+        Some(12.0)
     );
 }
 

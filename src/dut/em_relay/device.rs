@@ -9,7 +9,7 @@ use super::golden::{self, GoldenRun, Misfit};
 use super::lag::LagLaw;
 use super::measure::context::{UNTAUGHT_FINE_V, untaught};
 use super::measure::{Context, Seen, Test};
-use super::points::{AnalogIn, AnalogOut, Missing, Points};
+use super::points::{AnalogIn, AnalogOut, Points};
 use super::probe_contact::Trend;
 use super::recipe::RelayRecipe;
 use super::reference::{self, ReferenceFault};
@@ -19,6 +19,7 @@ use crate::dut::device::{Made, Rig, TestOrder};
 use crate::dut::record::{Own, TestRecord};
 use crate::instrument::act::Act;
 use crate::instrument::readings::Readings;
+use crate::rig::point::MissingPoint;
 use crate::units::{Ohm, RigTime};
 use std::sync::Arc;
 
@@ -47,7 +48,7 @@ impl Device {
         relay: Arc<RelayRecipe>,
         rig: &Rig,
         stored: Option<Calibration>,
-    ) -> Result<Self, Missing> {
+    ) -> Result<Self, MissingPoint> {
         let points = Points::resolve(rig.wiring)?;
         let nominal_v = relay.part.nominal_v;
         let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v));

@@ -5,12 +5,11 @@
 
 use crate::instrument::act::Word;
 use crate::rig::point::{
-    AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Fixture, GatedCounter, Quantity,
-    Switch, Thermometer, points,
+    AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Fixture, GatedCounter, MissingPoint,
+    Quantity, Switch, Thermometer, points,
 };
 use crate::rig::wiring::Wiring;
 use std::sync::Arc;
-use thiserror::Error;
 
 points! {
     /// Inputs from the interface board; `true` means the named thing is so, whatever the polarity of the wire.
@@ -144,16 +143,6 @@ const SWITCHES: [Switch; DigitalOut::COUNT] = {
     all
 };
 
-/// The rig has not what a test needs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[error("no [{section}].{name} in rig.toml")]
-pub struct Missing {
-    /// Section of `config/rig.toml` where it would stand.
-    pub section: &'static str,
-    /// Name of the first point that is missing.
-    pub name: &'static str,
-}
-
 /// The points of a test as this rig has wired them.
 #[derive(Debug, Clone)]
 pub struct Points {
@@ -173,7 +162,7 @@ impl Points {
     ///
     /// # Errors
     /// The first one that the rig has not.
-    pub fn resolve(wiring: &Wiring) -> Result<Self, Missing> {
+    pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
         let inputs = all("digital_in", DigitalIn::NAMES, |it| {
             wiring.digital_input(it)
         })?;
@@ -232,11 +221,11 @@ fn all<T: Copy, const N: usize>(
     section: &'static str,
     names: &[&'static str],
     handle: impl Fn(&str) -> Option<T>,
-) -> Result<[T; N], Missing> {
+) -> Result<[T; N], MissingPoint> {
     assert_eq!(names.len(), N, "a handle for each name");
     let mut found = Vec::with_capacity(N);
     for name in names {
-        found.push(handle(name).ok_or(Missing { section, name })?);
+        found.push(handle(name).ok_or(MissingPoint { section, name })?);
     }
     Ok(std::array::from_fn(|at| found[at]))
 }

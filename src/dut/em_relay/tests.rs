@@ -28,7 +28,9 @@ pub fn context() -> Context {
     let recipe: Recipe =
         toml::from_str(include_str!("../../../config/recipes/jzc-22f-012.toml")).unwrap();
     let instruments: Instruments = toml::from_str(RIG).unwrap();
-    let DeviceRecipe::EmRelay(relay) = &recipe.device;
+    let DeviceRecipe::EmRelay(relay) = &recipe.device else {
+        panic!("a relay");
+    };
     Context {
         relay: Arc::new(relay.clone()),
         recipe: Arc::new(recipe),

@@ -38,6 +38,7 @@ fn part(operate_v: f64, verdict: &str, reasons: &[&str]) -> Part {
 fn relay(recipe: &mut Recipe) -> &mut RelayRecipe {
     match &mut recipe.device {
         DeviceRecipe::EmRelay(relay) => relay,
+        DeviceRecipe::Resistor(_) => panic!("a relay"),
     }
 }
 

@@ -37,7 +37,9 @@ fn points(wiring: &Wiring) -> Points {
 fn recipe(strategy: Strategy) -> Recipe {
     let mut recipe: Recipe =
         toml::from_str(include_str!("../../../../config/recipes/jzc-22f-012.toml")).unwrap();
-    let DeviceRecipe::EmRelay(relay) = &mut recipe.device;
+    let DeviceRecipe::EmRelay(relay) = &mut recipe.device else {
+        panic!("a relay");
+    };
     relay.test.strategy.operate_voltage_v = strategy;
     relay.test.strategy.release_voltage_v = strategy;
     recipe
@@ -173,7 +175,9 @@ fn a_converter_out_of_fast_mode_is_refused_unless_nobody_counts_on_it() {
 fn closures_cannot_stop_early_where_no_limit_says_when() {
     let (wiring, accuracy) = plant();
     let mut recipe = recipe(Strategy::CoarseFine);
-    let DeviceRecipe::EmRelay(relay) = &mut recipe.device;
+    let DeviceRecipe::EmRelay(relay) = &mut recipe.device else {
+        panic!("a relay");
+    };
     relay.test.strategy.contact.stops_early = true;
     recipe.feasible(&wiring, &accuracy).unwrap();
     recipe.limits = toml::from_str("[contact_resistance_no_mohm]\nhigh = 100.0\n").unwrap();

@@ -1,0 +1,83 @@
+//! What a test of a resistor finds beside its figure.
+
+use super::parameter::{BIN, Parameter};
+use crate::dut::reason::{Code, Reason};
+use crate::dut::words::Words;
+use crate::gauge::Side;
+use crate::rig::bin::Bin;
+
+/// One finding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Finding {
+    /// No current: the resistor, a pin or a probe is open.
+    Open,
+    /// More current than the channel reads.
+    Short,
+    /// The channel gave no number.
+    CurrentNotReadable,
+}
+
+impl Finding {
+    /// Every finding.
+    pub const ALL: [Self; 3] = [Self::Open, Self::Short, Self::CurrentNotReadable];
+
+    /// Code in rows and exports.
+    pub fn code(self) -> &'static str {
+        match self {
+            Self::Open => "resistor_open",
+            Self::Short => "resistor_short",
+            Self::CurrentNotReadable => "resistor_current_not_readable",
+        }
+    }
+
+    /// The text of rows and messages.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::Open => "resistance_ohm high: no current",
+            Self::Short => "resistance_ohm low: current over range",
+            Self::CurrentNotReadable => "resistor current not readable",
+        }
+    }
+
+    /// What pages and paper say of it.
+    pub fn words(self) -> Words {
+        match self {
+            Self::Open => Words::of("open: no current", "开路：无电流"),
+            Self::Short => Words::of("too low: current over range", "过低：电流超量程"),
+            Self::CurrentNotReadable => Words::of("current not readable", "电流无法读取"),
+        }
+    }
+
+    /// Bin of a bad part; none where the part could not be judged.
+    pub fn bin(self) -> Option<Bin> {
+        self.side().map(|_| BIN)
+    }
+
+    /// The characteristic whose limit it proves broken, if it does.
+    pub fn proves(self) -> Option<Parameter> {
+        self.side().map(|_| Parameter::Resistance)
+    }
+
+    /// The finding with this code.
+    pub fn from_code(code: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|it| it.code() == code)
+    }
+
+    fn side(self) -> Option<Side> {
+        match self {
+            Self::Open => Some(Side::High),
+            Self::Short => Some(Side::Low),
+            Self::CurrentNotReadable => None,
+        }
+    }
+}
+
+impl From<Finding> for Reason {
+    fn from(finding: Finding) -> Self {
+        Self {
+            code: Code::Resistor(finding),
+            side: finding.side(),
+            detail: String::new(),
+        }
+    }
+}

@@ -1,0 +1,29 @@
+//! A lot of resistors in figures, for made-up parts.
+
+use super::Parameter;
+use crate::dut::Characteristic;
+use crate::dut::made_up::Scatter;
+use crate::dut::recipe::Limits;
+use crate::gauge::Budget;
+
+/// Resistance where the recipe names no limit to lie between, ohm.
+const USUAL_OHM: f64 = 390.0;
+
+/// Scatters about the middle of the limits by a tenth of their distance.
+pub fn scatter(limits: &Limits) -> Vec<(Characteristic, Scatter)> {
+    let limit = limits.of(Parameter::Resistance);
+    let (mean, sd) = match (limit.low, limit.high) {
+        (Some(low), Some(high)) => ((low + high) / 2.0, (high - low) / 10.0),
+        (Some(end), None) | (None, Some(end)) => (end, end / 100.0),
+        (None, None) => (USUAL_OHM, USUAL_OHM / 100.0),
+    };
+    let u = mean / 1000.0;
+    let scatter = Scatter {
+        mean,
+        sd,
+        logarithmic: false,
+        u,
+        budget: Budget::default().with("level", u),
+    };
+    vec![(Parameter::Resistance.into(), scatter)]
+}

@@ -1,0 +1,26 @@
+//! Resistor: a fixture check, and the smallest kind there is.
+//!
+//! A dummy of relay size holds one resistor between the two coil pins. The rig feeds, clamps, measures and sorts it like any
+//! part, which checks feeder, probes and supply with one characteristic on one channel. Voltage and current are taken as
+//! the makers promise them: the kind needs neither references nor reference parts.
+//!
+//! | question | file |
+//! |---|---|
+//! | what is measured, and where a part that fails goes | [`parameter`] |
+//! | what the part is, how it is measured | [`recipe`] |
+//! | which points of the rig it needs | [`points`] |
+//! | what a test finds beside the figure | [`finding`] |
+//! | the test | [`measure`] |
+//! | the process card | [`card`] |
+
+pub mod card;
+pub mod finding;
+pub mod made_up;
+pub mod measure;
+pub mod parameter;
+pub mod points;
+pub mod recipe;
+
+pub use finding::Finding;
+pub use measure::{Device, Test};
+pub use parameter::Parameter;

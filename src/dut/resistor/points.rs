@@ -1,0 +1,39 @@
+//! The points that a resistor needs: the level and the drive of the coil board, and one current channel.
+//!
+//! They are points of the board that `em_relay` declares; here they are looked up by the same names.
+
+use crate::rig::point::{AnalogInput, AnalogOutput, DigitalOutput, MissingPoint};
+use crate::rig::wiring::Wiring;
+
+/// The points as this rig has wired them.
+#[derive(Debug, Clone, Copy)]
+pub struct Points {
+    /// Puts the supply on the two pins.
+    pub drive: DigitalOutput,
+    /// Voltage of the supply.
+    pub level: AnalogOutput,
+    /// Current through the part.
+    pub current: AnalogInput,
+}
+
+impl Points {
+    /// Looks every point up.
+    ///
+    /// # Errors
+    /// Names the first one that the rig does not have.
+    pub fn resolve(wiring: &Wiring) -> Result<Self, MissingPoint> {
+        let missing = |section, name| MissingPoint { section, name };
+        let (drive, level, current) = ("coil_drive", "supply_level", "coil_current_fine");
+        Ok(Self {
+            drive: wiring
+                .digital_output(drive)
+                .ok_or(missing("digital_out", drive))?,
+            level: wiring
+                .analog_output(level)
+                .ok_or(missing("analog_out", level))?,
+            current: wiring
+                .analog_input(current)
+                .ok_or(missing("analog_in", current))?,
+        })
+    }
+}
