@@ -1,0 +1,3 @@
+//! Keys that only a relay and its board bring to the files of `config/`.
+
+pub mod recipe;
