@@ -1,6 +1,8 @@
 //! `relayrig config check` and `relayrig config schema NAME`: nothing is opened, nothing moves.
 
-use crate::config::{Plant, keys, load_recipe, recipe_names, schema::schema};
+use crate::config::schema::{of_kinds, schema};
+use crate::config::{Plant, keys, load_recipe, recipe_names};
+use crate::dut::Kind;
 use crate::rig::wiring::Wiring;
 use anyhow::Context;
 use std::io::Write;
@@ -125,19 +127,19 @@ fn describe_recipe(dir: &Path, plant: &Plant, name: &str) -> anyhow::Result<Stri
 }
 
 fn schema_text(name: &str) -> anyhow::Result<String> {
-    let (title, keys) = match name {
-        "rig" => ("rig.toml", keys::rig::FILE),
-        "golden" => ("golden.toml", keys::golden::FILE),
-        "card" => ("card.toml", keys::card::FILE),
-        "lot" => ("lot.toml", keys::lot::FILE),
-        "recipe" => ("recipes/NAME.toml", keys::recipe::FILE),
+    let schema = match name {
+        "rig" => schema("rig.toml", keys::rig::FILE),
+        "golden" => schema("golden.toml", keys::golden::FILE),
+        "card" => schema("card.toml", keys::card::FILE),
+        "lot" => schema("lot.toml", keys::lot::FILE),
+        "recipe" => of_kinds("recipes/NAME.toml", &Kind::ALL.map(keys::recipe::of)),
         other => {
             anyhow::bail!(
                 "config schema: found \"{other}\", expected rig, golden, recipe, card or lot"
             )
         }
     };
-    let text = serde_json::to_string_pretty(&schema(title, keys)).context("writing the schema")?;
+    let text = serde_json::to_string_pretty(&schema).context("writing the schema")?;
     Ok(text + "\n")
 }
 

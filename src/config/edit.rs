@@ -13,12 +13,12 @@ use toml_edit::{Array, DocumentMut, Item, Value};
 /// new text to say.
 ///
 /// # Errors
-/// A path that no recipe has, a value that TOML has not.
+/// A kind that is none, a path that no recipe of the kind has, a value that TOML has not.
 pub(super) fn edited(
     file: &File,
     values: &BTreeMap<String, Wanted>,
 ) -> Result<String, ConfigError> {
-    let fields = fields(&file.root);
+    let fields = fields(file)?;
     let parsed = file.text.parse::<DocumentMut>();
     let mut document = parsed.map_err(|error| ConfigError::Rule {
         file: file.path.clone(),

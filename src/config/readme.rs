@@ -90,17 +90,20 @@ fn what(form: &Form) -> String {
 mod tests {
     use super::super::keys;
     use super::*;
+    use crate::dut::Kind;
 
     #[test]
     fn the_readme_holds_every_key_as_it_is_checked() {
         let readme = include_str!("../../config/README.md");
-        for (file, keys) in [
+        let files = [
             ("rig", keys::rig::FILE),
             ("golden", keys::golden::FILE),
-            ("recipe", keys::recipe::FILE),
             ("card", keys::card::FILE),
             ("lot", keys::lot::FILE),
-        ] {
+        ];
+        let recipes = Kind::ALL.map(|kind| (kind.name(), keys::recipe::of(kind)));
+        let recipes = recipes.iter().map(|(kind, keys)| (*kind, keys.as_slice()));
+        for (file, keys) in files.into_iter().chain(recipes) {
             let rows = rows(keys);
             assert!(
                 readme.contains(&rows),

@@ -3,7 +3,9 @@
 use super::check::File;
 use super::error::ConfigError;
 use super::keys;
-use crate::dut::recipe::Recipe;
+use super::tree::{Node, Value};
+use crate::dut::{Kind, Recipe};
+use crate::form::one_of;
 use crate::rig::fault::Fault;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -45,7 +47,7 @@ pub fn recipe_names(dir: &Path) -> Vec<String> {
 }
 
 pub(super) fn parse_recipe(file: File, name: &str) -> Result<Recipe, ConfigError> {
-    let mut recipe: Recipe = file.settings(keys::recipe::FILE)?;
+    let mut recipe: Recipe = file.settings(&keys::recipe::of(kind_of(&file)?))?;
     if recipe.name != name {
         let fault = Fault::new(
             "name",
@@ -58,6 +60,22 @@ pub(super) fn parse_recipe(file: File, name: &str) -> Result<Recipe, ConfigError
     recipe.hash = sha256_hex(file.text.as_bytes());
     recipe.source_text = file.text;
     Ok(recipe)
+}
+
+/// The kind of part that a recipe names; what else it may hold depends on it.
+///
+/// # Errors
+/// The key is missing, or names no kind.
+pub(super) fn kind_of(file: &File) -> Result<Kind, ConfigError> {
+    let node = file.root.get("kind");
+    let kind = match node.map(|it| &it.value) {
+        Some(Value::Text(name)) => Kind::from_name(name),
+        Some(_) | None => None,
+    };
+    kind.ok_or_else(|| {
+        let found = node.map_or_else(|| "nothing".to_owned(), Node::describe);
+        file.locate(&Fault::new("kind", found, one_of(Kind::NAMES)))
+    })
 }
 
 pub(super) fn sha256_hex(bytes: &[u8]) -> String {

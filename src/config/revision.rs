@@ -78,7 +78,7 @@ pub fn revision(dir: &Path, name: &str, number: Option<u32>) -> Result<Revision,
         number,
         newest,
         saved_at_us: saved_at_us(&file.path),
-        fields: fields(&file.root),
+        fields: fields(&file)?,
         hash: parse_recipe(file, name)?.hash,
     })
 }

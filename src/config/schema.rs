@@ -5,7 +5,27 @@ use serde_json::{Map, Value, json};
 
 /// The schema of a file with these keys.
 pub fn schema(title: &str, keys: &[Key]) -> Value {
-    let mut root = table(keys);
+    titled(title, table(keys))
+}
+
+/// The schema of a file whose keys depend on the value of its `kind`.
+pub fn of_kinds(title: &str, kinds: &[impl AsRef<[Key]>]) -> Value {
+    if let [only] = kinds {
+        return schema(title, only.as_ref());
+    }
+    let each: Vec<Value> = kinds.iter().map(|keys| table(keys.as_ref())).collect();
+    let names = each
+        .iter()
+        .filter_map(|it| it.pointer("/properties/kind/enum")?.as_array());
+    let names: Vec<&Value> = names.flatten().collect();
+    let head = json!({ "kind": { "enum": names } });
+    titled(
+        title,
+        json!({ "type": "object", "properties": head, "required": ["kind"], "oneOf": each }),
+    )
+}
+
+fn titled(title: &str, mut root: Value) -> Value {
     if let Value::Object(map) = &mut root {
         map.insert(
             "$schema".to_owned(),
@@ -91,6 +111,7 @@ fn number(range: &Range) -> Value {
 mod tests {
     use super::*;
     use crate::config::keys;
+    use crate::form::key;
 
     #[test]
     fn the_schema_knows_what_the_check_knows() {
@@ -110,5 +131,20 @@ mod tests {
             module["required"],
             json!(["line", "address", "model", "type"])
         );
+    }
+
+    #[test]
+    fn a_file_of_several_kinds_holds_the_keys_of_one() {
+        const ONE: Key = key("kind", Form::Choice(&["one"]), "x", "x");
+        const OTHER: Key = key("kind", Form::Choice(&["other"]), "x", "x");
+        let only = of_kinds("x.toml", &[[ONE]]);
+        assert_eq!(only, schema("x.toml", &[ONE]));
+        let both = of_kinds(
+            "x.toml",
+            &[vec![ONE], vec![OTHER, key("more", Form::Flag, "x", "x")]],
+        );
+        assert_eq!(both["properties"]["kind"]["enum"], json!(["one", "other"]));
+        assert_eq!(both["oneOf"][1]["required"], json!(["kind", "more"]));
+        assert!(both["title"] == "x.toml" && both["$schema"].is_string());
     }
 }

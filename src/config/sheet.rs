@@ -1,6 +1,9 @@
 //! A recipe as a sheet to be filled in: every key with its unit and range, and the value it has.
 
+use super::check::File;
+use super::error::ConfigError;
 use super::keys;
+use super::recipes::kind_of;
 use super::tree::{Node, Value};
 use crate::form::{Form, Key, Range};
 use serde::Serialize;
@@ -71,11 +74,15 @@ impl From<&Range> for Bounds {
     }
 }
 
-/// Every key that a recipe may hold, in the order of `config/README.md`, with what stands in `root`.
-pub fn fields(root: &Node) -> Vec<Field> {
+/// Every key that a recipe of its kind may hold, in the order of `config/README.md`, with what stands in the file.
+///
+/// # Errors
+/// The file names no kind.
+pub fn fields(file: &File) -> Result<Vec<Field>, ConfigError> {
     let mut found = Vec::new();
-    gather("", keys::recipe::FILE, root, &mut found);
-    found
+    let keys = keys::recipe::of(kind_of(file)?);
+    gather("", &keys, &file.root, &mut found);
+    Ok(found)
 }
 
 fn gather(path: &str, keys: &[Key], root: &Node, found: &mut Vec<Field>) {
@@ -141,6 +148,7 @@ fn as_json(node: &Node) -> serde_json::Value {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::dut::Kind;
 
     /// Paths of all keys that are no tables, by another way.
     fn leaves(path: &str, keys: &[Key]) -> Vec<String> {
@@ -154,9 +162,10 @@ mod tests {
     #[test]
     fn every_key_of_a_recipe_is_a_field_with_the_value_of_the_file() {
         let text = include_str!("../../config/recipes/jzc-22f-012.toml");
-        let fields = fields(&Node::parse(text).unwrap());
+        let file = File::parse("r.toml".into(), text.to_owned()).unwrap();
+        let fields = fields(&file).unwrap();
         let paths: Vec<&str> = fields.iter().map(|it| it.path.as_str()).collect();
-        assert_eq!(paths, leaves("", keys::recipe::FILE));
+        assert_eq!(paths, leaves("", &keys::recipe::of(Kind::EmRelay)));
         let value = |path: &str| {
             fields
                 .iter()

@@ -295,6 +295,19 @@ fn a_recipe_is_called_as_its_file() {
 }
 
 #[test]
+fn a_recipe_without_a_known_kind_is_refused_first() {
+    for (to, found) in [
+        ("kind = \"em_rely\"\ntitel = 1", "\"em_rely\""),
+        ("kind = 1", "1"),
+    ] {
+        let expected = format!("kind: found {found}, expected \"em_relay\"");
+        refused_recipe("kind = \"em_relay\"", to, "kind =", &expected);
+    }
+    let expected = "kind: found nothing, expected \"em_relay\"";
+    refused_recipe("kind = \"em_relay\"\n", "", "", expected);
+}
+
+#[test]
 fn two_bins_at_one_point_of_the_axis_are_refused() {
     let line = line_of(RIG, "pass    =");
     refused(
@@ -326,10 +339,10 @@ fn a_rig_may_have_fewer_bins_or_others() {
         ["pass", "voltage", "time", "contact", "retest"]
     );
     assert!(!fewer.has(bins::COIL) && fewer.has(Bin::RETEST));
-    let other = rig_of(&changed(RIG, "coil    = { point", "grade_2 = { point"));
-    assert_eq!(names(&other)[1], "grade_2");
-    let wired = rig(RIG).unwrap().axis;
-    assert_eq!(other.beam(Bin::named("grade_2")), wired.beam(bins::COIL));
+    let other = rig(&changed(RIG, "coil    = { point", "grade_2 = { point")).unwrap();
+    assert_eq!(names(&other.axis)[1], "grade_2");
+    let beam = other.digital_input("beam_coil").unwrap();
+    assert_eq!(other.axis.beam(Bin::named("grade_2")), beam);
 }
 
 #[test]

@@ -9,6 +9,7 @@ pub mod characteristic;
 pub mod device;
 pub mod em_relay;
 pub mod instruments;
+pub mod keys;
 pub mod made_up;
 pub mod procedure;
 pub mod reason;
@@ -44,8 +45,10 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Every kind.
+    /// Every kind, in the order of its declaration.
     pub const ALL: [Self; 2] = [Self::EmRelay, Self::Resistor];
+    /// The names of recipes, in the order of [`Self::ALL`].
+    pub const NAMES: &'static [&'static str] = &[Self::EmRelay.name(), Self::Resistor.name()];
 
     /// Its name in recipes.
     pub const fn name(self) -> &'static str {
@@ -58,6 +61,14 @@ impl Kind {
     /// The kind of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|it| it.name() == name)
+    }
+
+    /// What a recipe may say of it.
+    pub const fn sections(self) -> keys::Sections {
+        match self {
+            Self::EmRelay => em_relay::keys::recipe::SECTIONS,
+            Self::Resistor => resistor::keys::SECTIONS,
+        }
     }
 
     /// What is measured on it, in the order of reports.

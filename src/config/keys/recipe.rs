@@ -1,113 +1,7 @@
-//! Keys of `recipes/NAME.toml`.
+//! Keys of `recipes/NAME.toml`: the head of every recipe, and the sections that its kind describes.
 
-use crate::dut::em_relay::Strategy;
-use crate::dut::em_relay::sampling::Polarities;
-use crate::form::{Form, Key, Range, above_zero, from_to, key, optional, whole};
-
-const LENGTH: Range = Range {
-    unit: "mm",
-    low: 0.0,
-    high: 200.0,
-    low_allowed: false,
-};
-
-const PART: &[Key] = &[
-    key(
-        "nominal_v",
-        above_zero(20.0, "V"),
-        "gauge, station",
-        "nominal coil voltage",
-    ),
-    key(
-        "nominal_coil_ohm",
-        above_zero(100_000.0, "ohm"),
-        "gauge",
-        "nominal coil resistance at the reference temperature",
-    ),
-    key(
-        "body_mm",
-        Form::Numbers(3, LENGTH),
-        "guard",
-        "body along x, y, z as it lies in the nest",
-    ),
-    key(
-        "pin_length_mm",
-        from_to(0.0, 50.0, "mm"),
-        "guard",
-        "length of the pins below the body",
-    ),
-    key(
-        "reference_temperature_c",
-        from_to(-40.0, 85.0, "C"),
-        "gauge",
-        "temperature that results are converted to",
-    ),
-];
-
-macro_rules! limit {
-    ($name:ident, $unit:literal, $high:literal) => {
-        const $name: Form = Form::Table(&[
-            optional(
-                "low",
-                from_to(0.0, $high, $unit),
-                "gauge",
-                "least good value",
-            ),
-            optional(
-                "high",
-                from_to(0.0, $high, $unit),
-                "gauge",
-                "greatest good value",
-            ),
-        ]);
-    };
-}
-limit!(LIMIT_OHM, "ohm", 100_000.0);
-limit!(LIMIT_V, "V", 20.0);
-limit!(LIMIT_MS, "ms", 1000.0);
-limit!(LIMIT_MOHM, "mOhm", 100_000.0);
-
-const LIMITS: &[Key] = &[
-    key("coil_resistance_ohm", LIMIT_OHM, "gauge", "coil resistance"),
-    key("operate_voltage_v", LIMIT_V, "gauge", "operate threshold"),
-    key("release_voltage_v", LIMIT_V, "gauge", "release threshold"),
-    key(
-        "operate_time_ms",
-        LIMIT_MS,
-        "gauge",
-        "operate time without bounce",
-    ),
-    key(
-        "release_time_ms",
-        LIMIT_MS,
-        "gauge",
-        "release time without bounce",
-    ),
-    key(
-        "operate_bounce_ms",
-        LIMIT_MS,
-        "gauge",
-        "open time of NO after its first make",
-    ),
-    key(
-        "release_bounce_ms",
-        LIMIT_MS,
-        "gauge",
-        "open time of NC after its first make",
-    ),
-    key(
-        "contact_resistance_no_mohm",
-        LIMIT_MOHM,
-        "gauge",
-        "resistance of NO",
-    ),
-    key(
-        "contact_resistance_nc_mohm",
-        LIMIT_MOHM,
-        "gauge",
-        "resistance of NC",
-    ),
-];
+use crate::dut::Kind;
+use crate::form::{Form, Key, key, whole};
 
 const DECISION: &[Key] = &[
     key(
@@ -124,171 +18,48 @@ const DECISION: &[Key] = &[
     ),
 ];
 
-const COIL: &[Key] = &[
-    optional(
-        "settles_ms",
-        whole(1, 1000, "ms"),
-        "station",
-        "from the drive to the first conversion that counts; 32 where nothing is said",
-    ),
-    optional(
-        "scans",
-        whole(1, 100, ""),
-        "station",
-        "scans that are averaged; 1 where nothing is said",
-    ),
-];
-
-const CONTACT: &[Key] = &[
-    optional(
-        "polarities",
-        Form::Choice(&Polarities::NAMES),
-        "station",
-        "directions of the source on one closure; plus_minus where nothing is said",
-    ),
-    optional(
-        "closures",
-        whole(1, 20, ""),
-        "station",
-        "timed closures of either contact, at the most; 1 where nothing is said",
-    ),
-    optional(
-        "stops_early",
-        Form::Flag,
-        "station",
-        "no further closure once both contacts are 3 standard deviations clear of their limits",
-    ),
-    optional(
-        "closure_scatter_pct",
-        whole(0, 100, "%"),
-        "station",
-        "least scatter of a film from closure to closure (1 sd); 10 where nothing is said",
-    ),
-];
-
-const STRATEGY: &[Key] = &[
-    optional(
-        "operate_voltage_v",
-        Form::Choice(&Strategy::NAMES),
-        "station",
-        "how the operate threshold is found",
-    ),
-    optional(
-        "release_voltage_v",
-        Form::Choice(&Strategy::NAMES),
-        "station",
-        "how the release threshold is found",
-    ),
-    optional(
-        "coil",
-        Form::Table(COIL),
-        "station",
-        "how the coil resistance is read",
-    ),
-    optional(
-        "contact",
-        Form::Table(CONTACT),
-        "station",
-        "how the contacts are read",
-    ),
-];
-
-const TEST: &[Key] = &[
-    key(
-        "conditioning_operations",
-        whole(0, 1000, ""),
-        "station",
-        "operations before the first measurement",
-    ),
-    key(
-        "prebias_v",
-        above_zero(20.0, "V"),
-        "station",
-        "coil resistance is measured and the operate ramp starts here",
-    ),
-    key(
-        "coarse_span_v",
-        above_zero(20.0, "V"),
-        "station",
-        "height of the coarse ramp",
-    ),
-    key(
-        "coil_channels",
-        Form::Choice(&["fine", "coarse_current"]),
-        "station, gauge",
-        "channels that measure the coil",
-    ),
-    key(
-        "expected_operate_v",
-        above_zero(20.0, "V"),
-        "station",
-        "operate threshold expected of the lot",
-    ),
-    key(
-        "expected_operate_sd_v",
-        above_zero(5.0, "V"),
-        "station",
-        "its standard deviation",
-    ),
-    key(
-        "expected_release_v",
-        above_zero(20.0, "V"),
-        "station",
-        "release threshold expected of the lot",
-    ),
-    key(
-        "expected_release_sd_v",
-        above_zero(5.0, "V"),
-        "station",
-        "its standard deviation",
-    ),
-    key(
-        "clamp",
-        Form::Choice(&["zener", "diode"]),
-        "station",
-        "coil suppression during the timed release",
-    ),
-    optional(
-        "strategy",
-        Form::Table(STRATEGY),
-        "station",
-        "per threshold; coarse_fine where none is named",
-    ),
-];
-
-/// The whole file.
-pub const FILE: &[Key] = &[
-    key(
-        "name",
-        Form::Text,
-        "history",
-        "equal to the name of the file",
-    ),
-    key(
-        "kind",
-        Form::Choice(&["em_relay"]),
-        "station",
-        "kind of part",
-    ),
-    key("title_en", Form::Text, "report, hmi", "title in English"),
-    key("title_zh", Form::Text, "report, hmi", "title in Chinese"),
-    key("part", Form::Table(PART), "guard, gauge", "the part itself"),
-    key(
-        "limits",
-        Form::Table(LIMITS),
-        "gauge",
-        "limits, inclusive; a missing side is not judged",
-    ),
-    key(
-        "decision",
-        Form::Table(DECISION),
-        "gauge, station",
-        "how results become verdicts",
-    ),
-    key(
-        "test",
-        Form::Table(TEST),
-        "station",
-        "how the part is measured",
-    ),
-];
+/// The whole file for a part of this kind.
+pub fn of(kind: Kind) -> [Key; 8] {
+    let place = kind as usize;
+    let sections = kind.sections();
+    [
+        key(
+            "name",
+            Form::Text,
+            "history",
+            "equal to the name of the file",
+        ),
+        key(
+            "kind",
+            Form::Choice(&Kind::NAMES[place..=place]),
+            "station",
+            "kind of part",
+        ),
+        key("title_en", Form::Text, "report, hmi", "title in English"),
+        key("title_zh", Form::Text, "report, hmi", "title in Chinese"),
+        key(
+            "part",
+            Form::Table(sections.part),
+            "guard, gauge",
+            "the part itself",
+        ),
+        key(
+            "limits",
+            Form::Table(sections.limits),
+            "gauge",
+            "limits, inclusive; a missing side is not judged",
+        ),
+        key(
+            "decision",
+            Form::Table(DECISION),
+            "gauge, station",
+            "how results become verdicts",
+        ),
+        key(
+            "test",
+            Form::Table(sections.test),
+            "station",
+            "how the part is measured",
+        ),
+    ]
+}

@@ -5,9 +5,10 @@ mod modules;
 mod points;
 
 use crate::dut::FIXTURES;
+use crate::dut::em_relay::keys::board::REFERENCE;
 use crate::form::{Form, Key, Points, key, optional};
 use crate::rig::point::{DigitalIn, DigitalOut, Fixture};
-use measuring::{ACCURACY, CALIBRATION, REFERENCE};
+use measuring::{ACCURACY, CALIBRATION};
 use modules::{BUS, LINE, MODULE, SAFETY};
 use points::{ACTUATOR, ACTUATORS, ANALOG_IN, ANALOG_OUT, BIN, CHANNEL, DIGITAL_IN, STATION};
 

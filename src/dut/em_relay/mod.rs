@@ -6,6 +6,7 @@
 //! | what is measured, in which unit | [`parameter`] |
 //! | where a part that fails goes | [`bins`] |
 //! | what the part is, how it is measured | [`recipe`] |
+//! | what may stand in the files of `config/` | [`keys`] |
 //! | what a test finds beside figures | [`finding`] |
 //! | the order of a test, a file per stage | [`measure`] |
 //! | how a threshold is found, and whether modules and uncertainty allow it | [`strategy`], [`feasible`] |
@@ -33,6 +34,7 @@ pub mod evidence;
 pub mod feasible;
 pub mod finding;
 pub mod golden;
+pub mod keys;
 pub mod lag;
 pub mod made_up;
 pub mod measure;

@@ -10,11 +10,13 @@
 //! | what the part is, how it is measured | [`recipe`] |
 //! | which points of the rig it needs | [`points`] |
 //! | what a test finds beside the figure | [`finding`] |
+//! | the keys of its recipe | [`keys`] |
 //! | the test | [`measure`] |
 //! | the process card | [`card`] |
 
 pub mod card;
 pub mod finding;
+pub mod keys;
 pub mod made_up;
 pub mod measure;
 pub mod parameter;

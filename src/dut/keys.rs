@@ -1,0 +1,86 @@
+//! Keys of a recipe that a kind of device brings, and those that kinds have in common.
+
+use crate::form::{Form, Key, Range, from_to, key};
+
+/// What three sections of a recipe may hold for one kind.
+#[derive(Debug, Clone, Copy)]
+pub struct Sections {
+    /// `[part]`.
+    pub part: &'static [Key],
+    /// `[limits]`: a table for each characteristic.
+    pub limits: &'static [Key],
+    /// `[test]`.
+    pub test: &'static [Key],
+}
+
+const LENGTH: Range = Range {
+    unit: "mm",
+    low: 0.0,
+    high: 200.0,
+    low_allowed: false,
+};
+
+/// Key of `[part]`.
+pub const BODY: Key = key(
+    "body_mm",
+    Form::Numbers(3, LENGTH),
+    "guard",
+    "body along x, y, z as it lies in the nest",
+);
+
+/// Key of `[part]`.
+pub const PIN_LENGTH: Key = key(
+    "pin_length_mm",
+    from_to(0.0, 50.0, "mm"),
+    "guard",
+    "length of the pins below the body",
+);
+
+/// Key of `[part]`.
+pub const REFERENCE_TEMPERATURE: Key = key(
+    "reference_temperature_c",
+    from_to(-40.0, 85.0, "C"),
+    "gauge",
+    "temperature that results are converted to",
+);
+
+/// Form of a limit: `low` and `high` from 0 to the second argument in this unit, either of which may be left out.
+macro_rules! limit {
+    ($unit:literal, $high:literal) => {
+        crate::form::Form::Table(&[
+            crate::form::optional(
+                "low",
+                crate::form::from_to(0.0, $high, $unit),
+                "gauge",
+                "least good value",
+            ),
+            crate::form::optional(
+                "high",
+                crate::form::from_to(0.0, $high, $unit),
+                "gauge",
+                "greatest good value",
+            ),
+        ])
+    };
+}
+pub(crate) use limit;
+
+#[cfg(test)]
+mod tests {
+    use crate::dut::Kind;
+
+    #[test]
+    fn a_recipe_limits_every_characteristic_of_its_kind() {
+        for kind in Kind::ALL {
+            let limits = kind.sections().limits.iter().map(|key| key.name);
+            assert!(limits.eq(kind.characteristics().iter().map(|it| it.key())));
+        }
+    }
+
+    #[test]
+    fn every_kind_has_its_name_in_its_place() {
+        for kind in Kind::ALL {
+            assert_eq!(Kind::NAMES[kind as usize], kind.name());
+        }
+    }
+}
