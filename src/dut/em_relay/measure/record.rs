@@ -113,12 +113,17 @@ impl TestRecord {
     }
 
     /// Adds one result of a stage with the replies it was made from.
+    ///
+    /// # Panics
+    /// When the result is not in the unit of the parameter.
     pub fn found<'a, S: Evidence + 'a>(
         &mut self,
         parameter: Parameter,
         reading: Reading,
         samples: impl IntoIterator<Item = &'a S>,
     ) {
+        let unit = parameter.definition().unit;
+        assert_eq!(reading.unit, unit, "{parameter} in another unit");
         self.readings.push((parameter, reading));
         self.evidence.extend(
             samples
