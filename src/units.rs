@@ -3,7 +3,7 @@
 //! Arithmetic stays inside one unit; the only mixed operation is Ohm's law, spelled out as
 //! [`Volt::over`]. Rig time is integer microseconds: [`RigTime`] is an instant, [`Span`] a duration.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
@@ -69,6 +69,66 @@ quantity!(/** Resistance. */ Ohm, "ohm");
 quantity!(/** Time as a measured quantity (an operate time), not an instant of the rig. */ Second, "s");
 quantity!(/** Temperature on the Celsius scale. */ Celsius, "C");
 quantity!(/** Length. */ Millimetre, "mm");
+
+/// Unit of a bare number that the type system does not follow: of a reading, a limit, a factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Unit {
+    /// A pure number.
+    One,
+    /// Resistance.
+    Ohm,
+    /// Resistance of contacts.
+    Milliohm,
+    /// Electric potential.
+    Volt,
+    /// Time.
+    Millisecond,
+    /// Delay of a gate.
+    Microsecond,
+    /// Slope of a ramp.
+    VoltPerSecond,
+    /// Inverse of a measuring current.
+    MilliohmPerVolt,
+}
+
+impl Unit {
+    /// As written in files, rows and JSON, in ASCII.
+    pub const fn symbol(self) -> &'static str {
+        match self {
+            Self::One => "1",
+            Self::Ohm => "ohm",
+            Self::Milliohm => "mOhm",
+            Self::Volt => "V",
+            Self::Millisecond => "ms",
+            Self::Microsecond => "us",
+            Self::VoltPerSecond => "V/s",
+            Self::MilliohmPerVolt => "mohm/V",
+        }
+    }
+
+    /// As printed on paper and pages.
+    pub const fn sign(self) -> &'static str {
+        match self {
+            Self::Ohm => "Ω",
+            Self::Milliohm => "mΩ",
+            Self::Microsecond => "µs",
+            Self::MilliohmPerVolt => "mΩ/V",
+            Self::One | Self::Volt | Self::Millisecond | Self::VoltPerSecond => self.symbol(),
+        }
+    }
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.symbol())
+    }
+}
+
+impl Serialize for Unit {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.symbol())
+    }
+}
 
 impl Volt {
     /// Ohm's law: the resistance that drops this voltage at `current`.
@@ -140,6 +200,13 @@ mod tests {
     #[test]
     fn ohms_law_is_the_only_way_between_units() {
         assert_eq!(Volt(5.0).over(Ampere(0.0125)), Ohm(400.0));
+    }
+
+    #[test]
+    fn a_unit_is_written_in_ascii_and_printed_with_its_sign() {
+        assert_eq!(serde_json::json!(Unit::Milliohm), "mOhm");
+        assert_eq!(Unit::Milliohm.sign(), "mΩ");
+        assert_eq!(format!("[{:>3}]", Unit::Volt), "[  V]");
     }
 
     #[test]

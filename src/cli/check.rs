@@ -3,7 +3,9 @@
 //! Exit status: 0 every move is clear, 1 a move is blocked, 2 bad input (one message, nothing on stdout).
 
 use crate::guard::{Actuator, part_names};
-use crate::lpm::scene::{Elsewhere, Format, MoveOrder, Scene, read_moves, read_scene_of_rig};
+use crate::lpm::scene::{
+    Elsewhere, Format, MeshFault, MoveOrder, Scene, read_moves, read_scene_of_rig,
+};
 use crate::lpm::{Answer, ElementKey, Model, Move, Mover};
 use anyhow::{Context, anyhow, bail};
 use serde::Serialize;
@@ -105,8 +107,9 @@ fn load_scene(path: &Path) -> anyhow::Result<Scene> {
     };
     let text = read_text(path)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    let mut files =
-        |name: &str| std::fs::read(folder.join(name)).map_err(|error| error.to_string());
+    let mut files = |name: &str| {
+        std::fs::read(folder.join(name)).map_err(|error| MeshFault::File(error.to_string()))
+    };
     let actuators = [Actuator::names().as_slice(), &Actuator::OTHER_NAMES].concat();
     let elsewhere = Elsewhere {
         actuators: &actuators,

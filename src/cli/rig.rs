@@ -56,9 +56,14 @@ impl RigArgs {
     }
 }
 
-/// How often the wall clock; what a person can still follow, and a machine keep up with.
-pub fn speed(text: &str) -> Result<f64, String> {
+/// No speed that a person can follow and a machine keep up with.
+#[derive(Debug, thiserror::Error)]
+#[error("found {0}, expected a number from 0.1 to 100")]
+pub struct NoSpeed(String);
+
+/// How often the wall clock.
+pub fn speed(text: &str) -> Result<f64, NoSpeed> {
     let found = text.parse().ok();
     let sensible = found.filter(|it| (0.1..=100.0).contains(it));
-    sensible.ok_or_else(|| format!("found {text}, expected a number from 0.1 to 100"))
+    sensible.ok_or_else(|| NoSpeed(text.to_owned()))
 }

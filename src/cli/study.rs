@@ -337,11 +337,16 @@ fn transients(_: &StudyArgs) -> anyhow::Result<i32> {
     bail!("study: this is a plant build without the simulated rig");
 }
 
-/// `--rtol`: what the method and the arithmetic can keep.
-fn tolerance(text: &str) -> Result<f64, String> {
+/// No tolerance that the method and the arithmetic can keep.
+#[derive(Debug, thiserror::Error)]
+#[error("expected a number from 1e-14 to 1e-2")]
+struct NoTolerance;
+
+/// `--rtol`.
+fn tolerance(text: &str) -> Result<f64, NoTolerance> {
     match text.parse::<f64>() {
         Ok(value) if (1e-14..=1e-2).contains(&value) => Ok(value),
-        Ok(_) | Err(_) => Err("expected a number from 1e-14 to 1e-2".to_owned()),
+        Ok(_) | Err(_) => Err(NoTolerance),
     }
 }
 

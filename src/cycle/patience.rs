@@ -32,7 +32,7 @@ impl Patience {
             self.scans.len() - 1
         });
         let times = &mut self.scans[index].2;
-        *times += 1;
+        *times = times.saturating_add(1);
         (*times >= self.tries).then_some(*times)
     }
 
@@ -46,8 +46,9 @@ impl Patience {
 
     /// Counts a failed write; true while it may be tried again.
     pub(super) fn may_rewrite(&mut self, module: ModuleId) -> bool {
-        self.writes[module.0] += 1;
-        self.writes[module.0] < self.tries
+        let times = &mut self.writes[module.0];
+        *times = times.saturating_add(1);
+        *times < self.tries
     }
 
     /// A write was confirmed: failures before it no longer count.
@@ -58,5 +59,32 @@ impl Patience {
     /// Forgets failed writes: at the end every module is written until it confirms.
     pub(super) fn forgive(&mut self) {
         self.writes.fill(0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dcon::Common;
+
+    #[test]
+    fn more_failures_than_a_byte_counts_are_still_trouble() {
+        let mut patience = Patience {
+            tries: 3,
+            scans: Vec::new(),
+            writes: vec![0],
+        };
+        let command = Common::ReadResetStatus.to(Address(0x11));
+        let mut failed = || patience.scan_failed(LineId(0), &command);
+        assert_eq!([failed(), failed(), failed()], [None, None, Some(3)]);
+        assert!((0..300).all(|_| failed() >= Some(3)));
+        assert_eq!(failed(), Some(u8::MAX));
+        assert!(patience.may_rewrite(ModuleId(0)));
+        assert!(
+            (0..300)
+                .filter(|_| patience.may_rewrite(ModuleId(0)))
+                .count()
+                == 1
+        );
     }
 }

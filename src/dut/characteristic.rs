@@ -7,6 +7,7 @@ use super::Kind;
 use super::verdict::Bin;
 use super::{em_relay, resistor};
 use crate::gauge::repetition::SpokenOf;
+use crate::units::Unit;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 
@@ -15,8 +16,8 @@ use std::fmt;
 pub struct Definition {
     /// Key with the unit as suffix.
     pub key: &'static str,
-    /// Unit in which values and limits are written: `ohm`, `V`, `ms`, `mOhm`.
-    pub unit: &'static str,
+    /// Unit in which values and limits are written.
+    pub unit: Unit,
     /// Name on English pages and paper.
     pub name_en: &'static str,
     /// Name on Chinese pages and paper.
@@ -61,7 +62,7 @@ impl Characteristic {
     }
 
     /// The unit in which values and limits are written.
-    pub fn unit(self) -> &'static str {
+    pub fn unit(self) -> Unit {
         self.definition().unit
     }
 

@@ -15,25 +15,32 @@ use crate::rig::wiring::Wiring;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The limits of a recipe by characteristic.
+/// The limits of a recipe by characteristic, whose key says the unit.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Limits(BTreeMap<Characteristic, Limit>);
+pub struct Limits(BTreeMap<Characteristic, Ends>);
+
+/// As written in a recipe: bare numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+struct Ends {
+    low: Option<f64>,
+    high: Option<f64>,
+}
 
 impl Limits {
-    /// The limits of a characteristic; both sides open when the recipe names none.
+    /// The limits of a characteristic in its unit; both sides open when the recipe names none.
     pub fn of(&self, characteristic: impl Into<Characteristic>) -> Limit {
-        self.0
-            .get(&characteristic.into())
-            .copied()
-            .unwrap_or_default()
+        let characteristic = characteristic.into();
+        let Ends { low, high } = self.0.get(&characteristic).copied().unwrap_or_default();
+        let unit = characteristic.unit();
+        Limit { unit, low, high }
     }
 
     /// Every limit that the recipe names.
     pub fn named(&self) -> impl Iterator<Item = (Characteristic, Limit)> + '_ {
         self.0
-            .iter()
-            .map(|(characteristic, limit)| (*characteristic, *limit))
+            .keys()
+            .map(|characteristic| (*characteristic, self.of(*characteristic)))
     }
 }
 

@@ -86,6 +86,9 @@ impl<T> TestRecord<T> {
     }
 
     /// Adds one result of a stage with the replies it was made from.
+    ///
+    /// # Panics
+    /// When the result is not in the unit of its characteristic.
     pub fn found<'a, S: Evidence + 'a>(
         &mut self,
         of: impl Into<Characteristic>,
@@ -93,6 +96,7 @@ impl<T> TestRecord<T> {
         samples: impl IntoIterator<Item = &'a S>,
     ) {
         let of = of.into();
+        assert_eq!(reading.unit, of.unit(), "{of} in another unit");
         self.readings.push((of, reading));
         let origins = samples.into_iter().map(|sample| sample.origin().clone());
         self.evidence.extend(origins.map(|origin| (of, origin)));

@@ -1,6 +1,7 @@
 //! Uncertainty budget of one result (GUM, ISO/IEC Guide 98-3): named standard uncertainties, added
 //! in quadrature because every term here comes from an instrument or effect of its own.
 
+use crate::units::Unit;
 use serde::Serialize;
 
 /// Coverage factor of every expanded uncertainty that leaves the program.
@@ -73,11 +74,13 @@ fn root_sum<'a>(terms: impl Iterator<Item = &'a Term>) -> f64 {
     terms.map(|term| term.u * term.u).sum::<f64>().sqrt()
 }
 
-/// A result with its budget, both in the unit that the parameter's name ends in.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// A result with its budget.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
     /// Corrected value.
     pub value: f64,
+    /// Unit of the value and of every term of the budget.
+    pub unit: Unit,
     /// Where its doubt comes from.
     pub budget: Budget,
 }
@@ -109,11 +112,13 @@ mod tests {
     fn a_reading_without_a_number_is_not_usable() {
         let reading = Reading {
             value: f64::NAN,
+            unit: Unit::Volt,
             budget: Budget::default(),
         };
         assert!(!reading.is_usable());
         let endless = Reading {
             value: 1.0,
+            unit: Unit::Volt,
             budget: Budget::default().with("x", f64::INFINITY),
         };
         assert!(!endless.is_usable());

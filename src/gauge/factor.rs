@@ -1,5 +1,6 @@
 //! A calibration factor and how well it is known.
 
+use crate::units::Unit;
 use serde::{Deserialize, Serialize};
 
 /// A factor and how well it is known.
@@ -23,8 +24,8 @@ impl Factor {
 pub struct Named {
     /// Name in tables.
     pub name: &'static str,
-    /// Unit of value and uncertainty, `1` for a ratio.
-    pub unit: &'static str,
+    /// Unit of value and uncertainty.
+    pub unit: Unit,
     /// Value and standard uncertainty.
     pub factor: Factor,
 }

@@ -5,16 +5,26 @@
 //! is void, never pass.
 
 use super::budget::Reading;
+use crate::units::Unit;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Limits of one characteristic in its own unit, inclusive; a missing side is not judged.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+/// Limits of one characteristic, inclusive; a missing side is not judged.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
+    /// Unit of both sides.
+    pub unit: Unit,
     /// Least good value.
     pub low: Option<f64>,
     /// Greatest good value.
     pub high: Option<f64>,
+}
+
+impl Limit {
+    /// True when neither side is judged.
+    pub fn is_open(&self) -> bool {
+        self.low.is_none() && self.high.is_none()
+    }
 }
 
 /// How the uncertainty enters a decision.
@@ -74,8 +84,12 @@ pub enum Judgement {
     Void,
 }
 
-/// Holds one result against its limit; without a limit every usable result passes.
+/// Judges one result by its limit; without a limit every usable result passes.
+///
+/// # Panics
+/// When both are not in the same unit.
 pub fn judge(reading: &Reading, limit: &Limit, rule: Rule) -> Judgement {
+    assert_eq!(reading.unit, limit.unit, "judged in another unit");
     if !reading.is_usable() {
         return Judgement::Void;
     }
@@ -109,12 +123,14 @@ mod tests {
     fn reading(value: f64, u: f64) -> Reading {
         Reading {
             value,
+            unit: Unit::Ohm,
             budget: Budget::default().with("test", u),
         }
     }
 
     fn high(high: f64) -> Limit {
         Limit {
+            unit: Unit::Ohm,
             low: None,
             high: Some(high),
         }
@@ -149,6 +165,16 @@ mod tests {
             judge(&reading(9.0001, 0.5), &high(9.0), rule),
             Judgement::Fail(Side::High)
         );
+    }
+
+    #[test]
+    #[should_panic(expected = "judged in another unit")]
+    fn a_result_is_never_judged_in_another_unit() {
+        let limit = Limit {
+            unit: Unit::Milliohm,
+            ..high(9.0)
+        };
+        judge(&reading(1.0, 0.01), &limit, Rule::Simple);
     }
 
     #[test]

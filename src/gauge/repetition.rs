@@ -30,11 +30,16 @@ fn student(freedom: usize) -> f64 {
 }
 
 /// Mean of repetitions; `None` without one. The terms are those of the first.
+///
+/// # Panics
+/// When they are not in the same unit.
 pub fn mean(repetitions: &[Reading], of: SpokenOf) -> Option<Reading> {
     let (first, more) = repetitions.split_first()?;
     if more.is_empty() {
         return Some(first.clone());
     }
+    let alike = more.iter().all(|it| it.unit == first.unit);
+    assert!(alike, "repetitions in different units");
     let n = repetitions.len() as f64;
     let value = repetitions.iter().map(|it| it.value).sum::<f64>() / n;
     let squares: f64 = repetitions
@@ -59,6 +64,7 @@ pub fn mean(repetitions: &[Reading], of: SpokenOf) -> Option<Reading> {
     let scatter = student(more.len()) * (own_2 * open).sqrt();
     Some(Reading {
         value,
+        unit: first.unit,
         budget: budget.with("scatter of the part", scatter),
     })
 }
@@ -66,6 +72,7 @@ pub fn mean(repetitions: &[Reading], of: SpokenOf) -> Option<Reading> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::units::Unit;
 
     fn readings(values: &[f64]) -> Vec<Reading> {
         let budget = Budget::default()
@@ -73,6 +80,7 @@ mod tests {
             .with_random("noise", 8.0);
         let of = |value: &f64| Reading {
             value: *value,
+            unit: Unit::Volt,
             budget: budget.clone(),
         };
         values.iter().map(of).collect()

@@ -58,6 +58,7 @@ fn stored(part: &Part, of: Characteristic, factor: f64) -> Reading {
     let expanded = number(&part.uncertainty);
     Reading {
         value: number(&part.values),
+        unit: of.unit(),
         budget: Budget::default().with("stored", expanded / 2.0),
     }
 }

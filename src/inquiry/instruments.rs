@@ -5,6 +5,7 @@ use super::Result;
 use crate::dut::Characteristic;
 use crate::dut::instruments::{Certificate, factors};
 use crate::history::{Archive, CalibrationRecord, GoldenCheck, Moment, Part};
+use crate::units::Unit;
 use jiff::Timestamp;
 use serde::Serialize;
 
@@ -47,7 +48,7 @@ pub struct Told {
     /// Its name.
     pub name: &'static str,
     /// Unit of the figures, `1` for a ratio.
-    pub unit: &'static str,
+    pub unit: Unit,
     /// Value.
     pub value: f64,
     /// Expanded uncertainty, k = 2.

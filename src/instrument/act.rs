@@ -4,7 +4,7 @@
 //! was read. So the order of a test can be read, printed and replayed, and no stage ever holds the bus.
 //! Acts name wired points and know nothing of the device: which transactions they take is the wiring's.
 
-use super::readings::Readings;
+use super::readings::{Readings, Unread};
 use crate::rig::image::Image;
 use crate::rig::point::{AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, Point};
 use crate::units::{RigTime, Span, Volt};
@@ -224,7 +224,7 @@ impl Runner {
             self.pending = false;
             self.since = done.at;
             if let Err(trouble) = self.keep(image, now) {
-                return Doing::Trouble(trouble);
+                return Doing::Trouble(trouble.to_string());
             }
         }
         while let Some(act) = &self.current {
@@ -327,7 +327,7 @@ impl Runner {
     }
 
     /// Takes in what the finished job brought, and moves on unless a condition is still awaited.
-    fn keep(&mut self, image: &Image, now: RigTime) -> Result<(), String> {
+    fn keep(&mut self, image: &Image, now: RigTime) -> Result<(), Unread> {
         match self.current.clone() {
             Some(Act::Read(read)) => self.readings.take(&read, image, (now, self.since))?,
             Some(Act::Until {
@@ -335,7 +335,7 @@ impl Runner {
                 word,
                 within,
             }) => {
-                let stale = || format!("a {} input is stale", word.name);
+                let stale = || Unread::Stale(word.name);
                 let active = image.answered_input(point, now).ok_or_else(stale)?;
                 let states = word.states(image, now).ok_or_else(stale)?;
                 self.readings.trace.word(word.name, &states, self.since);

@@ -6,6 +6,7 @@ use crate::rig::image::Image;
 use crate::rig::point::{AnalogInput, DigitalInput, GatedCounter, Point, Thermometer};
 use crate::rig::sample::{AnalogPoint, CountPoint, CountSample, Sample};
 use crate::units::RigTime;
+use thiserror::Error;
 
 /// Everything a stage has read.
 #[derive(Debug, Clone, Default)]
@@ -17,6 +18,17 @@ pub struct Readings {
     pub seen: Vec<bool>,
     /// All of it sample by sample, and what was asked of the outputs.
     pub trace: Trace,
+}
+
+/// Why a finished reading says nothing.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub(super) enum Unread {
+    /// A point has no value.
+    #[error("{0} was answered without a value")]
+    Missing(String),
+    /// An input of this word was last read too long ago.
+    #[error("a {0} input is stale")]
+    Stale(&'static str),
 }
 
 impl Readings {
@@ -55,7 +67,7 @@ impl Readings {
         read: &Read,
         image: &Image,
         at: (RigTime, RigTime),
-    ) -> Result<(), String> {
+    ) -> Result<(), Unread> {
         match read {
             Read::Word(word) => {
                 let states = word.states(image, at.0).ok_or_else(|| missing(word.name))?;
@@ -78,7 +90,7 @@ impl Readings {
         self.states.extend(word.inputs.iter().copied().zip(states));
     }
 
-    fn take_point(&mut self, point: Point, image: &Image, now: RigTime) -> Result<(), String> {
+    fn take_point(&mut self, point: Point, image: &Image, now: RigTime) -> Result<(), Unread> {
         let wiring = image.wiring();
         match point {
             Point::Input(input) => {
@@ -108,6 +120,6 @@ impl Readings {
     }
 }
 
-fn missing(name: &str) -> String {
-    format!("{name} was answered without a value")
+fn missing(name: &str) -> Unread {
+    Unread::Missing(name.to_owned())
 }

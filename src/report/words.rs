@@ -44,7 +44,7 @@ impl Language {
             return key.to_owned();
         };
         let name = self.of(known.definition().name_en, known.definition().name_zh);
-        format!("{name} / {}", unit(known.unit()))
+        format!("{name} / {}", known.unit().sign())
     }
 
     /// Why a part did not pass; what has no words of its own stands there as the history says it.
@@ -124,15 +124,6 @@ impl Language {
 /// A name whose unit stays beside it where the line breaks.
 pub(super) fn unbroken(name: &str) -> String {
     name.replace(" / ", "\u{a0}/\u{a0}")
-}
-
-/// As printed: with the sign for ohm.
-fn unit(unit: &str) -> &str {
-    match unit {
-        "ohm" => "Ω",
-        "mOhm" => "mΩ",
-        unit => unit,
-    }
 }
 
 /// Five significant digits without trailing zeros; a dash for nothing.

@@ -10,6 +10,7 @@ use anyhow::{Context, anyhow, bail};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::time::Duration;
+use thiserror::Error;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 
@@ -22,8 +23,13 @@ const PATIENCE: Duration = Duration::from_secs(10);
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Page(String);
 
+/// A text that is no address of a page.
+#[derive(Debug, PartialEq, Eq, Error)]
+#[error("found \"{0}\", expected http://HOST:PORT")]
+pub(super) struct NoPage(String);
+
 /// For the command line.
-pub(super) fn page(text: &str) -> Result<Page, String> {
+pub(super) fn page(text: &str) -> Result<Page, NoPage> {
     let rest = text.strip_prefix("http://");
     let host = rest.map(|rest| rest.strip_suffix('/').unwrap_or(rest));
     let fits = |host: &&str| {
@@ -32,7 +38,7 @@ pub(super) fn page(text: &str) -> Result<Page, String> {
     };
     match host.filter(fits) {
         Some(host) => Ok(Page(host.to_owned())),
-        None => Err(format!("found \"{text}\", expected http://HOST:PORT")),
+        None => Err(NoPage(text.to_owned())),
     }
 }
 
@@ -247,7 +253,10 @@ mod tests {
             "http://a:1/api",
         ] {
             assert!(
-                host(wrong).unwrap_err().contains("http://HOST:PORT"),
+                host(wrong)
+                    .unwrap_err()
+                    .to_string()
+                    .contains("http://HOST:PORT"),
                 "{wrong}"
             );
         }

@@ -7,6 +7,7 @@ use crate::dcon::{Address, BaudCode, Command, Common, Reply};
 use anyhow::{Context, anyhow, bail};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+use thiserror::Error;
 use tokio::sync::mpsc;
 use tokio::task::JoinHandle;
 
@@ -56,24 +57,31 @@ impl Checksums {
     }
 }
 
+/// An argument that does not say what to ask.
+#[derive(Debug, Error)]
+pub(super) enum NotAskable {
+    /// No rate of the protocol.
+    #[error("found \"{0}\", expected 1200 2400 4800 9600 19200 38400 57600 or 115200")]
+    Rate(String),
+    /// No range of addresses.
+    #[error("found \"{0}\", expected hexadecimal addresses as 01-20")]
+    Addresses(String),
+}
+
 /// A rate of the protocol.
-pub(super) fn baud(text: &str) -> Result<u32, String> {
+pub(super) fn baud(text: &str) -> Result<u32, NotAskable> {
     text.parse()
         .ok()
         .filter(|rate| BaudCode::of(*rate).is_some())
-        .ok_or_else(|| {
-            format!("found \"{text}\", expected 1200 2400 4800 9600 19200 38400 57600 or 115200")
-        })
+        .ok_or_else(|| NotAskable::Rate(text.to_owned()))
 }
 
-fn addresses(text: &str) -> Result<(u8, u8), String> {
+fn addresses(text: &str) -> Result<(u8, u8), NotAskable> {
     let number = |part: &str| u8::from_str_radix(part, 16).ok();
     let (first, last) = text.split_once('-').unwrap_or((text, text));
     match (number(first), number(last)) {
         (Some(first), Some(last)) if first <= last => Ok((first, last)),
-        _ => Err(format!(
-            "found \"{text}\", expected hexadecimal addresses as 01-20"
-        )),
+        _ => Err(NotAskable::Addresses(text.to_owned())),
     }
 }
 

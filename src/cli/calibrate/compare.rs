@@ -1,6 +1,7 @@
 //! The factors of a calibration by name, and whether those found again agree with those stored.
 
 use crate::dut::Calibration;
+use crate::units::Unit;
 use std::fmt;
 
 /// Coverage factor of what is told: about 95 %.
@@ -15,7 +16,7 @@ pub struct Compared {
     /// Name in the table.
     pub name: &'static str,
     /// Unit of the figures.
-    pub unit: &'static str,
+    pub unit: Unit,
     /// Measured now.
     pub found: f64,
     /// Stored.

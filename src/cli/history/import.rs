@@ -27,8 +27,13 @@ pub(super) struct ImportArgs {
     sheet: Option<String>,
 }
 
-fn pair(text: &str) -> Result<(String, String), String> {
-    let parts = text.split_once('=').ok_or("expected COLUMN=KEY")?;
+/// No column with a key.
+#[derive(Debug, thiserror::Error)]
+#[error("expected COLUMN=KEY")]
+struct NoPair;
+
+fn pair(text: &str) -> Result<(String, String), NoPair> {
+    let parts = text.split_once('=').ok_or(NoPair)?;
     Ok((parts.0.trim().to_owned(), parts.1.trim().to_owned()))
 }
 

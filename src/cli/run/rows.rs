@@ -78,6 +78,9 @@ fn measurement(
     (characteristic, limit): (Characteristic, Limit),
 ) -> Option<MeasurementRecord> {
     let reading = judged.record.result(characteristic)?;
+    let unit = characteristic.unit();
+    assert_eq!(reading.unit, unit, "{characteristic} in another unit");
+    assert_eq!(limit.unit, unit, "{characteristic} limited in another");
     let judgement = judged
         .judgements
         .iter()

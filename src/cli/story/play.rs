@@ -18,6 +18,7 @@ use std::io::{BufWriter, Write};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
+use thiserror::Error;
 use tokio::sync::{mpsc, oneshot};
 
 /// Nothing has happened for so long: nothing will any more.
@@ -131,8 +132,7 @@ async fn play(
 ) {
     match deed {
         Deed::Fault(fault) => {
-            let struck = rig.strike(fault).map_err(|error| error.to_string());
-            told.fault(fault, struck, pace.now());
+            told.fault(fault, rig.strike(fault), pace.now());
         }
         Deed::Order(words, order) => {
             let answer = ask(order, orders).await;
@@ -141,11 +141,21 @@ async fn play(
     }
 }
 
-/// The station's answer; the reason why not.
-async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), String> {
+/// Why an order of the script is not taken.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub(super) enum Refusal {
+    /// The line is gone.
+    #[error("the run has ended")]
+    Ended,
+    /// The station's reason.
+    #[error("{0}")]
+    Said(String),
+}
+
+/// The station's answer.
+async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), Refusal> {
     let (answer, answered) = oneshot::channel();
     let order = order.clone();
-    let gone = |_| "the run has ended".to_owned();
     let by = By {
         who: "script".to_owned(),
         role: "engineer".to_owned(),
@@ -155,8 +165,9 @@ async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), S
     orders
         .send(OrderRequest::new(order, by, way_back))
         .await
-        .map_err(|_| "the run has ended".to_owned())?;
-    answered.await.map_err(gone)?.map_err(|why| why.en)
+        .map_err(|_| Refusal::Ended)?;
+    let answer = answered.await.map_err(|_| Refusal::Ended)?;
+    answer.map_err(|why| Refusal::Said(why.en))
 }
 
 impl Seen {

@@ -3,6 +3,7 @@
 //! Seconds are whole ones and count from the first thing that a script did or the first alarm; what is the ordinary
 //! course of a lot has none. The first alarm of a code comes with why it happens, what follows and what to do.
 
+use super::play::Refusal;
 use super::script::{Awaited, Line, Script};
 use crate::cycle::{Event, PANEL};
 use crate::handling::ledger::{Kind, Part};
@@ -12,6 +13,7 @@ use crate::station::annunciator::Standing;
 use crate::station::catalogue;
 use crate::station::trouble::Alarm;
 use crate::units::RigTime;
+use rigsim::SimError;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Lines so far.
@@ -89,7 +91,7 @@ impl Told {
     }
 
     /// The script has struck the rig.
-    pub fn fault(&mut self, fault: &str, struck: Result<(), String>, now: RigTime) {
+    pub fn fault(&mut self, fault: &str, struck: Result<(), SimError>, now: RigTime) {
         let text = match struck {
             Ok(()) => format!("rig       {fault}"),
             Err(why) => format!("rig       {fault}: {why}"),
@@ -99,7 +101,7 @@ impl Told {
     }
 
     /// The script has ordered something.
-    pub fn order(&mut self, words: &str, answer: Result<(), String>, now: RigTime) {
+    pub fn order(&mut self, words: &str, answer: Result<(), Refusal>, now: RigTime) {
         let text = match answer {
             Ok(()) => format!("operator  {words}"),
             Err(why) => format!("operator  {words}: refused, {why}"),

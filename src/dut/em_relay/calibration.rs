@@ -9,7 +9,7 @@ use super::lag::LagLaw;
 use super::threshold::Direction;
 use crate::gauge::Factor;
 use crate::gauge::factor::Named;
-use crate::units::Volt;
+use crate::units::{Unit, Volt};
 use serde::{Deserialize, Serialize};
 
 /// Reading of an analog input as a straight line of the true terminal voltage.
@@ -191,22 +191,22 @@ impl Calibration {
     pub fn factors(&self) -> Vec<Named> {
         let named = |name, unit, factor| Named { name, unit, factor };
         let mut all = vec![
-            named("coil_input_gain", "1", self.coil_input.gain),
-            named("coil_input_offset", "V", self.coil_input.offset_v),
-            named("coil_fine", "ohm", self.ohm_fine),
-            named("coil_wide", "ohm", self.ohm_wide),
-            named("contact", "mohm/V", self.contact_mohm_per_v),
-            named("gate_delay_0", "us", self.gate_delay_us[0]),
-            named("gate_delay_1", "us", self.gate_delay_us[1]),
-            named("level_gain", "1", self.level.gain),
-            named("level_offset", "V", self.level.offset_v),
-            named("coarse_gain", "1", self.coarse.gain),
-            named("fine_gain", "1", self.fine.gain),
-            named("fine_slope", "V/s", self.fine_v_per_s),
+            named("coil_input_gain", Unit::One, self.coil_input.gain),
+            named("coil_input_offset", Unit::Volt, self.coil_input.offset_v),
+            named("coil_fine", Unit::Ohm, self.ohm_fine),
+            named("coil_wide", Unit::Ohm, self.ohm_wide),
+            named("contact", Unit::MilliohmPerVolt, self.contact_mohm_per_v),
+            named("gate_delay_0", Unit::Microsecond, self.gate_delay_us[0]),
+            named("gate_delay_1", Unit::Microsecond, self.gate_delay_us[1]),
+            named("level_gain", Unit::One, self.level.gain),
+            named("level_offset", Unit::Volt, self.level.offset_v),
+            named("coarse_gain", Unit::One, self.coarse.gain),
+            named("fine_gain", Unit::One, self.fine.gain),
+            named("fine_slope", Unit::VoltPerSecond, self.fine_v_per_s),
         ];
         if let Some(lags) = &self.lags {
-            all.push(named("operate_lag", "V", lags.operate.fine_v));
-            all.push(named("release_lag", "V", lags.release.fine_v));
+            all.push(named("operate_lag", Unit::Volt, lags.operate.fine_v));
+            all.push(named("release_lag", Unit::Volt, lags.release.fine_v));
         }
         all
     }

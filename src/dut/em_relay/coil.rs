@@ -7,7 +7,7 @@
 use super::Parameter;
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
-use crate::units::{Celsius, Ohm, Volt};
+use crate::units::{Celsius, Ohm, Unit, Volt};
 
 /// Temperature at which the resistance of annealed copper would vanish, below zero Celsius.
 const COPPER_ZERO_C: f64 = 234.5;
@@ -81,7 +81,11 @@ pub fn resistance(
             "coil temperature",
             value * doubt.temperature_k * relative_per_kelvin(part),
         );
-    Some(Reading { value, budget })
+    Some(Reading {
+        value,
+        unit: Unit::Ohm,
+        budget,
+    })
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 use super::sampling::Polarities;
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading};
-use crate::units::Volt;
+use crate::units::{Unit, Volt};
 
 /// One closure read with both polarities of the source.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +71,11 @@ pub fn resistance(drops: &[Volt], mohm_per_v: Factor, mean_u_v: f64) -> Option<R
             "reference resistor",
             value * mohm_per_v.u / mohm_per_v.value,
         );
-    Some(Reading { value, budget })
+    Some(Reading {
+        value,
+        unit: Unit::Milliohm,
+        budget,
+    })
 }
 
 #[cfg(test)]

@@ -10,7 +10,6 @@ use super::settings::AccuracySettings;
 use super::{Parameter, Strategy};
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, Points};
 use crate::dut::recipe::Limits;
-use crate::gauge::Limit;
 use crate::gauge::budget::COVERAGE_FACTOR;
 use crate::rig::fault::Fault;
 use crate::rig::point::AnalogOutput;
@@ -59,7 +58,7 @@ pub fn check(
             Parameter::ContactResistanceNo,
             Parameter::ContactResistanceNc,
         ] {
-            if limits.of(parameter) == Limit::default() {
+            if limits.of(parameter).is_open() {
                 let expected = format!("a limit of {parameter} to be clear of, or no early stop");
                 return Err(Fault::new(
                     "test.strategy.contact.stops_early",

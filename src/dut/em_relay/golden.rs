@@ -13,7 +13,7 @@ use crate::dut::em_relay::probe_contact::Trend;
 use crate::dut::em_relay::settings::{AccuracySettings, Certified, GoldenPart};
 use crate::gauge::Factor;
 use crate::gauge::Reading;
-use crate::units::{Celsius, Ohm};
+use crate::units::{Celsius, Ohm, Unit};
 use thiserror::Error;
 
 /// A golden part whose fine indication lies further from the others' lag is out of its band, volts.
@@ -76,7 +76,7 @@ pub enum Misfit {
         /// Value found, in `unit`.
         found: f64,
         /// Unit of the values.
-        unit: &'static str,
+        unit: Unit,
         /// Value certified.
         certified: f64,
         /// Difference allowed.
@@ -88,10 +88,10 @@ pub enum Misfit {
 #[derive(Debug, Clone)]
 struct Shift {
     serial: String,
-    operate: f64,
-    release: f64,
+    operate_v: f64,
+    release_v: f64,
     /// Coarse minus fine indications, operate and release; NaN where no coarse ramp was seen.
-    coarse: [f64; 2],
+    coarse_v: [f64; 2],
 }
 
 /// What the golden parts of a run have shown so far.
@@ -130,9 +130,9 @@ impl GoldenRun {
         let at_part = |certified: Certified| certified.value / to_reference(track, reference);
         self.shifts.push(Shift {
             serial: serial.clone(),
-            operate: operate.0 - at_part(part.operate_voltage_v),
-            release: release.0 - at_part(part.release_voltage_v),
-            coarse: [over(seen.operate), over(seen.release)],
+            operate_v: operate.0 - at_part(part.operate_voltage_v),
+            release_v: release.0 - at_part(part.release_voltage_v),
+            coarse_v: [over(seen.operate), over(seen.release)],
         });
         Ok(())
     }
@@ -145,13 +145,13 @@ impl GoldenRun {
         coarse: (LagLaw, LagLaw),
     ) -> Result<Lags, Misfit> {
         let operate = self.fine(
-            |shift| shift.operate,
+            |shift| shift.operate_v,
             |part| part.operate_voltage_v,
             sets,
             accuracy,
         )?;
         let release = self.fine(
-            |shift| shift.release,
+            |shift| shift.release_v,
             |part| part.release_voltage_v,
             sets,
             accuracy,
@@ -183,13 +183,13 @@ impl GoldenRun {
     pub fn fine_v(&self) -> Option<(f64, f64)> {
         let n = self.shifts.len() as f64;
         let mean = |shift: fn(&Shift) -> f64| self.shifts.iter().map(shift).sum::<f64>() / n;
-        (n > 0.0).then(|| (mean(|it| it.operate), mean(|it| it.release)))
+        (n > 0.0).then(|| (mean(|it| it.operate_v), mean(|it| it.release_v)))
     }
 
     /// Mean of coarse minus fine indication where both were seen, 0 if nowhere.
     fn over(&self, direction: usize) -> f64 {
         let both = || {
-            let each = self.shifts.iter().map(|shift| shift.coarse[direction]);
+            let each = self.shifts.iter().map(|shift| shift.coarse_v[direction]);
             each.filter(|it| it.is_finite())
         };
         both().sum::<f64>() / both().count().max(1) as f64
@@ -262,12 +262,12 @@ const CHECK_K: f64 = 3.0;
 /// Compares what was measured on a golden part with its certificate; an error says what does not agree.
 pub fn check<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit> {
     let certified = [
-        (Parameter::CoilResistance, part.coil_resistance_ohm, "ohm"),
-        (Parameter::OperateVoltage, part.operate_voltage_v, "V"),
-        (Parameter::ReleaseVoltage, part.release_voltage_v, "V"),
+        (Parameter::CoilResistance, part.coil_resistance_ohm),
+        (Parameter::OperateVoltage, part.operate_voltage_v),
+        (Parameter::ReleaseVoltage, part.release_voltage_v),
     ];
     let serial = &part.serial;
-    for (parameter, certified, unit) in certified {
+    for (parameter, certified) in certified {
         let name = parameter.name();
         let found = record
             .result(parameter)
@@ -284,7 +284,7 @@ pub fn check<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit>
                 serial: serial.clone(),
                 name,
                 found: found.value,
-                unit,
+                unit: found.unit,
                 certified: certified.value,
                 allowed,
             });

@@ -3,6 +3,7 @@
 use super::bins;
 use crate::dut::characteristic::{Characteristic, Definition};
 use crate::gauge::repetition::SpokenOf;
+use crate::units::Unit;
 use std::fmt;
 
 /// One measured quantity. The order is that of reports and of every table kept per parameter.
@@ -62,7 +63,7 @@ impl Parameter {
 static TABLE: [Definition; Parameter::ALL.len()] = [
     Definition {
         key: "coil_resistance_ohm",
-        unit: "ohm",
+        unit: Unit::Ohm,
         name_en: "Coil resistance",
         name_zh: "线圈电阻",
         spoken_of: SpokenOf::Part,
@@ -70,7 +71,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
     },
     Definition {
         key: "operate_voltage_v",
-        unit: "V",
+        unit: Unit::Volt,
         name_en: "Operate voltage",
         name_zh: "动作电压",
         spoken_of: SpokenOf::Part,
@@ -78,7 +79,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
     },
     Definition {
         key: "release_voltage_v",
-        unit: "V",
+        unit: Unit::Volt,
         name_en: "Release voltage",
         name_zh: "释放电压",
         spoken_of: SpokenOf::Part,
@@ -86,7 +87,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
     },
     Definition {
         key: "operate_time_ms",
-        unit: "ms",
+        unit: Unit::Millisecond,
         name_en: "Operate time",
         name_zh: "动作时间",
         spoken_of: SpokenOf::Operation,
@@ -94,7 +95,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
     },
     Definition {
         key: "release_time_ms",
-        unit: "ms",
+        unit: Unit::Millisecond,
         name_en: "Release time",
         name_zh: "释放时间",
         spoken_of: SpokenOf::Operation,
@@ -102,7 +103,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
     },
     Definition {
         key: "operate_bounce_ms",
-        unit: "ms",
+        unit: Unit::Millisecond,
         name_en: "Operate bounce",
         name_zh: "动作回跳",
         spoken_of: SpokenOf::Operation,
@@ -110,7 +111,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
     },
     Definition {
         key: "release_bounce_ms",
-        unit: "ms",
+        unit: Unit::Millisecond,
         name_en: "Release bounce",
         name_zh: "释放回跳",
         spoken_of: SpokenOf::Operation,
@@ -118,7 +119,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
     },
     Definition {
         key: "contact_resistance_no_mohm",
-        unit: "mOhm",
+        unit: Unit::Milliohm,
         name_en: "Contact resistance NO",
         name_zh: "常开触点电阻",
         spoken_of: SpokenOf::Closures,
@@ -126,7 +127,7 @@ static TABLE: [Definition; Parameter::ALL.len()] = [
     },
     Definition {
         key: "contact_resistance_nc_mohm",
-        unit: "mOhm",
+        unit: Unit::Milliohm,
         name_en: "Contact resistance NC",
         name_zh: "常闭触点电阻",
         spoken_of: SpokenOf::Closures,

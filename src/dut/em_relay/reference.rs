@@ -265,18 +265,18 @@ fn mean(
 
 /// One level: terminal volts of voltage, fine current, wide current and reference.
 struct Level {
-    voltage: f64,
-    fine: f64,
-    wide: f64,
-    reference: f64,
+    voltage_v: f64,
+    fine_v: f64,
+    wide_v: f64,
+    reference_v: f64,
 }
 
 fn level(scans: &[CoilScan]) -> Result<Level, ReferenceFault> {
     Ok(Level {
-        voltage: mean(scans, |scan| &scan.voltage_fine, "coil voltage")?,
-        fine: mean(scans, |scan| &scan.current_fine, "coil current (fine)")?,
-        wide: mean(scans, |scan| &scan.current_wide, "coil current (wide)")?,
-        reference: mean(scans, |scan| &scan.reference, "reference voltage")?,
+        voltage_v: mean(scans, |scan| &scan.voltage_fine, "coil voltage")?,
+        fine_v: mean(scans, |scan| &scan.current_fine, "coil current (fine)")?,
+        wide_v: mean(scans, |scan| &scan.current_wide, "coil current (wide)")?,
+        reference_v: mean(scans, |scan| &scan.reference, "reference voltage")?,
     })
 }
 
@@ -307,10 +307,10 @@ pub fn conclude(
     let fine = level(part(4 * SCANS + RAMP_SCANS, SCANS))?;
     let u_read = context.reading_u_v() / (SCANS as f64).sqrt();
 
-    let offset = (zero.voltage + zero.fine + zero.wide) / 3.0;
+    let offset = (zero.voltage_v + zero.fine_v + zero.wide_v) / 3.0;
     let reference = [&zero, &low, &high, &coarse, &fine]
         .iter()
-        .map(|l| l.reference)
+        .map(|l| l.reference_v)
         .sum::<f64>()
         / 5.0;
     let known = &context.reference;
@@ -325,8 +325,8 @@ pub fn conclude(
 
     let volts = |terminal: f64| coil_input.correct(Volt(terminal)).0 / voltage_gain;
     let ohm = |current: fn(&Level) -> f64| {
-        let ratio = (current(&high) - offset) / (high.voltage - offset);
-        let u = (u_read / (high.voltage - offset)).hypot(u_read / (current(&high) - offset));
+        let ratio = (current(&high) - offset) / (high.voltage_v - offset);
+        let u = (u_read / (high.voltage_v - offset)).hypot(u_read / (current(&high) - offset));
         let value = known.coil_ohm * ratio;
         Factor::new(
             value,
@@ -337,7 +337,7 @@ pub fn conclude(
     let gain = |to: &Level| {
         let u = 2f64.sqrt() * u_read / voltage_gain / span;
         Factor::new(
-            (volts(to.voltage) - volts(low.voltage)) / span,
+            (volts(to.voltage_v) - volts(low.voltage_v)) / span,
             u.hypot(coil_input.gain.u),
         )
     };
@@ -354,7 +354,7 @@ pub fn conclude(
         level: OutputLine {
             gain: level_gain,
             offset_v: Factor::new(
-                volts(low.voltage) - level_gain.value * LOW_V,
+                volts(low.voltage_v) - level_gain.value * LOW_V,
                 u_read / voltage_gain,
             ),
         },
@@ -370,8 +370,8 @@ pub fn conclude(
             &coil_input,
             voltage_gain,
         )?,
-        ohm_fine: ohm(|level| level.fine),
-        ohm_wide: ohm(|level| level.wide),
+        ohm_fine: ohm(|level| level.fine_v),
+        ohm_wide: ohm(|level| level.wide_v),
         contact_mohm_per_v: contact_factor(context, &readings.drops)?,
         gate_delay_us: [
             gate_delay(context, readings, 0)?,

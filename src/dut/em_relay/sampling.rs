@@ -9,6 +9,7 @@
 //! scatter, never believed to be below what the recipe expects of a film.
 
 use crate::gauge::Limit;
+use crate::units::Unit;
 use serde::{Deserialize, Serialize};
 
 /// How far from a limit a mean must lie before it is left at that, in standard deviations: 0.13 % of parts at the
@@ -65,17 +66,18 @@ impl Default for ContactSampling {
 }
 
 impl ContactSampling {
-    /// True when more closures would not change what is said of this contact: `values` are those of the closures
-    /// so far, `u` the standard uncertainty they share.
-    pub fn is_clear(&self, values: &[f64], u: f64, limit: &Limit) -> bool {
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    /// True when more closures would not change what is said of this contact: `values_mohm` are those of the closures
+    /// so far, `u_mohm` the standard uncertainty they share.
+    pub fn is_clear(&self, values_mohm: &[f64], u_mohm: f64, limit: &Limit) -> bool {
+        assert_eq!(limit.unit, Unit::Milliohm, "the limit of something else");
+        let n = values_mohm.len() as f64;
+        let mean = values_mohm.iter().sum::<f64>() / n;
+        let squares: f64 = values_mohm.iter().map(|it| (it - mean).powi(2)).sum();
         let seen = (squares / (n - 1.0).max(1.0)).sqrt();
         let expected = mean.abs() * f64::from(self.closure_scatter_pct) / 100.0;
-        let band = CLEAR * u.hypot(seen.max(expected) / n.sqrt());
+        let band = CLEAR * u_mohm.hypot(seen.max(expected) / n.sqrt());
         let away = |end: Option<f64>| end.is_none_or(|end| (mean - end).abs() > band);
-        !values.is_empty() && away(limit.low) && away(limit.high)
+        !values_mohm.is_empty() && away(limit.low) && away(limit.high)
     }
 }
 
@@ -105,6 +107,7 @@ mod tests {
     use super::*;
 
     const LIMIT: Limit = Limit {
+        unit: Unit::Milliohm,
         low: None,
         high: Some(100.0),
     };
@@ -148,7 +151,11 @@ mod tests {
     fn nothing_read_is_clear_of_nothing_and_without_a_limit_all_is() {
         assert!(!sampling(10).is_clear(&[], 0.0, &LIMIT));
         assert!(!sampling(10).is_clear(&[f64::NAN], 0.0, &LIMIT));
-        assert!(sampling(10).is_clear(&[99.0], 0.0, &Limit::default()));
+        let open = Limit {
+            high: None,
+            ..LIMIT
+        };
+        assert!(sampling(10).is_clear(&[99.0], 0.0, &open));
     }
 
     #[test]

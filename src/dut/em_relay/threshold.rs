@@ -11,7 +11,7 @@ use super::calibration::Lag;
 use super::coil::{relative_per_kelvin, to_reference};
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading, resolution};
-use crate::units::{Celsius, Second, Volt};
+use crate::units::{Celsius, Second, Unit, Volt};
 
 /// Movement of the supply that opens the window of a ramp.
 pub const WINDOW_V: Volt = Volt(0.050);
@@ -44,7 +44,7 @@ pub fn indicated(start: Volt, slope_v_per_s: f64, gate: Second, direction: Direc
 #[derive(Debug, Clone, Copy)]
 pub struct RampDoubt {
     /// Slope of the fine ramp, volts per second.
-    pub slope: Factor,
+    pub slope_v_per_s: Factor,
     /// The error of the slope is in the taught lag already.
     pub slope_known: bool,
     /// Scatter of the part's own threshold from operation to operation, volts.
@@ -52,10 +52,10 @@ pub struct RampDoubt {
     /// Time between two steps of the output while it ramps.
     pub refresh: Second,
     /// Relative standard uncertainty of the gain of the level at which the ramp starts.
-    pub level: f64,
+    pub level_share: f64,
     /// What the force contacts of the coil put in series to it now and not when golden parts ran, a share of its
     /// resistance.
-    pub contact: f64,
+    pub contact_share: f64,
     /// Part's temperature against the track's, kelvin (1 sd).
     pub temperature_k: f64,
 }
@@ -85,16 +85,20 @@ pub fn quasi_static(
             if doubt.slope_known {
                 0.0
             } else {
-                doubt.slope.u * gate.0
+                doubt.slope_v_per_s.u * gate.0
             },
         )
         .with_random(
             "resolution",
-            resolution(doubt.slope.value * doubt.refresh.0),
+            resolution(doubt.slope_v_per_s.value * doubt.refresh.0),
         )
-        .with("level", (at_part - lag.at_v) * doubt.level)
-        .with("probe contact", value * doubt.contact);
-    Reading { value, budget }
+        .with("level", (at_part - lag.at_v) * doubt.level_share)
+        .with("probe contact", value * doubt.contact_share);
+    Reading {
+        value,
+        unit: Unit::Volt,
+        budget,
+    }
 }
 
 #[cfg(test)]
@@ -120,12 +124,12 @@ mod tests {
             judges: false,
         };
         let doubt = RampDoubt {
-            slope: Factor::new(1.5, 0.0),
+            slope_v_per_s: Factor::new(1.5, 0.0),
             slope_known: false,
             operation_v: 0.0,
             refresh: Second(0.0),
-            level: 0.0,
-            contact,
+            level_share: 0.0,
+            contact_share: contact,
             temperature_k,
         };
         let reading = quasi_static(

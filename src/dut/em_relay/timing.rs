@@ -8,6 +8,7 @@
 
 use crate::gauge::Factor;
 use crate::gauge::budget::{Budget, Reading, rectangular};
+use crate::units::Unit;
 
 /// The reference clock at both counters.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +36,11 @@ pub fn gate_ms(gate: u32, delay_us: Factor, clock: Clock) -> Reading {
         .with_random("count", count_u_ms(clock))
         .with("gate delay", delay_us.u / 1e3)
         .with("clock", value * rectangular(clock.tolerance_ppm) * 1e-6);
-    Reading { value, budget }
+    Reading {
+        value,
+        unit: Unit::Millisecond,
+        budget,
+    }
 }
 
 /// Bounce-open time in milliseconds from both gates.
@@ -48,7 +53,11 @@ pub fn bounce_ms(gate0: u32, gate1: u32, delay_us: [Factor; 2], clock: Clock) ->
         .with_random("count", count_u_ms(clock) * 2f64.sqrt())
         .with("gate delay", delay_us[0].u.hypot(delay_us[1].u) / 1e3)
         .with("clock", value * rectangular(clock.tolerance_ppm) * 1e-6);
-    Reading { value, budget }
+    Reading {
+        value,
+        unit: Unit::Millisecond,
+        budget,
+    }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::dut::characteristic::{Characteristic, Definition};
 use crate::gauge::repetition::SpokenOf;
 use crate::rig::bin::Bin;
+use crate::units::Unit;
 
 /// Bin of a resistor that fails: the one for whatever hangs at the coil pins.
 pub const BIN: Bin = Bin::named("coil");
@@ -28,7 +29,7 @@ impl Parameter {
 
 static RESISTANCE: Definition = Definition {
     key: "resistance_ohm",
-    unit: "ohm",
+    unit: Unit::Ohm,
     name_en: "Resistance",
     name_zh: "电阻",
     spoken_of: SpokenOf::Part,

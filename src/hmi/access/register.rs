@@ -3,6 +3,7 @@
 //! Times are microseconds UTC and come from the caller. Names are compared as typed.
 
 use super::error::{AccessError, Doing, Result};
+use super::role::NoRole;
 use super::{Role, SESSION_S, password};
 use rusqlite::{Connection, OptionalExtension, params};
 use serde::Serialize;
@@ -228,7 +229,7 @@ fn make(connection: &Connection) -> rusqlite::Result<()> {
 
 fn person(row: &rusqlite::Row<'_>) -> rusqlite::Result<Person> {
     let role: String = row.get(1)?;
-    let role = role.parse().map_err(|reason: String| {
+    let role = role.parse().map_err(|reason: NoRole| {
         rusqlite::Error::FromSqlConversionFailure(1, rusqlite::types::Type::Text, reason.into())
     })?;
     let name = row.get(0)?;

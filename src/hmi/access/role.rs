@@ -3,6 +3,7 @@
 use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
+use thiserror::Error;
 
 /// The three roles, weakest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -47,11 +48,16 @@ impl fmt::Display for Role {
     }
 }
 
-impl FromStr for Role {
-    type Err = String;
+/// A word that is no role.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{0:?}: expected operator, maintainer or engineer")]
+pub struct NoRole(String);
 
-    fn from_str(text: &str) -> Result<Self, String> {
+impl FromStr for Role {
+    type Err = NoRole;
+
+    fn from_str(text: &str) -> Result<Self, NoRole> {
         let found = Self::ALL.into_iter().find(|role| role.word() == text);
-        found.ok_or_else(|| format!("{text:?}: expected operator, maintainer or engineer"))
+        found.ok_or_else(|| NoRole(text.to_owned()))
     }
 }

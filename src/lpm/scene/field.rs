@@ -1,6 +1,6 @@
 //! A value and the path that leads to it: every complaint names the field.
 
-use super::node::Node;
+use super::node::{Node, Unreadable};
 
 /// What is wrong with a scene or a move file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -11,7 +11,7 @@ pub enum SceneError {
         /// Empty, or the line of a move file with a colon and a space.
         place: String,
         /// What the reader of the format said.
-        cause: String,
+        cause: Unreadable,
     },
     /// A field holds what it must not.
     #[error("{path}: found {found}, expected {expected}")]

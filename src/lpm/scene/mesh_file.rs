@@ -10,7 +10,61 @@ use super::{obj, stl};
 use crate::lpm::Mesh;
 
 /// Gives the bytes of a mesh file named in a scene, or why it cannot be read.
-pub type MeshFiles<'a> = dyn FnMut(&str) -> Result<Vec<u8>, String> + 'a;
+pub type MeshFiles<'a> = dyn FnMut(&str) -> Result<Vec<u8>, MeshFault> + 'a;
+
+/// Why a mesh file is refused. Lines and triangles count from 1.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeshFault {
+    /// The file cannot be had, for this reason.
+    #[error("{0}")]
+    File(String),
+    /// A line of a text holds what it must not.
+    #[error("line {line}: found {found}, expected {expected}")]
+    Line {
+        /// Which.
+        line: usize,
+        /// What is there.
+        found: String,
+        /// What should be there.
+        expected: String,
+    },
+    /// A face of more than three corners has no triangles of its own.
+    #[error("line {line}: a face that is not flat and convex; cut it into triangles")]
+    Face {
+        /// Where.
+        line: usize,
+    },
+    /// A corner of a binary STL is no place.
+    #[error("triangle {triangle}: found {found}, expected a finite number")]
+    Triangle {
+        /// Which.
+        triangle: usize,
+        /// Its first wrong number.
+        found: f64,
+    },
+    /// An STL that begins like no text has not the length of a binary one.
+    #[error("{text}; a binary STL of {count} triangles has {expected} bytes, not {found}")]
+    Length {
+        /// Why it is no text.
+        text: Box<Self>,
+        /// Triangles of its head.
+        count: u32,
+        /// Bytes of so many.
+        expected: u64,
+        /// Its bytes.
+        found: usize,
+    },
+    /// An STL that begins like no text is shorter than the head of a binary one.
+    #[error("{text}; a binary STL has {head} bytes or more, not {found}")]
+    Short {
+        /// Why it is no text.
+        text: Box<Self>,
+        /// Bytes of a head.
+        head: usize,
+        /// Its bytes.
+        found: usize,
+    },
+}
 
 /// Letters of a word that a complaint repeats; one of a damaged file may be as long as the file.
 const REPEATED: usize = 40;
@@ -40,7 +94,7 @@ pub(super) fn load(field: &Field, scale: f64, files: &mut MeshFiles) -> Result<M
 /// The text of a file with LF behind its lines, whether it came with LF, CR or both. Bytes that are no UTF-8 (Latin-1
 /// in names and comments) are replaced, so that no word or number can hold them; a zero byte is in no text, but in a
 /// block that a disk or a transfer lost.
-pub(super) fn text(bytes: &[u8]) -> Result<String, String> {
+pub(super) fn text(bytes: &[u8]) -> Result<String, MeshFault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = String::from_utf8_lossy(bytes)
         .replace("\r\n", "\n")
@@ -57,8 +111,12 @@ pub(super) fn number(word: &str) -> Option<f64> {
 }
 
 /// Lines count from 1.
-pub(super) fn complaint<T>(line: usize, found: &str, expected: &str) -> Result<T, String> {
-    Err(format!("line {line}: found {found}, expected {expected}"))
+pub(super) fn complaint<T>(line: usize, found: &str, expected: &str) -> Result<T, MeshFault> {
+    Err(MeshFault::Line {
+        line,
+        found: found.to_owned(),
+        expected: expected.to_owned(),
+    })
 }
 
 /// A word of the file in a complaint.

@@ -20,8 +20,9 @@ mod stl;
 mod tests;
 
 pub use field::SceneError;
-pub use mesh_file::MeshFiles;
+pub use mesh_file::{MeshFault, MeshFiles};
 pub use moves::{MoveOrder, read_moves};
+pub use node::{At, Unreadable};
 pub use rig::Elsewhere;
 
 use super::{Pose, Shape};

@@ -35,10 +35,9 @@ pub fn read_moves(text: &str, scene: &Scene) -> Result<Vec<MoveOrder>, SceneErro
             continue;
         }
         let place = format!("line {}: ", index + 1);
-        let node = node::from_json(line).map_err(|cause| SceneError::Syntax {
+        let node = node::from_json_line(line).map_err(|cause| SceneError::Syntax {
             place: place.clone(),
-            // The reader of JSON has seen nothing but this line.
-            cause: cause.replace(" at line 1 column ", " at column "),
+            cause,
         })?;
         let order = order(
             &Field {

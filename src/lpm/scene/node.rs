@@ -107,23 +107,79 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// Reads TOML. The message is one line, of the same form as that for JSON.
-pub(super) fn from_toml(text: &str) -> Result<Node, String> {
+/// Why a text is no TOML or JSON, in one line.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{problem}{at}")]
+pub struct Unreadable {
+    /// What the reader of the format says.
+    pub problem: String,
+    /// Where.
+    pub at: At,
+}
+
+/// A place in a text; lines and columns count from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum At {
+    /// The reader does not say.
+    Unknown,
+    /// In a text of one line.
+    Column(usize),
+    /// In a text of several.
+    Line(usize, usize),
+}
+
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown => Ok(()),
+            Self::Column(column) => write!(f, " at column {column}"),
+            Self::Line(line, column) => write!(f, " at line {line} column {column}"),
+        }
+    }
+}
+
+/// Reads TOML.
+pub(super) fn from_toml(text: &str) -> Result<Node, Unreadable> {
     toml::from_str(text).map_err(|error| {
         let at = error.span().map_or(0, |span| span.start);
         let before = text.get(..at).unwrap_or(text);
         let line = before.matches('\n').count() + 1;
         let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
         let problem = error.message().lines().collect::<Vec<_>>().join(", ");
-        format!("{} at line {line} column {column}", shortened(&problem))
+        Unreadable {
+            problem: shortened(&problem),
+            at: At::Line(line, column),
+        }
     })
 }
 
 /// Reads JSON. `NaN`, `Infinity` and numbers beyond f64, which many programs write although JSON
 /// has no such thing, become values that no number is read from, so that the path of their field
 /// can be named.
-pub(super) fn from_json(text: &str) -> Result<Node, String> {
-    serde_json::from_str(&marked(text)).map_err(|error| error.to_string())
+pub(super) fn from_json(text: &str) -> Result<Node, Unreadable> {
+    serde_json::from_str(&marked(text)).map_err(|error| {
+        let at = match error.line() {
+            0 => At::Unknown,
+            line => At::Line(line, error.column()),
+        };
+        let said = error.to_string();
+        let problem = said.strip_suffix(&at.to_string()).unwrap_or(&said);
+        Unreadable {
+            problem: problem.to_owned(),
+            at,
+        }
+    })
+}
+
+/// Reads JSON of one line, the number of which the caller knows.
+pub(super) fn from_json_line(line: &str) -> Result<Node, Unreadable> {
+    from_json(line).map_err(|error| {
+        let at = match error.at {
+            At::Line(_, column) => At::Column(column),
+            At::Column(_) | At::Unknown => error.at,
+        };
+        Unreadable { at, ..error }
+    })
 }
 
 fn marked(text: &str) -> String {

@@ -6,7 +6,7 @@
 //! was cut between two faces, for the format has no end.
 
 use super::face;
-use super::mesh_file::{complaint, number, quoted, text};
+use super::mesh_file::{MeshFault, complaint, number, quoted, text};
 use crate::lpm::Mesh;
 
 /// Statements without a surface.
@@ -32,7 +32,7 @@ const PASSED_OVER: [&str; 19] = [
     "trace_obj",
 ];
 
-pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, String> {
+pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, MeshFault> {
     let text = text(bytes)?;
     let mut lines = (1..).zip(text.lines());
     let mut mesh = Mesh {
@@ -69,7 +69,7 @@ struct Statement<'a> {
 impl<'a> Statement<'a> {
     fn next(
         lines: &mut impl Iterator<Item = (usize, &'a str)>,
-    ) -> Result<Option<Statement<'a>>, String> {
+    ) -> Result<Option<Statement<'a>>, MeshFault> {
         let Some((line, mut rest)) = lines.next() else {
             return Ok(None);
         };
@@ -97,7 +97,7 @@ impl<'a> Statement<'a> {
     }
 
     /// Of one that is passed over: a name that only happens to end in a backslash would take the next line with it.
-    fn check_end(&self) -> Result<(), String> {
+    fn check_end(&self) -> Result<(), MeshFault> {
         let taken = self.words.iter().find(|word| ["v", "f"].contains(word));
         match taken {
             Some(word) if self.is_continued => {
@@ -114,7 +114,7 @@ fn is_no_blank(letter: char) -> bool {
 }
 
 /// A place; behind it a weight, a colour or both.
-fn vertex(line: usize, members: &[&str]) -> Result<[f64; 3], String> {
+fn vertex(line: usize, members: &[&str]) -> Result<[f64; 3], MeshFault> {
     let mut numbers = Vec::new();
     for word in members {
         match number(word) {
@@ -132,7 +132,7 @@ fn vertex(line: usize, members: &[&str]) -> Result<[f64; 3], String> {
     }
 }
 
-fn add_face(line: usize, words: &[&str], mesh: &mut Mesh) -> Result<(), String> {
+fn add_face(line: usize, words: &[&str], mesh: &mut Mesh) -> Result<(), MeshFault> {
     let count = mesh.vertices.len();
     let mut face = Vec::new();
     for word in words {
@@ -151,9 +151,7 @@ fn add_face(line: usize, words: &[&str], mesh: &mut Mesh) -> Result<(), String> 
     }
     let corners: Vec<[f64; 3]> = face.iter().map(|index| mesh.vertices[*index]).collect();
     if face.len() > 3 && !face::is_flat_and_convex(&corners) {
-        return Err(format!(
-            "line {line}: a face that is not flat and convex; cut it into triangles"
-        ));
+        return Err(MeshFault::Face { line });
     }
     let fan = face[1..].windows(2).map(|pair| [face[0], pair[0], pair[1]]);
     mesh.triangles.extend(fan);

@@ -11,7 +11,7 @@
 //! in any case, with blanks and line ends between words; a name goes to the end of its line. All of it must be there
 //! and nothing else. What cannot be seen: a file of several solids that was cut between two of them.
 
-use super::mesh_file::{complaint, number, quoted, text};
+use super::mesh_file::{MeshFault, complaint, number, quoted, text};
 use crate::lpm::Mesh;
 
 /// Bytes of the head of a binary file: 80 of text and a count.
@@ -19,30 +19,43 @@ const HEAD: usize = 84;
 /// Bytes of one binary triangle: normal, three corners as f32, and two of attributes.
 const TRIANGLE: usize = 50;
 
-pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, String> {
+pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, MeshFault> {
     let count = bytes
         .get(HEAD - 4..HEAD)
         .and_then(|field| field.try_into().ok())
         .map(u32::from_le_bytes);
-    let length = count.map(|count| HEAD as u64 + TRIANGLE as u64 * u64::from(count));
-    let corners = if length == Some(bytes.len() as u64) {
+    let corners = if count.map(length) == Some(bytes.len() as u64) {
         binary(&bytes[HEAD..])?
     } else {
         let text = text(bytes).and_then(|text| {
             Words::of(&text).take(&["solid"])?;
             Ok(text)
         });
-        solids(&text.map_err(|why| format!("{why}; {}", no_binary(bytes.len(), count, length)))?)?
+        solids(&text.map_err(|why| no_stl(why, bytes.len(), count))?)?
     };
     Ok(in_threes(corners))
 }
 
-fn no_binary(found: usize, count: Option<u32>, length: Option<u64>) -> String {
-    match (count, length) {
-        (Some(count), Some(length)) => {
-            format!("a binary STL of {count} triangles has {length} bytes, not {found}")
-        }
-        _ => format!("a binary STL has {HEAD} bytes or more, not {found}"),
+/// Bytes of a binary file of so many triangles.
+fn length(count: u32) -> u64 {
+    HEAD as u64 + TRIANGLE as u64 * u64::from(count)
+}
+
+/// Neither text, because of `why`, nor binary.
+fn no_stl(why: MeshFault, found: usize, count: Option<u32>) -> MeshFault {
+    let text = Box::new(why);
+    match count {
+        Some(count) => MeshFault::Length {
+            text,
+            count,
+            expected: length(count),
+            found,
+        },
+        None => MeshFault::Short {
+            text,
+            head: HEAD,
+            found,
+        },
     }
 }
 
@@ -54,7 +67,7 @@ fn in_threes(vertices: Vec<[f64; 3]>) -> Mesh {
     }
 }
 
-fn binary(triangles: &[u8]) -> Result<Vec<[f64; 3]>, String> {
+fn binary(triangles: &[u8]) -> Result<Vec<[f64; 3]>, MeshFault> {
     let mut corners = Vec::new();
     for (index, triangle) in triangles.chunks_exact(TRIANGLE).enumerate() {
         for corner in triangle[12..48].chunks_exact(12) {
@@ -63,10 +76,10 @@ fn binary(triangles: &[u8]) -> Result<Vec<[f64; 3]>, String> {
                 *member = f64::from(f32::from_le_bytes([four[0], four[1], four[2], four[3]]));
             }
             if let Some(wrong) = point.iter().find(|member| !member.is_finite()) {
-                let number = index + 1;
-                return Err(format!(
-                    "triangle {number}: found {wrong}, expected a finite number"
-                ));
+                return Err(MeshFault::Triangle {
+                    triangle: index + 1,
+                    found: *wrong,
+                });
             }
             corners.push(point);
         }
@@ -75,7 +88,7 @@ fn binary(triangles: &[u8]) -> Result<Vec<[f64; 3]>, String> {
 }
 
 /// The corners of all solids of a text.
-fn solids(text: &str) -> Result<Vec<[f64; 3]>, String> {
+fn solids(text: &str) -> Result<Vec<[f64; 3]>, MeshFault> {
     let mut words = Words::of(text);
     let mut corners = Vec::new();
     words.take(&["solid"])?;
@@ -93,7 +106,7 @@ fn solids(text: &str) -> Result<Vec<[f64; 3]>, String> {
 }
 
 /// What stands behind the word `facet`.
-fn facet(words: &mut Words, corners: &mut Vec<[f64; 3]>) -> Result<(), String> {
+fn facet(words: &mut Words, corners: &mut Vec<[f64; 3]>) -> Result<(), MeshFault> {
     words.take(&["normal"])?;
     words.point()?;
     words.take(&["outer"])?;
@@ -146,7 +159,7 @@ impl<'a> Words<'a> {
     }
 
     /// The next word, which must be one of these.
-    fn take(&mut self, expected: &[&'static str]) -> Result<&'static str, String> {
+    fn take(&mut self, expected: &[&'static str]) -> Result<&'static str, MeshFault> {
         let found = self.next();
         let is_found = |it: &&&str| found.is_some_and(|word| word.eq_ignore_ascii_case(it));
         match expected.iter().find(is_found) {
@@ -155,7 +168,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    fn point(&mut self) -> Result<[f64; 3], String> {
+    fn point(&mut self) -> Result<[f64; 3], MeshFault> {
         let mut point = [0.0; 3];
         for member in &mut point {
             let found = self.next();
@@ -168,7 +181,7 @@ impl<'a> Words<'a> {
     }
 
     /// The rest of the line. Where a line end was lost it would hide a facet.
-    fn name(&mut self) -> Result<(), String> {
+    fn name(&mut self) -> Result<(), MeshFault> {
         let name: Vec<&str> = self.words.by_ref().collect();
         let hides = |pair: &[&str]| {
             pair[0].eq_ignore_ascii_case("facet") && pair[1].eq_ignore_ascii_case("normal")
@@ -183,7 +196,7 @@ impl<'a> Words<'a> {
         Ok(())
     }
 
-    fn refuse<T>(&self, found: Option<&str>, expected: &str) -> Result<T, String> {
+    fn refuse<T>(&self, found: Option<&str>, expected: &str) -> Result<T, MeshFault> {
         let found = found.map_or("the end of the file".to_owned(), quoted);
         complaint(self.line, &found, expected)
     }

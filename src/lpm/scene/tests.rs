@@ -4,7 +4,9 @@ use super::*;
 use crate::lpm::pose::Frame;
 
 fn scene(text: &str) -> Result<Scene, SceneError> {
-    read_scene(text, Format::Json, &mut |_| Err("no files here".into()))
+    read_scene(text, Format::Json, &mut |_| {
+        Err(MeshFault::File("no files here".into()))
+    })
 }
 
 fn complaint(text: &str) -> String {
@@ -16,7 +18,10 @@ const PIN: &str = r#"{"elements":[{"id":"pin","kind":"cylinder","radius":4,"heig
 #[test]
 fn toml_and_json_say_the_same() {
     let toml = "units = \"mm\"\n[[elements]]\nid = \"pin\"\nkind = \"cylinder\"\nradius = 4\nheight = 30.0\n[[movers]]\nid = \"jaw\"\nkind = \"block\"\nhalf = [1, 2, 3]\n";
-    let read = read_scene(toml, Format::Toml, &mut |_| Err(String::new())).unwrap();
+    let read = read_scene(toml, Format::Toml, &mut |_| {
+        Err(MeshFault::File(String::new()))
+    })
+    .unwrap();
     assert_eq!(read, scene(PIN).unwrap());
 }
 
@@ -243,7 +248,7 @@ fn a_scene_may_name_what_its_rig_has_elsewhere() {
         actuators: &["clamp_left"],
         bodies: &["part_nest"],
     };
-    let mut files = |_: &str| Err(String::new());
+    let mut files = |_: &str| Err(MeshFault::File(String::new()));
     read_scene_of_rig(text, Format::Json, &mut files, &elsewhere).unwrap();
 }
 
@@ -286,7 +291,10 @@ fn a_message_names_its_place_once_and_stays_short() {
     assert!(number.starts_with("elements[0].half[1]: found -1e-9, expected"));
     assert!(complaint(&format!(r#"{{"units":"{}"}}"#, "m".repeat(9_000))).len() < 200);
     let toml = format!("units = \"mm\"\nelements = [{}", "[1, 2], ".repeat(9_000));
-    let said = read_scene(&toml, Format::Toml, &mut |_| Err(String::new())).unwrap_err();
+    let said = read_scene(&toml, Format::Toml, &mut |_| {
+        Err(MeshFault::File(String::new()))
+    })
+    .unwrap_err();
     let said = said.to_string();
     assert!(
         said.len() < 200 && said.lines().count() == 1 && said.contains("at line 2 column"),
@@ -319,7 +327,7 @@ fn a_message_names_its_place_once_and_stays_short() {
 fn a_byte_order_mark_is_no_part_of_the_text() {
     let read = scene(&format!("\u{feff}{PIN}")).unwrap();
     let toml = read_scene("\u{feff}units = \"mm\"", Format::Toml, &mut |_| {
-        Err(String::new())
+        Err(MeshFault::File(String::new()))
     });
     assert_eq!(toml.unwrap(), Scene::default());
     let moves = "\u{feff}{\"id\":\"a\",\"mover\":\"jaw\",\"from\":{},\"to\":{}}";

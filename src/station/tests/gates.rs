@@ -30,6 +30,7 @@ fn read(part: &GoldenPart, off: Parameter, deviations: f64) -> TestRecord {
         let by = if parameter == off { deviations } else { 0.0 };
         let reading = Reading {
             value: certified.value + by * u.hypot(certified.u),
+            unit: parameter.definition().unit,
             budget: Budget::default().with("test", u),
         };
         record.found::<Sample>(parameter, reading, []);

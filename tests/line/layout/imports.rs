@@ -53,7 +53,10 @@ const TABLE: &[(&str, &[&str])] = &[
             "units", "rig", "gauge", "dut", "station", "quality", "plan", "history",
         ],
     ),
-    ("inquiry", &["gauge", "dut", "history", "report", "quality"]),
+    (
+        "inquiry",
+        &["units", "gauge", "dut", "history", "report", "quality"],
+    ),
     (
         "hmi",
         &[

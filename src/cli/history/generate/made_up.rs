@@ -69,6 +69,7 @@ impl Line {
             }
             let reading = Reading {
                 value,
+                unit: of.unit(),
                 budget: Budget::default().with("all", it.scatter.u),
             };
             let judgement = judge(&reading, limit, rule);

@@ -11,7 +11,7 @@ use crate::dut::em_relay::tests::context;
 use crate::dut::em_relay::tests::golden_parts;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::Sample;
-use crate::units::{Celsius, Volt};
+use crate::units::{Celsius, Unit, Volt};
 
 const REFERENCE: Celsius = Celsius(23.0);
 
@@ -24,6 +24,7 @@ fn tested(part: &GoldenPart, operate_v: f64, release_v: f64, coil_off_ohm: f64) 
     record.own.release = fine(part.release_voltage_v.value + release_v);
     let reading = Reading {
         value: part.coil_resistance_ohm.value + coil_off_ohm,
+        unit: Unit::Ohm,
         budget: Budget::default().with("test", 0.1),
     };
     record.found::<Sample>(Parameter::CoilResistance, reading, []);

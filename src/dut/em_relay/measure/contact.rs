@@ -149,7 +149,7 @@ pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecor
 pub(super) fn is_clear(context: &Context, state: &TestState, parameter: Parameter) -> bool {
     let (recipe, record) = (&context.recipe, &state.record);
     let per_v = context.calibration.contact_mohm_per_v.value;
-    let values: Vec<f64> = match parameter {
+    let values_mohm: Vec<f64> = match parameter {
         Parameter::ContactResistanceNc => {
             state.plan.nc_drops.iter().map(|it| per_v * it.0).collect()
         }
@@ -162,11 +162,11 @@ pub(super) fn is_clear(context: &Context, state: &TestState, parameter: Paramete
         | Parameter::OperateBounce
         | Parameter::ReleaseBounce => record.each(parameter).map(|it| it.value).collect(),
     };
-    let u = record
+    let u_mohm = record
         .result(parameter)
         .map_or(f64::INFINITY, |reading| reading.budget.combined());
     let sampling = context.relay.test.strategy.contact;
-    sampling.is_clear(&values, u, &recipe.limits.of(parameter))
+    sampling.is_clear(&values_mohm, u_mohm, &recipe.limits.of(parameter))
 }
 
 /// Adds one NC closure; the result is the mean of all closures read.

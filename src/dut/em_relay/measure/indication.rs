@@ -40,12 +40,12 @@ pub(super) fn coarse_reading(
     let operation_v = context.operation_v();
     let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
     let doubt = RampDoubt {
-        slope: context.calibration.coarse_v_per_s,
+        slope_v_per_s: context.calibration.coarse_v_per_s,
         slope_known: true,
         operation_v: 0.0,
         refresh: Second(0.0),
         // The law follows the indication, and an error of gain with it.
-        level: 0.0,
+        level_share: 0.0,
         ..doubt(context)
     };
     let reference = context.reference_temperature();
@@ -91,12 +91,12 @@ pub(super) fn fine_reading(
 /// Doubts of a fine ramp beyond the golden parts' shift.
 fn doubt(context: &Context) -> RampDoubt {
     RampDoubt {
-        slope: context.calibration.fine_v_per_s,
+        slope_v_per_s: context.calibration.fine_v_per_s,
         slope_known: false,
         operation_v: context.operation_v(),
         refresh: Second(context.accuracy.ao_refresh_ms * 1e-3),
-        level: context.calibration.level.gain.u,
-        contact: context.contact_share(),
+        level_share: context.calibration.level.gain.u,
+        contact_share: context.contact_share(),
         temperature_k: context.accuracy.part_minus_track_k,
     }
 }

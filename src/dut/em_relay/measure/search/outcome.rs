@@ -12,7 +12,7 @@ use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::Judgement;
 use crate::gauge::budget::{Budget, Reading, resolution};
 use crate::rig::sample::CountSample;
-use crate::units::Volt;
+use crate::units::{Unit, Volt};
 
 pub(in crate::dut::em_relay::measure) fn conclude(
     context: &Context,
@@ -109,7 +109,11 @@ fn found(
         .with("probe contact", value * context.contact_share())
         .with("strategy", resolution(step.0))
         .with_random("repeatability", context.operation_v());
-    let reading = Reading { value, budget };
+    let reading = Reading {
+        value,
+        unit: Unit::Volt,
+        budget,
+    };
     let samples = samples.iter().flatten();
     state.record.found(parameter(direction), reading, samples);
 }

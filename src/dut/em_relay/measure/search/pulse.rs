@@ -14,18 +14,18 @@ const KINDER: f64 = 0.0035;
 pub(super) fn level(context: &Context, direction: Direction, part: Celsius) -> Volt {
     let (recipe, sign) = (&context.recipe, direction.sign());
     let limit = recipe.limits.of(parameter(direction));
-    let (limit, expected) = match direction {
+    let (limit_v, expected_v) = match direction {
         Direction::Rising => (limit.high, context.relay.test.expected_operate_v),
         Direction::Falling => (limit.low, context.relay.test.expected_release_v),
     };
-    let limit = limit.unwrap_or(expected);
+    let limit_v = limit_v.unwrap_or(expected_v);
     let reference = context.reference_temperature();
-    let at_part = limit / to_reference(part, reference);
-    let u = at_part * context.accuracy.part_minus_track_k * relative_per_kelvin(part)
-        + at_part * (context.calibration.level.gain.u + context.contact_share())
+    let at_part_v = limit_v / to_reference(part, reference);
+    let u_v = at_part_v * context.accuracy.part_minus_track_k * relative_per_kelvin(part)
+        + at_part_v * (context.calibration.level.gain.u + context.contact_share())
         + context.calibration.level.offset_v.u
         + context.operation_v();
-    Volt(at_part - sign * (2.0 * u + at_part * KINDER))
+    Volt(at_part_v - sign * (2.0 * u_v + at_part_v * KINDER))
 }
 
 /// One bit.

@@ -15,8 +15,7 @@ use crate::dut::em_relay::tests::golden_parts;
 use crate::dut::em_relay::threshold::Direction;
 use crate::gauge::budget::{Budget, Reading};
 use crate::rig::sample::CountSample;
-use crate::units::Celsius;
-use crate::units::{Span, Volt};
+use crate::units::{Celsius, Span, Unit, Volt};
 use std::sync::Arc;
 
 /// Least time from the mark before these acts to the first ARM among them.
@@ -155,6 +154,7 @@ fn a_slow_armature_gets_more_time_and_a_longer_run_up() {
         let mut state = at_23_c();
         let reading = Reading {
             value: operate_ms,
+            unit: Unit::Millisecond,
             budget: Budget::default(),
         };
         state

@@ -12,7 +12,7 @@ use crate::dut::em_relay::sampling::Polarities;
 use crate::gauge::budget::{Budget, Reading};
 use crate::handling::tests::Shop;
 use crate::rig::sample::Sample;
-use crate::units::Volt;
+use crate::units::{Unit, Volt};
 use std::sync::Arc;
 
 /// The default recipe with other samplings.
@@ -97,6 +97,7 @@ fn after(context: Context, closures: usize, mohm: f64) -> Test {
             let budget = Budget::default().with("test", 0.05);
             let reading = Reading {
                 value: mohm,
+                unit: Unit::Milliohm,
                 budget,
             };
             test.state.record.found::<Sample>(parameter, reading, []);

@@ -296,6 +296,7 @@ fn measured(values: &[(Parameter, f64)]) -> Test {
     for (parameter, value) in values {
         let reading = Reading {
             value: *value,
+            unit: parameter.definition().unit,
             budget: Budget::default().with("test", 0.005),
         };
         test.state.record.found::<Sample>(*parameter, reading, []);
