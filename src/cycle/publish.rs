@@ -261,7 +261,6 @@ fn line(one: &Standing, epoch_us: i64) -> AlarmLine {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::read;
-    use crate::dut::em_relay;
     use crate::guard::Actuator;
     use crate::rig::point::{DigitalIn, DigitalOut};
     use crate::station::orders::JOGS;
@@ -275,9 +274,6 @@ mod tests {
             serde_json::from_str(table).unwrap();
         let signals = DigitalIn::ALL.iter().map(|it| it.name());
         let signals = signals.chain(DigitalOut::ALL.iter().map(|it| it.name()));
-        let boards = em_relay::points::DigitalIn::NAMES.iter();
-        let boards = boards.chain(em_relay::points::DigitalOut::NAMES).copied();
-        let signals = signals.chain(boards);
         let keys = (signals.map(|it| format!("signal.{it}")))
             .chain(JOGS.iter().map(|(name, _)| format!("jog.{name}")))
             .chain(Actuator::names().map(|it| format!("actuator.{it}")))

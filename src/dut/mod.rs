@@ -79,6 +79,14 @@ impl Kind {
         }
     }
 
+    /// Words of the page that only this kind needs: a JSON object of `{"en", "zh"}` by key, of other keys than every other one's.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::EmRelay => em_relay::WORDS,
+            Self::Resistor => resistor::WORDS,
+        }
+    }
+
     /// What only a test of this kind finds.
     pub fn findings(self) -> Vec<reason::Code> {
         match self {

@@ -25,7 +25,7 @@ const LOOK: &str = concat!(
     include_str!("page/look.css"),
     include_str!("page/pages.css")
 );
-const WORDS: &str = include_str!("page/words.json");
+const OWN_WORDS: &str = include_str!("page/words.json");
 /// One script in the order of use: what is shared, a file per page, and the start of everything.
 const SCRIPT: &str = concat!(
     include_str!("page/script/shared.js"),
@@ -49,11 +49,12 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/start.js"),
 );
 
+static WORDS: LazyLock<String> = LazyLock::new(|| kinds::words(OWN_WORDS));
 static PAGE: LazyLock<String> = LazyLock::new(|| {
     FRAME
         .replace("<!--pages-->", PAGES)
         .replace("/*look*/", LOOK)
-        .replace("/*words*/", WORDS)
+        .replace("/*words*/", &WORDS)
         .replace("/*kinds*/", &kinds::json())
         .replace("/*script*/", SCRIPT)
 });

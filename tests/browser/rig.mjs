@@ -84,5 +84,7 @@ class Rig {
   }
 }
 
-/** Every word of the page, from its own table. */
-export const WORDS = JSON.parse(readFileSync(new URL("../../src/hmi/page/words.json", import.meta.url)));
+const words = (path) => JSON.parse(readFileSync(new URL("../../src/" + path, import.meta.url)));
+
+/** Every word of the page, from its own table and those of the kinds. */
+export const WORDS = {...words("hmi/page/words.json"), ...words("dut/em_relay/words.json"), ...words("dut/resistor/words.json")};

@@ -21,7 +21,7 @@ use crate::instrument::readings::Readings;
 use crate::rig::image::Image;
 use crate::rig::point::{MissingPoint, Point};
 use crate::rig::sample::{Quality, Sample};
-use crate::units::{RigTime, Span, Volt};
+use crate::units::{RigTime, Span, Unit, Volt};
 use std::sync::Arc;
 
 /// Span of a +-10 V input of 12 bits, V at the terminal.
@@ -135,6 +135,7 @@ impl Device {
         let ohm = self.resistor.test.level_v / ampere;
         Ok(Reading {
             value: ohm,
+            unit: Unit::Ohm,
             budget: self.budget(ohm, ampere, readings),
         })
     }

@@ -1,5 +1,5 @@
-//! What the page has to know of the kinds of device, as JSON beside its words: every characteristic with unit and names, and
-//! what is said of a finding.
+//! What the page has to know of the kinds of device: words of theirs among its own, and as JSON beside them every
+//! characteristic with unit and names, and what is said of a finding.
 
 use crate::dut::reason::Code;
 use crate::dut::words::Words;
@@ -13,6 +13,21 @@ pub(super) fn json() -> String {
     let codes = Kind::ALL.into_iter().flat_map(Kind::findings);
     let findings: BTreeMap<&str, Words> = codes.filter_map(said).collect();
     json!({ "characteristics": characteristics, "findings": findings }).to_string()
+}
+
+/// The words of the page and of every kind as one JSON object.
+pub(super) fn words(page: &'static str) -> String {
+    let kinds = Kind::ALL.into_iter().map(Kind::words);
+    let entries: Vec<&str> = std::iter::once(page).chain(kinds).map(entries).collect();
+    format!("{{\n{}\n}}\n", entries.join(",\n"))
+}
+
+/// What stands between the braces of a JSON object.
+fn entries(object: &str) -> &str {
+    let inside = object.trim().strip_prefix('{');
+    let inside = inside.and_then(|it| it.strip_suffix('}'));
+    assert!(inside.is_some(), "words are a JSON object");
+    inside.unwrap_or_default().trim()
 }
 
 fn named(it: Characteristic) -> Value {

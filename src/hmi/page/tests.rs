@@ -5,8 +5,8 @@
 mod contrast;
 
 use super::*;
-use crate::dut::Characteristic;
 use crate::dut::reason::{Code, Reason};
+use crate::dut::{Characteristic, Kind};
 use crate::gauge::Side;
 use crate::report::Language;
 use serde_json::Value;
@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 type Table = BTreeMap<String, BTreeMap<String, String>>;
 
 fn table() -> Table {
-    serde_json::from_str(WORDS).unwrap()
+    serde_json::from_str(&WORDS).unwrap()
 }
 
 /// Texts between `before` and the next `"`.
@@ -33,6 +33,14 @@ fn every_word_is_there_in_both_languages() {
         assert_eq!(languages, ["en", "zh"], "{key}");
         assert!(word.values().all(|it| !it.trim().is_empty()), "{key}");
     }
+}
+
+#[test]
+fn no_word_stands_in_two_tables() {
+    let kinds = Kind::ALL.into_iter().map(Kind::words);
+    let tables = std::iter::once(OWN_WORDS).chain(kinds);
+    let words = tables.map(|it| serde_json::from_str::<Table>(it).unwrap().len());
+    assert_eq!(words.sum::<usize>(), table().len());
 }
 
 #[test]
@@ -63,7 +71,7 @@ fn every_quantity_and_finding_reaches_the_page_by_its_kind() {
         .collect();
     assert!(Characteristic::all().map(|it| it.key()).eq(keys));
     assert_eq!(kinds["findings"]["coil_open"]["zh"], "线圈开路");
-    for text in [SCRIPT, WORDS] {
+    for text in [SCRIPT, WORDS.as_str()] {
         assert!(!Characteristic::all().any(|it| text.contains(it.key())));
     }
 }
@@ -245,7 +253,7 @@ fn nothing_inside_ends_its_element_early() {
     let kinds = kinds::json();
     for (text, end) in [
         (LOOK, "</style"),
-        (WORDS, "</script"),
+        (&WORDS, "</script"),
         (&kinds, "</script"),
         (SCRIPT, "</script"),
     ] {

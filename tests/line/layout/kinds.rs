@@ -31,41 +31,10 @@ const ALLOWED: &[&str] = &[
     "src/cli/history.rs",
 ];
 
-/// What still knows a kind, and where that goes. An entry that is no longer needed fails the test.
-const NOT_YET: &[(&str, &str)] = &[
-    ("src/config/keys/golden.rs", "keys of the kind: dut"),
-    ("src/config/keys/recipe.rs", "keys of the kind: dut"),
-    ("src/config/keys/rig/measuring.rs", "keys of the kind: dut"),
-    (
-        "src/hmi/page/words.json",
-        "recipe keys, stages, points, factors: texts of the kind",
-    ),
-];
-
 #[test]
 fn a_name_of_a_kind_stands_in_its_folder_only() {
-    let mut broken = Vec::new();
-    for source in sources() {
-        let waits = NOT_YET.iter().find(|(path, _)| *path == source.path);
-        let found = foreign(&source);
-        match (waits, found.is_empty()) {
-            (None, _) => broken.extend(found),
-            (Some(_), false) => {}
-            (Some((path, _)), true) => broken.push(format!(
-                "{path}: knows no kind any more, take it off the list of what waits"
-            )),
-        }
-    }
+    let broken: Vec<String> = sources().iter().flat_map(foreign).collect();
     assert_none(&broken);
-}
-
-#[test]
-fn everything_that_waits_exists() {
-    let sources = sources();
-    let is_there = |path: &str| sources.iter().any(|source| source.path == path);
-    let gone = NOT_YET.iter().filter(|(path, _)| !is_there(path));
-    let gone: Vec<String> = gone.map(|(path, _)| format!("{path}: not there")).collect();
-    assert_none(&gone);
 }
 
 fn sources() -> Vec<Source> {
