@@ -3,6 +3,7 @@
 use super::RIG;
 use crate::config::{Plant, load_recipe, recipe_names};
 use crate::dut::FIXTURES;
+use crate::dut::Kind;
 use crate::rig::point::{DigitalIn, DigitalOut};
 use std::path::Path;
 use toml::{Table, Value};
@@ -61,15 +62,18 @@ fn folder(rig: &Table) -> tempfile::TempDir {
     copy
 }
 
-/// Each recipe with why it was refused.
+/// Each relay's recipe with why it was refused.
 fn refused(rig: &Table) -> Vec<String> {
     let copy = folder(rig);
     let plant = Plant::load(copy.path()).unwrap();
-    let refusal = |name: &String| {
-        let recipe = load_recipe(copy.path(), name).unwrap();
-        plant.admit(&recipe).unwrap_err().to_string()
-    };
-    recipe_names(copy.path()).iter().map(refusal).collect()
+    let recipes = recipe_names(copy.path());
+    let recipes = recipes
+        .iter()
+        .map(|name| load_recipe(copy.path(), name).unwrap());
+    let relays = recipes.filter(|recipe| recipe.kind() == Kind::EmRelay);
+    relays
+        .map(|recipe| plant.admit(&recipe).unwrap_err().to_string())
+        .collect()
 }
 
 #[test]
@@ -82,6 +86,18 @@ fn a_rig_without_the_coil_board_refuses_each_of_its_recipes() {
         assert!(message.ends_with(why), "{message}");
         assert!(message.contains("recipes/jzc-22f-0"), "{message}");
     }
+}
+
+#[test]
+fn a_resistor_is_refused_by_the_first_point_it_misses() {
+    let copy = folder(&without_the_coil_board());
+    let plant = Plant::load(copy.path()).unwrap();
+    let recipe = load_recipe(copy.path(), "resistor-390").unwrap();
+    let why = plant.admit(&recipe).unwrap_err().to_string();
+    assert!(
+        why.contains("no [digital_out].coil_drive in rig.toml"),
+        "{why}"
+    );
 }
 
 #[test]
