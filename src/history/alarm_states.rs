@@ -58,6 +58,9 @@ const CONCERNED: &str = "(?1 IS NULL OR alarm.code = ?1) AND alarm.run_id IN \
     (SELECT id FROM run WHERE (source = 'simulated') = ?2)";
 
 pub(super) fn change(tx: &Transaction<'_>, it: &AlarmChangeRecord) -> Result<()> {
+    if let AlarmChange::Shelved { until_us, .. } = &it.change {
+        assert!(*until_us > it.at_us, "shelved for no time");
+    }
     let made = match &it.change {
         AlarmChange::Returned => tx.execute(
             &format!(

@@ -59,6 +59,7 @@ pub(super) fn run(
 pub(super) fn part(tx: &Transaction<'_>, known: &mut Known, part: &PartRecord) -> Result<()> {
     const DOING: &str = "recording a part";
     let run = known.run(&part.lot)?;
+    check(part);
     let seq = signed("part", part.seq)?;
     let texts: Vec<String> = part.reasons.iter().map(Reason::to_string).collect();
     let row = tx
@@ -101,6 +102,20 @@ pub(super) fn part(tx: &Transaction<'_>, known: &mut Known, part: &PartRecord) -
     }
 }
 
+/// Checks what whoever judges a part owes its row.
+fn check(part: &PartRecord) {
+    assert!(part.seq >= 1, "the first part has number 1");
+    assert_eq!(
+        part.landed_bin.is_some(),
+        part.landed_at_us.is_some(),
+        "a bin without its time"
+    );
+    let landed_after = part.landed_at_us.is_none_or(|at| at >= part.judged_at_us);
+    assert!(landed_after, "part {} landed before its verdict", part.seq);
+    let passed = part.verdict == "pass";
+    assert!(!passed || part.curves.is_empty(), "curves of a good part");
+}
+
 fn same_part(tx: &Transaction<'_>, part: &PartRecord, run: i64, seq: i64) -> Result<()> {
     let same: bool = tx
         .prepare_cached(
@@ -138,6 +153,7 @@ fn measurements(
     row: i64,
 ) -> Result<()> {
     for measurement in &part.measurements {
+        assert!(measurement.attempt >= 1, "the first attempt has number 1");
         let parameter = parameter(tx, known, &measurement.key)?;
         let last = part
             .measurements
@@ -168,6 +184,13 @@ fn measured(
     (run, part_verdict, population): (i64, &str, Option<&str>),
 ) -> rusqlite::Result<()> {
     let finite = |number: Option<f64>| number.filter(|number| number.is_finite());
+    let counts = population.is_some();
+    assert!(
+        !counts || finite(it.value).is_some(),
+        "counted, and no number"
+    );
+    let u = finite(it.uncertainty);
+    assert!(u.is_none_or(|u| u >= 0.0), "an uncertainty below zero");
     tx.prepare_cached(
         "INSERT INTO measurement (part_id, parameter_id, attempt, value, uncertainty, low, high,
            verdict, budget, run_id, part_verdict, population)
@@ -195,6 +218,7 @@ fn sampled(
     it: &SampleRecord,
     (part, parameter, attempt, n): (i64, i64, u32, i64),
 ) -> rusqlite::Result<()> {
+    assert!(!it.command.is_empty(), "a reply that nothing asked for");
     tx.prepare_cached(
         "INSERT INTO sample (part_id, parameter_id, attempt, n, line, module, channel, command,
            raw, at_us) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
@@ -209,6 +233,7 @@ fn parameter(tx: &Transaction<'_>, known: &mut Known, key: &str) -> Result<i64> 
     if let Some(&row) = known.parameters.get(key) {
         return Ok(row);
     }
+    assert!(!key.is_empty(), "a parameter without a name");
     let row = parameter_row(tx, key).doing("naming a parameter")?;
     known.parameters.insert(key.to_owned(), row);
     Ok(row)

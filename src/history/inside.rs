@@ -23,11 +23,12 @@ pub(super) fn keep(tx: &Transaction<'_>, it: &InsideRecord) -> Result<()> {
         gripper,
         falling,
     } = it.inside;
-    tx.execute(
+    let kept = tx.execute(
         "INSERT OR REPLACE INTO inside (source, pocket, nest, gripper, falling) VALUES (?1, ?2, ?3, ?4, ?5)",
         params![source(it.simulated), pocket, nest, gripper, falling.as_ref().map(Bin::name)],
     )
     .doing("recording what is inside")?;
+    assert_eq!(kept, 1, "one row for each rig");
     Ok(())
 }
 

@@ -13,16 +13,23 @@ pub(super) fn landing(tx: &Transaction<'_>, known: &Known, it: &LandingRecord) -
     const DOING: &str = "recording a landing";
     let run = known.run(&it.lot)?;
     let seq = signed("part", it.seq)?;
-    let changed = tx
+    assert!(!it.bin.is_empty(), "landed in no bin");
+    let judged_at_us: Option<i64> = tx
         .prepare_cached(
             "UPDATE part SET landed_bin = ?4, landed_at_us = ?5, cycle_s = ifnull(?6, cycle_s)
-             WHERE run_id = ?1 AND kind = ?2 AND seq = ?3 AND landed_bin IS NULL",
+             WHERE run_id = ?1 AND kind = ?2 AND seq = ?3 AND landed_bin IS NULL
+             RETURNING judged_at_us",
         )
         .and_then(|mut statement| {
-            statement.execute(params![run, it.kind, seq, it.bin, it.at_us, it.cycle_s])
+            let row = params![run, it.kind, seq, it.bin, it.at_us, it.cycle_s];
+            statement.query_row(row, |row| row.get(0)).optional()
         })
         .doing(DOING)?;
-    if changed == 1 {
+    if let Some(judged_at_us) = judged_at_us {
+        assert!(
+            it.at_us >= judged_at_us,
+            "part {seq} landed before its verdict"
+        );
         return Ok(());
     }
     let first: Option<String> = tx
@@ -60,6 +67,7 @@ pub(super) fn interrupted(
     let Some((part, n)) = voided else {
         return Ok(());
     };
+    assert!(n >= 1, "interrupted without a reason");
     let void = "UPDATE measurement SET part_verdict = 'void' WHERE part_id = ?1";
     tx.execute(void, [part])
         .and_then(|_| reasons::insert(tx, part, n, std::slice::from_ref(&it.reason)))
@@ -87,6 +95,9 @@ fn landed_before(it: &LandingRecord, first: Option<String>) -> Result<()> {
 /// One occurrence: a second record of it only fills in when it went.
 pub(super) fn alarm(tx: &Transaction<'_>, known: &Known, it: &AlarmRecord) -> Result<()> {
     let run = it.lot.as_deref().map(|lot| known.run(lot)).transpose()?;
+    assert!(!it.code.is_empty(), "an alarm without a code");
+    let cleared_after = it.cleared_at_us.is_none_or(|at| at >= it.raised_at_us);
+    assert!(cleared_after, "{} went before it came", it.code);
     tx.prepare_cached(
         "INSERT INTO alarm (run_id, code, line, text, raised_at_us, cleared_at_us)
          VALUES (?1, ?2, ?3, ?4, ?5, ?6)

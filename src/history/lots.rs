@@ -78,6 +78,8 @@ impl Yield {
             "void" => self.void += parts,
             _ => self.unjudged += parts,
         }
+        let judged = self.pass + self.fail + self.void;
+        assert_eq!(self.parts, judged + self.unjudged, "a part counted twice");
     }
 }
 

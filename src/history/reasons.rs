@@ -20,6 +20,7 @@ pub(super) fn insert(
     n: i64,
     reasons: &[Reason],
 ) -> rusqlite::Result<()> {
+    assert!(n >= 1, "the first reason has number 1");
     for (n, reason) in (n..).zip(reasons) {
         let about = reason.characteristic();
         let about = about.map(|it| parameter_row(connection, it.key()));

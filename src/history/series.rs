@@ -35,6 +35,9 @@ pub(super) fn pack(connection: &Connection, run: i64) -> rusqlite::Result<()> {
     )?;
     for parameter in parameters {
         if let Some(it) = loose(connection, parameter, run)? {
+            assert!(it.first <= it.last, "parts out of order");
+            let parts = it.last.abs_diff(it.first) + 1;
+            assert!(it.values.len() as u64 <= parts, "two values of a part");
             let packed: Vec<u8> = it.values.iter().flat_map(|it| it.to_le_bytes()).collect();
             insert.execute(params![run, parameter, it.first, it.last, packed])?;
         }

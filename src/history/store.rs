@@ -86,7 +86,9 @@ impl Store {
         let transaction = self.transaction(DOING)?;
         let (run, number) = insert::run(&transaction, lot, source, &written_by).doing(DOING)?;
         transaction.commit().doing(DOING)?;
-        self.known.runs.insert(lot.lot.clone(), run);
+        let before = self.known.runs.insert(lot.lot.clone(), run);
+        assert_ne!(before, Some(run), "one row for two runs");
+        assert!(number >= 1, "the first run has number 1");
         Ok(number)
     }
 
@@ -94,6 +96,8 @@ impl Store {
     /// in one transaction: all of a file or nothing. Gives the number of the run.
     pub fn import(&mut self, lot: &LotRecord, parts: Vec<PartRecord>) -> Result<u32> {
         const DOING: &str = "importing";
+        let own = parts.iter().all(|part| part.lot == lot.lot);
+        assert!(own, "a part of another lot");
         let Self {
             connection,
             written_by,
@@ -122,12 +126,14 @@ impl Store {
     /// The calibration that the open run of the lot measures by from now on.
     pub fn calibrated(&mut self, lot: &str, hash: &str) -> Result<()> {
         let run = self.known.run(lot)?;
-        self.connection
+        let changed = self
+            .connection
             .execute(
                 "UPDATE run SET calibration_hash = ?2 WHERE id = ?1",
                 params![run, hash],
             )
             .doing("freezing the calibration of a run")?;
+        assert_eq!(changed, 1, "an open run without its row");
         Ok(())
     }
 
@@ -135,13 +141,16 @@ impl Store {
     pub fn close_lot(&mut self, lot: &str, at_us: i64) -> Result<()> {
         const PACKING: &str = "packing the values of a closed lot";
         let run = self.known.run(lot)?;
-        self.connection
+        let changed = self
+            .connection
             .execute(
                 "UPDATE run SET closed_at_us = ?2 WHERE id = ?1",
                 params![run, at_us],
             )
             .doing("closing the lot")?;
+        assert_eq!(changed, 1, "an open run without its row");
         self.known.runs.remove(lot);
+        assert!(self.known.run(lot).is_err(), "a closed run gets rows");
         // It is closed whatever becomes of this: without it statistics read the index.
         let transaction = self.transaction(PACKING)?;
         series::pack(&transaction, run).doing(PACKING)?;
@@ -166,6 +175,8 @@ impl Store {
         if written.is_err() && known.parameters.len() != before {
             known.parameters.clear();
         }
+        let is_over = connection.is_autocommit();
+        assert!(written.is_err() || is_over, "a batch is left open");
         written
     }
 
@@ -202,6 +213,8 @@ impl Store {
             body,
             verified,
         } = calibration;
+        assert!(made_at_us <= due_at_us, "due before it was made");
+        assert!(!hash.is_empty(), "a calibration without its name");
         self.connection
             .execute(
                 "INSERT INTO calibration (made_at_us, due_at_us, hash, body, verified)

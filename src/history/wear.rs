@@ -31,6 +31,7 @@ pub struct Wear {
 }
 
 pub(super) fn add(tx: &Transaction<'_>, it: &WearRecord) -> Result<()> {
+    assert!(it.more > 0, "no use of {} to add", it.name);
     tx.execute(
         "INSERT INTO wear (source, name, count) VALUES (?1, ?2, ?3)
          ON CONFLICT (source, name) DO UPDATE SET count = count + excluded.count",

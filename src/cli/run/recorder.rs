@@ -300,7 +300,7 @@ impl<'a> Recorder<'a> {
             }
         }
         rows.push(Row::Part(rows::part(self.setup, &judged, self.golden)));
-        self.underway.insert(
+        let before = self.underway.insert(
             ordinal,
             Underway {
                 judged,
@@ -308,6 +308,7 @@ impl<'a> Recorder<'a> {
                 golden: self.golden,
             },
         );
+        assert!(before.is_none(), "part {ordinal} was judged twice");
         ordinal
     }
 

@@ -168,7 +168,7 @@ fn a_batch_sent_again_makes_no_second_row() {
         kind: "lot".into(),
         seq: 1,
         bin: "pass".into(),
-        at_us: 9,
+        at_us: 1_000_009,
         cycle_s: Some(1.4),
     };
     let alarm = AlarmRecord {
@@ -222,9 +222,9 @@ fn a_part_lands_once_and_in_one_bin() {
     store
         .record(&[Row::Part(part("A", 1, "pass", 7.0))])
         .unwrap();
-    store.landed("A", 1, "pass", 5, Some(1.42)).unwrap();
-    store.landed("A", 1, "pass", 5, Some(1.42)).unwrap();
-    let refusal = store.landed("A", 1, "coil", 6, None).unwrap_err();
+    store.landed("A", 1, "pass", 1_000_005, Some(1.42)).unwrap();
+    store.landed("A", 1, "pass", 1_000_005, Some(1.42)).unwrap();
+    let refusal = store.landed("A", 1, "coil", 1_000_006, None).unwrap_err();
     assert!(
         matches!(refusal, HistoryError::LandedTwice { .. }),
         "{refusal}"

@@ -1,5 +1,6 @@
 //! Rules about the source tree, each a table and one test that names file, line and rule.
 
+mod assertions;
 mod documents;
 mod imports;
 mod kinds;
