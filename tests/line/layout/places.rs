@@ -19,7 +19,7 @@ const TOP: &[&str] = &[
     "benches",
     "clippy.toml",
     "config",
-    "doc",
+    "docs",
     "rustfmt.toml",
     "samples",
     "sim",
