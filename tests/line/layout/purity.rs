@@ -1,4 +1,4 @@
-//! What the pure modules may not name, where `unsafe` may stand, and what no test does.
+//! What the pure modules may not name, where `unsafe` may stand, and what no test does; failures have types.
 
 use super::tree::{assert_none, has_word, rust_files};
 
@@ -117,6 +117,21 @@ fn the_core_matches_every_state_by_name() {
                 source.path,
                 code.trim()
             ));
+        }
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn a_failure_is_a_type_and_never_a_text() {
+    let mut broken = Vec::new();
+    for source in rust_files(&["src"]) {
+        let result = |code: &str| code.contains("Result<") && code.contains(", String>");
+        let of_map = |code: &str| code.contains("Map<") || code.contains("get::<");
+        for (line, code) in source.code().filter(|_| !source.is_test()) {
+            if result(code) && !of_map(code) {
+                broken.push(format!("{}:{line}: a failure without a type", source.path));
+            }
         }
     }
     assert_none(&broken);
