@@ -30,16 +30,9 @@ pub fn to_reference(part: Celsius, reference: Celsius) -> f64 {
 
 /// Factor from a result at the temperature `from` to the one at `to`: 1 for those that do not go with the copper of the coil.
 pub fn factor(parameter: Parameter, from: Celsius, to: Celsius) -> f64 {
-    match parameter {
-        Parameter::CoilResistance | Parameter::OperateVoltage | Parameter::ReleaseVoltage => {
-            to_reference(from, to)
-        }
-        Parameter::OperateTime
-        | Parameter::ReleaseTime
-        | Parameter::OperateBounce
-        | Parameter::ReleaseBounce
-        | Parameter::ContactResistanceNo
-        | Parameter::ContactResistanceNc => 1.0,
+    match parameter.facts().copper {
+        true => to_reference(from, to),
+        false => 1.0,
     }
 }
 

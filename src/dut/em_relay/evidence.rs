@@ -28,17 +28,13 @@ pub fn above(curves: &[Curve], parameter: Parameter, high: f64, nominal_v: f64) 
 pub fn at_least(curves: &[Curve], parameter: Parameter, nominal_v: f64) -> Option<f64> {
     let seen = Seen::of(curves, nominal_v);
     let ms = |us: i64| us as f64 / 1e3;
-    match parameter {
-        Parameter::OperateVoltage => seen.unmoved_v,
-        Parameter::OperateTime => seen.unmade_us.map(ms),
-        Parameter::ReleaseTime => seen.unreleased_us.map(ms),
-        Parameter::CoilResistance
-        | Parameter::ReleaseVoltage
-        | Parameter::OperateBounce
-        | Parameter::ReleaseBounce
-        | Parameter::ContactResistanceNo
-        | Parameter::ContactResistanceNc => None,
-    }
+    let bounds = [
+        (Parameter::OperateVoltage, seen.unmoved_v),
+        (Parameter::OperateTime, seen.unmade_us.map(ms)),
+        (Parameter::ReleaseTime, seen.unreleased_us.map(ms)),
+    ];
+    let bound = bounds.into_iter().find(|(of, _)| *of == parameter);
+    bound.and_then(|(_, at_least)| at_least)
 }
 
 /// What happened, in order of time.

@@ -5,6 +5,7 @@
 
 use super::bins;
 use super::coil::relative_per_kelvin;
+use super::parameter::Expected;
 use super::recipe::RelayRecipe;
 use super::settings::AccuracySettings;
 use super::{Parameter, Strategy};
@@ -167,16 +168,13 @@ fn expected_u(parameter: Parameter, recipe: &RelayRecipe, accuracy: &AccuracySet
         let kelvin = volts * per_kelvin * accuracy.part_minus_track_k;
         kelvin.hypot(accuracy.operation_v(recipe.part.nominal_v))
     };
-    let u = match parameter {
-        Parameter::CoilResistance => {
+    let u = match parameter.facts().expected {
+        Expected::Coil => {
             let kelvin = accuracy.part_minus_track_k.hypot(accuracy.rtd_k);
             recipe.part.nominal_coil_ohm * per_kelvin * kelvin
         }
-        Parameter::OperateVoltage => threshold(recipe.test.expected_operate_v),
-        Parameter::ReleaseVoltage => threshold(recipe.test.expected_release_v),
-        Parameter::OperateTime | Parameter::ReleaseTime => 0.008,
-        Parameter::OperateBounce | Parameter::ReleaseBounce => 0.012,
-        Parameter::ContactResistanceNo | Parameter::ContactResistanceNc => 0.04,
+        Expected::Threshold(direction) => threshold(recipe.test.expected(direction).0),
+        Expected::Usual { u, .. } => u,
     };
     COVERAGE_FACTOR * u
 }

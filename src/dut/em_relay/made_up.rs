@@ -1,6 +1,7 @@
 //! The lot of the default world in figures, for made-up relays.
 
 use super::Parameter;
+use super::parameter::Expected;
 use super::points::{BOARD, COIL_VOLTAGE};
 use super::recipe::RelayRecipe;
 use crate::dut::Characteristic;
@@ -17,26 +18,18 @@ pub fn scatter(relay: &RelayRecipe) -> Vec<(Characteristic, Scatter)> {
 fn of(relay: &RelayRecipe, parameter: Parameter) -> Scatter {
     let test = &relay.test;
     let nominal_ohm = relay.part.nominal_coil_ohm;
-    let (mean, sd, logarithmic, u) = match parameter {
-        Parameter::CoilResistance => (nominal_ohm, 0.015 * nominal_ohm, false, 0.001 * nominal_ohm),
-        Parameter::OperateVoltage => (
-            test.expected_operate_v,
-            test.expected_operate_sd_v,
-            false,
-            0.006,
-        ),
-        Parameter::ReleaseVoltage => (
-            test.expected_release_v,
-            test.expected_release_sd_v,
-            false,
-            0.006,
-        ),
-        Parameter::OperateTime => (4.7, 0.25, false, 0.01),
-        Parameter::ReleaseTime => (2.9, 0.15, false, 0.01),
-        Parameter::OperateBounce => (0.4, 0.4, true, 0.01),
-        Parameter::ReleaseBounce => (0.5, 0.4, true, 0.01),
-        Parameter::ContactResistanceNo => (18.0, 0.25, true, 0.3),
-        Parameter::ContactResistanceNc => (22.0, 0.25, true, 0.3),
+    let (mean, sd, logarithmic, u) = match parameter.facts().expected {
+        Expected::Coil => (nominal_ohm, 0.015 * nominal_ohm, false, 0.001 * nominal_ohm),
+        Expected::Threshold(direction) => {
+            let (mean_v, sd_v) = test.expected(direction);
+            (mean_v, sd_v, false, 0.006)
+        }
+        Expected::Usual {
+            mean,
+            sd,
+            logarithmic,
+            u,
+        } => (mean, sd, logarithmic, u),
     };
     let budget = Budget::default()
         .with_random("reading", 0.6 * u)

@@ -1,6 +1,8 @@
-//! The nine characteristics of a relay, as data.
+//! The nine characteristics of a relay, as data: a new one is a variant, its place in [`Parameter::ALL`] and a row of the table.
 
 use super::bins;
+use super::measure::Stage;
+use super::threshold::Direction;
 use crate::dut::characteristic::{Characteristic, Definition};
 use crate::gauge::repetition::SpokenOf;
 use crate::units::Unit;
@@ -43,8 +45,13 @@ impl Parameter {
         Self::ContactResistanceNc,
     ];
 
-    /// What is fixed about it.
+    /// What every kind knows of its characteristics.
     pub const fn definition(self) -> &'static Definition {
+        &self.facts().definition
+    }
+
+    /// What only relays know of it.
+    pub const fn facts(self) -> &'static Facts {
         &TABLE[self as usize]
     }
 
@@ -59,79 +66,177 @@ impl Parameter {
     }
 }
 
+/// What only relays know of a parameter.
+#[derive(Debug, Clone, Copy)]
+pub struct Facts {
+    /// What every kind knows.
+    pub definition: Definition,
+    /// Goes with the copper of the coil, so that results are brought to the reference temperature.
+    pub copper: bool,
+    /// Stage that measures it once more.
+    pub stage: Stage,
+    /// What a lot is expected to show.
+    pub expected: Expected,
+}
+
+/// What a lot is expected to show of a parameter, in the unit of its key.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Expected {
+    /// The nominal coil of the recipe.
+    Coil,
+    /// The expected threshold of the recipe.
+    Threshold(Direction),
+    /// The lot of the default world.
+    Usual {
+        /// Mean of the lot; its median where the logarithm scatters.
+        mean: f64,
+        /// Standard deviation of the values, or of their logarithm.
+        sd: f64,
+        /// The logarithm scatters.
+        logarithmic: bool,
+        /// Standard uncertainty that no strategy takes away.
+        u: f64,
+    },
+}
+
+impl Expected {
+    const fn usual(mean: f64, sd: f64, u: f64) -> Self {
+        Self::Usual {
+            mean,
+            sd,
+            logarithmic: false,
+            u,
+        }
+    }
+
+    const fn lognormal(mean: f64, sd: f64, u: f64) -> Self {
+        Self::Usual {
+            mean,
+            sd,
+            logarithmic: true,
+            u,
+        }
+    }
+}
+
 /// In the order of [`Parameter::ALL`].
-static TABLE: [Definition; Parameter::ALL.len()] = [
-    Definition {
-        key: "coil_resistance_ohm",
-        unit: Unit::Ohm,
-        name_en: "Coil resistance",
-        name_zh: "线圈电阻",
-        spoken_of: SpokenOf::Part,
-        bin: bins::COIL,
+static TABLE: [Facts; Parameter::ALL.len()] = [
+    Facts {
+        definition: Definition {
+            key: "coil_resistance_ohm",
+            unit: Unit::Ohm,
+            name_en: "Coil resistance",
+            name_zh: "线圈电阻",
+            spoken_of: SpokenOf::Part,
+            bin: bins::COIL,
+        },
+        copper: true,
+        stage: Stage::Coil,
+        expected: Expected::Coil,
     },
-    Definition {
-        key: "operate_voltage_v",
-        unit: Unit::Volt,
-        name_en: "Operate voltage",
-        name_zh: "动作电压",
-        spoken_of: SpokenOf::Part,
-        bin: bins::VOLTAGE,
+    Facts {
+        definition: Definition {
+            key: "operate_voltage_v",
+            unit: Unit::Volt,
+            name_en: "Operate voltage",
+            name_zh: "动作电压",
+            spoken_of: SpokenOf::Part,
+            bin: bins::VOLTAGE,
+        },
+        copper: true,
+        stage: Stage::OperateFine(0),
+        expected: Expected::Threshold(Direction::Rising),
     },
-    Definition {
-        key: "release_voltage_v",
-        unit: Unit::Volt,
-        name_en: "Release voltage",
-        name_zh: "释放电压",
-        spoken_of: SpokenOf::Part,
-        bin: bins::VOLTAGE,
+    Facts {
+        definition: Definition {
+            key: "release_voltage_v",
+            unit: Unit::Volt,
+            name_en: "Release voltage",
+            name_zh: "释放电压",
+            spoken_of: SpokenOf::Part,
+            bin: bins::VOLTAGE,
+        },
+        copper: true,
+        stage: Stage::ReleaseFine(0),
+        expected: Expected::Threshold(Direction::Falling),
     },
-    Definition {
-        key: "operate_time_ms",
-        unit: Unit::Millisecond,
-        name_en: "Operate time",
-        name_zh: "动作时间",
-        spoken_of: SpokenOf::Operation,
-        bin: bins::TIME,
+    Facts {
+        definition: Definition {
+            key: "operate_time_ms",
+            unit: Unit::Millisecond,
+            name_en: "Operate time",
+            name_zh: "动作时间",
+            spoken_of: SpokenOf::Operation,
+            bin: bins::TIME,
+        },
+        copper: false,
+        stage: Stage::TimedOperate,
+        expected: Expected::usual(4.7, 0.25, 0.008),
     },
-    Definition {
-        key: "release_time_ms",
-        unit: Unit::Millisecond,
-        name_en: "Release time",
-        name_zh: "释放时间",
-        spoken_of: SpokenOf::Operation,
-        bin: bins::TIME,
+    Facts {
+        definition: Definition {
+            key: "release_time_ms",
+            unit: Unit::Millisecond,
+            name_en: "Release time",
+            name_zh: "释放时间",
+            spoken_of: SpokenOf::Operation,
+            bin: bins::TIME,
+        },
+        copper: false,
+        stage: Stage::TimedRelease,
+        expected: Expected::usual(2.9, 0.15, 0.008),
     },
-    Definition {
-        key: "operate_bounce_ms",
-        unit: Unit::Millisecond,
-        name_en: "Operate bounce",
-        name_zh: "动作回跳",
-        spoken_of: SpokenOf::Operation,
-        bin: bins::TIME,
+    Facts {
+        definition: Definition {
+            key: "operate_bounce_ms",
+            unit: Unit::Millisecond,
+            name_en: "Operate bounce",
+            name_zh: "动作回跳",
+            spoken_of: SpokenOf::Operation,
+            bin: bins::TIME,
+        },
+        copper: false,
+        stage: Stage::TimedOperate,
+        expected: Expected::lognormal(0.4, 0.4, 0.012),
     },
-    Definition {
-        key: "release_bounce_ms",
-        unit: Unit::Millisecond,
-        name_en: "Release bounce",
-        name_zh: "释放回跳",
-        spoken_of: SpokenOf::Operation,
-        bin: bins::TIME,
+    Facts {
+        definition: Definition {
+            key: "release_bounce_ms",
+            unit: Unit::Millisecond,
+            name_en: "Release bounce",
+            name_zh: "释放回跳",
+            spoken_of: SpokenOf::Operation,
+            bin: bins::TIME,
+        },
+        copper: false,
+        stage: Stage::TimedRelease,
+        expected: Expected::lognormal(0.5, 0.4, 0.012),
     },
-    Definition {
-        key: "contact_resistance_no_mohm",
-        unit: Unit::Milliohm,
-        name_en: "Contact resistance NO",
-        name_zh: "常开触点电阻",
-        spoken_of: SpokenOf::Closures,
-        bin: bins::CONTACT,
+    Facts {
+        definition: Definition {
+            key: "contact_resistance_no_mohm",
+            unit: Unit::Milliohm,
+            name_en: "Contact resistance NO",
+            name_zh: "常开触点电阻",
+            spoken_of: SpokenOf::Closures,
+            bin: bins::CONTACT,
+        },
+        copper: false,
+        stage: Stage::TimedOperate,
+        expected: Expected::lognormal(18.0, 0.25, 0.04),
     },
-    Definition {
-        key: "contact_resistance_nc_mohm",
-        unit: Unit::Milliohm,
-        name_en: "Contact resistance NC",
-        name_zh: "常闭触点电阻",
-        spoken_of: SpokenOf::Closures,
-        bin: bins::CONTACT,
+    Facts {
+        definition: Definition {
+            key: "contact_resistance_nc_mohm",
+            unit: Unit::Milliohm,
+            name_en: "Contact resistance NC",
+            name_zh: "常闭触点电阻",
+            spoken_of: SpokenOf::Closures,
+            bin: bins::CONTACT,
+        },
+        copper: false,
+        stage: Stage::TimedRelease,
+        expected: Expected::lognormal(22.0, 0.25, 0.04),
     },
 ];
 

@@ -3,6 +3,7 @@
 use super::parameter::Parameter;
 use super::sampling::{CoilSampling, ContactSampling};
 use super::strategy::Strategy;
+use super::threshold::Direction;
 use crate::dut::recipe::Body;
 use crate::rig::fault::Fault;
 use serde::{Deserialize, Serialize};
@@ -145,5 +146,15 @@ impl Strategies {
             (Parameter::OperateVoltage, self.operate_voltage_v),
             (Parameter::ReleaseVoltage, self.release_voltage_v),
         ]
+    }
+}
+
+impl TestPlan {
+    /// Threshold expected of the lot and its standard deviation, V.
+    pub fn expected(&self, direction: Direction) -> (f64, f64) {
+        match direction {
+            Direction::Rising => (self.expected_operate_v, self.expected_operate_sd_v),
+            Direction::Falling => (self.expected_release_v, self.expected_release_sd_v),
+        }
     }
 }

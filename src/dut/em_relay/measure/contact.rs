@@ -149,18 +149,10 @@ pub(super) fn is_implausible(contact: Contact, mohm: f64, record: &mut TestRecor
 pub(super) fn is_clear(context: &Context, state: &TestState, parameter: Parameter) -> bool {
     let (recipe, record) = (&context.recipe, &state.record);
     let per_v = context.calibration.contact_mohm_per_v.value;
-    let values_mohm: Vec<f64> = match parameter {
-        Parameter::ContactResistanceNc => {
-            state.plan.nc_drops.iter().map(|it| per_v * it.0).collect()
-        }
-        Parameter::ContactResistanceNo
-        | Parameter::CoilResistance
-        | Parameter::OperateVoltage
-        | Parameter::ReleaseVoltage
-        | Parameter::OperateTime
-        | Parameter::ReleaseTime
-        | Parameter::OperateBounce
-        | Parameter::ReleaseBounce => record.each(parameter).map(|it| it.value).collect(),
+    let values_mohm: Vec<f64> = if parameter == Parameter::ContactResistanceNc {
+        state.plan.nc_drops.iter().map(|it| per_v * it.0).collect()
+    } else {
+        record.each(parameter).map(|it| it.value).collect()
     };
     let u_mohm = record
         .result(parameter)

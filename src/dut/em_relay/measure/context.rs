@@ -119,16 +119,11 @@ impl Context {
     /// How a threshold is found. Golden parts always get both ramps: they teach the lags; and so do the first
     /// parts of a lot before `adaptive` trusts its coarse ramp.
     pub fn strategy(&self, parameter: Parameter) -> Strategy {
-        let lag = match parameter {
-            Parameter::ReleaseVoltage => self.release_lag(),
-            Parameter::CoilResistance
-            | Parameter::OperateVoltage
-            | Parameter::OperateTime
-            | Parameter::ReleaseTime
-            | Parameter::OperateBounce
-            | Parameter::ReleaseBounce
-            | Parameter::ContactResistanceNo
-            | Parameter::ContactResistanceNc => self.operate_lag(),
+        let falls = parameter == Parameter::ReleaseVoltage;
+        let lag = if falls {
+            self.release_lag()
+        } else {
+            self.operate_lag()
         };
         let mut each = self.relay.test.strategy.each().into_iter();
         match each.find(|(known, _)| *known == parameter) {

@@ -242,7 +242,7 @@ impl Test {
         let again: Vec<Stage> = verdict::judged(&self.context, &self.state.record)
             .iter()
             .filter(|(_, judgement)| self.context.thorough || doubtful(judgement))
-            .map(|(parameter, _)| Stage::of(*parameter))
+            .map(|(parameter, _)| parameter.facts().stage)
             .collect();
         // In the order of the test: a fine release ramp right after the timed operation would start from
         // another flux than the one its lag was learned from.

@@ -94,19 +94,4 @@ impl Stage {
             Self::Off => "off",
         }
     }
-
-    /// Stage that measures a parameter once more.
-    pub(super) fn of(parameter: Parameter) -> Self {
-        match parameter {
-            Parameter::CoilResistance => Stage::Coil,
-            Parameter::OperateVoltage => Stage::OperateFine(0),
-            Parameter::ReleaseVoltage => Stage::ReleaseFine(0),
-            Parameter::OperateTime | Parameter::OperateBounce | Parameter::ContactResistanceNo => {
-                Stage::TimedOperate
-            }
-            Parameter::ReleaseTime | Parameter::ReleaseBounce | Parameter::ContactResistanceNc => {
-                Stage::TimedRelease
-            }
-        }
-    }
 }
