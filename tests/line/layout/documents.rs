@@ -8,11 +8,12 @@ const DOCUMENTS: &[&str] = &[
     "ARCHITECTURE.md",
     "CHANGELOG.md",
     "config/README.md",
+    "docs/extending.md",
 ];
 
 /// Folders in which a quoted path must lie to be taken for one.
 const ROOTS: &[&str] = &[
-    "src/", "sim/", "config/", "tests/", ".ci/", "samples/", "doc/",
+    "src/", "sim/", "config/", "tests/", ".ci/", "docs/",
 ];
 
 /// The documents as they are.
