@@ -4,8 +4,7 @@
 use super::traffic::{Purpose, Traffic};
 use crate::bus::Pace;
 use crate::dcon::{Command, Common};
-use crate::dut::em_relay::points::Points;
-use crate::dut::em_relay::reference;
+use crate::dut;
 use crate::rig::commission::{Mismatch, judge, verification};
 use crate::rig::wiring::{ModuleId, Wiring};
 use crate::station::trouble::Alarm;
@@ -88,10 +87,8 @@ async fn put_right(
 /// A disagreement that the controller itself has left behind.
 fn left_behind(wiring: &Wiring, module: ModuleId, mismatch: &Mismatch) -> Option<Left> {
     let wired = wiring.module(module);
-    let points = Points::resolve(wiring).ok();
-    let scanned = points.map(|points| reference::SCANNED.map(|it| points.analog(it)));
-    let scanned = scanned.map_or(0, |inputs| wiring.mask_of(module, &inputs));
-    let masked = mismatch.found == format!("{scanned:02X}");
+    let of_references = wiring.mask_of(module, &dut::reference_inputs(wiring));
+    let masked = of_references != 0 && mismatch.found == format!("{of_references:02X}");
     let (what, remedies) = if mismatch.what == "host watchdog" {
         let enable = Common::WriteWatchdog {
             enabled: wired.watchdog,

@@ -30,10 +30,22 @@ pub use recipe::Recipe;
 pub use record::TestRecord;
 pub use verdict::{Bin, Verdict};
 
-use crate::rig::point::Fixture;
+use crate::rig::point::{AnalogInput, Fixture};
+use crate::rig::wiring::Wiring;
 
 /// The points that each kind declares.
 pub const FIXTURES: &[Fixture] = &[em_relay::points::FIXTURE];
+
+/// Inputs that converters read while the references of any kind are measured. A life of the controller that was cut off
+/// meanwhile leaves their channel mask in the module.
+pub fn reference_inputs(wiring: &Wiring) -> Vec<AnalogInput> {
+    em_relay::reference::inputs(wiring)
+}
+
+/// What the bits of a stored signal mean, highest first; none for a signal of another form.
+pub fn bits_of(signal: &str) -> Option<&'static str> {
+    (signal == em_relay::points::BOARD).then_some(em_relay::points::BOARD_BITS)
+}
 
 /// A kind of device under test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

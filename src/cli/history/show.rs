@@ -2,7 +2,7 @@
 
 use super::output::{Format, FormatArgs, Output, Table, figure, text};
 use super::{lots, orders};
-use crate::dut::em_relay::points::BOARD;
+use crate::dut;
 use crate::history::{Archive, Filter, LotSummary, Moment, Part};
 use crate::instrument::curve::Curve;
 use clap::Args;
@@ -142,12 +142,9 @@ fn curve(it: &Curve, out: &mut Output) -> anyhow::Result<()> {
         ..
     } = it;
     let begin = Moment(*begin_us);
-    let is_board = signal == BOARD;
+    let bits = dut::bits_of(signal);
     let unit = match unit.as_str() {
-        "" if is_board => {
-            "Kelvin NC NO COM coil B A, probes up, no compliance, NC closed, NO closed"
-        }
-        "" => "counts",
+        "" => bits.unwrap_or("counts"),
         unit => unit,
     };
     writeln!(out, "\ncurve {signal}, {unit}, from {begin}, ms: value")?;
@@ -158,7 +155,7 @@ fn curve(it: &Curve, out: &mut Output) -> anyhow::Result<()> {
         .map(|(&t_us, value)| {
             let value = match value {
                 None => "-".to_owned(),
-                Some(bits) if is_board => format!("{:09b}", *bits as u64),
+                Some(word) if bits.is_some() => format!("{:09b}", *word as u64),
                 Some(value) => figure(Some(*value)),
             };
             format!("{:.3}: {value}", t_us as f64 / 1e3)

@@ -73,6 +73,10 @@ points! {
     }
 }
 
+/// What the bits of the signal [`BOARD`] mean, highest first.
+pub const BOARD_BITS: &str =
+    "Kelvin NC NO COM coil B A, probes up, no compliance, NC closed, NO closed";
+
 /// Thermometer of the magazine track, whose temperature the part has.
 const TRACK: &str = "track_temperature";
 

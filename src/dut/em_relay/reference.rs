@@ -8,18 +8,20 @@
 use crate::dut::em_relay::act::{Act, Read};
 use crate::dut::em_relay::calibration::{Calibration, InputLine, OutputLine};
 use crate::dut::em_relay::measure::Context;
-use crate::dut::em_relay::points::AnalogIn;
 use crate::dut::em_relay::points::AnalogOut::{SupplyCoarse, SupplyFine, SupplyLevel};
 use crate::dut::em_relay::points::DigitalOut::{
     Arm, CoilDrive, KelvinTest, RampMode, ReferenceCoil, ReferenceContact, SourceOn, SourceReverse,
 };
+use crate::dut::em_relay::points::{AnalogIn, Points};
 use crate::dut::em_relay::readings::{CoilScan, Readings};
 use crate::dut::em_relay::timing::counts;
 use crate::gauge::Factor;
 use crate::gauge::budget::rectangular;
 use crate::instrument::act;
 use crate::instrument::readings::Readings as ByPoint;
+use crate::rig::point::AnalogInput;
 use crate::rig::sample::{Quality, Sample};
+use crate::rig::wiring::Wiring;
 use crate::units::{Span, Volt};
 use thiserror::Error;
 
@@ -44,6 +46,13 @@ const SLOPE_MARGIN_V: f64 = 0.3;
 const DROPS: usize = 8;
 /// Gate pulses: their fractions of a count add up, so one count of error is spread over all.
 const PULSES: u32 = 25;
+
+/// The inputs that [`acts`] reads by scans; none on a rig that lacks points of the kind.
+pub fn inputs(wiring: &Wiring) -> Vec<AnalogInput> {
+    let points = Points::resolve(wiring).ok();
+    let inputs = points.map(|points| SCANNED.map(|it| points.analog(it)).to_vec());
+    inputs.unwrap_or_default()
+}
 
 /// Why the references do not calibrate the rig.
 #[derive(Debug, Clone, PartialEq, Error)]

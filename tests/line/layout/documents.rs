@@ -12,9 +12,7 @@ const DOCUMENTS: &[&str] = &[
 ];
 
 /// Folders in which a quoted path must lie to be taken for one.
-const ROOTS: &[&str] = &[
-    "src/", "sim/", "config/", "tests/", ".ci/", "docs/",
-];
+const ROOTS: &[&str] = &["src/", "sim/", "config/", "tests/", ".ci/", "docs/"];
 
 /// The documents as they are.
 pub fn documents() -> Vec<Source> {
