@@ -91,7 +91,8 @@ impl Kind {
         }
     }
 
-    /// Words of the page that only this kind needs: a JSON object of `{"en", "zh"}` by key, of other keys than every other one's.
+    /// Words of the page that only this kind needs: a JSON object of `{"en", "zh"}` by key. No two kinds
+    /// share a key.
     pub const fn words(self) -> &'static str {
         match self {
             Self::EmRelay => em_relay::WORDS,

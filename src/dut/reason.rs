@@ -142,6 +142,9 @@ impl Reason {
         if let Some((finding, detail)) = em_relay::Finding::from_text(text) {
             return finding.with(detail);
         }
+        if let Some(finding) = resistor::Finding::from_text(text) {
+            return finding.into();
+        }
         Self::of_characteristic(text).unwrap_or_else(|| Self::unclassified(text))
     }
 
@@ -279,7 +282,8 @@ mod tests {
             Reason::rig_trouble("module 03 silent"),
             Reason::unclassified("refused by the clerk"),
         ];
-        for reason in of_a_kind.into_iter().chain(general) {
+        let of_resistors = resistor::Finding::ALL.map(Reason::from);
+        for reason in of_a_kind.into_iter().chain(of_resistors).chain(general) {
             let name = reason.code.name();
             let back = Reason::stored(name, reason.characteristic(), reason.side, &reason.detail);
             assert_eq!(back, Some(reason));

@@ -159,7 +159,7 @@ impl Recipe {
             DeviceRecipe::EmRelay(relay) => {
                 em_relay::feasible::check(relay, &self.limits, wiring, accuracy)
             }
-            DeviceRecipe::Resistor(resistor) => resistor.feasible(&self.limits, wiring),
+            DeviceRecipe::Resistor(resistor) => resistor.feasible(&self.limits, wiring, accuracy),
         }
     }
 }

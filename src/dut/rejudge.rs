@@ -16,12 +16,12 @@ pub struct Basis {
     pub reference: Celsius,
 }
 
-/// Why values cannot be judged by a recipe, in two halves of a sentence.
+/// Why values cannot be judged by a recipe.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Misfit {
-    /// What the recipe is about.
+    /// What the recipe needs: the first half of a sentence.
     pub wanted: String,
-    /// What was done instead.
+    /// How the part was measured: the second half.
     pub found: String,
 }
 
@@ -35,9 +35,13 @@ impl Basis {
             let value = part.get(key)?;
             value.as_float().or(value.as_integer().map(|it| it as f64))
         };
+        let kind = kind.map_or(Some(Kind::EmRelay), Kind::from_name)?;
         Some(Self {
-            kind: kind.map_or(Some(Kind::EmRelay), Kind::from_name)?,
-            nominal_v: number("nominal_v"),
+            kind,
+            nominal_v: match kind {
+                Kind::EmRelay => Some(number("nominal_v")?),
+                Kind::Resistor => None,
+            },
             reference: Celsius(number("reference_temperature_c")?),
         })
     }

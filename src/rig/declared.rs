@@ -31,9 +31,10 @@ impl InputNames {
         }
     }
 
-    pub(super) fn handle(&self, name: &str) -> Option<DigitalInput> {
+    /// Handle of a beam: an input that neither the machine nor a fixture has for its own.
+    pub(super) fn beam(&self, name: &str) -> Option<DigitalInput> {
         let at = self.names.iter().position(|known| known == name)?;
-        Some(DigitalInput::at(at))
+        (at >= self.before_beams).then_some(DigitalInput::at(at))
     }
 
     /// No other name may stand in the file.

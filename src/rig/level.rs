@@ -1,6 +1,7 @@
 //! From volts of the coil supply to the level of an analog output, with its calibration.
 
-use super::wiring::Module;
+use super::point::AnalogOutput;
+use super::wiring::{Module, Wiring};
 use crate::dcon::{Level, LevelError};
 use crate::units::Volt;
 use thiserror::Error;
@@ -45,6 +46,18 @@ pub enum SupplyError {
 
 /// A level this little below zero (V at the terminal) is an offset that cannot be taken away: zero is written.
 const UNREACHABLE_OFFSET_V: f64 = 0.02;
+
+impl Wiring {
+    /// Checks that a source can give this share of the supply, V at the supply.
+    ///
+    /// # Errors
+    /// Says what the source cannot give.
+    pub fn reaches(&self, point: AnalogOutput, supply: Volt) -> Result<(), SupplyError> {
+        let terminal = self.analog_out(point);
+        let (name, module) = (self.source_name(point), self.module(terminal.module));
+        nearest_level(name, module, terminal.gain, supply, Correction::NONE).map(|_| ())
+    }
+}
 
 /// The level nearest to a share of the supply, and the share it really gives. `gain`: supply volts per terminal volt.
 pub(super) fn nearest_level(

@@ -35,7 +35,7 @@ impl Wiring {
         check_ports(&lines)?;
         let modules = resolve_modules(settings, &lines)?;
         let inputs = InputNames::of(settings, fixtures);
-        let axis = AxisTable::resolve(&settings.axis, &settings.bin, |name| inputs.handle(name))?;
+        let axis = AxisTable::resolve(&settings.axis, &settings.bin, |name| inputs.beam(name))?;
         inputs.check(settings)?;
         let strokes = resolve_strokes(&settings.actuator)?;
         let declared = Declared { settings, fixtures };

@@ -19,6 +19,9 @@ impl Station {
         now: RigTime,
         wants: &mut Wants,
     ) -> Result<(), Refused> {
+        if self.machine.ended {
+            return Err(Refused::new("the run has ended", "本次运行已结束"));
+        }
         match order {
             Order::Command(command) => {
                 self.may(command)?;

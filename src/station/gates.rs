@@ -151,7 +151,8 @@ impl Station {
         {
             return wants.notes.trouble.push(Alarm::calibration_overdue());
         }
-        if self.lot.gates.checking || self.is_calibrating() || !self.wants_more() {
+        let none = self.plan.golden.is_empty();
+        if none || self.lot.gates.checking || self.is_calibrating() || !self.wants_more() {
             return;
         }
         let (parts, settings) = (self.line.ledger.lot_parts(), &self.plan.lot.golden_check);

@@ -255,7 +255,7 @@ impl Station {
     fn interrupt(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
         let parts = &mut wants.record.parts;
         for part in self.line.ledger.held_mut() {
-            if part.interrupted.is_some() && part.bin.is_some() {
+            if part.interrupted.is_some() && part.bin == Some(Bin::RETEST) {
                 continue;
             }
             let why = part

@@ -213,10 +213,26 @@ impl Station {
         }
         self.end_golden_run(wants);
         self.take_up_gripped(now, wants);
-        if let Some(part) = self.line.ledger.part_mut(Place::NEST) {
-            part.interrupted.get_or_insert_with(|| BY_A_RESET.into());
-        }
+        self.take_up_nested(wants);
         wants.rig.wake_at = Some(now);
+    }
+
+    /// A part in the nest is not tested any more. One that has a bin was judged before, lost on its way and laid back: it
+    /// goes to retest, and its row says why.
+    fn take_up_nested(&mut self, wants: &mut Wants) {
+        let Some(part) = self.line.ledger.part_mut(Place::NEST) else {
+            return;
+        };
+        let why = part
+            .interrupted
+            .get_or_insert_with(|| BY_A_RESET.into())
+            .clone();
+        if part.bin.is_some_and(|bin| bin != Bin::RETEST) {
+            part.bin = Some(Bin::RETEST);
+            let ordinal = part.ordinal;
+            let interrupted = &mut wants.record.parts.interrupted;
+            interrupted.push(Interrupted { ordinal, why });
+        }
     }
 
     /// What the fingers hold goes to retest, and its row says why; one that they never let go had a row for its bin.

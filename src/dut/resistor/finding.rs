@@ -63,6 +63,11 @@ impl Finding {
         Self::ALL.into_iter().find(|it| it.code() == code)
     }
 
+    /// The finding with this text.
+    pub fn from_text(text: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|it| it.text() == text)
+    }
+
     fn side(self) -> Option<Side> {
         match self {
             Self::Open => Some(Side::High),

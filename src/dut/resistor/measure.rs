@@ -1,21 +1,17 @@
 //! The test of a resistor: drive on at a level, one channel read, drive off.
 //!
-//! ```text
-//! R = V / I - nothing, since the level is asked for at the pins
-//! ```
-//! The level is the supply's, as its maker promises it; the current is what the fine channel reads, as its maker promises
-//! that. A result inside the guard band is read `slow_repeats` times more, and the mean counts.
+//! R = V / I. V is the level asked of the supply, I what the fine channel reads; both are taken as the makers promise them. The
+//! contact of the probes is part of R and a term of its budget. A result inside the guard band is read `slow_repeats` times more, and the mean counts.
 
 use super::points::Points;
+use super::promise::Promise;
 use super::recipe::ResistorRecipe;
 use super::{Finding, Parameter};
 use crate::dut::device::{Rig, TestOrder};
-use crate::dut::em_relay::settings::AccuracySettings;
 use crate::dut::procedure::Progress;
 use crate::dut::record::{Own, TestRecord};
 use crate::dut::{Characteristic, Recipe, Verdict};
-use crate::gauge::budget::{rectangular, resolution};
-use crate::gauge::{Budget, Judgement, Reading, judge};
+use crate::gauge::{Judgement, Reading, judge};
 use crate::instrument::act::{Act, Doing, JobDone, Read, Runner};
 use crate::instrument::readings::Readings;
 use crate::rig::image::Image;
@@ -24,13 +20,6 @@ use crate::rig::sample::{Quality, Sample};
 use crate::units::{RigTime, Span, Unit, Volt};
 use std::sync::Arc;
 
-/// Span of a +-10 V input of 12 bits, V at the terminal.
-const RANGE_V: f64 = 20.0;
-const STEPS: f64 = 4096.0;
-/// Below this share of the current that the highest limit would draw, no current flows.
-const NO_CURRENT: f64 = 0.05;
-/// The part may differ so much from the reference temperature, K (half width).
-const TEMPERATURE_K: f64 = 10.0;
 /// Current and amplifier have settled after the drive went off.
 const OFF: Span = Span::ms(5);
 
@@ -40,9 +29,7 @@ pub struct Device {
     recipe: Arc<Recipe>,
     resistor: Arc<ResistorRecipe>,
     points: Points,
-    accuracy: AccuracySettings,
-    /// Volts at the terminal per ampere.
-    volt_per_ampere: f64,
+    promise: Promise,
     /// Enabled channels of the converter that reads the current.
     channels: u32,
 }
@@ -64,8 +51,10 @@ impl Device {
             recipe,
             resistor,
             points,
-            accuracy: *rig.accuracy,
-            volt_per_ampere: terminal.gain,
+            promise: Promise {
+                accuracy: *rig.accuracy,
+                volt_per_ampere: terminal.gain,
+            },
             channels: mask.count_ones(),
         })
     }
@@ -86,8 +75,8 @@ impl Device {
 
     fn acts(&self) -> Vec<Act> {
         let test = &self.resistor.test;
-        let one_round = 1.03 / self.accuracy.conversions_per_s * f64::from(self.channels);
-        let fresh = Span::seconds(one_round + 1.03 / self.accuracy.conversions_per_s);
+        let one_round = 1.03 / self.promise.accuracy.conversions_per_s * f64::from(self.channels);
+        let fresh = Span::seconds(one_round + 1.03 / self.promise.accuracy.conversions_per_s);
         let mut acts = vec![
             Act::Level(vec![(self.points.level, Volt(test.level_v))]),
             Act::Set(vec![(self.points.drive, true)]),
@@ -124,45 +113,19 @@ impl Device {
                 }
             };
         }
-        let readings = samples.len() as f64;
-        let ampere = sum / readings;
+        let ampere = sum / samples.len() as f64;
         if !ampere.is_finite() {
             return Err(Finding::CurrentNotReadable);
         }
-        if ampere < NO_CURRENT * self.least_ampere() {
+        if ampere < self.promise.no_current_ampere() {
             return Err(Finding::Open);
         }
         let ohm = self.resistor.test.level_v / ampere;
         Ok(Reading {
             value: ohm,
             unit: Unit::Ohm,
-            budget: self.budget(ohm, ampere, readings),
+            budget: self.promise.budget(&self.resistor, ohm),
         })
-    }
-
-    /// Current of the greatest resistance that passes; of ten times the mean of its limits where there is no high one, A.
-    fn least_ampere(&self) -> f64 {
-        let limit = self.recipe.limits.of(Parameter::Resistance);
-        let most_ohm = limit.high.or(limit.low.map(|low| 10.0 * low));
-        self.resistor.test.level_v / most_ohm.unwrap_or(f64::INFINITY)
-    }
-
-    /// Relative doubts of level and current, in ohm.
-    fn budget(&self, ohm: f64, ampere: f64, readings: f64) -> Budget {
-        let promised = &self.accuracy;
-        let terminal_v = ampere * self.volt_per_ampere;
-        let level = (promised.ao_gain_pct / 100.0)
-            .hypot(promised.ao_offset_mv / 1e3 / self.resistor.test.level_v);
-        let offset_v = promised.ai_offset_pct_of_range / 100.0 * RANGE_V / 2.0;
-        let step_v = RANGE_V / STEPS;
-        let noise_v = (promised.ai_noise_lsb * step_v).hypot(resolution(step_v)) / readings.sqrt();
-        let kelvin = self.resistor.part.tcr_ppm_per_k.abs() * 1e-6 * TEMPERATURE_K;
-        Budget::default()
-            .with("level", ohm * rectangular(level))
-            .with("gain", ohm * rectangular(promised.ai_gain_pct / 100.0))
-            .with("offset", ohm * rectangular(offset_v / terminal_v))
-            .with("temperature", ohm * rectangular(kelvin))
-            .with_random("noise", ohm * noise_v / terminal_v)
     }
 }
 

@@ -9,6 +9,7 @@
 //! | what is measured, and where a part that fails goes | [`parameter`] |
 //! | what the part is, how it is measured | [`recipe`] |
 //! | which points of the rig it needs | [`points`] |
+//! | how well the figure is known | [`promise`] |
 //! | what a test finds beside the figure | [`finding`] |
 //! | the keys of its recipe | [`keys`] |
 //! | the test | [`measure`] |
@@ -21,6 +22,7 @@ pub mod made_up;
 pub mod measure;
 pub mod parameter;
 pub mod points;
+pub mod promise;
 pub mod recipe;
 
 /// Words of the page that only this kind needs.

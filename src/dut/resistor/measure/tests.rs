@@ -27,11 +27,13 @@ fn device(limits: &str) -> Device {
     let wiring = wiring();
     let points = Points::resolve(&wiring).unwrap();
     Device {
-        volt_per_ampere: wiring.analog_in(points.current).gain,
+        promise: Promise {
+            accuracy: context.accuracy,
+            volt_per_ampere: wiring.analog_in(points.current).gain,
+        },
         recipe: Arc::new(recipe),
         resistor: Arc::new(resistor),
         points,
-        accuracy: context.accuracy,
         channels: 2,
     }
 }
@@ -57,7 +59,7 @@ fn tested(limits: &str, ohm: Option<f64>) -> (Test, usize) {
                     // Volts at the terminal: full scale stands for over range.
                     shop.volts_at(
                         device.points.current,
-                        ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.volt_per_ampere),
+                        ohm.map_or(10.0, |ohm| LEVEL_V / ohm * device.promise.volt_per_ampere),
                     );
                 }
                 done = Some(JobDone {

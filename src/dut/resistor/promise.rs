@@ -1,0 +1,61 @@
+//! How well resistance is known from what the makers promise: the kind has no calibration.
+
+use super::recipe::ResistorRecipe;
+use crate::dut::em_relay::settings::AccuracySettings;
+use crate::gauge::Budget;
+use crate::gauge::budget::{rectangular, resolution};
+
+/// A +-10 V input: full scale and step of 12 bits, V at the terminal.
+const FULL_SCALE_V: f64 = 10.0;
+const STEP_V: f64 = 2.0 * FULL_SCALE_V / 4096.0;
+/// Share of the full scale that a good part may use.
+const USABLE: f64 = 0.98;
+/// The part may differ so much from the reference temperature, K (half width).
+const TEMPERATURE_K: f64 = 10.0;
+/// Resistance of both probe contacts in series, ohm (half width).
+const PROBES_OHM: f64 = 0.2;
+
+/// Promises for the one channel of the test.
+#[derive(Debug, Clone, Copy)]
+pub struct Promise {
+    /// Of the makers.
+    pub accuracy: AccuracySettings,
+    /// Volts at the terminal per ampere.
+    pub volt_per_ampere: f64,
+}
+
+impl Promise {
+    fn offset_v(&self) -> f64 {
+        self.accuracy.ai_offset_pct_of_range / 100.0 * FULL_SCALE_V
+    }
+
+    fn noise_v(&self) -> f64 {
+        (self.accuracy.ai_noise_lsb * STEP_V).hypot(resolution(STEP_V))
+    }
+
+    /// A current below this cannot be told from none, A.
+    pub fn no_current_ampere(&self) -> f64 {
+        (self.offset_v() + 3.0 * self.noise_v()) / self.volt_per_ampere
+    }
+
+    /// The greatest current that the channel reads, A.
+    pub fn most_ampere(&self) -> f64 {
+        USABLE * FULL_SCALE_V / self.volt_per_ampere
+    }
+
+    /// Doubts of a resistance, ohm.
+    pub fn budget(&self, resistor: &ResistorRecipe, ohm: f64) -> Budget {
+        let (promised, level_v) = (&self.accuracy, resistor.test.level_v);
+        let terminal_v = level_v / ohm * self.volt_per_ampere;
+        let level = (promised.ao_gain_pct / 100.0).hypot(promised.ao_offset_mv / 1e3 / level_v);
+        let readings = f64::from(resistor.test.readings);
+        let kelvin = resistor.part.tcr_ppm_per_k.abs() * 1e-6 * TEMPERATURE_K;
+        Budget::default()
+            .with("level", ohm * rectangular(level))
+            .with("gain", ohm * rectangular(promised.ai_gain_pct / 100.0))
+            .with("offset", ohm * rectangular(self.offset_v() / terminal_v))
+            .with("temperature", ohm * rectangular(kelvin))
+            .with("probe contact", rectangular(PROBES_OHM))
+            .with_random("noise", ohm * self.noise_v() / terminal_v / readings.sqrt())
+    }
+}
