@@ -12,18 +12,6 @@ use super::output::Report;
 use super::parameters;
 use crate::dut::em_relay::Parameter;
 
-/// Greatest rms error that is good enough, in the unit of [`unit`].
-pub const fn allowed(parameter: Parameter) -> f64 {
-    match parameter {
-        Parameter::CoilResistance => 0.12,
-        Parameter::OperateVoltage => 9.0,
-        Parameter::ReleaseVoltage => 4.0,
-        Parameter::OperateTime | Parameter::ReleaseTime => 0.02,
-        Parameter::OperateBounce | Parameter::ReleaseBounce => 0.05,
-        Parameter::ContactResistanceNo | Parameter::ContactResistanceNc => 0.3,
-    }
-}
-
 /// Runs the lots and draws the report up.
 ///
 /// # Errors
@@ -35,7 +23,7 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
         marks: vec![100.0],
         ..Chart::default()
     };
-    let share = |parameter, value| 100.0 * value / allowed(parameter);
+    let share = |parameter: Parameter, value| 100.0 * value / parameter.facts().allowed_rms;
     parameters::study("accuracy", order, row, share, chart)
 }
 
@@ -51,5 +39,5 @@ fn row(parameter: Parameter, lots: &[Lot]) -> Figure {
     .with("bias", errors.median_bias())
     .with("max", errors.worst())
     .with("coverage_pct", errors.coverage_pct())
-    .bar(Bar::AtMost(allowed(parameter)))
+    .bar(Bar::AtMost(parameter.facts().allowed_rms))
 }

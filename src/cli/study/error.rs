@@ -1,39 +1,30 @@
 //! Errors of one parameter against the truth, over good parts.
 //!
-//! The units are those of the bars: thresholds in mV, the coil in percent of its true value, times and
-//! bounce in ms, contacts in mOhm. Covered means `|value - truth| <= U`, `U` expanded with k = 2; a value
-//! without an uncertainty covers nothing.
+//! The units are those of the bars: ohm in percent of the true value, volt in mV, all else as its key says.
+//! Covered means `|value - truth| <= U`, `U` expanded with k = 2; a value without an uncertainty covers nothing.
 
 use super::lot::{Lot, Part, Reading};
 use crate::dut::em_relay::Parameter;
 use crate::quality::Spread;
 use crate::quality::spread::median;
+use crate::units::Unit;
 
 /// Unit in which the error of a parameter is told.
 pub fn unit(parameter: Parameter) -> &'static str {
-    match parameter {
-        Parameter::CoilResistance => "%",
-        Parameter::OperateVoltage | Parameter::ReleaseVoltage => "mV",
-        Parameter::OperateTime
-        | Parameter::ReleaseTime
-        | Parameter::OperateBounce
-        | Parameter::ReleaseBounce => "ms",
-        Parameter::ContactResistanceNo | Parameter::ContactResistanceNc => "mOhm",
+    match parameter.definition().unit {
+        Unit::Ohm => "%",
+        Unit::Volt => "mV",
+        unit => unit.symbol(),
     }
 }
 
 /// The error of a reading in [`unit`].
 pub fn error(parameter: Parameter, reading: &Reading) -> f64 {
     let difference = reading.value - reading.truth;
-    match parameter {
-        Parameter::CoilResistance => 100.0 * difference / reading.truth,
-        Parameter::OperateVoltage | Parameter::ReleaseVoltage => 1000.0 * difference,
-        Parameter::OperateTime
-        | Parameter::ReleaseTime
-        | Parameter::OperateBounce
-        | Parameter::ReleaseBounce
-        | Parameter::ContactResistanceNo
-        | Parameter::ContactResistanceNc => difference,
+    match parameter.definition().unit {
+        Unit::Ohm => 100.0 * difference / reading.truth,
+        Unit::Volt => 1000.0 * difference,
+        _ => difference,
     }
 }
 

@@ -77,6 +77,8 @@ pub struct Facts {
     pub stage: Stage,
     /// What a lot is expected to show.
     pub expected: Expected,
+    /// Greatest rms error of a lot that is good enough: ohm in percent, V in mV, else in the unit of the key.
+    pub allowed_rms: f64,
 }
 
 /// What a lot is expected to show of a parameter, in the unit of its key.
@@ -133,6 +135,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         copper: true,
         stage: Stage::Coil,
         expected: Expected::Coil,
+        allowed_rms: 0.12,
     },
     Facts {
         definition: Definition {
@@ -146,6 +149,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         copper: true,
         stage: Stage::OperateFine(0),
         expected: Expected::Threshold(Direction::Rising),
+        allowed_rms: 9.0,
     },
     Facts {
         definition: Definition {
@@ -159,6 +163,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         copper: true,
         stage: Stage::ReleaseFine(0),
         expected: Expected::Threshold(Direction::Falling),
+        allowed_rms: 4.0,
     },
     Facts {
         definition: Definition {
@@ -172,6 +177,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         copper: false,
         stage: Stage::TimedOperate,
         expected: Expected::usual(4.7, 0.25, 0.008),
+        allowed_rms: 0.02,
     },
     Facts {
         definition: Definition {
@@ -185,6 +191,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         copper: false,
         stage: Stage::TimedRelease,
         expected: Expected::usual(2.9, 0.15, 0.008),
+        allowed_rms: 0.02,
     },
     Facts {
         definition: Definition {
@@ -198,6 +205,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         copper: false,
         stage: Stage::TimedOperate,
         expected: Expected::lognormal(0.4, 0.4, 0.012),
+        allowed_rms: 0.05,
     },
     Facts {
         definition: Definition {
@@ -211,6 +219,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         copper: false,
         stage: Stage::TimedRelease,
         expected: Expected::lognormal(0.5, 0.4, 0.012),
+        allowed_rms: 0.05,
     },
     Facts {
         definition: Definition {
@@ -224,6 +233,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         copper: false,
         stage: Stage::TimedOperate,
         expected: Expected::lognormal(18.0, 0.25, 0.04),
+        allowed_rms: 0.3,
     },
     Facts {
         definition: Definition {
@@ -237,6 +247,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         copper: false,
         stage: Stage::TimedRelease,
         expected: Expected::lognormal(22.0, 0.25, 0.04),
+        allowed_rms: 0.3,
     },
 ];
 
