@@ -3,11 +3,11 @@
 //! While a controller runs its own screen is the place (`POST /api/orders`): it would not hear of what is done here.
 
 use super::DONE;
-use crate::history::{
+use anyhow::{bail, ensure};
+use history::{
     AlarmChange, AlarmChangeRecord, AlarmLeft, Identity, Moment, OrderRecord, Row, Store,
 };
-use crate::station::orders::shelf_minutes;
-use anyhow::{bail, ensure};
+use machine::station::orders::shelf_minutes;
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;

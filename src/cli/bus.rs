@@ -7,8 +7,8 @@ mod monitor;
 mod scan;
 mod send;
 
-use crate::bus::{LineSettings, open_serial};
 use anyhow::Context;
+use bus::{LineSettings, open_serial};
 use std::io::Write;
 use std::path::PathBuf;
 use tokio_serial::SerialStream;

@@ -9,12 +9,12 @@ mod compare;
 
 use super::rig::RigArgs;
 use super::run::{self, Controls, Orders, RunArgs};
-use crate::config::{Plant, load_recipe};
-use crate::dut::Calibration;
-use crate::history::{CalibrationRecord, Identity, Store, snapshot_hash};
 use anyhow::{Context, bail};
 pub(super) use compare::K_OF_ALL;
 use compare::{Compared, K};
+use config::{Plant, load_recipe};
+use history::{CalibrationRecord, Identity, Store, snapshot_hash};
+use machine::dut::Calibration;
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;

@@ -1,9 +1,9 @@
 //! `card`: the operation process card of a recipe.
 
 use super::history::paper::PaperArgs;
-use crate::config::{load_card, load_recipe};
-use crate::report::card::card;
 use clap::Args;
+use config::{load_card, load_recipe};
+use history::report::card::card;
 use std::path::Path;
 
 /// Arguments of `card`.

@@ -2,12 +2,10 @@
 //!
 //! Exit status: 0 every move is clear, 1 a move is blocked, 2 bad input (one message, nothing on stdout).
 
-use crate::guard::{Actuator, part_names};
-use crate::lpm::scene::{
-    Elsewhere, Format, MeshFault, MoveOrder, Scene, read_moves, read_scene_of_rig,
-};
-use crate::lpm::{Answer, ElementKey, Model, Move, Mover};
 use anyhow::{Context, anyhow, bail};
+use lpm::scene::{Elsewhere, Format, MeshFault, MoveOrder, Scene, read_moves, read_scene_of_rig};
+use lpm::{Answer, ElementKey, Model, Move, Mover};
+use machine::guard::{Actuator, part_names};
 use serde::Serialize;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};

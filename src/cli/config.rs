@@ -1,10 +1,10 @@
 //! `relayrig config check` and `relayrig config schema NAME`: nothing is opened, nothing moves.
 
-use crate::config::schema::{of_kinds, schema};
-use crate::config::{Plant, keys, load_recipe, recipe_names};
-use crate::dut::Kind;
-use crate::rig::wiring::Wiring;
 use anyhow::Context;
+use config::schema::{of_kinds, schema};
+use config::{Plant, keys, load_recipe, recipe_names};
+use machine::dut::Kind;
+use machine::rig::wiring::Wiring;
 use std::io::Write;
 use std::path::Path;
 
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     fn wiring(rig: &str) -> Wiring {
-        Wiring::resolve(&toml::from_str(rig).unwrap(), crate::dut::FIXTURES).unwrap()
+        Wiring::resolve(&toml::from_str(rig).unwrap(), machine::dut::FIXTURES).unwrap()
     }
 
     #[test]

@@ -22,9 +22,9 @@ mod stats;
 pub use generate::{GenerateArgs, Generated, generate, progress};
 pub use quality::{QualityArgs, run_quality};
 
-use crate::history::{Archive, Filter, Identity, Store};
-use crate::inquiry::InquiryError;
 use clap::{Args, Subcommand};
+use history::inquiry::InquiryError;
+use history::{Archive, Filter, Identity, Store};
 use output::Output;
 use std::path::{Path, PathBuf};
 

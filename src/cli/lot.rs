@@ -3,11 +3,9 @@
 //! What a person decides here is an order like those of a screen: it stands in the audit of orders with the name.
 
 use super::DONE;
-use crate::history::{
-    Archive, Decision, Filter, Identity, LotStateRecord, OrderRecord, Row, Store,
-};
-use crate::view::{By, Order};
 use anyhow::{Context, ensure};
+use history::{Archive, Decision, Filter, Identity, LotStateRecord, OrderRecord, Row, Store};
+use machine::view::{By, Order};
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;
@@ -125,7 +123,7 @@ pub(super) fn state(order: &Order, by: &By, decision: Decision) -> Row {
     })
 }
 
-fn known(archive: &Archive, lot: &str) -> anyhow::Result<crate::history::LotStanding> {
+fn known(archive: &Archive, lot: &str) -> anyhow::Result<history::LotStanding> {
     archive
         .standing(lot)?
         .with_context(|| format!("no lot {lot:?}; see `relayrig history list`"))

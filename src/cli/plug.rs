@@ -1,6 +1,6 @@
 //! In-process streams of the simulated rig as ports of a line: lost and opened again like serial ports.
 
-use crate::bus::{PortError, Ports};
+use bus::{PortError, Ports};
 use rigsim::wire::Plug;
 use tokio::io::DuplexStream;
 

@@ -27,12 +27,11 @@ use super::run::{self, Controls, Orders, RunArgs, assemble};
 #[cfg(feature = "sim")]
 use super::run::{Stage, lines::simulated};
 use super::{DONE, RIG_TROUBLE, STOPPED, lot};
-use crate::config::{Plant, load_recipe, recipe_names};
-use crate::dut::Recipe;
-use crate::history::{Decision, Identity, Store};
-use crate::hmi;
-use crate::station::packml::State;
 use anyhow::{Context, bail};
+use config::{Plant, load_recipe, recipe_names};
+use history::{Decision, Identity, Store};
+use machine::dut::Recipe;
+use machine::station::packml::State;
 use office::{Next, Office};
 use page::Page;
 use std::net::SocketAddr;
@@ -97,7 +96,7 @@ pub(super) fn day(
         stays: true,
         ..Controls::new(false)
     };
-    let (orders, asked) = mpsc::channel(hmi::WAITING);
+    let (orders, asked) = mpsc::channel(::page::WAITING);
     let mimic = assemble::mimic(&plant, &recipe)?;
     let runtime = run::runtime(&rig)?;
     let house = House {
@@ -215,7 +214,7 @@ impl House<'_> {
         if let (Some(simulated), Some((args, _))) = (&self.simulated, lot) {
             simulated::load(&simulated.rig, &self.plant, self.config, args)?;
         }
-        let (given, taken) = mpsc::channel(hmi::WAITING);
+        let (given, taken) = mpsc::channel(::page::WAITING);
         self.office
             .sits_at(given, lot.map(|(args, _)| args.lot.as_str()));
         let bench = (&*self.plant, recipe);

@@ -53,11 +53,11 @@ mod transient;
 mod variant;
 mod verification;
 
-use crate::config::load_recipe;
-use crate::dut::em_relay::Parameter;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
+use config::load_recipe;
 use fleet::Order;
+use machine::dut::em_relay::Parameter;
 use output::Report;
 use serde_json::json;
 use std::io::Write;

@@ -1,8 +1,8 @@
 //! `relayrig user`: who may order what at the screen.
 
 use super::DONE;
-use crate::hmi::access::{Register, Role, beside};
 use anyhow::Context;
+use page::access::{Register, Role, beside};
 use std::io::{BufRead, Write};
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! `relayrig wear`: how often probes and jaws were used since they were replaced.
 
 use super::{BAD_INPUT, DONE};
-use crate::history::{Identity, Store};
 use anyhow::ensure;
+use history::{Identity, Store};
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;

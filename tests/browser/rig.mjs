@@ -84,7 +84,7 @@ class Rig {
   }
 }
 
-const words = (path) => JSON.parse(readFileSync(new URL("../../src/" + path, import.meta.url)));
+const words = (path) => JSON.parse(readFileSync(new URL("../../crates/" + path, import.meta.url)));
 
 /** Every word of the page, from its own table and those of the kinds. */
-export const WORDS = {...words("hmi/page/words.json"), ...words("dut/em_relay/words.json"), ...words("dut/resistor/words.json")};
+export const WORDS = {...words("page/src/page/words.json"), ...words("machine/src/dut/em_relay/words.json"), ...words("machine/src/dut/resistor/words.json")};

@@ -1,8 +1,8 @@
 //! The protocol on both sides: what the controller writes and reads, and what the simulated modules understand, were
 //! written apart from each other from the same manuals. Here they meet, command by command.
 
-use relayrig::bus::{self, Answer, LineSettings, Pace, PortError, Ports, Request};
-use relayrig::dcon::{
+use bus::{Answer, LineSettings, Pace, PortError, Ports, Request};
+use dcon::{
     Address, AnalogIn, BaudCode, Command, Common, Config, Counter, Family, FormatByte, ModuleName,
     Reply, ReplyError, TypeCode, UpTo, factory, readings,
 };
@@ -84,11 +84,20 @@ fn every_command_that_can_be_written_down_stands_in_the_table() {
         named.insert(format!("{family} {}", name.unwrap()));
     }
     for (family, source) in [
-        ("Common", include_str!("../../src/dcon/every_module.rs")),
-        ("AnalogIn", include_str!("../../src/dcon/analog_in.rs")),
-        ("AnalogOut", include_str!("../../src/dcon/analog_out.rs")),
-        ("Digital", include_str!("../../src/dcon/digital.rs")),
-        ("Counter", include_str!("../../src/dcon/counter.rs")),
+        (
+            "Common",
+            include_str!("../../crates/dcon/src/every_module.rs"),
+        ),
+        (
+            "AnalogIn",
+            include_str!("../../crates/dcon/src/analog_in.rs"),
+        ),
+        (
+            "AnalogOut",
+            include_str!("../../crates/dcon/src/analog_out.rs"),
+        ),
+        ("Digital", include_str!("../../crates/dcon/src/digital.rs")),
+        ("Counter", include_str!("../../crates/dcon/src/counter.rs")),
     ] {
         let (_, body) = source
             .split_once(&format!("pub enum {family} {{\n"))

@@ -5,8 +5,8 @@
 //! there before is told, lines mixed in the order of time. Where more passed between two looks than the server keeps, the
 //! gap is told too. It ends with the controller.
 
-use crate::bus::unescaped;
 use anyhow::{Context, anyhow, bail};
+use bus::unescaped;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! What a scan has found, as a table or as objects.
 
-use crate::bus::{LineLog, ModuleHealth};
-use crate::dcon::{Address, Config};
+use bus::{LineLog, ModuleHealth};
+use dcon::{Address, Config};
 use serde_json::json;
 
 /// A module that has answered.

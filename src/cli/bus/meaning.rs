@@ -1,7 +1,7 @@
 //! What a reply means: the question before it decides.
 
-use crate::bus::{Direction, Entry};
-use crate::dcon;
+use bus::{Direction, Entry};
+use dcon;
 
 /// Puts replies into words; remembers the last question.
 #[derive(Debug)]

@@ -3,9 +3,9 @@
 
 use super::meaning::Meaning;
 use super::{PortArgs, follow, print};
-use crate::bus::{Direction, Entry, Pace, Recorded, arrow, escaped, open_serial};
-use crate::dcon;
 use anyhow::{Context, bail};
+use bus::{Direction, Entry, Pace, Recorded, arrow, escaped, open_serial};
+use dcon;
 use std::path::PathBuf;
 use std::time::Duration;
 use tokio::io::AsyncReadExt;

@@ -2,9 +2,9 @@
 
 use super::found::{Found, told};
 use super::{PortArgs, print};
-use crate::bus::{self, Answer, LineLog, Pace, Request};
-use crate::dcon::{Address, BaudCode, Command, Common, Reply};
 use anyhow::{Context, anyhow, bail};
+use bus::{Answer, LineLog, Pace, Request};
+use dcon::{Address, BaudCode, Command, Common, Reply};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use thiserror::Error;

@@ -1,9 +1,9 @@
 //! `relayrig bus send`: one command as typed, and what the reply means.
 
 use super::{PortArgs, print};
-use crate::bus::{LineSettings, Pace, RawReply, escaped, send_raw};
-use crate::dcon::{self, Command, Family};
 use anyhow::bail;
+use bus::{LineSettings, Pace, RawReply, escaped, send_raw};
+use dcon::{Command, Family};
 use serde_json::json;
 use tokio_serial::SerialStream;
 

@@ -1,8 +1,8 @@
 //! The factors of a calibration by name, and whether those found again agree with those stored.
 
-use crate::dut::Calibration;
-use crate::units::Unit;
+use machine::dut::Calibration;
 use std::fmt;
+use units::Unit;
 
 /// Coverage factor of what is told: about 95 %.
 pub const K: f64 = 2.0;

@@ -3,10 +3,10 @@
 use super::filter::{PartArgs, RangeArgs};
 use super::generate::progress;
 use super::paper::{Tongue, sink};
-use crate::history::{Archive, Filter, csv::BYTE_ORDER_MARK};
-use crate::inquiry::{checks, export};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
+use history::inquiry::{checks, export};
+use history::{Archive, Filter, csv::BYTE_ORDER_MARK};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -99,10 +99,10 @@ fn spreadsheet(
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use crate::history::Part;
-    use crate::report::Language;
-    use crate::report::sheet::Sheet;
     use calamine::{Data, Reader, Xlsx};
+    use history::Part;
+    use history::report::Language;
+    use history::report::sheet::Sheet;
     use jiff::tz::TimeZone;
     use std::io::Cursor;
 

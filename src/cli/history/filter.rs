@@ -1,8 +1,8 @@
 //! The filter as command line options.
 
-use crate::history::{Filter, Moment};
-use crate::inquiry::{self, checks};
 use clap::Args;
+use history::inquiry::{self, checks};
+use history::{Filter, Moment};
 
 /// Which runs.
 #[derive(Debug, Args)]

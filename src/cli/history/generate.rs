@@ -8,9 +8,9 @@
 
 mod made_up;
 
-use crate::config::load_recipe;
-use crate::history::{Identity, LotRecord, Moment, Row, Store};
 use clap::Args;
+use config::load_recipe;
+use history::{Identity, LotRecord, Moment, Row, Store};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use made_up::Line;
 use std::io::IsTerminal;

@@ -3,12 +3,12 @@
 
 mod sheet;
 
-use crate::history::{
+use anyhow::Context;
+use clap::Args;
+use history::{
     Archive, Filter, Identity, ImportRow, LOT_NAME, LotRecord, PartRecord, Store, csv, is_lot_name,
     parse_records, snapshot_hash,
 };
-use anyhow::Context;
-use clap::Args;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 

@@ -2,8 +2,8 @@
 
 use super::filter::RunArgs;
 use super::output::{Format, FormatArgs, Output, Table, text};
-use crate::history::{Archive, LotSummary, csv};
 use clap::Args;
+use history::{Archive, LotSummary, csv};
 use std::io::Write;
 
 #[derive(Debug, Args)]

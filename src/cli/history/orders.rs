@@ -2,8 +2,8 @@
 
 use super::filter::RunArgs;
 use super::output::{Format, FormatArgs, Output, Table, text};
-use crate::history::{Archive, Filter, Moment, Ordered, csv};
 use clap::Args;
+use history::{Archive, Filter, Moment, Ordered, csv};
 use std::io::Write;
 
 #[derive(Debug, Args)]

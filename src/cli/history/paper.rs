@@ -1,10 +1,10 @@
 //! Options of everything that is printed: language, file.
 
 use super::output::Output;
-use crate::inquiry;
-use crate::report::{Language, Paper};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
+use history::inquiry;
+use history::report::{Language, Paper};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};

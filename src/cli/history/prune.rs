@@ -1,8 +1,8 @@
 //! `history prune`: old runs that were copied whole lose their parts here; without `--yes` it only says which.
 
 use super::output::{Output, Table};
-use crate::history::{Identity, Pruned, Store};
 use clap::Args;
+use history::{Identity, Pruned, Store};
 use std::io::Write;
 use std::path::Path;
 

@@ -1,11 +1,11 @@
 //! `quality`: figures from a file of readings, no history needed.
 
 use super::output::{Output, Table, figure};
-use crate::history::csv;
-use crate::quality::average_range::average_and_range;
-use crate::quality::gauge_rr::{GaugeRr, Reading, anova};
 use anyhow::Context;
 use clap::{Args, Subcommand};
+use history::csv;
+use quality::average_range::average_and_range;
+use quality::gauge_rr::{GaugeRr, Reading, anova};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 

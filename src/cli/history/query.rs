@@ -2,9 +2,9 @@
 
 use super::filter::{PartArgs, RangeArgs};
 use super::output::{Format, FormatArgs, Output, Table, figure, text};
-use crate::history::{Archive, Filter};
-use crate::inquiry::{checks, export};
 use clap::Args;
+use history::inquiry::{checks, export};
+use history::{Archive, Filter};
 use std::io::Write;
 
 #[derive(Debug, Args)]

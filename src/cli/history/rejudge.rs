@@ -1,10 +1,10 @@
 //! `history rejudge`: what another recipe would have said. The history stays as it is.
 
 use super::output::{Output, Table};
-use crate::config::load_recipe;
-use crate::history::Archive;
-use crate::inquiry::rejudge::{Again, Rejudging};
 use clap::Args;
+use config::load_recipe;
+use history::Archive;
+use history::inquiry::rejudge::{Again, Rejudging};
 use std::io::Write;
 use std::path::Path;
 

@@ -2,9 +2,9 @@
 
 use super::filter::RunArgs;
 use super::paper::PaperArgs;
-use crate::history::Archive;
-use crate::inquiry::paper;
 use clap::Args;
+use history::Archive;
+use history::inquiry::paper;
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArgs {

@@ -2,10 +2,10 @@
 
 use super::output::{Format, FormatArgs, Output, Table, figure, text};
 use super::{lots, orders};
-use crate::dut;
-use crate::history::{Archive, Filter, LotSummary, Moment, Part};
-use crate::instrument::curve::Curve;
 use clap::Args;
+use history::{Archive, Filter, LotSummary, Moment, Part};
+use machine::dut;
+use machine::instrument::curve::Curve;
 use std::io::Write;
 
 #[derive(Debug, Args)]

@@ -3,10 +3,10 @@
 use super::filter::PartArgs;
 use super::output::{Output, Table, figure};
 use super::paper::PaperArgs;
-use crate::history::Archive;
-use crate::inquiry::charts::{self, Charted, SUBGROUPS};
-use crate::quality::rules::Rules;
 use clap::{Args, ValueEnum};
+use history::Archive;
+use history::inquiry::charts::{self, Charted, SUBGROUPS};
+use quality::rules::Rules;
 use std::io::Write;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

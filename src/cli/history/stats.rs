@@ -2,10 +2,10 @@
 
 use super::filter::PartArgs;
 use super::output::{Output, Table, figure};
-use crate::history::Archive;
-use crate::inquiry::figures;
-use crate::quality::{Limits, Summary};
 use clap::Args;
+use history::Archive;
+use history::inquiry::figures;
+use quality::{Limits, Summary};
 use std::io::Write;
 
 #[derive(Debug, Args)]

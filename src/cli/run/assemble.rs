@@ -3,24 +3,24 @@
 use super::Controls;
 use super::known::Known;
 use super::recorder::Setup;
-use crate::bus::Pace;
-use crate::config::Plant;
-use crate::cycle::{Cycle, LineEnds, Outside, mimic};
-use crate::dut::Recipe;
-use crate::dut::device::{Device, Rig};
-use crate::guard::{Actuator, Guard, PartSize};
-use crate::handling::mechanism::Mechanism;
-use crate::handling::moves::Strokes;
-use crate::history::AlarmLeft;
-use crate::rig::axis::AxisStation;
-use crate::rig::wiring::StrokeLimits;
-use crate::station::catalogue;
-use crate::station::trouble::Alarm;
-use crate::station::{Plan, Station};
-use crate::units::{RigTime, Span};
-use crate::view::Mimic;
 use anyhow::Context;
+use app::cycle::{Cycle, LineEnds, Outside, mimic};
+use bus::Pace;
+use config::Plant;
+use history::AlarmLeft;
+use machine::dut::Recipe;
+use machine::dut::device::{Device, Rig};
+use machine::guard::{Actuator, Guard, PartSize};
+use machine::handling::mechanism::Mechanism;
+use machine::handling::moves::Strokes;
+use machine::rig::axis::AxisStation;
+use machine::rig::wiring::StrokeLimits;
+use machine::station::catalogue;
+use machine::station::trouble::Alarm;
+use machine::station::{Plan, Station};
+use machine::view::Mimic;
 use std::sync::Arc;
+use units::{RigTime, Span};
 
 /// A cycle that is ready to run.
 pub fn cycle(

@@ -1,16 +1,16 @@
 //! Rows of a run beside its parts: the state of its lot, alarms and what becomes of them, golden checks, wear.
 
-use crate::handling::inside::Inside;
-use crate::handling::wear::Uses;
-use crate::history::{
+use history::{
     AlarmChange, AlarmChangeRecord, AlarmRecord, GoldenCheckRecord, InsideRecord, LotState,
     LotStateRecord, OrderRecord, Row, WearRecord,
 };
-use crate::station::annunciator::Standing;
-use crate::station::orders::shelf_minutes;
-use crate::station::trouble::Alarm;
-use crate::station::wants::{Checked, Ending};
-use crate::view::Answered;
+use machine::handling::inside::Inside;
+use machine::handling::wear::Uses;
+use machine::station::annunciator::Standing;
+use machine::station::orders::shelf_minutes;
+use machine::station::trouble::Alarm;
+use machine::station::wants::{Checked, Ending};
+use machine::view::Answered;
 
 /// Alarms after which a lot takes no run before somebody releases it.
 const HOLDS: [&str; 2] = ["golden_check_failed", "lot_discard_limit"];
@@ -204,8 +204,8 @@ impl Diary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::station::annunciator::Annunciator;
-    use crate::units::RigTime;
+    use machine::station::annunciator::Annunciator;
+    use units::RigTime;
 
     fn diary() -> Diary {
         let mut diary = Diary::new(false);
@@ -264,12 +264,12 @@ mod tests {
     #[test]
     fn an_acknowledgement_is_kept_with_who_gave_it_and_one_that_was_refused_changes_no_alarm() {
         let asked = |refused: Option<&str>| Answered {
-            order: crate::view::Order {
+            order: machine::view::Order {
                 order: "acknowledge".into(),
                 alarm: Some("door_open".into()),
                 ..Default::default()
             },
-            by: crate::view::By {
+            by: machine::view::By {
                 who: "li".into(),
                 ..Default::default()
             },

@@ -2,13 +2,13 @@
 
 use super::RunArgs;
 use crate::cli::calibrate;
-use crate::config::{ConfigError, Plant, load_recipe};
-use crate::dut::Recipe;
-use crate::history::{
+use config::{ConfigError, Plant, load_recipe};
+use history::{
     AlarmRecord, Archive, HistoryError, Identity, LOT_NAME, LotRecord, LotStanding, LotState,
     Store, is_lot_name,
 };
-use crate::view::NotTaken;
+use machine::dut::Recipe;
+use machine::view::NotTaken;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

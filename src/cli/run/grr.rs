@@ -7,11 +7,11 @@
 
 use super::{Controls, Orders, RunArgs, run_with};
 use crate::cli::rig::RigArgs;
-use crate::config::load_recipe;
-use crate::dut::Characteristic;
-use crate::history::{Archive, Filter};
-use crate::quality::average_range::average_and_range;
-use crate::quality::gauge_rr::{GaugeRr, Reading, anova};
+use config::load_recipe;
+use history::{Archive, Filter};
+use machine::dut::Characteristic;
+use quality::average_range::average_and_range;
+use quality::gauge_rr::{GaugeRr, Reading, anova};
 use serde_json::json;
 use std::io::Write;
 use std::path::Path;

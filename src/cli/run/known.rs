@@ -2,11 +2,11 @@
 
 use super::Controls;
 use super::recorder::Setup;
-use crate::dut::Calibration;
-use crate::handling::inside::Inside;
-use crate::handling::wear::Uses;
-use crate::history::{AlarmLeft, Store};
 use anyhow::Context;
+use history::{AlarmLeft, Store};
+use machine::dut::Calibration;
+use machine::handling::inside::Inside;
+use machine::handling::wear::Uses;
 
 /// What a run takes over.
 pub struct Known {

@@ -1,11 +1,11 @@
 //! Opens the lines of a run: serial ports, pseudo-terminals of the simulated rig, or in-process streams.
 
 use super::{Controls, RunArgs};
-use crate::bus::{self, LineLog, LineSettings, Pace, SerialPorts};
-use crate::config::Plant;
-use crate::cycle::LineEnds;
-use crate::rig::wiring::LineId;
 use anyhow::{anyhow, bail};
+use app::cycle::LineEnds;
+use bus::{LineLog, LineSettings, Pace, SerialPorts};
+use config::Plant;
+use machine::rig::wiring::LineId;
 use std::path::Path;
 use tokio::sync::mpsc;
 
@@ -197,7 +197,7 @@ pub fn overrides(plant: &Plant, given: &[String]) -> anyhow::Result<Vec<(LineId,
 
 #[cfg(feature = "sim")]
 pub(in crate::cli) mod simulated {
-    use super::{Behind, Lines, Pace, Path, Plant, RunArgs, anyhow, bus, queues, serial, settings};
+    use super::{Behind, Lines, Pace, Path, Plant, RunArgs, anyhow, queues, serial, settings};
     use crate::cli::plug::PlugPorts;
     use rigsim::pty::{self, Rates};
     use rigsim::{Options, SharedRig, wire};

@@ -1,11 +1,11 @@
 //! Who gives orders during a run.
 
 use super::lines::Behind;
-use crate::bus::Pace;
 #[cfg(feature = "sim")]
 use crate::cli::story::Play;
-use crate::cycle::Event;
-use crate::view::OrderRequest;
+use app::cycle::Event;
+use bus::Pace;
+use machine::view::OrderRequest;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use tokio::sync::mpsc;

@@ -12,24 +12,23 @@ use super::known::Known;
 use super::table::Table;
 use super::traces::Traces;
 use super::{Controls, RunArgs, rows, screen, summary};
-use crate::bus::LineLog;
-use crate::config::Plant;
-use crate::cycle::{Event, Profile};
-use crate::dut::Recipe;
-use crate::dut::{Bin, Calibration, Reason, Verdict};
-use crate::handling::inside::Inside;
-use crate::handling::ledger::Kind;
-use crate::handling::wants::{Interrupted, Judged, Landed};
-use crate::handling::wear::Uses;
-use crate::history::{
+use anyhow::Context;
+use app::cycle::{Event, Profile};
+use bus::LineLog;
+use config::Plant;
+use history::{
     CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
     snapshot_hash,
 };
-use crate::station::wants::Ending;
-use crate::units::RigTime;
-use crate::view::View;
-use anyhow::Context;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use machine::dut::Recipe;
+use machine::dut::{Bin, Calibration, Reason, Verdict};
+use machine::handling::inside::Inside;
+use machine::handling::ledger::Kind;
+use machine::handling::wants::{Interrupted, Judged, Landed};
+use machine::handling::wear::Uses;
+use machine::station::wants::Ending;
+use machine::view::View;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::io::{IsTerminal, Write};
@@ -38,6 +37,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc;
+use units::RigTime;
 
 /// Lot of parts that were found inside of the rig between lots.
 pub const FOUND: &str = "found in the rig";

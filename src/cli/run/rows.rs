@@ -1,14 +1,14 @@
 //! A judged part as rows of the history and as a JSON object.
 
 use super::recorder::Setup;
-use crate::dut::{Characteristic, Judgement, Verdict};
-use crate::gauge::{Limit, Reading};
-use crate::handling::ledger::Kind;
-use crate::handling::wants::Judged;
-use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
-use crate::instrument::trace::Trace;
-use crate::units::RigTime;
+use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord, snapshot_hash};
+use machine::dut::{Characteristic, Judgement, Verdict};
+use machine::gauge::{Limit, Reading};
+use machine::handling::ledger::Kind;
+use machine::handling::wants::Judged;
+use machine::instrument::trace::Trace;
 use serde_json::{Map, Value, json};
+use units::RigTime;
 
 /// Number of a part within its kind, and the kind's name.
 pub fn number(kind: &Kind, golden: u64) -> (u64, &'static str) {
@@ -86,7 +86,7 @@ fn measurement(
         .iter()
         .find(|(known, _)| *known == characteristic)
         .map(|(_, j)| *j);
-    let sample = |origin: &crate::rig::sample::Origin| SampleRecord {
+    let sample = |origin: &machine::rig::sample::Origin| SampleRecord {
         line: setup.plant.wiring.line(origin.line).name.clone(),
         module: setup.plant.wiring.module(origin.module).name.clone(),
         channel: origin.channel.to_string(),

@@ -4,8 +4,8 @@
 use super::counts::Counts;
 use super::recorder::Setup;
 use super::rows;
-use crate::handling::wants::Judged;
-use crate::view::{LastPart, LineView, RecentPart, View};
+use machine::handling::wants::Judged;
+use machine::view::{LastPart, LineView, RecentPart, View};
 use std::collections::BTreeMap;
 
 /// Parts in the strip of the last ones: two rows of ten.

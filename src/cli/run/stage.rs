@@ -1,7 +1,7 @@
 //! A run on a stage: a study holds the simulated rig, which goes on living when the controller is gone.
 
 use super::Controls;
-use crate::dut::Calibration;
+use machine::dut::Calibration;
 #[cfg(feature = "sim")]
 use rigsim::SharedRig;
 

@@ -2,9 +2,9 @@
 
 use super::counts::Counts;
 use super::rows;
-use crate::bus::LineLog;
-use crate::cycle::Profile;
-use crate::station::wants::Ending;
+use app::cycle::Profile;
+use bus::LineLog;
+use machine::station::wants::Ending;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::time::Duration;

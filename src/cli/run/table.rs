@@ -1,9 +1,9 @@
 //! Results and bins at the end of a run, for a person.
 
 use super::counts::Counts;
-use crate::dut::{Characteristic, Kind};
-use crate::handling::wants::Judged;
-use crate::quality::Spread;
+use machine::dut::{Characteristic, Kind};
+use machine::handling::wants::Judged;
+use quality::Spread;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -1,9 +1,9 @@
 //! What an alarm leaves beside the history: the last traffic of every line, and how the modules were doing.
 
-use crate::bus::{LineLog, Recorded, arrow, escaped};
 use crate::cli::bus::meaning::Meaning;
-use crate::config::Plant;
-use crate::view::{LineTraffic, LineView, Message, ModuleView};
+use bus::{LineLog, Recorded, arrow, escaped};
+use config::Plant;
+use machine::view::{LineTraffic, LineView, Message, ModuleView};
 use std::path::{Path, PathBuf};
 
 /// Traces of one run are at most so many per line: the first alarms are the ones that tell.

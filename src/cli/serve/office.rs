@@ -13,9 +13,9 @@ use super::Lot;
 use crate::cli::lot;
 use crate::cli::rig::RigArgs;
 use crate::cli::run::{RunArgs, gate};
-use crate::config::Plant;
-use crate::history::{Archive, Decision, Identity, Store};
-use crate::view::{By, NotTaken, Order, OrderRequest};
+use config::Plant;
+use history::{Archive, Decision, Identity, Store};
+use machine::view::{By, NotTaken, Order, OrderRequest};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::{mpsc, oneshot};
@@ -203,7 +203,7 @@ impl Office {
 
 fn is_about_lots(order: &Order) -> bool {
     let start = order.order == "start" && order.lot.is_some();
-    start || crate::view::LOT_ORDERS.contains(&order.order.as_str())
+    start || machine::view::LOT_ORDERS.contains(&order.order.as_str())
 }
 
 fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), NotTaken> {

@@ -1,9 +1,9 @@
 //! The page on a thread of its own, so that the line never waits for a screen.
 
 use super::Controls;
-use crate::hmi::{self, access};
-use crate::view::{Mimic, OrderRequest};
 use anyhow::Context;
+use machine::view::{Mimic, OrderRequest};
+use page::{self, access};
 use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -29,18 +29,18 @@ impl Page {
             .set_nonblocking(true)
             .context("the page's socket")?;
         let people = access::beside(db);
-        let (gate, first) = hmi::Gate::open(&people)?;
+        let (gate, first) = ::page::Gate::open(&people)?;
         if let Some((name, password)) = first {
             eprintln!(
                 "relayrig: log in as {name} with {password} (told this once; people are in {})",
                 people.display()
             );
         }
-        let shared = hmi::Shared {
+        let shared = ::page::Shared {
             gate,
             mimic: Arc::new(mimic),
             view: controls.view.subscribe(),
-            traffic: hmi::Traffic::new(controls.traffic()),
+            traffic: ::page::Traffic::new(controls.traffic()),
             db: db.to_path_buf(),
             config: config.to_path_buf(),
             orders,
@@ -52,7 +52,7 @@ impl Page {
         let thread = std::thread::spawn(move || {
             let served = runtime.block_on(async {
                 let listener = tokio::net::TcpListener::from_std(listener)?;
-                hmi::serve(listener, shared, seen).await
+                ::page::serve(listener, shared, seen).await
             });
             if let Err(error) = served {
                 tracing::error!("the page ended: {error}");

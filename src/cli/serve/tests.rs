@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 use super::*;
-use crate::view::{By, Order, OrderRequest, View};
+use machine::view::{By, Order, OrderRequest, View};
 use tokio::sync::{oneshot, watch};
 
 async fn until(view: &mut watch::Receiver<View>, test: impl Fn(&View) -> bool) {
@@ -97,7 +97,7 @@ fn a_part_that_is_found_inside_between_lots_gets_a_row_in_a_lot_of_its_own() {
         }
     });
     assert_eq!(status, STOPPED);
-    let archive = crate::history::Archive::open(&db).unwrap();
+    let archive = history::Archive::open(&db).unwrap();
     let found = archive.show(FOUND, 1, "lot").unwrap();
     assert_eq!(found.len(), 1);
     assert_eq!(found[0].verdict, "void");

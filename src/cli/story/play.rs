@@ -2,13 +2,12 @@
 
 use super::script::{Awaited, Deed, Script};
 use super::told::Told;
-use crate::bus::Pace;
 use crate::cli::DONE;
-use crate::cycle::Event;
-use crate::handling::ledger::Kind;
-use crate::station::packml::State;
-use crate::units::{RigTime, Span};
-use crate::view::{By, Order, OrderRequest};
+use app::cycle::Event;
+use bus::Pace;
+use machine::handling::ledger::Kind;
+use machine::station::packml::State;
+use machine::view::{By, Order, OrderRequest};
 use rigsim::SharedRig;
 use rigsim::journal::Entry;
 use serde_json::json;
@@ -20,6 +19,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 use thiserror::Error;
 use tokio::sync::{mpsc, oneshot};
+use units::{RigTime, Span};
 
 /// Nothing has happened for so long: nothing will any more.
 pub const PATIENCE: Span = Span::ms(180_000);

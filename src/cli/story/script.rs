@@ -11,10 +11,10 @@
 //! ```
 //! The first comment is the title. Lines that begin with `after` are played one after the other.
 
-use crate::station::packml::State;
-use crate::units::Span;
-use crate::view::{ORDERS, Order};
 use anyhow::{Context, bail};
+use machine::station::packml::State;
+use machine::view::{ORDERS, Order};
+use units::Span;
 
 /// Parts of a lot whose script does not say.
 const PARTS: u64 = 4;

@@ -5,16 +5,16 @@
 
 use super::play::Refusal;
 use super::script::{Awaited, Line, Script};
-use crate::cycle::{Event, PANEL};
-use crate::handling::ledger::{Kind, Part};
-use crate::handling::wants::Landed;
-use crate::rig::bin::Bin;
-use crate::station::annunciator::Standing;
-use crate::station::catalogue;
-use crate::station::trouble::Alarm;
-use crate::units::RigTime;
+use app::cycle::{Event, PANEL};
+use machine::handling::ledger::{Kind, Part};
+use machine::handling::wants::Landed;
+use machine::rig::bin::Bin;
+use machine::station::annunciator::Standing;
+use machine::station::catalogue;
+use machine::station::trouble::Alarm;
 use rigsim::SimError;
 use std::collections::{BTreeMap, BTreeSet};
+use units::RigTime;
 
 /// Lines so far.
 #[derive(Debug)]

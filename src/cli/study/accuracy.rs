@@ -10,7 +10,7 @@ use super::fleet::Order;
 use super::lot::Lot;
 use super::output::Report;
 use super::parameters;
-use crate::dut::em_relay::Parameter;
+use machine::dut::em_relay::Parameter;
 
 /// Runs the lots and draws the report up.
 ///

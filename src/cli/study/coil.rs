@@ -10,7 +10,7 @@ use super::fleet::Order;
 use super::method::{self, BAUDS, Paid};
 use super::output::Report;
 use super::variant::{Change, Variant};
-use crate::dut::em_relay::Parameter;
+use machine::dut::em_relay::Parameter;
 
 const COIL: Paid = Paid {
     parameter: Parameter::CoilResistance,

@@ -11,8 +11,8 @@ use super::lot::Lot;
 use super::method::{self, BAUDS, Paid};
 use super::output::Report;
 use super::variant::{Change, Variant};
-use crate::dut::em_relay::Parameter;
-use crate::quality::Spread;
+use machine::dut::em_relay::Parameter;
+use quality::Spread;
 
 const STAGES: &[&str] = &["nc_contact", "timed_operate", "timed_release"];
 const CONTACTS: [(&str, Paid); 2] = [

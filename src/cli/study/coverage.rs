@@ -10,7 +10,7 @@ use super::fleet::Order;
 use super::lot::Lot;
 use super::output::Report;
 use super::parameters;
-use crate::dut::em_relay::Parameter;
+use machine::dut::em_relay::Parameter;
 
 /// Percent of values that may be covered.
 const ALLOWED: (f64, f64) = (93.0, 98.0);

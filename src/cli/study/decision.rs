@@ -16,11 +16,11 @@ use super::lot::{Lot, Part, Reading};
 use super::method::{self, BAUDS};
 use super::output::Report;
 use super::variant::Variant;
-use crate::config::load_recipe;
-use crate::dut::em_relay::Parameter;
-use crate::quality::Spread;
-use crate::quality::spread::median;
 use anyhow::Context as _;
+use config::load_recipe;
+use machine::dut::em_relay::Parameter;
+use quality::Spread;
+use quality::spread::median;
 use std::ops::RangeInclusive;
 
 /// Parts per million.

@@ -4,10 +4,10 @@
 //! Covered means `|value - truth| <= U`, `U` expanded with k = 2; a value without an uncertainty covers nothing.
 
 use super::lot::{Lot, Part, Reading};
-use crate::dut::em_relay::Parameter;
-use crate::quality::Spread;
-use crate::quality::spread::median;
-use crate::units::Unit;
+use machine::dut::em_relay::Parameter;
+use quality::Spread;
+use quality::spread::median;
+use units::Unit;
 
 /// Unit in which the error of a parameter is told.
 pub fn unit(parameter: Parameter) -> &'static str {

@@ -4,11 +4,11 @@
 
 use super::fleet::{Folder, Order};
 use super::journal::{self, Entry};
-use crate::config::Plant;
-use crate::dut::em_relay;
-use crate::rig::point::DigitalOut;
-use crate::rig::wiring::Wiring;
 use anyhow::Context;
+use config::Plant;
+use machine::dut::em_relay;
+use machine::rig::point::DigitalOut;
+use machine::rig::wiring::Wiring;
 use std::fmt::Write;
 
 /// Parts of the lot; the one that is followed has one before it and one behind.

@@ -9,11 +9,11 @@ use super::figure::{Bar, Figure};
 use super::fleet::{Folder, Order};
 use super::output::Report;
 use crate::cli::history::{GenerateArgs, generate};
-use crate::dut::em_relay::Parameter;
-use crate::history::{Archive, Filter, Identity, LotRecord, Moment, Row, Store};
-use crate::inquiry::figures::figures;
-use crate::quality::Ordered;
 use anyhow::Context;
+use history::inquiry::figures::figures;
+use history::{Archive, Filter, Identity, LotRecord, Moment, Row, Store};
+use machine::dut::em_relay::Parameter;
+use quality::Ordered;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -104,7 +104,7 @@ fn one_by_one(db: &Path) -> anyhow::Result<Figure> {
     })?;
     let mut spent = Vec::new();
     for seq in 1..=SINGLE {
-        let part = crate::history::PartRecord {
+        let part = history::PartRecord {
             lot: "single".into(),
             seq,
             verdict: "pass".into(),
@@ -119,8 +119,8 @@ fn one_by_one(db: &Path) -> anyhow::Result<Figure> {
     Ok(times("one part a transaction, p99", &spent, 0.99))
 }
 
-fn measured(parameter: &Parameter) -> crate::history::MeasurementRecord {
-    crate::history::MeasurementRecord {
+fn measured(parameter: &Parameter) -> history::MeasurementRecord {
+    history::MeasurementRecord {
         key: parameter.name().into(),
         value: Some(1.0),
         verdict: "pass".into(),

@@ -13,8 +13,8 @@ use super::chart::Chart;
 use super::figure::{Bar, Figure};
 use super::fleet::{Folder, Order};
 use super::output::Report;
-use crate::history::{Archive, Filter, Part};
 use anyhow::Context;
+use history::{Archive, Filter, Part};
 use serde_json::Value;
 use std::fs::File;
 use std::path::Path;
@@ -99,7 +99,7 @@ fn report(order: &Order, it: &Counts, instants: &[f64]) -> Report {
         Figure::count("kills before a part was told", order.lots, Some(it.early)),
         Figure::count("rows of parts", order.lots, Some(it.rows)),
     ];
-    let spread = crate::quality::Ordered::of(instants);
+    let spread = quality::Ordered::of(instants);
     let chart = Chart {
         title: "instants of the kills after the start of the process, or its first part".into(),
         unit: "ms",

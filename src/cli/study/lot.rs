@@ -4,8 +4,8 @@
 //! object per line. They are joined by `seq`. Keys that are not known are passed over, so that either file
 //! may grow.
 
-use crate::dut::em_relay::Parameter;
 use anyhow::{Context, bail};
+use machine::dut::em_relay::Parameter;
 use serde::Deserialize;
 use serde_json::Value;
 use std::collections::BTreeMap;

@@ -10,8 +10,8 @@ use super::fleet::Order;
 use super::lot::{Lot, Part};
 use super::output::Report;
 use super::variant::Variant;
-use crate::dut::em_relay::Parameter;
-use crate::quality::Spread;
+use machine::dut::em_relay::Parameter;
+use quality::Spread;
 
 /// Baud rates that are compared; bars are those of the first.
 pub const BAUDS: [u32; 2] = [115_200, 9600];

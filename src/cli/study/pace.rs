@@ -9,8 +9,8 @@ use super::figure::{Bar, Figure};
 use super::fleet::Order;
 use super::lot::Lot;
 use super::output::Report;
-use crate::quality::Spread;
-use crate::quality::spread::median;
+use quality::Spread;
+use quality::spread::median;
 
 /// Parts per second of wall time.
 const PARTS_PER_SECOND: f64 = 50.0;

@@ -8,7 +8,7 @@ use super::figure::Figure;
 use super::fleet::Order;
 use super::lot::Lot;
 use super::output::Report;
-use crate::dut::em_relay::Parameter;
+use machine::dut::em_relay::Parameter;
 
 /// Runs the lots and draws the report up; `drawn` is the length of a parameter's bar in `chart`.
 ///

@@ -8,7 +8,7 @@
 use super::figure::{Bar, Figure};
 use super::fleet::Order;
 use super::lot::{Lot, Part};
-use crate::quality::Spread;
+use quality::Spread;
 use rigsim::config::read_world;
 use rigsim::world::table::MechanismTable;
 

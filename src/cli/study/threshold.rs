@@ -10,7 +10,7 @@ use super::fleet::Order;
 use super::method::{self, BAUDS, Paid};
 use super::output::Report;
 use super::variant::Variant;
-use crate::dut::em_relay::{Parameter, Strategy};
+use machine::dut::em_relay::{Parameter, Strategy};
 
 /// Operate with the time of flux and armature at the pre-bias, and release.
 const THRESHOLDS: [Paid; 2] = [

@@ -12,7 +12,7 @@ use super::lot::{Lot, Part};
 use super::method::{self, BAUDS, Paid};
 use super::output::Report;
 use super::variant::{Change, Variant};
-use crate::dut::em_relay::Parameter;
+use machine::dut::em_relay::Parameter;
 
 const fn paid(parameter: Parameter, stages: &'static [&'static str]) -> Paid {
     Paid {

@@ -10,9 +10,9 @@ mod field;
 #[cfg(test)]
 mod tests;
 
-use crate::quality::spread::median;
 use anyhow::Context;
 use cases::Case;
+use quality::spread::median;
 use rigsim::world::relay::lumped::{Model, Outcome, Transient};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;

@@ -12,7 +12,9 @@ const DOCUMENTS: &[&str] = &[
 ];
 
 /// Folders in which a quoted path must lie to be taken for one.
-const ROOTS: &[&str] = &["src/", "sim/", "config/", "tests/", ".ci/", "docs/"];
+const ROOTS: &[&str] = &[
+    "src/", "crates/", "sim/", "config/", "tests/", ".ci/", "docs/",
+];
 
 /// The documents as they are.
 pub fn documents() -> Vec<Source> {
@@ -41,7 +43,7 @@ fn every_path_named_in_the_documents_exists() {
 /// In ARCHITECTURE.md every quoted name of four words or more is the name of a test.
 #[test]
 fn every_test_named_in_the_architecture_exists() {
-    let sources = rust_files(&["src", "sim", "tests"]);
+    let sources = rust_files(&["src", "crates", "sim", "tests"]);
     let mut broken = Vec::new();
     for document in documents()
         .into_iter()
@@ -96,7 +98,7 @@ fn quoted(document: &Source) -> Vec<(usize, String)> {
     found
 }
 
-/// `src/handling/{feed,nest}.rs` is two paths; NAME and * stand for any name: then the folder must exist.
+/// `crates/machine/src/handling/{feed,nest}.rs` is two paths; NAME and * stand for any name: then the folder must exist.
 fn paths(quoted: &str) -> Vec<String> {
     if !ROOTS.iter().any(|start| quoted.starts_with(start)) || quoted.contains(char::is_whitespace)
     {
@@ -119,10 +121,16 @@ fn paths(quoted: &str) -> Vec<String> {
 #[test]
 fn a_path_in_a_document_is_taken_apart() {
     assert_eq!(
-        paths("src/handling/{feed,nest}.rs"),
-        ["src/handling/feed.rs", "src/handling/nest.rs"]
+        paths("crates/machine/src/handling/{feed,nest}.rs"),
+        [
+            "crates/machine/src/handling/feed.rs",
+            "crates/machine/src/handling/nest.rs"
+        ]
     );
     assert_eq!(paths("config/recipes/NAME.toml"), ["config/recipes"]);
-    assert_eq!(paths("src/cycle.rs:12"), ["src/cycle.rs"]);
+    assert_eq!(
+        paths("crates/app/src/cycle.rs:12"),
+        ["crates/app/src/cycle.rs"]
+    );
     assert!(paths("cargo run").is_empty());
 }

@@ -1,148 +1,98 @@
-//! Who may import whom. A module that is not in the table has no place in the house yet.
+//! Who may import whom. Cargo holds the crates apart; what the manifests must not say stands here, and the order of the
+//! modules inside `machine`.
 
 use super::tree::{Source, assert_none, files, has_word, rust_files};
 
-/// Module, and what it may import besides itself.
-const TABLE: &[(&str, &[&str])] = &[
-    ("units", &[]),
-    ("form", &[]),
-    ("dcon", &[]),
-    ("quality", &["units"]),
-    ("lpm", &["units"]),
-    ("guard", &["units", "lpm"]),
-    ("plan", &["units", "lpm"]),
-    ("rig", &["units", "dcon", "guard"]),
-    ("gauge", &["units"]),
-    ("bus", &["units", "dcon"]),
-    ("instrument", &["units", "rig"]),
-    ("dut", &["units", "form", "rig", "gauge", "instrument"]),
+/// Crates that a caller uses without a clock, a file, a socket or a thread, and all that they may depend on.
+const PURE: &[(&str, &[&str])] = &[
+    ("units", &["serde"]),
+    ("dcon", &["thiserror"]),
     (
-        "handling",
-        &["units", "rig", "guard", "gauge", "instrument", "dut"],
+        "lpm",
+        &["serde", "serde_json", "thiserror", "toml", "units"],
     ),
+    ("quality", &["serde", "statrs", "thiserror"]),
     (
-        "station",
+        "machine",
         &[
-            "units",
-            "rig",
-            "guard",
-            "gauge",
-            "instrument",
-            "dut",
-            "handling",
-        ],
-    ),
-    ("view", &["units", "dut"]),
-    (
-        "history",
-        &[
-            "units",
-            "rig",
-            "gauge",
-            "instrument",
-            "dut",
-            "handling",
-            "station",
-            "quality",
-            "plan",
-        ],
-    ),
-    (
-        "report",
-        &[
-            "units", "rig", "gauge", "dut", "station", "quality", "plan", "history",
-        ],
-    ),
-    (
-        "inquiry",
-        &["units", "gauge", "dut", "history", "report", "quality"],
-    ),
-    (
-        "hmi",
-        &[
-            "view", "history", "inquiry", "report", "config", "quality", "dut",
-        ],
-    ),
-    (
-        "config",
-        &[
-            "units", "form", "dcon", "bus", "lpm", "guard", "rig", "gauge", "dut", "station",
-        ],
-    ),
-    (
-        "cycle",
-        &[
-            "units",
             "dcon",
-            "bus",
-            "guard",
-            "rig",
-            "instrument",
-            "dut",
-            "handling",
-            "station",
-            "view",
-        ],
-    ),
-    (
-        "cli",
-        &[
-            "cycle",
-            "units",
-            "form",
-            "dcon",
-            "bus",
             "lpm",
-            "guard",
-            "plan",
-            "rig",
-            "gauge",
-            "instrument",
-            "dut",
-            "handling",
-            "station",
-            "quality",
-            "history",
-            "report",
-            "inquiry",
-            "view",
-            "hmi",
-            "config",
+            "serde",
+            "serde_json",
+            "thiserror",
+            "toml",
+            "units",
         ],
     ),
-    ("main", &["cli"]),
 ];
 
-/// `lib.rs` names every module; it is the list itself.
-const LIST_OF_MODULES: &str = "lib";
+/// Module of `machine`, and what it may import besides itself.
+const MACHINE: &[(&str, &[&str])] = &[
+    ("form", &[]),
+    ("gauge", &[]),
+    ("guard", &[]),
+    ("rig", &["guard"]),
+    ("instrument", &["rig"]),
+    ("dut", &["form", "gauge", "instrument", "rig"]),
+    ("handling", &["dut", "gauge", "guard", "instrument", "rig"]),
+    (
+        "station",
+        &["dut", "gauge", "guard", "handling", "instrument", "rig"],
+    ),
+    ("view", &["dut"]),
+];
 
 #[test]
-fn every_module_imports_only_what_the_table_allows() {
+fn a_pure_crate_depends_only_on_pure_crates() {
+    let manifests = files(&["crates"]);
     let mut broken = Vec::new();
-    for source in rust_files(&["src"])
-        .into_iter()
-        .filter(|source| !source.is_test())
-    {
-        let module = source.capability().unwrap().to_owned();
-        if module == LIST_OF_MODULES {
+    for (name, allowed) in PURE {
+        let path = format!("crates/{name}/Cargo.toml");
+        let manifest = manifests.iter().find(|it| it.path == path);
+        let manifest = manifest.unwrap_or_else(|| panic!("{path} is missing"));
+        for found in dependencies(&manifest.text) {
+            if !allowed.contains(&found.as_str()) {
+                broken.push(format!(
+                    "{path}: `{name}` is pure and must not need `{found}`"
+                ));
+            }
+        }
+    }
+    assert_none(&broken);
+}
+
+/// Keys of `[dependencies]`.
+fn dependencies(manifest: &str) -> Vec<String> {
+    let lines = manifest.lines().map(str::trim);
+    let inside = lines
+        .skip_while(|line| *line != "[dependencies]")
+        .skip(1)
+        .take_while(|line| !line.starts_with('['));
+    let keys = inside.filter_map(|line| line.split(['.', ' ', '=']).next());
+    keys.filter(|key| !key.is_empty() && !key.starts_with('#'))
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn a_module_of_the_machine_imports_what_the_table_allows() {
+    let mut broken = Vec::new();
+    for source in rust_files(&["crates/machine/src"]) {
+        let module = source.room().unwrap().to_owned();
+        if source.is_test() || module == "lib" {
             continue;
         }
-        let Some((_, allowed)) = TABLE.iter().find(|(name, _)| *name == module) else {
+        let Some((_, allowed)) = MACHINE.iter().find(|(name, _)| *name == module) else {
             broken.push(format!(
-                "{}: module `{module}` has no row in the import table",
+                "{}: `{module}` has no row in the table",
                 source.path
             ));
             continue;
         };
         for (line, import) in imports(&source) {
             if import != module && !allowed.contains(&import.as_str()) {
-                let rule = if allowed.is_empty() {
-                    "nothing of ours".to_owned()
-                } else {
-                    allowed.join(", ")
-                };
                 broken.push(format!(
-                    "{}:{line}: `{module}` names `{import}`, it may import {rule}",
+                    "{}:{line}: `{module}` names `{import}`, it may import {allowed:?}",
                     source.path
                 ));
             }
@@ -157,9 +107,7 @@ fn the_simulated_rig_and_the_controller_share_no_code() {
     for source in files(&["sim"]) {
         let is_manifest = source.path.ends_with("Cargo.toml");
         for (line, code) in source.code() {
-            let depends =
-                is_manifest && (has_word(code, "relayrig") || code.contains("path = \".."));
-            if depends || code.contains("relayrig::") {
+            if is_manifest && code.contains("path = \"..") {
                 broken.push(format!(
                     "{}:{line}: the simulated rig never depends on the controller",
                     source.path
@@ -167,13 +115,14 @@ fn the_simulated_rig_and_the_controller_share_no_code() {
             }
         }
     }
-    for source in rust_files(&["src"]) {
-        if source.capability() == Some("cli") {
+    for source in rust_files(&["crates"]) {
+        let allowed = SIMULATING.iter().any(|it| source.path.starts_with(it));
+        if allowed || source.path.contains("/benches/") {
             continue;
         }
         for (line, _) in source.code().filter(|(_, code)| has_word(code, "rigsim")) {
             broken.push(format!(
-                "{}:{line}: only src/cli names the simulated rig",
+                "{}:{line}: the simulated rig is named in {SIMULATING:?} only",
                 source.path
             ));
         }
@@ -181,55 +130,27 @@ fn the_simulated_rig_and_the_controller_share_no_code() {
     assert_none(&broken);
 }
 
-/// First path segment after `crate::` or `relayrig::`, of every import and every path in the code.
+/// Crates that start the simulated rig.
+const SIMULATING: [&str; 2] = ["crates/app/", "crates/studies/"];
+
+/// First path segment after `crate::`, of every import and every path in the code.
 fn imports(source: &Source) -> Vec<(usize, String)> {
     let mut found = Vec::new();
-    let mut code = String::new();
-    let mut starts = Vec::new();
-    for (line, text) in source.code() {
-        starts.push((code.len(), line));
-        code.push_str(text);
-        code.push('\n');
-    }
-    for root in ["crate::", "relayrig::"] {
-        for (at, _) in code.match_indices(root) {
-            if code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_') {
-                continue;
-            }
-            let line = starts
-                .iter()
-                .rev()
-                .find(|(start, _)| *start <= at)
-                .map_or(1, |(_, line)| *line);
-            let names = first_segments(&code[at + root.len()..]);
-            found.extend(names.into_iter().map(|name| (line, name)));
+    for (line, code) in source.code() {
+        for (at, root) in code.match_indices("crate::") {
+            let after_a_name =
+                code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '$');
+            let name = leading_name(&code[at + root.len()..]);
+            found.extend(name.filter(|_| !after_a_name).map(|name| (line, name)));
         }
+        assert!(
+            !code.contains("crate::{"),
+            "{}:{line}: one import per module",
+            source.path
+        );
     }
     found.extend(climbs(source));
     found
-}
-
-/// `{bus::Line, dcon}` names two modules, `bus::Line` one; a macro or a type in the root names none.
-fn first_segments(path: &str) -> Vec<String> {
-    let Some(group) = path.strip_prefix('{') else {
-        return leading_name(path).into_iter().collect();
-    };
-    let mut depth = 0;
-    let mut names = Vec::new();
-    let mut rest = group;
-    names.extend(leading_name(rest.trim_start()));
-    while let Some(at) = rest.find(['{', '}', ',']) {
-        let mark = rest.as_bytes()[at];
-        rest = &rest[at + 1..];
-        match mark {
-            b'{' => depth += 1,
-            b'}' if depth == 0 => break,
-            b'}' => depth -= 1,
-            _ if depth == 0 => names.extend(leading_name(rest.trim_start())),
-            _ => {}
-        }
-    }
-    names
 }
 
 fn leading_name(path: &str) -> Option<String> {
@@ -239,13 +160,14 @@ fn leading_name(path: &str) -> Option<String> {
     (end > 0).then(|| path[..end].to_owned())
 }
 
-/// A chain of `super::` that climbs to the root and leaves the capability by the back door.
+/// A chain of `super::` that climbs to the root and leaves the module by the back door.
 fn climbs(source: &Source) -> Vec<(usize, String)> {
-    let names = source.path.split('/').count();
+    let inside = source.path.strip_prefix("crates/machine/src/");
+    let names = inside.unwrap_or(&source.path).split('/').count();
     let to_the_root = if source.path.ends_with("/mod.rs") {
-        names - 2
-    } else {
         names - 1
+    } else {
+        names
     };
     let mut found = Vec::new();
     for (line, code) in source.code() {
@@ -258,7 +180,7 @@ fn climbs(source: &Source) -> Vec<(usize, String)> {
             rest = above;
             height += 1;
         }
-        let name = leading_name(rest).filter(|name| TABLE.iter().any(|(known, _)| known == name));
+        let name = leading_name(rest).filter(|name| MACHINE.iter().any(|(known, _)| known == name));
         found.extend(
             name.filter(|_| height >= to_the_root)
                 .map(|name| (line, name)),
@@ -268,37 +190,36 @@ fn climbs(source: &Source) -> Vec<(usize, String)> {
 }
 
 #[test]
-fn a_group_of_imports_names_each_of_its_modules() {
-    let group = "{\n  bus::{Answer, Pace},\n  dcon, guard::Guard,\n};";
-    assert_eq!(first_segments(group), ["bus", "dcon", "guard"]);
-    assert_eq!(first_segments("rig::point::Counter;"), ["rig"]);
-    assert!(first_segments("Counter;").is_empty());
-}
-
-#[test]
 fn a_forbidden_import_is_found_with_its_line() {
-    let text =
-        "//! Doc.\n// use crate::bus;\n\nuse crate::{units::Ohm,\n    bus::Line};\n".to_owned();
+    let text = "//! Doc.\n// use crate::rig;\n\nuse crate::rig::Image;\n".to_owned();
     let source = Source {
-        path: "src/lpm/x.rs".into(),
+        path: "crates/machine/src/gauge/x.rs".into(),
         text,
     };
-    let found = imports(&source);
-    assert_eq!(found, [(4, "units".to_owned()), (4, "bus".to_owned())]);
+    assert_eq!(imports(&source), [(4, "rig".to_owned())]);
 }
 
 #[test]
 fn an_import_through_the_parent_is_found_too() {
     let found = |path: &str| {
-        let text = "use super::bus::Line;\nuse super::bounded::UpTo;\n".to_owned();
+        let text = "use super::rig::Image;\nuse super::budget::Budget;\n".to_owned();
         imports(&Source {
             path: path.to_owned(),
             text,
         })
     };
-    assert_eq!(found("src/dcon/mod.rs"), [(1, "bus".to_owned())]);
+    assert_eq!(
+        found("crates/machine/src/gauge/mod.rs"),
+        [(1, "rig".to_owned())]
+    );
     assert!(
-        found("src/dcon/level.rs").is_empty(),
+        found("crates/machine/src/gauge/budget.rs").is_empty(),
         "there it is a module beside"
     );
+}
+
+#[test]
+fn the_dependencies_of_a_manifest_are_read() {
+    let manifest = "[package]\nname = \"x\"\n[dependencies]\nserde.workspace = true\n# a remark\ntoml = \"1\"\n\n[dev-dependencies]\nx = \"1\"\n";
+    assert_eq!(dependencies(manifest), ["serde", "toml"]);
 }

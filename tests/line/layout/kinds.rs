@@ -5,7 +5,7 @@ use super::tree::{Source, assert_none, files};
 /// A kind: its folder, and names that only it has.
 const KINDS: &[(&str, &[&str])] = &[
     (
-        "src/dut/em_relay/",
+        "crates/machine/src/dut/em_relay/",
         &[
             "coil_",
             "Coil",
@@ -24,7 +24,7 @@ const KINDS: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "src/dut/resistor/",
+        "crates/machine/src/dut/resistor/",
         &[
             "\"resistance_ohm",
             "tcr_ppm",
@@ -38,7 +38,7 @@ const KINDS: &[(&str, &[&str])] = &[
 const ALLOWED: &[&str] = &[
     "src/cli/study.rs",
     "src/cli/study/",
-    "src/history/schema/",
+    "crates/history/src/schema/",
     "src/cli/history.rs",
 ];
 
@@ -49,7 +49,7 @@ fn a_name_of_a_kind_stands_in_its_folder_only() {
 }
 
 fn sources() -> Vec<Source> {
-    let mut all = files(&["src"]);
+    let mut all = files(&["src", "crates"]);
     all.retain(|source| {
         let path = source.path.as_str();
         !source.is_test() && !ALLOWED.iter().any(|it| path.starts_with(it))
@@ -93,8 +93,8 @@ fn a_name_in_a_comment_a_test_or_its_own_folder_is_not_foreign() {
         text: text.to_owned(),
     };
     assert_eq!(
-        foreign(&source("src/view.rs")),
-        ["src/view.rs:2: `coil_` belongs to src/dut/em_relay/"]
+        foreign(&source("crates/machine/src/view.rs")),
+        ["crates/machine/src/view.rs:2: `coil_` belongs to crates/machine/src/dut/em_relay/"]
     );
-    assert!(foreign(&source("src/dut/em_relay/coil.rs")).is_empty());
+    assert!(foreign(&source("crates/machine/src/dut/em_relay/coil.rs")).is_empty());
 }

@@ -17,6 +17,7 @@ const TOP: &[&str] = &[
     "LICENSE-MIT",
     "README.md",
     "benches",
+    "crates",
     "clippy.toml",
     "config",
     "docs",
@@ -80,7 +81,7 @@ fn top_level() -> Vec<String> {
 #[test]
 fn a_file_is_about_one_idea() {
     let mut broken = Vec::new();
-    for source in rust_files(&["src", "sim", "tests"]) {
+    for source in rust_files(&["src", "crates", "sim", "tests"]) {
         let limit = if source.is_test() {
             LONGEST_TEST
         } else {
@@ -100,7 +101,7 @@ fn a_file_is_about_one_idea() {
 #[test]
 fn a_file_is_named_after_what_is_in_it() {
     let mut broken = Vec::new();
-    for source in rust_files(&["src", "sim", "tests"]) {
+    for source in rust_files(&["src", "crates", "sim", "tests"]) {
         let empty = source
             .path
             .split(['/', '.'])
@@ -117,7 +118,7 @@ fn a_file_is_named_after_what_is_in_it() {
 
 #[test]
 fn every_module_says_what_it_is() {
-    let undocumented = rust_files(&["src", "sim/src"])
+    let undocumented = rust_files(&["src", "crates", "sim/src"])
         .into_iter()
         .filter(|source| !source.is_test());
     let broken: Vec<String> = undocumented
@@ -144,7 +145,7 @@ fn the_text_belongs_to_the_project_and_to_nobodys_desk() {
         concat!("WI", "P"),
     ];
     let mut broken = Vec::new();
-    for source in files(&["src", "sim", "tests", "config", ".ci"])
+    for source in files(&["src", "crates", "sim", "tests", "config", ".ci"])
         .iter()
         .chain(&super::documents::documents())
     {

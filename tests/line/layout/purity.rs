@@ -55,8 +55,8 @@ const TOTAL: &[&str] = &[
 #[test]
 fn pure_modules_have_no_clock_no_file_no_socket_no_async_and_no_log() {
     let mut broken = Vec::new();
-    for source in rust_files(&["src"]) {
-        let Some(module) = source.capability().filter(|name| PURE.contains(name)) else {
+    for source in rust_files(&["src", "crates"]) {
+        let Some(module) = source.room().filter(|name| PURE.contains(name)) else {
             continue;
         };
         for (line, code) in source.code() {
@@ -84,11 +84,11 @@ fn unsafe_stands_in_the_collision_core_or_nowhere() {
         })
     };
     let mut broken = Vec::new();
-    for source in rust_files(&["src", "sim", "tests"]) {
+    for source in rust_files(&["src", "crates", "sim", "tests"]) {
         for (line, _) in source.code().filter(|(_, code)| is_code(code)) {
-            if source.capability() != Some("lpm") {
+            if source.room() != Some("lpm") {
                 broken.push(format!(
-                    "{}:{line}: `{keyword}` outside src/lpm",
+                    "{}:{line}: `{keyword}` outside crates/lpm",
                     source.path
                 ));
             }
@@ -100,12 +100,8 @@ fn unsafe_stands_in_the_collision_core_or_nowhere() {
 #[test]
 fn the_core_matches_every_state_by_name() {
     let mut broken = Vec::new();
-    for source in rust_files(&["src"]) {
-        if source.is_test()
-            || !source
-                .capability()
-                .is_some_and(|name| TOTAL.contains(&name))
-        {
+    for source in rust_files(&["src", "crates"]) {
+        if source.is_test() || !source.room().is_some_and(|name| TOTAL.contains(&name)) {
             continue;
         }
         for (line, code) in source
@@ -125,7 +121,7 @@ fn the_core_matches_every_state_by_name() {
 #[test]
 fn a_failure_is_a_type_and_never_a_text() {
     let mut broken = Vec::new();
-    for source in rust_files(&["src"]) {
+    for source in rust_files(&["src", "crates"]) {
         let result = |code: &str| code.contains("Result<") && code.contains(", String>");
         let of_map = |code: &str| code.contains("Map<") || code.contains("get::<");
         for (line, code) in source.code().filter(|_| !source.is_test()) {
@@ -142,7 +138,7 @@ fn no_test_sleeps_and_none_is_ignored() {
     let ignored = concat!("#[", "ignore");
     let sleeps = concat!("thread::", "sleep");
     let mut broken = Vec::new();
-    for source in rust_files(&["src", "sim", "tests"]) {
+    for source in rust_files(&["src", "crates", "sim", "tests"]) {
         for (line, code) in source.code() {
             if code.contains(ignored) {
                 broken.push(format!("{}:{line}: an ignored test", source.path));
@@ -158,8 +154,8 @@ fn no_test_sleeps_and_none_is_ignored() {
 #[test]
 fn only_the_guard_makes_a_clearance() {
     let mut broken = Vec::new();
-    for source in rust_files(&["src"]) {
-        if source.capability() == Some("guard") {
+    for source in rust_files(&["src", "crates"]) {
+        if source.room() == Some("guard") {
             continue;
         }
         for (line, code) in source.code() {

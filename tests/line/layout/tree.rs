@@ -19,11 +19,18 @@ impl Source {
         code.filter(|(_, line)| !line.trim().is_empty())
     }
 
-    /// Top-level module of a file under `src/`: `gauge` of `src/gauge/coil.rs`, `cycle` of `src/cycle.rs`.
-    pub fn capability(&self) -> Option<&str> {
-        let inside = self.path.strip_prefix("src/")?;
-        let first = inside.split('/').next()?;
-        Some(first.strip_suffix(".rs").unwrap_or(first))
+    /// The room that a file lies in: its crate, or the module where a crate has several rooms. `gauge` of
+    /// `crates/machine/src/gauge/budget.rs`, `bus` of `crates/bus/src/line.rs`, `cli` of `src/cli/run.rs`.
+    pub fn room(&self) -> Option<&str> {
+        let Some(inside) = self.path.strip_prefix("crates/") else {
+            return first_module(self.path.strip_prefix("src/")?);
+        };
+        let (name, rest) = inside.split_once('/')?;
+        match (name, first_module(rest.strip_prefix("src/")?)?) {
+            ("machine" | "app", module) => Some(module),
+            ("history", module @ ("report" | "inquiry")) => Some(module),
+            (single, _) => Some(single),
+        }
     }
 
     /// A file of nothing but tests.
@@ -35,6 +42,11 @@ impl Source {
             || name == "tests.rs"
             || name.ends_with("_tests.rs")
     }
+}
+
+fn first_module(path: &str) -> Option<&str> {
+    let first = path.split('/').next()?;
+    Some(first.strip_suffix(".rs").unwrap_or(first))
 }
 
 /// `//` begins a comment unless it stands in a text such as "http://".

@@ -9,8 +9,8 @@
 //! - a failure must name line, address and command (else *nameless*);
 //! - every request must be answered within [`PATIENCE`] of rig time (else it *hangs*).
 
-use relayrig::bus::{self, Answer, LineError, LineSettings, Pace, PortError, Ports, Request};
-use relayrig::dcon::{
+use bus::{Answer, LineError, LineSettings, Pace, PortError, Ports, Request};
+use dcon::{
     Address, AnalogIn, AnalogOut, Channel, Command, Common, Counter, DataFormat, Digital,
     InputForm, Level, OutputForm, OutputWord, Reply, ReplyError, TypeCode, UpTo, Value,
 };

@@ -1,9 +1,9 @@
 //! Values of made-up parts: the lot of the default world, one draw after the other.
 
-use crate::dut::made_up::{Looks, Scatter, evidence, scatter};
-use crate::dut::{Characteristic, Judgement, Recipe, Verdict};
-use crate::gauge::{Budget, Limit, Reading, judge};
-use crate::history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
+use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
+use machine::dut::made_up::{Looks, Scatter, evidence, scatter};
+use machine::dut::{Characteristic, Judgement, Recipe, Verdict};
+use machine::gauge::{Budget, Limit, Reading, judge};
 
 /// Share of parts with a defect, as in the default world.
 const DEFECTS: f64 = 0.04;

@@ -4,9 +4,9 @@
 //! computer (a spreadsheet has no zone). A row without any content is passed over; the others keep the
 //! number that the spreadsheet shows beside them.
 
-use crate::history::csv::Record;
 use anyhow::Context;
 use calamine::{Data, Reader, open_workbook_auto};
+use history::csv::Record;
 use jiff::Timestamp;
 use jiff::tz::TimeZone;
 use std::path::Path;

@@ -24,8 +24,8 @@ mod world;
 
 use super::output::Report;
 use super::scatter::Scatter;
-use crate::lpm::{Answer, Model, Mover};
 use anyhow::Context;
+use lpm::{Answer, Model, Mover};
 use paper::Stepping;
 use report::{
     Scored, bars, errors, missed_by_kind, notes, refined, speed_against_error, speeds,
@@ -100,8 +100,7 @@ fn methods(world: &World) -> anyhow::Result<Vec<Method>> {
             ask: Box::new(move |way| stepping.first_contact(way, step_mm)),
         });
     }
-    let boxes =
-        |bodies: &[crate::lpm::exact::Body]| bodies.iter().map(world::boxed).collect::<Vec<_>>();
+    let boxes = |bodies: &[lpm::exact::Body]| bodies.iter().map(world::boxed).collect::<Vec<_>>();
     methods.push(Method {
         name: "swept boxes".to_owned(),
         ask: swept(&boxes(&world.elements), &boxes(&world.parts))?,
@@ -127,10 +126,7 @@ fn methods(world: &World) -> anyhow::Result<Vec<Method>> {
 }
 
 /// Our own core over these bodies.
-fn swept(
-    elements: &[crate::lpm::exact::Body],
-    parts: &[crate::lpm::exact::Body],
-) -> anyhow::Result<Ask> {
+fn swept(elements: &[lpm::exact::Body], parts: &[lpm::exact::Body]) -> anyhow::Result<Ask> {
     let mut model = Model::new();
     for (number, body) in elements.iter().enumerate() {
         model

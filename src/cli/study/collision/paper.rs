@@ -10,7 +10,7 @@
 
 use super::outline::Outline;
 use super::world::{UNIT_MM, Way};
-use crate::lpm::exact::{Body, Form};
+use lpm::exact::{Body, Form};
 
 /// Corners of a drawn cylinder.
 const CORNERS: usize = 32;

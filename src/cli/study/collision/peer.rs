@@ -8,7 +8,7 @@ macro_rules! peer {
     ($name:ident, $library:ident, $real:ty) => {
         pub mod $name {
             use super::super::world::{UNIT_MM, Way};
-            use crate::lpm::exact::{Body, Form};
+            use lpm::exact::{Body, Form};
             use $library::math::{Pose, Rot3, Vector};
             use $library::query::{ShapeCastOptions, cast_shapes, intersection_test};
             use $library::shape::{Compound, SharedShape};

@@ -2,8 +2,8 @@
 //! moved past every other one by every whole move of -3 to 3: 16,003,008 moves, each held against the
 //! exact truth in verdict and time.
 
-use crate::lpm::exact::{Body, first_contact};
-use crate::lpm::{Answer, Model, Move, Mover, Pose};
+use lpm::exact::{Body, first_contact};
+use lpm::{Answer, Model, Move, Mover, Pose};
 
 /// Earlier than the truth by more than this fraction of the move counts as wrong; later always does.
 const EARLY: f64 = 1e-9;

@@ -7,7 +7,7 @@ use super::small_world::{Judged, judged};
 use super::world::{Way, World, thinner};
 use super::*;
 use crate::cli::study::scatter::Point;
-use crate::lpm::exact::{Body, first_contact};
+use lpm::exact::{Body, first_contact};
 
 const MM: i64 = 1024;
 

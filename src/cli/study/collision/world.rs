@@ -6,8 +6,8 @@
 //! needle of half a millimetre that reaches beyond the fingers. Moves: jogs of 5 mm, descents, 300 mm beside each other, ways across the
 //! whole plate, and passes that graze one body by 0 to 1 mm. Everything follows from one seed.
 
-use crate::lpm::exact::{Body, Form, UPRIGHT, first_contact};
-use crate::lpm::{Move, Pose, Shape};
+use lpm::exact::{Body, Form, UPRIGHT, first_contact};
+use lpm::{Move, Pose, Shape};
 
 /// Millimetres of a unit: a power of two, so that every number is exact in `f32` and `f64`.
 pub const UNIT_MM: f64 = 1.0 / 1024.0;

@@ -3,18 +3,18 @@
 
 use super::operator::{Operator, Said};
 use super::weather::Life;
-use crate::bus::Pace;
 use crate::cli::rig::{PaceArg, RigArgs};
 use crate::cli::run::{self, Controls, Orders, RunArgs, Stage};
-use crate::config::Plant;
-use crate::dut::Calibration;
-use crate::dut::Recipe;
-use crate::units::RigTime;
 use anyhow::Context;
+use bus::Pace;
+use config::Plant;
+use machine::dut::Calibration;
+use machine::dut::Recipe;
 use rigsim::SharedRig;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 use tokio::sync::mpsc;
+use units::RigTime;
 
 /// Wall clock at rig time zero, microseconds since 1970 UTC: 2027-01-15. The same for every seed.
 pub const EPOCH_US: i64 = 1_800_000_000_000_000;

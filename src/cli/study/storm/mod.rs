@@ -21,19 +21,19 @@ use super::figure::{Bar, Figure};
 use super::fleet::{Folder, Order};
 use super::output::Report;
 use crate::cli::DONE;
-use crate::config::{Plant, load_recipe};
-use crate::dut::Calibration;
-use crate::dut::Recipe;
-use crate::history::{Archive, Filter};
-use crate::units::Span;
 use anyhow::Context;
+use config::{Plant, load_recipe};
+use history::{Archive, Filter};
 use judge::Case;
 use life::{End, Shop};
+use machine::dut::Calibration;
+use machine::dut::Recipe;
 use rigsim::{Options, SharedRig};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
+use units::Span;
 use weather::{CEASES_US, Life, RIGS, Weather};
 
 /// Starts after the storm, one of which must complete its lot: the first may have to clear up.

@@ -3,14 +3,14 @@
 //! it at once when that takes too long.
 
 use super::dice::Dice;
-use crate::bus::Pace;
-use crate::station::orders::JOGS;
-use crate::station::packml::State;
-use crate::units::{RigTime, Span};
-use crate::view::{By, ORDERS, Order, OrderRequest, View};
+use bus::Pace;
+use machine::station::orders::JOGS;
+use machine::station::packml::State;
+use machine::view::{By, ORDERS, Order, OrderRequest, View};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use tokio::sync::{mpsc, oneshot, watch};
+use units::{RigTime, Span};
 
 /// After so long the program is told to end, whatever it does, and after as long again to end at once.
 const PATIENCE: Span = Span::ms(25_000);

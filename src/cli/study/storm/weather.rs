@@ -4,7 +4,7 @@
 //! is called off then. The lives after that are calm.
 
 use super::dice::Dice;
-use crate::rig::wiring::Wiring;
+use machine::rig::wiring::Wiring;
 
 /// Rigs that the seeds share; each is calibrated once.
 pub const RIGS: u64 = 8;

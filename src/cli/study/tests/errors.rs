@@ -3,7 +3,7 @@
 use super::super::error::{Errors, Pooled};
 use super::super::figure::{Bar, Figure};
 use super::{lot, near, row, three_good_one_bad, truth};
-use crate::dut::em_relay::Parameter;
+use machine::dut::em_relay::Parameter;
 use serde_json::json;
 
 #[test]

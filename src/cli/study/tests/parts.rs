@@ -4,7 +4,7 @@ use super::super::bins::{bin_of, defects, lots_without, machine, outcome};
 use super::super::exception;
 use super::super::lot::Lot;
 use super::{SUMMARY, figure, lot, near, row, three_good_one_bad, truth};
-use crate::dut::em_relay::Parameter;
+use machine::dut::em_relay::Parameter;
 use serde_json::{Value, json};
 
 #[test]

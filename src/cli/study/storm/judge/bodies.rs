@@ -5,7 +5,7 @@
 
 use super::{Case, rig_us, seconds};
 use crate::cli::study::storm::life::{End, Lived};
-use crate::history::{Alarm, Part};
+use history::{Alarm, Part};
 use rigsim::truth::{BodyTruth, Place};
 
 /// From a body at rest to its confirmation by the beam: fall, second body, polls and repeated polls, microseconds.

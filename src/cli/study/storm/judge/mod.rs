@@ -17,9 +17,9 @@ mod tests;
 mod values;
 
 use super::life::{EPOCH_US, Lived};
-use crate::history::{Alarm, Moment, Part};
-use crate::units::Span;
+use history::{Alarm, Moment, Part};
 use rigsim::truth::BodyTruth;
+use units::Span;
 
 /// Everything that is judged. All times are microseconds of rig time, over all lives.
 #[derive(Debug, Clone)]

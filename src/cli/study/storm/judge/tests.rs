@@ -5,10 +5,10 @@
 use super::Case;
 use crate::cli::study::storm::life::{EPOCH_US, End, Lived};
 use crate::cli::study::storm::operator::Said;
-use crate::history::{Alarm, AlarmState, Moment, Part};
-use crate::units::{RigTime, Span};
+use history::{Alarm, AlarmState, Moment, Part};
 use rigsim::truth::{BodyTruth, PartTruth, Place};
 use serde_json::json;
+use units::{RigTime, Span};
 
 const S: u64 = 1_000_000;
 

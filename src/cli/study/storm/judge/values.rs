@@ -4,8 +4,8 @@
 use super::Case;
 use super::bodies::owners;
 use crate::cli::study::bins::bin_of;
-use crate::dut::em_relay::Parameter;
-use crate::history::Part;
+use history::Part;
+use machine::dut::em_relay::Parameter;
 use rigsim::truth::PartTruth;
 use serde_json::Value;
 

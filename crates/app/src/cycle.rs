@@ -1,0 +1,454 @@
+//! One turn of the rig, top to bottom:
+//!
+//! ```text
+//! scan -> step -> clear -> apply -> record -> publish
+//! ```
+//! One task owns the process image, the outputs, the guard and the station; each line is a task of its
+//! own with a one-deep queue ([`traffic`]). A turn begins on an answer or at the instant that the last
+//! step asked for. Nothing here knows what a relay is: that is the station's.
+
+mod commission;
+mod desk;
+mod event;
+mod foresight;
+pub mod mimic;
+mod patience;
+mod profile;
+mod publish;
+mod record;
+mod rota;
+mod still;
+mod traffic;
+mod underway;
+
+pub use traffic::LineEnds;
+
+use bus::{Answer, LineError, Pace};
+use dcon::Command;
+pub use desk::PANEL;
+pub use event::Event;
+use machine::guard::Guard;
+use machine::handling::NestId;
+use machine::handling::inside::Inside;
+use machine::handling::wants::{NestDone, NestJob};
+use machine::instrument::act::{Job, JobDone};
+use machine::rig::drive::Outputs;
+use machine::rig::image::Image;
+use machine::rig::level::Correction;
+use machine::rig::point::DigitalIn;
+use machine::rig::wiring::{LineId, Wiring};
+use machine::station::Station;
+use machine::station::packml;
+use machine::station::trouble::Alarm;
+use machine::station::wants::{Ending, Inputs, Wants};
+use machine::view::{self, OrderRequest, View};
+use patience::Patience;
+pub use profile::Profile;
+use profile::lap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::Instant;
+use tokio::sync::{mpsc, watch};
+use traffic::{Purpose, Traffic};
+use units::{RigTime, Span};
+
+/// With nothing to wait for, a turn begins after this long all the same.
+const IDLE: Span = Span::ms(50);
+
+/// What the cycle shares with the outside.
+#[derive(Debug)]
+pub struct Outside {
+    /// Where events go; bounded by the parts inside the machine.
+    pub events: mpsc::UnboundedSender<Event>,
+    /// Ordinal up to which parts are durable; written by the history.
+    pub recorded: Arc<AtomicU64>,
+    /// Set by the operator's stop.
+    pub stop: Arc<AtomicBool>,
+    /// Set when the operator does not want to wait for the parts inside.
+    pub abort: Arc<AtomicBool>,
+    /// Orders of screens, each with the way back for its answer.
+    pub orders: mpsc::Receiver<OrderRequest>,
+    /// Wall clock at rig time zero, microseconds since 1970 UTC.
+    pub epoch_us: i64,
+    /// Set when the history can no longer be written: the rig must not go on.
+    pub history_lost: Arc<AtomicBool>,
+    /// What screens see.
+    pub view: watch::Sender<View>,
+}
+
+/// A rig under control.
+pub struct Cycle {
+    wiring: Arc<Wiring>,
+    pace: Pace,
+    station: Station,
+    guard: Guard,
+    image: Image,
+    outputs: Outputs,
+    traffic: Traffic,
+    patience: Patience,
+    outside: Outside,
+    job_done: Option<JobDone>,
+    /// The nest whose job is under way, or was last.
+    job_nest: NestId,
+    bus_alarm: Option<Alarm>,
+    profile: Profile,
+    /// When the last turn began.
+    turned_at: RigTime,
+    /// Only safe values are written.
+    making_safe: bool,
+    /// Orders of this turn, waiting for their answers.
+    asked: Vec<OrderRequest>,
+    /// Nobody can send orders any more.
+    orders_closed: bool,
+    verified: bool,
+    publish_at: RigTime,
+    /// State of the outer machine that was told last.
+    told: packml::State,
+    /// Why nobody knows whether a module of the measuring line has restarted.
+    lost_status: Option<String>,
+    /// What the next run has to look for, as it was told last.
+    inside: Inside,
+    /// Longest time that the emergency-stop input was not known anew.
+    worst_age: Span,
+    /// The motion that the guard refused last, until another one is driven.
+    refused: Option<view::MotionView>,
+}
+
+impl Cycle {
+    /// Takes over the lines. Nothing is written before [`Cycle::run`].
+    pub fn new(
+        wiring: Arc<Wiring>,
+        pace: Pace,
+        station: Station,
+        guard: Guard,
+        lines: Vec<LineEnds>,
+        outside: Outside,
+    ) -> Self {
+        assert_eq!(lines.len(), wiring.lines.len(), "a line without its task");
+        Self {
+            image: Image::new(Arc::clone(&wiring)),
+            outputs: Outputs::new(Arc::clone(&wiring)),
+            traffic: Traffic::new(&wiring, lines),
+            patience: Patience::new(&wiring),
+            wiring,
+            pace,
+            inside: station.ledger().to_look_for(),
+            station,
+            guard,
+            outside,
+            job_done: None,
+            job_nest: NestId::FIRST,
+            bus_alarm: None,
+            profile: Profile::default(),
+            turned_at: RigTime(0),
+            making_safe: false,
+            asked: Vec::new(),
+            orders_closed: false,
+            verified: false,
+            publish_at: RigTime(0),
+            told: packml::State::Stopped,
+            worst_age: Span(0),
+            refused: None,
+            lost_status: None,
+        }
+    }
+
+    /// Verifies the modules, then turns until the station has ended and the outputs are safe.
+    pub async fn run(mut self) -> (Ending, Profile) {
+        self.verify().await;
+        if let Some(alarm) = self
+            .bus_alarm
+            .take_if(|_| !self.verified && !self.station.stays())
+        {
+            self.tell(Event::Alarm(alarm, self.pace.now()));
+            return (Ending::Alarm, self.profile);
+        }
+        self.verified = false;
+        loop {
+            let now = self.pace.now();
+            let mut clock = Instant::now();
+            self.profile.turns += 1;
+            self.scan(now);
+            lap(&mut self.profile.scan_s, &mut clock);
+            let mut wants = self.step(now);
+            lap(&mut self.profile.step_s, &mut clock);
+            self.clear(now, &mut wants);
+            lap(&mut self.profile.clear_s, &mut clock);
+            self.apply(now, &mut wants);
+            lap(&mut self.profile.apply_s, &mut clock);
+            self.answer(&mut wants, now);
+            self.pressed(&mut wants, now);
+            self.record(now, &mut wants);
+            clock = Instant::now();
+            self.publish(now, wants.record.ending.is_some());
+            lap(&mut self.profile.publish_s, &mut clock);
+            if wants.rig.verify {
+                self.verify().await;
+            }
+            if let Some(ending) = wants.record.ending.take() {
+                assert!(wants.rig.safe, "a run ends and outputs are on");
+                self.make_safe().await;
+                return (ending, self.profile);
+            }
+            if self.job_done.is_none() && wants.rig.wake_at.is_none_or(|at| at > now) {
+                self.wait(now, wants.rig.wake_at).await;
+            }
+        }
+    }
+
+    /// Answers that have come in go into the process image.
+    fn scan(&mut self, now: RigTime) {
+        assert!(now >= self.turned_at, "the clock of the rig went back");
+        self.turned_at = now;
+        while let Some((line, purpose, answer)) = self.traffic.next_answer() {
+            self.take(line, purpose, answer);
+        }
+        for module in self.image.take_resets() {
+            let module = self.wiring.module(module);
+            let line = &self.wiring.line(module.line).name;
+            let text = format!(
+                "line {line}, {}: {} has restarted, its outputs fell to their power-on value",
+                module.address, module.name
+            );
+            self.bus_alarm.get_or_insert(Alarm::bus(&text));
+        }
+        self.traffic.note_time(now);
+    }
+
+    fn take(&mut self, line: LineId, purpose: Purpose, answer: Answer) {
+        assert!(
+            answer.answered_at >= answer.asked_at,
+            "answered before it was asked"
+        );
+        // Reading the reset status clears it, so it is never asked twice: where its reply is lost, whoever asked, nobody knows
+        // whether the module has restarted under the part, which is void.
+        let is_status = matches!(
+            answer.command,
+            Command::Common(_, dcon::Common::ReadResetStatus)
+        );
+        let trouble = match &answer.outcome {
+            Ok(reply) => self
+                .image
+                .accept(line, &answer.command, reply, &answer.raw, answer.asked_at)
+                .err()
+                .map(|unexpected| format!("line {}: {unexpected}", self.wiring.line(line).name)),
+            Err(error) => Some(format!(
+                "{error} ({} of {} tries)",
+                answer.tries_used,
+                self.traffic.tries(line)
+            )),
+        };
+        let refused =
+            matches!(&answer.outcome, Err(LineError::Reply { reason, .. }) if reason.is_answer());
+        match (purpose, trouble) {
+            (Purpose::Write { module, job }, None) => {
+                self.outputs.confirmed(module);
+                self.patience.written(module);
+                self.finish_job(job, answer.answered_at, None);
+            }
+            // A module that ignores writes has had its host watchdog trip: it stands at its safe value.
+            (Purpose::Write { module, .. }, Some(_)) if self.making_safe && refused => {
+                self.outputs.confirmed(module);
+            }
+            (Purpose::Write { module, job }, Some(trouble)) => {
+                if self.patience.may_rewrite(module) {
+                    self.outputs.failed(module);
+                    if job {
+                        self.traffic.rewrite_for_job(module);
+                    }
+                } else {
+                    self.finish_job(job, answer.answered_at, Some(trouble.clone()));
+                    self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
+                }
+            }
+            (Purpose::Job, trouble) => {
+                let trouble = match is_status {
+                    true => trouble.or(self.lost_status.take()),
+                    false => trouble,
+                };
+                if let Some(trouble) = trouble.as_ref().filter(|_| !refused && !is_status) {
+                    self.bus_alarm.get_or_insert(Alarm::bus(trouble));
+                }
+                self.finish_job(true, answer.answered_at, trouble);
+            }
+            (Purpose::Scan, Some(trouble)) => {
+                if is_status && self.is_measuring(line) {
+                    self.lost_status = Some(trouble.clone());
+                }
+                if let Some(times) = self.patience.scan_failed(line, &answer.command) {
+                    self.bus_alarm
+                        .get_or_insert(Alarm::bus(&format!("{trouble}, {times} times in a row")));
+                }
+            }
+            (Purpose::Scan, None) => self.patience.scan_answered(line, &answer.command),
+            (Purpose::Check, Some(trouble)) => {
+                self.bus_alarm.get_or_insert(Alarm::bus(&trouble));
+            }
+            (Purpose::Check | Purpose::Heartbeat, _) => {}
+        }
+    }
+
+    fn finish_job(&mut self, is_job: bool, at: RigTime, trouble: Option<String>) {
+        if is_job && let Some(done) = self.traffic.job_part_done(at, trouble) {
+            self.job_done = Some(done);
+        }
+    }
+
+    fn step(&mut self, now: RigTime) -> Wants {
+        if self.outside.history_lost.load(Ordering::Acquire) {
+            self.bus_alarm.get_or_insert(Alarm::history());
+        }
+        if let Some(asked_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
+            self.worst_age = self.worst_age.max(now.since(asked_at));
+        }
+        let orders = self.orders(now);
+        self.making_safe = packml::is_aborted(self.station.outer());
+        if self.making_safe {
+            self.patience.forgive();
+        }
+        let inputs = Inputs {
+            abort: self.outside.abort.load(Ordering::Acquire),
+            orders,
+            settled: self.outputs.all_settled(),
+            verified: std::mem::take(&mut self.verified),
+            image: &self.image,
+            job: self.job_done.take().map(|done| NestDone {
+                nest: self.job_nest,
+                done,
+            }),
+            recorded: self.outside.recorded.load(Ordering::Acquire),
+            bus: self.bus_alarm.take(),
+            stop: self.outside.stop.load(Ordering::Acquire),
+        };
+        self.station.step(now, inputs)
+    }
+
+    /// Each wanted motion passes the guard, one after the other, and is driven or refused.
+    fn clear(&mut self, now: RigTime, wants: &mut Wants) {
+        let moves = !wants.rig.motions.is_empty() || wants.rig.jog.is_some();
+        assert!(!(wants.rig.safe && moves), "outputs go safe and one moves");
+        for movement in std::mem::take(&mut wants.rig.motions) {
+            let situation = self.station.situation(now, &self.image);
+            match self.guard.clear(&self.station.motion(movement), &situation) {
+                Ok(cleared) => {
+                    if let Err(cannot) = self.outputs.apply(cleared) {
+                        self.station
+                            .refused(movement, &cannot.to_string(), now, wants);
+                        return;
+                    }
+                    self.station.driven(movement, now, &self.image);
+                    self.refused = None;
+                }
+                Err(refusal) => {
+                    self.refused = Some(self.shown_refused(movement, &situation, &refusal));
+                    self.station
+                        .refused(movement, &refusal.to_string(), now, wants);
+                    return;
+                }
+            }
+        }
+        if let Some(jog) = wants.rig.jog.take() {
+            assert!(jog.answer < wants.answers.len(), "a jog without its order");
+            wants.answers[jog.answer] = self.jog(jog.movement, now);
+        }
+    }
+
+    /// Outputs become commands; the measuring lines get their job.
+    fn apply(&mut self, now: RigTime, wants: &mut Wants) {
+        if wants.rig.safe {
+            self.outputs.everything_safe();
+            for module in self.traffic.drop_all() {
+                self.outputs.confirmed(module);
+            }
+        }
+        for (point, on) in wants.rig.outputs.drain(..) {
+            if let Err(needs) = self.outputs.set(point, on) {
+                self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
+            }
+        }
+        self.traffic.suspect(wants.rig.suspicious);
+        self.traffic
+            .watch_beam(wants.rig.beam.map(|beam| self.wiring.read_events(beam)));
+        let is_job = wants.rig.job.is_some();
+        if let Some(NestJob { nest, job }) = wants.rig.job.take() {
+            assert!(!wants.rig.safe, "outputs go safe and a job begins");
+            assert!(self.job_done.is_none(), "the answer before was not heard");
+            self.job_nest = nest;
+            self.start(job);
+        }
+        for write in self.outputs.writes() {
+            let again = self.traffic.is_rewrite_for_job(write.module);
+            let job = again || (is_job && self.is_measuring(write.line));
+            self.traffic.queue(
+                write.line,
+                write.command,
+                Purpose::Write {
+                    module: write.module,
+                    job,
+                },
+            );
+        }
+        if is_job && let Some(done) = self.traffic.job_if_empty(now) {
+            self.job_done = Some(done);
+        }
+        self.traffic.dispatch(now);
+    }
+
+    fn is_measuring(&self, line: LineId) -> bool {
+        self.traffic.measuring_lines().contains(&line)
+    }
+
+    /// Outputs of the job are set, and written with those of the turn; readings are queued.
+    fn start(&mut self, job: Job) {
+        self.traffic.begin_job();
+        let commands = match job {
+            Job::Set(outputs) => {
+                for (point, on) in outputs {
+                    if let Err(needs) = self.outputs.set(point, on) {
+                        self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
+                    }
+                }
+                Vec::new()
+            }
+            Job::Level(outputs) => {
+                for (output, volts) in outputs {
+                    if let Err(cannot) = self.outputs.set_supply(output, volts, Correction::NONE) {
+                        self.bus_alarm
+                            .get_or_insert(Alarm::bus(&cannot.to_string()));
+                    }
+                }
+                Vec::new()
+            }
+            Job::Read(points) => self.wiring.reads(&points),
+            Job::Restarts => self.traffic.measuring_resets(),
+            Job::Mask(inputs) => self.wiring.masks(&inputs),
+        };
+        for (line, command) in commands {
+            self.traffic.queue(line, command, Purpose::Job);
+        }
+    }
+
+    /// First instant at which the emergency-stop contact will not be known any more.
+    fn contact_unknown(&self, now: RigTime) -> Option<RigTime> {
+        let until = self.image.emergency_stop_known_until()?;
+        (until >= now).then_some(until + Span(1))
+    }
+
+    /// Until an answer, the station's own deadline, or the next scan.
+    async fn wait(&mut self, now: RigTime, wake_at: Option<RigTime>) {
+        assert!(wake_at.is_none_or(|at| at > now), "a deadline in the past");
+        let until = wake_at
+            .unwrap_or(now + IDLE)
+            .min(self.traffic.next_due(now).unwrap_or(now + IDLE))
+            .min(self.contact_unknown(now).unwrap_or(now + IDLE));
+        tokio::select! {
+            biased;
+            () = self.traffic.answer() => {}
+            asked = self.outside.orders.recv(), if !self.orders_closed => {
+                self.orders_closed = asked.is_none();
+                self.asked.extend(asked);
+            }
+            () = self.pace.sleep_until(until) => {}
+        }
+    }
+}

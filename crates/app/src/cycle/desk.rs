@@ -1,0 +1,98 @@
+//! Orders of screens: taken in, handed to the station, answered; and motions by hand.
+
+use super::{Cycle, Event, publish};
+use machine::handling::moves::Move;
+use machine::station::orders::{Order, Refused};
+use machine::station::wants::Wants;
+use machine::view::{self, Answered, By, NotTaken, OrderRequest};
+use units::RigTime;
+
+/// Origin of what is ordered with a button at the machine.
+pub const PANEL: &str = "panel";
+
+fn not_taken(why: Refused) -> NotTaken {
+    NotTaken {
+        en: why.en,
+        zh: why.zh,
+    }
+}
+
+impl Cycle {
+    /// Orders that have come in; one that is denied or no order is answered at once.
+    pub(super) fn orders(&mut self, now: RigTime) -> Vec<Order> {
+        while let Ok(asked) = self.outside.orders.try_recv() {
+            self.asked.push(asked);
+        }
+        let mut orders = Vec::new();
+        for asked in std::mem::take(&mut self.asked) {
+            let denied = asked.denied.as_ref().map(|why| Refused::new(why, why));
+            match denied.map_or_else(|| publish::read(&asked.order), Err) {
+                Ok(order) => {
+                    orders.push(order);
+                    self.asked.push(asked);
+                }
+                Err(why) => self.say(asked, Err(why), now),
+            }
+        }
+        assert_eq!(orders.len(), self.asked.len(), "an order lost its way back");
+        orders
+    }
+
+    pub(super) fn answer(&mut self, wants: &mut Wants, now: RigTime) {
+        let (orders, answers) = (self.asked.len(), wants.answers.len());
+        assert_eq!(orders, answers, "orders without their answers");
+        let asked: Vec<_> = self.asked.drain(..).collect();
+        for (asked, answer) in asked.into_iter().zip(wants.answers.drain(..)) {
+            self.say(asked, answer, now);
+        }
+    }
+
+    /// Buttons at the machine have no screen to answer to: the audit hears of them.
+    pub(super) fn pressed(&self, wants: &mut Wants, now: RigTime) {
+        for (command, answer) in wants.pressed.drain(..) {
+            let answered = Answered {
+                order: view::Order {
+                    order: command.name().to_owned(),
+                    ..view::Order::default()
+                },
+                by: By {
+                    origin: PANEL.to_owned(),
+                    ..By::default()
+                },
+                refused: answer.err().map(|why| why.en),
+            };
+            self.tell(Event::Ordered(Box::new(answered), now));
+        }
+    }
+
+    /// Answers whoever asked, and tells the audit.
+    fn say(&self, asked: OrderRequest, answer: Result<(), Refused>, now: RigTime) {
+        let answered = Answered {
+            order: asked.order.clone(),
+            by: asked.by.clone(),
+            refused: answer.as_ref().err().map(|why| why.en.clone()),
+        };
+        self.tell(Event::Ordered(Box::new(answered), now));
+        asked.say(answer.map_err(not_taken));
+    }
+
+    /// A motion by hand: refused is an answer to who asked, not an alarm.
+    pub(super) fn jog(&mut self, movement: Move, now: RigTime) -> Result<(), Refused> {
+        let situation = self.station.situation(now, &self.image);
+        let refused = |why: String| Refused::new(why.clone(), format!("防碰撞检查拒绝：{why}"));
+        let cleared = self
+            .guard
+            .clear(&self.station.motion(movement), &situation)
+            .map_err(|refusal| {
+                self.refused = Some(self.shown_refused(movement, &situation, &refusal));
+                refused(refusal.to_string())
+            })?;
+        self.outputs
+            .apply(cleared)
+            .map_err(|cannot| refused(cannot.to_string()))?;
+        self.station.driven(movement, now, &self.image);
+        self.station.jogged();
+        self.refused = None;
+        Ok(())
+    }
+}

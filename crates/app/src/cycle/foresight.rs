@@ -1,0 +1,85 @@
+//! What the guard says about motions that a person may want next, and about the one it refused.
+
+use super::Cycle;
+use machine::guard::{Position, Refusal, Situation};
+use machine::handling::moves::Move;
+use machine::station::orders;
+use machine::view::{MotionView, RefusedView, StrokeView};
+use units::RigTime;
+
+/// Distances beyond this are not told, mm.
+const RANGE_MM: f64 = 25.0;
+
+impl Cycle {
+    /// Every motion that may be jogged, judged for the situation of now; empty while none may.
+    pub(super) fn foreseen(&mut self, now: RigTime) -> Vec<MotionView> {
+        if self.station.may_jog().is_err() {
+            return Vec::new();
+        }
+        let situation = self.station.situation(now, &self.image);
+        let jogs = orders::JOGS.iter();
+        jogs.map(|(_, movement)| {
+            let motion = self.station.motion(*movement);
+            match self.guard.clear(&motion, &situation) {
+                Ok(_) => MotionView {
+                    clearance_mm: self.guard.clearance_mm(&motion, &situation, RANGE_MM),
+                    ..self.shown(*movement, &situation)
+                },
+                Err(refusal) => self.shown_refused(*movement, &situation, &refusal),
+            }
+        })
+        .collect()
+    }
+
+    /// A motion with what stands in its way.
+    pub(super) fn shown_refused(
+        &self,
+        movement: Move,
+        situation: &Situation,
+        refusal: &Refusal,
+    ) -> MotionView {
+        let text = refusal.to_string();
+        let refused = match refusal {
+            Refusal::Blocked(blocked) => RefusedView {
+                mover: blocked.mover.clone(),
+                blocker: blocked.blocker.clone(),
+                distance_mm: blocked.distance_mm,
+                margin_mm: blocked.margin_mm,
+                at: blocked.at,
+                last_clear_mm: blocked.last_clear_mm,
+                text,
+            },
+            Refusal::OutOfStroke { .. } | Refusal::PartSize { .. } => RefusedView {
+                text,
+                ..RefusedView::default()
+            },
+        };
+        MotionView {
+            refused: Some(refused),
+            ..self.shown(movement, situation)
+        }
+    }
+
+    fn shown(&self, movement: Move, situation: &Situation) -> MotionView {
+        let motion = self.station.motion(movement);
+        let strokes = motion.strokes().map(|stroke| {
+            let (low, high) = self.guard.stroke_mm(stroke.actuator);
+            let from_mm = match situation.position(stroke.actuator) {
+                Some(Position::At(mm)) => [mm, mm],
+                Some(Position::Between { from_mm, to_mm }) => [from_mm, to_mm],
+                None => [low, high],
+            };
+            StrokeView {
+                actuator: stroke.actuator.name().into(),
+                from_mm,
+                to_mm: stroke.to_mm,
+            }
+        });
+        let named = orders::JOGS.iter().find(|(_, known)| *known == movement);
+        MotionView {
+            motion: named.map_or_else(|| format!("{movement:?}"), |(name, _)| (*name).into()),
+            strokes: strokes.collect(),
+            ..MotionView::default()
+        }
+    }
+}

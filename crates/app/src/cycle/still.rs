@@ -1,0 +1,69 @@
+//! Before and after: modules verified while nothing moves, outputs made safe at the end.
+
+use super::traffic::Purpose;
+use super::{Cycle, Event, IDLE, commission};
+use machine::station::trouble::Alarm;
+use units::Span;
+
+/// Safe outputs must be written within this time at the end of a run.
+const SAFE_WITHIN: Span = Span::ms(2000);
+
+impl Cycle {
+    /// Asks every module whether it is as wired; what has tripped while its host was silent is made ready.
+    pub(super) async fn verify(&mut self) {
+        self.quiet().await;
+        assert!(self.traffic.is_quiet(), "verified while a line is in use");
+        match commission::verify(&self.wiring, &self.pace, &mut self.traffic).await {
+            Ok(tripped) => {
+                self.verified = true;
+                for alarm in tripped {
+                    self.bus_alarm.get_or_insert(alarm);
+                }
+            }
+            Err(alarm) => {
+                self.bus_alarm.get_or_insert(alarm);
+                self.traffic.start_scan();
+            }
+        }
+        self.image.take_resets();
+        self.lost_status = None;
+        self.outputs.everything_safe();
+    }
+
+    /// No transaction is under way any more, and none of a scan begins.
+    async fn quiet(&mut self) {
+        self.traffic.only_writes();
+        while !self.traffic.is_quiet() {
+            let now = self.pace.now();
+            self.patience.forgive();
+            self.scan(now);
+            self.traffic.dispatch(now);
+            self.wait(now, Some(now + IDLE)).await;
+        }
+    }
+
+    /// Writes the safe outputs and waits until every module has confirmed, or the time is up.
+    pub(super) async fn make_safe(&mut self) {
+        let end = self.pace.now() + SAFE_WITHIN;
+        self.traffic.only_writes();
+        self.making_safe = true;
+        while self.pace.now() < end {
+            let now = self.pace.now();
+            self.patience.forgive();
+            self.scan(now);
+            for write in self.outputs.writes() {
+                let purpose = Purpose::Write {
+                    module: write.module,
+                    job: false,
+                };
+                self.traffic.queue(write.line, write.command, purpose);
+            }
+            self.traffic.dispatch(now);
+            if self.traffic.is_quiet() {
+                return;
+            }
+            self.wait(now, Some(end)).await;
+        }
+        self.tell(Event::Alarm(Alarm::not_safe(), self.pace.now()));
+    }
+}

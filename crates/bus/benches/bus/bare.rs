@@ -1,0 +1,48 @@
+//! The peer of a busy line: a client that knows nothing, sends a request, reads up to the CR, waits for two characters on the
+//! clock and sends the next. What it lacks of the bound is lost by the simulated modules, the pseudo-terminal and this
+//! machine, whoever the host is.
+
+use bus::Wire;
+use std::io::{self, Read, Write};
+use std::time::{Duration, Instant};
+
+/// Longest wait for a reply.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// A wait ends up to this much late when it is slept; the rest of it is spent looking at the clock.
+const LATE: Duration = Duration::from_micros(150);
+
+/// Sends each of `requests` and reads its reply; gives the time from the first question to the last.
+pub fn asked(path: &str, wire: Wire, requests: &[Vec<u8>]) -> io::Result<Duration> {
+    let mut port = tokio_serial::new(path, wire.baud)
+        .timeout(PATIENCE)
+        .open_native()?;
+    let rest = Duration::from_micros(wire.time(2).0);
+    let begun = Instant::now();
+    let mut last = begun;
+    for request in requests {
+        last = Instant::now();
+        port.write_all(request)?;
+        heard(&mut port)?;
+        wait_until(Instant::now() + rest);
+    }
+    Ok(last - begun)
+}
+
+fn heard(port: &mut impl Read) -> io::Result<()> {
+    let mut piece = [0; 128];
+    loop {
+        let count = port.read(&mut piece)?;
+        if piece[..count].ends_with(b"\r") {
+            return Ok(());
+        }
+    }
+}
+
+fn wait_until(end: Instant) {
+    let left = end.saturating_duration_since(Instant::now());
+    std::thread::sleep(left.saturating_sub(LATE));
+    while Instant::now() < end {
+        std::hint::spin_loop();
+    }
+}

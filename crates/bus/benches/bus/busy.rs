@@ -1,0 +1,253 @@
+//! How busy a line is kept: time of wire and module over the time that passes, on a pseudo-terminal, against the paced
+//! simulated modules, with a request always waiting.
+//!
+//! After each reply the line rests two characters. No host can do better than that, and how much it costs depends on
+//! the length of the frames: so each workload stands beside the share that this rest alone leaves (`bound`), and beside
+//! what a client that does nothing else reaches over the same pseudo-terminal in the same run (`peer`). A bar above the
+//! bound is out of reach of the workload, whoever the host is; one above the peer is out of reach of this machine.
+
+use super::bare;
+use bus::{Answer, LineSettings, Pace, Request, SerialPorts, Wire};
+use dcon::{
+    Address, AnalogIn, Channel, Command, Counter, DataFormat, Digital, InputForm, OutputWord,
+    TypeCode, UpTo, Width,
+};
+use rigsim::pty::Rates;
+use std::error::Error;
+use std::time::Duration;
+use tokio::sync::mpsc;
+use units::{RigTime, Span};
+
+/// Latency of a simulated module.
+const LATENCY: Span = Span::ms(2);
+/// The bars of the house.
+const BARS: [(u32, f64); 2] = [(9_600, 0.95), (115_200, 0.87)];
+/// Each row is measured over about so much time of its line.
+const MEASURED: Span = Span::ms(6_000);
+
+const VOLTS: InputForm = InputForm::eight(DataFormat::Engineering, TypeCode(0x08));
+const BENCH: &str = r#"latency_ms = 2.0
+[[module]]
+address = 1
+model = "I-7017"
+range = "08"
+inputs = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0]
+[[module]]
+address = 2
+model = "I-7060"
+[[module]]
+address = 3
+model = "I-7080"
+"#;
+
+/// Commands that are asked in turn.
+struct Workload {
+    name: &'static str,
+    commands: Vec<Command>,
+}
+
+fn workloads() -> Vec<Workload> {
+    let channel = Channel::new(2).expect("2 is a channel");
+    let volts = Address(1);
+    let one = AnalogIn::ReadOne {
+        channel,
+        form: VOLTS,
+    };
+    let port = Digital::ReadPort.to(Address(2));
+    let relays = OutputWord::new(Width::One, 5).expect("5 is one digit");
+    let count = |n| Counter::Read(UpTo::new(n).expect("0 and 1 are counters")).to(Address(3));
+    vec![
+        Workload {
+            name: "#AAN, one channel",
+            commands: vec![one.to(volts)],
+        },
+        Workload {
+            name: "$AAA, eight in hex",
+            commands: vec![AnalogIn::ReadAllHex(VOLTS).to(volts)],
+        },
+        Workload {
+            name: "#AA, eight channels",
+            commands: vec![AnalogIn::ReadAll(VOLTS).to(volts)],
+        },
+        Workload {
+            name: "a test: #AA @AA @AAd 2 #AAN",
+            commands: vec![
+                AnalogIn::ReadAll(VOLTS).to(volts),
+                port,
+                Digital::Write(relays).to(Address(2)),
+                count(0),
+                count(1),
+            ],
+        },
+    ]
+}
+
+/// What was measured of a workload at one rate.
+struct Row {
+    asked: usize,
+    /// Characters of request and reply, mean.
+    characters: f64,
+    /// Of wire and module in the time that passed.
+    share: f64,
+    /// The same if nothing but the rest of two characters came between.
+    bound: f64,
+    /// What a bare client reaches.
+    peer: f64,
+    /// From question to question, microseconds, sorted.
+    each_us: Vec<u64>,
+}
+
+/// Prints every workload at every rate.
+pub fn tell() {
+    println!(
+        "line kept busy, no checksum, modules of 2 ms, pseudo-terminal; bound: nothing but a rest of two characters, \
+         peer: a bare client that spins"
+    );
+    println!(
+        "{:>7} {:<28} {:>5} {:>6} {:>10} {:>8} {:>6} {:>6} {:>6} {:>5}",
+        "baud",
+        "workload",
+        "asked",
+        "chars",
+        "median us",
+        "p99 us",
+        "bound",
+        "peer",
+        "share",
+        "bar"
+    );
+    for (baud, bar) in BARS {
+        for workload in workloads() {
+            match measured(baud, &workload.commands) {
+                Ok(row) => println!(
+                    "{baud:>7} {:<28} {:>5} {:>6.1} {:>10} {:>8} {:>6.3} {:>6.3} {:>6.3} {bar:>5} {}",
+                    workload.name,
+                    row.asked,
+                    row.characters,
+                    row.each_us[row.each_us.len() / 2],
+                    row.each_us[row.each_us.len() * 99 / 100],
+                    row.bound,
+                    row.peer,
+                    row.share,
+                    reached(&row, bar),
+                ),
+                Err(error) => println!("{baud:>7} {:<28} not measured: {error}", workload.name),
+            }
+        }
+    }
+}
+
+fn reached(row: &Row, bar: f64) -> &'static str {
+    if row.share >= bar {
+        "met"
+    } else if row.bound < bar {
+        "out of reach"
+    } else {
+        "missed"
+    }
+}
+
+fn measured(baud: u32, commands: &[Command]) -> Result<Row, Box<dyn Error>> {
+    let wire = Wire { baud };
+    let longest: Vec<u64> = commands
+        .iter()
+        .map(|command| (wire.time(command.longest_reply()) + LATENCY).0)
+        .collect();
+    let round = longest.iter().sum::<u64>();
+    let count = (MEASURED.0 / round + 1) as usize * commands.len();
+    let file =
+        std::env::temp_dir().join(format!("relayrig-bench-{}-{baud}.toml", std::process::id()));
+    std::fs::write(&file, format!("baud = {baud}\n{BENCH}"))?;
+    let rig = rigsim::build_bench(&file, &[])?;
+    std::fs::remove_file(&file)?;
+    let ptys = rigsim::pty::serve(&rig, Rates::Any)?;
+    let path = ptys.paths().remove(0).1.to_string_lossy().into_owned();
+    let ports = SerialPorts { path, baud };
+    let answers = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()?
+        .block_on(asked(ports.clone(), commands, count));
+    let requests: Vec<Vec<u8>> = commands.iter().cycle().take(count).map(written).collect();
+    let peer = bare::asked(&ports.path, wire, &requests)?;
+    row(wire, &answers, count, peer)
+}
+
+fn row(
+    wire: Wire,
+    answers: &[Answer],
+    count: usize,
+    peer: Duration,
+) -> Result<Row, Box<dyn Error>> {
+    let good = answers.iter().filter(|answer| answer.outcome.is_ok());
+    let bad = count - good.count();
+    if bad > 0 {
+        return Err(format!("{bad} of {count} not answered").into());
+    }
+    let times: Vec<RigTime> = answers.iter().map(|answer| answer.asked_at).collect();
+    let mut each_us: Vec<u64> = times
+        .windows(2)
+        .map(|pair| pair[1].since(pair[0]).0)
+        .collect();
+    let elapsed = times[count - 1].since(times[0]).0;
+    // The last answer has no question behind it.
+    let characters: Vec<usize> = answers[..count - 1].iter().map(characters).collect();
+    let needed: u64 = characters
+        .iter()
+        .map(|count| (wire.time(*count) + LATENCY).0)
+        .sum();
+    let rest = wire.time(2).0 * (count as u64 - 1);
+    each_us.sort_unstable();
+    Ok(Row {
+        asked: count,
+        characters: characters.iter().sum::<usize>() as f64 / characters.len() as f64,
+        share: needed as f64 / elapsed as f64,
+        bound: needed as f64 / (needed + rest) as f64,
+        peer: needed as f64 / peer.as_micros() as f64,
+        each_us,
+    })
+}
+
+/// Of request and reply, each with its CR.
+fn characters(answer: &Answer) -> usize {
+    written(&answer.command).len() + answer.raw.len() + 1
+}
+
+fn written(command: &Command) -> Vec<u8> {
+    let mut request = Vec::new();
+    command.encode(false, &mut request);
+    request
+}
+
+/// Asks `commands` in turn until `count` have been answered; the next request always waits.
+async fn asked(ports: SerialPorts, commands: &[Command], count: usize) -> Vec<Answer> {
+    let mut settings = LineSettings::new("bench", ports.baud);
+    settings.checksum = false;
+    let (ask, to_line) = mpsc::channel(1);
+    let (from_line, mut answers) = mpsc::channel(1);
+    tokio::spawn(bus::run_reopening(
+        ports,
+        settings,
+        Pace::real(),
+        to_line,
+        from_line,
+    ));
+    let turns: Vec<Command> = commands.iter().copied().cycle().take(count).collect();
+    tokio::spawn(async move {
+        for (ticket, command) in (0..).zip(turns) {
+            let request = Request {
+                ticket,
+                command,
+                tries: 1,
+            };
+            if ask.send(request).await.is_err() {
+                return;
+            }
+        }
+    });
+    let mut got = Vec::with_capacity(count);
+    while let Some(answer) = answers.recv().await {
+        got.push(answer);
+    }
+    got
+}

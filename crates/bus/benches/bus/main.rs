@@ -1,0 +1,121 @@
+//! `cargo bench --bench bus`: how fast the parser is and whether it allocates, how much of the time a line keeps busy
+//! against the paced simulated modules, and ten million random frames.
+
+#![allow(missing_docs)]
+
+mod bare;
+mod busy;
+
+use dcon::{
+    self, Address, AnalogIn, Command, Common, Counter, DataFormat, Digital, InputForm, TypeCode,
+    UpTo,
+};
+use std::hint::black_box;
+use std::time::Instant;
+
+#[global_allocator]
+static ALLOC: divan::AllocProfiler = divan::AllocProfiler::system();
+
+/// Random frames, each to every kind of command and to the reading of requests.
+const FUZZED: u64 = 10_000_000;
+
+fn main() {
+    busy::tell();
+    fuzz();
+    divan::main();
+}
+
+// ---- parser: divan prints MB/s, and allocations where there are any -------------------------------------------------
+
+const VOLTS: InputForm = InputForm::eight(DataFormat::Engineering, TypeCode(0x08));
+
+#[divan::bench]
+fn parse_eight_channels(bencher: divan::Bencher) {
+    parse(
+        bencher,
+        AnalogIn::ReadAll(VOLTS).to(Address(1)),
+        ">+05.123+04.153+07.234-02.356+10.000-05.133+02.345+08.234",
+    );
+}
+
+#[divan::bench]
+fn parse_count(bencher: divan::Bencher) {
+    let count = Counter::Read(UpTo::new(0).expect("0 is a counter"));
+    parse(bencher, count.to(Address(3)), ">0000001E");
+}
+
+#[divan::bench]
+fn parse_bits(bencher: divan::Bencher) {
+    parse(bencher, Digital::ReadPort.to(Address(0x11)), ">BEDE");
+}
+
+fn parse(bencher: divan::Bencher, command: Command, text: &str) {
+    let frame = sealed(text);
+    bencher
+        .counter(divan::counter::BytesCount::new(frame.len()))
+        .bench_local(|| command.decode(black_box(&frame), true));
+}
+
+fn sealed(text: &str) -> Vec<u8> {
+    format!("{text}{:02X}\r", dcon::checksum(text.as_bytes())).into_bytes()
+}
+
+// ---- random frames --------------------------------------------------------------------------------------------------
+
+/// Splitmix64: the same frames in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+}
+
+fn fuzz() {
+    const LETTERS: &[u8] = b"!>?#$%@~0123456789ABCDEF+-. RDOCLHPSTGIM*";
+    let asks = [
+        Common::ReadConfig.to(Address(1)),
+        Common::ReadWatchdog.to(Address(1)),
+        AnalogIn::ReadAll(VOLTS).to(Address(1)),
+        Digital::ReadSampled.to(Address(1)),
+        Counter::ReadAlarm.to(Address(1)),
+        Counter::Read(UpTo::new(1).expect("1 is a counter")).to(Address(1)),
+    ];
+    let begun = Instant::now();
+    let mut random = Random(1);
+    let mut frame = Vec::with_capacity(80);
+    let (mut taken, mut read) = (0u64, 0u64);
+    for turn in 0..FUZZED {
+        frame.clear();
+        let length = random.next() % 24;
+        for _ in 0..length {
+            let draw = random.next();
+            // One byte in sixteen is anything, the others are characters of the protocol.
+            frame.push(if draw.is_multiple_of(16) {
+                (draw >> 8) as u8
+            } else {
+                LETTERS[(draw >> 8) as usize % LETTERS.len()]
+            });
+        }
+        let checksum = random.next().is_multiple_of(8);
+        if checksum {
+            let sum = dcon::checksum(&frame);
+            frame.extend(format!("{sum:02X}").bytes());
+        }
+        frame.push(b'\r');
+        let ask = asks[(turn % asks.len() as u64) as usize];
+        taken += u64::from(black_box(ask.decode(&frame, checksum)).is_ok());
+        // Reading a request tries every command; one frame in eight keeps the whole within minutes.
+        if turn % 8 == 0 {
+            read += black_box(dcon::readings(&frame[..frame.len() - 1])).len() as u64;
+        }
+    }
+    println!(
+        "{FUZZED} random frames, seed 1: no panic, {taken} replies taken, {read} requests read, {:.0} s",
+        begun.elapsed().as_secs_f64()
+    );
+}

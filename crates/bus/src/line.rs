@@ -1,0 +1,290 @@
+//! The task of a line: requests in, answers out, one at a time and in order.
+
+use super::exchange::{Exchange, Frame};
+use super::owing::Owing;
+use super::talk::{Talk, Times, Trouble};
+use super::trust::Trust;
+use super::{Answer, LineError, LineSettings, Pace, PortError, Request};
+use dcon::{Command, Common, FRAME_LIMIT, Reply};
+use tokio::io::{AsyncRead, AsyncWrite};
+use tokio::sync::mpsc;
+use units::{RigTime, Span};
+
+/// Where a line gets its port from, at the start and after it was lost.
+pub trait Ports {
+    /// A byte stream to the modules.
+    type Port: AsyncRead + AsyncWrite + Unpin;
+    /// Opens it anew. Called at most once per back-off time.
+    fn open(&mut self) -> impl Future<Output = Result<Self::Port, PortError>> + Send;
+}
+
+/// A ready-made stream, which cannot be opened twice.
+struct Given<P>(Option<P>);
+
+impl<P: AsyncRead + AsyncWrite + Unpin + Send> Ports for Given<P> {
+    type Port = P;
+
+    async fn open(&mut self) -> Result<P, PortError> {
+        self.0.take().ok_or(PortError::Gone)
+    }
+}
+
+/// Serves requests over `port` until one of the channels closes. A request is always answered.
+pub async fn run<P: AsyncRead + AsyncWrite + Unpin + Send>(
+    port: P,
+    settings: LineSettings,
+    pace: Pace,
+    requests: mpsc::Receiver<Request>,
+    answers: mpsc::Sender<Answer>,
+) {
+    run_reopening(Given(Some(port)), settings, pace, requests, answers).await;
+}
+
+/// As [`run`], with a source of ports: the first is opened at the first request.
+pub async fn run_reopening<O: Ports>(
+    ports: O,
+    settings: LineSettings,
+    pace: Pace,
+    mut requests: mpsc::Receiver<Request>,
+    answers: mpsc::Sender<Answer>,
+) {
+    let backoff = Span::ms(settings.reopen_first_ms);
+    let mut line = Line {
+        ports,
+        port: None,
+        settings,
+        pace,
+        request: Vec::with_capacity(24),
+        frame: Frame::new(),
+        silent: true,
+        owing: Owing::default(),
+        trust: Trust::default(),
+        reopen_at: RigTime(0),
+        backoff,
+        lost_because: PortError::Gone,
+    };
+    while let Some(request) = requests.recv().await {
+        let answer = line.serve(request).await;
+        assert_eq!(answer.ticket, request.ticket, "the answer to another one");
+        assert_eq!(answer.command, request.command, "another was asked");
+        if answers.send(answer).await.is_err() {
+            return;
+        }
+    }
+}
+
+struct Line<O: Ports> {
+    ports: O,
+    port: Option<O::Port>,
+    settings: LineSettings,
+    pace: Pace,
+    request: Vec<u8>,
+    frame: Frame,
+    /// False after trouble, until the line has been silent for long enough.
+    silent: bool,
+    owing: Owing,
+    trust: Trust,
+    reopen_at: RigTime,
+    backoff: Span,
+    lost_because: PortError,
+}
+
+/// One try: when it was asked, when it was answered, and what came of it.
+struct Try {
+    asked_at: RigTime,
+    answered_at: RigTime,
+    outcome: Result<Reply, LineError>,
+}
+
+impl<O: Ports> Line<O> {
+    /// A setting that stands already is not written again: the EEPROM of a module wears. Where the module does not
+    /// know the question, it is written.
+    async fn serve(&mut self, asked: Request) -> Answer {
+        let Some(setting) = asked.command.setting() else {
+            return self.asked(asked).await;
+        };
+        let found = self
+            .asked(Request {
+                command: setting,
+                ..asked
+            })
+            .await;
+        let outcome = match found.outcome {
+            Ok(reply) if asked.command.stands(&reply) => Ok(Reply::Accepted),
+            Ok(_) => return self.asked(asked).await,
+            Err(LineError::Reply { reason, .. }) if reason.is_answer() => {
+                return self.asked(asked).await;
+            }
+            Err(error) => Err(error),
+        };
+        Answer {
+            command: asked.command,
+            outcome,
+            ..found
+        }
+    }
+
+    async fn asked(&mut self, asked: Request) -> Answer {
+        let command = asked.command;
+        self.request.clear();
+        command.encode(self.settings.checksum, &mut self.request);
+        assert_eq!(self.request.last(), Some(&b'\r'), "a request without end");
+        assert!(self.request.len() <= FRAME_LIMIT, "a request too long");
+        let mut tries_used = 0u8;
+        let last = loop {
+            tries_used += 1;
+            self.frame.clear();
+            let attempt = self.attempt(&command).await;
+            self.count(&command, &attempt);
+            if tries_used >= asked.tries || !may_repeat(&command, &attempt.outcome) {
+                break attempt;
+            }
+        };
+        let text = self.frame.bytes();
+        let raw = String::from_utf8_lossy(text.strip_suffix(b"\r").unwrap_or(text)).into_owned();
+        let Try {
+            asked_at,
+            answered_at,
+            outcome,
+        } = last;
+        assert!(answered_at >= asked_at, "answered before it was asked");
+        assert!(
+            tries_used == 1 || tries_used <= asked.tries,
+            "asked more often than allowed"
+        );
+        Answer {
+            ticket: asked.ticket,
+            command,
+            outcome,
+            raw,
+            asked_at,
+            answered_at,
+            tries_used,
+        }
+    }
+
+    async fn attempt(&mut self, command: &Command) -> Try {
+        let mut times = Times {
+            asked_at: self.pace.now(),
+            answered_at: None,
+        };
+        let result = self.transact(command, &mut times).await;
+        match result {
+            Err(Trouble::Broken(kind)) => self.lost(PortError::Broken { kind }),
+            Ok(_) => self.backoff = Span::ms(self.settings.reopen_first_ms),
+            Err(_) => {}
+        }
+        Try {
+            asked_at: times.asked_at,
+            answered_at: times.answered_at.unwrap_or_else(|| self.pace.now()),
+            outcome: result.map_err(|trouble| self.explain(*command, trouble)),
+        }
+    }
+
+    async fn transact(&mut self, command: &Command, times: &mut Times) -> Result<Reply, Trouble> {
+        self.reopened(command).await?;
+        let Some(port) = &mut self.port else {
+            return Err(Trouble::NoPort);
+        };
+        let mut talk = Talk {
+            exchange: Exchange {
+                port,
+                pace: self.pace,
+                log: &self.settings.log,
+            },
+            settings: &self.settings,
+            owing: &mut self.owing,
+            trust: &mut self.trust,
+            silent: &mut self.silent,
+        };
+        talk.transact(command, &self.request, &mut self.frame, times)
+            .await
+    }
+
+    /// Makes sure of a port. Without one a request takes as long as with a silent module, so that nobody spins.
+    async fn reopened(&mut self, command: &Command) -> Result<(), Trouble> {
+        if self.port.is_some() {
+            return Ok(());
+        }
+        if self.pace.now() >= self.reopen_at {
+            match self.ports.open().await {
+                Ok(port) => {
+                    self.port = Some(port);
+                    self.silent = true;
+                    return Ok(());
+                }
+                Err(reason) => self.lost(reason),
+            }
+        }
+        self.pace
+            .sleep_until(self.pace.now() + self.settings.time_out(command))
+            .await;
+        Err(Trouble::NoPort)
+    }
+
+    /// The port is of no use any more; it is opened again after the back-off, which doubles until something works.
+    fn lost(&mut self, reason: PortError) {
+        self.port = None;
+        self.lost_because = reason;
+        self.reopen_at = self.pace.now() + self.backoff;
+        let longest = Span::ms(self.settings.reopen_longest_ms);
+        assert!(self.backoff > Span(0), "a port opened without rest");
+        self.backoff = (self.backoff + self.backoff).min(longest);
+    }
+
+    fn explain(&self, command: Command, trouble: Trouble) -> LineError {
+        let line = self.settings.name.clone();
+        match trouble {
+            Trouble::TimeOut => LineError::TimeOut {
+                line,
+                command,
+                limit: self.settings.time_out(&command),
+            },
+            Trouble::Reply(reason) => LineError::Reply {
+                line,
+                command,
+                reason,
+            },
+            Trouble::Echo => LineError::Echo { line, command },
+            Trouble::OutOfStep => LineError::OutOfStep { line, command },
+            Trouble::Contradicted => LineError::Contradicted { line, command },
+            Trouble::SecondReply => LineError::SecondReply { line, command },
+            Trouble::NeverSilent => LineError::NeverSilent { line, command },
+            Trouble::Broken(_) | Trouble::NoPort => LineError::PortLost {
+                line,
+                command,
+                reason: self.lost_because.clone(),
+            },
+        }
+    }
+
+    fn count(&self, command: &Command, attempt: &Try) {
+        let Some(address) = command.address() else {
+            return;
+        };
+        let on_wire = self
+            .settings
+            .wire()
+            .time(self.request.len() + self.frame.bytes().len());
+        let taken = attempt.answered_at.since(attempt.asked_at);
+        let latency = Span(taken.0.saturating_sub(on_wire.0));
+        let asked_reset = matches!(command, Command::Common(_, Common::ReadResetStatus));
+        self.settings
+            .log
+            .records()
+            .health
+            .count(address, asked_reset, &attempt.outcome, latency);
+    }
+}
+
+/// Only reads, and only when the line may do better next time.
+fn may_repeat(command: &Command, outcome: &Result<Reply, LineError>) -> bool {
+    command.repeatable()
+        && match outcome {
+            Ok(_) | Err(LineError::PortLost { .. }) => false,
+            Err(LineError::Reply { reason, .. }) => !reason.is_answer(),
+            Err(LineError::TimeOut { .. } | LineError::Echo { .. }) => true,
+            Err(LineError::SecondReply { .. } | LineError::OutOfStep { .. }) => true,
+            Err(LineError::NeverSilent { .. } | LineError::Contradicted { .. }) => true,
+        }
+}

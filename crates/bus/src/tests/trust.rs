@@ -1,0 +1,173 @@
+//! Damage seen at an address gives away the damage that passes for a reply.
+
+use super::*;
+use dcon::{AnalogIn, Channel, DataFormat, InputForm, TypeCode};
+
+/// A count whose last checksum digit is wrong.
+const DAMAGED: &[u8] = b">0000001ED5\r";
+/// 30 and two more, 90 000 000.
+const SOON: &[u8] = b">0000001FD5\r";
+const ELSEWHERE: &[u8] = b">055D4A80F9\r";
+
+fn say(bytes: &'static [u8]) -> Vec<Say> {
+    vec![(2_000, bytes)]
+}
+
+fn asked_of(script: Vec<Vec<Say>>, requests: &[(Command, u8)]) -> (Vec<Answer>, usize) {
+    let (got, asked) = in_virtual_time(played(settings(), script, requests));
+    (got, asked.len())
+}
+
+#[test]
+fn after_a_damaged_reply_an_address_is_heard_twice() {
+    let script = vec![say(DAMAGED), say(THIRTY), say(THIRTY)];
+    let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1)]);
+    assert!(matches!(got[0].outcome, Err(LineError::Reply { .. })));
+    assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Count(30)), 3));
+    assert_eq!(got[1].raw, ">0000001ED4");
+}
+
+#[test]
+fn what_says_three_things_to_one_question_is_not_believed() {
+    let script = vec![
+        say(DAMAGED),
+        say(ELSEWHERE),
+        say(THIRTY),
+        say(NINE),
+        say(THIRTY),
+        say(THIRTY),
+    ];
+    let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1), (count(), 1)]);
+    let text = got[1].outcome.as_ref().unwrap_err().to_string();
+    assert!(
+        text.starts_with("line measure, 03: ") && text.contains("another value when asked again"),
+        "{text}"
+    );
+    assert_eq!((got[2].outcome.clone(), asked), (Ok(Reply::Count(30)), 6));
+}
+
+#[test]
+fn an_input_that_was_switched_between_two_answers_is_believed_when_the_third_says_so_too() {
+    let port = Digital::ReadPort.to(Address(3));
+    let told = |third| {
+        let script = vec![
+            say(DAMAGED),
+            say(b">3B3F2C\r"),
+            say(b">3B7F30\r"),
+            say(third),
+        ];
+        asked_of(script, &[(count(), 1), (port, 1)])
+    };
+    let (got, asked) = told(b">3B7F30\r");
+    let bits = Bits {
+        first: 0x3B,
+        second: 0x7F,
+    };
+    assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Bits(bits)), 4));
+    // Its time is that of the second answer, when the input was first seen so.
+    assert!(got[1].asked_at >= got[0].answered_at + Span(2_000));
+    assert!(got[1].answered_at.since(got[1].asked_at) < Span(3_000));
+    let (got, _) = told(b">3B3F2C\r");
+    assert!(matches!(
+        got[1].outcome,
+        Err(LineError::Contradicted { .. })
+    ));
+}
+
+#[test]
+fn a_count_after_a_reset_and_a_frequency_that_fell_are_believed_at_the_third_answer() {
+    let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
+    for (command, nine) in [(count(), Reply::Count(9)), (frequency, Reply::Frequency(9))] {
+        let script = vec![say(DAMAGED), say(THIRTY), say(NINE), say(NINE)];
+        let (got, asked) = asked_of(script, &[(count(), 1), (command, 1)]);
+        assert_eq!((got[1].outcome.clone(), asked), (Ok(nine), 4));
+        assert_eq!(got[1].raw, ">00000009C7");
+    }
+}
+
+#[test]
+fn a_frequency_that_rose_is_no_count_that_went_on() {
+    let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
+    let script = vec![say(DAMAGED), say(THIRTY), say(SOON), say(SOON)];
+    let (got, asked) = asked_of(script, &[(count(), 1), (frequency, 1)]);
+    assert_eq!(
+        (got[1].outcome.clone(), asked),
+        (Ok(Reply::Frequency(31)), 4)
+    );
+}
+
+#[test]
+fn a_module_that_takes_its_time_is_not_asked_a_third_time() {
+    let late = |bytes| vec![(30_000, bytes)];
+    let script = vec![say(DAMAGED), late(THIRTY), late(NINE), late(NINE)];
+    let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1)]);
+    assert!(matches!(
+        got[1].outcome,
+        Err(LineError::Contradicted { .. })
+    ));
+    assert_eq!(asked, 3);
+}
+
+#[test]
+fn other_addresses_and_outputs_are_believed_at_their_first_word() {
+    let other = Counter::Read(UpTo::new(0).unwrap()).to(Address(5));
+    let write = Digital::Write(OutputWord::sixteen(0x1234)).to(Address(3));
+    let script = vec![say(DAMAGED), say(THIRTY), say(b">3E\r")];
+    let (got, asked) = asked_of(script, &[(count(), 1), (other, 1), (write, 1)]);
+    assert_eq!(got[1].outcome, Ok(Reply::Count(30)));
+    assert_eq!((got[2].outcome.clone(), asked), (Ok(Reply::Accepted), 3));
+}
+
+#[test]
+fn the_probation_ends_with_a_hundred_whole_answers() {
+    let mut script = vec![say(DAMAGED)];
+    script.extend(vec![say(THIRTY); 300]);
+    let (got, asked) = asked_of(script, &[(count(), 1); 61]);
+    assert!(got[1..].iter().all(|answer| answer.outcome.is_ok()));
+    // Fifty are heard twice, ten once.
+    assert_eq!(asked, 1 + usize::from(PROBATION) + 10);
+}
+
+fn volts() -> Command {
+    let form = InputForm::eight(DataFormat::Hex, TypeCode(0x08));
+    let channel = Channel::new(0).unwrap();
+    AnalogIn::ReadOne { channel, form }.to(Address(1))
+}
+
+/// The answer to a reading after damage: what was said of it, and how many were asked in all.
+fn read_of(said: [&'static [u8]; 3]) -> (Answer, usize) {
+    let mut script = vec![say(b">1000FE\r")];
+    script.extend(said.map(say));
+    let (mut got, asked) = asked_of(script, &[(volts(), 1), (volts(), 1)]);
+    assert!(matches!(got[0].outcome, Err(LineError::Reply { .. })));
+    (got.remove(1), asked)
+}
+
+#[test]
+fn an_input_that_moves_is_believed_between_two_others() {
+    let (got, asked) = read_of([b">1000FF\r", b">200000\r", b">300001\r"]);
+    assert_eq!((&*got.raw, asked), (">200000", 4));
+    assert!(got.outcome.is_ok(), "{got:?}");
+    assert!(got.answered_at.since(got.asked_at) < Span(3_000));
+}
+
+#[test]
+fn damage_that_passes_within_the_noise_of_a_reading_is_not_believed() {
+    let (damaged, whole, near) = (b">002000\r", b">003304\r", b">003405\r");
+    for said in [
+        [damaged, whole, near],
+        [whole, damaged, near],
+        [near, whole, damaged],
+    ] {
+        let (got, _) = read_of(said.map(|bytes| bytes.as_slice()));
+        assert_eq!(got.raw, ">003304", "{got:?}");
+        // The time is its own, not that of the whole question.
+        assert!(got.answered_at.since(got.asked_at) < Span(3_000));
+    }
+}
+
+#[test]
+fn a_silent_module_is_not_suspected_of_anything() {
+    let (got, asked) = asked_of(vec![vec![], say(THIRTY)], &[(count(), 1), (count(), 1)]);
+    assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Count(30)), 2));
+}

@@ -1,0 +1,20 @@
+//! How long characters take on the wire.
+
+use units::Span;
+
+/// Bits of a character: start, eight data, stop.
+const BITS: u64 = 10;
+
+/// The speed of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wire {
+    /// Bits per second; zero counts as one.
+    pub baud: u32,
+}
+
+impl Wire {
+    /// Time of `characters`, rounded up to the microsecond.
+    pub fn time(self, characters: usize) -> Span {
+        Span((characters as u64 * BITS * 1_000_000).div_ceil(u64::from(self.baud.max(1))))
+    }
+}

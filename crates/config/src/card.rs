@@ -1,0 +1,19 @@
+//! Loading of `card.toml`.
+
+use super::check::File;
+use super::error::ConfigError;
+use super::keys;
+use machine::dut::card::CardSettings;
+use std::path::Path;
+
+/// Reads and checks what the process card says of the plant.
+///
+/// # Errors
+/// As [`super::Plant::load`].
+pub fn load_card(dir: &Path) -> Result<CardSettings, ConfigError> {
+    let file = File::read(
+        dir.join("card.toml"),
+        "what the process card says of the plant",
+    )?;
+    file.settings(keys::card::FILE)
+}

@@ -1,0 +1,215 @@
+//! Values of a TOML text changed in place: comments, order and everything else stay as they were.
+
+use super::check::File;
+use super::error::ConfigError;
+use super::nearest::nearest;
+use super::sheet::{Entry, Field, fields};
+use machine::rig::fault::Fault;
+use serde_json::Value as Wanted;
+use std::collections::BTreeMap;
+use toml_edit::{Array, DocumentMut, Item, Value};
+
+/// The text of a recipe with `values` by path of their key; null leaves a key out. What a value may be is for the check of the
+/// new text to say.
+///
+/// # Errors
+/// A kind that is none, a path that no recipe of the kind has, a value that TOML has not.
+pub(super) fn edited(
+    file: &File,
+    values: &BTreeMap<String, Wanted>,
+) -> Result<String, ConfigError> {
+    let fields = fields(file)?;
+    let parsed = file.text.parse::<DocumentMut>();
+    let mut document = parsed.map_err(|error| ConfigError::Rule {
+        file: file.path.clone(),
+        line: 1,
+        problem: error.message().to_owned(),
+    })?;
+    for (path, wanted) in values {
+        let field = known(file, &fields, path)?;
+        if same(&field.value, wanted) {
+            continue;
+        }
+        match as_toml(wanted, &field.entry) {
+            Some(value) => set(document.as_item_mut(), path, value),
+            None if wanted.is_null() => leave_out(document.as_item_mut(), path),
+            None => {
+                let fault = Fault::new(
+                    path,
+                    wanted,
+                    "a text, a number, yes or no, or a list of numbers",
+                );
+                return Err(file.locate(&fault));
+            }
+        }
+    }
+    Ok(document.to_string())
+}
+
+fn known<'a>(file: &File, fields: &'a [Field], path: &str) -> Result<&'a Field, ConfigError> {
+    let found = fields.iter().find(|it| it.path == path);
+    found.ok_or_else(|| {
+        let paths: Vec<&str> = fields.iter().map(|it| it.path.as_str()).collect();
+        let expected = match nearest(path, &paths) {
+            Some(near) => format!("\"{near}\"?"),
+            None => "a key of a recipe".to_owned(),
+        };
+        let path: String = path.chars().take(100).collect();
+        file.locate(&Fault::new(path, "an unknown key", expected))
+    })
+}
+
+/// 9 and 9.0 are one value.
+fn same(stands: &Wanted, wanted: &Wanted) -> bool {
+    match (stands, wanted) {
+        (Wanted::Number(stands), Wanted::Number(wanted)) => stands.as_f64() == wanted.as_f64(),
+        (Wanted::Array(stands), Wanted::Array(wanted)) => {
+            let pairs = || stands.iter().zip(wanted);
+            stands.len() == wanted.len() && pairs().all(|(stands, wanted)| same(stands, wanted))
+        }
+        (stands, wanted) => stands == wanted,
+    }
+}
+
+/// A number without a point stays one only where whole numbers are wanted; none for what TOML has not.
+fn as_toml(wanted: &Wanted, entry: &Entry) -> Option<Value> {
+    match wanted {
+        Wanted::String(text) => Some(text.as_str().into()),
+        Wanted::Bool(flag) => Some((*flag).into()),
+        Wanted::Number(number) => match (entry, number.as_i64()) {
+            (Entry::Number(_) | Entry::Numbers { .. }, _) | (_, None) => {
+                Some(number.as_f64()?.into())
+            }
+            (Entry::Text | Entry::Choice { .. } | Entry::Whole(_) | Entry::Flag, Some(whole)) => {
+                Some(whole.into())
+            }
+        },
+        Wanted::Array(items) => {
+            let items = items.iter().map(|item| as_toml(item, entry));
+            Some(Value::Array(items.collect::<Option<Array>>()?))
+        }
+        Wanted::Null | Wanted::Object(_) => None,
+    }
+}
+
+/// A remark behind the old value stays behind the new one.
+fn set(root: &mut Item, path: &str, mut value: Value) {
+    let (tables, key) = parted(path);
+    let table = tables.fold(root, |item, key| &mut item[key]);
+    let slot = &mut table[key];
+    let old = slot.as_value().map(|old| old.decor().clone());
+    match old {
+        Some(decor) => {
+            *value.decor_mut() = decor;
+            *slot = Item::Value(value);
+        }
+        None => {
+            *slot = Item::Value(value);
+            tidy(table);
+        }
+    }
+}
+
+fn leave_out(root: &mut Item, path: &str) {
+    let (mut tables, key) = parted(path);
+    let Some(table) = tables.try_fold(root, |item, key| item.get_mut(key)) else {
+        return;
+    };
+    if let Some(keys) = table.as_table_like_mut() {
+        keys.remove(key);
+        tidy(table);
+    }
+}
+
+/// The names of the tables on the way, and the key in the last of them.
+fn parted(path: &str) -> (impl Iterator<Item = &str>, &str) {
+    let (tables, key) = path.rsplit_once('.').unwrap_or(("", path));
+    (tables.split('.').filter(|it| !it.is_empty()), key)
+}
+
+/// Blanks of a table in one line, after a key came or went.
+fn tidy(table: &mut Item) {
+    if let Some(inline) = table.as_inline_table_mut() {
+        inline.fmt();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use serde_json::json;
+
+    const TEXT: &str = include_str!("../../../config/recipes/jzc-22f-012.toml");
+
+    fn changed(values: Wanted) -> Result<String, ConfigError> {
+        let file = File::parse("r.toml".into(), TEXT.to_owned()).unwrap();
+        edited(&file, &serde_json::from_value(values).unwrap())
+    }
+
+    /// Lines that are not in the text before.
+    fn new_lines(values: Wanted) -> Vec<String> {
+        let text = changed(values).unwrap();
+        let new = text
+            .lines()
+            .filter(|line| !TEXT.lines().any(|old| old == *line));
+        new.map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn one_line_changes_and_its_remark_stays() {
+        let value = json!({"decision.slow_repeats": 5});
+        assert_eq!(
+            new_lines(value),
+            [
+                "slow_repeats = 5               # readings of the slow strategy for a result inside the guard band"
+            ]
+        );
+        let value = json!({"limits.operate_voltage_v.high": 9});
+        assert_eq!(changed(value).unwrap(), TEXT, "9 is 9.0");
+        let value = json!({"limits.operate_voltage_v.high": 8, "part.body_mm": [22.5, 16.5, 17]});
+        assert_eq!(
+            new_lines(value),
+            [
+                "body_mm = [22.5, 16.5, 17.0]",
+                "operate_voltage_v = { high = 8.0 }"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_key_comes_and_goes() {
+        let value = json!({"limits.operate_voltage_v.low": 4.5, "limits.coil_resistance_ohm.high": null,
+            "test.strategy.coil.scans": 2});
+        assert_eq!(
+            new_lines(value),
+            [
+                "coil_resistance_ohm = { low = 360.0 }",
+                "operate_voltage_v = { high = 9.0, low = 4.5 }",
+                "coil = { scans = 2 }"
+            ]
+        );
+    }
+
+    #[test]
+    fn a_path_that_no_recipe_has_is_refused_by_name() {
+        for (path, expected) in [
+            (
+                "limits.operate_voltage_v.hihg",
+                "\"limits.operate_voltage_v.high\"?",
+            ),
+            ("name.x", "\"name\"?"),
+            ("", "a key of a recipe"),
+            ("limits", "a key of a recipe"),
+            ("..", "a key of a recipe"),
+        ] {
+            let refused = changed(json!({path: 1})).unwrap_err().to_string();
+            assert!(
+                refused.contains("an unknown key") && refused.ends_with(expected),
+                "{refused}"
+            );
+        }
+        let refused = changed(json!({"title_en": {"a": 1}})).unwrap_err();
+        assert_eq!(refused.key().unwrap(), "title_en");
+    }
+}

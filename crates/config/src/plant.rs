@@ -1,0 +1,233 @@
+//! Loading of everything that does not change with the part.
+
+use super::check::File;
+use super::error::ConfigError;
+use super::keys;
+use super::lot::load_lot;
+use super::tree::{Node, NotToml, not_toml};
+use machine::dut::em_relay::settings::{
+    AccuracySettings, CalibrationSettings, GoldenSet, ReferenceSettings,
+};
+use machine::dut::{self, Recipe};
+use machine::form::Key;
+use machine::guard::{Actuator, Guard, GuardSettings};
+use machine::rig::fault::Fault;
+use machine::rig::settings::RigSettings;
+use machine::rig::wiring::Wiring;
+use machine::station::gates::LotSettings;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The plant as configured, checked as a whole.
+#[derive(Debug, Clone)]
+pub struct Plant {
+    /// The folder it was read from.
+    pub dir: PathBuf,
+    /// Lines, modules, points, mechanism.
+    pub wiring: Arc<Wiring>,
+    /// The bodies around the nest.
+    pub scene: GuardSettings,
+    /// References on the interface board.
+    pub reference: ReferenceSettings,
+    /// Accuracies promised before calibration.
+    pub accuracy: AccuracySettings,
+    /// How long a calibration holds.
+    pub calibration: CalibrationSettings,
+    /// Golden parts.
+    pub golden: GoldenSet,
+    /// Gates of a lot.
+    pub lot: LotSettings,
+    /// Text of `rig.toml`, for the record of a lot.
+    pub rig_text: String,
+}
+
+/// The sections of `rig.toml` that belong to measuring.
+#[derive(Deserialize)]
+struct GaugeSections {
+    reference: ReferenceSettings,
+    accuracy: AccuracySettings,
+    calibration: CalibrationSettings,
+}
+
+impl Plant {
+    /// Reads and checks the files of `dir`. Nothing is opened or moved.
+    ///
+    /// # Errors
+    /// The first fault, with file, line, key, what was found and what was expected.
+    pub fn load(dir: &Path) -> Result<Self, ConfigError> {
+        let rig = File::read(dir.join("rig.toml"), "the wiring of the rig")?;
+        let settings: RigSettings = rig.settings(keys::rig::FILE)?;
+        let gauge: GaugeSections = rig.settings(keys::rig::FILE)?;
+        let wiring =
+            Wiring::resolve(&settings, dut::FIXTURES).map_err(|fault| rig.locate(&fault))?;
+        let golden = load_golden(&dir.join(&gauge.calibration.golden))?;
+        let scene = load_scene(&dir.join("scene.toml"))?;
+        check_axis(&wiring, &scene, &rig)?;
+        Ok(Self {
+            dir: dir.to_owned(),
+            wiring: Arc::new(wiring),
+            scene,
+            reference: gauge.reference,
+            accuracy: gauge.accuracy,
+            calibration: gauge.calibration,
+            golden,
+            lot: load_lot(dir)?,
+            rig_text: rig.text,
+        })
+    }
+}
+
+impl Plant {
+    /// Refuses a recipe that the modules of this plant cannot measure.
+    ///
+    /// # Errors
+    /// The first fault, with file, line, key and the module that stands against it.
+    pub fn admit(&self, recipe: &Recipe) -> Result<(), ConfigError> {
+        recipe
+            .feasible(&self.wiring, &self.accuracy)
+            .or_else(|fault| {
+                let path = self
+                    .dir
+                    .join("recipes")
+                    .join(format!("{}.toml", recipe.name));
+                Err(File::parse(path, recipe.source_text.clone())?.locate(&fault))
+            })
+    }
+}
+
+impl File {
+    /// Reads and parses a file; `expected` says what it holds, should it be missing.
+    pub fn read(path: PathBuf, expected: &'static str) -> Result<Self, ConfigError> {
+        match std::fs::read_to_string(&path) {
+            Ok(text) => Self::parse(path, text),
+            Err(source) => Err(ConfigError::Unreadable {
+                file: path,
+                expected,
+                source,
+            }),
+        }
+    }
+
+    /// Parses a text that came from `path`.
+    pub fn parse(path: PathBuf, text: String) -> Result<Self, ConfigError> {
+        match Node::parse(&text) {
+            Ok(root) => Ok(Self { path, text, root }),
+            Err(fault) => Err(syntax(path, fault)),
+        }
+    }
+
+    /// Checks the file against its keys and reads it into a settings type.
+    pub fn settings<T: DeserializeOwned>(&self, keys: &[Key]) -> Result<T, ConfigError> {
+        self.check(keys)?;
+        toml::from_str(&self.text).map_err(|error| self.misfit(&error))
+    }
+}
+
+fn syntax(file: PathBuf, fault: NotToml) -> ConfigError {
+    ConfigError::Syntax {
+        file,
+        line: fault.line,
+        problem: fault.problem,
+    }
+}
+
+/// Golden parts: every serial number once.
+fn load_golden(path: &Path) -> Result<GoldenSet, ConfigError> {
+    let file = File::read(path.to_owned(), "the golden parts")?;
+    let set: GoldenSet = file.settings(keys::golden::FILE)?;
+    for (index, part) in set.parts.iter().enumerate() {
+        if let Some(other) = set.parts[..index]
+            .iter()
+            .position(|other| other.serial == part.serial)
+        {
+            let key = format!("golden.{index}.serial");
+            let fault = Fault::new(
+                key,
+                format!("\"{}\"", part.serial),
+                "a serial number of its own",
+            );
+            return Err(file.locate(&fault.against(format!("golden.{other}.serial"))));
+        }
+    }
+    Ok(set)
+}
+
+/// The scene brings its own types and checks: an unknown key, a body without size, an actuator
+/// whose stroke is blocked in an empty rig.
+fn load_scene(path: &Path) -> Result<GuardSettings, ConfigError> {
+    let file = File::read(path.to_owned(), "the bodies around the nest")?;
+    let settings: GuardSettings =
+        toml::from_str(&file.text).map_err(|error| file.misfit(&error))?;
+    Guard::build(&settings).map_err(|error| file.broken_rule(&error))?;
+    Ok(settings)
+}
+
+/// Every place of the sort axis must lie within the stroke that the scene gives it.
+fn check_axis(wiring: &Wiring, scene: &GuardSettings, rig: &File) -> Result<(), ConfigError> {
+    let Some(slide) = scene
+        .actuator
+        .iter()
+        .find(|actuator| actuator.id == Actuator::SortAxis)
+    else {
+        return Ok(());
+    };
+    let points = slide.points_mm.as_deref().unwrap_or_default();
+    let low = points.iter().copied().fold(0.0, f64::min);
+    let high = points
+        .iter()
+        .copied()
+        .fold(slide.stroke_mm.unwrap_or(0.0), f64::max);
+    for station in wiring.axis.stations() {
+        let x_mm = wiring.axis.point(station).x_mm;
+        if !(low..=high).contains(&x_mm) {
+            let expected = format!("{low} to {high}, the stroke of sort_axis in scene.toml");
+            return Err(rig.locate(&Fault::new(
+                format!("{}.x_mm", station.key()),
+                x_mm,
+                expected,
+            )));
+        }
+    }
+    Ok(())
+}
+
+impl File {
+    /// A text that does not fit the settings type of its owner.
+    fn misfit(&self, error: &toml::de::Error) -> ConfigError {
+        let fault = not_toml(&self.text, error);
+        let key = self.label(&self.root.path_at(fault.line));
+        let problem = fault
+            .problem
+            .replace("invalid type: ", "found ")
+            .replace("invalid value: ", "found ");
+        ConfigError::Rule {
+            file: self.path.clone(),
+            line: fault.line,
+            problem: format!("{key}: {problem}"),
+        }
+    }
+
+    /// A rule of the owner that the file breaks; its text begins with the path of the field.
+    fn broken_rule(&self, error: &dyn std::error::Error) -> ConfigError {
+        let mut problem = error.to_string();
+        let path = problem
+            .split(':')
+            .next()
+            .unwrap_or_default()
+            .replace('[', ".")
+            .replace([']', ' '], "");
+        let line = self.root.find(&path).0.line;
+        let mut cause = error.source();
+        while let Some(deeper) = cause {
+            problem = format!("{problem}: {deeper}");
+            cause = deeper.source();
+        }
+        ConfigError::Rule {
+            file: self.path.clone(),
+            line,
+            problem,
+        }
+    }
+}

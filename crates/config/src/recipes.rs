@@ -1,0 +1,86 @@
+//! Loading of recipes: `recipes/NAME.toml`.
+
+use super::check::File;
+use super::error::ConfigError;
+use super::keys;
+use super::tree::{Node, Value};
+use machine::dut::{Kind, Recipe};
+use machine::form::one_of;
+use machine::rig::fault::Fault;
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+
+/// Reads and checks the recipe `name` of the configuration in `dir`.
+///
+/// # Errors
+/// An unknown name lists the known ones; else as [`super::Plant::load`].
+pub fn load_recipe(dir: &Path, name: &str) -> Result<Recipe, ConfigError> {
+    let file = File::read(recipe_path(dir, name)?, "a recipe")?;
+    parse_recipe(file, name)
+}
+
+/// The file of a recipe that there is: nothing that is no name of one, `../rig` for example, becomes a path.
+pub(super) fn recipe_path(dir: &Path, name: &str) -> Result<PathBuf, ConfigError> {
+    let folder = dir.join("recipes");
+    let known = recipe_names(dir);
+    if !known.iter().any(|known| known == name) {
+        return Err(ConfigError::UnknownRecipe {
+            dir: folder,
+            name: name.to_owned(),
+            known,
+        });
+    }
+    Ok(folder.join(format!("{name}.toml")))
+}
+
+/// The names of all recipes, sorted; none when the folder cannot be read.
+pub fn recipe_names(dir: &Path) -> Vec<String> {
+    let Ok(entries) = std::fs::read_dir(dir.join("recipes")) else {
+        return Vec::new();
+    };
+    let mut names: Vec<String> = entries
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter_map(|file| file.strip_suffix(".toml").map(str::to_owned))
+        .collect();
+    names.sort();
+    names
+}
+
+pub(super) fn parse_recipe(file: File, name: &str) -> Result<Recipe, ConfigError> {
+    let mut recipe: Recipe = file.settings(&keys::recipe::of(kind_of(&file)?))?;
+    if recipe.name != name {
+        let fault = Fault::new(
+            "name",
+            format!("\"{}\"", recipe.name),
+            format!("\"{name}\", as the file is called"),
+        );
+        return Err(file.locate(&fault));
+    }
+    recipe.check().map_err(|fault| file.locate(&fault))?;
+    recipe.hash = sha256_hex(file.text.as_bytes());
+    recipe.source_text = file.text;
+    Ok(recipe)
+}
+
+/// The kind of part that a recipe names; what else it may hold depends on it.
+///
+/// # Errors
+/// The key is missing, or names no kind.
+pub(super) fn kind_of(file: &File) -> Result<Kind, ConfigError> {
+    let node = file.root.get("kind");
+    let kind = match node.map(|it| &it.value) {
+        Some(Value::Text(name)) => Kind::from_name(name),
+        Some(_) | None => None,
+    };
+    kind.ok_or_else(|| {
+        let found = node.map_or_else(|| "nothing".to_owned(), Node::describe);
+        file.locate(&Fault::new("kind", found, one_of(Kind::NAMES)))
+    })
+}
+
+pub(super) fn sha256_hex(bytes: &[u8]) -> String {
+    Sha256::digest(bytes)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
+}

@@ -1,0 +1,183 @@
+//! A recipe as a sheet to be filled in: every key with its unit and range, and the value it has.
+
+use super::check::File;
+use super::error::ConfigError;
+use super::keys;
+use super::recipes::kind_of;
+use super::tree::{Node, Value};
+use machine::form::{Form, Key, Range};
+use serde::Serialize;
+use serde_json::json;
+
+/// One key of a recipe.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Field {
+    /// Path of the key: `limits.operate_voltage_v.high`.
+    pub path: String,
+    /// What it may be.
+    #[serde(flatten)]
+    pub entry: Entry,
+    /// Whether it may be left out.
+    pub optional: bool,
+    /// What stands in the file; null where it is left out.
+    pub value: serde_json::Value,
+}
+
+/// What a field takes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "form", rename_all = "snake_case")]
+pub enum Entry {
+    /// Text that is not empty.
+    Text,
+    /// One of these words.
+    Choice {
+        /// The words.
+        words: &'static [&'static str],
+    },
+    /// A number.
+    Number(Bounds),
+    /// A list of numbers.
+    Numbers {
+        /// How many.
+        count: usize,
+        /// Of each.
+        #[serde(flatten)]
+        bounds: Bounds,
+    },
+    /// A whole number.
+    Whole(Bounds),
+    /// Yes or no.
+    Flag,
+}
+
+/// Where a number must lie.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Bounds {
+    /// Empty for a pure number.
+    pub unit: &'static str,
+    /// Lower end.
+    pub low: f64,
+    /// Whether the lower end itself is allowed; the upper one always is.
+    pub low_allowed: bool,
+    /// Upper end.
+    pub high: f64,
+}
+
+impl From<&Range> for Bounds {
+    fn from(range: &Range) -> Self {
+        Self {
+            unit: range.unit,
+            low: range.low,
+            low_allowed: range.low_allowed,
+            high: range.high,
+        }
+    }
+}
+
+/// Every key that a recipe of its kind may hold, in the order of `config/README.md`, with what stands in the file.
+///
+/// # Errors
+/// The file names no kind.
+pub fn fields(file: &File) -> Result<Vec<Field>, ConfigError> {
+    let mut found = Vec::new();
+    let keys = keys::recipe::of(kind_of(file)?);
+    gather("", &keys, &file.root, &mut found);
+    Ok(found)
+}
+
+fn gather(path: &str, keys: &[Key], root: &Node, found: &mut Vec<Field>) {
+    for key in keys {
+        let path = format!("{path}{}", key.name);
+        if let Form::Table(inner) = &key.form {
+            gather(&format!("{path}."), inner, root, found);
+        } else if let Some(entry) = entry(&key.form) {
+            let value = match root.find(&path) {
+                (node, true) => as_json(node),
+                (_, false) => serde_json::Value::Null,
+            };
+            found.push(Field {
+                path,
+                entry,
+                optional: key.optional,
+                value,
+            });
+        }
+    }
+}
+
+/// None for forms that a sheet cannot show; a recipe has none of them.
+fn entry(form: &Form) -> Option<Entry> {
+    match form {
+        Form::Text => Some(Entry::Text),
+        Form::Choice(words) => Some(Entry::Choice { words }),
+        Form::Number(range) => Some(Entry::Number(range.into())),
+        Form::Numbers(count, range) => Some(Entry::Numbers {
+            count: *count,
+            bounds: range.into(),
+        }),
+        Form::Whole { unit, low, high } => Some(Entry::Whole(Bounds {
+            unit,
+            low: *low as f64,
+            low_allowed: true,
+            high: *high as f64,
+        })),
+        Form::Flag => Some(Entry::Flag),
+        Form::Hex(_)
+        | Form::Listed(_)
+        | Form::Table(_)
+        | Form::Named(_)
+        | Form::NamedWith(..)
+        | Form::Each(..)
+        | Form::Points(_)
+        | Form::List(_) => None,
+    }
+}
+
+fn as_json(node: &Node) -> serde_json::Value {
+    match &node.value {
+        Value::Text(text) | Value::Date(text) => json!(text),
+        Value::Whole(number) => json!(number),
+        Value::Number(number) => json!(number),
+        Value::Flag(flag) => json!(flag),
+        Value::List(items) => items.iter().map(as_json).collect(),
+        Value::Table(_) => serde_json::Value::Null,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use machine::dut::Kind;
+
+    /// Paths of all keys that are no tables, by another way.
+    fn leaves(path: &str, keys: &[Key]) -> Vec<String> {
+        let of = |key: &Key| match &key.form {
+            Form::Table(inner) => leaves(&format!("{path}{}.", key.name), inner),
+            _ => vec![format!("{path}{}", key.name)],
+        };
+        keys.iter().flat_map(of).collect()
+    }
+
+    #[test]
+    fn every_key_of_a_recipe_is_a_field_with_the_value_of_the_file() {
+        let text = include_str!("../../../config/recipes/jzc-22f-012.toml");
+        let file = File::parse("r.toml".into(), text.to_owned()).unwrap();
+        let fields = fields(&file).unwrap();
+        let paths: Vec<&str> = fields.iter().map(|it| it.path.as_str()).collect();
+        assert_eq!(paths, leaves("", &keys::recipe::of(Kind::EmRelay)));
+        let value = |path: &str| {
+            fields
+                .iter()
+                .find(|it| it.path == path)
+                .unwrap()
+                .value
+                .clone()
+        };
+        assert_eq!(value("part.body_mm"), json!([22.5, 16.5, 16.5]));
+        assert_eq!(value("limits.operate_voltage_v.high"), json!(9.0));
+        assert_eq!(value("limits.operate_voltage_v.low"), json!(null));
+        assert_eq!(value("decision.slow_repeats"), json!(3));
+        assert_eq!(value("test.clamp"), json!("zener"));
+    }
+}

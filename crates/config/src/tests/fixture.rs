@@ -1,0 +1,178 @@
+//! Rigs that lack points of a fixture: they load, and recipes that need one are refused by its name.
+
+use super::RIG;
+use crate::{Plant, load_recipe, recipe_names};
+use machine::dut::FIXTURES;
+use machine::dut::Kind;
+use machine::rig::point::{DigitalIn, DigitalOut};
+use std::path::Path;
+use toml::{Table, Value};
+
+/// Sections of `rig.toml` whose entries are points.
+const POINTS: [&str; 6] = [
+    "digital_in",
+    "digital_out",
+    "analog_in",
+    "analog_out",
+    "counter",
+    "temperature",
+];
+
+/// The default rig without the points of these names.
+fn without(lacks: impl Fn(&str, &Table) -> bool) -> Table {
+    let mut rig: Table = toml::from_str(RIG).unwrap();
+    for section in POINTS {
+        let points = rig[section].as_table_mut().unwrap();
+        points.retain(|name, point| !lacks(name, point.as_table().unwrap()));
+    }
+    rig
+}
+
+/// The default rig with nothing on its measuring line, and without that line.
+fn without_the_coil_board() -> Table {
+    let rig: Table = toml::from_str(RIG).unwrap();
+    let measures = |module: &Value| module["line"].as_str() == Some("measure");
+    let board = |point: &Table| measures(&rig["module"][point["module"].as_str().unwrap()]);
+    let mut bare = without(|_, point| board(point));
+    let modules = bare["module"].as_table_mut().unwrap();
+    modules.retain(|_, module| !measures(module));
+    bare["line"].as_table_mut().unwrap().remove("measure");
+    for section in ["analog_in", "analog_out", "counter", "temperature"] {
+        bare.remove(section);
+    }
+    bare
+}
+
+/// The default folder with another `rig.toml`.
+fn folder(rig: &Table) -> tempfile::TempDir {
+    let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+    let copy = tempfile::tempdir().unwrap();
+    let to = |name: &str| copy.path().join(name);
+    std::fs::create_dir(to("recipes")).unwrap();
+    let recipes = recipe_names(&original).into_iter();
+    let recipes = recipes.map(|name| format!("recipes/{name}.toml"));
+    for name in ["scene.toml", "golden.toml"]
+        .map(String::from)
+        .into_iter()
+        .chain(recipes)
+    {
+        std::fs::copy(original.join(&name), to(&name)).unwrap();
+    }
+    std::fs::write(to("rig.toml"), toml::to_string(rig).unwrap()).unwrap();
+    copy
+}
+
+/// Each relay's recipe with why it was refused.
+fn refused(rig: &Table) -> Vec<String> {
+    let copy = folder(rig);
+    let plant = Plant::load(copy.path()).unwrap();
+    let recipes = recipe_names(copy.path());
+    let recipes = recipes
+        .iter()
+        .map(|name| load_recipe(copy.path(), name).unwrap());
+    let relays = recipes.filter(|recipe| recipe.kind() == Kind::EmRelay);
+    relays
+        .map(|recipe| plant.admit(&recipe).unwrap_err().to_string())
+        .collect()
+}
+
+#[test]
+fn a_rig_without_the_coil_board_refuses_each_of_its_recipes() {
+    let refused = refused(&without_the_coil_board());
+    assert_eq!(refused.len(), 4);
+    for message in refused {
+        let why = "[test]: found no [digital_in].kelvin_coil_a in rig.toml, \
+                   expected every point that its test needs";
+        assert!(message.ends_with(why), "{message}");
+        assert!(message.contains("recipes/jzc-22f-0"), "{message}");
+    }
+}
+
+#[test]
+fn a_resistor_is_refused_by_the_first_point_it_misses() {
+    let copy = folder(&without_the_coil_board());
+    let plant = Plant::load(copy.path()).unwrap();
+    let recipe = load_recipe(copy.path(), "resistor-390").unwrap();
+    let why = plant.admit(&recipe).unwrap_err().to_string();
+    assert!(
+        why.contains("no [digital_out].coil_drive in rig.toml"),
+        "{why}"
+    );
+}
+
+#[test]
+fn the_machine_resolves_without_the_coil_board() {
+    let copy = folder(&without_the_coil_board());
+    let wiring = Plant::load(copy.path()).unwrap().wiring;
+    assert_eq!((wiring.lines.len(), wiring.modules.len()), (1, 4));
+    assert_eq!(wiring.measuring_lines(), []);
+    for point in DigitalIn::ALL {
+        let handle = wiring.digital_input(point.name()).unwrap();
+        assert_eq!(handle, (*point).into());
+    }
+    for point in DigitalOut::ALL {
+        let handle = wiring.digital_output(point.name()).unwrap();
+        assert_eq!(handle.of_machine(), Some(*point));
+    }
+    let beams = wiring.axis.bins().map(|bin| wiring.axis.beam(bin));
+    assert!(
+        beams
+            .map(|beam| wiring.input_name(beam))
+            .all(|name| name.starts_with("beam_"))
+    );
+    assert_eq!(
+        wiring.digital_inputs().count(),
+        DigitalIn::COUNT + wiring.axis.bins().count()
+    );
+    assert_eq!(
+        wiring.emergency_stop_line(),
+        wiring.line_named("motion").unwrap()
+    );
+}
+
+#[test]
+fn a_recipe_is_refused_by_the_first_point_that_is_missing() {
+    for (section, name) in [
+        ("digital_in", "latch"),
+        ("digital_out", "arm"),
+        ("analog_in", "contact_drop"),
+        ("analog_out", "supply_fine"),
+        ("counter", "gate_1"),
+        ("temperature", "track_temperature"),
+    ] {
+        let refused = refused(&without(|known, _| known == name));
+        let why = format!("found no [{section}].{name} in rig.toml, expected");
+        assert!(refused.iter().all(|it| it.contains(&why)), "{refused:?}");
+    }
+}
+
+#[test]
+fn a_recipe_needs_no_point_that_its_test_does_not_read() {
+    let spare = [
+        "coil_voltage",
+        "contact_current",
+        "supply_voltage",
+        "nest_temperature",
+    ];
+    let copy = folder(&without(|name, _| spare.contains(&name)));
+    let plant = Plant::load(copy.path()).unwrap();
+    for name in recipe_names(copy.path()) {
+        plant
+            .admit(&load_recipe(copy.path(), &name).unwrap())
+            .unwrap();
+    }
+}
+
+#[test]
+fn the_default_rig_wires_every_point_that_a_kind_declares() {
+    let rig: Table = toml::from_str(RIG).unwrap();
+    for kind in FIXTURES {
+        let outputs = kind.digital_out.iter().map(|it| ("digital_out", it.name));
+        let analog = kind.analog_in.iter().map(|it| ("analog_in", it.name));
+        let inputs = kind.digital_in.iter().map(|it| ("digital_in", *it));
+        let sources = kind.analog_out.iter().map(|it| ("analog_out", *it));
+        for (section, name) in outputs.chain(analog).chain(inputs).chain(sources) {
+            assert!(rig[section].get(name).is_some(), "{section} {name}");
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Revisions: what is kept, what is refused, and that a refusal leaves the folder as it was.
+
+use super::plant::Copy;
+use crate::{Change, ConfigError, Plant, load_recipe, revise, revision};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+const NAME: &str = "jzc-22f-012";
+
+fn bench() -> (Copy, Plant) {
+    let copy = Copy::with("", str::to_owned);
+    let plant = Plant::load(copy.0.path()).unwrap();
+    (copy, plant)
+}
+
+/// A change of the newest revision.
+fn change(plant: &Plant, path: &str, value: serde_json::Value) -> Change {
+    Change {
+        name: NAME.into(),
+        from: revision(&plant.dir, NAME, None).unwrap().hash,
+        values: [(path.to_owned(), value)].into(),
+    }
+}
+
+/// Every file below, with its text.
+fn files(folder: &Path) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path));
+        } else {
+            let text = std::fs::read_to_string(&path).unwrap();
+            found.insert(path.display().to_string(), text);
+        }
+    }
+    found
+}
+
+#[test]
+fn a_revision_is_what_loads_next_and_the_old_text_is_kept_to_the_letter() {
+    let (copy, plant) = bench();
+    let old = load_recipe(copy.0.path(), NAME).unwrap();
+    let path = "limits.operate_voltage_v.high";
+    let saved = revise(&plant, &change(&plant, path, json!(8.7))).unwrap();
+    assert_eq!((saved.number, saved.newest), (2, 2));
+    let new = load_recipe(copy.0.path(), NAME).unwrap();
+    assert_eq!(new.hash, saved.hash);
+    assert!(
+        new.source_text
+            .contains("operate_voltage_v = { high = 8.7 }")
+    );
+    let kept = copy.0.path().join("recipes/revisions/jzc-22f-012/1.toml");
+    assert_eq!(std::fs::read_to_string(kept).unwrap(), old.source_text);
+    assert_eq!(
+        revision(copy.0.path(), NAME, Some(1)).unwrap().hash,
+        old.hash
+    );
+    let third = revise(&plant, &change(&plant, path, json!(9.0))).unwrap();
+    assert_eq!(
+        (third.number, &third.hash),
+        (3, &old.hash),
+        "back again is a revision too"
+    );
+    assert_eq!(crate::recipe_names(copy.0.path()), [NAME]);
+    let files = files(&copy.0.path().join("recipes"));
+    assert_eq!(files.len(), 3, "{:?}", files.keys());
+}
+
+#[test]
+fn the_second_of_two_people_is_told_and_nothing_is_written() {
+    let (copy, plant) = bench();
+    let first = change(&plant, "decision.slow_repeats", json!(4));
+    let second = change(&plant, "part.pin_length_mm", json!(3.6));
+    revise(&plant, &first).unwrap();
+    let before = files(copy.0.path());
+    let refused = revise(&plant, &second).unwrap_err();
+    assert!(
+        matches!(refused, ConfigError::NotNewest { newest: 2, .. }),
+        "{refused}"
+    );
+    assert_eq!(files(copy.0.path()), before);
+}
+
+#[test]
+fn what_loading_or_the_plant_refuses_is_named_by_its_key_and_leaves_every_file_as_it_was() {
+    let (copy, plant) = bench();
+    let before = files(copy.0.path());
+    let high = "limits.operate_voltage_v.high";
+    let coil = "limits.coil_resistance_ohm.low";
+    for (path, value, key) in [
+        (high, json!(20.5), high),
+        (high, json!("9 V"), high),
+        (high, json!(true), high),
+        (coil, json!(441.0), coil),
+        ("part.body_mm", json!([22.5, -1.0, 16.5]), "part.body_mm.1"),
+        ("part.body_mm", json!([22.5]), "part.body_mm"),
+        ("part.nominal_v", json!(null), "part.nominal_v"),
+        ("decision.slow_repeats", json!(2.5), "decision.slow_repeats"),
+        ("decision.rule", json!("lenient"), "decision.rule"),
+        ("name", json!("other"), "name"),
+        ("title_zh", json!("  "), "title_zh"),
+        ("test.prebias_v", json!(8.0), "test.prebias_v"),
+        // Nothing is left between the guard bands of what these modules measure: the plant says so, not the file.
+        (coil, json!(439.9), "limits.coil_resistance_ohm"),
+    ] {
+        let refused = revise(&plant, &change(&plant, path, value)).unwrap_err();
+        assert_eq!(refused.key().as_deref(), Some(key), "{refused}");
+    }
+    assert_eq!(files(copy.0.path()), before);
+}
+
+#[test]
+fn a_change_that_changes_nothing_is_refused() {
+    let (copy, plant) = bench();
+    let before = files(copy.0.path());
+    let same = change(&plant, "limits.operate_voltage_v.high", json!(9));
+    let refused = revise(&plant, &same).unwrap_err();
+    assert!(
+        matches!(refused, ConfigError::NothingChanged { .. }),
+        "{refused}"
+    );
+    assert_eq!(files(copy.0.path()), before);
+}
+
+#[test]
+fn a_name_that_climbs_is_no_recipe() {
+    let (copy, plant) = bench();
+    let before = files(copy.0.path());
+    for name in [
+        "../rig",
+        "revisions/jzc-22f-012/1",
+        "",
+        ".",
+        "..",
+        "jzc-22f-012\0",
+        "/etc/passwd",
+    ] {
+        let mut wanted = change(&plant, "decision.slow_repeats", json!(4));
+        wanted.name = name.into();
+        let refused = revise(&plant, &wanted).unwrap_err();
+        assert!(
+            matches!(refused, ConfigError::UnknownRecipe { .. }),
+            "{refused}"
+        );
+        assert!(revision(copy.0.path(), name, Some(1)).is_err());
+    }
+    assert_eq!(files(copy.0.path()), before);
+}
+
+#[test]
+fn a_revision_that_was_cut_off_after_the_old_text_was_kept_is_made_again_under_its_number() {
+    let (copy, plant) = bench();
+    let folder = copy.0.path().join("recipes/revisions/jzc-22f-012");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::copy(
+        copy.0.path().join("recipes/jzc-22f-012.toml"),
+        folder.join("1.toml"),
+    )
+    .unwrap();
+    std::fs::write(folder.join("1.toml.new"), "half a te").unwrap();
+    assert_eq!(revision(copy.0.path(), NAME, None).unwrap().number, 1);
+    let wanted = change(&plant, "decision.slow_repeats", json!(4));
+    assert_eq!(revise(&plant, &wanted).unwrap().number, 2);
+    assert_eq!(
+        revision(copy.0.path(), NAME, Some(1)).unwrap().hash,
+        wanted.from
+    );
+}
+
+#[test]
+fn a_number_that_never_was_is_refused_with_the_greatest() {
+    let (copy, _) = bench();
+    for number in [0, 2, u32::MAX] {
+        let refused = revision(copy.0.path(), NAME, Some(number)).unwrap_err();
+        assert!(
+            refused.to_string().ends_with("expected 1 to 1"),
+            "{refused}"
+        );
+    }
+}

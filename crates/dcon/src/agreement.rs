@@ -1,0 +1,194 @@
+//! Several answers to the same question, some milliseconds apart: which of them can be believed, if one may be damaged?
+//!
+//! A checksum of eight bits lets one damaged reply in 256 pass. Damage hardly ever comes twice alike, so two answers in
+//! a row that say the same are both true. What moves, or is measured by a noisy converter, does not say the same; it is
+//! asked a third time, and the answer between the other two is believed: one damaged answer of three cannot put it
+//! farther off than the two that are whole.
+//!
+//! | three answers, no two in a row alike | believed |
+//! |---|---|
+//! | analog reading, level, frequency | the middle value, whenever it was said |
+//! | all analog inputs at once | the second, if each input lies between before and after, or beyond by 1/1024 of its range: noise of the coarsest converter, twelve bits |
+//! | count | the second, if all go upwards, by 100 kHz at most: more than any input of a 7080 takes |
+//! | event counter | the same, by 100 Hz |
+//! | everything else | none |
+
+use super::{Command, Reading, Reply, TypeCode};
+
+/// Share of the range by which one of many inputs may lie beyond its neighbours in time.
+const NOISE_SHARE: f64 = 1.0 / 1024.0;
+/// Counts in a millisecond at most.
+const COUNTS_PER_MS: u64 = 100;
+/// A digital input counts one event in so many milliseconds at most.
+const MS_PER_EVENT: u64 = 10;
+
+impl Command {
+    /// The place of the one to believe among two or three answers, the last asked `apart_ms` (rounded up) after the
+    /// first. None if one more must be asked, or three were not enough.
+    pub fn believed(&self, answers: &[Reply], apart_ms: u64) -> Option<usize> {
+        let alike = answers.windows(2).position(|pair| pair[0] == pair[1]);
+        let [first, second, third] = answers else {
+            return alike;
+        };
+        alike.or_else(|| self.middle([first, second, third], apart_ms))
+    }
+
+    fn middle(&self, answers: [&Reply; 3], apart_ms: u64) -> Option<usize> {
+        let second = |holds: bool| holds.then_some(1);
+        match answers {
+            [Reply::Count(a), Reply::Count(b), Reply::Count(c)] => {
+                let most = apart_ms * COUNTS_PER_MS;
+                let rises = |from: u32, to: u32| u64::from(to.wrapping_sub(from)) <= most;
+                second(rises(*a, *b) && rises(*b, *c))
+            }
+            [Reply::Events(a), Reply::Events(b), Reply::Events(c)] => {
+                let most = 1 + apart_ms / MS_PER_EVENT;
+                let rises = |from: u16, to: u16| u64::from(to.wrapping_sub(from)) <= most;
+                second(rises(*a, *b) && rises(*b, *c))
+            }
+            [Reply::Readings(a), Reply::Readings(b), Reply::Readings(c)] => second(
+                a.iter()
+                    .zip(b.iter())
+                    .zip(c.iter())
+                    .all(|((before, it), after)| self.on_the_way(before, it, after)),
+            ),
+            [a, b, c] => {
+                let values = [self.size(a)?, self.size(b)?, self.size(c)?];
+                let mut places = [0, 1, 2];
+                places.sort_by(|one, other| values[*one].total_cmp(&values[*other]));
+                Some(places[1])
+            }
+        }
+    }
+
+    /// What single quantities are compared by; none of what has no order.
+    fn size(&self, answer: &Reply) -> Option<f64> {
+        match answer {
+            Reply::Reading(reading) => reading.value.in_units(self.range()?),
+            Reply::Frequency(hertz) => Some(f64::from(*hertz)),
+            Reply::Level(level) => Some(f64::from(level.steps())),
+            _ => None,
+        }
+    }
+
+    /// Between its neighbours, but for noise; what is no number says the same all the time.
+    fn on_the_way(&self, before: &Reading, it: &Reading, after: &Reading) -> bool {
+        let scale = self.range().and_then(TypeCode::full_scale);
+        let noise = scale.map_or(0.0, |scale| (scale.high - scale.low) * NOISE_SHARE);
+        let value = |reading: &Reading| reading.value.in_units(self.range()?);
+        match (value(before), value(it), value(after)) {
+            (Some(before), Some(it), Some(after)) => {
+                before.min(after) - noise <= it && it <= before.max(after) + noise
+            }
+            (None, None, None) => before.value == it.value && it.value == after.value,
+            (_, _, _) => false,
+        }
+    }
+
+    /// Of the analog inputs that are asked.
+    fn range(&self) -> Option<TypeCode> {
+        match self {
+            Self::AnalogIn(_, ask) => ask.range(),
+            Self::HostOk
+            | Self::SampleAll
+            | Self::Common(..)
+            | Self::AnalogOut(..)
+            | Self::Digital(..)
+            | Self::Counter(..) => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use crate::{
+        Address, AnalogIn, Channel, Command, Counter, DataFormat, Digital, InputForm, TypeCode,
+        UpTo,
+    };
+
+    /// The place of the answer that is believed, all of them 3 ms apart.
+    fn believed(command: Command, said: &[&str]) -> Option<usize> {
+        let answers: Vec<_> = said
+            .iter()
+            .map(|text| command.decode(text.as_bytes(), false).unwrap())
+            .collect();
+        command.believed(&answers, 3 * (said.len() as u64 - 1))
+    }
+
+    fn form(format: DataFormat) -> InputForm {
+        InputForm::eight(format, TypeCode(0x08))
+    }
+
+    fn volts() -> Command {
+        let channel = Channel::new(0).unwrap();
+        let form = form(DataFormat::Engineering);
+        AnalogIn::ReadOne { channel, form }.to(Address(1))
+    }
+
+    #[test]
+    fn what_is_said_twice_alike_is_believed_and_what_is_not_is_asked_again() {
+        let port = Digital::ReadPort.to(Address(3));
+        assert_eq!(believed(port, &[">BEDE\r", ">BEDE\r"]), Some(0));
+        assert_eq!(believed(port, &[">BEDE\r", ">BEDC\r"]), None);
+        assert_eq!(believed(port, &[">BEDE\r", ">BEDC\r", ">BEDC\r"]), Some(1));
+        assert_eq!(believed(port, &[">BEDE\r", ">BEDC\r", ">BEDE\r"]), None);
+        assert_eq!(believed(volts(), &[">+05.000\r", ">+05.001\r"]), None);
+        assert_eq!(believed(volts(), &[">+9999.9\r", ">+9999.9\r"]), Some(0));
+    }
+
+    #[test]
+    fn of_three_readings_the_middle_one_is_believed_whichever_is_damaged() {
+        let middle = |said: [&str; 3]| believed(volts(), &said);
+        assert_eq!(middle([">+05.019\r", ">+05.001\r", ">+05.000\r"]), Some(1));
+        assert_eq!(middle([">+05.001\r", ">+05.019\r", ">+05.000\r"]), Some(0));
+        assert_eq!(middle([">+05.002\r", ">+05.000\r", ">+05.001\r"]), Some(2));
+        assert_eq!(middle([">+01.000\r", ">+02.000\r", ">+03.000\r"]), Some(1));
+        assert_eq!(middle([">+01.000\r", ">+9999.9\r", ">+02.000\r"]), None);
+    }
+
+    #[test]
+    fn a_frequency_is_no_count_that_went_on() {
+        let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
+        let said = [">00000032\r", ">00000009\r", ">00000031\r"];
+        assert_eq!(believed(frequency, &said), Some(2));
+        let count = Counter::Read(UpTo::new(0).unwrap()).to(Address(3));
+        assert_eq!(believed(count, &said), None);
+    }
+
+    #[test]
+    fn all_inputs_lie_between_before_and_after_or_within_the_noise_of_twelve_bits() {
+        let hex = AnalogIn::ReadAll(form(DataFormat::Hex)).to(Address(1));
+        let all = |last: &str| format!(">{}{last}\r", "4000".repeat(7));
+        let second = |last: [&str; 3]| {
+            let [a, b, c] = last.map(all);
+            believed(hex, &[&a, &b, &c])
+        };
+        assert_eq!(second(["4000", "4040", "4001"]), Some(1));
+        assert_eq!(second(["4000", "4050", "4001"]), None);
+        assert_eq!(second(["4000", "5000", "6000"]), Some(1), "ramp");
+        assert_eq!(second(["4000", "3000", "5000"]), None);
+        assert_eq!(second(["    ", "4000", "    "]), None);
+    }
+
+    #[test]
+    fn a_count_goes_up_and_no_faster_than_its_input_can() {
+        let count = Counter::Read(UpTo::new(0).unwrap()).to(Address(3));
+        let second = |said: [&str; 3]| believed(count, &said);
+        assert_eq!(
+            second([">000003E8\r", ">00000514\r", ">00000640\r"]),
+            Some(1)
+        );
+        assert_eq!(second([">000003E8\r", ">00000641\r", ">00000642\r"]), None);
+        assert_eq!(second([">000003E8\r", ">000003E7\r", ">000003E9\r"]), None);
+        assert_eq!(
+            second([">FFFFFFFF\r", ">00000001\r", ">00000002\r"]),
+            Some(1)
+        );
+        let channel = Channel::new(2).unwrap();
+        let events = Digital::ReadEvents { channel }.to(Address(3));
+        let second = |said: [&str; 3]| believed(events, &said);
+        assert_eq!(second(["!0300103\r", "!0300104\r", "!0300105\r"]), Some(1));
+        assert_eq!(second(["!0300103\r", "!0300105\r", "!0300106\r"]), None);
+    }
+}

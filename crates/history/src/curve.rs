@@ -1,0 +1,253 @@
+//! Evidence curves: the samples of one signal as a small blob, and back.
+//!
+//! Per sample two numbers, each in bytes of seven bits, low ones first, the high bit set on all but the
+//! last (LEB128):
+//!
+//! 1. microseconds since the sample before, 0 for the first;
+//! 2. 0 for a look that gave no number (over range), else 1 + the zigzag code (0, -1, 1, -2 ...)
+//!    of the steps since the last number, the first one since 0.
+//!
+//! So a sample takes 2 to 12 bytes (gaps below nine hours, changes below 2^47 steps), some 4 in a test of the
+//! default recipe; a part takes at most 12 kB, since no more than [`MOST`](machine::instrument::trace::MOST)
+//! looks of a test are kept.
+
+use super::Moment;
+use super::error::{Doing, HistoryError, Result};
+use super::{Archive, Part};
+use machine::instrument::curve::Curve;
+use rusqlite::{Transaction, params};
+use serde::{Deserialize, Serialize, Serializer};
+
+/// The samples of one signal, as they were measured.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct CurveRecord {
+    /// Name of the point.
+    pub signal: String,
+    /// Unit of the values; empty for bits and counts.
+    pub unit: String,
+    /// Values are kept as whole multiples of this; more than 0.
+    pub step: f64,
+    /// Instant and value, in order of time; none where the look gave no number.
+    pub samples: Vec<(i64, Option<f64>)>,
+}
+
+/// A curve as it leaves the program.
+#[derive(Serialize)]
+struct Shown<'a> {
+    signal: &'a str,
+    unit: &'a str,
+    begin: Moment,
+    t_us: &'a [i64],
+    values: &'a [Option<f64>],
+}
+
+/// The curves of a part, their begin as an instant.
+pub(super) fn shown<S: Serializer>(
+    curves: &[Curve],
+    serializer: S,
+) -> std::result::Result<S::Ok, S::Error> {
+    serializer.collect_seq(curves.iter().map(|it| Shown {
+        signal: &it.signal,
+        unit: &it.unit,
+        begin: Moment(it.begin_us),
+        t_us: &it.t_us,
+        values: &it.values,
+    }))
+}
+
+/// The blob.
+pub(super) fn packed(curve: &CurveRecord) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(curve.samples.len() * 5);
+    let (mut then, mut before) = (curve.samples.first().map_or(0, |it| it.0), 0_i64);
+    for &(at, value) in &curve.samples {
+        number(&mut bytes, at.saturating_sub(then).max(0).unsigned_abs());
+        then = then.max(at);
+        match value.filter(|it| it.is_finite()) {
+            None => number(&mut bytes, 0),
+            Some(value) => {
+                let steps = (value / curve.step).round() as i64;
+                number(&mut bytes, 1 + zigzag(steps.wrapping_sub(before)));
+                before = steps;
+            }
+        }
+    }
+    bytes
+}
+
+/// Offsets and values of the blob; none when it does not hold exactly `samples` of them.
+fn unpacked(mut bytes: &[u8], samples: usize, step: f64) -> Option<(Vec<i64>, Vec<Option<f64>>)> {
+    let (mut at, mut steps) = (0_i64, 0_i64);
+    let (mut offsets, mut values) = (Vec::new(), Vec::new());
+    while !bytes.is_empty() {
+        at = at.checked_add_unsigned(take(&mut bytes)?)?;
+        offsets.push(at);
+        values.push(match take(&mut bytes)? {
+            0 => None,
+            code => {
+                steps = steps.wrapping_add(straight(code - 1));
+                Some(steps as f64 * step)
+            }
+        });
+    }
+    (offsets.len() == samples).then_some((offsets, values))
+}
+
+fn number(bytes: &mut Vec<u8>, mut value: u64) {
+    while value >= 0x80 {
+        bytes.push((value & 0x7f) as u8 | 0x80);
+        value >>= 7;
+    }
+    bytes.push(value as u8);
+}
+
+fn take(bytes: &mut &[u8]) -> Option<u64> {
+    let mut value = 0_u64;
+    for shift in (0..64).step_by(7) {
+        let (&byte, rest) = bytes.split_first()?;
+        *bytes = rest;
+        value |= u64::from(byte & 0x7f).checked_shl(shift)?;
+        if byte < 0x80 {
+            return Some(value);
+        }
+    }
+    None
+}
+
+/// Small numbers of either sign as small numbers without one.
+fn zigzag(value: i64) -> u64 {
+    ((value << 1) ^ (value >> 63)).cast_unsigned()
+}
+
+fn straight(code: u64) -> i64 {
+    (code >> 1).cast_signed() ^ -((code & 1).cast_signed())
+}
+
+/// Keeps a curve; one without samples has no row.
+pub(super) fn insert(tx: &Transaction<'_>, part: i64, it: &CurveRecord) -> rusqlite::Result<()> {
+    let Some((begin_us, _)) = it.samples.first() else {
+        return Ok(());
+    };
+    assert!(it.step > 0.0, "{} in steps of nothing", it.signal);
+    tx.prepare_cached(
+        "INSERT INTO curve (part_id, signal, unit, step, begin_us, samples, packed)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)",
+    )?
+    .execute(params![
+        part,
+        it.signal,
+        it.unit,
+        it.step,
+        begin_us,
+        it.samples.len() as i64,
+        packed(it)
+    ])?;
+    Ok(())
+}
+
+/// Curves of one part.
+pub(super) const CURVES: &str = "SELECT signal, unit, begin_us, step, samples, packed FROM curve
+    WHERE part_id = ?1 ORDER BY signal";
+
+impl Archive {
+    /// Evidence of a part that did not pass, by name of signal; empty for all others.
+    pub fn curves(&self, part: &Part) -> Result<Vec<Curve>> {
+        const DOING: &str = "reading the curves of a part";
+        let mut statement = self.connection.prepare_cached(CURVES).doing(DOING)?;
+        let mut rows = statement.query([part.row]).doing(DOING)?;
+        let mut curves = Vec::new();
+        while let Some(row) = rows.next().doing(DOING)? {
+            curves.push(self.curve(row).doing(DOING)??);
+        }
+        Ok(curves)
+    }
+
+    fn curve(&self, row: &rusqlite::Row<'_>) -> rusqlite::Result<Result<Curve>> {
+        let (step, samples): (f64, i64) = (row.get(3)?, row.get(4)?);
+        let bytes: Vec<u8> = row.get(5)?;
+        let signal: String = row.get(0)?;
+        let whole = unpacked(&bytes, usize::try_from(samples).unwrap_or(0), step);
+        let Some((t_us, values)) = whole else {
+            return Ok(Err(HistoryError::Damaged {
+                path: self.path.clone(),
+                finding: format!("the curve {signal:?} does not hold {samples} samples"),
+            }));
+        };
+        Ok(Ok(Curve {
+            signal,
+            unit: row.get(1)?,
+            begin_us: row.get(2)?,
+            t_us,
+            values,
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use machine::instrument::trace::MOST;
+
+    /// Bytes of a sample at the most: a gap below 2^35 us and a change of less than 2^47 steps.
+    const WORST: usize = 5 + 7;
+
+    fn curve(samples: &[(i64, Option<f64>)]) -> CurveRecord {
+        CurveRecord {
+            signal: "voltage".into(),
+            unit: "V".into(),
+            step: 1e-4,
+            samples: samples.to_vec(),
+        }
+    }
+
+    #[test]
+    fn samples_come_back_to_the_microsecond_and_to_half_a_step() {
+        let samples = [
+            (1_700_000_000_000_000, Some(0.0)),
+            (1_700_000_000_000_000, None),
+            (1_700_000_000_004_321, Some(-7.123_449)),
+            (1_700_000_034_004_321, Some(9.999_96)),
+        ];
+        let bytes = packed(&curve(&samples));
+        let (at, values) = unpacked(&bytes, 4, 1e-4).unwrap();
+        assert_eq!(at, [0, 0, 4_321, 34_004_321]);
+        for (value, (_, was)) in values.iter().zip(samples) {
+            match (value, was) {
+                (Some(value), Some(was)) => assert!((value - was).abs() <= 0.5e-4 + 1e-12),
+                (value, was) => assert_eq!((*value, was), (None, None)),
+            }
+        }
+    }
+
+    #[test]
+    fn a_blob_that_is_cut_or_grown_is_no_curve() {
+        let bytes = packed(&curve(&[(0, Some(1.0)), (5_000, Some(1.5)), (9_000, None)]));
+        assert!(unpacked(&bytes, 3, 1e-4).is_some());
+        for length in 0..bytes.len() {
+            assert!(unpacked(&bytes[..length], 3, 1e-4).is_none(), "{length}");
+        }
+        assert!(unpacked(&bytes, 4, 1e-4).is_none());
+        assert!(unpacked(&[0xff; 11], 1, 1e-4).is_none());
+    }
+
+    #[test]
+    fn no_sample_takes_more_than_the_worst() {
+        let nine_hours_us = (1 << 35) - 1;
+        let far = f64::from(u32::MAX) * 1e-4 * 16_384.0;
+        let bytes = packed(&curve(&[
+            (0, Some(far)),
+            (nine_hours_us, Some(-far)),
+            (2 * nine_hours_us, Some(far)),
+        ]));
+        assert!(bytes.len() <= 3 * WORST, "{} bytes", bytes.len());
+        const { assert!(MOST * WORST <= 12_000) };
+    }
+
+    #[test]
+    fn every_whole_number_has_one_code() {
+        for value in [0, 1, -1, 63, -64, i64::MAX, i64::MIN] {
+            assert_eq!(straight(zigzag(value)), value);
+        }
+        assert_eq!([0, -1, 1, -2].map(zigzag), [0, 1, 2, 3]);
+    }
+}

@@ -1,0 +1,246 @@
+//! The CSV of an older system into records: everything is read and checked before a row is written.
+//!
+//! The header names parameter keys and optionally `time` (RFC 3339), `verdict`, `serial` and `bin`.
+//! An empty cell is a value that was not measured. Columns that only our own export writes (`lot`,
+//! `seq`, `uncertainty ...`) are passed over, so that an export can be read back; any other unknown
+//! column is refused, for a misspelt key would otherwise lose its values in silence.
+
+use super::csv::{self, CsvError, Record};
+use super::{MeasurementRecord, Moment, PartRecord};
+use machine::dut::Reason;
+
+/// Columns of our own export that an import does not take.
+const PASSED_OVER: [&str; 9] = [
+    "type",
+    "lot",
+    "run",
+    "kind",
+    "seq",
+    "recipe",
+    "landed_bin",
+    "test_s",
+    "cycle_s",
+];
+/// Start of the names of the columns that an export gives to uncertainties.
+const UNCERTAINTY: &str = "uncertainty ";
+
+/// One row of the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImportRow {
+    /// Without lot and sequence number, with the time of the row if there is one.
+    pub part: PartRecord,
+    /// Whether the file gave a time.
+    pub timed: bool,
+}
+
+/// Why a file cannot be imported; nothing of it was.
+#[derive(Debug, thiserror::Error)]
+pub enum ImportError {
+    /// Not a table.
+    #[error(transparent)]
+    Csv(#[from] CsvError),
+    /// A column nobody knows.
+    #[error(
+        "line 1: unknown column {found:?}; expected time, verdict, serial, bin or one of {known}"
+    )]
+    UnknownColumn {
+        /// Name found.
+        found: String,
+        /// Parameter keys that would do.
+        known: String,
+    },
+    /// The same column twice.
+    #[error("line 1: column {found:?} stands there twice")]
+    ColumnTwice {
+        /// Name found.
+        found: String,
+    },
+    /// A mapping for a column that is not there.
+    #[error("line 1: there is no column {column:?} to map")]
+    NothingToMap {
+        /// Name looked for.
+        column: String,
+    },
+    /// No parameter at all.
+    #[error("line 1: expected at least one parameter key among the columns")]
+    NoParameter,
+    /// A cell that does not fit its column.
+    #[error("line {line}, column {column}: found {found:?}, expected {expected}")]
+    Cell {
+        /// Line number in the file.
+        line: usize,
+        /// Name of the column.
+        column: String,
+        /// Text found.
+        found: String,
+        /// What would do.
+        expected: &'static str,
+    },
+}
+
+/// What a column is for.
+enum Column {
+    Time,
+    Verdict,
+    Serial,
+    Bin,
+    Reasons,
+    Parameter,
+    PassedOver,
+}
+
+/// Reads a whole file. `maps` renames columns of the file (from, to); `parameters` are the keys known
+/// to the history.
+pub fn parse_import(
+    text: &str,
+    maps: &[(String, String)],
+    parameters: &[String],
+) -> Result<Vec<ImportRow>, ImportError> {
+    parse_records(&csv::read(text)?, maps, parameters)
+}
+
+/// The same, for a table that was read already: header first.
+pub fn parse_records(
+    records: &[Record],
+    maps: &[(String, String)],
+    parameters: &[String],
+) -> Result<Vec<ImportRow>, ImportError> {
+    let (header, records) = records.split_first().ok_or(CsvError::Empty)?;
+    let names: Vec<String> = header
+        .fields
+        .iter()
+        .map(|name| renamed(name.trim(), maps))
+        .collect();
+    if let Some((missing, _)) = maps.iter().find(|(_, to)| !names.contains(to)) {
+        let column = missing.clone();
+        return Err(ImportError::NothingToMap { column });
+    }
+    let columns = columns(&names, parameters)?;
+    records
+        .iter()
+        .map(|record| row(record, &columns, &names))
+        .collect()
+}
+
+fn row(record: &Record, columns: &[Column], names: &[String]) -> Result<ImportRow, ImportError> {
+    let mut row = ImportRow {
+        part: blank(),
+        timed: false,
+    };
+    for ((cell, column), name) in record.fields.iter().zip(columns).zip(names) {
+        let cell = cell.trim();
+        if cell.is_empty() {
+            continue;
+        }
+        take(&mut row, column, name, cell).map_err(|expected| ImportError::Cell {
+            line: record.line,
+            column: name.clone(),
+            found: cell.to_owned(),
+            expected,
+        })?;
+    }
+    Ok(row)
+}
+
+fn renamed(name: &str, maps: &[(String, String)]) -> String {
+    let to = maps
+        .iter()
+        .find(|(from, _)| from == name)
+        .map(|(_, to)| to.as_str());
+    to.unwrap_or(name).to_owned()
+}
+
+fn blank() -> PartRecord {
+    let (verdict, kind) = ("unjudged".to_owned(), "lot".to_owned());
+    PartRecord {
+        verdict,
+        kind,
+        test_s: f64::NAN,
+        ..PartRecord::default()
+    }
+}
+
+fn columns(names: &[String], parameters: &[String]) -> Result<Vec<Column>, ImportError> {
+    let columns = names
+        .iter()
+        .enumerate()
+        .map(|(n, name)| {
+            if names[..n].contains(name) {
+                return Err(ImportError::ColumnTwice {
+                    found: name.clone(),
+                });
+            }
+            column(name, parameters)
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    if columns
+        .iter()
+        .any(|column| matches!(column, Column::Parameter))
+    {
+        Ok(columns)
+    } else {
+        Err(ImportError::NoParameter)
+    }
+}
+
+fn column(name: &str, parameters: &[String]) -> Result<Column, ImportError> {
+    Ok(match name {
+        "time" => Column::Time,
+        "verdict" => Column::Verdict,
+        "serial" => Column::Serial,
+        "bin" => Column::Bin,
+        "reasons" => Column::Reasons,
+        key if parameters.iter().any(|known| known == key) => Column::Parameter,
+        name if PASSED_OVER.contains(&name) || name.starts_with(UNCERTAINTY) => Column::PassedOver,
+        other => {
+            let (found, known) = (other.to_owned(), parameters.join(", "));
+            return Err(ImportError::UnknownColumn { found, known });
+        }
+    })
+}
+
+fn take(row: &mut ImportRow, column: &Column, name: &str, cell: &str) -> Result<(), &'static str> {
+    match column {
+        Column::Time => {
+            let time: Moment = cell.parse().map_err(|_| "an RFC 3339 time")?;
+            row.part.judged_at_us = time.0;
+            row.timed = true;
+        }
+        Column::Verdict => {
+            row.part.verdict = verdict(cell).ok_or("pass, fail, void or unjudged")?
+        }
+        Column::Serial => row.part.serial = Some(csv::as_typed(cell).to_owned()),
+        Column::Bin => row.part.bin = csv::as_typed(cell).to_owned(),
+        Column::Reasons => {
+            let typed = csv::as_typed(cell).split("; ");
+            row.part.reasons = typed.map(Reason::from_text).collect();
+        }
+        Column::Parameter => row.part.measurements.push(measurement(name, cell)?),
+        Column::PassedOver => {}
+    }
+    Ok(())
+}
+
+fn verdict(cell: &str) -> Option<String> {
+    let lower = cell.to_ascii_lowercase();
+    ["pass", "fail", "void", "unjudged"]
+        .contains(&lower.as_str())
+        .then_some(lower)
+}
+
+fn measurement(key: &str, cell: &str) -> Result<MeasurementRecord, &'static str> {
+    let value: f64 = cell
+        .parse()
+        .ok()
+        .filter(|it: &f64| it.is_finite())
+        .ok_or("a finite number")?;
+    let verdict = "unjudged".to_owned();
+    let value = Some(value);
+    Ok(MeasurementRecord {
+        key: key.to_owned(),
+        value,
+        verdict,
+        attempt: 1,
+        ..Default::default()
+    })
+}

@@ -1,0 +1,122 @@
+//! Control charts: level and spread of a parameter, or the share of every bin from run to run.
+
+use super::{InquiryError, Result, checks};
+use crate::report::Paper;
+use crate::report::spc::{Named, spc};
+use crate::{Archive, Filter, LotSummary};
+use quality::chart::{Chart, individuals, shares, subgroups};
+use quality::rules::Rules;
+use serde::Serialize;
+use std::collections::BTreeSet;
+
+/// Parts of a subgroup that control charts have factors for; 1 is individuals.
+pub const SUBGROUPS: std::ops::RangeInclusive<u8> = 1..=10;
+
+/// A chart and what it is of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Charted {
+    /// Parameter key, or name of a bin.
+    pub of: String,
+    /// Points that were left out in front.
+    pub first: usize,
+    /// `lot/run` of each point; none where points have numbers only.
+    pub names: Vec<String>,
+    /// The chart.
+    #[serde(flatten)]
+    pub chart: Chart,
+}
+
+/// Of `param`, or without one of the share of every bin; limits come from all points.
+pub fn charts(
+    archive: &Archive,
+    filter: &Filter,
+    param: Option<&str>,
+    (subgroup, rules): (u8, Rules),
+) -> Result<Vec<Charted>> {
+    if !SUBGROUPS.contains(&subgroup) {
+        let reason = format!("found {subgroup}, expected 1 to 10");
+        return Err(InquiryError::member("subgroup", reason));
+    }
+    checks::parameters(archive, param)?;
+    checks::known_runs(archive, filter)?;
+    let charts = match param {
+        Some(param) => of_parameter(archive, filter, param, (subgroup, rules))?,
+        None => of_bins(&archive.lots(filter)?),
+    };
+    if charts.is_empty() {
+        return Err(InquiryError::not_there(
+            "too few parts for a control chart: it takes two values, or two runs",
+        ));
+    }
+    Ok(charts)
+}
+
+/// The page for the wall; of every chart the last `shown` points are drawn.
+pub fn page(paper: &Paper, about: &str, charts: &[Charted], shown: usize) -> String {
+    let named: Vec<Named<'_>> = charts
+        .iter()
+        .map(|it| Named {
+            of: &it.of,
+            chart: &it.chart,
+            names: &it.names,
+        })
+        .collect();
+    spc(paper, about, &named, shown)
+}
+
+impl Charted {
+    fn new(of: &str, chart: Chart, names: Vec<String>) -> Self {
+        Self {
+            of: of.to_owned(),
+            first: 0,
+            names,
+            chart,
+        }
+    }
+
+    /// Only the last `shown` points with their names and signals, which count from the first one kept.
+    #[must_use]
+    pub fn last(mut self, shown: usize) -> Self {
+        let left_out = self.chart.points.len().saturating_sub(shown);
+        self.chart.points.drain(..left_out);
+        self.names.drain(..left_out.min(self.names.len()));
+        self.chart.signals.retain(|it| it.at >= left_out);
+        for signal in &mut self.chart.signals {
+            signal.at -= left_out;
+        }
+        self.first += left_out;
+        self
+    }
+}
+
+fn of_parameter(
+    archive: &Archive,
+    filter: &Filter,
+    param: &str,
+    (subgroup, rules): (u8, Rules),
+) -> Result<Vec<Charted>> {
+    let values = archive.values(param, filter)?.values;
+    let charts = match subgroup {
+        1 => individuals(&values, rules),
+        size => subgroups(&values, usize::from(size), rules),
+    };
+    let charted = |chart| Charted::new(param, chart, Vec::new());
+    Ok(charts.into_iter().flatten().map(charted).collect())
+}
+
+/// A chart for each bin that any of the runs has parts for.
+fn of_bins(runs: &[LotSummary]) -> Vec<Charted> {
+    let bins: BTreeSet<&String> = runs.iter().flat_map(|run| run.bins.keys()).collect();
+    let names: Vec<String> = runs
+        .iter()
+        .map(|run| format!("{}/{}", run.lot, run.run))
+        .collect();
+    let charted = |bin: &String| {
+        let groups: Vec<(u64, u64)> = runs
+            .iter()
+            .map(|run| (run.counts.parts, run.bins.get(bin).copied().unwrap_or(0)))
+            .collect();
+        shares(&groups).map(|chart| Charted::new(bin, chart, names.clone()))
+    };
+    bins.into_iter().filter_map(charted).collect()
+}

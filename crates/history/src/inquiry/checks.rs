@@ -1,0 +1,76 @@
+//! A filter that nothing can pass because of a slip of the hand is refused by name, not answered with nothing.
+
+use super::{InquiryError, Result};
+use crate::{Archive, Filter};
+
+/// The verdicts that a part may have.
+pub const VERDICTS: [&str; 4] = ["pass", "fail", "void", "unjudged"];
+/// The kinds of parts that a filter may ask for.
+pub const KINDS: [&str; 3] = ["lot", "golden", "all"];
+
+/// Refuses words that do not exist and ranges that nothing can lie in.
+pub fn sensible(filter: &Filter) -> Result<()> {
+    one_of("verdict", filter.verdict.as_deref(), &VERDICTS)?;
+    one_of("kind", filter.kind.as_deref(), &KINDS)?;
+    for (field, value) in [("min", filter.min), ("max", filter.max)] {
+        if let Some(value) = value.filter(|it| !it.is_finite()) {
+            let reason = format!("found {value}, expected a finite number");
+            return Err(InquiryError::member(field, reason));
+        }
+        if value.is_some() && filter.param.is_none() {
+            return Err(InquiryError::member(field, "needs param"));
+        }
+    }
+    match (filter.min, filter.max) {
+        (Some(min), Some(max)) if min > max => Err(InquiryError::member(
+            "min",
+            format!("{min} is above max {max}"),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses what the question does not use: an answer that ignores a member would mislead.
+pub fn only(filter: &Filter, question: &str, used: &[&str]) -> Result<()> {
+    match filter
+        .members()
+        .into_iter()
+        .find(|name| !used.contains(name))
+    {
+        Some(field) => {
+            let reason = format!("`{question}` takes {} only", used.join(", "));
+            Err(InquiryError::member(field, reason))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Refuses a word that is not among `known`; what was found is shortened to what a line can hold.
+pub fn one_of(field: &'static str, found: Option<&str>, known: &[&str]) -> Result<()> {
+    match found {
+        Some(found) if !known.contains(&found) => {
+            let found: String = found.chars().take(40).collect();
+            let reason = format!("found {found:?}, expected one of {}", known.join(", "));
+            Err(InquiryError::member(field, reason))
+        }
+        Some(_) | None => Ok(()),
+    }
+}
+
+/// Refuses a parameter that the history has never seen; gives all keys in the order of columns.
+pub fn parameters(archive: &Archive, asked: Option<&str>) -> Result<Vec<String>> {
+    let known = archive.parameters()?;
+    let names: Vec<&str> = known.iter().map(String::as_str).collect();
+    one_of("param", asked, &names)?;
+    Ok(known)
+}
+
+/// Refuses a lot, run or recipe that never was: that is not an empty answer.
+pub fn known_runs(archive: &Archive, filter: &Filter) -> Result<()> {
+    let named = filter.lot.is_some() || filter.recipe.is_some() || filter.run.is_some();
+    if named && !archive.has_runs(filter)? {
+        let what = "no run has this lot, run and recipe; `history list` shows those there are";
+        return Err(InquiryError::not_there(what));
+    }
+    Ok(())
+}

@@ -1,0 +1,105 @@
+//! Pages about what is in the history.
+
+use super::figures::agreed;
+use super::use_of_time::use_of_time;
+use super::{InquiryError, Result, checks};
+use crate::report::certificate::certificate;
+use crate::report::lot::{LotReport, ParameterValues};
+use crate::report::{Language, Paper, alarms};
+use crate::{Archive, Filter};
+use jiff::{Timestamp, tz::TimeZone};
+
+/// Paper with the zone of this computer, and a foot with time and version.
+pub fn paper(language: Language) -> Paper {
+    let zone = TimeZone::system();
+    let now = Timestamp::now().to_zoned(zone.clone());
+    let program = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));
+    let made = format!("{} · {program}", now.strftime("%Y-%m-%d %H:%M %:z"));
+    Paper {
+        language,
+        zone,
+        made,
+    }
+}
+
+/// The report of a lot. `ideal_cycle_s` is the shortest cycle the line can keep; the quickest 5 % when absent.
+pub fn lot_report(
+    archive: &Archive,
+    filter: &Filter,
+    ideal_cycle_s: Option<f64>,
+    paper: &Paper,
+) -> Result<String> {
+    let Some(lot) = filter.lot.as_deref() else {
+        return Err(InquiryError::member(
+            "lot",
+            "missing: a lot report is about one lot",
+        ));
+    };
+    if let Some(ideal) = ideal_cycle_s.filter(|it| !(it.is_finite() && *it > 0.0)) {
+        let reason = format!("found {ideal}, expected more than 0");
+        return Err(InquiryError::member("ideal-cycle-s", reason));
+    }
+    checks::known_runs(archive, filter)?;
+    let runs = archive.lots(filter)?;
+    let report = LotReport {
+        lot,
+        runs: &runs,
+        passed: archive.passed(filter)?,
+        parameters: measured(archive, filter)?,
+        effectiveness: use_of_time(archive, filter, &runs, ideal_cycle_s)?,
+        alarms: &archive.alarms(filter)?,
+    };
+    Ok(report.html(paper))
+}
+
+fn measured(archive: &Archive, filter: &Filter) -> Result<Vec<ParameterValues>> {
+    let mut measured = Vec::new();
+    for key in archive.parameters()? {
+        let found = archive.values(&key, filter)?;
+        if !found.values.is_empty() {
+            measured.push(ParameterValues {
+                limits: agreed(found.limits),
+                values: found.values,
+                key,
+            });
+        }
+    }
+    Ok(measured)
+}
+
+/// The certificate of part `seq` of the lot, of its latest run unless the filter names one.
+pub fn part_certificate(
+    archive: &Archive,
+    filter: &Filter,
+    seq: u64,
+    paper: &Paper,
+) -> Result<String> {
+    let Some(lot) = filter.lot.as_deref() else {
+        return Err(InquiryError::member(
+            "lot",
+            "missing: a part is one of a lot",
+        ));
+    };
+    checks::known_runs(archive, filter)?;
+    let runs = archive.lots(filter)?;
+    let of_part = |part: &&crate::Part| {
+        let mut runs = runs.iter();
+        runs.any(|run| run.lot == part.lot && run.run == part.run)
+    };
+    let parts = archive.show(lot, seq, "lot")?;
+    let part = parts.iter().rfind(of_part);
+    let run = part.and_then(|part| runs.iter().find(|run| run.run == part.run));
+    match (part, run) {
+        (Some(part), Some(run)) => Ok(certificate(paper, part, run)),
+        _ => Err(InquiryError::not_there(format!(
+            "lot {lot:?} has no part {seq} (in this run and of this recipe)"
+        ))),
+    }
+}
+
+/// The list of alarms that the filter leaves.
+pub fn alarm_list(archive: &Archive, filter: &Filter, paper: &Paper) -> Result<String> {
+    checks::known_runs(archive, filter)?;
+    let about = filter.lot.as_deref().unwrap_or_default();
+    Ok(alarms::list(paper, about, &archive.alarms(filter)?))
+}

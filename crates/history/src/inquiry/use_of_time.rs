@@ -1,0 +1,84 @@
+//! How the time of a lot was used: what the history says of it, for [`quality::effectiveness`].
+
+use super::Result;
+use crate::{Archive, Filter, LotSummary, Moment};
+use quality::Ordered;
+use quality::effectiveness::{Effectiveness, Seen, effectiveness};
+
+/// The quickest share of cycles that stands for the ideal one when none is given.
+const QUICKEST: f64 = 0.05;
+
+/// Planned is from opening to end of each run; no alarm stood longer than its run.
+/// None for imports, which have no time of their own.
+pub(super) fn use_of_time(
+    archive: &Archive,
+    filter: &Filter,
+    runs: &[LotSummary],
+    ideal_cycle_s: Option<f64>,
+) -> Result<Option<Effectiveness>> {
+    let mut seen = Seen::default();
+    for run in runs.iter().filter(|run| run.source != "import") {
+        let Some(closed) = run.closed else { continue };
+        seen.planned_s += seconds(run.opened, closed);
+        seen.parts += run.counts.parts;
+        seen.good += run.counts.pass;
+    }
+    let mut stood = Vec::new();
+    for alarm in archive.alarms(filter)? {
+        let run = runs
+            .iter()
+            .find(|run| Some(&run.lot) == alarm.lot.as_ref() && Some(run.run) == alarm.run);
+        let closed = run.and_then(|run| run.closed);
+        let end = alarm.cleared.map_or(closed, |cleared| {
+            Some(closed.map_or(cleared, |closed| closed.min(cleared)))
+        });
+        stood.extend(end.map(|end| (alarm.raised, end)));
+    }
+    seen.stopped_s = covered_s(stood);
+    seen.ideal_cycle_s = match ideal_cycle_s {
+        Some(ideal) => ideal,
+        None => Ordered::of(&archive.cycles(filter)?)
+            .quantile(QUICKEST)
+            .unwrap_or(0.0),
+    };
+    Ok(effectiveness(seen))
+}
+
+/// Time in which at least one of the spans stood: alarms that stand together stop the line once.
+fn covered_s(mut spans: Vec<(Moment, Moment)>) -> f64 {
+    spans.sort_unstable();
+    let mut covered = 0.0;
+    let mut until = Moment(i64::MIN);
+    for (from, to) in spans {
+        let from = from.max(until);
+        if to > from {
+            covered += seconds(from, to);
+            until = to;
+        }
+    }
+    covered
+}
+
+fn seconds(from: Moment, to: Moment) -> f64 {
+    (to.0 - from.0) as f64 / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn alarms_that_stand_together_stop_the_line_once() {
+        let span = |from: i64, to: i64| (Moment(from * 1_000_000), Moment(to * 1_000_000));
+        let spans = vec![
+            span(50, 60),
+            span(0, 10),
+            span(5, 20),
+            span(6, 7),
+            span(30, 30),
+        ];
+        assert_eq!(covered_s(spans), 30.0);
+        assert_eq!(covered_s(vec![span(5, 1)]), 0.0);
+        assert_eq!(covered_s(Vec::new()), 0.0);
+    }
+}

@@ -1,0 +1,56 @@
+//! Where parts were inside of the machine, for the run that comes next.
+
+use super::Store;
+use super::error::{Doing, Result};
+use super::store::source;
+use machine::handling::inside::Inside;
+use machine::rig::bin::Bin;
+use rusqlite::{OptionalExtension, Transaction, params};
+
+/// As it was written down last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct InsideRecord {
+    /// Of the simulated rig.
+    pub simulated: bool,
+    /// The places.
+    pub inside: Inside,
+}
+
+pub(super) fn keep(tx: &Transaction<'_>, it: &InsideRecord) -> Result<()> {
+    let Inside {
+        pocket,
+        nest,
+        gripper,
+        falling,
+    } = it.inside;
+    let kept = tx.execute(
+        "INSERT OR REPLACE INTO inside (source, pocket, nest, gripper, falling) VALUES (?1, ?2, ?3, ?4, ?5)",
+        params![source(it.simulated), pocket, nest, gripper, falling.as_ref().map(Bin::name)],
+    )
+    .doing("recording what is inside")?;
+    assert_eq!(kept, 1, "one row for each rig");
+    Ok(())
+}
+
+impl Store {
+    /// What the run before left inside; nothing when there was none.
+    pub fn left_inside(&self, simulated: bool) -> Result<Inside> {
+        let read = |row: &rusqlite::Row<'_>| {
+            Ok(Inside {
+                pocket: row.get(0)?,
+                nest: row.get(1)?,
+                gripper: row.get(2)?,
+                falling: row
+                    .get::<_, Option<String>>(3)?
+                    .and_then(|bin| Bin::from_name(&bin)),
+            })
+        };
+        let found = self.connection().query_row(
+            "SELECT pocket, nest, gripper, falling FROM inside WHERE source = ?1",
+            [source(simulated)],
+            read,
+        );
+        let found = found.optional().doing("reading what was inside")?;
+        Ok(found.unwrap_or_default())
+    }
+}

@@ -1,0 +1,104 @@
+//! Why a part did not pass, as codes: a row of `reason` for each text of `part.reasons`, in its order.
+
+use super::Archive;
+use super::insert::parameter_row;
+use machine::dut::{Characteristic, Reason};
+use machine::gauge::Side;
+use rusqlite::{Connection, Row, params};
+
+/// Reasons of one part.
+pub(super) const REASONS: &str = "SELECT code, parameter.key, side, detail FROM reason
+    LEFT JOIN parameter ON parameter.id = reason.parameter_id WHERE part_id = ?1 ORDER BY n";
+
+/// Parts of a batch whose texts are read together.
+const BATCH: usize = 1_000;
+
+/// Keeps the reasons of the part in row `part`, the first one at place `n`, counted from 1.
+pub(super) fn insert(
+    connection: &Connection,
+    part: i64,
+    n: i64,
+    reasons: &[Reason],
+) -> rusqlite::Result<()> {
+    assert!(n >= 1, "the first reason has number 1");
+    for (n, reason) in (n..).zip(reasons) {
+        let about = reason.characteristic();
+        let about = about.map(|it| parameter_row(connection, it.key()));
+        let row = params![
+            part,
+            n,
+            reason.code.name(),
+            about.transpose()?,
+            reason.side.map(Side::name),
+            reason.detail
+        ];
+        connection
+            .prepare_cached(
+                "INSERT INTO reason (part_id, n, code, parameter_id, side, detail)
+                 VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+            )?
+            .execute(row)?;
+    }
+    Ok(())
+}
+
+/// Gives every part of before schema 8 its codes: the one time that texts of a history are read.
+pub(super) fn read_texts(connection: &Connection) -> rusqlite::Result<()> {
+    let mut after = 0;
+    loop {
+        let batch = with_texts(connection, after)?;
+        let Some((last, _)) = batch.last() else {
+            return Ok(());
+        };
+        after = *last;
+        for (part, stored) in &batch {
+            let reasons: Vec<Reason> = texts(stored).map(Reason::from_text).collect();
+            insert(connection, *part, 1, &reasons)?;
+        }
+    }
+}
+
+/// The next parts that have reasons, with them.
+fn with_texts(
+    connection: &Connection,
+    after: i64,
+) -> rusqlite::Result<Vec<(i64, serde_json::Value)>> {
+    connection
+        .prepare_cached(
+            "SELECT id, reasons FROM part WHERE id > ?1 AND reasons <> '[]' ORDER BY id LIMIT ?2",
+        )?
+        .query_map(params![after, BATCH as i64], |row| {
+            Ok((row.get(0)?, row.get(1)?))
+        })?
+        .collect()
+}
+
+/// Texts of a stored list.
+pub(super) fn texts(stored: &serde_json::Value) -> impl Iterator<Item = &str> {
+    let list = stored.as_array().map(Vec::as_slice).unwrap_or_default();
+    list.iter().filter_map(serde_json::Value::as_str)
+}
+
+impl Archive {
+    /// Codes beside the texts of a part. A code that this program does not know is kept as its text.
+    pub(super) fn reasons(&self, part: i64, texts: &[String]) -> rusqlite::Result<Vec<Reason>> {
+        if texts.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut statement = self.connection.prepare_cached(REASONS)?;
+        let mut stored = statement.query_map([part], read)?;
+        let codes = texts.iter().map(|text| {
+            let code = stored.next().transpose()?.flatten();
+            Ok(code.unwrap_or_else(|| Reason::unclassified(text)))
+        });
+        codes.collect()
+    }
+}
+
+fn read(row: &Row<'_>) -> rusqlite::Result<Option<Reason>> {
+    let (code, key): (String, Option<String>) = (row.get(0)?, row.get(1)?);
+    let (side, detail): (Option<String>, String) = (row.get(2)?, row.get(3)?);
+    let about = key.as_deref().and_then(Characteristic::from_key);
+    let side = side.as_deref().and_then(Side::from_name);
+    Ok(Reason::stored(&code, about, side, &detail))
+}

@@ -1,0 +1,154 @@
+//! Control charts and histograms as SVG.
+
+use super::svg::{LIMIT, LINE, Plot, QUIET, escaped, ticked};
+use super::words::figure;
+use quality::chart::Chart;
+use quality::ordered::{Histogram, round_step};
+use quality::{Limits, Ordered};
+
+/// Of a control chart: as wide as a sheet that lies, so high that two of them and what is told of them fill it.
+const WIDE: [f64; 2] = [1000.0, 200.0];
+
+/// The last `shown` points of a control chart with its limits; points that a rule objects to stand out
+/// and bear the number of the rule. `names` are told under every few points.
+pub(super) fn control(chart: &Chart, shown: usize, names: &[String]) -> String {
+    let first = chart.points.len().saturating_sub(shown);
+    let points = &chart.points[first..];
+    let all = points.iter().flat_map(|it| [it.value, it.low, it.high]);
+    let (low, high) = all.fold((chart.centre, chart.centre), |(low, high), it| {
+        (low.min(it), high.max(it))
+    });
+    let room = 0.08 * (high - low);
+    let last = points.len().saturating_sub(1) as f64;
+    let mut plot = Plot::new(WIDE, [-0.5, last + 0.5], [low - room, high + room]);
+    limits(&mut plot, chart, first);
+    let path: Vec<String> = points
+        .iter()
+        .enumerate()
+        .map(|(at, it)| format!("{:.1},{:.1}", plot.at_x(at as f64), plot.at_y(it.value)))
+        .collect();
+    plot.add(format_args!(
+        "<polyline points=\"{}\" fill=\"none\" stroke=\"{LINE}\" stroke-width=\"1.1\"/>",
+        path.join(" ")
+    ));
+    let radius = if points.len() > 80 { 1.4 } else { 2.4 };
+    for (at, it) in points.iter().enumerate() {
+        point(&mut plot, chart, first, at, it.value, radius);
+    }
+    named(&mut plot, points.len(), first, names);
+    plot.finish()
+}
+
+fn limits(plot: &mut Plot, chart: &Chart, first: usize) {
+    let points = &chart.points[first..];
+    plot.across(chart.centre, QUIET, "none", &figure(Some(chart.centre)));
+    let Some(start) = points.first() else { return };
+    let level = points
+        .iter()
+        .all(|it| it.low == start.low && it.high == start.high);
+    if level {
+        plot.across(start.high, LIMIT, "5 3", &figure(Some(start.high)));
+        plot.across(start.low, LIMIT, "5 3", &figure(Some(start.low)));
+        return;
+    }
+    for (at, it) in points.iter().enumerate() {
+        let (from, to) = (plot.at_x(at as f64 - 0.5), plot.at_x(at as f64 + 0.5));
+        for limit in [it.low, it.high] {
+            let y = plot.at_y(limit);
+            plot.add(format_args!(
+                "<line x1=\"{from:.1}\" y1=\"{y:.1}\" x2=\"{to:.1}\" y2=\"{y:.1}\" stroke=\"{LIMIT}\"/>"
+            ));
+        }
+    }
+}
+
+fn point(plot: &mut Plot, chart: &Chart, first: usize, at: usize, value: f64, radius: f64) {
+    let (x, y) = (plot.at_x(at as f64), plot.at_y(value));
+    let rules: Vec<String> = chart
+        .signals
+        .iter()
+        .filter(|it| it.at == first + at)
+        .map(|it| it.rule.to_string())
+        .collect();
+    if rules.is_empty() {
+        plot.add(format_args!(
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{LINE}\"/>"
+        ));
+        return;
+    }
+    plot.add(format_args!(
+        "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3.6\" fill=\"{LIMIT}\"/>\n\
+         <text x=\"{x:.1}\" y=\"{:.1}\" fill=\"{LIMIT}\" font-size=\"9\" text-anchor=\"middle\">{}</text>",
+        y - 6.0,
+        escaped(&rules.join(","))
+    ));
+}
+
+/// As many names as have room; numbers from 1 where there are none.
+fn named(plot: &mut Plot, shown: usize, first: usize, names: &[String]) {
+    let longest = names
+        .iter()
+        .map(|it| it.chars().count())
+        .max()
+        .unwrap_or(4)
+        .max(4);
+    let every = shown.div_ceil((90 / longest).clamp(1, 12)).max(1);
+    for at in (0..shown).step_by(every) {
+        let number = (first + at + 1).to_string();
+        let name = names.get(first + at).unwrap_or(&number);
+        plot.under(at as f64, name);
+    }
+}
+
+/// Counts as columns, limits as upright lines where they are near the values.
+pub(super) fn histogram(values: &Ordered, limits: Limits) -> Option<String> {
+    let it = values.histogram(24)?;
+    let end = it.from + it.width * it.counts.len() as f64;
+    let highest = it.counts.iter().copied().max().unwrap_or(0) as f64;
+    let near = 0.6 * (end - it.from);
+    let seen = |limit: Option<f64>| limit.filter(|&at| at > it.from - near && at < end + near);
+    let (low, high) = (seen(limits.low), seen(limits.high));
+    let range = [
+        low.map_or(it.from, |at| at.min(it.from)) - it.width,
+        high.map_or(end, |at| at.max(end)) + it.width,
+    ];
+    let mut plot = Plot::new([380.0, 150.0], range, [0.0, highest * 1.12]);
+    columns(&mut plot, &it);
+    for (limit, name) in [(low, "≥ "), (high, "≤ ")] {
+        if let Some(at) = limit {
+            plot.upright(at, LIMIT, &format!("{name}{}", figure(Some(at))));
+        }
+    }
+    let step = round_step((range[1] - range[0]) / 5.0)?;
+    let mut tick = (range[0] / step).ceil();
+    while tick * step <= range[1] {
+        plot.under(tick * step, &ticked(tick * step, step));
+        tick += 1.0;
+    }
+    Some(plot.finish())
+}
+
+fn columns(plot: &mut Plot, it: &Histogram) {
+    let bottom = plot.at_y(0.0);
+    for (at, &count) in it.counts.iter().enumerate().filter(|(_, n)| **n > 0) {
+        let from = plot.at_x(it.from + at as f64 * it.width);
+        let to = plot.at_x(it.from + (at + 1) as f64 * it.width);
+        let top = plot.at_y(count as f64);
+        plot.add(format_args!(
+            "<rect x=\"{:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{LINE}\"/>",
+            from + 0.4,
+            to - from - 0.8,
+            bottom - top
+        ));
+    }
+}
+
+/// A horizontal bar of a share, 0 to 1, for a cell of a table.
+pub(super) fn share(share: f64) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 100 6\" preserveAspectRatio=\"none\" \
+         style=\"height:2.6mm\"><rect width=\"100\" height=\"6\" fill=\"#eef2f6\"/>\
+         <rect width=\"{:.2}\" height=\"6\" fill=\"{LINE}\"/></svg>",
+        100.0 * share.clamp(0.0, 1.0)
+    )
+}

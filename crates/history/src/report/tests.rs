@@ -1,0 +1,298 @@
+//! Facts about the pages.
+#![allow(clippy::unwrap_used)]
+
+use super::card::card;
+use super::certificate::certificate;
+use super::lot::{LotReport, ParameterValues};
+use super::spc::{Named, spc};
+use super::*;
+use crate::{Alarm, AlarmState, LotSummary, Measurement, Part, Passed, Shelf, Yield};
+use config::load_recipe;
+use machine::dut::card::{Card, CardSettings, Quota, STEPS};
+use machine::dut::{Reason, Recipe};
+use quality::Limits;
+use quality::chart::{individuals, shares};
+use quality::rules::Rules;
+use std::path::Path;
+
+const LANGUAGES: [Language; 2] = [Language::En, Language::Zh];
+/// What an operator may type.
+const EVIL: &str = "</td><script>alert('批次')</script>";
+
+fn paper(language: Language) -> Paper {
+    Paper {
+        language,
+        zone: TimeZone::UTC,
+        made: "2026-03-01 08:00 relayrig".into(),
+    }
+}
+
+fn run() -> LotSummary {
+    LotSummary {
+        lot: EVIL.into(),
+        run: 1,
+        recipe: "jzc-22f-012".into(),
+        recipe_hash: "738012c9fcaf4919aa".into(),
+        calibration_hash: None,
+        source: "simulated".into(),
+        seed: None,
+        retest: None,
+        opened: Moment(0),
+        closed: Some(Moment(60_000_000)),
+        counts: Yield {
+            parts: 3,
+            pass: 2,
+            fail: 1,
+            ..Yield::default()
+        },
+        golden: 0,
+        alarms: 1,
+        bins: [("pass".to_owned(), 2), ("voltage".to_owned(), 1)].into(),
+    }
+}
+
+fn part(verdict: &str) -> Part {
+    let measurement = |attempt, value| Measurement {
+        parameter: "operate_voltage_v".into(),
+        attempt,
+        value: Some(value),
+        uncertainty: Some(0.010_871),
+        low: None,
+        high: Some(9.0),
+        verdict: verdict.into(),
+        budget: None,
+        samples: Vec::new(),
+    };
+    let mut part = Part::of_paper(EVIL, 7, verdict);
+    part.measurements = vec![measurement(1, 8.123_456), measurement(2, 7.704_22)];
+    part.values
+        .insert("operate_voltage_v".into(), 7.704_22.into());
+    part.serial = Some("=1+1".into());
+    part
+}
+
+fn lot_report(language: Language) -> String {
+    let alarms = [Alarm {
+        lot: Some(EVIL.into()),
+        run: Some(1),
+        code: "late".into(),
+        line: None,
+        text: EVIL.into(),
+        cause_zh: None,
+        raised: Moment(5_000_000),
+        cleared: Some(Moment(65_000_000)),
+        acknowledged: Some(Moment(6_000_000)),
+        acknowledged_by: Some(EVIL.into()),
+        shelf: Some(Shelf {
+            until: Moment(7_000_000),
+            by: EVIL.into(),
+            reason: EVIL.into(),
+        }),
+        state: AlarmState::Normal,
+    }];
+    let values = ParameterValues {
+        key: "operate_voltage_v".into(),
+        limits: Limits {
+            low: None,
+            high: Some(9.0),
+        },
+        values: vec![7.7, 7.8, 7.9, 7.6, 7.8],
+    };
+    let report = LotReport {
+        lot: EVIL,
+        runs: &[run()],
+        passed: Passed {
+            finally: 2,
+            at_first: 1,
+        },
+        parameters: vec![values],
+        effectiveness: None,
+        alarms: &alarms,
+    };
+    report.html(&paper(language))
+}
+
+#[test]
+fn a_text_of_an_operator_stays_text_on_every_page() {
+    let [chart, _] = individuals(&[1.0, 2.0, 3.0], Rules::Nelson).unwrap();
+    let names = [EVIL.to_owned(), EVIL.to_owned(), EVIL.to_owned()];
+    let named = Named {
+        of: EVIL,
+        chart: &chart,
+        names: &names,
+    };
+    for language in LANGUAGES {
+        let paper = paper(language);
+        for page in [
+            lot_report(language),
+            certificate(&paper, &part("pass"), &run()),
+            spc(&paper, EVIL, std::slice::from_ref(&named), 3),
+        ] {
+            assert!(page.contains("&lt;script&gt;") && !page.contains("<script"));
+        }
+    }
+}
+
+#[test]
+fn whatever_says_that_a_part_is_good_says_what_was_not_tested() {
+    for (language, words) in [
+        (Language::En, ["insulation", "dielectric", "endurance"]),
+        (Language::Zh, ["绝缘电阻", "介质耐压", "寿命"]),
+    ] {
+        let pages = [
+            lot_report(language),
+            certificate(&paper(language), &part("pass"), &run()),
+            process_card(language),
+        ];
+        for page in pages {
+            assert!(words.iter().all(|word| page.contains(word)));
+        }
+    }
+}
+
+#[test]
+fn a_part_that_failed_gets_a_record_and_no_certificate() {
+    let good = certificate(&paper(Language::En), &part("pass"), &run());
+    assert!(good.contains("<h1>Test certificate</h1>"));
+    let bad = certificate(&paper(Language::En), &part("fail"), &run());
+    assert!(bad.contains("<h1>Test record</h1>") && !bad.contains("certificate"));
+}
+
+#[test]
+fn a_record_says_in_its_language_why_the_part_failed() {
+    let why = ["operate_voltage_v high", "coil open"].map(Reason::from_text);
+    let failed = part("fail").because(why.into());
+    for (language, words) in [
+        (
+            Language::En,
+            ["Operate voltage / V: above the upper limit", "coil open"],
+        ),
+        (Language::Zh, ["动作电压 / V：超出上限", "线圈开路"]),
+    ] {
+        let page = certificate(&paper(language), &failed, &run());
+        assert!(words.iter().all(|it| page.contains(it)), "{page}");
+    }
+}
+
+#[test]
+fn a_chart_of_a_bin_bears_its_name_and_says_what_it_leaves_out() {
+    let chart = shares(&[(100, 3), (100, 5), (100, 4)]).unwrap();
+    let named = Named {
+        of: "coil",
+        chart: &chart,
+        names: &[],
+    };
+    let page = spc(&paper(Language::Zh), "", &[named], 2);
+    assert!(
+        page.contains("料箱：线圈 – 占比图 (p)，共 3 点，图示最后 2 点"),
+        "{page}"
+    );
+}
+
+#[test]
+fn a_certificate_shows_the_last_attempt_rounded_by_its_uncertainty() {
+    let page = certificate(&paper(Language::En), &part("pass"), &run());
+    assert!(
+        page.contains(">7.704<") && page.contains(">0.011<"),
+        "{page}"
+    );
+    assert!(!page.contains("8.123"));
+}
+
+#[test]
+fn a_simulated_lot_says_so() {
+    assert!(lot_report(Language::En).contains("SIMULATED RIG"));
+    assert!(lot_report(Language::Zh).contains("仿真台"));
+}
+
+#[test]
+fn a_lot_report_tells_both_yields_and_how_long_an_alarm_stood() {
+    let page = lot_report(Language::En);
+    assert!(page.contains("33.33 %") && page.contains("66.67 %"));
+    assert!(page.contains("0:01:00"));
+}
+
+fn recipe() -> Recipe {
+    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+    load_recipe(&config, "jzc-22f-012").unwrap()
+}
+
+fn process_card(language: Language) -> String {
+    let quota = Quota {
+        machine_s: 0.25,
+        auxiliary_s: 0.125,
+    };
+    let plant = CardSettings {
+        workshop: "W7".into(),
+        operation_no: "40".into(),
+        equipment_model: "relayrig".into(),
+        equipment_no: "E-1".into(),
+        fixture_no: "F-1".into(),
+        pieces_at_once: 1,
+        preparation_min: 15.0,
+        quota: STEPS.iter().map(|it| ((*it).to_owned(), quota)).collect(),
+    };
+    card(language, &recipe(), &plant, "today")
+}
+
+#[test]
+fn a_process_card_has_every_step_its_limits_and_the_sum_of_its_times() {
+    for language in LANGUAGES {
+        let page = process_card(language);
+        let rows = page.matches("<td>0.25</td>").count();
+        assert_eq!(rows, STEPS.len());
+        assert!(page.contains("3.75"), "ten steps of 0.375 s");
+        for demand in ["≤ 9", "≥ 1.2", "360 … 440", "≤ 100"] {
+            assert!(page.contains(demand), "{demand}");
+        }
+    }
+}
+
+#[test]
+fn every_step_of_the_card_has_its_quota_by_name() {
+    let steps = Card::of(&recipe()).steps;
+    assert!(steps.iter().map(|it| it.name).eq(STEPS.iter().copied()));
+}
+
+#[test]
+fn a_control_chart_draws_the_last_points_and_numbers_what_stands_out() {
+    let values: Vec<f64> = (0..50).map(|n| f64::from(n % 3)).chain([40.0]).collect();
+    let [chart, _] = individuals(&values, Rules::Nelson).unwrap();
+    let svg = super::charts::control(&chart, 10, &[]);
+    assert_eq!(svg.matches("<circle").count(), 10);
+    assert!(svg.contains("r=\"3.6\"") && svg.contains(">1</text>"));
+}
+
+#[test]
+fn every_state_of_an_alarm_has_its_word_in_both_languages() {
+    let states = [
+        (AlarmState::Unacknowledged, "unacknowledged", "未确认"),
+        (AlarmState::Acknowledged, "acknowledged", "已确认"),
+        (
+            AlarmState::ReturnedUnacknowledged,
+            "returned, unacknowledged",
+            "已恢复，未确认",
+        ),
+        (AlarmState::Normal, "normal", "已恢复"),
+    ];
+    for (state, en, zh) in states {
+        let alarm = Alarm {
+            lot: None,
+            run: None,
+            code: "late".into(),
+            line: None,
+            text: "late".into(),
+            cause_zh: None,
+            raised: Moment(0),
+            cleared: None,
+            acknowledged: None,
+            acknowledged_by: None,
+            shelf: None,
+            state,
+        };
+        for (language, word) in [(Language::En, en), (Language::Zh, zh)] {
+            let page = alarms::list(&paper(language), "", std::slice::from_ref(&alarm));
+            assert!(page.contains(&format!(">{word}<")), "{word}: {page}");
+        }
+    }
+}

@@ -1,0 +1,323 @@
+//! Speed of the collision core against its peers, in one run: `cargo bench --bench lpm`.
+//!
+//! Printed are nanoseconds and ratios (how many times the peer needs) of mean and 99th percentile,
+//! warm, in an order that nobody can learn, and cold, and how many answers differ; below a missed bar, what it is made of ([`missed`]).
+//! `-- --quick` stops at 1,000 elements, `-- --bar` is 1,000 alone, `-- --growth` asks the core alone
+//! how its cost grows from 10 to 100,000 elements.
+
+mod answers;
+mod growth;
+mod missed;
+mod peer;
+mod timing;
+mod world;
+
+use lpm::{Answer, Model, Move, Mover, Pose, Shape};
+use timing::{Rounds, Spread, TURNS, Timed, clock_ns, cold};
+use world::{KINDS, World, gripper, moves, world};
+
+/// Numbers of elements.
+const SIZES: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
+/// Queries of each kind.
+const QUERIES: usize = 2_000;
+/// Queries of each kind with cold caches.
+const COLD_QUERIES: usize = 300;
+/// Margin of the rows that have one, mm.
+const MARGIN_MM: f64 = 0.5;
+/// How many times faster than parry3d-f64 is wanted.
+const BAR: f64 = 10.0;
+/// Range of the clearance question, mm: that of `check`.
+const RANGE_MM: f64 = 25.0;
+
+fn main() {
+    let clock = clock_ns();
+    println!(
+        "one query alone, best of several passes, ns; cost of the clock taken off: {clock:.1} ns"
+    );
+    let asked = |name: &str| std::env::args().any(|argument| argument == name);
+    if asked("--growth") {
+        return growth::report(clock);
+    }
+    let sizes: &[usize] = match (asked("--quick"), asked("--bar")) {
+        (_, true) => &[1_000],
+        (true, false) => &[10, 100, 1_000],
+        (false, false) => &SIZES,
+    };
+    for size in sizes.iter().copied() {
+        let world = world(size);
+        println!(
+            "\n## n = {size}: plate of {:.2} m, highest top {:.0} mm",
+            world.edge_mm / 1e3,
+            world.top_mm
+        );
+        Bench::new(&world, clock).report(&world);
+    }
+}
+
+struct Bench {
+    clock: f64,
+    model: Model,
+    mover: Mover,
+    double: peer::double::Peer,
+    single: peer::single::Peer,
+}
+
+fn built(world: &World) -> Model {
+    let elements = world.elements.iter();
+    let named = elements.map(|(shape, pose)| ("element", shape, pose));
+    Model::of(named).expect("the bodies of the scene")
+}
+
+fn mover(parts: Vec<(Shape, Pose)>) -> Mover {
+    let parts = parts.into_iter().map(|(shape, pose)| (pose, shape));
+    Mover::new(&Shape::Compound(parts.collect())).expect("a body of blocks and cylinders")
+}
+
+fn stop(model: &Model, mover: &Mover, way: &Move) -> Option<f64> {
+    match model.first_contact(mover, way) {
+        Answer::Clear => None,
+        Answer::Blocked(contact) => Some(contact.t_stop),
+    }
+}
+
+impl Bench {
+    fn new(world: &World, clock: f64) -> Bench {
+        let parts = gripper();
+        Bench {
+            clock,
+            model: built(world),
+            double: peer::double::Peer::new(&world.elements, &parts),
+            single: peer::single::Peer::new(&world.elements, &parts),
+            mover: mover(parts),
+        }
+    }
+
+    fn report(&self, world: &World) {
+        self.edits(world);
+        println!(
+            "\n{:<10} {:>5} {:<14} {:>22}   {:>19} {:>19} {:>19}",
+            "warm",
+            "hits",
+            "question",
+            "median/mean/p99",
+            "f64 one call",
+            "f64 over pairs",
+            "f32 best"
+        );
+        println!(
+            "{:<10} {:>5} {:<14} {:>22}   {:>19} {:>19} {:>19}",
+            "", "", "", "ours, ns", "x mean, x p99", "x mean, x p99", "x mean, x p99"
+        );
+        for kind in KINDS {
+            self.kind(kind, &moves(world, kind, QUERIES));
+        }
+        self.margins(world);
+        self.far_above(world);
+        for kind in KINDS {
+            self.unlearned_kind(kind, &moves(world, kind, QUERIES));
+        }
+        println!(
+            "\n{:<10} {:>5} {:<14} {:>22}   {:>19} {:>19}",
+            "cold", "", "question", "ours, ns", "f64 one call", "f64 over pairs"
+        );
+        for kind in KINDS {
+            self.cold_kind(kind, &moves(world, kind, COLD_QUERIES));
+        }
+        for kind in KINDS {
+            answers::differences(self, kind, &moves(world, kind, QUERIES));
+        }
+    }
+
+    fn kind(&self, kind: &str, ways: &[Move]) {
+        let Bench {
+            clock,
+            model,
+            mover,
+            double,
+            single,
+        } = self;
+        let hits = ways
+            .iter()
+            .filter(|way| model.any_hit(mover, way).is_some())
+            .count();
+        let share = format!("{:.0}%", 100.0 * hits as f64 / ways.len() as f64);
+        let timed = || Timed::new(ways, *clock);
+        let (mut any, mut first, mut least) = (timed(), timed(), timed());
+        let (mut one, mut pairs_any, mut pairs_first) = (timed(), timed(), timed());
+        let (mut single_one, mut single_any, mut single_first) = (timed(), timed(), timed());
+        for _ in 0..TURNS {
+            any.turn(|way| model.any_hit(mover, way));
+            first.turn(|way| stop(model, mover, way));
+            one.turn(|way| double.compound(way));
+            pairs_any.turn(|way| double.pairs_any(way));
+            pairs_first.turn(|way| double.pairs_first(way));
+            single_one.turn(|way| single.compound(way));
+            single_any.turn(|way| single.pairs_any(way));
+            single_first.turn(|way| single.pairs_first(way));
+            least.turn(|way| model.clearance(mover, way, RANGE_MM));
+        }
+        let (one, single_one) = (one.spread(), single_one.spread());
+        let any = any.spread();
+        row(
+            kind,
+            &share,
+            "any hit",
+            &any,
+            &[
+                one,
+                pairs_any.spread(),
+                best(single_one, single_any.spread()),
+            ],
+        );
+        missed::of_question(self, ways, &one, &any, &|mover, way| {
+            model.any_hit(mover, way).is_some()
+        });
+        let first = first.spread();
+        row(
+            kind,
+            &share,
+            "first contact",
+            &first,
+            &[
+                one,
+                pairs_first.spread(),
+                best(single_one, single_first.spread()),
+            ],
+        );
+        missed::of_question(self, ways, &one, &first, &|mover, way| {
+            stop(model, mover, way).is_some()
+        });
+        row(kind, &share, "clearance", &least.spread(), &[]);
+    }
+
+    /// First contact with half a millimetre to be kept: both sides search then.
+    fn margins(&self, world: &World) {
+        for kind in ["jog5", "descend", "local300"] {
+            let mut ways = moves(world, kind, QUERIES);
+            ways.iter_mut().for_each(|way| way.margin_mm = MARGIN_MM);
+            let mut first = Timed::new(&ways, self.clock);
+            let mut pairs = Timed::new(&ways, self.clock);
+            for _ in 0..TURNS {
+                first.turn(|way| stop(&self.model, &self.mover, way));
+                pairs.turn(|way| self.double.pairs_first(way));
+            }
+            row(
+                kind,
+                "",
+                "within 0.5 mm",
+                &first.spread(),
+                &[pairs.spread()],
+            );
+        }
+    }
+
+    /// A question far above everything: what taking poses costs.
+    fn far_above(&self, world: &World) {
+        let ways = missed::lifted(&moves(world, "disc_yaw0", QUERIES));
+        self.any_row("far above", "any hit", || Timed::new(&ways, self.clock));
+    }
+
+    /// In another order in each pass.
+    fn unlearned_kind(&self, kind: &str, ways: &[Move]) {
+        self.any_row(kind, "any, no order", || Timed::unlearned(ways, self.clock));
+    }
+
+    fn any_row<'a>(&self, kind: &str, question: &str, timed: impl Fn() -> Timed<'a, Move<'a>>) {
+        let (mut any, mut one, mut pairs) = (timed(), timed(), timed());
+        for _ in 0..TURNS {
+            any.turn(|way| self.model.any_hit(&self.mover, way));
+            one.turn(|way| self.double.compound(way));
+            pairs.turn(|way| self.double.pairs_any(way));
+        }
+        row(
+            kind,
+            "",
+            question,
+            &any.spread(),
+            &[one.spread(), pairs.spread()],
+        );
+    }
+
+    fn cold_kind(&self, kind: &str, ways: &[Move]) {
+        let Bench {
+            clock,
+            model,
+            mover,
+            double,
+            ..
+        } = self;
+        let one = cold(ways, *clock, |way| double.compound(way));
+        let any = cold(ways, *clock, |way| model.any_hit(mover, way));
+        let pairs = cold(ways, *clock, |way| double.pairs_any(way));
+        row(kind, "", "any hit", &any, &[one, pairs]);
+        let first = cold(ways, *clock, |way| stop(model, mover, way));
+        let pairs = cold(ways, *clock, |way| double.pairs_first(way));
+        row(kind, "", "first contact", &first, &[one, pairs]);
+    }
+
+    fn edits(&self, world: &World) {
+        let count = world.elements.len();
+        let times = if count > 5_000 { 9 } else { 201 };
+        let bodies = peer::double::Peer::bodies(&world.elements);
+        let single_bodies = peer::single::Peer::bodies(&world.elements);
+        let [mut ours, mut rebuild, mut single, mut copy] = [(); 4].map(|()| Rounds::new(times));
+        for _ in 0..TURNS {
+            ours.turn(|| (), |()| built(world));
+            peer::double::Peer::build(&bodies, &mut rebuild);
+            peer::single::Peer::build(&single_bodies, &mut single);
+            copy.turn(|| (), |()| self.model.clone());
+        }
+        let (ours, rebuild, single) = (ours.spread(), rebuild.spread(), single.spread());
+        row(
+            "build",
+            "",
+            "whole model",
+            &ours,
+            &[rebuild, rebuild, single],
+        );
+        missed::of_build(&copy.spread(), &ours, &rebuild);
+        let picked: Vec<usize> = (0..QUERIES)
+            .map(|index| 1 + index * 7919 % (count - 1))
+            .collect();
+        let mut model = self.model.clone();
+        let (mut double, mut single) = (self.double.editor(), self.single.editor());
+        let timed = || Timed::new(&picked, self.clock);
+        let (mut ours, mut double_edit, mut single_edit) = (timed(), timed(), timed());
+        for _ in 0..TURNS {
+            ours.turn(|index| {
+                let (shape, pose) = &world.elements[*index];
+                let key = model.insert("element", shape, pose);
+                model.remove(key.expect("a body of the scene"))
+            });
+            double_edit.turn(&mut double);
+            single_edit.turn(&mut single);
+        }
+        let ours = ours.spread();
+        row(
+            "edit",
+            "",
+            "insert, remove",
+            &ours,
+            &[rebuild, double_edit.spread(), single_edit.spread()],
+        );
+        println!(
+            "(edit: against a rebuild of the compound, and against insert and remove of a leaf of the raw tree)"
+        );
+        let bytes = self.model.heap_bytes() as f64 / count as f64;
+        println!("memory: {bytes:.0} bytes per element");
+    }
+}
+
+fn best(a: Spread, b: Spread) -> Spread {
+    if a.mean < b.mean { a } else { b }
+}
+
+fn row(kind: &str, share: &str, question: &str, ours: &Spread, peers: &[Spread]) {
+    let times = format!("{:.0}/{:.0}/{:.0}", ours.median, ours.mean, ours.p99);
+    print!("{kind:<10} {share:>5} {question:<14} {times:>22}  ");
+    for peer in peers {
+        let ratio = format!("{:.1}, {:.1}", peer.mean / ours.mean, peer.p99 / ours.p99);
+        print!(" {ratio:>19}");
+    }
+    println!();
+}

@@ -1,0 +1,200 @@
+//! What a scene says for the rig: who rides on what, actuators, pairs, mates and the guard's table.
+//!
+//! Nothing of it is applied here, that is the guard's. It is read all the same, so that a slip is told by whoever reads
+//! the file first. What the guard asks beyond it (its eight actuators, an axis of unit length, a free stroke) it asks
+//! itself; what stands in a `[[mate]]` is left to its reader.
+
+use super::Scene;
+use super::field::{Field, SceneError, Table, expected_id, refuse};
+use super::moves::distance;
+use super::node::Node;
+use crate::LARGEST_COORDINATE_MM;
+use std::collections::HashSet;
+
+const RULES: &str = "\"forbidden\", \"may_touch\" or \"ignore\"";
+/// Of an actuator; `points` is the short name of `points_mm`.
+const ACTUATOR: &[&str] = &[
+    "id",
+    "axis",
+    "stroke_mm",
+    "points_mm",
+    "points",
+    "rides",
+    "opposed",
+    "to_rest",
+    "to_end",
+];
+const PAIR: &[&str] = &["a", "b", "rule", "margin_mm", "depth_mm", "by"];
+const MARGINS: &[&str] = &["default_margin_mm", "touch_depth_mm", "pin_inset_mm"];
+const PLACES: &[&str] = &["mouth", "pocket", "nest"];
+
+/// Names that a scene may use and need not describe: those of the rig it belongs to.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Elsewhere<'a> {
+    /// Of actuators.
+    pub actuators: &'a [&'a str],
+    /// Of bodies that are no elements: the part.
+    pub bodies: &'a [&'a str],
+}
+
+/// Names that `rides`, `opposed`, `by` and the pairs may use.
+struct Names<'a> {
+    actuators: Vec<&'a str>,
+    bodies: Vec<&'a str>,
+}
+
+/// Refuses the first thing in the rig's part of a scene that cannot be meant.
+pub(super) fn check(root: &Table, scene: &Scene, elsewhere: &Elsewhere) -> Result<(), SceneError> {
+    let actuators = actuators(root)?;
+    let bodies = scene.elements.iter().chain(&scene.movers);
+    let names = Names {
+        actuators: joined(actuators.iter().map(|(id, _)| *id), elsewhere.actuators),
+        bodies: joined(bodies.map(|body| body.id.as_str()), elsewhere.bodies),
+    };
+    for (list, bodies) in [("elements", &scene.elements), ("movers", &scene.movers)] {
+        for (index, body) in bodies.iter().enumerate() {
+            if let Some(carrier) = &body.rides {
+                names.actuator(format!("{list}[{index}].rides"), carrier)?;
+            }
+        }
+    }
+    for (_, table) in &actuators {
+        carrying(table, &names)?;
+    }
+    for field in listed(root, "pair")? {
+        pair(&field, &names)?;
+    }
+    for field in listed(root, "mate")? {
+        let Node::Table(_) = field.node else {
+            return field.refuse("a table");
+        };
+    }
+    root.optional("guard").map_or(Ok(()), |table| guard(&table))
+}
+
+fn joined<'a>(described: impl Iterator<Item = &'a str>, others: &[&'a str]) -> Vec<&'a str> {
+    described.chain(others.iter().copied()).collect()
+}
+
+fn listed<'a>(table: &Table<'a>, key: &str) -> Result<Vec<Field<'a>>, SceneError> {
+    table.optional(key).map_or(Ok(Vec::new()), |it| it.list())
+}
+
+impl Names<'_> {
+    fn actuator(&self, path: String, found: &str) -> Result<(), SceneError> {
+        if self.actuators.contains(&found) {
+            return Ok(());
+        }
+        let expected = expected_id(
+            "an actuator of the scene or its rig",
+            "actuators",
+            &self.actuators,
+        );
+        refuse(path, Node::Text(found.to_owned()).to_string(), expected)
+    }
+
+    /// A trailing `*` stands for any ending.
+    fn body(&self, field: &Field) -> Result<(), SceneError> {
+        let found = field.text()?;
+        let is_known = match found.strip_suffix('*') {
+            Some(stem) => self.bodies.iter().any(|id| id.starts_with(stem)),
+            None => self.bodies.contains(&found),
+        };
+        if is_known {
+            return Ok(());
+        }
+        field.refuse(expected_id(
+            "a body of the scene or its rig",
+            "bodies",
+            &self.bodies,
+        ))
+    }
+}
+
+/// The actuators with their ids; whom they name is looked at when all names are known.
+fn actuators<'a>(root: &Table<'a>) -> Result<Vec<(&'a str, Table<'a>)>, SceneError> {
+    let mut known = HashSet::new();
+    let mut actuators = Vec::new();
+    for field in listed(root, "actuator")? {
+        let table = field.table(ACTUATOR)?;
+        let id = table.required("id", "a name")?;
+        if !known.insert(id.text()?) {
+            let found = format!("{} again", id.node);
+            return refuse(id.path, found, "a name that no other actuator has");
+        }
+        let axis = table.required("axis", "a direction")?;
+        if axis.numbers::<3>()? == [0.0; 3] {
+            return refuse(axis.path, "[0, 0, 0]".into(), "a direction");
+        }
+        stroke(&table)?;
+        for key in ["to_rest", "to_end"] {
+            table.optional(key).map_or(Ok(""), |words| words.text())?;
+        }
+        actuators.push((id.text()?, table));
+    }
+    Ok(actuators)
+}
+
+fn stroke(table: &Table) -> Result<(), SceneError> {
+    let points = table
+        .optional("points_mm")
+        .or_else(|| table.optional("points"));
+    match (table.optional("stroke_mm"), points) {
+        (Some(_), Some(points)) => points.refuse("either a stroke or points"),
+        (None, Some(points)) => {
+            let list = points.list()?;
+            if list.is_empty() {
+                return points.refuse("at least one point in mm");
+            }
+            list.iter().try_for_each(|point| point.number().map(drop))
+        }
+        (_, None) => {
+            let stroke = table.required("stroke_mm", "a stroke in mm, or points_mm")?;
+            let mm = stroke.number()?;
+            if mm > 0.0 && mm <= LARGEST_COORDINATE_MM {
+                return Ok(());
+            }
+            stroke.refuse("a stroke above 0 and at most 1e6 mm")
+        }
+    }
+}
+
+/// Who carries an actuator, and whom it carries against its axis.
+fn carrying(actuator: &Table, names: &Names) -> Result<(), SceneError> {
+    if let Some(rides) = actuator.optional("rides") {
+        names.actuator(rides.path.clone(), rides.text()?)?;
+    }
+    listed(actuator, "opposed")?
+        .iter()
+        .try_for_each(|id| names.body(id))
+}
+
+fn pair(field: &Field, names: &Names) -> Result<(), SceneError> {
+    let table = field.table(PAIR)?;
+    for key in ["a", "b"] {
+        names.body(&table.required(key, "the id of a body")?)?;
+    }
+    let rule = table.required("rule", RULES)?;
+    if !["forbidden", "may_touch", "ignore"].contains(&rule.text()?) {
+        return rule.refuse(RULES);
+    }
+    for key in ["margin_mm", "depth_mm"] {
+        table.optional(key).map_or(Ok(0.0), |mm| distance(&mm))?;
+    }
+    listed(&table, "by")?
+        .iter()
+        .try_for_each(|id| names.actuator(id.path.clone(), id.text()?))
+}
+
+fn guard(field: &Field) -> Result<(), SceneError> {
+    let table = field.table(&[MARGINS, PLACES].concat())?;
+    for key in MARGINS {
+        table.optional(key).map_or(Ok(0.0), |mm| distance(&mm))?;
+    }
+    for key in PLACES {
+        table
+            .optional(key)
+            .map_or(Ok([0.0; 3]), |place| place.numbers())?;
+    }
+    Ok(())
+}

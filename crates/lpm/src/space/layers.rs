@@ -1,0 +1,292 @@
+//! Layers: the checking space cut along z, each layer with the real bottom and top of what is in it.
+//!
+//! A layer is `{h1, h2, V, B}`: one step of [`STEP_MM`] of the height, from the lowest real bottom
+//! that lies in it (`h1`) to the highest real top (`h2`). A piece belongs to every layer that it
+//! reaches into, but is copied into none: of `V`, the grid information, a layer has one bit in the
+//! word of each cell of the [`Grid`](super::grid::Grid) (bit k: layer k has something here), `B`,
+//! the silhouettes, are kept by cell for all layers ([`Bundle`](super::silhouettes::Bundle)).
+//!
+//! The checking space Omega reaches from the lowest `h1` to the highest `h2` and follows them.
+
+use super::Seat;
+use super::cover::{Cover, larger, smaller};
+use super::four::Four;
+
+/// Layers fit the bits of one word.
+const LAYERS: usize = 64;
+
+/// Layers that nearly all pieces pass at most.
+const SHORT: usize = 8;
+
+/// Height of a layer, mm: a third of the lowest elements of a fixture, so that a hand that passes
+/// over them shares no layer with them.
+const STEP_MM: f32 = 8.0;
+
+/// Layers below the top of the baseplate, less the half that rounding to the nearest adds; whatever lies
+/// lower belongs to the lowest layer, what lies above all steps (440 mm) to the highest.
+const STEPS_BELOW: f32 = 7.5;
+
+/// The layers that a piece reaches into: the lowest and the highest.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Reach {
+    pub(crate) low: u8,
+    pub(crate) high: u8,
+}
+
+impl Reach {
+    /// Into none.
+    pub(super) const NONE: Reach = Reach {
+        low: LAYERS as u8 - 1,
+        high: 0,
+    };
+
+    /// Of a piece between two heights, mm.
+    #[inline(always)]
+    pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {
+        let heights = Four::of(&[bottom_mm, top_mm, 0.0, 0.0]);
+        let steps = heights.times(Four::all(1.0 / STEP_MM));
+        let steps = steps.plus(Four::all(STEPS_BELOW));
+        // All of this is monotone, which is all that safety needs.
+        let within = steps.within(Four::all(0.0), Four::all(LAYERS as f32 - 1.0));
+        let [low, high, ..] = within.nearest();
+        Reach {
+            low: low as u8,
+            high: high as u8,
+        }
+    }
+
+    /// One bit a layer.
+    #[inline(always)]
+    pub(crate) fn word(self) -> u64 {
+        // What would be shifted out is no layer.
+        let last = LAYERS as u32 - 1;
+        u64::MAX.wrapping_shl(u32::from(self.low))
+            & u64::MAX.wrapping_shr(last.wrapping_sub(u32::from(self.high)))
+    }
+}
+
+/// All layers, and Omega.
+#[derive(Debug, Clone)]
+pub(crate) struct Layers {
+    /// Pieces that pass through each layer from below to above, that begin in it, that end in it.
+    passing: [u32; LAYERS + SHORT],
+    beginning: [u32; LAYERS],
+    ending: [u32; LAYERS],
+    /// Lowest bottom of those that begin, highest top of those that end in a layer, mm.
+    h1: [f32; LAYERS],
+    h2: [f32; LAYERS],
+    /// Bottom and top of Omega, mm.
+    bottom: f32,
+    top: f32,
+}
+
+impl Default for Layers {
+    fn default() -> Layers {
+        Layers {
+            passing: [0; LAYERS + SHORT],
+            beginning: [0; LAYERS],
+            ending: [0; LAYERS],
+            h1: [f32::INFINITY; LAYERS],
+            h2: [f32::NEG_INFINITY; LAYERS],
+            bottom: f32::INFINITY,
+            top: f32::NEG_INFINITY,
+        }
+    }
+}
+
+impl Layers {
+    /// Of many pieces at once.
+    pub(super) fn of(seats: &[Seat], covers: &[Cover]) -> Layers {
+        let mut layers = Layers::default();
+        // Pieces that begin and end in the same layer.
+        let mut within = [0u32; LAYERS];
+        for (Seat { reach, .. }, cover) in seats.iter().zip(covers) {
+            layers.enclose(*reach, cover.low[2], cover.high[2]);
+            if reach.low == reach.high {
+                within[usize::from(reach.low) % LAYERS] += 1;
+            }
+        }
+        layers.bottom = layers.h1.into_iter().fold(f32::INFINITY, smaller);
+        layers.top = layers.h2.into_iter().fold(f32::NEG_INFINITY, larger);
+        // Those that have begun below a layer and do not end below or in it; but for those of one layer. (Nobody ends
+        // before it begins.)
+        let (mut begun, mut ended) = (0, 0);
+        for (layer, within) in within.into_iter().enumerate() {
+            ended += layers.ending[layer] - within;
+            layers.passing[layer] = begun - ended;
+            begun += layers.beginning[layer] - within;
+        }
+        layers
+    }
+
+    /// Takes a piece between two heights (mm) in.
+    #[inline]
+    pub(crate) fn join(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
+        self.enclose(reach, bottom_mm, top_mm);
+        self.bottom = smaller(self.bottom, bottom_mm);
+        self.top = larger(self.top, top_mm);
+        self.pass(reach, 1);
+    }
+
+    /// Where a piece begins and ends. (No reach goes beyond the layers; saying so spares a check.)
+    #[inline]
+    fn enclose(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
+        let [low, high] = [reach.low, reach.high].map(|layer| usize::from(layer) % LAYERS);
+        self.beginning[low] += 1;
+        self.ending[high] += 1;
+        self.h1[low] = smaller(self.h1[low], bottom_mm);
+        self.h2[high] = larger(self.h2[high], top_mm);
+    }
+
+    /// Counts a piece in the layers between its lowest and its highest: 1 more, or with `u32::MAX` 1 less.
+    #[inline]
+    fn pass(&mut self, reach: Reach, more: u32) {
+        let first = usize::from(reach.low) + 1;
+        let between = usize::from(reach.high).saturating_sub(first);
+        let passed = &mut self.passing[first..];
+        match passed.first_chunk_mut::<SHORT>() {
+            // How many they are cannot be guessed, so all of a few are written, most with what they had.
+            Some(few) if between <= SHORT => {
+                for (at, count) in few.iter_mut().enumerate() {
+                    *count = count.wrapping_add(if at < between { more } else { 0 });
+                }
+            }
+            Some(_) | None => {
+                let long = passed.iter_mut().take(between);
+                long.for_each(|count| *count = count.wrapping_add(more));
+            }
+        }
+    }
+
+    /// Lets a piece go. `h1` and `h2` of a layer stay (a superset is safe) until nothing begins or
+    /// ends there.
+    pub(crate) fn leave(&mut self, reach: Reach) {
+        let (low, high) = (usize::from(reach.low), usize::from(reach.high));
+        self.pass(reach, u32::MAX);
+        self.beginning[low] -= 1;
+        self.ending[high] -= 1;
+        if self.beginning[low] == 0 {
+            let h1 = std::mem::replace(&mut self.h1[low], f32::INFINITY);
+            if h1 <= self.bottom {
+                self.bottom = self.h1.iter().copied().fold(f32::INFINITY, f32::min);
+            }
+        }
+        if self.ending[high] == 0 {
+            let h2 = std::mem::replace(&mut self.h2[high], f32::NEG_INFINITY);
+            if h2 >= self.top {
+                self.top = self.h2.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+            }
+        }
+    }
+
+    /// One bit for each layer of the heights `low..=high` (mm); none outside Omega.
+    #[inline]
+    pub(crate) fn between(&self, low: f32, high: f32) -> u64 {
+        if high < self.bottom || low > self.top {
+            return 0;
+        }
+        Reach::of(low, high).word()
+    }
+
+    /// The same without those in which nothing reaches into these heights: what a way over many squares
+    /// is worth.
+    #[inline]
+    pub(crate) fn meeting(&self, low: f32, high: f32) -> u64 {
+        let reach = Reach::of(low, high);
+        let outermost = self.void(reach.low, low, high) | self.void(reach.high, low, high);
+        self.between(low, high) & !outermost
+    }
+
+    /// The bit of a layer where `low..=high` lies between its real tops and real bottoms.
+    #[inline]
+    fn void(&self, layer: u8, low: f32, high: f32) -> u64 {
+        let layer = usize::from(layer) % LAYERS;
+        let is_void = (self.passing[layer] == 0) & (self.h2[layer] < low) & (self.h1[layer] > high);
+        u64::from(is_void) << layer
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::tests::Dice;
+
+    fn joined(layers: &mut Layers, bottom: f32, top: f32) -> Reach {
+        let reach = Reach::of(bottom, top);
+        layers.join(reach, bottom, top);
+        reach
+    }
+
+    #[test]
+    fn no_layer_that_reaches_into_the_asked_heights_is_left_out() {
+        let mut dice = Dice(3);
+        let mut layers = Layers::default();
+        let mut standing: Vec<(f32, f32, Reach)> = Vec::new();
+        for round in 0..3_000 {
+            let bottom = (300.0 * dice.signed() + 150.0) as f32;
+            let top = bottom + (60.0 * dice.signed().abs()) as f32;
+            standing.push((bottom, top, joined(&mut layers, bottom, top)));
+            if round % 3 > 0 {
+                let (.., gone) = standing.swap_remove(round % standing.len());
+                layers.leave(gone);
+            }
+            let low = (400.0 * dice.signed()) as f32;
+            let high = low + (30.0 * dice.signed().abs()) as f32;
+            let word = layers.meeting(low, high);
+            for (bottom, top, reach) in &standing {
+                let meets = *bottom <= high && *top >= low;
+                assert!(
+                    !meets || word & reach.word() != 0,
+                    "{bottom} {top} {low} {high}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn layers_of_many_pieces_at_once_are_those_of_one_after_the_other() {
+        let mut dice = Dice(29);
+        for count in [0, 1, 7, 400] {
+            let covers: Vec<Cover> = (0..count)
+                .map(|_| {
+                    let bottom = 300.0 * dice.signed() + 150.0;
+                    // Many end in the layer in which they begin.
+                    let tall = [3.0, 60.0, 700.0][dice.pick(3) as usize] * dice.signed().abs();
+                    Cover::of(([0.0, 0.0, bottom], [1.0, 1.0, bottom + tall]))
+                })
+                .collect();
+            let seats: Vec<Seat> = covers.iter().map(Seat::of).collect();
+            let mut single = Layers::default();
+            for cover in &covers {
+                joined(&mut single, cover.low[2], cover.high[2]);
+            }
+            let at_once = Layers::of(&seats, &covers);
+            assert_eq!(format!("{at_once:?}"), format!("{single:?}"), "{count}");
+        }
+    }
+
+    #[test]
+    fn the_top_of_omega_follows_the_elements() {
+        let mut layers = Layers::default();
+        assert_eq!(layers.meeting(-1e6, 1e6), 0);
+        let plate = joined(&mut layers, -20.0, 0.0);
+        let tower = joined(&mut layers, 0.0, 180.0);
+        assert_eq!((layers.bottom, layers.top), (-20.0, 180.0));
+        layers.leave(tower);
+        assert_eq!((layers.bottom, layers.top), (-20.0, 0.0));
+        assert_eq!(layers.meeting(0.1, 300.0), 0);
+        layers.leave(plate);
+        assert_eq!(layers.meeting(-1e6, 1e6), 0);
+    }
+
+    #[test]
+    fn what_passes_between_the_real_ends_of_a_layer_shares_none() {
+        let mut layers = Layers::default();
+        joined(&mut layers, -20.0, 2.0);
+        joined(&mut layers, 5.0, 40.0);
+        assert_eq!(layers.meeting(3.0, 4.0), 0);
+        assert_eq!(layers.meeting(2.0, 4.0).count_ones(), 1);
+        assert_eq!(layers.meeting(3.0, 5.0).count_ones(), 1);
+        assert_eq!(layers.meeting(40.5, 200.0), layers.meeting(48.0, 200.0));
+    }
+}

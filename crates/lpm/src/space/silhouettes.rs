@@ -1,0 +1,236 @@
+//! Silhouettes, `B` of the paper: what each piece covers of x, y and z, eight pieces at a time.
+
+use super::Seat;
+use super::boxes::Boxes;
+use super::cover::Cover;
+use super::layers::Reach;
+use super::sweep::Sweep;
+
+/// Pieces of one bundle.
+pub(crate) const LANES: usize = 8;
+
+/// No bundle, no piece.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// One silhouette of a bundle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lane {
+    pub(super) piece: u32,
+    pub(super) reach: Reach,
+    pub(super) cover: Cover,
+}
+
+impl Lane {
+    #[inline]
+    pub(super) fn of(piece: u32, cover: &Cover, seat: &Seat) -> Lane {
+        Lane {
+            piece,
+            reach: seat.reach,
+            cover: *cover,
+        }
+    }
+}
+
+/// Eight silhouettes and whose they are. Lanes from `count` on are nobody's.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Bundle {
+    boxes: Boxes<LANES>,
+    pieces: [u32; LANES],
+    /// The lowest and the highest layer of each piece.
+    lowest: [u8; LANES],
+    highest: [u8; LANES],
+    count: u32,
+    /// Next bundle of the same cell; always a full one.
+    pub(super) next: u32,
+}
+
+impl Bundle {
+    /// An empty bundle, and the bundle that follows it in its cell.
+    #[inline]
+    pub(super) fn before(next: u32) -> Bundle {
+        Bundle {
+            boxes: Boxes::NOWHERE,
+            pieces: [NONE; LANES],
+            lowest: [Reach::NONE.low; LANES],
+            highest: [Reach::NONE.high; LANES],
+            count: 0,
+            next,
+        }
+    }
+
+    #[inline]
+    pub(super) fn is_full(&self) -> bool {
+        self.count as usize == LANES
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    #[inline]
+    pub(super) fn push(&mut self, lane: &Lane) {
+        self.count += 1;
+        self.set(self.last(), lane);
+    }
+
+    /// Counts lanes that will be [`Bundle::set`].
+    #[inline]
+    pub(super) fn expect(&mut self, count: u32) {
+        self.count = count;
+    }
+
+    #[inline]
+    pub(super) fn set(&mut self, at: usize, lane: &Lane) {
+        self.boxes.set(at, &lane.cover);
+        self.pieces[at] = lane.piece;
+        (self.lowest[at], self.highest[at]) = (lane.reach.low, lane.reach.high);
+    }
+
+    /// The silhouette of a lane.
+    #[inline]
+    pub(super) fn lane(&self, at: usize) -> Lane {
+        Lane {
+            piece: self.pieces[at],
+            reach: Reach {
+                low: self.lowest[at],
+                high: self.highest[at],
+            },
+            cover: self.cover(at),
+        }
+    }
+
+    /// Forgets the last lane.
+    #[inline]
+    pub(super) fn pop(&mut self) {
+        let last = self.last();
+        self.pieces[last] = NONE;
+        (self.lowest[last], self.highest[last]) = (Reach::NONE.low, Reach::NONE.high);
+        self.count = self.count.saturating_sub(1);
+    }
+
+    /// The newest lane; of an empty bundle, one that is nobody's.
+    #[inline]
+    pub(super) fn last(&self) -> usize {
+        (self.count as usize).wrapping_sub(1) % LANES
+    }
+
+    /// Where a piece is; first of all where the newest is, which is the first to go where parts pass and a
+    /// fixture stays.
+    #[inline]
+    pub(super) fn lane_of(&self, piece: u32) -> Option<usize> {
+        let last = self.last();
+        if self.pieces[last] == piece {
+            return Some(last);
+        }
+        let word = (0..LANES).fold(0, |word, lane| {
+            word | u32::from(self.pieces[lane] == piece) << lane
+        });
+        (word != 0).then(|| word.trailing_zeros() as usize % LANES)
+    }
+
+    /// Word of the layers from the lowest to the highest of this bundle, but for one lane.
+    ///
+    /// Asked before that lane goes: bytes that have just been written one by one are not read eight at a
+    /// time without waiting for them.
+    #[inline]
+    pub(super) fn word_without(&self, gone: Option<usize>) -> u64 {
+        let gone = gone.map_or(0, |lane| 0xff << (8 * lane));
+        let lowest = u64::from_le_bytes(self.lowest) | gone;
+        let highest = u64::from_le_bytes(self.highest) & !gone;
+        let reach = Reach {
+            low: lowest
+                .to_le_bytes()
+                .into_iter()
+                .fold(Reach::NONE.low, u8::min),
+            high: highest
+                .to_le_bytes()
+                .into_iter()
+                .fold(Reach::NONE.high, u8::max),
+        };
+        reach.word()
+    }
+
+    /// Bit k: lane k is in use.
+    #[inline]
+    fn used(&self) -> u32 {
+        (1 << self.count) - 1
+    }
+
+    /// Bit k: the silhouette of lane k shares a point with `cover` on every axis.
+    #[inline]
+    pub(super) fn meeting(&self, cover: &Cover) -> u32 {
+        self.boxes.meeting(cover) & self.used()
+    }
+
+    /// Which silhouettes a box on its way meets up to the fraction `until`, and not before when.
+    #[inline(always)]
+    pub(super) fn crossing(&self, sweep: &Sweep, until: f32) -> (u32, [f32; LANES]) {
+        let crossing = self.boxes.crossing(&sweep.start, &sweep.pace, until);
+        (crossing.lanes & self.used(), crossing.entry)
+    }
+
+    /// Before which fraction of a way along one axis each silhouette is not met.
+    #[inline]
+    pub(super) fn entry(&self, sweep: &Sweep, axis: usize) -> [f32; LANES] {
+        self.boxes.entry(&sweep.start, &sweep.pace, axis)
+    }
+
+    /// What the piece of a lane covers.
+    #[inline]
+    pub(crate) fn cover(&self, lane: usize) -> Cover {
+        self.boxes.cover(lane)
+    }
+
+    #[inline]
+    pub(crate) fn piece(&self, lane: usize) -> u32 {
+        self.pieces[lane]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::distance::tests::Dice;
+
+    #[test]
+    fn a_bundle_reaches_from_the_lowest_to_the_highest_layer_of_all_that_stay() {
+        let mut dice = Dice(17);
+        for _ in 0..2_000 {
+            let mut bundle = Bundle::before(NONE);
+            let mut reaches = Vec::new();
+            for piece in 0..dice.pick(9) as u32 {
+                let low = dice.pick(64) as u8;
+                let high = low + dice.pick(64 - u64::from(low)) as u8;
+                let reach = Reach { low, high };
+                let cover = Cover {
+                    low: [0.0; 4],
+                    high: [0.0; 4],
+                };
+                bundle.push(&Lane {
+                    piece,
+                    reach,
+                    cover,
+                });
+                reaches.push(reach);
+            }
+            let gone = dice.pick(9) as usize;
+            let gone = (gone < reaches.len()).then_some(gone);
+            let stay = |at: &usize| Some(*at) != gone;
+            let stay: Vec<Reach> = (0..reaches.len())
+                .filter(stay)
+                .map(|at| reaches[at])
+                .collect();
+            let low = stay.iter().map(|reach| reach.low).min();
+            let high = stay.iter().map(|reach| reach.high).max();
+            let word = low
+                .zip(high)
+                .map_or(0, |(low, high)| Reach { low, high }.word());
+            assert_eq!(
+                bundle.word_without(gone),
+                word,
+                "{reaches:?} without {gone:?}"
+            );
+        }
+    }
+}

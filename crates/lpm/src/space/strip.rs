@@ -1,0 +1,192 @@
+//! What a box passes of each band of squares that lies across its way: between two lines.
+//!
+//! Both lines are followed in whole units of 2^-32 squares. What rounding to units loses, at most one a band, is
+//! added to the width at once, so whatever is passed is in the strip. Where the box stands at the ends of its way
+//! does not count: a superset is safe.
+
+use super::area::{Area, PITCH_MM};
+use super::sweep::{SLACK_MM, Sweep};
+
+/// Units of a square, and their number as a power of two.
+const UNIT: f64 = (1u64 << UNIT_BITS) as f64;
+const UNIT_BITS: u32 = 32;
+
+/// Squares that no grid reaches to, and no line from there.
+const BEYOND: f64 = (1 << 28) as f64;
+
+/// The bands of an area in the direction of the way, which is longer along them than across.
+pub(super) struct Strip {
+    /// Number of the band that comes next, 0 the first.
+    pub(super) step: i32,
+    band: i32,
+    /// 1 or -1.
+    towards: i32,
+    /// Number of the last one.
+    last: i32,
+    /// Where both lines are over the next band, from the first row or column of the area, and how far they
+    /// go a band; in units.
+    low: i64,
+    high: i64,
+    slope: i64,
+    /// Last row or column of the area.
+    width: i32,
+    /// Way until the box comes over the first band, in bands, and the whole way.
+    ahead: f64,
+    run: f64,
+}
+
+impl Strip {
+    #[inline]
+    pub(super) fn new<const AXIS: usize>(sweep: &Sweep, area: &Area) -> Strip {
+        let across = 1 - AXIS;
+        let is_forward = sweep.run[AXIS] > 0.0;
+        let (towards, band) = if is_forward {
+            (1, area.low[AXIS])
+        } else {
+            (-1, area.high[AXIS])
+        };
+        // The way of the box over the first band begins and ends here, whichever way it goes.
+        let edge = f64::from(band) * PITCH_MM;
+        let first = edge - f64::from(sweep.start.high[AXIS]) - SLACK_MM;
+        let end = edge + PITCH_MM - f64::from(sweep.start.low[AXIS]) + SLACK_MM;
+        let slope = sweep.run[across] / sweep.run[AXIS];
+        let (least, most) = if slope >= 0.0 {
+            (first, end)
+        } else {
+            (end, first)
+        };
+        let last = area.high[AXIS] - area.low[AXIS];
+        let spare = i64::from(last) + 2;
+        let units = |mm: f64| {
+            let squares = mm * (1.0 / PITCH_MM) - f64::from(area.low[across]);
+            squares.clamp(-BEYOND, BEYOND) * UNIT
+        };
+        let low = f64::from(sweep.start.low[across]) - SLACK_MM + slope * least;
+        let high = f64::from(sweep.start.high[across]) + SLACK_MM + slope * most;
+        // What is no number, of a box without end, is every square.
+        let low = if low.is_nan() { -BEYOND } else { low };
+        let high = if high.is_nan() { BEYOND } else { high };
+        let direction = f64::from(towards);
+        Strip {
+            step: 0,
+            band,
+            towards,
+            last,
+            low: units(low) as i64 - spare,
+            high: units(high) as i64 + spare,
+            slope: (slope * direction * UNIT) as i64,
+            width: area.high[across] - area.low[across],
+            ahead: direction * if is_forward { first } else { end } * (1.0 / PITCH_MM),
+            run: sweep.run[AXIS].abs() * (1.0 / PITCH_MM),
+        }
+    }
+
+    /// Number of the last band that the box comes over up to the fraction `until` of its way.
+    #[inline]
+    pub(super) fn last(&self, until: f64) -> i32 {
+        let bands = self.run * until - self.ahead;
+        // What is no number is all of them.
+        if bands < f64::from(self.last) {
+            // A cast cuts towards 0, which is downward for all that counts.
+            if bands < 0.0 { -1 } else { bands as i32 }
+        } else {
+            self.last
+        }
+    }
+
+    /// The next band, and the first and last square that the box may pass of it. None, if they are crossed.
+    #[inline(always)]
+    pub(super) fn next(&mut self) -> (i32, i32, i32) {
+        let square = |units: i64| (units >> UNIT_BITS) as i32;
+        let passed = (
+            self.band,
+            square(self.low).max(0),
+            square(self.high).min(self.width),
+        );
+        self.step += 1;
+        self.band += self.towards;
+        (self.low, self.high) = (self.low + self.slope, self.high + self.slope);
+        passed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cover::Cover;
+    use super::*;
+    use crate::distance::tests::Dice;
+
+    /// Of each band in turn: its number, and the first and last square of it.
+    fn bands<const AXIS: usize>(sweep: &Sweep, area: &Area, until: f64) -> Vec<(i32, i32, i32)> {
+        let mut strip = Strip::new::<AXIS>(sweep, area);
+        let last = strip.last(until);
+        let mut bands = Vec::new();
+        while strip.step <= last {
+            bands.push(strip.next());
+        }
+        bands
+    }
+
+    #[test]
+    fn whatever_a_box_passes_of_a_band_is_in_the_strip() {
+        let mut dice = Dice(23);
+        let (mut passed, mut spared) = (0, 0);
+        for _ in 0..400 {
+            let [x, y, z] = dice.vector().map(|member| 40.0 * member.abs());
+            let mut at = dice.vector().map(|member| 500.0 * member);
+            if dice.pick(2) == 0 {
+                // Next to a line, on either side.
+                let line = PITCH_MM * dice.pick(3) as f64 - PITCH_MM;
+                (at[0], at[1]) = (
+                    line - x + 3e-6 * dice.signed(),
+                    line - y + 3e-6 * dice.signed(),
+                );
+            }
+            let start = Cover::of((at, [at[0] + x, at[1] + y, at[2] + z]));
+            let long = (500.0 + 1500.0 * dice.signed().abs()).copysign(dice.signed());
+            let sweep = Sweep::new(start, [long, 0.9 * long.abs() * dice.signed(), 3.0]);
+            let area = Area::of(&Cover::of(([-900.0; 3], [900.0; 3])));
+            let until = dice.signed().abs();
+            let bands = bands::<0>(&sweep, &area, until);
+            for moment in 0..200 {
+                let t = until * f64::from(moment) / 199.0;
+                let moved = |bound: [f32; 4]| {
+                    [0, 1, 2].map(|axis: usize| f64::from(bound[axis]) + t * sweep.run[axis])
+                };
+                let over = Area::of(&Cover::of((moved(start.low), moved(start.high))));
+                for column in over.low[0].max(area.low[0])..=over.high[0].min(area.high[0]) {
+                    for row in over.low[1].max(area.low[1])..=over.high[1].min(area.high[1]) {
+                        let square = row - area.low[1];
+                        let known = bands.iter().any(|(band, from, to)| {
+                            *band == column && (from..=to).contains(&&square)
+                        });
+                        assert!(known, "{sweep:?} {t} {column} {row}");
+                        passed += 1;
+                    }
+                }
+            }
+            let width = area.high[1] - area.low[1] + 1;
+            let shown: i32 = bands
+                .iter()
+                .map(|(_, from, to)| (to - from + 1).max(0))
+                .sum();
+            spared += width * bands.len() as i32 - shown;
+        }
+        assert!(passed > 100_000 && spared > 10_000, "{passed} {spared}");
+    }
+
+    #[test]
+    fn a_box_without_end_passes_every_square() {
+        let endless = Cover {
+            low: [f32::NEG_INFINITY; 4],
+            high: [f32::INFINITY; 4],
+        };
+        let area = Area::of(&Cover::of(([-900.0; 3], [900.0; 3])));
+        for run in [[300.0, 0.0, 0.0], [-300.0, 20.0, 0.0], [300.0, -20.0, 0.0]] {
+            let bands = bands::<0>(&Sweep::new(endless, run), &area, 0.5);
+            let width = area.high[1] - area.low[1];
+            assert_eq!(bands.len() as i32, area.high[0] - area.low[0] + 1);
+            assert!(bands.iter().all(|(_, from, to)| (*from, *to) == (0, width)));
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! Pairs built to touch, to overlap and to miss by a known amount: from a millimetre down to a nanometre
+//! (2^-20 mm), near the origin and a kilometre away, where others were seen to fail.
+use super::truth::agrees;
+use crate::distance::tests::Dice;
+use crate::exact::{Body, Form};
+
+/// 2^-20 mm, a little less than a nanometre... so that sums at 1e6 mm are still exact in f64.
+const UNIT_MM: f64 = 1.0 / 1_048_576.0;
+const MM: i64 = 1_048_576;
+/// Overlap below zero, gap above.
+const DELTAS: [i64; 13] = [
+    0,
+    MM,
+    -MM,
+    MM >> 6,
+    -(MM >> 6),
+    MM >> 10,
+    -(MM >> 10),
+    MM >> 14,
+    -(MM >> 14),
+    4,
+    -4,
+    2,
+    -2,
+];
+const OFFSETS_MM: [i64; 4] = [0, 1_000, 100_000, 990_000];
+
+/// Radius or half extent: 2 to 34 mm, on a grid of 1/64 mm.
+fn size(dice: &mut Dice) -> i64 {
+    (2 * MM) + (dice.pick(32 * 64) as i64) * (MM / 64)
+}
+
+fn upright(dice: &mut Dice) -> Body {
+    let (a, b, c) = (size(dice), size(dice), size(dice));
+    if dice.pick(2) == 0 {
+        Body::block([0; 3], [a, b, c])
+    } else {
+        Body::cylinder([0; 3], a, c)
+    }
+}
+
+/// Half extents of the bounding box.
+fn reach(body: &Body) -> [i64; 3] {
+    match body.form {
+        Form::Block { half, .. } => half,
+        Form::Cylinder { radius, half } => [radius, radius, half],
+        Form::Triangle(_) => [0; 3],
+    }
+}
+
+/// Both bodies far from the origin, and the question both ways round.
+fn judged(element: &Body, mover: &Body, run: [i64; 3], dice: &mut Dice) {
+    let far = OFFSETS_MM[dice.pick(4) as usize] * MM;
+    let place = [far, -far, far / 1_000];
+    agrees(&element.moved(place), &mover.moved(place), run, UNIT_MM);
+    let back = run.map(|member| -member);
+    agrees(&mover.moved(place), &element.moved(place), back, UNIT_MM);
+}
+
+#[test]
+fn what_is_stacked_or_stands_side_by_side_touches_exactly_when_it_does() {
+    for seed in 0..150 {
+        let mut dice = Dice(seed);
+        let (element, mover) = (upright(&mut dice), upright(&mut dice));
+        let (a, b) = (reach(&element), reach(&mover));
+        for delta in DELTAS {
+            let axis = dice.pick(3) as usize;
+            let mut centre = [0; 3];
+            centre[axis] = a[axis] + b[axis] + delta;
+            let mover = Body { centre, ..mover };
+            judged(&element, &mover, [0; 3], &mut dice);
+            // Lifted off, and slid along.
+            let mut away = [0; 3];
+            away[axis] = 5 * MM;
+            judged(&element, &mover, away, &mut dice);
+        }
+    }
+}
+
+#[test]
+fn a_slide_or_a_tangent_of_any_length_touches_exactly_when_it_does() {
+    for seed in 0..150 {
+        let mut dice = Dice(1_000 + seed);
+        let (element, mover) = (upright(&mut dice), upright(&mut dice));
+        let (a, b) = (reach(&element), reach(&mover));
+        let length = [MM, 20 * MM, 100 * MM, 1_000 * MM, 5_000 * MM][dice.pick(5) as usize];
+        for delta in DELTAS {
+            let across = dice.pick(3) as usize;
+            let along = (across + 1 + dice.pick(2) as usize) % 3;
+            let (mut centre, mut run) = ([0; 3], [0; 3]);
+            centre[across] = a[across] + b[across] + delta;
+            centre[along] = -length / 2;
+            run[along] = length;
+            judged(&element, &Body { centre, ..mover }, run, &mut dice);
+        }
+    }
+}
+
+#[test]
+fn a_head_on_stop_ends_where_it_touches_or_a_hair_before() {
+    for seed in 0..150 {
+        let mut dice = Dice(2_000 + seed);
+        let (element, mover) = (upright(&mut dice), upright(&mut dice));
+        let (a, b) = (reach(&element), reach(&mover));
+        for delta in DELTAS {
+            let axis = dice.pick(3) as usize;
+            let (mut centre, mut run) = ([0; 3], [0; 3]);
+            centre[axis] = a[axis] + b[axis] + 50 * MM;
+            run[axis] = delta - 50 * MM;
+            judged(&element, &Body { centre, ..mover }, run, &mut dice);
+        }
+    }
+}
+
+#[test]
+fn a_corner_and_a_rim_three_four_five_apart_are_told_to_the_nanometre() {
+    for seed in 0..150 {
+        let mut dice = Dice(3_000 + seed);
+        let half = [size(&mut dice), size(&mut dice), size(&mut dice)];
+        let radius = 5 * (size(&mut dice) / 5);
+        let element = Body::block([0; 3], half);
+        for delta in DELTAS {
+            let delta = delta - delta % 2;
+            let rim = Body::cylinder(
+                [
+                    half[0] + 3 * radius / 5 + delta,
+                    half[1] + 4 * radius / 5,
+                    0,
+                ],
+                radius,
+                size(&mut dice),
+            );
+            judged(&element, &rim, [0; 3], &mut dice);
+            let tangent = [4 * radius, -3 * radius, 0];
+            let half_way_back = [-2 * radius, 3 * (radius / 2), 0];
+            if radius % 2 == 0 {
+                judged(&element, &rim.moved(half_way_back), tangent, &mut dice);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_inside_or_on_the_same_axis_is_blocked() {
+    for seed in 0..150 {
+        let mut dice = Dice(4_000 + seed);
+        let outer = upright(&mut dice);
+        let reach = reach(&outer);
+        let inner = Body::cylinder([0; 3], reach[0].min(reach[1]) / 3, reach[2] / 2);
+        for run in [[0; 3], [MM / 7, 0, 0], [1, 1, 1], [5_000 * MM, 0, 0]] {
+            judged(&outer, &inner, run, &mut dice);
+        }
+        let coaxial = Body::cylinder([0, 0, reach[2] / 2], size(&mut dice), reach[2]);
+        judged(&outer, &coaxial, [0, 0, MM / 2], &mut dice);
+    }
+}
+
+#[test]
+fn turned_blocks_touch_exactly_when_whole_numbers_say_so() {
+    // Millimetres of 1/1024, quaternions of single digits, any axis: edges cross, corners meet faces.
+    for seed in 0..2_500 {
+        let mut dice = Dice(5_000 + seed);
+        let mut turned = |most: u64| {
+            let mut digit = || dice.pick(7) as i64 - 3;
+            let rotation = [1 + digit().abs(), digit(), digit(), digit()];
+            let mut whole = || 1 + dice.pick(most) as i64;
+            let half = [whole(), whole(), whole()];
+            let mut place = || dice.pick(8 * most) as i64 - 4 * most as i64;
+            Body {
+                centre: [place(), place(), place()],
+                form: Form::Block { half, rotation },
+            }
+        };
+        let (element, mover, goal) = (turned(12_000), turned(12_000), turned(12_000).centre);
+        let run = [0, 1, 2].map(|axis| goal[axis] - mover.centre[axis]);
+        agrees(&element, &mover, run, 1.0 / 1024.0);
+    }
+}
+
+#[test]
+fn triangles_touch_exactly_when_whole_numbers_say_so() {
+    // A coarse grid, so that corners fall on edges and planes coincide again and again.
+    let mut touched = 0;
+    for seed in 0..2_500 {
+        let mut dice = Dice(8_000 + seed);
+        let mut triangle = || loop {
+            let mut whole = || dice.pick(5) as i64 - 2;
+            let corners = [0; 3].map(|_| [whole(), whole(), whole()]);
+            let [a, b, c] = corners;
+            let (u, v) = (
+                [0, 1, 2].map(|i| b[i] - a[i]),
+                [0, 1, 2].map(|i| c[i] - a[i]),
+            );
+            if [0, 1, 2]
+                .iter()
+                .any(|i| u[*i] * v[(i + 1) % 3] != u[(i + 1) % 3] * v[*i])
+            {
+                let centre = [whole(), whole(), whole()];
+                return Body {
+                    centre,
+                    form: Form::Triangle(corners),
+                };
+            }
+        };
+        let (element, mover) = (triangle(), triangle());
+        let run = [[0; 3], [0, 0, 3], [2, -1, 0], [-3, 2, 1]][seed as usize % 4];
+        agrees(&element, &mover, run, 1.0);
+        touched += usize::from(crate::exact::first_contact(&element, &mover, run).is_some());
+    }
+    assert!((250..2_250).contains(&touched), "{touched}");
+}

@@ -1,0 +1,109 @@
+//! Characteristics of every kind: what is measured, as data.
+//!
+//! A kind declares its own in one table of [`Definition`]s; [`Characteristic`] is the closed enum over them. The key is the
+//! same in recipes, rows, files and API.
+
+use super::Kind;
+use super::verdict::Bin;
+use super::{em_relay, resistor};
+use crate::gauge::repetition::SpokenOf;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::fmt;
+use units::Unit;
+
+/// What the program knows of a characteristic.
+#[derive(Debug, Clone, Copy)]
+pub struct Definition {
+    /// Key with the unit as suffix.
+    pub key: &'static str,
+    /// Unit in which values and limits are written.
+    pub unit: Unit,
+    /// Name on English pages and paper.
+    pub name_en: &'static str,
+    /// Name on Chinese pages and paper.
+    pub name_zh: &'static str,
+    /// What a mean of several readings speaks of.
+    pub spoken_of: SpokenOf,
+    /// Bin of a part that fails this one.
+    pub bin: Bin,
+}
+
+/// One measured quantity of one kind. Sorts by kind, then in the order of reports.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Characteristic {
+    /// Of an electromagnetic relay.
+    EmRelay(em_relay::Parameter),
+    /// Of a resistor.
+    Resistor(resistor::Parameter),
+}
+
+impl Characteristic {
+    /// Every characteristic of every kind.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Kind::ALL.into_iter().flat_map(Kind::characteristics)
+    }
+
+    /// The characteristic with this key.
+    pub fn from_key(key: &str) -> Option<Self> {
+        Self::all().find(|it| it.key() == key)
+    }
+
+    /// What is fixed about it.
+    pub fn definition(self) -> &'static Definition {
+        match self {
+            Self::EmRelay(parameter) => parameter.definition(),
+            Self::Resistor(parameter) => parameter.definition(),
+        }
+    }
+
+    /// The key, with the unit as suffix.
+    pub fn key(self) -> &'static str {
+        self.definition().key
+    }
+
+    /// The unit in which values and limits are written.
+    pub fn unit(self) -> Unit {
+        self.definition().unit
+    }
+
+    /// Bin of a part that fails this one.
+    pub fn bin(self) -> Bin {
+        self.definition().bin
+    }
+}
+
+impl fmt::Display for Characteristic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.key())
+    }
+}
+
+impl Serialize for Characteristic {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.key())
+    }
+}
+
+impl<'de> Deserialize<'de> for Characteristic {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let key = String::deserialize(deserializer)?;
+        let unknown = || serde::de::Error::custom(format!("{key} is no characteristic"));
+        Self::from_key(&key).ok_or_else(unknown)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_key_is_the_same_in_code_and_files() {
+        for characteristic in Characteristic::all() {
+            let json = serde_json::to_string(&characteristic).unwrap();
+            assert_eq!(json, format!("\"{characteristic}\""));
+            let back: Characteristic = serde_json::from_str(&json).unwrap();
+            assert_eq!(back, characteristic);
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The acts of a stage in the names of this kind, and what they are on a rig: acts of its instruments.
+
+use super::points::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut, Points};
+use crate::instrument::act;
+use crate::rig::point::Point;
+use units::{Span, Volt};
+
+/// What one reading brings in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Read {
+    /// All inputs of the interface board.
+    Board,
+    /// The enabled channels of the coil converter, one scan.
+    Coil,
+    /// One channel of it, in little more than half the time.
+    Current(AnalogIn),
+    /// The contact drop.
+    Drop,
+    /// Both gate counters.
+    Gates,
+    /// Gate counter 0 alone: all that a ramp needs. Kept beside what counter 1 last was.
+    Gate,
+    /// Temperature of the magazine track, which the part has.
+    Track,
+    /// Whether a module with outputs has restarted since it was asked last; one that has is an alarm.
+    Resets,
+}
+
+/// One step of a stage; waits and marks as in [`act::Act`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum Act {
+    /// Outputs of the interface board, written together.
+    Board(Vec<(DigitalOut, bool)>),
+    /// Voltages asked of the supply outputs, in volts of the coil, written one after the other.
+    Supply(Vec<(AnalogOut, Volt)>),
+    /// One reading.
+    Read(Read),
+    /// The coil converter converts these and nothing else; only while a lot is prepared.
+    CoilMask(&'static [AnalogIn]),
+    /// Remembers this instant.
+    Mark,
+    /// See [`act::Act::WaitSinceMark`].
+    WaitSinceMark(Span),
+    /// See [`act::Act::RampSinceMark`].
+    RampSinceMark(Span),
+    /// See [`act::Act::Wait`].
+    Wait(Span),
+    /// See [`act::Act::ConvertSinceMark`].
+    ConvertSinceMark(Span),
+    /// Reads the board until the point is active, or gives up; which of both is kept.
+    Until {
+        /// Point of the interface board.
+        point: DigitalIn,
+        /// Longest wait.
+        within: Span,
+    },
+}
+
+impl Points {
+    /// The acts on this rig; `scanned` are the channels that the coil converter has enabled.
+    pub fn wired(&self, acts: Vec<Act>, scanned: &[AnalogIn]) -> Vec<act::Act> {
+        let acts = acts.into_iter();
+        acts.map(|act| self.wired_act(act, scanned)).collect()
+    }
+
+    fn wired_act(&self, act: Act, scanned: &[AnalogIn]) -> act::Act {
+        match act {
+            Act::Board(outputs) => {
+                let wired = |(output, on)| (self.output(output), on);
+                act::Act::Set(outputs.into_iter().map(wired).collect())
+            }
+            Act::Supply(outputs) => self.supplied(outputs),
+            Act::Read(read) => act::Act::Read(self.wired_read(read, scanned)),
+            Act::CoilMask(channels) => {
+                act::Act::Mask(channels.iter().map(|it| self.analog(*it)).collect())
+            }
+            Act::Mark => act::Act::Mark,
+            Act::WaitSinceMark(span) => act::Act::WaitSinceMark(span),
+            Act::RampSinceMark(span) => act::Act::RampSinceMark(span),
+            Act::Wait(span) => act::Act::Wait(span),
+            Act::ConvertSinceMark(span) => act::Act::ConvertSinceMark(span),
+            Act::Until { point, within } => act::Act::Until {
+                point: self.input(point),
+                word: self.board.clone(),
+                within,
+            },
+        }
+    }
+
+    /// The level steps, the other two ramp.
+    fn supplied(&self, outputs: Vec<(AnalogOut, Volt)>) -> act::Act {
+        let ramps = |(output, _): &(AnalogOut, Volt)| *output != AnalogOut::SupplyLevel;
+        let ramps = outputs.iter().any(ramps);
+        let wired = |(output, volts)| (self.source(output), volts);
+        let wired = outputs.into_iter().map(wired).collect();
+        match ramps {
+            true => act::Act::Ramp(wired),
+            false => act::Act::Level(wired),
+        }
+    }
+
+    fn wired_read(&self, read: Read, scanned: &[AnalogIn]) -> act::Read {
+        let analog = |input| Point::Analog(self.analog(input));
+        let count = |counter| Point::Count(self.counter(counter));
+        match read {
+            Read::Board => act::Read::Word(self.board.clone()),
+            Read::Coil => act::Read::points(scanned.iter().copied().map(analog)),
+            Read::Current(channel) => act::Read::points([analog(channel)]),
+            Read::Drop => act::Read::points([analog(AnalogIn::ContactDrop)]),
+            Read::Gates => act::Read::points([Counter::Gate0, Counter::Gate1].map(count)),
+            Read::Gate => act::Read::Points {
+                asked: vec![count(Counter::Gate0)],
+                beside: vec![count(Counter::Gate1)],
+            },
+            Read::Track => act::Read::points([Point::Temperature(self.track)]),
+            Read::Resets => act::Read::Restarts,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,108 @@
+//! What the acts of a stage are on the default rig, and how their readings are put together again.
+#![allow(clippy::unwrap_used)]
+
+use super::{Act, Read};
+use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter};
+use crate::dut::em_relay::readings::Readings;
+use crate::handling::tests::Shop;
+use crate::instrument::act::{self, Doing, Job, JobDone, Runner};
+use dcon::Command;
+use units::{Span, Volt};
+
+const FINE: [AnalogIn; 2] = [AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrentFine];
+
+fn text(command: &Command) -> String {
+    let mut bytes = Vec::new();
+    command.encode(false, &mut bytes);
+    String::from_utf8(bytes).unwrap().trim_end().to_owned()
+}
+
+#[test]
+fn each_reading_takes_the_transactions_of_its_points() {
+    let shop = Shop::unread();
+    for (read, sent) in [
+        (Read::Board, vec!["@08"]),
+        (Read::Coil, vec!["#01"]),
+        (Read::Current(AnalogIn::CoilCurrent), vec!["#011"]),
+        (Read::Drop, vec!["#090"]),
+        (Read::Gates, vec!["#030", "#031"]),
+        (Read::Gate, vec!["#030"]),
+        (Read::Track, vec!["#052"]),
+    ] {
+        let acts = shop.points.wired(vec![Act::Read(read)], &FINE);
+        let mut runner = Runner::new(acts, shop.now);
+        let Doing::Job(Job::Read(points)) = runner.step(shop.now, None, &shop.image) else {
+            panic!("{read:?} is no reading");
+        };
+        let reads = shop.wiring.reads(&points);
+        let texts: Vec<String> = reads.iter().map(|(_, command)| text(command)).collect();
+        assert_eq!(texts, sent, "{read:?}");
+    }
+}
+
+#[test]
+fn the_level_steps_and_the_other_outputs_ramp() {
+    let points = Shop::unread().points;
+    let wired = |output| {
+        let acts = vec![Act::Supply(vec![(output, Volt(1.0))])];
+        points.wired(acts, &FINE).remove(0)
+    };
+    let level = points.source(AnalogOut::SupplyLevel);
+    assert_eq!(
+        wired(AnalogOut::SupplyLevel),
+        act::Act::Level(vec![(level, Volt(1.0))])
+    );
+    for output in [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine] {
+        let ramp = act::Act::Ramp(vec![(points.source(output), Volt(1.0))]);
+        assert_eq!(wired(output), ramp);
+    }
+}
+
+#[test]
+fn readings_are_put_together_as_the_stage_has_asked_for_them() {
+    let mut shop = Shop::at_rest();
+    let reads = [Read::Board, Read::Gates, Read::Coil, Read::Gate, Read::Coil];
+    let acts = shop.points.wired(reads.map(Act::Read).to_vec(), &FINE);
+    let mut runner = Runner::new(acts, shop.now);
+    let mut doing = runner.step(shop.now, None, &shop.image);
+    for n in 0..5_u32 {
+        assert!(matches!(doing, Doing::Job(_)), "{doing:?}");
+        shop.after(4);
+        shop.gate(Counter::Gate0, n);
+        // The second counter is not asked again.
+        if n < 2 {
+            shop.gate(Counter::Gate1, 100);
+        }
+        for channel in FINE {
+            shop.volts(channel, f64::from(n));
+        }
+        let done = JobDone {
+            at: shop.now,
+            trouble: None,
+        };
+        doing = runner.step(shop.now, Some(&done), &shop.image);
+    }
+    assert_eq!(doing, Doing::Done);
+    let readings = Readings::of(&runner.readings, &shop.points, None);
+    assert!(readings.boards[0].nc_closed && !readings.boards[0].no_closed);
+    assert!(!readings.boards[0].probe_chain && readings.boards.len() == 1);
+    let counts = |pair: &[_; 2]| {
+        pair.each_ref()
+            .map(|it: &crate::rig::sample::CountSample| it.count)
+    };
+    let gates: Vec<[u32; 2]> = readings.gates.iter().map(counts).collect();
+    assert_eq!(gates, [[1, 100], [3, 100]]);
+    let volts = readings.coil.iter().map(|scan| {
+        assert!(scan.current_wide.is_none() && scan.reference.is_none());
+        let both = [&scan.voltage_fine, &scan.current_fine];
+        both.map(|it| it.as_ref().unwrap().terminal_volts.round())
+    });
+    assert_eq!(volts.collect::<Vec<_>>(), [[2.0; 2], [4.0; 2]]);
+    let carried = Readings::of(
+        &runner.readings,
+        &shop.points,
+        readings.gates.last().cloned(),
+    );
+    assert_eq!(carried.gates.len(), 3, "behind those of the stage before");
+    assert_eq!(runner.spent().bus, Span::ms(20));
+}

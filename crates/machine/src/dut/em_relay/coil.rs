@@ -1,0 +1,138 @@
+//! Coil resistance as a ratio to the reference resistor, at the reference temperature.
+//!
+//! Voltage and current come from one converter in the same scan, and the calibration compared the
+//! same two channels on the reference resistor, so gain errors cancel. Copper: `R(T1) / R(T2) =
+//! (234.5 + T1) / (234.5 + T2)`, temperatures in Celsius (IEC 60028 annealed copper).
+
+use super::Parameter;
+use crate::gauge::Factor;
+use crate::gauge::budget::{Budget, Reading};
+use units::{Celsius, Ohm, Unit, Volt};
+
+/// Temperature at which the resistance of annealed copper would vanish, below zero Celsius.
+const COPPER_ZERO_C: f64 = 234.5;
+
+/// Doubts of one scan that do not depend on the part.
+#[derive(Debug, Clone, Copy)]
+pub struct ScanDoubt {
+    /// Standard uncertainty of one reading at the terminal (noise and resolution), volts.
+    pub reading_v: f64,
+    /// Standard uncertainty of the common offset that is left, volts.
+    pub offset_v: f64,
+    /// Standard uncertainty of the part's temperature, kelvin.
+    pub temperature_k: f64,
+}
+
+/// Factor from a resistance, or a threshold voltage, at `part` to the one at `reference`.
+pub fn to_reference(part: Celsius, reference: Celsius) -> f64 {
+    (COPPER_ZERO_C + reference.0) / (COPPER_ZERO_C + part.0)
+}
+
+/// Factor from a result at the temperature `from` to the one at `to`: 1 for those that do not go with the copper of the coil.
+pub fn factor(parameter: Parameter, from: Celsius, to: Celsius) -> f64 {
+    match parameter.facts().copper {
+        true => to_reference(from, to),
+        false => 1.0,
+    }
+}
+
+/// Relative change of copper per kelvin at `at`.
+pub fn relative_per_kelvin(at: Celsius) -> f64 {
+    1.0 / (COPPER_ZERO_C + at.0)
+}
+
+/// Coil resistance from scans of (voltage, current) at the terminals, offsets already taken off.
+///
+/// `None` when there is no scan or no current to divide by.
+pub fn resistance(
+    scans: &[(Volt, Volt)],
+    ohm_per_ratio: Factor,
+    part: Celsius,
+    reference: Celsius,
+    doubt: ScanDoubt,
+) -> Option<Reading> {
+    let n = scans.len() as f64;
+    let volts = scans.iter().map(|scan| scan.0.0).sum::<f64>() / n;
+    let current = scans.iter().map(|scan| scan.1.0).sum::<f64>() / n;
+    if scans.is_empty() || current.abs() < doubt.reading_v {
+        return None;
+    }
+    let at_part = Ohm(ohm_per_ratio.value * volts / current);
+    let value = at_part.0 * to_reference(part, reference);
+    let relative = |u_v: f64| u_v * (1.0 / (volts * volts) + 1.0 / (current * current)).sqrt();
+    let budget = Budget::default()
+        .with_random("reading", value * relative(doubt.reading_v) / n.sqrt())
+        .with(
+            "offset",
+            value * doubt.offset_v * (1.0 / volts - 1.0 / current),
+        )
+        .with(
+            "reference resistor",
+            value * ohm_per_ratio.u / ohm_per_ratio.value,
+        )
+        .with(
+            "coil temperature",
+            value * doubt.temperature_k * relative_per_kelvin(part),
+        );
+    Some(Reading {
+        value,
+        unit: Unit::Ohm,
+        budget,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DOUBT: ScanDoubt = ScanDoubt {
+        reading_v: 0.003,
+        offset_v: 0.0005,
+        temperature_k: 0.18,
+    };
+
+    #[test]
+    fn twenty_degrees_instead_of_twenty_three_is_minus_1_17_percent() {
+        let factor = to_reference(Celsius(23.0), Celsius(20.0));
+        assert!((factor - 254.5 / 257.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_warm_coil_is_reported_at_the_reference_temperature() {
+        let reading = resistance(
+            &[(Volt(8.0), Volt(7.5))],
+            Factor::new(375.0, 0.01),
+            Celsius(28.0),
+            Celsius(23.0),
+            DOUBT,
+        );
+        let reading = reading.expect("a current flows");
+        assert!((reading.value - 400.0 * 257.5 / 262.5).abs() < 1e-9);
+        assert!(reading.expanded() > 0.5 && reading.expanded() < 1.0);
+    }
+
+    #[test]
+    fn an_open_coil_has_no_resistance() {
+        let open = [(Volt(8.0), Volt(0.001))];
+        assert!(
+            resistance(
+                &open,
+                Factor::new(375.0, 0.01),
+                Celsius(23.0),
+                Celsius(23.0),
+                DOUBT
+            )
+            .is_none()
+        );
+        assert!(
+            resistance(
+                &[],
+                Factor::new(375.0, 0.01),
+                Celsius(23.0),
+                Celsius(23.0),
+                DOUBT
+            )
+            .is_none()
+        );
+    }
+}

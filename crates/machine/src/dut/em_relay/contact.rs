@@ -1,0 +1,127 @@
+//! Contact resistance, four-wire, with the source reversed: `R = K (V+ - V-) / 2`, or with four readings
+//! `K (V1 - V2 - V3 + V4) / 4`.
+//!
+//! The reversal takes out the thermal EMF and the converter's offset; `K` was found on the 50 mOhm
+//! reference with the same source, amplifier and converter, so it holds the current and all gains.
+
+use super::sampling::Polarities;
+use crate::gauge::Factor;
+use crate::gauge::budget::{Budget, Reading};
+use units::{Unit, Volt};
+
+/// One closure read with both polarities of the source.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Closure {
+    /// Drop of the current alone, volts at the terminal.
+    pub drop: Volt,
+    /// What reads without current: offset and thermal EMF.
+    pub zero: Volt,
+    /// How many readings both are the mean of.
+    pub readings: usize,
+}
+
+impl Closure {
+    /// From readings with the source in the directions of `polarities`; `None` unless there is one for each.
+    pub fn of(readings: &[Volt], polarities: Polarities) -> Option<Self> {
+        let signs = polarities.signs();
+        let n = signs.len() as f64;
+        let all = readings.iter().map(|reading| reading.0).sum::<f64>();
+        let turned = readings
+            .iter()
+            .zip(signs)
+            .map(|(reading, sign)| sign * reading.0);
+        (readings.len() == signs.len()).then(|| Self {
+            drop: Volt(turned.sum::<f64>() / n),
+            zero: Volt(all / n),
+            readings: signs.len(),
+        })
+    }
+
+    /// Standard uncertainty of drop and zero, each, when one reading has `reading_v`.
+    pub fn u_v(&self, reading_v: f64) -> f64 {
+        reading_v / (self.readings as f64).sqrt()
+    }
+}
+
+/// Standard uncertainty of the mean drop of `later + 1` closures: the first read with both polarities
+/// (`readings` in all), the later ones forward only, less the zero of the first, from which the EMF may have
+/// moved by `emf_v`. That zero is in every later one: more closures do not average its noise away.
+pub fn u_with_later_v(readings: usize, later: usize, reading_v: f64, emf_v: f64) -> f64 {
+    let (m, k) = (readings as f64, later as f64);
+    let n = k + 1.0;
+    let forward = m / 2.0 * ((1.0 - k) / (m * n)).powi(2);
+    let reversed = m / 2.0 / m.powi(2);
+    let own = k / n.powi(2);
+    (reading_v.powi(2) * (forward + reversed + own) + emf_v.powi(2) * own).sqrt()
+}
+
+/// Resistance in milliohms from the drops of one or more closures, each free of offset and EMF.
+///
+/// `mean_u_v` is the standard uncertainty of their mean at the terminal. The scatter from closure to
+/// closure is the part's own and is not in the budget: the mean of the closures read is the result.
+pub fn resistance(drops: &[Volt], mohm_per_v: Factor, mean_u_v: f64) -> Option<Reading> {
+    if drops.is_empty() {
+        return None;
+    }
+    let n = drops.len() as f64;
+    let value = mohm_per_v.value * drops.iter().map(|drop| drop.0).sum::<f64>() / n;
+    let budget = Budget::default()
+        .with_random("reading", mohm_per_v.value * mean_u_v)
+        .with(
+            "reference resistor",
+            value * mohm_per_v.u / mohm_per_v.value,
+        );
+    Some(Reading {
+        value,
+        unit: Unit::Milliohm,
+        budget,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reversal_removes_emf_and_offset() {
+        let read = [0.9 + 0.0105, -0.9 + 0.0105].map(Volt);
+        let closure = Closure::of(&read, Polarities::PlusMinus).expect("two readings");
+        let reading =
+            resistance(&[closure.drop], Factor::new(20.0, 0.005), 0.002).expect("one closure");
+        assert!((reading.value - 18.0).abs() < 1e-12);
+        assert!((closure.zero.0 - 0.0105).abs() < 1e-12);
+    }
+
+    #[test]
+    fn four_readings_remove_what_drifts_evenly_and_two_do_not() {
+        // 1 mV a reading, and a longer pause where the source turns round.
+        let read = [(0.9, 0.0), (-0.9, 3.0), (-0.9, 4.0), (0.9, 7.0)];
+        let read = read.map(|(drop, time)| Volt(drop + 0.001 * time));
+        let four = Closure::of(&read, Polarities::PlusMinusMinusPlus).expect("four readings");
+        assert!((four.drop.0 - 0.9).abs() < 1e-12);
+        assert!((four.u_v(0.002) - 0.001).abs() < 1e-15);
+        let two = Closure::of(&read[..2], Polarities::PlusMinus).expect("two readings");
+        assert!((two.drop.0 - 0.8985).abs() < 1e-12);
+        assert_eq!(Closure::of(&read, Polarities::PlusMinus), None);
+    }
+
+    #[test]
+    fn a_zero_that_later_closures_share_is_not_averaged_away() {
+        let half = |readings, later| u_with_later_v(readings, later, 1.0, 0.0).powi(2);
+        for later in [0, 1, 3, 100] {
+            assert!((half(2, later) - 0.5).abs() < 1e-12, "{later}");
+        }
+        assert!((half(4, 0) - 0.25).abs() < 1e-12);
+        assert!((half(4, 1) - 0.375).abs() < 1e-12);
+        let moved = u_with_later_v(2, 1, 0.0, 1.0);
+        assert!(
+            (moved - 0.5).abs() < 1e-12,
+            "half of the mean is from the later one"
+        );
+    }
+
+    #[test]
+    fn no_closure_no_resistance() {
+        assert!(resistance(&[], Factor::new(20.0, 0.005), 0.002).is_none());
+    }
+}

@@ -1,0 +1,285 @@
+//! A relay recipe on a rig: what outlives one part.
+//!
+//! Holds the recipe, what the instruments were found to do, and what parts have taught: reference parts the overshoot of
+//! the ramps, every good part of the lot the place of the next fine ramp, every part how well the probes meet the coil.
+
+use super::calibration::{Calibration, Lags};
+use super::feasible::nominal_v_per_s;
+use super::golden::{self, GoldenRun, Misfit};
+use super::lag::LagLaw;
+use super::measure::context::{UNTAUGHT_FINE_V, untaught};
+use super::measure::{Context, Seen, Test};
+use super::points::{AnalogIn, AnalogOut, Points};
+use super::probe_contact::Trend;
+use super::recipe::RelayRecipe;
+use super::reference::{self, ReferenceFault};
+use super::settings::GoldenPart;
+use crate::dut::Recipe;
+use crate::dut::device::{Made, Rig, TestOrder};
+use crate::dut::record::{Own, TestRecord};
+use crate::instrument::act::Act;
+use crate::instrument::readings::Readings;
+use crate::rig::point::MissingPoint;
+use std::sync::Arc;
+use units::{Ohm, RigTime};
+
+/// A relay recipe on a rig.
+#[derive(Debug, Clone)]
+pub struct Device {
+    context: Context,
+    /// Volts at the terminal per volt of the coil, fine channel.
+    voltage_gain: f64,
+    certificates: Vec<GoldenPart>,
+    reference_parts: GoldenRun,
+    /// Laws of the coarse ramps, operate and release, taught by every part that passed and by reference parts.
+    coarse: (LagLaw, LagLaw),
+    /// The same, taught by parts of this lot alone.
+    of_lot: (LagLaw, LagLaw),
+    probe_contact: Trend,
+}
+
+impl Device {
+    /// Puts the recipe on a rig. Reference parts of its nominal voltage serve it.
+    ///
+    /// # Errors
+    /// Names the first point that the rig does not have.
+    pub fn new(
+        recipe: Arc<Recipe>,
+        relay: Arc<RelayRecipe>,
+        rig: &Rig,
+        stored: Option<Calibration>,
+    ) -> Result<Self, MissingPoint> {
+        let points = Points::resolve(rig.wiring)?;
+        let nominal_v = relay.part.nominal_v;
+        let calibration = stored.unwrap_or_else(|| Calibration::unknown(nominal_v));
+        let voltage = points.analog(AnalogIn::CoilVoltageFine);
+        let voltage_gain = rig.wiring.analog_in(voltage).gain;
+        let context = Context {
+            recipe,
+            relay,
+            calibration: Arc::new(calibration),
+            reference: *rig.reference,
+            accuracy: *rig.accuracy,
+            nominal_v_per_s: [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
+                .map(|output| nominal_v_per_s(rig.wiring, points.source(output))),
+            points,
+            probe_contact: None,
+            thorough: false,
+            golden: None,
+        };
+        let certificates = rig.reference_parts.of_nominal(nominal_v).cloned();
+        Ok(Self::of(context, voltage_gain, certificates.collect()))
+    }
+
+    pub(super) fn of(context: Context, voltage_gain: f64, certificates: Vec<GoldenPart>) -> Self {
+        let coarse = context.calibration.lags.map_or(untaught(), |lags| {
+            (lags.operate.coarse, lags.release.coarse)
+        });
+        Self {
+            context,
+            voltage_gain,
+            certificates,
+            reference_parts: GoldenRun::default(),
+            coarse,
+            of_lot: untaught(),
+            probe_contact: Trend::default(),
+        }
+    }
+
+    /// The factors in force.
+    pub fn calibration(&self) -> &Calibration {
+        &self.context.calibration
+    }
+
+    /// Serial numbers of the reference parts, in the order of the magazine.
+    pub fn reference_serials(&self) -> impl Iterator<Item = &str> {
+        self.certificates.iter().map(|part| part.serial.as_str())
+    }
+
+    /// True when the overshoot of the fine ramps is known, so that parts may be judged.
+    pub fn is_calibrated(&self) -> bool {
+        let lags = self.context.calibration.lags;
+        lags.is_some_and(|lags| lags.operate.fine_v.u.is_finite())
+    }
+
+    /// The measurements against the references on the board.
+    pub fn reference_acts(&self) -> Vec<Act> {
+        reference::acts(&self.context)
+    }
+
+    /// Draws the factors from what [`Self::reference_acts`] has read.
+    ///
+    /// # Errors
+    /// Names the channel or the reference that does not read as it must.
+    pub fn conclude_references(
+        &mut self,
+        readings: &Readings,
+        made: Made,
+    ) -> Result<(), ReferenceFault> {
+        let calibration = reference::conclude(
+            &self.context,
+            readings,
+            made.at_us,
+            made.valid_us,
+            self.voltage_gain,
+        )?;
+        self.context.calibration = Arc::new(Calibration {
+            simulated: made.simulated,
+            ..calibration
+        });
+        Ok(())
+    }
+
+    /// Forgets what reference parts have taught: references and reference parts are measured again.
+    pub fn forget_calibration(&mut self) {
+        self.reference_parts = GoldenRun::default();
+        self.calibrate(|calibration| calibration.lags = None);
+    }
+
+    /// Begins the test of the part in the nest; the probes are up.
+    pub fn begin(&self, order: &TestOrder, now: RigTime) -> Test {
+        let context = Context {
+            thorough: order.thorough,
+            probe_contact: self.probe_contact.mean(),
+            golden: order
+                .teaching
+                .and_then(|serial| self.certificate(serial))
+                .cloned(),
+            ..self.context.clone()
+        };
+        let test = Test::begin(context, now);
+        match order.number {
+            1 => test,
+            number => test.another(number),
+        }
+    }
+
+    /// Learns from a reference part. With the `last` one the calibration is complete and returned.
+    ///
+    /// # Errors
+    /// Says why the part cannot be used, or which one does not fit the others.
+    pub fn learn_reference(
+        &mut self,
+        serial: &str,
+        record: &TestRecord,
+        last: bool,
+    ) -> Result<Option<Calibration>, Misfit> {
+        let seen = seen(record);
+        self.learn_ramps(seen, false);
+        let missing = || Misfit::NoCertificate {
+            serial: serial.to_owned(),
+        };
+        let part = self.certificate(serial).ok_or_else(missing)?.clone();
+        let reference = self.context.reference_temperature();
+        self.reference_parts.learn(&part, reference, record, seen)?;
+        if last {
+            return self.conclude_reference_parts().map(Some);
+        }
+        let fine_v = self.reference_parts.fine_v().unwrap_or(UNTAUGHT_FINE_V);
+        self.teach(Lags {
+            operate: golden::interim(self.coarse.0, fine_v.0),
+            release: golden::interim(self.coarse.1, fine_v.1),
+        });
+        Ok(None)
+    }
+
+    /// Completes the calibration with the reference parts measured so far.
+    ///
+    /// # Errors
+    /// Says which part does not fit the others, or that there are too few.
+    pub fn conclude_reference_parts(&mut self) -> Result<Calibration, Misfit> {
+        let accuracy = &self.context.accuracy;
+        let lags = self
+            .reference_parts
+            .lags(&self.certificates, accuracy, self.coarse)?;
+        self.teach(lags);
+        Ok(self.calibration().clone())
+    }
+
+    /// Learns from a part of the lot; one that did not `pass` would spoil the place of the ramp for all that follow.
+    pub fn learn(&mut self, record: &TestRecord, pass: bool) {
+        let seen = seen(record);
+        if let Some(ohm) = seen.probe_contact {
+            self.probe_contact.add(ohm);
+        }
+        if pass {
+            self.learn_ramps(seen, true);
+        }
+        self.calibrate_lags(Lags {
+            operate: self
+                .context
+                .operate_lag()
+                .taught(self.coarse.0, self.of_lot.0),
+            release: self
+                .context
+                .release_lag()
+                .taught(self.coarse.1, self.of_lot.1),
+        });
+    }
+
+    /// Compares what was measured on a reference part with its certificate.
+    ///
+    /// # Errors
+    /// Names what does not agree.
+    pub fn check(&self, serial: &str, record: &TestRecord) -> Result<(), Misfit> {
+        match self.certificate(serial) {
+            Some(part) => golden::check(part, record),
+            None => Err(Misfit::NoCertificate {
+                serial: serial.to_owned(),
+            }),
+        }
+    }
+
+    /// Force contacts of the coil in series, mean over the last parts of the lot; none before a part has told it.
+    pub fn probe_contact(&self) -> Option<Ohm> {
+        self.probe_contact.mean()
+    }
+
+    /// The same, once enough parts have told it to be a trend.
+    pub fn settled_probe_contact(&self) -> Option<Ohm> {
+        self.probe_contact.settled()
+    }
+
+    fn certificate(&self, serial: &str) -> Option<&GoldenPart> {
+        self.certificates.iter().find(|part| part.serial == serial)
+    }
+
+    fn learn_ramps(&mut self, seen: &Seen, of_lot: bool) {
+        let both = [
+            (seen.operate, &mut self.coarse.0, &mut self.of_lot.0),
+            (seen.release, &mut self.coarse.1, &mut self.of_lot.1),
+        ];
+        for (ramp, law, law_of_lot) in both {
+            let Some((coarse, fine)) = ramp.and_then(|it| Some((it.coarse, it.fine?))) else {
+                continue;
+            };
+            law.learn(&coarse, fine);
+            if of_lot {
+                law_of_lot.learn(&coarse, fine);
+            }
+        }
+    }
+
+    /// Takes over what reference parts have taught, with the probe contact that their overshoot holds.
+    fn teach(&mut self, lags: Lags) {
+        let probe_contact_ohm = self.reference_parts.probe_contact_ohm();
+        self.calibrate(|calibration| calibration.probe_contact_ohm = probe_contact_ohm);
+        self.calibrate_lags(lags);
+    }
+
+    fn calibrate_lags(&mut self, lags: Lags) {
+        self.calibrate(|calibration| calibration.lags = Some(lags));
+    }
+
+    fn calibrate(&mut self, change: impl FnOnce(&mut Calibration)) {
+        change(Arc::make_mut(&mut self.context.calibration));
+    }
+}
+
+/// What the test of a relay has seen.
+fn seen(record: &TestRecord) -> &Seen {
+    match &record.own {
+        Own::EmRelay(seen) => seen,
+        Own::Nothing => panic!("the record of a tested relay lacks what its test has seen"),
+    }
+}

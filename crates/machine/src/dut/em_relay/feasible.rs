@@ -1,0 +1,183 @@
+//! Can these modules measure what the recipe demands, and is it worth judging?
+//!
+//! Checked before anything moves. A strategy needs outputs that step or slew, a counter that counts and
+//! channels that are converted; a limit needs an uncertainty that leaves something of it.
+
+use super::bins;
+use super::coil::relative_per_kelvin;
+use super::parameter::Expected;
+use super::recipe::RelayRecipe;
+use super::settings::AccuracySettings;
+use super::{Parameter, Strategy};
+use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, Points};
+use crate::dut::recipe::Limits;
+use crate::gauge::budget::COVERAGE_FACTOR;
+use crate::rig::fault::Fault;
+use crate::rig::point::AnalogOutput;
+use crate::rig::wiring::Wiring;
+use units::Celsius;
+
+/// An output that is refreshed more rarely while it ramps makes steps of the coarse ramp that no counter
+/// resolves: 2 ms at 96 V/s are 0.19 V.
+pub const SLOWEST_REFRESH_MS: f64 = 2.0;
+/// Conversions per second of an I-7017F outside its fast mode: waiting for fewer reads what was there before.
+const SLOW_CONVERSIONS_PER_S: f64 = 10.0;
+/// Type code of an I-7080 that counts; 51 makes it measure frequency.
+const COUNTS: u8 = 0x50;
+
+/// Refuses a recipe that these modules cannot perform or that their uncertainty makes idle; the fault
+/// names the key of the recipe and the module that stands against it.
+///
+/// # Errors
+/// The first fault.
+pub fn check(
+    recipe: &RelayRecipe,
+    limits: &Limits,
+    wiring: &Wiring,
+    accuracy: &AccuracySettings,
+) -> Result<(), Fault> {
+    if let Some(missing) = bins::BY_RANK.iter().find(|bin| !wiring.axis.has(**bin)) {
+        let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{missing}");
+        return Err(Fault::new("kind", "\"em_relay\"", expected));
+    }
+    let points = Points::resolve(wiring).map_err(|missing| {
+        let expected = "every point that its test needs";
+        Fault::new("test", missing, expected)
+    })?;
+    for (key, strategy) in recipe.test.strategy.each() {
+        let key = format!("test.strategy.{key}");
+        if let Some(why) = hindrance(strategy, wiring, &points, accuracy) {
+            return Err(Fault::new(
+                key,
+                strategy.name(),
+                format!("a strategy that these modules can perform: {why}"),
+            ));
+        }
+    }
+    if recipe.test.strategy.contact.stops_early {
+        for parameter in [
+            Parameter::ContactResistanceNo,
+            Parameter::ContactResistanceNc,
+        ] {
+            if limits.of(parameter).is_open() {
+                let expected = format!("a limit of {parameter} to be clear of, or no early stop");
+                return Err(Fault::new(
+                    "test.strategy.contact.stops_early",
+                    true,
+                    expected,
+                ));
+            }
+        }
+    }
+    for parameter in Parameter::ALL {
+        let limit = limits.of(parameter);
+        let (Some(low), Some(high)) = (limit.low, limit.high) else {
+            continue;
+        };
+        let least = 2.0 * expected_u(parameter, recipe, accuracy);
+        if high - low < least {
+            let found = format!("{low} to {high}");
+            let expected = format!(
+                "limits more than {least:.3} apart: the guard bands at both ends leave nothing between"
+            );
+            return Err(Fault::new(format!("limits.{parameter}"), found, expected));
+        }
+    }
+    Ok(())
+}
+
+/// What hinders a strategy; `None` when the modules can perform it.
+pub fn hindrance(
+    strategy: Strategy,
+    wiring: &Wiring,
+    points: &Points,
+    accuracy: &AccuracySettings,
+) -> Option<String> {
+    let slew = |output: AnalogOut| {
+        let module = wiring.module(wiring.analog_out(points.source(output)).module);
+        (
+            module.name.as_str(),
+            module.slew.and_then(|code| code.volt_per_second()),
+        )
+    };
+    if let (name, Some(_)) = slew(AnalogOut::SupplyLevel) {
+        return Some(format!(
+            "module {name} slews, supply_level must step (slew code 0)"
+        ));
+    }
+    let drop = wiring.analog_in(points.analog(AnalogIn::ContactDrop));
+    let module = wiring.module(drop.module);
+    if module
+        .mask
+        .is_some_and(|mask| mask >> drop.channel.get() & 1 == 0)
+    {
+        return Some(format!(
+            "module {} masks the channel of contact_drop",
+            module.name
+        ));
+    }
+    let coil = wiring.analog_in(points.analog(AnalogIn::CoilVoltageFine));
+    let coil = wiring.module(coil.module);
+    if let Some(slow) = [module, coil].into_iter().find(|module| !module.fast)
+        && accuracy.conversions_per_s > SLOW_CONVERSIONS_PER_S
+    {
+        let promised = accuracy.conversions_per_s;
+        return Some(format!(
+            "module {} is not in fast mode, accuracy.conversions_per_s promises {promised}",
+            slow.name
+        ));
+    }
+    let timer = wiring.module(wiring.counter(points.counter(Counter::Gate0)).module);
+    if timer.type_code.0 != COUNTS {
+        return Some(format!(
+            "module {} does not count (type code 50)",
+            timer.name
+        ));
+    }
+    if !strategy.ramps() {
+        return None;
+    }
+    if accuracy.ao_refresh_ms > SLOWEST_REFRESH_MS {
+        let refresh = accuracy.ao_refresh_ms;
+        return Some(format!(
+            "outputs that ramp are refreshed every {refresh} ms only, {SLOWEST_REFRESH_MS} at most"
+        ));
+    }
+    [AnalogOut::SupplyCoarse, AnalogOut::SupplyFine]
+        .into_iter()
+        .find_map(|output| match slew(output) {
+            (_, Some(_)) => None,
+            (name, None) => Some(format!(
+                "module {name} steps, {output} must slew (slew code 1 to F)"
+            )),
+        })
+}
+
+/// Rate of an output at the coil, volts per second; 0 for one that steps.
+pub fn nominal_v_per_s(wiring: &Wiring, output: AnalogOutput) -> f64 {
+    let terminal = wiring.analog_out(output);
+    let slew = wiring.module(terminal.module).slew;
+    slew.and_then(|code| code.volt_per_second()).unwrap_or(0.0) * terminal.gain
+}
+
+/// Expanded uncertainty to expect of a parameter, from what the makers promise: the terms that no
+/// strategy takes away. Zero where it is far below any limit one would write.
+fn expected_u(parameter: Parameter, recipe: &RelayRecipe, accuracy: &AccuracySettings) -> f64 {
+    let per_kelvin = relative_per_kelvin(Celsius(recipe.part.reference_temperature_c));
+    let threshold = |volts: f64| {
+        let kelvin = volts * per_kelvin * accuracy.part_minus_track_k;
+        kelvin.hypot(accuracy.operation_v(recipe.part.nominal_v))
+    };
+    let u = match parameter.facts().expected {
+        Expected::Coil => {
+            let kelvin = accuracy.part_minus_track_k.hypot(accuracy.rtd_k);
+            recipe.part.nominal_coil_ohm * per_kelvin * kelvin
+        }
+        Expected::Threshold(direction) => threshold(recipe.test.expected(direction).0),
+        Expected::Usual { u, .. } => u,
+    };
+    COVERAGE_FACTOR * u
+}
+
+#[cfg(test)]
+mod tests;

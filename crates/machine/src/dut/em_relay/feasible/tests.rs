@@ -1,0 +1,231 @@
+//! What a recipe may not ask of modules that cannot give it, and what is not worth judging.
+#![allow(clippy::unwrap_used)]
+
+use super::super::bins;
+use super::super::settings::AccuracySettings;
+use super::super::{Parameter, Strategy};
+use super::{hindrance, nominal_v_per_s};
+use crate::dut::Recipe;
+use crate::dut::em_relay::points::{AnalogOut, Points};
+use crate::dut::recipe::DeviceRecipe;
+use crate::rig::settings::RigSettings;
+use crate::rig::wiring::{Module, Wiring};
+use serde::Deserialize;
+
+const RIG: &str = include_str!("../../../../../../config/rig.toml");
+
+#[derive(Deserialize)]
+struct Promised {
+    accuracy: AccuracySettings,
+}
+
+/// The default plant.
+fn plant() -> (Wiring, AccuracySettings) {
+    let settings: RigSettings = toml::from_str(RIG).unwrap();
+    let promised: Promised = toml::from_str(RIG).unwrap();
+    (
+        Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap(),
+        promised.accuracy,
+    )
+}
+
+fn points(wiring: &Wiring) -> Points {
+    Points::resolve(wiring).unwrap()
+}
+
+/// The default recipe with every threshold found by `strategy`.
+fn recipe(strategy: Strategy) -> Recipe {
+    let mut recipe: Recipe = toml::from_str(include_str!(
+        "../../../../../../config/recipes/jzc-22f-012.toml"
+    ))
+    .unwrap();
+    let DeviceRecipe::EmRelay(relay) = &mut recipe.device else {
+        panic!("a relay");
+    };
+    relay.test.strategy.operate_voltage_v = strategy;
+    relay.test.strategy.release_voltage_v = strategy;
+    recipe
+}
+
+fn module<'a>(wiring: &'a mut Wiring, name: &str) -> &'a mut Module {
+    let mut modules = wiring.modules.iter_mut();
+    modules.find(|module| module.name == name).unwrap()
+}
+
+/// Key, what was found and what was expected, of a plant that has been changed.
+fn refused(strategy: Strategy, change: impl Fn(&mut Wiring)) -> [String; 3] {
+    let (mut wiring, accuracy) = plant();
+    change(&mut wiring);
+    let fault = recipe(strategy).feasible(&wiring, &accuracy).unwrap_err();
+    [fault.key, fault.found, fault.expected]
+}
+
+/// Strategies that the plant, changed so, cannot perform.
+fn hindered(change: impl Fn(&mut Wiring)) -> Vec<Strategy> {
+    let (mut wiring, accuracy) = plant();
+    change(&mut wiring);
+    let all = Strategy::ALL.into_iter();
+    all.filter(|strategy| hindrance(*strategy, &wiring, &points(&wiring), &accuracy).is_some())
+        .collect()
+}
+
+fn ramping() -> Vec<Strategy> {
+    let all = Strategy::ALL.into_iter();
+    all.filter(|strategy| strategy.ramps()).collect()
+}
+
+#[test]
+fn the_default_plant_performs_every_strategy() {
+    assert_eq!(hindered(|_| {}), []);
+    let (wiring, accuracy) = plant();
+    for strategy in Strategy::ALL {
+        recipe(strategy).feasible(&wiring, &accuracy).unwrap();
+    }
+    let rate = |output| nominal_v_per_s(&wiring, points(&wiring).source(output));
+    assert_eq!(rate(AnalogOut::SupplyCoarse), 96.0);
+    assert_eq!(rate(AnalogOut::SupplyFine), 1.5);
+    assert_eq!(rate(AnalogOut::SupplyLevel), 0.0);
+}
+
+#[test]
+fn a_rig_without_a_bin_for_relays_is_refused() {
+    let (_, accuracy) = plant();
+    let recipe = recipe(Strategy::ALL[0]);
+    for bin in bins::BY_RANK {
+        let mut settings: RigSettings = toml::from_str(RIG).unwrap();
+        let removed = settings.bin.remove(bin.name()).unwrap();
+        settings.digital_in.remove(&removed.beam);
+        let wiring = Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap();
+        let fault = recipe.feasible(&wiring, &accuracy).unwrap_err();
+        assert_eq!(fault.key, "kind");
+        assert!(
+            fault.expected.ends_with(&format!("no bin.{bin}")),
+            "{fault}"
+        );
+    }
+}
+
+#[test]
+fn a_ramp_on_an_output_without_slew_code_is_refused_and_steps_are_not() {
+    for name in ["ao_coarse", "ao_fine"] {
+        let steps = |wiring: &mut Wiring| {
+            let code_0 = module(wiring, "ao_level").slew;
+            module(wiring, name).slew = code_0;
+        };
+        assert_eq!(hindered(steps), ramping());
+        let [key, found, expected] = refused(Strategy::CoarseFine, steps);
+        assert_eq!(key, "test.strategy.operate_voltage_v");
+        assert_eq!(found, "coarse_fine");
+        assert!(
+            expected.contains(&format!("module {name} steps")),
+            "{expected}"
+        );
+    }
+}
+
+#[test]
+fn a_level_that_slews_hinders_every_strategy() {
+    let slews = |wiring: &mut Wiring| {
+        let code = module(wiring, "ao_fine").slew;
+        module(wiring, "ao_level").slew = code;
+    };
+    assert_eq!(hindered(slews), Strategy::ALL);
+    let [_, _, expected] = refused(Strategy::Staircase, slews);
+    assert!(expected.contains("module ao_level slews"), "{expected}");
+}
+
+#[test]
+fn a_timer_that_does_not_count_hinders_every_strategy() {
+    let absent = |wiring: &mut Wiring| {
+        let other = module(wiring, "ao_fine").type_code;
+        module(wiring, "timer").type_code = other;
+    };
+    assert_eq!(hindered(absent), Strategy::ALL);
+    let [_, _, expected] = refused(Strategy::Ramp, absent);
+    assert!(
+        expected.contains("module timer does not count"),
+        "{expected}"
+    );
+}
+
+#[test]
+fn a_masked_contact_channel_hinders_every_strategy() {
+    let masked = |wiring: &mut Wiring| module(wiring, "contact_ai").mask = Some(0b10);
+    assert_eq!(hindered(masked), Strategy::ALL);
+    let [_, _, expected] = refused(Strategy::Pulse, masked);
+    assert!(expected.contains("module contact_ai masks"), "{expected}");
+}
+
+#[test]
+fn a_converter_out_of_fast_mode_is_refused_unless_nobody_counts_on_it() {
+    for name in ["contact_ai", "coil_ai"] {
+        let slow = |wiring: &mut Wiring| module(wiring, name).fast = false;
+        assert_eq!(hindered(slow), Strategy::ALL);
+        let [_, _, expected] = refused(Strategy::CoarseFine, slow);
+        assert!(expected.contains(&format!("module {name} is not in fast mode")));
+        let (mut wiring, mut accuracy) = plant();
+        slow(&mut wiring);
+        accuracy.conversions_per_s = 10.0;
+        assert_eq!(
+            hindrance(Strategy::CoarseFine, &wiring, &points(&wiring), &accuracy),
+            None
+        );
+    }
+}
+
+#[test]
+fn closures_cannot_stop_early_where_no_limit_says_when() {
+    let (wiring, accuracy) = plant();
+    let mut recipe = recipe(Strategy::CoarseFine);
+    let DeviceRecipe::EmRelay(relay) = &mut recipe.device else {
+        panic!("a relay");
+    };
+    relay.test.strategy.contact.stops_early = true;
+    recipe.feasible(&wiring, &accuracy).unwrap();
+    recipe.limits = toml::from_str("[contact_resistance_no_mohm]\nhigh = 100.0\n").unwrap();
+    let fault = recipe.feasible(&wiring, &accuracy).unwrap_err();
+    assert_eq!(fault.key, "test.strategy.contact.stops_early");
+    assert!(fault.expected.contains("contact_resistance_nc_mohm"));
+}
+
+#[test]
+fn outputs_refreshed_every_two_milliseconds_ramp_and_slower_ones_only_step() {
+    let (wiring, mut accuracy) = plant();
+    accuracy.ao_refresh_ms = 2.0;
+    assert_eq!(
+        hindrance(Strategy::CoarseFine, &wiring, &points(&wiring), &accuracy),
+        None
+    );
+    accuracy.ao_refresh_ms = 2.1;
+    let why = hindrance(Strategy::CoarseFine, &wiring, &points(&wiring), &accuracy).unwrap();
+    assert!(why.contains("every 2.1 ms only"), "{why}");
+    assert_eq!(
+        hindrance(Strategy::Bisection, &wiring, &points(&wiring), &accuracy),
+        None
+    );
+}
+
+#[test]
+fn limits_that_the_guard_bands_fill_are_refused_with_what_they_leave() {
+    let (wiring, accuracy) = plant();
+    let around = |nominal: f64, width: f64| {
+        let table = format!(
+            "[coil_resistance_ohm]\nlow = {}\nhigh = {}\n",
+            nominal - width / 2.0,
+            nominal + width / 2.0
+        );
+        let mut recipe = recipe(Strategy::CoarseFine);
+        recipe.limits = toml::from_str(&table).unwrap();
+        recipe.feasible(&wiring, &accuracy)
+    };
+    // 0.18 K of thermometer and part are 0.28 ohm of a 400 ohm coil: 2 U are 1.12 ohm.
+    around(400.0, 1.3).unwrap();
+    let fault = around(400.0, 0.9).unwrap_err();
+    assert_eq!(fault.key, format!("limits.{}", Parameter::CoilResistance));
+    assert_eq!(fault.found, "399.55 to 400.45");
+    assert!(
+        fault.expected.contains("leave nothing between"),
+        "{}",
+        fault.expected
+    );
+}

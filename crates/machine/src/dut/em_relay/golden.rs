@@ -1,0 +1,308 @@
+//! Golden parts: what the ramps indicate on relays with a certificate tells the lag of the ramps.
+//!
+//! The coarse lag goes on learning from every good part of the lot that has shown both ramps;
+//! the fine lag, which enters every result, comes from the certificates alone.
+
+use super::measure::{Ramp, Seen};
+use crate::dut::TestRecord;
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::calibration::{Lag, Lags};
+use crate::dut::em_relay::coil::{relative_per_kelvin, to_reference};
+use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::probe_contact::Trend;
+use crate::dut::em_relay::settings::{AccuracySettings, Certified, GoldenPart};
+use crate::gauge::Factor;
+use crate::gauge::Reading;
+use thiserror::Error;
+use units::{Celsius, Ohm, Unit};
+
+/// A golden part whose fine indication lies further from the others' lag is out of its band, volts.
+const BAND_V: f64 = 0.060;
+
+/// Why a golden part does not calibrate the rig, or does not read as certified.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Misfit {
+    /// No certificate of this serial number.
+    #[error("golden part {serial} has no certificate")]
+    NoCertificate {
+        /// Its serial number.
+        serial: String,
+    },
+    /// Something was not measured.
+    #[error("golden part {serial}: no {what}")]
+    Without {
+        /// Its serial number.
+        serial: String,
+        /// What is missing.
+        what: &'static str,
+    },
+    /// The coil is not the one of the certificate.
+    #[error(
+        "golden part {serial}: coil reads {ohm:.2} ohm, certificate {certified_ohm:.2} +- {allowed_ohm:.2}. Is it the part named?"
+    )]
+    OtherCoil {
+        /// Its serial number.
+        serial: String,
+        /// Resistance found.
+        ohm: f64,
+        /// Resistance certified.
+        certified_ohm: f64,
+        /// Difference allowed.
+        allowed_ohm: f64,
+    },
+    /// Too few were measured.
+    #[error("{measured} golden parts were measured, at least 3 are needed")]
+    TooFew {
+        /// How many.
+        measured: usize,
+    },
+    /// One overshoots differently.
+    #[error("golden part {serial} is {off_mv:+.1} mV away from the others")]
+    Outlier {
+        /// Its serial number.
+        serial: String,
+        /// Distance from the mean, mV.
+        off_mv: f64,
+    },
+    /// A check against the certificate failed.
+    #[error(
+        "golden part {serial}: {name} reads {found:.4} {unit}, certificate {certified:.4} +- {allowed:.4}"
+    )]
+    Reads {
+        /// Its serial number.
+        serial: String,
+        /// Key of the characteristic.
+        name: &'static str,
+        /// Value found, in `unit`.
+        found: f64,
+        /// Unit of the values.
+        unit: Unit,
+        /// Value certified.
+        certified: f64,
+        /// Difference allowed.
+        allowed: f64,
+    },
+}
+
+/// Indications of one golden part in both directions, minus certificate, at the part's temperature.
+#[derive(Debug, Clone)]
+struct Shift {
+    serial: String,
+    operate_v: f64,
+    release_v: f64,
+    /// Coarse minus fine indications, operate and release; NaN where no coarse ramp was seen.
+    coarse_v: [f64; 2],
+}
+
+/// What the golden parts of a run have shown so far.
+#[derive(Debug, Clone, Default)]
+pub struct GoldenRun {
+    shifts: Vec<Shift>,
+    contact: Trend,
+}
+
+impl GoldenRun {
+    /// Takes in a tested golden part, or says why it cannot be used.
+    pub fn learn<T>(
+        &mut self,
+        part: &GoldenPart,
+        reference: Celsius,
+        record: &TestRecord<T>,
+        seen: &Seen,
+    ) -> Result<(), Misfit> {
+        let serial = &part.serial;
+        let without = |what| Misfit::Without {
+            serial: serial.clone(),
+            what,
+        };
+        let track = seen.track.ok_or_else(|| without("temperature"))?;
+        let fine = |ramp: Option<Ramp>| ramp.and_then(|ramp| ramp.fine);
+        let over = |ramp: Option<Ramp>| {
+            ramp.and_then(|it| Some((it.coarse.indicated - it.fine?).0))
+                .unwrap_or(f64::NAN)
+        };
+        let operate = fine(seen.operate).ok_or_else(|| without("operate voltage"))?;
+        let release = fine(seen.release).ok_or_else(|| without("release voltage"))?;
+        check_coil(part, record)?;
+        seen.probe_contact
+            .into_iter()
+            .for_each(|ohm| self.contact.add(ohm));
+        let at_part = |certified: Certified| certified.value / to_reference(track, reference);
+        self.shifts.push(Shift {
+            serial: serial.clone(),
+            operate_v: operate.0 - at_part(part.operate_voltage_v),
+            release_v: release.0 - at_part(part.release_voltage_v),
+            coarse_v: [over(seen.operate), over(seen.release)],
+        });
+        Ok(())
+    }
+
+    /// Lags from all golden parts; an error names the part that does not fit.
+    pub fn lags(
+        &self,
+        sets: &[GoldenPart],
+        accuracy: &AccuracySettings,
+        coarse: (LagLaw, LagLaw),
+    ) -> Result<Lags, Misfit> {
+        let operate = self.fine(
+            |shift| shift.operate_v,
+            |part| part.operate_voltage_v,
+            sets,
+            accuracy,
+        )?;
+        let release = self.fine(
+            |shift| shift.release_v,
+            |part| part.release_voltage_v,
+            sets,
+            accuracy,
+        )?;
+        Ok(Lags {
+            operate: Lag {
+                fine_v: operate,
+                at_v: mean(sets, |part| part.operate_voltage_v),
+                at_coarse_v: self.over(0),
+                coarse: coarse.0,
+                judges: false,
+            },
+            release: Lag {
+                fine_v: release,
+                at_v: mean(sets, |part| part.release_voltage_v),
+                at_coarse_v: self.over(1),
+                coarse: coarse.1,
+                judges: false,
+            },
+        })
+    }
+
+    /// Force contacts of the coil in series, mean over the parts so far; 0 where none has told it.
+    pub fn probe_contact_ohm(&self) -> f64 {
+        self.contact.mean().map_or(0.0, |Ohm(ohm)| ohm)
+    }
+
+    /// Mean of fine indication minus certificate so far, operate and release.
+    pub fn fine_v(&self) -> Option<(f64, f64)> {
+        let n = self.shifts.len() as f64;
+        let mean = |shift: fn(&Shift) -> f64| self.shifts.iter().map(shift).sum::<f64>() / n;
+        (n > 0.0).then(|| (mean(|it| it.operate_v), mean(|it| it.release_v)))
+    }
+
+    /// Mean of coarse minus fine indication where both were seen, 0 if nowhere.
+    fn over(&self, direction: usize) -> f64 {
+        let both = || {
+            let each = self.shifts.iter().map(|shift| shift.coarse_v[direction]);
+            each.filter(|it| it.is_finite())
+        };
+        both().sum::<f64>() / both().count().max(1) as f64
+    }
+
+    fn fine(
+        &self,
+        shift: fn(&Shift) -> f64,
+        certified: fn(&GoldenPart) -> Certified,
+        parts: &[GoldenPart],
+        accuracy: &AccuracySettings,
+    ) -> Result<Factor, Misfit> {
+        let n = self.shifts.len() as f64;
+        if self.shifts.len() < 3 {
+            return Err(Misfit::TooFew {
+                measured: self.shifts.len(),
+            });
+        }
+        let mean = self.shifts.iter().map(shift).sum::<f64>() / n;
+        if let Some(odd) = self
+            .shifts
+            .iter()
+            .find(|one| (shift(one) - mean).abs() > BAND_V)
+        {
+            return Err(Misfit::Outlier {
+                serial: odd.serial.clone(),
+                off_mv: (shift(odd) - mean) * 1e3,
+            });
+        }
+        let of_part = |part: &GoldenPart| {
+            let value = certified(part);
+            let kelvin =
+                value.value * accuracy.part_minus_track_k * relative_per_kelvin(Celsius(23.0));
+            value.u.powi(2) + kelvin.powi(2) + accuracy.operation_v(part.nominal_v).powi(2)
+        };
+        let promised = parts.iter().map(of_part).sum::<f64>() / parts.len().max(1) as f64;
+        Ok(Factor::new(mean, (promised / n).sqrt()))
+    }
+}
+
+fn mean(parts: &[GoldenPart], certified: fn(&GoldenPart) -> Certified) -> f64 {
+    parts.iter().map(|part| certified(part).value).sum::<f64>() / parts.len().max(1) as f64
+}
+
+fn check_coil<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit> {
+    let serial = &part.serial;
+    let coil = record
+        .result(Parameter::CoilResistance)
+        .ok_or_else(|| Misfit::Without {
+            serial: serial.clone(),
+            what: "coil resistance",
+        })?;
+    let certified = part.coil_resistance_ohm;
+    let allowed = 2.0 * coil.budget.combined().hypot(certified.u) * 2.0;
+    if (coil.value - certified.value).abs() > allowed {
+        return Err(Misfit::OtherCoil {
+            serial: serial.clone(),
+            ohm: coil.value,
+            certified_ohm: certified.value,
+            allowed_ohm: allowed,
+        });
+    }
+    Ok(())
+}
+
+/// How far a golden part may read from its certificate, standard deviations: of three results one good part in 120 is
+/// outside, and the slow strategy has narrowed them.
+const CHECK_K: f64 = 3.0;
+
+/// Compares what was measured on a golden part with its certificate; an error says what does not agree.
+pub fn check<T>(part: &GoldenPart, record: &TestRecord<T>) -> Result<(), Misfit> {
+    let certified = [
+        (Parameter::CoilResistance, part.coil_resistance_ohm),
+        (Parameter::OperateVoltage, part.operate_voltage_v),
+        (Parameter::ReleaseVoltage, part.release_voltage_v),
+    ];
+    let serial = &part.serial;
+    for (parameter, certified) in certified {
+        let name = parameter.name();
+        let found = record
+            .result(parameter)
+            .filter(Reading::is_usable)
+            .ok_or_else(|| Misfit::Without {
+                serial: serial.clone(),
+                what: name,
+            })?;
+        let allowed = CHECK_K * found.budget.combined().hypot(certified.u);
+        let off = found.value - certified.value;
+        let within = off.abs() <= allowed;
+        if !within {
+            return Err(Misfit::Reads {
+                serial: serial.clone(),
+                name,
+                found: found.value,
+                unit: found.unit,
+                certified: certified.value,
+                allowed,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Lag before the golden parts are complete: no fine correction yet but where to look, the coarse one as far as learned.
+pub fn interim(coarse: LagLaw, fine_v: f64) -> Lag {
+    Lag {
+        fine_v: Factor::new(fine_v, f64::INFINITY),
+        at_v: 0.0,
+        at_coarse_v: 0.0,
+        coarse,
+        judges: false,
+    }
+}
+
+#[cfg(test)]
+mod tests;

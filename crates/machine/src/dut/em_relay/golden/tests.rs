@@ -1,0 +1,143 @@
+//! What golden parts teach, and which of them are refused.
+#![allow(clippy::unwrap_used)]
+
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::golden::{GoldenRun, interim};
+use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::measure::context::untaught;
+use crate::dut::em_relay::measure::{Ramp, TestRecord};
+use crate::dut::em_relay::settings::GoldenPart;
+use crate::dut::em_relay::tests::context;
+use crate::dut::em_relay::tests::golden_parts;
+use crate::gauge::budget::{Budget, Reading};
+use crate::rig::sample::Sample;
+use units::{Celsius, Unit, Volt};
+
+const REFERENCE: Celsius = Celsius(23.0);
+
+/// What a test finds on a golden part whose ramps overshoot by so much, at 23 C.
+fn tested(part: &GoldenPart, operate_v: f64, release_v: f64, coil_off_ohm: f64) -> TestRecord {
+    let fine = |volts: f64| Some(Ramp::fine_only(Volt(volts)));
+    let mut record = TestRecord::default();
+    record.own.track = Some(REFERENCE);
+    record.own.operate = fine(part.operate_voltage_v.value + operate_v);
+    record.own.release = fine(part.release_voltage_v.value + release_v);
+    let reading = Reading {
+        value: part.coil_resistance_ohm.value + coil_off_ohm,
+        unit: Unit::Ohm,
+        budget: Budget::default().with("test", 0.1),
+    };
+    record.found::<Sample>(Parameter::CoilResistance, reading, []);
+    record
+}
+
+fn run_of(operate_mv: &[f64], release_mv: f64) -> GoldenRun {
+    let mut run = GoldenRun::default();
+    for (part, mv) in golden_parts().iter().zip(operate_mv) {
+        let record = tested(part, mv / 1e3, release_mv / 1e3, 0.0);
+        run.learn(part, REFERENCE, &record, &record.own).unwrap();
+    }
+    run
+}
+
+#[test]
+fn the_fine_lag_is_the_mean_shift_from_the_certificates() {
+    let run = run_of(&[12.0, 15.0, 13.0, 14.0, 16.0], -9.0);
+    let lags = run
+        .lags(&golden_parts(), &context().accuracy, untaught())
+        .unwrap();
+    assert!((lags.operate.fine_v.value - 0.014).abs() < 1e-9);
+    assert!((lags.release.fine_v.value + 0.009).abs() < 1e-9);
+    assert!(lags.operate.fine_v.u > 0.001 && lags.operate.fine_v.u < 0.005);
+    assert!(lags.release.fine_v.u < lags.operate.fine_v.u);
+}
+
+#[test]
+fn a_warm_golden_part_is_compared_with_its_certificate_at_its_own_temperature() {
+    let parts = golden_parts();
+    let mut run = GoldenRun::default();
+    let warm = Celsius(28.0);
+    for part in &parts {
+        let scale = (234.5 + 28.0) / (234.5 + 23.0);
+        let mut record = tested(part, 0.0, 0.0, 0.0);
+        record.own.track = Some(warm);
+        record.own.operate = Some(Ramp {
+            coarse: Shown::NOTHING,
+            fine: Some(Volt(part.operate_voltage_v.value * scale + 0.012)),
+        });
+        record.own.release = Some(Ramp {
+            coarse: Shown::NOTHING,
+            fine: Some(Volt(part.release_voltage_v.value * scale - 0.012)),
+        });
+        run.learn(part, REFERENCE, &record, &record.own).unwrap();
+    }
+    let lags = run.lags(&parts, &context().accuracy, untaught()).unwrap();
+    assert!((lags.operate.fine_v.value - 0.012).abs() < 1e-9);
+    assert!((lags.release.fine_v.value + 0.012).abs() < 1e-9);
+}
+
+#[test]
+fn a_part_that_does_not_fit_the_others_is_named() {
+    let run = run_of(&[12.0, 15.0, 130.0, 14.0, 16.0], -9.0);
+    let why = run
+        .lags(&golden_parts(), &context().accuracy, untaught())
+        .unwrap_err();
+    let why = why.to_string();
+    assert!(why.contains("G-12-3"), "{why}");
+}
+
+#[test]
+fn fewer_than_three_golden_parts_teach_no_lag() {
+    for (n, usable) in [(0, false), (1, false), (2, false), (3, true), (5, true)] {
+        let run = run_of(&vec![14.0; n], -9.0);
+        let lags = run.lags(&golden_parts(), &context().accuracy, untaught());
+        assert_eq!(lags.is_ok(), usable, "{n} parts");
+    }
+}
+
+#[test]
+fn more_golden_parts_make_the_lag_surer() {
+    let u = |n: usize| {
+        let run = run_of(&vec![14.0; n], -9.0);
+        let lags = run.lags(&golden_parts(), &context().accuracy, untaught());
+        lags.unwrap().operate.fine_v.u
+    };
+    assert!((u(3) / u(5) - (5f64 / 3.0).sqrt()).abs() < 1e-9);
+}
+
+#[test]
+fn a_golden_part_that_was_not_fully_measured_is_refused_by_name() {
+    let part = golden_parts()[1].clone();
+    let good = || tested(&part, 0.014, -0.009, 0.0);
+    let spoilt = |spoil: fn(&mut TestRecord)| {
+        let mut record = good();
+        spoil(&mut record);
+        record
+    };
+    let cases = [
+        ("temperature", spoilt(|found| found.own.track = None)),
+        ("operate", spoilt(|found| found.own.operate = None)),
+        ("release", spoilt(|found| found.own.release = None)),
+        (
+            "release",
+            spoilt(|found| found.own.release = found.own.release.map(|r| Ramp { fine: None, ..r })),
+        ),
+        ("coil", tested(&part, 0.014, -0.009, 3.0)),
+        ("coil", tested(&part, 0.014, -0.009, -3.0)),
+    ];
+    for (what, record) in cases {
+        let refused = GoldenRun::default().learn(&part, REFERENCE, &record, &record.own);
+        let why = refused.unwrap_err();
+        let why = why.to_string();
+        assert!(why.contains("G-12-2") && why.contains(what), "{why}");
+    }
+    let learned = GoldenRun::default().learn(&part, REFERENCE, &good(), &good().own);
+    assert_eq!(learned, Ok(()));
+}
+
+#[test]
+fn while_golden_parts_run_the_fine_lag_proves_nothing() {
+    let lag = interim(untaught().0, 0.0);
+    assert_eq!((lag.fine_v.value, lag.fine_v.u), (0.0, f64::INFINITY));
+    assert_eq!(lag.coarse, context().operate_lag().coarse);
+}

@@ -1,0 +1,118 @@
+//! What interface board, coil supply and armature are doing between two stages of a test.
+//!
+//! The acts of a stage begin from the state that the stage before has left, and come with the state that they leave.
+//! The conclusion corrects it where the part has not done what the acts were for. A mark outlives its stage:
+//! "the mark" is the last instant that any stage has marked.
+
+use super::{Context, INTERLOCK, set};
+use crate::dut::em_relay::act::Act;
+use crate::dut::em_relay::points::DigitalOut::{Arm, CoilDrive, SourceOn, SourceReverse};
+use crate::dut::em_relay::supply::Supply;
+use units::{Span, Volt};
+
+/// Difference of two sums of the same three voltages.
+const ROUNDING_V: f64 = 1e-6;
+
+/// State of board and supply between two stages.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BoardState {
+    /// Voltages that were asked of the supply.
+    pub supply: Supply,
+    /// What drive and armature are doing.
+    pub armature: Armature,
+    /// The ramp that the present stage sends.
+    pub ramp: Option<SentRamp>,
+    /// How long after the mark an output still ramps that no stage has waited for.
+    pub still_ramping: Span,
+}
+
+/// What drive and armature are doing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Armature {
+    /// Nothing that the next stage could build on: it takes the drive off, or seals the armature, first.
+    Unknown,
+    /// At rest, drive off. The counters were read behind an ARM whose window nothing has opened since, the supply is at
+    /// nominal and the source on: the drive is all that a timed operation needs.
+    ReadyForTiming,
+    /// At rest on the pre-bias, armed in ramp mode: the coarse operate ramp may begin.
+    ReadyForRamp,
+    /// Operated since the mark, and driven.
+    Operated,
+    /// The drive went off at the mark or before it.
+    Released,
+    /// Released, and the supply is where the next part begins: the last stage has only to see the current gone.
+    Rested,
+}
+
+/// A ramp from ARM to its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SentRamp {
+    /// Supply when the board was armed.
+    pub start: Volt,
+    /// How far the supply moves from there, positive.
+    pub span: Volt,
+    /// Longest time until the output has arrived.
+    pub takes: Span,
+}
+
+impl Armature {
+    /// True while the coil is free since the mark or before it.
+    pub fn is_released(self) -> bool {
+        match self {
+            Self::ReadyForTiming | Self::Released | Self::Rested => true,
+            Self::Unknown | Self::ReadyForRamp | Self::Operated => false,
+        }
+    }
+}
+
+impl BoardState {
+    /// Before a test: all outputs at zero.
+    pub fn new(context: &Context) -> Self {
+        Self {
+            supply: Supply::new(&context.calibration),
+            armature: Armature::Unknown,
+            ramp: None,
+            still_ramping: Span(0),
+        }
+    }
+
+    /// The ramp of the stage that has just ended. Panics if that has sent none.
+    pub fn sent(&self) -> SentRamp {
+        let Some(ramp) = self.ramp else {
+            panic!("a stage concludes a ramp that it has not sent");
+        };
+        ramp
+    }
+
+    /// Panics where the supply contradicts what the acts claim to leave.
+    pub fn check(&self, context: &Context) {
+        let test = &context.relay.test;
+        let supply_v = match self.armature {
+            Armature::ReadyForTiming => Some(context.relay.part.nominal_v),
+            Armature::ReadyForRamp | Armature::Rested => Some(test.prebias_v),
+            Armature::Unknown | Armature::Operated | Armature::Released => None,
+        };
+        let off_v = supply_v.map_or(0.0, |volts| (self.supply.total().0 - volts).abs());
+        assert!(off_v < ROUNDING_V, "{off_v} V off: {self:?}");
+        let ramps_rest = matches!(self.armature, Armature::ReadyForRamp | Armature::Rested);
+        assert!(!ramps_rest || self.supply.ramps_are_down(), "{self:?}");
+        assert!(
+            self.ramp.is_none_or(|ramp| ramp.span > Volt(0.0)),
+            "{self:?}"
+        );
+    }
+}
+
+/// Takes the drive off and marks the instant; no acts if the stage before has done so.
+pub(super) fn drive_off(armature: Armature) -> Vec<Act> {
+    if armature.is_released() {
+        return Vec::new();
+    }
+    let off = [
+        (SourceOn, false),
+        (SourceReverse, false),
+        (CoilDrive, false),
+        (Arm, false),
+    ];
+    vec![set(&off), Act::Wait(INTERLOCK), Act::Mark]
+}

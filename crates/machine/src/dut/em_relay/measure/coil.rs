@@ -1,0 +1,219 @@
+//! Coil resistance at the pre-bias, below pickup: the armature is open and L/R short. The pre-bias is
+//! also where the operate ramp starts, so the coil stays on.
+
+use super::board::{Armature, BoardState};
+use super::state::TestState;
+use super::{Context, INTERLOCK, OFF, Stage, set};
+use crate::dut::em_relay::Finding;
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::coil::{resistance, to_reference};
+use crate::dut::em_relay::points::AnalogIn;
+use crate::dut::em_relay::points::DigitalOut::{
+    self, Arm, CoilDrive, EventNoBreak, KelvinTest, RampMode, SelectNo, SourceOn, SourceReverse,
+};
+use crate::dut::em_relay::probe_contact::in_series;
+use crate::dut::em_relay::readings::{CoilScan, Readings};
+use crate::dut::em_relay::recipe::CoilChannels;
+use crate::dut::em_relay::supply::Supply;
+use crate::rig::sample::{Quality, Sample};
+use units::{Ohm, Span, Volt};
+
+/// Channels of the coil converter that a recipe has enabled.
+const CHANNELS: usize = 2;
+/// Below this fraction of the pre-bias the supply or the probe-up chain is in trouble, not the coil.
+const LEAST_PREBIAS: f64 = 0.5;
+/// Below this terminal voltage of the fine current channel (0.25 mA) no current flows.
+const NO_CURRENT: Volt = Volt(0.15);
+/// Below this coil current the clamp may be switched and the probes may leave, ampere.
+const OFF_CURRENT_A: f64 = 0.001;
+/// From the mark to a free coil: the word that takes the drive off is written by then, and the current gone.
+const FREED: Span = Span::ms(6);
+/// Nothing driven, nothing selected, ready for the Kelvin check with which the next test begins.
+const IDLE: [(DigitalOut, bool); 8] = [
+    (SourceOn, false),
+    (SourceReverse, false),
+    (CoilDrive, false),
+    (Arm, false),
+    (RampMode, false),
+    (SelectNo, false),
+    (EventNoBreak, false),
+    (KelvinTest, true),
+];
+
+/// Prepares the board for the operate ramp while the coil is converted: nothing moves the supply
+/// between arming and the ramp. Where the stage is repeated, the relay drops and the ramps come down first.
+pub(super) fn acts(context: &Context, board: BoardState, repeated: bool) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
+    let prebias = Volt(context.relay.test.prebias_v);
+    let sampling = context.relay.test.strategy.coil;
+    let (coarse, coarse_takes) = supply.ramp_coarse(Volt(0.0));
+    let (fine, fine_takes) = supply.ramp_fine(Volt(0.0));
+    let mut acts = Vec::new();
+    if repeated {
+        let down = OFF.max(coarse_takes).max(board.still_ramping + fine_takes);
+        acts.extend([coarse, fine, Act::Board(IDLE.to_vec()), Act::Wait(down)]);
+    }
+    acts.extend((supply.total() != prebias).then(|| supply.step_to(prebias)));
+    acts.extend([
+        set(&[
+            (SourceOn, false),
+            (SourceReverse, false),
+            (RampMode, true),
+            (EventNoBreak, false),
+            (Arm, false),
+            (SelectNo, true),
+            (CoilDrive, true),
+        ]),
+        Act::Wait(INTERLOCK + Span::ms(sampling.settles_ms.into())),
+        Act::Mark,
+        set(&[(Arm, true)]),
+        Act::Read(Read::Gates),
+        Act::ConvertSinceMark(context.fresh(CHANNELS)),
+        Act::Read(Read::Coil),
+    ]);
+    for _ in 1..sampling.scans {
+        acts.extend([
+            Act::Mark,
+            Act::ConvertSinceMark(context.round(CHANNELS)),
+            Act::Read(Read::Coil),
+        ]);
+    }
+    let left = BoardState {
+        supply,
+        armature: Armature::ReadyForRamp,
+        still_ramping: Span(0),
+        ..board
+    };
+    (acts, left)
+}
+
+/// Everything off, and the supply where the next part begins. After a release the coil is free since its mark,
+/// or since the word that followed it.
+pub(super) fn acts_off(
+    context: &Context,
+    mut board: BoardState,
+    stopped: bool,
+) -> (Vec<Act>, BoardState) {
+    let mut acts = vec![Act::Board(IDLE.to_vec())];
+    if board.armature != Armature::Rested {
+        acts.extend((!board.armature.is_released()).then_some(Act::Mark));
+        // The line sends no value that an output has already: only the next part would show a module that ignores writes.
+        acts.extend(stopped.then(|| board.supply.step_to(Volt(0.0))));
+        acts.extend(rest(context, &mut board.supply));
+    }
+    acts.extend([
+        Act::ConvertSinceMark(FREED + context.fresh(CHANNELS)),
+        Act::Read(Read::Current(current_channel(context))),
+    ]);
+    board.armature = Armature::Rested;
+    (acts, board)
+}
+
+/// The supply goes where the next part begins: pre-bias on the level, both ramps down. Then every module
+/// with outputs answers whether it has restarted under this part.
+pub(super) fn rest(context: &Context, supply: &mut Supply) -> [Act; 4] {
+    let (coarse, _) = supply.ramp_coarse(Volt(0.0));
+    let (fine, _) = supply.ramp_fine(Volt(0.0));
+    let level = supply.step_to(Volt(context.relay.test.prebias_v));
+    [coarse, fine, level, Act::Read(Read::Resets)]
+}
+
+fn current_of(context: &Context, scan: &CoilScan) -> Option<Sample> {
+    match context.relay.test.coil_channels {
+        CoilChannels::Fine => scan.current_fine.clone(),
+        CoilChannels::CoarseCurrent => scan.current_wide.clone(),
+    }
+}
+
+fn current_channel(context: &Context) -> AnalogIn {
+    match context.relay.test.coil_channels {
+        CoilChannels::Fine => AnalogIn::CoilCurrentFine,
+        CoilChannels::CoarseCurrent => AnalogIn::CoilCurrent,
+    }
+}
+
+pub(super) fn conclude(
+    context: &Context,
+    readings: &Readings,
+    state: &mut TestState,
+) -> Option<Stage> {
+    let TestState { plan, record, .. } = state;
+    let calibration = &context.calibration;
+    let mut scans = Vec::new();
+    let mut samples = Vec::new();
+    for scan in &readings.coil {
+        let (Some(voltage), Some(current)) = (scan.voltage_fine.clone(), current_of(context, scan))
+        else {
+            record.stop(Finding::CoilNotRead);
+            return None;
+        };
+        if voltage.quality != Quality::Good {
+            record.stop(Finding::CoilVoltageNotReadable);
+            return None;
+        }
+        if voltage.value < LEAST_PREBIAS * context.relay.test.prebias_v {
+            record.stop(Finding::CoilSupplyLow.with(format!("{:.2} V", voltage.value)));
+            return None;
+        }
+        if current.quality == Quality::OverRange {
+            record.stop(Finding::CoilCurrentOverRange);
+            return None;
+        }
+        let offset = Volt(calibration.coil_input.offset_v.value);
+        scans.push((
+            Volt(voltage.terminal_volts) - offset,
+            Volt(current.terminal_volts) - offset,
+        ));
+        samples.extend([voltage, current]);
+    }
+    let ohm = match context.relay.test.coil_channels {
+        CoilChannels::Fine => calibration.ohm_fine,
+        CoilChannels::CoarseCurrent => calibration.ohm_wide,
+    };
+    if scans.iter().all(|(_, current)| current.abs() < NO_CURRENT) {
+        record.stop(Finding::CoilOpen);
+        return None;
+    }
+    let part = record.own.track?;
+    let reference = context.reference_temperature();
+    match resistance(&scans, ohm, part, reference, context.scan_doubt()) {
+        Some(reading) => {
+            let coil = Ohm(reading.value / to_reference(part, reference));
+            record.own.probe_contact = probe_contact(context, &readings.coil, coil);
+            record.found(Parameter::CoilResistance, reading, &samples);
+        }
+        None => record.stop(Finding::CoilOpen),
+    }
+    if let Some(unmoved) = plan.unmoved {
+        record.stop(unmoved);
+    }
+    None
+}
+
+/// What is lost between the supply and the pins of `coil`, by the calibration of the input and of the supply.
+fn probe_contact(context: &Context, scans: &[CoilScan], coil: Ohm) -> Option<Ohm> {
+    let at_pins = |scan: &CoilScan| {
+        let Sample {
+            value,
+            terminal_volts,
+            ..
+        } = *scan.voltage_fine.as_ref()?;
+        let corrected = context.calibration.coil_input.correct(Volt(terminal_volts));
+        Some(value * corrected.0 / terminal_volts)
+    };
+    let volts = scans.iter().map(at_pins).sum::<Option<f64>>()? / scans.len() as f64;
+    Some(in_series(
+        Volt(context.relay.test.prebias_v),
+        Volt(volts),
+        coil,
+    ))
+}
+
+pub(super) fn conclude_off(readings: &Readings, state: &mut TestState) -> Option<Stage> {
+    match readings.currents.first() {
+        Some(sample) if sample.quality == Quality::Good && sample.value.abs() < OFF_CURRENT_A => {}
+        Some(_) | None => state.record.stop(Finding::CoilCurrentRemains),
+    }
+    None
+}

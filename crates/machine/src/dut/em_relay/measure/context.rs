@@ -1,0 +1,170 @@
+//! Context of a test: recipe, calibration, and what the makers of the instruments promise.
+
+use crate::dut::Recipe;
+use crate::dut::em_relay::act::Act;
+use crate::dut::em_relay::calibration::{Calibration, Lag};
+use crate::dut::em_relay::coil::ScanDoubt;
+use crate::dut::em_relay::golden::interim;
+use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::points::{AnalogIn, Points};
+use crate::dut::em_relay::recipe::{CoilChannels, RelayRecipe};
+use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, ReferenceSettings};
+use crate::dut::em_relay::threshold::Direction;
+use crate::dut::em_relay::timing::Clock;
+use crate::dut::em_relay::{Parameter, Strategy};
+use crate::instrument::act;
+use std::sync::Arc;
+use units::{Celsius, Ohm, Span};
+
+/// Span of a +-10 V input of 12 bits, volts per step.
+const LSB_V: f64 = 20.0 / 4096.0;
+
+/// Lag of a 96 V/s ramp before any golden part was run, in volts: only places the first fine ramp.
+const UNTAUGHT_OPERATE_V: f64 = 0.85;
+const UNTAUGHT_RELEASE_V: f64 = -1.05;
+
+/// The same of a 1.5 V/s ramp, operate and release.
+pub const UNTAUGHT_FINE_V: (f64, f64) = (0.03, -0.02);
+
+/// Recipe, calibration and instrument data of a test.
+#[derive(Debug, Clone)]
+pub struct Context {
+    /// What the part must do.
+    pub recipe: Arc<Recipe>,
+    /// The part, and how it is measured: what the recipe says of this kind.
+    pub relay: Arc<RelayRecipe>,
+    /// What the instruments do.
+    pub calibration: Arc<Calibration>,
+    /// The points of the rig.
+    pub points: Points,
+    /// References on the interface board.
+    pub reference: ReferenceSettings,
+    /// Promises of the makers.
+    pub accuracy: AccuracySettings,
+    /// Nominal rates of the coarse and the fine ramp at the coil, volts per second.
+    pub nominal_v_per_s: [f64; 2],
+    /// Force contacts of the coil in series, mean over the last parts; `None` before any part of this run has shown it.
+    pub probe_contact: Option<Ohm>,
+    /// The slow strategy for every result: a golden check or a first article.
+    pub thorough: bool,
+    /// The golden part in the nest while golden parts teach the lags: its certificate places its fine ramps.
+    pub golden: Option<GoldenPart>,
+}
+
+impl Context {
+    /// How long until a conversion that begins from now on is surely readable on each of `channels`
+    /// enabled channels: one round of all, one more conversion, and 3 % for the converter's clock.
+    pub fn fresh(&self, channels: usize) -> Span {
+        Span::seconds(1.03 * (channels + 1) as f64 / self.accuracy.conversions_per_s)
+    }
+
+    /// One round of conversions over `channels`.
+    pub fn round(&self, channels: usize) -> Span {
+        Span::seconds(1.03 * channels as f64 / self.accuracy.conversions_per_s)
+    }
+
+    /// Channels of the coil converter that the recipe asks for.
+    pub fn coil_channels(&self) -> &'static [AnalogIn] {
+        match self.relay.test.coil_channels {
+            CoilChannels::Fine => &[AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrentFine],
+            CoilChannels::CoarseCurrent => &[AnalogIn::CoilVoltageFine, AnalogIn::CoilCurrent],
+        }
+    }
+
+    /// The acts of a test on this rig.
+    pub(super) fn wired(&self, acts: Vec<Act>) -> Vec<act::Act> {
+        self.points.wired(acts, self.coil_channels())
+    }
+
+    /// Standard uncertainty of one reading at the terminal: noise and resolution.
+    pub fn reading_u_v(&self) -> f64 {
+        LSB_V * (self.accuracy.ai_noise_lsb.powi(2) + 1.0 / 12.0).sqrt()
+    }
+
+    /// Doubts of a coil scan.
+    pub fn scan_doubt(&self) -> ScanDoubt {
+        ScanDoubt {
+            reading_v: self.reading_u_v(),
+            offset_v: self.calibration.coil_input.offset_v.u,
+            temperature_k: self.accuracy.rtd_k.hypot(self.accuracy.part_minus_track_k),
+        }
+    }
+
+    /// Scatter of a threshold of this part from operation to operation, volts (1 sd).
+    pub fn operation_v(&self) -> f64 {
+        self.accuracy.operation_v(self.relay.part.nominal_v)
+    }
+
+    /// What the probes may have lifted or lowered a threshold by since the golden parts taught its lag, relative (1 sd):
+    /// all that their trend shows; no correction takes it off.
+    pub fn contact_share(&self) -> f64 {
+        let then_ohm = self.calibration.probe_contact_ohm;
+        let changed = self.probe_contact.map_or(0.0, |Ohm(now)| now - then_ohm);
+        changed.abs() / self.relay.part.nominal_coil_ohm
+    }
+
+    /// Clock of the gated counters.
+    pub fn clock(&self) -> Clock {
+        Clock {
+            hz: self.reference.counter_clock_hz,
+            tolerance_ppm: self.reference.counter_clock_tolerance_ppm,
+        }
+    }
+
+    /// Reference temperature of the recipe.
+    pub fn reference_temperature(&self) -> Celsius {
+        Celsius(self.relay.part.reference_temperature_c)
+    }
+
+    /// How a threshold is found. Golden parts always get both ramps: they teach the lags; and so do the first
+    /// parts of a lot before `adaptive` trusts its coarse ramp.
+    pub fn strategy(&self, parameter: Parameter) -> Strategy {
+        let falls = parameter == Parameter::ReleaseVoltage;
+        let lag = if falls {
+            self.release_lag()
+        } else {
+            self.operate_lag()
+        };
+        let mut each = self.relay.test.strategy.each().into_iter();
+        match each.find(|(known, _)| *known == parameter) {
+            Some(_) if self.thorough => Strategy::CoarseFine,
+            Some((_, Strategy::Adaptive)) if !lag.judges => Strategy::CoarseFine,
+            Some((_, strategy)) if lag.fine_v.u.is_finite() => strategy,
+            Some(_) | None => Strategy::CoarseFine,
+        }
+    }
+
+    /// Lag of the ramps of a direction.
+    pub fn lag(&self, direction: Direction) -> Lag {
+        match direction {
+            Direction::Rising => self.operate_lag(),
+            Direction::Falling => self.release_lag(),
+        }
+    }
+
+    /// Lag of the operate ramps; before golden parts were run, a guess with a wide scatter.
+    pub fn operate_lag(&self) -> Lag {
+        self.calibration
+            .lags
+            .map_or(interim(untaught().0, UNTAUGHT_FINE_V.0), |lags| {
+                lags.operate
+            })
+    }
+
+    /// Lag of the release ramps.
+    pub fn release_lag(&self) -> Lag {
+        self.calibration
+            .lags
+            .map_or(interim(untaught().1, UNTAUGHT_FINE_V.1), |lags| {
+                lags.release
+            })
+    }
+}
+
+/// Laws of both coarse ramps before any part was run, operate and release.
+pub fn untaught() -> (LagLaw, LagLaw) {
+    (
+        LagLaw::guess(UNTAUGHT_OPERATE_V),
+        LagLaw::guess(UNTAUGHT_RELEASE_V),
+    )
+}

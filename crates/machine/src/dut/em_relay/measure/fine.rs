@@ -1,0 +1,118 @@
+//! What comes of a fine ramp: the threshold, or another ramp or a search where it has missed the event.
+
+use super::board::Armature;
+use super::indication::{fine_reading, gate0};
+use super::pace::Pace;
+use super::ramp::{JUMP, SETTLED_DOWN, stopped_at};
+use super::search::{AFTER_SEARCH, Search, parameter};
+use super::state::TestState;
+use super::{Context, Ramp, Stage};
+use crate::dut::em_relay::Finding;
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::threshold::{Direction, indicated};
+use units::{Second, Span, Volt};
+
+/// A test whose threshold so many fine ramps have missed is void.
+const ATTEMPTS: u8 = 5;
+
+/// What came of a fine ramp.
+enum Met {
+    /// The indicated voltage at the contact event, and the length of the gate.
+    At(Volt, Second),
+    /// It has missed the event; the next ramp looks where the plan expects it now.
+    Again,
+}
+
+pub(super) fn conclude(
+    context: &Context,
+    readings: &Readings,
+    state: &mut TestState,
+    (direction, attempt): (Direction, u8),
+) -> Option<Stage> {
+    let (seen, gate) = match meet(context, readings, state, (direction, attempt))? {
+        Met::At(seen, gate) => (seen, gate),
+        Met::Again => return Some(again(context, state, (direction, attempt))),
+    };
+    if direction == Direction::Rising {
+        state.board.armature = Armature::Operated;
+    }
+    let (record, parameter) = (&mut state.record, parameter(direction));
+    let part = record.own.track?;
+    if record
+        .ramp(direction)
+        .is_none_or(|ramp| ramp.fine.is_none())
+    {
+        record.forget(parameter);
+    }
+    let ramp = Ramp {
+        fine: Some(seen),
+        ..record.ramp(direction).unwrap_or(Ramp::fine_only(seen))
+    };
+    record.keep_ramp(direction, ramp);
+    let reading = fine_reading(context, (ramp, gate), part, direction);
+    record.found(parameter, reading, readings.gates.iter().flatten());
+    None
+}
+
+/// Compares a fine ramp with its event; `None` once the test is void.
+fn meet(
+    context: &Context,
+    readings: &Readings,
+    state: &mut TestState,
+    (direction, attempt): (Direction, u8),
+) -> Option<Met> {
+    let TestState {
+        board,
+        plan,
+        record,
+    } = state;
+    let (sent, searched) = (board.sent(), plan.interval(record, direction));
+    let (Some(gate), Some(_)) = (gate0(context, readings), record.own.track) else {
+        record.stop(Finding::GatesNotRead);
+        return None;
+    };
+    let v_per_s = context.calibration.fine_v_per_s.value;
+    let seen = indicated(sent.start, v_per_s, gate, direction);
+    let met = readings.seen.first() == Some(&true);
+    let stopped = stopped_at(sent.start, sent.span, seen);
+    let left = sent.takes.0.saturating_sub(Span::seconds(gate.0).0);
+    board.still_ramping = Span(if met { left } else { 0 });
+    // Before the interval the ramp had hardly begun: the step before it has moved the armature.
+    let settled = match direction {
+        Direction::Rising => Pace::of(record).run_up(v_per_s),
+        Direction::Falling => SETTLED_DOWN,
+    };
+    let hasty = met && (seen - sent.start).abs() < JUMP + settled;
+    if met && stopped.is_none() && !hasty {
+        return Some(Met::At(seen, gate));
+    }
+    let operated = direction == Direction::Rising;
+    let inputs = readings.boards.last();
+    let early = inputs.is_some_and(|it| it.no_closed == operated);
+    let next = match stopped {
+        Some(end) if met => searched.around(end),
+        Some(_) | None => searched.next(direction, early || hasty),
+    };
+    plan.expect(direction, next);
+    if attempt + 1 < ATTEMPTS {
+        return Some(Met::Again);
+    }
+    record.stop(Finding::ThresholdNotFound(direction).with(ATTEMPTS.to_string()));
+    None
+}
+
+/// The stage after a miss: first the neighbouring interval; after a second miss, or where that interval is wide, a
+/// search by halves.
+fn again(context: &Context, state: &mut TestState, (direction, attempt): (Direction, u8)) -> Stage {
+    let expected = state.plan.expected(direction);
+    let wide = expected.is_some_and(|interval| interval.is_wide());
+    if attempt + 1 == AFTER_SEARCH || attempt + 1 < AFTER_SEARCH && wide {
+        let search = Search::placing(context, &state.record, direction);
+        state.plan.search = Some(search);
+        return Stage::Search(direction);
+    }
+    match direction {
+        Direction::Rising => Stage::OperateFine(attempt + 1),
+        Direction::Falling => Stage::ReleaseFine(attempt + 1),
+    }
+}

@@ -1,0 +1,102 @@
+//! What the gate of a ramp says: the indicated voltage, and the threshold behind it.
+
+use super::search::parameter;
+use super::{Context, Ramp};
+use crate::dut::em_relay::Strategy;
+use crate::dut::em_relay::calibration::Lag;
+use crate::dut::em_relay::coil::to_reference;
+use crate::dut::em_relay::lag::Shown;
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::strategy::{from_two_rates, growth_s};
+use crate::dut::em_relay::threshold::{Direction, RampDoubt, quasi_static};
+use crate::dut::em_relay::timing::counts;
+use crate::gauge::budget::Reading;
+use units::{Celsius, Second, Volt};
+
+/// Length of gate 0 between the last two readings.
+pub(super) fn gate0(context: &Context, readings: &Readings) -> Option<Second> {
+    let [.., before, after] = readings.gates.as_slice() else {
+        return None;
+    };
+    let gate = f64::from(counts(before[0].count, after[0].count)) / context.clock().hz;
+    Some(Second(
+        gate - context.calibration.gate_delay_us[0].value * 1e-6,
+    ))
+}
+
+/// The threshold behind a coarse ramp whose lag golden parts and lot have taught; `None` for a part unlike those, whose
+/// lag is not known.
+///
+/// The scatter that was learned holds what a coarse ramp does not know of itself: resolution, repeatability, the
+/// error of its slope; each would otherwise be counted twice.
+pub(super) fn coarse_reading(
+    context: &Context,
+    (seen, lag): (Shown, Lag),
+    part: Celsius,
+    direction: Direction,
+) -> Option<Reading> {
+    let predicted = lag.coarse.of(&seen);
+    // What was learned holds the operation of the fine ramp as well, which is none of this value's.
+    let operation_v = context.operation_v();
+    let own_v = (predicted.u_v.powi(2) - operation_v.powi(2)).max(operation_v.powi(2));
+    let doubt = RampDoubt {
+        slope_v_per_s: context.calibration.coarse_v_per_s,
+        slope_known: true,
+        operation_v: 0.0,
+        refresh: Second(0.0),
+        // The law follows the indication, and an error of gain with it.
+        level_share: 0.0,
+        ..doubt(context)
+    };
+    let reference = context.reference_temperature();
+    let own = lag.own_v(predicted.volts, direction);
+    let as_fine = seen.indicated - Volt(predicted.volts);
+    let mut reading = quasi_static((as_fine, own), Second(0.0), lag, part, reference, doubt);
+    reading.budget = reading.budget.with_random("strategy", own_v.sqrt());
+    predicted.alike.then_some(reading)
+}
+
+/// Threshold from a fine ramp: less the lag of golden parts, or, by two rates, from both ramps.
+pub(super) fn fine_reading(
+    context: &Context,
+    (ramps, gate): (Ramp, Second),
+    part: Celsius,
+    direction: Direction,
+) -> Reading {
+    let (lag, parameter) = (context.lag(direction), parameter(direction));
+    let seen = ramps.fine.unwrap_or(Volt(f64::NAN));
+    let reference = context.reference_temperature();
+    let own = lag.own_v((ramps.coarse.indicated - seen).0, direction);
+    let mut reading = quasi_static((seen, own), gate, lag, part, reference, doubt(context));
+    if context.strategy(parameter) == Strategy::TwoRates && ramps.coarse.indicated.0.is_finite() {
+        let rates = [
+            context.calibration.coarse_v_per_s.value,
+            context.calibration.fine_v_per_s.value,
+        ];
+        let sign = direction.sign();
+        // The growth time from the lags of both rates on golden parts; their common offset stays out of it.
+        let predicted = lag.coarse.of(&ramps.coarse);
+        let fine_v = lag.fine_v.value + lag.own_v(predicted.volts, direction).value;
+        let lags = [predicted.volts + fine_v, fine_v];
+        let growth = growth_s(lags.map(|it| it * sign), rates);
+        let seen = [ramps.coarse.indicated.0, seen.0].map(|volts| volts * sign);
+        let found = sign * from_two_rates(seen, rates, growth);
+        let scatter = rates[1] / (rates[0] - rates[1]) * predicted.u_v;
+        reading.value = found * to_reference(part, reference);
+        reading.budget = reading.budget.with_random("strategy", scatter);
+    }
+    reading
+}
+
+/// Doubts of a fine ramp beyond the golden parts' shift.
+fn doubt(context: &Context) -> RampDoubt {
+    RampDoubt {
+        slope_v_per_s: context.calibration.fine_v_per_s,
+        slope_known: false,
+        operation_v: context.operation_v(),
+        refresh: Second(context.accuracy.ao_refresh_ms * 1e-3),
+        level_share: context.calibration.level.gain.u,
+        contact_share: context.contact_share(),
+        temperature_k: context.accuracy.part_minus_track_k,
+    }
+}

@@ -1,0 +1,51 @@
+//! Kelvin check and pin map: every pin has its force and sense contact, and the contacts rest.
+//!
+//! | seen | meaning |
+//! |---|---|
+//! | one bit open | missing pin or dirty probe: void |
+//! | COM open, the other four good | a turned part, or a dirty COM probe: void |
+//! | five good, NC open or NO closed | a contact that does not rest: fail, contact |
+
+use super::state::TestState;
+use super::{Stage, set};
+use crate::dut::em_relay::Finding;
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::points::DigitalOut::KelvinTest;
+use crate::dut::em_relay::readings::Readings;
+use units::Span;
+
+const PINS: [&str; 5] = ["coil A", "coil B", "COM", "NO", "NC"];
+const COM: usize = 2;
+
+pub(super) fn acts() -> Vec<Act> {
+    vec![
+        set(&[(KelvinTest, true)]),
+        Act::Wait(Span::ms(1)),
+        Act::Read(Read::Board),
+    ]
+}
+
+pub(super) fn conclude(readings: &Readings, state: &mut TestState) -> Option<Stage> {
+    let record = &mut state.record;
+    let Some(seen) = readings.boards.first() else {
+        record.stop(Finding::BoardNotRead);
+        return None;
+    };
+    if !seen.probe_chain {
+        record.stop(Finding::ProbeChainOpen);
+        return None;
+    }
+    let open: Vec<usize> = (0..5).filter(|pin| !seen.kelvin[*pin]).collect();
+    match open.as_slice() {
+        [] if seen.nc_closed && !seen.no_closed => {}
+        [] if seen.no_closed => record.stop(Finding::NoClosedAtRest),
+        [] => record.stop(Finding::NcOpenAtRest),
+        [COM] => record.stop(Finding::Misoriented),
+        [pin] => record.stop(Finding::PinOpen.with(PINS[*pin])),
+        several => {
+            let names: Vec<&str> = several.iter().map(|pin| PINS[*pin]).collect();
+            record.stop(Finding::PinsOpen.with(names.join(", ")));
+        }
+    }
+    None
+}

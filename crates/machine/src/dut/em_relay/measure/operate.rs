@@ -1,0 +1,125 @@
+//! Operate voltage on the coarse ramp from the pre-bias: an estimate to some 10 mV that places the fine ramp.
+
+use super::board::{Armature, BoardState, SentRamp, drive_off};
+use super::indication::gate0;
+use super::ramp::{after_coarse, stopped_at};
+use super::state::TestState;
+use super::{Context, OFF, Ramp, Stage, set};
+use crate::dut::em_relay::Finding;
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::points::DigitalIn;
+use crate::dut::em_relay::points::DigitalOut::{Arm, CoilDrive, EventNoBreak, RampMode, SelectNo};
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::supply::RAMP_MARGIN;
+use crate::dut::em_relay::threshold::{Direction, indicated};
+use units::{Span, Volt};
+
+/// The coarse release ramp begins so far above the highest threshold of the lot, volts.
+const RELEASE_HEADROOM_V: f64 = 0.8;
+/// Flux and armature are in equilibrium with the start level after this time.
+pub(super) const SETTLES: Span = Span::ms(25);
+/// Poll of the latch and write of the turn, at the longest.
+const TURNS: Span = Span::ms(10);
+/// Slowest operation after the end of a ramp that still counts as its event.
+pub(super) const LATE: Span = Span::ms(25);
+
+/// Height of the coarse output at which the release ramp begins.
+pub(super) fn release_start(context: &Context) -> Volt {
+    let test = &context.relay.test;
+    let above = test.expected_release_v + 4.0 * test.expected_release_sd_v + RELEASE_HEADROOM_V;
+    Volt(above.min(test.coarse_span_v))
+}
+
+/// The coil stage has armed the board while the coil was converted. Once the contact has made, the ramp turns round to
+/// where the release begins; the armature stays.
+pub(super) fn acts_coarse(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
+    let (mut acts, mut board) = match board.armature {
+        Armature::ReadyForRamp => (Vec::new(), board),
+        Armature::Unknown
+        | Armature::ReadyForTiming
+        | Armature::Operated
+        | Armature::Released
+        | Armature::Rested => prepared(context, board),
+    };
+    let top = Volt(context.relay.test.coarse_span_v);
+    let (start, span) = (board.supply.total(), top - board.supply.coarse());
+    let (ramp, takes) = board.supply.ramp_coarse(top);
+    let (turn, _) = board.supply.ramp_coarse(release_start(context));
+    acts.extend([
+        ramp,
+        Act::Until {
+            point: DigitalIn::Latch,
+            within: takes + LATE,
+        },
+        Act::Mark,
+        turn,
+        Act::Read(Read::Gate),
+    ]);
+    board.armature = Armature::Unknown;
+    board.ramp = Some(SentRamp { start, span, takes });
+    (acts, board)
+}
+
+/// From rest to the pre-bias, armed: what the coil stage leaves behind, when another stage came between.
+fn prepared(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
+    let mut acts = drive_off(board.armature);
+    let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
+    acts.extend([
+        coarse,
+        supply.step_to(Volt(context.relay.test.prebias_v)),
+        set(&[(RampMode, true), (SelectNo, true), (EventNoBreak, false)]),
+        Act::RampSinceMark(OFF.max(takes.max(board.still_ramping))),
+        set(&[(CoilDrive, true)]),
+        set(&[(Arm, true)]),
+        Act::Read(Read::Gates),
+        Act::Wait(SETTLES),
+    ]);
+    let left = BoardState {
+        supply,
+        armature: Armature::ReadyForRamp,
+        still_ramping: Span(0),
+        ..board
+    };
+    (acts, left)
+}
+
+pub(super) fn conclude_coarse(
+    context: &Context,
+    readings: &Readings,
+    state: &mut TestState,
+) -> Option<Stage> {
+    let (board, record) = (&mut state.board, &mut state.record);
+    if readings.seen.first() != Some(&true) {
+        // It has operated at nominal voltage.
+        record.stop(match readings.boards.last() {
+            Some(board) if board.no_closed => Finding::MadeOutsideWindow,
+            Some(_) => Finding::AboveCoarseRamp,
+            None => Finding::BoardNotRead,
+        });
+        return None;
+    }
+    let Some(gate) = gate0(context, readings) else {
+        record.stop(Finding::GatesNotRead);
+        return None;
+    };
+    let SentRamp { start, span, .. } = board.sent();
+    let v_per_s = context.calibration.coarse_v_per_s.value;
+    let seen = indicated(start, v_per_s, gate, Direction::Rising);
+    let coarse = stopped_at(start, span, seen).unwrap_or(seen);
+    board.armature = Armature::Operated;
+    board.still_ramping = turning(context, coarse - start);
+    let shown = record.shown(coarse, Direction::Rising);
+    record.own.operate = Some(Ramp::coarse_only(shown));
+    after_coarse(context, readings, state, (shown, Direction::Rising))
+        .then_some(Stage::OperateFine(0))
+}
+
+/// How long the coarse ramp needs from its event back down to [`release_start`]: it has gone on during the poll that
+/// has seen the event and the write that turns it round.
+fn turning(context: &Context, climbed: Volt) -> Span {
+    let per_s = context.calibration.coarse_v_per_s.value;
+    let over = climbed.0 + per_s * TURNS.as_seconds();
+    let back = over.min(context.relay.test.coarse_span_v) - release_start(context).0;
+    TURNS + Span::seconds(back.abs() / per_s) + RAMP_MARGIN
+}

@@ -1,0 +1,106 @@
+//! Operate voltage on the fine ramp, around the estimate of the coarse one.
+//!
+//! Between both the relay drops. The approach has two steps (0.93 of the start, then the start) because
+//! a step from zero picks up some 30 mV below the quasi-static threshold: the armature swings over.
+
+use super::board::{Armature, BoardState, SentRamp, drive_off};
+use super::operate::LATE;
+use super::pace::Pace;
+use super::ramp::{Expected, JUMP};
+use super::{Context, OFF, set};
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::points::DigitalIn;
+use crate::dut::em_relay::points::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
+use crate::dut::em_relay::supply::Supply;
+use units::{Span, Volt};
+
+/// First step of the approach, as a fraction of the start of the fine ramp.
+pub(super) const APPROACH: f64 = 0.93;
+
+pub(super) fn acts(
+    context: &Context,
+    board: BoardState,
+    searched: Expected,
+    pace: Pace,
+) -> (Vec<Act>, BoardState) {
+    let placed = searched.rising(pace.run_up(context.calibration.fine_v_per_s.value));
+    let (mut supply, falls) = (board.supply, falling(board));
+    let mut acts = drive_off(board.armature);
+    acts.extend(make_room(context, &mut supply, falls, placed.start));
+    acts.extend([
+        supply.step_to(placed.start * APPROACH),
+        // At the first step the supply may still fall.
+        Act::WaitSinceMark(OFF.max(Span(falls.0.saturating_sub(pace.approaches().0)))),
+        set(&[
+            (SourceOn, false),
+            (SourceReverse, false),
+            (RampMode, true),
+            (SelectNo, true),
+            (EventNoBreak, false),
+            (CoilDrive, true),
+        ]),
+        Act::Wait(pace.approaches()),
+        supply.step_to(placed.start),
+        Act::Mark,
+        set(&[(Arm, true)]),
+    ]);
+    let start = supply.total();
+    acts.extend([
+        supply.step_to(placed.start + JUMP),
+        Act::Read(Read::Gates),
+        Act::WaitSinceMark(pace.settles()),
+    ]);
+    let (ramp, takes) = supply.ramp_fine(supply.fine() + placed.span - JUMP);
+    acts.extend([
+        ramp,
+        Act::Until {
+            point: DigitalIn::Latch,
+            within: takes + LATE,
+        },
+        Act::Mark,
+        Act::Read(Read::Gate),
+    ]);
+    let left = BoardState {
+        supply,
+        armature: Armature::Unknown,
+        ramp: Some(SentRamp {
+            start,
+            span: placed.span,
+            takes,
+        }),
+        still_ramping: Span(0),
+    };
+    (acts, left)
+}
+
+/// How long after the mark the ramp before goes on falling; one that rises turns round at once.
+fn falling(board: BoardState) -> Span {
+    match board.armature.is_released() {
+        true => board.still_ramping,
+        false => Span(0),
+    }
+}
+
+/// Takes the coarse ramp back where it is higher than the approach needs, and the fine one wherever it is: further down
+/// than where it `falls` to already.
+fn make_room(context: &Context, supply: &mut Supply, falls: Span, start: Volt) -> Vec<Act> {
+    let mut acts = Vec::new();
+    let mut wait = Span(0);
+    if supply.fine() > Volt(0.02) {
+        let (fine, takes) = supply.ramp_fine(Volt(0.0));
+        acts.push(fine);
+        wait = falls + takes;
+    }
+    let room = (start.0 * APPROACH - 0.3).clamp(0.0, context.relay.test.coarse_span_v);
+    if supply.coarse().0 > room + 0.05 {
+        let (coarse, takes) = supply.ramp_coarse(Volt(room));
+        acts.push(coarse);
+        wait = wait.max(takes);
+    }
+    if wait > Span(0) {
+        acts.push(Act::Wait(wait));
+    }
+    acts
+}

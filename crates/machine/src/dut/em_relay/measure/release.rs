@@ -1,0 +1,179 @@
+//! Release voltage: from a sealed armature the supply falls until NO breaks, coarse first, then fine.
+//!
+//! The armature is sealed at 0.95 of nominal: enough to saturate it, and not an operation at nominal
+//! voltage, so the timed one stays the last of those.
+
+use super::board::{Armature, BoardState, SentRamp};
+use super::indication::gate0;
+use super::operate::{SETTLES, release_start};
+use super::ramp::{Expected, JUMP, after_coarse};
+use super::search::Search;
+use super::state::TestState;
+use super::{Context, INTERLOCK, Ramp, Stage, set};
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::points::DigitalIn;
+use crate::dut::em_relay::points::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::threshold::{Direction, indicated};
+use units::{Span, Volt};
+
+/// Fraction of nominal at which the armature is sealed.
+const SEAL: f64 = 0.95;
+/// Within so many refreshes of its end the output may have stopped already: an event there is no estimate.
+const LAST_REFRESHES: f64 = 1.5;
+/// Operate, bounce and settling of the flux.
+const SEAL_TIME: Span = Span::ms(25);
+/// The flux of the seal has fallen to a few per cent of its step before a fine ramp begins; what the coarse ramp
+/// has left of it, after [`SETTLES`], its lag has learned.
+const FINE_SETTLES: Span = Span::ms(35);
+/// Slowest break after the end of a ramp that still counts as its event.
+const LATE: Span = Span::ms(12);
+
+/// Seals the armature, steps to where a falling ramp begins and arms it. An armature that is still operated from the stage
+/// before is sealed from there, once the ramp that may still run has ended.
+fn seal(context: &Context, board: BoardState, start: Volt) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
+    let seal = supply.step_to(Volt(SEAL * context.relay.part.nominal_v));
+    // No current: the contact that the ramp breaks was read before, if at all.
+    let falling = [
+        (SourceOn, false),
+        (SourceReverse, false),
+        (RampMode, true),
+        (SelectNo, true),
+        (EventNoBreak, true),
+        (Arm, false),
+    ];
+    let mut acts = Vec::new();
+    if board.armature == Armature::Operated {
+        acts.extend([seal, set(&falling)]);
+    } else {
+        acts.extend([
+            set(&[
+                (CoilDrive, false),
+                (SourceOn, false),
+                (SourceReverse, false),
+            ]),
+            Act::Wait(INTERLOCK),
+            set(&falling),
+            seal,
+            set(&[(CoilDrive, true)]),
+            Act::Mark,
+        ]);
+    }
+    acts.extend([
+        Act::RampSinceMark(SEAL_TIME.max(board.still_ramping)),
+        supply.step_to(start),
+        Act::Mark,
+        set(&[(Arm, true)]),
+    ]);
+    let sealed = BoardState {
+        supply,
+        armature: Armature::Operated,
+        still_ramping: Span(0),
+        ..board
+    };
+    (acts, sealed)
+}
+
+/// Flux and armature settle after the step; the counters are read meanwhile. ARM is a pulse: it may rise again as soon
+/// as the contact has broken.
+fn settled(within: Span) -> [Act; 3] {
+    [
+        Act::Read(Read::Gates),
+        set(&[(Arm, false)]),
+        Act::WaitSinceMark(within),
+    ]
+}
+
+/// Waits for NO to break, then takes the drive off; from that event on the armature falls.
+fn until_break(takes: Span) -> [Act; 4] {
+    [
+        Act::Until {
+            point: DigitalIn::Latch,
+            within: takes + LATE,
+        },
+        Act::Mark,
+        set(&[(CoilDrive, false), (EventNoBreak, false)]),
+        Act::Read(Read::Gate),
+    ]
+}
+
+pub(super) fn acts_coarse(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
+    let mut acts = Vec::new();
+    if board.supply.coarse() != release_start(context) {
+        let (ramp, takes) = board.supply.ramp_coarse(release_start(context));
+        acts.extend([ramp, Act::Wait(takes)]);
+    }
+    let start = board.supply.coarse() + board.supply.fine();
+    let (sealing, mut board) = seal(context, board, start);
+    let (start, span) = (board.supply.total(), board.supply.coarse());
+    acts.extend(sealing);
+    acts.extend(settled(SETTLES));
+    let (ramp, takes) = board.supply.ramp_coarse(Volt(0.0));
+    acts.push(ramp);
+    acts.extend(until_break(takes));
+    board.armature = Armature::Released;
+    board.ramp = Some(SentRamp { start, span, takes });
+    (acts, board)
+}
+
+pub(super) fn conclude_coarse(
+    context: &Context,
+    readings: &Readings,
+    state: &mut TestState,
+) -> Option<Stage> {
+    let (start, test) = (state.board.sent().start, &context.relay.test);
+    let coarse_v_per_s = context.calibration.coarse_v_per_s.value;
+    let seen = readings.seen.first() == Some(&true);
+    let floor_v = coarse_v_per_s * LAST_REFRESHES * context.accuracy.ao_refresh_ms * 1e-3;
+    let gate =
+        gate0(context, readings).filter(|gate| seen && coarse_v_per_s * gate.0 < start.0 - floor_v);
+    let (plan, record) = (&mut state.plan, &mut state.record);
+    let Some(gate) = gate else {
+        // Below its floor the coarse ramp is no estimate: the threshold is far from the lot's.
+        let expected = Expected::new(Volt(test.expected_release_v), test.expected_release_sd_v);
+        plan.expect(Direction::Falling, expected);
+        plan.search = Some(Search::placing(context, record, Direction::Falling));
+        return Some(Stage::Search(Direction::Falling));
+    };
+    let coarse = indicated(start, coarse_v_per_s, gate, Direction::Falling);
+    let shown = record.shown(coarse, Direction::Falling);
+    record.own.release = Some(Ramp::coarse_only(shown));
+    after_coarse(context, readings, state, (shown, Direction::Falling))
+        .then_some(Stage::ReleaseFine(0))
+}
+
+pub(super) fn acts_fine(
+    context: &Context,
+    mut board: BoardState,
+    searched: Expected,
+) -> (Vec<Act>, BoardState) {
+    let placed = searched.falling();
+    let way = placed.span - JUMP;
+    let mut acts = Vec::new();
+    if board.supply.fine() < way {
+        let (fine, takes) = board.supply.ramp_fine(way);
+        // A ramp that rises goes on, one that falls turns round.
+        let rises = match board.armature == Armature::Operated {
+            true => board.still_ramping,
+            false => Span(0),
+        };
+        board.still_ramping = rises + takes;
+        acts.push(fine);
+    }
+    let least = board.supply.coarse() + board.supply.fine() + JUMP;
+    let top = Volt(placed.start.0.max(least.0));
+    let (sealing, mut board) = seal(context, board, top);
+    let (start, span) = (board.supply.total(), placed.span);
+    acts.extend(sealing);
+    acts.push(board.supply.step_to(top - JUMP));
+    acts.extend(settled(FINE_SETTLES));
+    let (ramp, takes) = board.supply.ramp_fine(board.supply.fine() - way);
+    acts.push(ramp);
+    acts.extend(until_break(takes));
+    board.armature = Armature::Released;
+    board.ramp = Some(SentRamp { start, span, takes });
+    (acts, board)
+}

@@ -1,0 +1,106 @@
+//! The acts of one trial: from rest or from a sealed armature to a level, and a look at the contacts.
+
+use super::{REACH, Search};
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::measure::board::{Armature, BoardState, drive_off};
+use crate::dut::em_relay::measure::operate_fine::APPROACH;
+use crate::dut::em_relay::measure::pace::Pace;
+use crate::dut::em_relay::measure::{Context, INTERLOCK, OFF, TestRecord, set};
+use crate::dut::em_relay::points::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
+use crate::dut::em_relay::supply::Supply;
+use crate::dut::em_relay::threshold::Direction;
+use units::{Span, Volt};
+
+/// Flux and armature from one level to the next while the armature is sealed.
+const SEALS: Span = Span::ms(25);
+/// Fraction of nominal at which the armature is sealed.
+const SEAL: f64 = 0.95;
+
+pub(in crate::dut::em_relay::measure) fn acts(
+    context: &Context,
+    board: BoardState,
+    record: &TestRecord,
+    search: Search,
+) -> (Vec<Act>, BoardState) {
+    let pace = Pace::of(record);
+    let (mut acts, mut board) = match (search.begins_anew(), search.direction) {
+        (true, Direction::Rising) => from_rest(board, pace, search.at),
+        (true, Direction::Falling) => {
+            let ramped = record.own.operate.is_some() && search.trials == 0;
+            from_sealed(context, board, ramped)
+        }
+        (false, Direction::Rising | Direction::Falling) => (Vec::new(), board),
+    };
+    assert_eq!(board.armature, Armature::Unknown, "a trial is driven");
+    acts.extend([
+        board.supply.step_to(search.at),
+        Act::Wait(search.dwell(pace)),
+        Act::Read(Read::Board),
+        Act::Mark,
+    ]);
+    (acts, board)
+}
+
+/// Off until the armature is back and both ramps are down, then two steps towards `at`: a single one from zero picks up
+/// some 30 mV below the threshold.
+fn from_rest(board: BoardState, pace: Pace, at: Volt) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
+    let mut acts = drive_off(board.armature);
+    let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
+    acts.extend([
+        coarse,
+        Act::Wait(takes),
+        Act::RampSinceMark(OFF.max(pace.approaches()).max(board.still_ramping)),
+        supply.step_to(at * APPROACH),
+        set(&[
+            (RampMode, false),
+            (SelectNo, true),
+            (EventNoBreak, false),
+            (CoilDrive, true),
+        ]),
+        Act::Wait(pace.approaches()),
+    ]);
+    (acts, driven(board, supply))
+}
+
+/// Operated and sealed at 0.95 of nominal, then down to the near end of the lot. The coarse output comes down first if
+/// an operate ramp has left it up.
+fn from_sealed(context: &Context, board: BoardState, ramped: bool) -> (Vec<Act>, BoardState) {
+    let (mut supply, test) = (board.supply, &context.relay.test);
+    let near = Volt(test.expected_release_v + REACH * test.expected_release_sd_v);
+    let mut acts = Vec::new();
+    let (coarse, takes) = supply.ramp_coarse(Volt(0.0));
+    if ramped {
+        acts.extend([coarse, Act::Wait(takes)]);
+    }
+    acts.extend([
+        // What still falls would seal at more than nominal.
+        Act::Wait(board.still_ramping),
+        supply.step_to(Volt(SEAL * context.relay.part.nominal_v)),
+        set(&[
+            (SourceOn, false),
+            (SourceReverse, false),
+            (RampMode, true),
+            (SelectNo, true),
+            (Arm, false),
+            (CoilDrive, true),
+        ]),
+        Act::Wait(INTERLOCK + SEALS),
+        // The flux of a sealed armature falls slowly: from the near end of the interval, not from above.
+        supply.step_to(near),
+        Act::Wait(SEALS),
+    ]);
+    (acts, driven(board, supply))
+}
+
+/// The drive is on, and whether the armature follows is for the trial to see.
+fn driven(board: BoardState, supply: Supply) -> BoardState {
+    BoardState {
+        supply,
+        armature: Armature::Unknown,
+        still_ramping: Span(0),
+        ..board
+    }
+}

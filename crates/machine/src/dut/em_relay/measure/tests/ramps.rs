@@ -1,0 +1,189 @@
+//! One ramp after another: where the supply is when the next one begins.
+
+use super::super::{Stage, fine};
+use super::{PULLED, RESTING, at_23_c, context, watched};
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::Act;
+use crate::dut::em_relay::calibration::{Calibration, Lags};
+use crate::dut::em_relay::golden::interim;
+use crate::dut::em_relay::lag::{LagLaw, Shown};
+use crate::dut::em_relay::measure::pace::Pace;
+use crate::dut::em_relay::measure::ramp::Expected;
+use crate::dut::em_relay::points::DigitalOut;
+
+use crate::dut::em_relay::tests::golden_parts;
+use crate::dut::em_relay::threshold::Direction;
+use crate::gauge::budget::{Budget, Reading};
+use crate::rig::sample::CountSample;
+use std::sync::Arc;
+use units::{Celsius, Span, Unit, Volt};
+
+/// Least time from the mark before these acts to the first ARM among them.
+fn until_armed(acts: &[Act]) -> Span {
+    let (mut before, mut passed) = (Span(0), Span(0));
+    for act in acts {
+        match act {
+            Act::Board(outputs) if outputs.contains(&(DigitalOut::Arm, true)) => break,
+            Act::Wait(time) => passed += *time,
+            Act::WaitSinceMark(time) | Act::RampSinceMark(time) => passed = passed.max(*time),
+            Act::Mark => before += std::mem::take(&mut passed),
+            Act::Board(_)
+            | Act::Supply(_)
+            | Act::Read(_)
+            | Act::CoilMask(_)
+            | Act::ConvertSinceMark(_)
+            | Act::Until { .. } => {}
+        }
+    }
+    before + passed
+}
+
+#[test]
+fn an_operate_ramp_is_not_armed_while_the_release_ramp_before_it_still_falls() {
+    for (sd_v, gate_ms) in [(0.008, 75.0), (0.025, 75.0), (0.06, 80.0)] {
+        let context = context();
+        let mut state = at_23_c();
+        state
+            .plan
+            .expect(Direction::Falling, Expected::new(Volt(0.7), sd_v));
+        state
+            .plan
+            .expect(Direction::Rising, Expected::new(Volt(6.7), 0.03));
+        let way = state.plan.expected(Direction::Falling).unwrap().falling();
+        state.enter(Stage::ReleaseFine(0), &context);
+        let event = watched(true, RESTING, gate_ms);
+        fine::conclude(&context, &event, &mut state, (Direction::Falling, 0));
+        let acts = state.enter(Stage::OperateFine(0), &context);
+        let falls_ms = (way.span.0 - 0.045) / 1.5 * 1e3 - gate_ms;
+        // The word that arms and the approach take longer; a ramp stands while they do.
+        let armed_ms = until_armed(&acts).as_seconds() * 1e3;
+        assert!(armed_ms >= falls_ms.min(24.0), "{armed_ms} of {falls_ms}");
+        assert!(sd_v < 0.02 || falls_ms > 30.0 && armed_ms >= falls_ms);
+    }
+}
+
+#[test]
+fn a_search_seals_no_part_on_top_of_a_release_ramp_that_still_falls() {
+    let context = context();
+    let mut state = at_23_c();
+    state
+        .plan
+        .expect(Direction::Falling, Expected::new(Volt(1.9), 0.1));
+    state.enter(Stage::ReleaseFine(0), &context);
+    let missed = watched(true, RESTING, 10.0);
+    let next = fine::conclude(&context, &missed, &mut state, (Direction::Falling, 0));
+    assert_eq!(next, Some(Stage::Search(Direction::Falling)));
+    let acts = state.enter(Stage::Search(Direction::Falling), &context);
+    let driven = |act: &Act| matches!(act, Act::Board(outputs) if outputs.contains(&(DigitalOut::CoilDrive, true)));
+    let at = acts.iter().position(driven).unwrap();
+    // 0.7 V at 1.5 V/s, of which 10 ms had passed.
+    assert!(until_armed(&acts[..at]) > Span::ms(440), "{acts:?}");
+}
+
+#[test]
+fn a_release_ramp_turns_the_one_before_it_round_and_prolongs_an_operate_ramp() {
+    let wait_ms = |rising: bool| {
+        let context = context();
+        let mut state = at_23_c();
+        state
+            .plan
+            .expect(Direction::Falling, Expected::new(Volt(2.3), 0.03));
+        state
+            .plan
+            .expect(Direction::Rising, Expected::new(Volt(7.8), 0.02));
+        if rising {
+            state.enter(Stage::OperateFine(0), &context);
+            fine::conclude(
+                &context,
+                &watched(true, PULLED, 60.0),
+                &mut state,
+                (Direction::Rising, 0),
+            );
+        } else {
+            state.enter(Stage::ReleaseFine(0), &context);
+            fine::conclude(
+                &context,
+                &watched(true, RESTING, 60.0),
+                &mut state,
+                (Direction::Falling, 0),
+            );
+        }
+        until_armed(&state.enter(Stage::ReleaseFine(0), &context)).as_seconds() * 1e3
+    };
+    // A repetition from nothing to 0.15 V at 1.5 V/s; to 0.28 V from 0.2 V, of which 74 ms were still to come.
+    let (falling, rising) = (wait_ms(false), wait_ms(true));
+    assert!((100.0..110.0).contains(&falling), "{falling}");
+    assert!((130.0..150.0).contains(&rising), "{rising}");
+}
+
+#[test]
+fn a_golden_part_that_teaches_is_looked_for_where_its_certificate_says() {
+    let mut context = context();
+    let learned = context.operate_lag();
+    let mut half_width = |coarse: LagLaw| {
+        context.golden = golden_parts().into_iter().next();
+        let lag = interim(coarse, 0.03);
+        let lags = Lags {
+            operate: lag,
+            release: lag,
+        };
+        context.calibration = Arc::new(Calibration {
+            lags: Some(lags),
+            ..(*context.calibration).clone()
+        });
+        let found = Expected::certified(&context, Celsius(23.0), Direction::Rising).unwrap();
+        assert!((found.centre.0 - 7.43).abs() < 1e-9, "{found:?}");
+        found.half_width.0
+    };
+    let first = half_width(LagLaw::guess(0.85));
+    let mut taught = learned.coarse;
+    taught.learn(&shown(), Volt(7.9));
+    let second = half_width(taught);
+    assert!((0.05..0.08).contains(&first) && (0.02..0.03).contains(&second));
+}
+
+#[test]
+fn a_part_of_the_lot_has_no_certificate_to_be_looked_for_at() {
+    let found = Expected::certified(&context(), Celsius(23.0), Direction::Falling);
+    assert_eq!(found, None);
+}
+
+#[test]
+fn a_slow_armature_gets_more_time_and_a_longer_run_up() {
+    let of = |operate_ms: f64| {
+        let mut state = at_23_c();
+        let reading = Reading {
+            value: operate_ms,
+            unit: Unit::Millisecond,
+            budget: Budget::default(),
+        };
+        state
+            .record
+            .found::<CountSample>(Parameter::OperateTime, reading, []);
+        Pace::of(&state.record)
+    };
+    let (usual, slow) = (of(4.7), of(9.4));
+    assert_eq!(
+        usual.approaches().as_seconds() * 2.0,
+        slow.approaches().as_seconds()
+    );
+    assert!((usual.run_up(1.5).0 - 0.060).abs() < 1e-3, "{usual:?}");
+    assert!((slow.run_up(1.5).0 - 0.120).abs() < 2e-3, "{slow:?}");
+    assert_eq!(of(1e9), of(20.0), "within reason");
+    assert_eq!(
+        Pace::of(&at_23_c().record),
+        of(5.0),
+        "one that has shown nothing"
+    );
+}
+
+/// Results of a part of the lot.
+fn shown() -> Shown {
+    Shown {
+        indicated: Volt(8.75),
+        operate: Volt(8.75),
+        operate_ms: 4.7,
+        release_ms: 2.9,
+        coil_ohm: 400.0,
+    }
+}

@@ -1,0 +1,148 @@
+//! How often coil and contacts are looked at, as the recipe asks.
+
+use super::super::{Stage, Test};
+use super::{at_23_c, context, good, scan};
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::measure::{Context, coil};
+use crate::dut::em_relay::points::DigitalOut::{SourceOn, SourceReverse};
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::recipe::Strategies;
+use crate::dut::em_relay::sampling::Polarities;
+use crate::gauge::budget::{Budget, Reading};
+use crate::handling::tests::Shop;
+use crate::rig::sample::Sample;
+use std::sync::Arc;
+use units::{Unit, Volt};
+
+/// The default recipe with other samplings.
+fn with(change: impl Fn(&mut Strategies)) -> Context {
+    let mut context = context();
+    change(&mut Arc::make_mut(&mut context.relay).test.strategy);
+    context
+}
+
+fn acts_of(stage: Stage, context: &Context) -> Vec<Act> {
+    at_23_c().enter(stage, context)
+}
+
+/// The direction of the source at each reading of the drop.
+fn directions(acts: &[Act]) -> Vec<bool> {
+    let (mut reverse, mut read) = (false, Vec::new());
+    for act in acts {
+        match act {
+            Act::Board(outputs) => {
+                let turned = outputs.iter().find(|(point, _)| *point == SourceReverse);
+                reverse = turned.map_or(reverse, |(_, on)| *on);
+            }
+            Act::Read(Read::Drop) => read.push(reverse),
+            _ => {}
+        }
+    }
+    read
+}
+
+#[test]
+fn a_contact_is_read_in_the_directions_of_its_recipe() {
+    let four = with(|it| it.contact.polarities = Polarities::PlusMinusMinusPlus);
+    for stage in [Stage::NcContact, Stage::TimedOperate] {
+        assert_eq!(directions(&acts_of(stage, &context())), [false, true]);
+        let acts = acts_of(stage, &four);
+        assert_eq!(directions(&acts), [false, true, true, false]);
+        let between = acts
+            .iter()
+            .rev()
+            .skip_while(|act| **act != Act::Read(Read::Drop));
+        let waits = between
+            .filter(|act| matches!(act, Act::ConvertSinceMark(_)))
+            .count();
+        assert_eq!(waits, 4, "a conversion of its own for each");
+    }
+}
+
+#[test]
+fn a_coil_is_scanned_as_often_as_its_recipe_says_and_the_mean_is_less_in_doubt() {
+    let four = with(|it| it.coil.scans = 4);
+    let scans = |context: &Context| {
+        let acts = acts_of(Stage::Coil, context);
+        acts.iter()
+            .filter(|act| **act == Act::Read(Read::Coil))
+            .count()
+    };
+    assert_eq!([scans(&context()), scans(&four)], [1, 4]);
+    let reading = |times: usize| {
+        let mut state = at_23_c();
+        let readings = Readings {
+            coil: vec![scan(5.0, 0.0125); times],
+            track: vec![good(23.0, 1.0)],
+            ..Readings::default()
+        };
+        coil::conclude(&four, &readings, &mut state);
+        state.record.result(Parameter::CoilResistance).unwrap()
+    };
+    let u = |reading: &Reading| reading.budget.0[0].u;
+    assert!((u(&reading(1)) / u(&reading(4)) - 2.0).abs() < 1e-9);
+}
+
+/// A test at its end, with so many closures of NO and NC behind it.
+fn after(context: Context, closures: usize, mohm: f64) -> Test {
+    let per_v = context.calibration.contact_mohm_per_v.value;
+    let mut test = Test::begin(context, Shop::at_rest().now);
+    test.stages.clear();
+    for parameter in [
+        Parameter::ContactResistanceNo,
+        Parameter::ContactResistanceNc,
+    ] {
+        for _ in 0..closures {
+            let budget = Budget::default().with("test", 0.05);
+            let reading = Reading {
+                value: mohm,
+                unit: Unit::Milliohm,
+                budget,
+            };
+            test.state.record.found::<Sample>(parameter, reading, []);
+        }
+    }
+    test.state.plan.nc_drops = vec![Volt(mohm / per_v); closures + 1];
+    test
+}
+
+#[test]
+fn closures_are_added_up_to_the_number_of_the_recipe() {
+    let pair = [Stage::TimedOperate, Stage::TimedRelease];
+    for (asked, had, more) in [(1, 1, false), (3, 1, true), (3, 2, true), (3, 3, false)] {
+        let mut test = after(with(|it| it.contact.closures = asked), had, 18.0);
+        test.add_closure();
+        let expected: &[Stage] = if more { &pair } else { &[] };
+        assert_eq!(test.stages, expected, "{had} of {asked}");
+    }
+}
+
+#[test]
+fn with_an_early_stop_only_contacts_near_their_limit_get_more_closures() {
+    let early = || {
+        with(|it| {
+            it.contact.closures = 8;
+            it.contact.stops_early = true;
+        })
+    };
+    for (mohm, more) in [(18.0, false), (90.0, true), (180.0, false)] {
+        let mut test = after(early(), 1, mohm);
+        test.add_closure();
+        assert_eq!(!test.stages.is_empty(), more, "{mohm} mOhm");
+    }
+}
+
+#[test]
+fn a_further_closure_begins_with_the_source_off_and_forward() {
+    let first = acts_of(Stage::TimedOperate, &context());
+    let words = first.iter().filter_map(|act| match act {
+        Act::Board(outputs) => Some(outputs),
+        _ => None,
+    });
+    let armed = words
+        .into_iter()
+        .find(|word| word.contains(&(crate::dut::em_relay::points::DigitalOut::Arm, true)))
+        .unwrap();
+    assert!(armed.contains(&(SourceOn, false)) && armed.contains(&(SourceReverse, false)));
+}

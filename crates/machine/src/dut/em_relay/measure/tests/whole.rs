@@ -1,0 +1,347 @@
+//! The acts of all stages against the rules of the interface board, and how a test ends early.
+
+use super::super::{Armature, Progress, Stage, Test, TestRecord, TestState, order};
+use super::{at_23_c, context};
+use crate::dut::em_relay::Finding;
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::measure::ramp::Expected;
+use crate::dut::em_relay::points::{AnalogOut, DigitalOut};
+use crate::dut::em_relay::threshold::Direction;
+use crate::dut::em_relay::{Parameter, parameter};
+use crate::dut::reason::{Code, Reason};
+use crate::dut::verdict::{Bin, Verdict};
+use crate::gauge::budget::{Budget, Reading};
+use crate::handling::tests::Shop;
+use crate::instrument::act::{Doing, Job, JobDone};
+use crate::rig::point::Point;
+use crate::rig::sample::Sample;
+use units::{Span, Volt};
+
+/// Each stage in the order of a good part: its acts, and what they leave the armature doing.
+fn stages_of_a_good_part() -> Vec<(Stage, Vec<Act>, Armature)> {
+    let context = context();
+    let mut state = at_23_c();
+    let expected = |volts| Expected::new(Volt(volts), 0.01);
+    state.plan.expect(Direction::Rising, expected(7.88));
+    state.plan.expect(Direction::Falling, expected(2.35));
+    let stages = std::iter::once(Stage::Kelvin).chain(order(&context));
+    let enter = |stage| {
+        let acts = state.enter(stage, &context);
+        let left = state.board.armature;
+        if let Stage::TimedOperate | Stage::OperateCoarse | Stage::OperateFine(_) = stage {
+            state.board.armature = Armature::Operated;
+        }
+        (stage, acts, left)
+    };
+    stages.map(enter).collect()
+}
+
+/// Acts of every stage in the order of a good part.
+fn all_acts() -> Vec<(Stage, Vec<Act>)> {
+    let stages = stages_of_a_good_part().into_iter();
+    stages.map(|(stage, acts, _)| (stage, acts)).collect()
+}
+
+#[test]
+fn each_stage_says_how_it_leaves_the_board() {
+    let left = stages_of_a_good_part().into_iter();
+    let left: Vec<_> = left.map(|(stage, _, armature)| (stage, armature)).collect();
+    let expected = [
+        (Stage::Kelvin, Armature::Unknown),
+        (Stage::NcContact, Armature::ReadyForTiming),
+        (Stage::TimedOperate, Armature::Unknown),
+        (Stage::TimedRelease, Armature::Rested),
+        (Stage::Coil, Armature::ReadyForRamp),
+        (Stage::OperateCoarse, Armature::Unknown),
+        (Stage::ReleaseCoarse, Armature::Released),
+        (Stage::OperateFine(0), Armature::Unknown),
+        (Stage::ReleaseFine(0), Armature::Released),
+        (Stage::Off, Armature::Rested),
+    ];
+    assert_eq!(left, expected);
+}
+
+#[test]
+fn a_stage_that_was_given_up_leaves_nothing_to_build_on() {
+    let mut test = Test::begin(context(), Shop::at_rest().now);
+    test.state.board.armature = Armature::Released;
+    test.abandon("module answers ?AA".into());
+    assert_eq!(test.state.board.armature, Armature::Unknown);
+}
+
+#[test]
+#[should_panic(expected = "a fine ramp without an expectation")]
+fn no_fine_ramp_is_sent_without_an_expectation() {
+    at_23_c().enter(Stage::OperateFine(0), &context());
+}
+
+#[test]
+fn a_test_leaves_source_arm_and_drive_off() {
+    let all: Vec<Act> = all_acts().into_iter().flat_map(|(_, acts)| acts).collect();
+    for point in [
+        DigitalOut::SourceOn,
+        DigitalOut::SourceReverse,
+        DigitalOut::CoilDrive,
+        DigitalOut::Arm,
+    ] {
+        let mut writes = all.iter().filter_map(|act| match act {
+            Act::Board(outputs) => outputs.iter().find(|(known, _)| *known == point),
+            _ => None,
+        });
+        assert_eq!(writes.next_back(), Some(&(point, false)));
+    }
+}
+
+/// How long a board write is followed by waiting, up to the next act that looks at something.
+fn waits_after(acts: &[Act]) -> Span {
+    let mut waited = Span(0);
+    for act in acts {
+        match act {
+            Act::Wait(span)
+            | Act::WaitSinceMark(span)
+            | Act::RampSinceMark(span)
+            | Act::ConvertSinceMark(span) => waited += *span,
+            Act::Mark | Act::Board(_) | Act::Supply(_) | Act::CoilMask(_) => {}
+            Act::Read(Read::Drop | Read::Coil) | Act::Until { .. } => break,
+            Act::Read(_) => {}
+        }
+    }
+    waited
+}
+
+#[test]
+fn whoever_switches_under_a_live_source_waits_for_the_board_to_take_it_off_first() {
+    let watched = [
+        DigitalOut::CoilDrive,
+        DigitalOut::SelectNo,
+        DigitalOut::SourceReverse,
+    ];
+    let (mut live, mut seen) = (false, 0);
+    for (stage, acts) in all_acts() {
+        for (at, act) in acts.iter().enumerate() {
+            let Act::Board(outputs) = act else { continue };
+            let changes = outputs.iter().any(|(point, _)| watched.contains(point));
+            if changes && live && stage != Stage::TimedRelease && stage != Stage::Off {
+                assert!(waits_after(&acts[at..]) >= Span::ms(2), "{stage:?}");
+                seen += 1;
+            }
+            if let Some((_, on)) = outputs.iter().find(|(it, _)| *it == DigitalOut::SourceOn) {
+                live = *on;
+            }
+        }
+    }
+    assert!(seen > 2, "{seen}");
+}
+
+#[test]
+fn nothing_is_timed_within_two_milliseconds_of_a_live_source() {
+    // Between the word that takes the source off and the one that drops the drive lies at least one
+    // transaction, 3 ms at the highest baud rate: the source is off and the selection has changed by then.
+    let (_, acts) = all_acts()
+        .into_iter()
+        .find(|(stage, _)| *stage == Stage::TimedRelease)
+        .unwrap();
+    let boards: Vec<&Vec<(DigitalOut, bool)>> = acts
+        .iter()
+        .filter_map(|act| match act {
+            Act::Board(outputs) => Some(outputs),
+            _ => None,
+        })
+        .collect();
+    assert!(boards[0].contains(&(DigitalOut::SourceOn, false)));
+    assert!(boards[0].contains(&(DigitalOut::Arm, true)));
+    assert!(boards[1].contains(&(DigitalOut::CoilDrive, false)));
+    assert!(
+        !boards[0]
+            .iter()
+            .any(|(point, _)| *point == DigitalOut::CoilDrive)
+    );
+}
+
+#[test]
+fn between_two_events_the_counters_are_read_and_before_a_timed_one_both() {
+    let (mut one, mut both) = (false, false);
+    for (stage, acts) in all_acts() {
+        for act in acts {
+            match act {
+                Act::Read(Read::Gates) => (one, both) = (true, true),
+                Act::Read(Read::Gate) => one = true,
+                Act::Until { .. } => {
+                    let timed = matches!(stage, Stage::TimedOperate | Stage::TimedRelease);
+                    assert!(if timed { both } else { one }, "{stage:?}");
+                    (one, both) = (false, false);
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+#[test]
+fn no_stage_of_a_part_changes_the_channel_mask() {
+    for (stage, acts) in all_acts() {
+        let masks = acts.iter().any(|act| matches!(act, Act::CoilMask(_)));
+        assert!(!masks, "{stage:?} would write an EEPROM");
+    }
+}
+
+#[test]
+fn every_supply_output_asked_for_is_one_that_it_can_give() {
+    for (stage, acts) in all_acts() {
+        for act in acts {
+            if let Act::Supply(outputs) = act {
+                for (point, volts) in outputs {
+                    let can = (0.0..=15.0).contains(&volts.0);
+                    assert!(can, "{stage:?}: {point} {volts}");
+                }
+            }
+        }
+    }
+}
+
+/// The job that reads the board.
+fn board() -> Job {
+    let inputs = Shop::unread().points.board.inputs.clone();
+    Job::Read(inputs.into_iter().map(Point::Input).collect())
+}
+
+/// Steps a test through good answers up to a job, then lets that job fail.
+fn fails_at(job: &Job) -> Test {
+    let mut shop = Shop::at_rest();
+    shop.track(23.0);
+    let mut test = Test::begin(context(), shop.now);
+    let mut done = None;
+    for _ in 0..200 {
+        match test.step(shop.now, done.take().as_ref(), &shop.image) {
+            Progress::Doing(Doing::Job(asked)) => {
+                shop.after(4);
+                let trouble = (asked == *job).then(|| "module answers ?AA".to_string());
+                done = Some(JobDone {
+                    at: shop.now,
+                    trouble,
+                });
+            }
+            Progress::Doing(Doing::Wait(until)) => {
+                shop.now = until;
+                shop.scan();
+            }
+            Progress::Doing(other) => panic!("{other:?}"),
+            Progress::Judged => return test,
+        }
+    }
+    panic!("the test does not end");
+}
+
+#[test]
+fn a_rig_in_trouble_has_proven_no_part_bad() {
+    let mut test = fails_at(&Job::Restarts);
+    let mut record = TestRecord::default();
+    record.stop(Finding::NoDoesNotMake);
+    test.state.record = record.clone();
+    assert_eq!(test.verdict().name(), "fail");
+    record.trouble("module answers ?AA".into());
+    record.trouble("and again".into());
+    test.state.record = record;
+    assert_eq!(
+        test.verdict(),
+        Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")])
+    );
+}
+
+#[test]
+fn the_level_is_written_anew_after_a_test_that_ended_early() {
+    let context = context();
+    let writes = |ends: fn(&mut TestRecord)| {
+        let mut state = TestState::new(&context);
+        let prebias = Volt(context.relay.test.prebias_v);
+        state.board.supply.step_to(prebias);
+        ends(&mut state.record);
+        let acts = state.enter(Stage::Off, &context);
+        let level = |act: &&Act| matches!(act, Act::Supply(to) if to.iter().any(|(it, _)| *it == AnalogOut::SupplyLevel));
+        acts.iter().filter(level).count()
+    };
+    assert_eq!(writes(|_| {}), 1, "which is none where it stands already");
+    assert_eq!(
+        writes(|it| it.stop(Finding::BoardNotRead)),
+        2,
+        "down and up"
+    );
+}
+
+#[test]
+fn a_refused_reply_or_a_restarted_module_in_the_middle_voids_the_part() {
+    // No Kelvin bit is set, so the test goes from the pins straight to off.
+    let test = fails_at(&board());
+    let why = Verdict::Void(vec![Reason::rig_trouble("module answers ?AA")]);
+    assert_eq!(test.verdict(), why);
+    assert_eq!(test.verdict().bin(), Bin::RETEST);
+    let restarted = fails_at(&Job::Restarts);
+    assert_eq!(restarted.verdict().name(), "void");
+    assert_eq!(restarted.stage(), Stage::Off);
+}
+
+#[test]
+fn the_first_cause_of_an_early_end_stays() {
+    let mut record = TestRecord::default();
+    record.stop(Finding::CoilOpen);
+    record.stop(Finding::CoilCurrentRemains);
+    let mut test = Test::begin(context(), Shop::at_rest().now);
+    test.state.record = record;
+    let reason = Finding::CoilOpen.into();
+    assert_eq!(test.verdict(), Verdict::Fail(vec![reason]));
+}
+
+fn measured(values: &[(Parameter, f64)]) -> Test {
+    let mut test = Test::begin(context(), Shop::at_rest().now);
+    for (parameter, value) in values {
+        let reading = Reading {
+            value: *value,
+            unit: parameter.definition().unit,
+            budget: Budget::default().with("test", 0.005),
+        };
+        test.state.record.found::<Sample>(*parameter, reading, []);
+    }
+    test
+}
+
+/// A good part.
+const GOOD: [(Parameter, f64); 9] = [
+    (Parameter::CoilResistance, 400.0),
+    (Parameter::OperateVoltage, 7.88),
+    (Parameter::ReleaseVoltage, 2.35),
+    (Parameter::OperateTime, 4.7),
+    (Parameter::ReleaseTime, 2.9),
+    (Parameter::OperateBounce, 0.6),
+    (Parameter::ReleaseBounce, 0.8),
+    (Parameter::ContactResistanceNo, 18.0),
+    (Parameter::ContactResistanceNc, 22.0),
+];
+
+#[test]
+fn a_part_passes_with_all_nine_results_and_is_void_without_one() {
+    assert_eq!(GOOD.len(), parameter::Parameter::ALL.len());
+    assert_eq!(measured(&GOOD).verdict(), Verdict::Pass);
+    for missing in 0..GOOD.len() {
+        let mut values = GOOD.to_vec();
+        let (parameter, _) = values.remove(missing);
+        let verdict = measured(&values).verdict();
+        let why = Reason::of(Code::NotMeasured(parameter.into()));
+        assert_eq!(verdict, Verdict::Void(vec![why]));
+    }
+}
+
+#[test]
+fn only_results_inside_the_guard_band_are_measured_again_and_only_once() {
+    let slow = |value: f64| {
+        let mut values = GOOD;
+        values[1].1 = value;
+        let mut test = measured(&values);
+        test.stages.clear();
+        test.add_slow_repeats();
+        test.add_slow_repeats();
+        test.stages.into_iter().collect::<Vec<_>>()
+    };
+    assert_eq!(slow(8.9), []);
+    assert_eq!(slow(9.1), []);
+    assert_eq!(slow(8.995), [Stage::OperateFine(0); 3]);
+}

@@ -1,0 +1,246 @@
+//! Timed operation at exactly nominal voltage and timed release into the recipe's clamp, each with its
+//! bounce and the contact resistance of the closure that it ends on.
+
+use super::board::{Armature, BoardState, drive_off};
+use super::coil::rest;
+use super::contact::{SOURCE_SETTLES, add_nc, closure, drop_of, is_implausible, reversed};
+use super::state::TestState;
+use super::{Context, OFF, Stage, TestRecord, set};
+use crate::dut::em_relay::Parameter;
+use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::contact::resistance;
+use crate::dut::em_relay::finding::{Contact, Finding};
+use crate::dut::em_relay::points::DigitalIn;
+use crate::dut::em_relay::points::DigitalOut::{
+    Arm, CoilDrive, EventNoBreak, RampMode, SelectNo, SourceOn, SourceReverse,
+};
+use crate::dut::em_relay::readings::Readings;
+use crate::dut::em_relay::timing::{bounce_ms, counts, gate_ms};
+use units::{Span, Volt};
+
+/// Slowest operation or release that the stage waits for.
+const LONGEST: Span = Span::ms(60);
+/// The window closes 20 ms after the latch; gate 1 counts bounce until then.
+const WINDOW_AFTER_LATCH: Span = Span::ms(21);
+/// Gate 1 is open whenever gate 0 is; their delays may differ by so many counts.
+const GATE_SKEW: u32 = 4;
+/// Bounce is over (6 ms is twice what the sheet class allows) and the contact has been closed for the 5 ms
+/// that the source asks for.
+const SOURCE_FLOWS: Span = Span::ms(11);
+
+/// Reads the counters after ARM unless the NC stage has done so: before ARM a window may still be open that an
+/// early end has left.
+pub(super) fn acts_operate(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
+    let mut supply = board.supply;
+    let mut acts = drive_off(board.armature);
+    acts.extend([set(&[
+        (SourceOn, false),
+        (SourceReverse, false),
+        (RampMode, false),
+        (SelectNo, true),
+        (EventNoBreak, false),
+        (Arm, true),
+    ])]);
+    if board.armature != Armature::ReadyForTiming {
+        acts.extend([
+            supply.step_to(Volt(context.relay.part.nominal_v)),
+            Act::Read(Read::Gates),
+        ]);
+    }
+    acts.extend([
+        Act::RampSinceMark(OFF.max(board.still_ramping)),
+        set(&[(CoilDrive, true), (SourceOn, true)]),
+    ]);
+    acts.extend(until_made());
+    acts.extend(drop_of_closure(context));
+    acts.extend(reversed(context));
+    let left = BoardState {
+        supply,
+        armature: Armature::Unknown,
+        still_ramping: Span(0),
+        ..board
+    };
+    (acts, left)
+}
+
+/// After a timed operation its counters still hold: the latch keeps both gates shut until ARM.
+pub(super) fn acts_release(context: &Context, board: BoardState) -> (Vec<Act>, BoardState) {
+    let counted = board.armature == Armature::Operated;
+    let (mut acts, mut board) = match counted {
+        true => (Vec::new(), board),
+        false => operated(context, board),
+    };
+    assert_eq!(board.armature, Armature::Operated, "nothing to release");
+    acts.extend([set(&[
+        (SourceOn, false),
+        (SourceReverse, false),
+        (SelectNo, false),
+        (Arm, true),
+    ])]);
+    acts.extend((!counted).then_some(Act::Read(Read::Gates)));
+    acts.push(set(&[(CoilDrive, false), (SourceOn, true)]));
+    acts.extend(until_made());
+    // With the coil off the supply is free, and until the window closes so is the bus.
+    acts.extend(rest(context, &mut board.supply));
+    acts.extend(drop_of_closure(context));
+    board.armature = Armature::Rested;
+    (acts, board)
+}
+
+/// Operates the armature at nominal voltage. The test does not read this closure: no current is to leave its mark on the
+/// contact.
+fn operated(context: &Context, mut board: BoardState) -> (Vec<Act>, BoardState) {
+    let mut acts = drive_off(board.armature);
+    acts.extend([
+        set(&[(RampMode, false), (EventNoBreak, false), (SourceOn, false)]),
+        board.supply.step_to(Volt(context.relay.part.nominal_v)),
+        set(&[(CoilDrive, true), (SelectNo, true)]),
+        Act::Wait(Span::ms(40)),
+    ]);
+    board.armature = Armature::Operated;
+    (acts, board)
+}
+
+// ARM rises in the same word as a selection: it clears window and latch, and no selection starts them.
+
+/// The contact event; from its mark the bounce, the window and the source take their time.
+fn until_made() -> [Act; 2] {
+    [
+        Act::Until {
+            point: DigitalIn::Latch,
+            within: LONGEST,
+        },
+        Act::Mark,
+    ]
+}
+
+/// Gates once the window has closed, then the forward drop. The source was switched on before the
+/// contact made: the board lets it flow once the contact has been closed for 5 ms. It drives the same way
+/// as the contact monitor, so that gate 1 does not take it for an open contact.
+fn drop_of_closure(context: &Context) -> [Act; 6] {
+    [
+        Act::WaitSinceMark(WINDOW_AFTER_LATCH),
+        Act::Read(Read::Gates),
+        Act::Read(Read::Board),
+        set(&[(Arm, false)]),
+        Act::ConvertSinceMark(SOURCE_FLOWS + SOURCE_SETTLES + context.fresh(1)),
+        Act::Read(Read::Drop),
+    ]
+}
+
+/// Records time and bounce from both gates of a stage; ends the test where the counters do not give them.
+fn time_and_bounce(
+    context: &Context,
+    readings: &Readings,
+    time: Parameter,
+    bounce: Parameter,
+    record: &mut TestRecord,
+) {
+    let [.., before, after] = readings.gates.as_slice() else {
+        record.stop(Finding::GatesNotRead);
+        return;
+    };
+    let gate0 = counts(before[0].count, after[0].count);
+    let gate1 = counts(before[1].count, after[1].count);
+    let longest = (LONGEST + WINDOW_AFTER_LATCH).as_seconds() * context.clock().hz;
+    // No contact moves within a count: a counter that shows none has restarted since its gate.
+    let still = gate0 == 0;
+    if still || f64::from(gate0.max(gate1)) > longest || gate1 + GATE_SKEW < gate0 {
+        let detail = format!("{gate0} and {gate1} counts");
+        record.stop(Finding::GatesImplausible.with(detail));
+        return;
+    }
+    let samples: Vec<_> = before.iter().chain(after).collect();
+    let delay = context.calibration.gate_delay_us;
+    record.found(
+        time,
+        gate_ms(gate0, delay[0], context.clock()),
+        samples.clone(),
+    );
+    record.found(
+        bounce,
+        bounce_ms(gate0, gate1, delay, context.clock()),
+        samples,
+    );
+}
+
+pub(super) fn conclude_operate(
+    context: &Context,
+    readings: &Readings,
+    state: &mut TestState,
+) -> Option<Stage> {
+    if readings.seen.first() != Some(&true) {
+        return not_made(readings, state);
+    }
+    let record = &mut state.record;
+    time_and_bounce(
+        context,
+        readings,
+        Parameter::OperateTime,
+        Parameter::OperateBounce,
+        record,
+    );
+    state.board.armature = Armature::Operated;
+    match closure(context, readings) {
+        Ok(closure) => {
+            let u = closure.u_v(context.reading_u_v());
+            if let Some(reading) =
+                resistance(&[closure.drop], context.calibration.contact_mohm_per_v, u)
+                && !is_implausible(Contact::No, reading.value, record)
+            {
+                record.found(Parameter::ContactResistanceNo, reading, &readings.drops);
+            }
+        }
+        Err(unread) => record.stop(unread.of(Contact::No)),
+    }
+    None
+}
+
+/// A relay that is late, or one whose contact does not move: that may lie at the coil, which is then measured
+/// before the part is judged.
+fn not_made(readings: &Readings, state: &mut TestState) -> Option<Stage> {
+    let TestState { plan, record, .. } = state;
+    plan.unmoved = match readings.boards.last() {
+        Some(board) if board.no_closed => {
+            record.stop(Finding::OperatesTooLate);
+            None
+        }
+        Some(board) if board.nc_closed => Some(Finding::NcDoesNotOpen),
+        Some(_) => Some(Finding::NoDoesNotMake),
+        None => {
+            record.stop(Finding::BoardNotRead);
+            None
+        }
+    };
+    plan.unmoved.map(|_| Stage::Coil)
+}
+
+pub(super) fn conclude_release(
+    context: &Context,
+    readings: &Readings,
+    state: &mut TestState,
+) -> Option<Stage> {
+    let record = &mut state.record;
+    if readings.seen.first() != Some(&true) {
+        state.board.armature = Armature::Unknown;
+        record.stop(Finding::ReleasesTooLate);
+        return None;
+    }
+    time_and_bounce(
+        context,
+        readings,
+        Parameter::ReleaseTime,
+        Parameter::ReleaseBounce,
+        record,
+    );
+    let compliance = readings.boards.iter().any(|board| board.compliance);
+    match (
+        drop_of(readings.drops.first(), compliance),
+        state.plan.drop_zero,
+    ) {
+        (Ok(drop), Some(zero)) => add_nc(context, drop - zero, &readings.drops, state),
+        (Ok(_), None) => record.stop(Finding::DropWithoutZero),
+        (Err(unread), _) => record.stop(unread.of(Contact::Nc)),
+    }
+    None
+}

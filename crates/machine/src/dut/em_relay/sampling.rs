@@ -1,0 +1,174 @@
+//! How often something is looked at before it is a result: scans of the coil, polarities and closures of a
+//! contact. Named in the recipe beside the strategies of the thresholds.
+//!
+//! Polarities of one closure: `plus_minus` takes out what stands still (offset, thermal EMF);
+//! `plus_minus_minus_plus` takes out what drifts evenly too, and halves the variance of the reading.
+//!
+//! Closures of one part differ by their films, by far more than a reading errs. With `stops_early` a part gets
+//! another closure only while `|mean - limit| <= 3 sqrt(u^2 + s^2 / n)`: u is what all closures share, s their
+//! scatter, never believed to be below what the recipe expects of a film.
+
+use crate::gauge::Limit;
+use serde::{Deserialize, Serialize};
+use units::Unit;
+
+/// How far from a limit a mean must lie before it is left at that, in standard deviations: 0.13 % of parts at the
+/// very limit are let go.
+const CLEAR: f64 = 3.0;
+
+/// Directions of the source on one closure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Polarities {
+    /// Forward, reversed.
+    #[default]
+    PlusMinus,
+    /// Forward, reversed, reversed, forward.
+    PlusMinusMinusPlus,
+}
+
+impl Polarities {
+    /// The names of recipes.
+    pub const NAMES: [&'static str; 2] = ["plus_minus", "plus_minus_minus_plus"];
+
+    /// Signs of the source in the order of the readings.
+    pub fn signs(self) -> &'static [f64] {
+        match self {
+            Self::PlusMinus => &[1.0, -1.0],
+            Self::PlusMinusMinusPlus => &[1.0, -1.0, -1.0, 1.0],
+        }
+    }
+}
+
+/// How contacts are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ContactSampling {
+    /// Of every NO closure, and of the NC closure at rest.
+    pub polarities: Polarities,
+    /// Timed closures of either contact, at the most; NC has the one at rest besides.
+    pub closures: u32,
+    /// Fewer, once both means are clear of their limits.
+    pub stops_early: bool,
+    /// Scatter of a film from closure to closure that is expected at least, percent of the resistance (1 sd).
+    pub closure_scatter_pct: u32,
+}
+
+impl Default for ContactSampling {
+    fn default() -> Self {
+        Self {
+            polarities: Polarities::PlusMinus,
+            closures: 1,
+            stops_early: false,
+            closure_scatter_pct: 10,
+        }
+    }
+}
+
+impl ContactSampling {
+    /// True when more closures would not change what is said of this contact: `values_mohm` are those of the closures
+    /// so far, `u_mohm` the standard uncertainty they share.
+    pub fn is_clear(&self, values_mohm: &[f64], u_mohm: f64, limit: &Limit) -> bool {
+        assert_eq!(limit.unit, Unit::Milliohm, "the limit of something else");
+        let n = values_mohm.len() as f64;
+        let mean = values_mohm.iter().sum::<f64>() / n;
+        let squares: f64 = values_mohm.iter().map(|it| (it - mean).powi(2)).sum();
+        let seen = (squares / (n - 1.0).max(1.0)).sqrt();
+        let expected = mean.abs() * f64::from(self.closure_scatter_pct) / 100.0;
+        let band = CLEAR * u_mohm.hypot(seen.max(expected) / n.sqrt());
+        let away = |end: Option<f64>| end.is_none_or(|end| (mean - end).abs() > band);
+        !values_mohm.is_empty() && away(limit.low) && away(limit.high)
+    }
+}
+
+/// How the coil is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CoilSampling {
+    /// From the drive to the instant after which a conversion may begin, ms.
+    pub settles_ms: u32,
+    /// Scans that are averaged.
+    pub scans: u32,
+}
+
+impl Default for CoilSampling {
+    /// 32 ms: the current settles to 0.05 % within 13 ms (7.6 L/R of an open armature), but an armature that the
+    /// pre-bias has just lifted from its stop swings, and moves the current by up to 0.4 % until the swing has died out.
+    fn default() -> Self {
+        Self {
+            settles_ms: 32,
+            scans: 1,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMIT: Limit = Limit {
+        unit: Unit::Milliohm,
+        low: None,
+        high: Some(100.0),
+    };
+
+    fn sampling(closure_scatter_pct: u32) -> ContactSampling {
+        ContactSampling {
+            closure_scatter_pct,
+            ..ContactSampling::default()
+        }
+    }
+
+    #[test]
+    fn one_closure_far_from_the_limit_is_enough_and_one_near_it_is_not() {
+        let films_of_10 = sampling(10);
+        assert!(films_of_10.is_clear(&[18.0], 0.05, &LIMIT));
+        // 3 x 10 % of 80 is 24 mOhm: 80 may still be a part beyond 100.
+        assert!(!films_of_10.is_clear(&[80.0], 0.05, &LIMIT));
+        assert!(films_of_10.is_clear(&[150.0], 0.05, &LIMIT));
+    }
+
+    #[test]
+    fn closures_that_agree_narrow_the_band_by_the_root_of_their_number() {
+        let films_of_10 = sampling(10);
+        assert!(!films_of_10.is_clear(&[86.0; 3], 0.05, &LIMIT), "3 x 5.0");
+        assert!(films_of_10.is_clear(&[86.0; 4], 0.05, &LIMIT), "3 x 4.3");
+    }
+
+    #[test]
+    fn closures_that_disagree_are_believed_more_than_the_recipe() {
+        assert!(sampling(1).is_clear(&[50.0, 51.0], 0.05, &LIMIT));
+        assert!(!sampling(1).is_clear(&[20.0, 80.0], 0.05, &LIMIT));
+    }
+
+    #[test]
+    fn what_all_closures_share_does_not_shrink() {
+        assert!(!sampling(0).is_clear(&[95.0; 20], 2.0, &LIMIT));
+        assert!(sampling(0).is_clear(&[95.0; 20], 1.0, &LIMIT));
+    }
+
+    #[test]
+    fn nothing_read_is_clear_of_nothing_and_without_a_limit_all_is() {
+        assert!(!sampling(10).is_clear(&[], 0.0, &LIMIT));
+        assert!(!sampling(10).is_clear(&[f64::NAN], 0.0, &LIMIT));
+        let open = Limit {
+            high: None,
+            ..LIMIT
+        };
+        assert!(sampling(10).is_clear(&[99.0], 0.0, &open));
+    }
+
+    #[test]
+    fn signs_add_up_to_nothing_and_so_do_signs_times_time() {
+        for polarities in [Polarities::PlusMinus, Polarities::PlusMinusMinusPlus] {
+            assert_eq!(polarities.signs().iter().sum::<f64>(), 0.0);
+        }
+        let four = Polarities::PlusMinusMinusPlus.signs();
+        let drift: f64 = four
+            .iter()
+            .zip([0.0, 30.0, 44.0, 74.0])
+            .map(|(s, t)| s * t)
+            .sum();
+        assert_eq!(drift, 0.0);
+    }
+}

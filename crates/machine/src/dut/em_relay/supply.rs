@@ -1,0 +1,103 @@
+//! The coil supply as three outputs that add up: level (steps), coarse ramp, fine ramp.
+//!
+//! Keeps what was asked of each, so that a stage can ask for a sum and leave a ramp where
+//! the stage before has left it: the coarse ramp goes up once for operate and down once for release.
+
+use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::act::Act;
+use crate::dut::em_relay::calibration::OutputLine;
+use crate::dut::em_relay::points::AnalogOut;
+use units::{Span, Volt};
+
+/// The sum of three outputs in floating point.
+const ROUNDING: Volt = Volt(1e-9);
+/// Slowest settling of an output after its last refresh.
+pub const RAMP_MARGIN: Span = Span::ms(4);
+
+/// Voltages that each output contributes at the coil.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Supply {
+    level: OutputLine,
+    coarse: OutputLine,
+    fine: OutputLine,
+    coarse_v_per_s: f64,
+    fine_v_per_s: f64,
+    level_at: Volt,
+    coarse_at: Volt,
+    fine_at: Volt,
+}
+
+impl Supply {
+    /// With all outputs at zero.
+    pub fn new(calibration: &Calibration) -> Self {
+        let (level, coarse, fine) = (calibration.level, calibration.coarse, calibration.fine);
+        Self {
+            level_at: level.delivers(Volt(0.0)),
+            coarse_at: coarse.delivers(Volt(0.0)),
+            fine_at: fine.delivers(Volt(0.0)),
+            level,
+            coarse,
+            fine,
+            coarse_v_per_s: calibration.coarse_v_per_s.value,
+            fine_v_per_s: calibration.fine_v_per_s.value,
+        }
+    }
+
+    /// Sum of the three as asked.
+    pub fn total(&self) -> Volt {
+        self.level_at + self.coarse_at + self.fine_at
+    }
+
+    /// Voltage the coarse ramp adds once it has arrived.
+    pub fn coarse(&self) -> Volt {
+        self.coarse_at
+    }
+
+    /// Voltage the fine ramp adds once it has arrived.
+    pub fn fine(&self) -> Volt {
+        self.fine_at
+    }
+
+    /// True once both ramps have gone as low as their outputs can.
+    pub fn ramps_are_down(&self) -> bool {
+        let rests = |line: OutputLine, at: Volt| {
+            let lowest = line.delivers(Volt(0.0)).0.max(0.0);
+            at < Volt(lowest) + ROUNDING
+        };
+        rests(self.coarse, self.coarse_at) && rests(self.fine, self.fine_at)
+    }
+
+    /// Act that steps the level so that the sum becomes `total`; the ramps stay.
+    pub fn step_to(&mut self, total: Volt) -> Act {
+        let wanted = total - self.coarse_at - self.fine_at;
+        let asked = Volt(self.level.ask_for(wanted).0.max(0.0));
+        self.level_at = self.level.delivers(asked);
+        let over = self.total() - total;
+        assert!(
+            asked == Volt(0.0) || over < ROUNDING,
+            "{over:?} over {total:?}"
+        );
+        Act::Supply(vec![(AnalogOut::SupplyLevel, asked)])
+    }
+
+    /// Act that starts the coarse ramp towards `volts`, and how long the ramp takes.
+    pub fn ramp_coarse(&mut self, volts: Volt) -> (Act, Span) {
+        let asked = Volt(self.coarse.ask_for(volts).0.max(0.0));
+        let way = self.coarse.delivers(asked) - self.coarse_at;
+        self.coarse_at = self.coarse_at + way;
+        let takes = Span::seconds(way.0.abs() / self.coarse_v_per_s) + RAMP_MARGIN;
+        (Act::Supply(vec![(AnalogOut::SupplyCoarse, asked)]), takes)
+    }
+
+    /// Act that starts the fine ramp towards `volts`, and how long the ramp takes.
+    pub fn ramp_fine(&mut self, volts: Volt) -> (Act, Span) {
+        let asked = Volt(self.fine.ask_for(volts).0.max(0.0));
+        let way = self.fine.delivers(asked) - self.fine_at;
+        self.fine_at = self.fine_at + way;
+        let takes = Span::seconds(way.0.abs() / self.fine_v_per_s) + RAMP_MARGIN;
+        (Act::Supply(vec![(AnalogOut::SupplyFine, asked)]), takes)
+    }
+}
+
+#[cfg(test)]
+mod tests;

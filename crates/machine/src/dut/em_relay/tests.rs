@@ -1,0 +1,100 @@
+//! Recipe, golden parts and instruments that err by nothing.
+#![allow(clippy::unwrap_used)]
+
+use crate::dut;
+use crate::dut::em_relay::Calibration;
+use crate::dut::em_relay::Device;
+use crate::dut::em_relay::calibration::{InputLine, Lag, Lags, OutputLine};
+use crate::dut::em_relay::lag::LagLaw;
+use crate::dut::em_relay::measure::Context;
+use crate::dut::em_relay::points::Points;
+use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
+use crate::dut::recipe::{DeviceRecipe, Recipe};
+use crate::gauge::Factor;
+use crate::handling::tests::wiring;
+use serde::Deserialize;
+use std::sync::Arc;
+
+const RIG: &str = include_str!("../../../../../config/rig.toml");
+
+#[derive(Deserialize)]
+struct Instruments {
+    reference: ReferenceSettings,
+    accuracy: AccuracySettings,
+}
+
+/// The default recipe on instruments that err by nothing, lags known.
+pub fn context() -> Context {
+    let recipe: Recipe = toml::from_str(include_str!(
+        "../../../../../config/recipes/jzc-22f-012.toml"
+    ))
+    .unwrap();
+    let instruments: Instruments = toml::from_str(RIG).unwrap();
+    let DeviceRecipe::EmRelay(relay) = &recipe.device else {
+        panic!("a relay");
+    };
+    Context {
+        relay: Arc::new(relay.clone()),
+        recipe: Arc::new(recipe),
+        calibration: Arc::new(calibration()),
+        points: Points::resolve(&wiring()).unwrap(),
+        reference: instruments.reference,
+        accuracy: instruments.accuracy,
+        nominal_v_per_s: [96.0, 1.5],
+        probe_contact: None,
+        thorough: false,
+        golden: None,
+    }
+}
+
+/// The same as the station holds it, with the reference parts of the plant.
+pub fn device() -> dut::Device {
+    device_of(context())
+}
+
+/// A device of this context.
+pub fn device_of(context: Context) -> dut::Device {
+    dut::Device::EmRelay(Box::new(Device::of(context, 1.6, golden_parts())))
+}
+
+/// The golden parts of 12 V.
+pub fn golden_parts() -> Vec<GoldenPart> {
+    let set: GoldenSet = toml::from_str(include_str!("../../../../../config/golden.toml")).unwrap();
+    set.of_nominal(12.0).cloned().collect()
+}
+
+/// Channels with the gains of the default rig and no error.
+fn calibration() -> Calibration {
+    let exact = |value| Factor::new(value, 1e-6);
+    let lag = |coarse_v| Lag {
+        fine_v: exact(0.0),
+        at_v: 0.0,
+        at_coarse_v: coarse_v,
+        coarse: LagLaw::guess(coarse_v),
+        judges: false,
+    };
+    Calibration {
+        simulated: true,
+        made_at_us: 0,
+        due_at_us: i64::MAX,
+        nominal_v: 12.0,
+        coil_input: InputLine {
+            gain: exact(1.0),
+            offset_v: exact(0.0),
+        },
+        ohm_fine: exact(375.0),
+        ohm_wide: exact(125.0),
+        contact_mohm_per_v: exact(20.0),
+        gate_delay_us: [exact(0.0); 2],
+        level: OutputLine::IDEAL,
+        coarse: OutputLine::IDEAL,
+        fine: OutputLine::IDEAL,
+        coarse_v_per_s: exact(96.0),
+        fine_v_per_s: exact(1.5),
+        probe_contact_ohm: 0.0,
+        lags: Some(Lags {
+            operate: lag(0.85),
+            release: lag(-1.05),
+        }),
+    }
+}

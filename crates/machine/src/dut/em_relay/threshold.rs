@@ -1,0 +1,155 @@
+//! Operate and release voltage from a ramp and a gated counter.
+//!
+//! The window opens when the supply has moved [`WINDOW_V`] from the level it had at ARM, and the
+//! latch closes it at the contact event, so the indicated voltage is
+//! `start +- (WINDOW_V + slope x gate)`. A ramp overshoots the quasi-static threshold by its lag;
+//! golden parts tell the lag of the fine ramp, and the same number absorbs the tolerance of the
+//! 50 mV, the error of the level, the contact of the probes and the mean heating of the coil, all of which were there too.
+//! Pickup current does not depend on temperature, so the voltage scales like the coil (IEC 61810-7).
+
+use super::calibration::Lag;
+use super::coil::{relative_per_kelvin, to_reference};
+use crate::gauge::Factor;
+use crate::gauge::budget::{Budget, Reading, resolution};
+use units::{Celsius, Second, Unit, Volt};
+
+/// Movement of the supply that opens the window of a ramp.
+pub const WINDOW_V: Volt = Volt(0.050);
+
+/// Which way the supply moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// Towards operate.
+    Rising,
+    /// Towards release.
+    Falling,
+}
+
+impl Direction {
+    /// +1 rising, -1 falling.
+    pub fn sign(self) -> f64 {
+        match self {
+            Direction::Rising => 1.0,
+            Direction::Falling => -1.0,
+        }
+    }
+}
+
+/// Supply voltage at the contact event of a ramp that began at `start`.
+pub fn indicated(start: Volt, slope_v_per_s: f64, gate: Second, direction: Direction) -> Volt {
+    start + (WINDOW_V + Volt(slope_v_per_s * gate.0)) * direction.sign()
+}
+
+/// What makes a threshold doubtful besides the golden parts' shift.
+#[derive(Debug, Clone, Copy)]
+pub struct RampDoubt {
+    /// Slope of the fine ramp, volts per second.
+    pub slope_v_per_s: Factor,
+    /// The error of the slope is in the taught lag already.
+    pub slope_known: bool,
+    /// Scatter of the part's own threshold from operation to operation, volts.
+    pub operation_v: f64,
+    /// Time between two steps of the output while it ramps.
+    pub refresh: Second,
+    /// Relative standard uncertainty of the gain of the level at which the ramp starts.
+    pub level_share: f64,
+    /// What the force contacts of the coil put in series to it now and not when golden parts ran, a share of its
+    /// resistance.
+    pub contact_share: f64,
+    /// Part's temperature against the track's, kelvin (1 sd).
+    pub temperature_k: f64,
+}
+
+/// Quasi-static threshold at the reference temperature from one fine ramp, which on this part overshoots by `own`
+/// volts more than on the golden parts.
+pub fn quasi_static(
+    (seen, own): (Volt, Factor),
+    gate: Second,
+    lag: Lag,
+    part: Celsius,
+    reference: Celsius,
+    doubt: RampDoubt,
+) -> Reading {
+    let at_part = seen.0 - lag.fine_v.value - own.value;
+    let value = at_part * to_reference(part, reference);
+    let budget = Budget::default()
+        .with("golden parts", lag.fine_v.u)
+        .with("lag of the part", own.u)
+        .with(
+            "coil temperature",
+            value * doubt.temperature_k * relative_per_kelvin(part),
+        )
+        .with_random("repeatability", doubt.operation_v)
+        .with(
+            "slope",
+            if doubt.slope_known {
+                0.0
+            } else {
+                doubt.slope_v_per_s.u * gate.0
+            },
+        )
+        .with_random(
+            "resolution",
+            resolution(doubt.slope_v_per_s.value * doubt.refresh.0),
+        )
+        .with("level", (at_part - lag.at_v) * doubt.level_share)
+        .with("probe contact", value * doubt.contact_share);
+    Reading {
+        value,
+        unit: Unit::Volt,
+        budget,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dut::em_relay::lag::LagLaw;
+
+    #[test]
+    fn a_rising_ramp_indicates_start_plus_window_plus_slope_times_gate() {
+        let seen = indicated(Volt(7.8), 1.5, Second(0.04), Direction::Rising);
+        assert!((seen.0 - 7.91).abs() < 1e-12);
+        let seen = indicated(Volt(2.5), 1.5, Second(0.04), Direction::Falling);
+        assert!((seen.0 - 2.39).abs() < 1e-12);
+    }
+
+    /// U / 2 of an operate voltage of 7.88 V with these doubts and no others.
+    fn doubted(contact: f64, temperature_k: f64) -> f64 {
+        let lag = Lag {
+            fine_v: Factor::new(0.0, 0.0),
+            at_v: 7.88,
+            at_coarse_v: 0.85,
+            coarse: LagLaw::guess(0.85),
+            judges: false,
+        };
+        let doubt = RampDoubt {
+            slope_v_per_s: Factor::new(1.5, 0.0),
+            slope_known: false,
+            operation_v: 0.0,
+            refresh: Second(0.0),
+            level_share: 0.0,
+            contact_share: contact,
+            temperature_k,
+        };
+        let reading = quasi_static(
+            (Volt(7.88), Factor::new(0.0, 0.0)),
+            Second(0.04),
+            lag,
+            Celsius(23.0),
+            Celsius(23.0),
+            doubt,
+        );
+        reading.budget.combined()
+    }
+
+    #[test]
+    fn one_kelvin_is_thirty_millivolts_of_an_operate_voltage() {
+        assert!((doubted(0.0, 1.0) - 0.0306).abs() < 1e-4);
+    }
+
+    #[test]
+    fn one_ohm_at_the_probes_is_twenty_millivolts_of_an_operate_voltage() {
+        assert!((doubted(1.0 / 400.0, 0.0) - 0.0197).abs() < 1e-4);
+    }
+}

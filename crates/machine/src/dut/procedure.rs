@@ -1,0 +1,100 @@
+//! A running test of any kind: stages made of acts, then a verdict.
+
+use super::Characteristic;
+use super::em_relay::measure;
+use super::reason::Reason;
+use super::record::{Own, Stop, TestRecord};
+use super::resistor;
+use super::verdict::Verdict;
+use crate::gauge::Judgement;
+use crate::instrument::act::{Doing, JobDone};
+use crate::rig::image::Image;
+use units::RigTime;
+
+/// What a test wants from its surroundings.
+#[derive(Debug)]
+pub enum Progress {
+    /// As the runner of the present stage says.
+    Doing(Doing),
+    /// The part is judged.
+    Judged,
+}
+
+/// A test under way, by kind.
+#[derive(Debug)]
+pub enum Procedure {
+    /// Of an electromagnetic relay.
+    EmRelay(Box<measure::Test>),
+    /// Of a resistor.
+    Resistor(Box<resistor::Test>),
+}
+
+impl Procedure {
+    /// Goes on as far as it can. `done` answers the job that it asked for before, once.
+    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
+        match self {
+            Self::EmRelay(test) => test.step(now, done, image),
+            Self::Resistor(test) => test.step(now, done, image),
+        }
+    }
+
+    /// Number of the test of this part, from 1.
+    pub fn number(&self) -> u8 {
+        match self {
+            Self::EmRelay(test) => test.number(),
+            Self::Resistor(test) => test.number(),
+        }
+    }
+
+    /// The stage under way, for screens.
+    pub fn stage(&self) -> String {
+        match self {
+            Self::EmRelay(test) => format!("{:?}", test.stage()),
+            Self::Resistor(test) => test.stage().to_owned(),
+        }
+    }
+
+    /// Why the test could not be carried through, if it was not: the rig was in trouble or the part could not be seen.
+    pub fn why_void(&self) -> Option<&Reason> {
+        let stop = match self {
+            Self::EmRelay(test) => test.record().why_stopped()?,
+            Self::Resistor(test) => test.record().why_stopped()?,
+        };
+        match stop {
+            Stop::Void(why) | Stop::Trouble(why) => Some(why),
+            Stop::Fail(_) => None,
+        }
+    }
+
+    /// Each result against its limit.
+    pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
+        match self {
+            Self::EmRelay(test) => test.judgements(),
+            Self::Resistor(test) => test.judgements(),
+        }
+    }
+
+    /// Verdict of the part.
+    pub fn verdict(&self) -> Verdict {
+        match self {
+            Self::EmRelay(test) => test.verdict(),
+            Self::Resistor(test) => test.verdict(),
+        }
+    }
+
+    /// What was found so far, with the replies behind it.
+    pub fn record(&self) -> TestRecord {
+        match self {
+            Self::EmRelay(test) => test.record().clone().of_any_kind(Own::EmRelay),
+            Self::Resistor(test) => test.record().clone().of_any_kind(|()| Own::Nothing),
+        }
+    }
+
+    /// Hands over what was found, once the part is judged.
+    pub fn take_record(&mut self) -> TestRecord {
+        match self {
+            Self::EmRelay(test) => test.take_record().of_any_kind(Own::EmRelay),
+            Self::Resistor(test) => test.take_record(),
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Record of a test of any kind: results, the replies they came from, where the time went, and why it ended early.
+
+use super::characteristic::Characteristic;
+use super::em_relay::Seen;
+use super::reason::Reason;
+use crate::gauge::Reading;
+use crate::gauge::repetition::mean;
+use crate::instrument::act::Spent;
+use crate::instrument::trace::Trace;
+use crate::rig::sample::{CountSample, Origin, Sample};
+use std::collections::BTreeMap;
+use units::Span;
+
+/// What a result was made from: line, module, channel and raw text lead back to the bytes.
+pub trait Evidence {
+    /// Where it came from.
+    fn origin(&self) -> &Origin;
+}
+
+impl Evidence for Sample {
+    fn origin(&self) -> &Origin {
+        &self.origin
+    }
+}
+
+impl Evidence for CountSample {
+    fn origin(&self) -> &Origin {
+        &self.origin
+    }
+}
+
+/// Why a test ends before its last stage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Stop {
+    /// The part is bad.
+    Fail(Reason),
+    /// It cannot be judged.
+    Void(Reason),
+    /// The rig was in trouble: what it has measured of the part so far, good or bad, proves nothing.
+    Trouble(Reason),
+}
+
+/// What only a test of one kind sees, kept for what the kind learns from parts.
+#[derive(Debug, Clone, Default)]
+pub enum Own {
+    /// Nothing: the kind learns from results alone, or the part was not tested.
+    #[default]
+    Nothing,
+    /// Ramps and conditions of an electromagnetic relay.
+    EmRelay(Seen),
+}
+
+/// What a test has measured so far. `T` is what only its kind sees.
+#[derive(Debug, Clone, Default)]
+pub struct TestRecord<T = Own> {
+    readings: Vec<(Characteristic, Reading)>,
+    evidence: Vec<(Characteristic, Origin)>,
+    stop: Option<Stop>,
+    /// What was seen, sample by sample.
+    pub trace: Trace,
+    /// Where the time went.
+    pub spent: Spent,
+    /// Rig time by what it was spent on.
+    pub stages: BTreeMap<&'static str, Span>,
+    /// What only the kind sees.
+    pub own: T,
+}
+
+impl<T> TestRecord<T> {
+    /// The record as every kind has it.
+    pub fn of_any_kind(self, own: impl FnOnce(T) -> Own) -> TestRecord {
+        TestRecord {
+            readings: self.readings,
+            evidence: self.evidence,
+            stop: self.stop,
+            trace: self.trace,
+            spent: self.spent,
+            stages: self.stages,
+            own: own(self.own),
+        }
+    }
+
+    /// Books the time of a stage.
+    pub fn took(&mut self, what: &'static str, time: Span) {
+        *self.stages.entry(what).or_default() += time;
+    }
+
+    /// Adds one result of a stage with the replies it was made from.
+    ///
+    /// # Panics
+    /// When the result is not in the unit of its characteristic.
+    pub fn found<'a, S: Evidence + 'a>(
+        &mut self,
+        of: impl Into<Characteristic>,
+        reading: Reading,
+        samples: impl IntoIterator<Item = &'a S>,
+    ) {
+        let of = of.into();
+        assert_eq!(reading.unit, of.unit(), "{of} in another unit");
+        self.readings.push((of, reading));
+        let origins = samples.into_iter().map(|sample| sample.origin().clone());
+        self.evidence.extend(origins.map(|origin| (of, origin)));
+    }
+
+    /// Takes back the results of a characteristic, which a later reading replaces.
+    pub fn forget(&mut self, of: impl Into<Characteristic>) {
+        let of = of.into();
+        self.readings.retain(|(known, _)| *known != of);
+    }
+
+    /// Each result of a characteristic, in the order they came.
+    pub fn each(&self, of: impl Into<Characteristic>) -> impl Iterator<Item = &Reading> {
+        let of = of.into();
+        let own = self.readings.iter().filter(move |(known, _)| *known == of);
+        own.map(|(_, reading)| reading)
+    }
+
+    /// Result of a characteristic: the mean of its repetitions, which lie apart as far as the part scatters.
+    pub fn result(&self, of: impl Into<Characteristic>) -> Option<Reading> {
+        let of = of.into();
+        let repetitions: Vec<Reading> = self.each(of).cloned().collect();
+        mean(&repetitions, of.definition().spoken_of)
+    }
+
+    /// The result when it is a number with a finite uncertainty.
+    pub fn usable(&self, of: impl Into<Characteristic>) -> Option<Reading> {
+        self.result(of).filter(Reading::is_usable)
+    }
+
+    /// How often a characteristic was measured.
+    pub fn attempts(&self, of: impl Into<Characteristic>) -> usize {
+        self.each(of).count()
+    }
+
+    /// Replies behind a characteristic, in the order they came.
+    pub fn evidence(&self, of: impl Into<Characteristic>) -> impl Iterator<Item = &Origin> {
+        let of = of.into();
+        let own = self.evidence.iter().filter(move |(known, _)| *known == of);
+        own.map(|(_, origin)| origin)
+    }
+
+    /// Ends the test early by what a stage has found; the first finding stays.
+    pub fn stop(&mut self, found: impl Into<Reason>) {
+        let reason = found.into();
+        let stop = match reason.is_failure() {
+            true => Stop::Fail(reason),
+            false => Stop::Void(reason),
+        };
+        self.stop.get_or_insert(stop);
+    }
+
+    /// Ends the test early because the rig is in trouble, whatever the part has ended it by before.
+    pub fn trouble(&mut self, why: String) {
+        if !matches!(self.stop, Some(Stop::Trouble(_))) {
+            self.stop = Some(Stop::Trouble(Reason::rig_trouble(why)));
+        }
+    }
+
+    /// True once the test has ended early.
+    pub fn stopped(&self) -> bool {
+        self.stop.is_some()
+    }
+
+    /// Why it ended early.
+    pub fn why_stopped(&self) -> Option<&Stop> {
+        self.stop.as_ref()
+    }
+}

@@ -1,0 +1,103 @@
+//! What stored values and curves of a part may conclude under another recipe than the one it was measured by.
+
+use super::em_relay::{self, evidence};
+use super::{Characteristic, Kind, Recipe};
+use crate::instrument::curve::Curve;
+use units::Celsius;
+
+/// What stored values refer to: of the recipe that was in force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Basis {
+    /// What was measured.
+    pub kind: Kind,
+    /// Nominal voltage of the part, V; none of a kind that has none.
+    pub nominal_v: Option<f64>,
+    /// Temperature that results are brought to.
+    pub reference: Celsius,
+}
+
+/// Why values cannot be judged by a recipe.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Misfit {
+    /// What the recipe needs: the first half of a sentence.
+    pub wanted: String,
+    /// How the part was measured: the second half.
+    pub found: String,
+}
+
+impl Basis {
+    /// From the stored text of a recipe; none when it does not say. A text that names no kind is of the first one.
+    pub fn of(recipe: &str) -> Option<Self> {
+        let recipe: toml::Table = recipe.parse().ok()?;
+        let kind = recipe.get("kind").and_then(toml::Value::as_str);
+        let part = recipe.get("part")?;
+        let number = |key: &str| {
+            let value = part.get(key)?;
+            value.as_float().or(value.as_integer().map(|it| it as f64))
+        };
+        let kind = kind.map_or(Some(Kind::EmRelay), Kind::from_name)?;
+        Some(Self {
+            kind,
+            nominal_v: match kind {
+                Kind::EmRelay => Some(number("nominal_v")?),
+                Kind::Resistor => None,
+            },
+            reference: Celsius(number("reference_temperature_c")?),
+        })
+    }
+
+    /// Of a recipe that is loaded.
+    pub fn of_recipe(recipe: &Recipe) -> Self {
+        Self {
+            kind: recipe.kind(),
+            nominal_v: recipe.rated_v(),
+            reference: Celsius(recipe.reference_temperature_c()),
+        }
+    }
+
+    /// Why values on this basis cannot be judged by `recipe`; none when they can.
+    pub fn misfit(&self, recipe: &Recipe) -> Option<Misfit> {
+        let (name, kind) = (&recipe.name, recipe.kind());
+        if self.kind != kind {
+            return Some(Misfit {
+                wanted: format!("{name} is about kind {}", kind.name()),
+                found: format!("was of kind {}", self.kind.name()),
+            });
+        }
+        let (wanted_v, measured_v) = (recipe.rated_v()?, self.nominal_v?);
+        let fits = (measured_v - wanted_v).abs() < 1e-6 * measured_v;
+        (!fits).then(|| Misfit {
+            wanted: format!("{name} is rated {wanted_v} V"),
+            found: format!("was measured at {measured_v} V"),
+        })
+    }
+
+    /// Factor from a stored value to the one that `recipe` would have stored.
+    pub fn factor(&self, of: Characteristic, recipe: &Recipe) -> f64 {
+        let wanted = Celsius(recipe.reference_temperature_c());
+        match of {
+            Characteristic::EmRelay(it) => em_relay::coil::factor(it, self.reference, wanted),
+            Characteristic::Resistor(_) => 1.0,
+        }
+    }
+}
+
+/// Whether the curves prove that a characteristic without a value lies above `high`.
+pub fn above(curves: &[Curve], of: Characteristic, high: f64, recipe: &Recipe) -> bool {
+    match of {
+        Characteristic::EmRelay(it) => recipe
+            .rated_v()
+            .is_some_and(|nominal_v| evidence::above(curves, it, high, nominal_v)),
+        Characteristic::Resistor(_) => false,
+    }
+}
+
+/// Whether the curves say at all how great a characteristic without a value is at least.
+pub fn bounded(curves: &[Curve], of: Characteristic, recipe: &Recipe) -> bool {
+    match of {
+        Characteristic::EmRelay(it) => recipe
+            .rated_v()
+            .is_some_and(|nominal_v| evidence::at_least(curves, it, nominal_v).is_some()),
+        Characteristic::Resistor(_) => false,
+    }
+}

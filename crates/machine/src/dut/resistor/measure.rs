@@ -1,0 +1,263 @@
+//! The test of a resistor: drive on at a level, one channel read, drive off.
+//!
+//! R = V / I. V is the level asked of the supply, I what the fine channel reads; both are taken as the makers promise them. The
+//! contact of the probes is part of R and a term of its budget. A result inside the guard band is read `slow_repeats` times more, and the mean counts.
+
+use super::points::Points;
+use super::promise::Promise;
+use super::recipe::ResistorRecipe;
+use super::{Finding, Parameter};
+use crate::dut::device::{Rig, TestOrder};
+use crate::dut::procedure::Progress;
+use crate::dut::record::{Own, TestRecord};
+use crate::dut::{Characteristic, Recipe, Verdict};
+use crate::gauge::{Judgement, Reading, judge};
+use crate::instrument::act::{Act, Doing, JobDone, Read, Runner};
+use crate::instrument::readings::Readings;
+use crate::rig::image::Image;
+use crate::rig::point::{MissingPoint, Point};
+use crate::rig::sample::{Quality, Sample};
+use std::sync::Arc;
+use units::{RigTime, Span, Unit, Volt};
+
+/// Current and amplifier have settled after the drive went off.
+const OFF: Span = Span::ms(5);
+
+/// A resistor recipe on a rig.
+#[derive(Debug, Clone)]
+pub struct Device {
+    recipe: Arc<Recipe>,
+    resistor: Arc<ResistorRecipe>,
+    points: Points,
+    promise: Promise,
+    /// Enabled channels of the converter that reads the current.
+    channels: u32,
+}
+
+impl Device {
+    /// Puts the recipe on a rig.
+    ///
+    /// # Errors
+    /// Names the first point that the rig does not have.
+    pub fn new(
+        recipe: Arc<Recipe>,
+        resistor: Arc<ResistorRecipe>,
+        rig: &Rig,
+    ) -> Result<Self, MissingPoint> {
+        let points = Points::resolve(rig.wiring)?;
+        let terminal = rig.wiring.analog_in(points.current);
+        let mask = rig.wiring.module(terminal.module).mask.unwrap_or(u8::MAX);
+        Ok(Self {
+            recipe,
+            resistor,
+            points,
+            promise: Promise {
+                accuracy: *rig.accuracy,
+                volt_per_ampere: terminal.gain,
+            },
+            channels: mask.count_ones(),
+        })
+    }
+
+    /// Begins the test of the part in the nest; the probes are up.
+    pub fn begin(&self, order: &TestOrder, now: RigTime) -> Test {
+        Test {
+            runner: Runner::new(self.acts(), now),
+            device: self.clone(),
+            stage: Stage::Measure,
+            thorough: order.thorough,
+            number: order.number,
+            repeats_left: self.recipe.decision.slow_repeats,
+            record: TestRecord::default(),
+            began: now,
+        }
+    }
+
+    fn acts(&self) -> Vec<Act> {
+        let test = &self.resistor.test;
+        let one_round = 1.03 / self.promise.accuracy.conversions_per_s * f64::from(self.channels);
+        let fresh = Span::seconds(one_round + 1.03 / self.promise.accuracy.conversions_per_s);
+        let mut acts = vec![
+            Act::Level(vec![(self.points.level, Volt(test.level_v))]),
+            Act::Set(vec![(self.points.drive, true)]),
+            Act::Wait(Span::ms(test.settles_ms.into())),
+        ];
+        for _ in 0..test.readings {
+            acts.extend([
+                Act::Mark,
+                Act::ConvertSinceMark(fresh),
+                Act::Read(Read::points([Point::Analog(self.points.current)])),
+            ]);
+        }
+        acts
+    }
+
+    fn acts_off(&self) -> Vec<Act> {
+        vec![
+            Act::Set(vec![(self.points.drive, false)]),
+            Act::Level(vec![(self.points.level, Volt(0.0))]),
+            Act::Wait(OFF),
+            Act::Read(Read::Restarts),
+        ]
+    }
+
+    /// Resistance from the currents of one measurement, or what was found instead.
+    fn resistance(&self, samples: &[Sample]) -> Result<Reading, Finding> {
+        let mut sum = 0.0;
+        for sample in samples {
+            sum += match sample.quality {
+                Quality::Good if sample.value.is_finite() => sample.value,
+                Quality::OverRange => return Err(Finding::Short),
+                Quality::Good | Quality::UnderRange | Quality::Blank => {
+                    return Err(Finding::CurrentNotReadable);
+                }
+            };
+        }
+        let ampere = sum / samples.len() as f64;
+        if !ampere.is_finite() {
+            return Err(Finding::CurrentNotReadable);
+        }
+        if ampere < self.promise.no_current_ampere() {
+            return Err(Finding::Open);
+        }
+        let ohm = self.resistor.test.level_v / ampere;
+        Ok(Reading {
+            value: ohm,
+            unit: Unit::Ohm,
+            budget: self.promise.budget(&self.resistor, ohm),
+        })
+    }
+}
+
+/// Stages of the test.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// Drive on, current read.
+    Measure,
+    /// Drive off.
+    Off,
+}
+
+/// A test under way.
+#[derive(Debug)]
+pub struct Test {
+    device: Device,
+    runner: Runner,
+    stage: Stage,
+    thorough: bool,
+    number: u8,
+    repeats_left: u32,
+    began: RigTime,
+    record: TestRecord<()>,
+}
+
+impl Test {
+    /// Goes on as far as it can.
+    pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Progress {
+        let mut done = done;
+        loop {
+            match self.runner.step(now, done.take(), image) {
+                Doing::Done => {}
+                Doing::Trouble(why) => self.record.trouble(why),
+                waiting @ (Doing::Job(_) | Doing::Busy | Doing::Wait(_)) => {
+                    return Progress::Doing(waiting);
+                }
+            }
+            self.book(now);
+            let readings = std::mem::take(&mut self.runner.readings);
+            match self.stage {
+                Stage::Off => return Progress::Judged,
+                Stage::Measure => self.conclude(&readings, now),
+            }
+        }
+    }
+
+    fn book(&mut self, now: RigTime) {
+        let name = match self.stage {
+            Stage::Measure => "resistance",
+            Stage::Off => "off",
+        };
+        self.record.spent.add(self.runner.spent());
+        self.record.took(name, now.since(self.began));
+        self.record
+            .trace
+            .append(std::mem::take(&mut self.runner.readings.trace));
+        self.began = now;
+    }
+
+    /// Takes in one measurement; another one follows while the result is in doubt.
+    fn conclude(&mut self, readings: &Readings, now: RigTime) {
+        let samples: Vec<Sample> = readings
+            .analog(self.device.points.current)
+            .cloned()
+            .collect();
+        if !self.record.stopped() {
+            match self.device.resistance(&samples) {
+                Ok(reading) => self.record.found(Parameter::Resistance, reading, &samples),
+                Err(finding) => self.record.stop(finding),
+            }
+        }
+        let again = !self.record.stopped() && self.repeats_left > 0 && self.is_in_doubt();
+        let acts = if again {
+            self.repeats_left -= 1;
+            self.device.acts()
+        } else {
+            self.stage = Stage::Off;
+            self.device.acts_off()
+        };
+        self.runner = Runner::new(acts, now);
+    }
+
+    /// A thorough test repeats whatever came out; another one what lies inside the guard band, once it has begun to repeat
+    /// to the end.
+    fn is_in_doubt(&self) -> bool {
+        let repeating = self.record.attempts(Parameter::Resistance) > 1;
+        let conditional = |(_, judgement): &(Characteristic, Judgement)| match judgement {
+            Judgement::Conditional(_) => true,
+            Judgement::Pass | Judgement::Fail(_) | Judgement::Void => false,
+        };
+        self.thorough || repeating || self.judgements().iter().any(conditional)
+    }
+
+    /// Number of the test of this part, from 1.
+    pub fn number(&self) -> u8 {
+        self.number
+    }
+
+    /// The stage under way, for screens.
+    pub fn stage(&self) -> &'static str {
+        match self.stage {
+            Stage::Measure => "Resistance",
+            Stage::Off => "Off",
+        }
+    }
+
+    /// The result against its limit.
+    pub fn judgements(&self) -> Vec<(Characteristic, Judgement)> {
+        let recipe = &self.device.recipe;
+        let reading = self.record.result(Parameter::Resistance);
+        let limit = recipe.limits.of(Parameter::Resistance);
+        let judged = reading.map(|reading| judge(&reading, &limit, recipe.decision.rule));
+        let named = |judgement| (Parameter::Resistance.into(), judgement);
+        judged.into_iter().map(named).collect()
+    }
+
+    /// Verdict of the part.
+    pub fn verdict(&self) -> Verdict {
+        let expected = Parameter::ALL.map(Characteristic::from);
+        Verdict::after(self.record.why_stopped(), &expected, self.judgements())
+    }
+
+    /// What was found so far.
+    pub fn record(&self) -> &TestRecord<()> {
+        &self.record
+    }
+
+    /// Hands over what was found, once the part is judged.
+    pub fn take_record(&mut self) -> TestRecord {
+        std::mem::take(&mut self.record).of_any_kind(|()| Own::Nothing)
+    }
+}
+
+#[cfg(test)]
+mod tests;

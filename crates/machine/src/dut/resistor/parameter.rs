@@ -1,0 +1,43 @@
+//! The one characteristic of a resistor, and its bin.
+
+use crate::dut::characteristic::{Characteristic, Definition};
+use crate::gauge::repetition::SpokenOf;
+use crate::rig::bin::Bin;
+use units::Unit;
+
+/// Bin of a resistor that fails: the one for whatever hangs at the coil pins.
+pub const BIN: Bin = Bin::named("coil");
+
+/// What is measured on a resistor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Parameter {
+    /// DC resistance between the coil pins.
+    Resistance,
+}
+
+impl Parameter {
+    /// Every parameter.
+    pub const ALL: [Self; 1] = [Self::Resistance];
+
+    /// What is fixed about it.
+    pub const fn definition(self) -> &'static Definition {
+        match self {
+            Self::Resistance => &RESISTANCE,
+        }
+    }
+}
+
+static RESISTANCE: Definition = Definition {
+    key: "resistance_ohm",
+    unit: Unit::Ohm,
+    name_en: "Resistance",
+    name_zh: "电阻",
+    spoken_of: SpokenOf::Part,
+    bin: BIN,
+};
+
+impl From<Parameter> for Characteristic {
+    fn from(parameter: Parameter) -> Self {
+        Self::Resistor(parameter)
+    }
+}

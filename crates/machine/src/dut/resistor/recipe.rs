@@ -1,0 +1,134 @@
+//! What a recipe says of a resistor: the part, and how it is measured.
+
+use super::parameter::{BIN, Parameter};
+use super::points::Points;
+use super::promise::Promise;
+use crate::dut::em_relay::settings::AccuracySettings;
+use crate::dut::recipe::{Body, Limits};
+use crate::gauge::Limit;
+use crate::rig::fault::Fault;
+use crate::rig::wiring::Wiring;
+use serde::{Deserialize, Serialize};
+use units::Volt;
+
+/// The sections `[part]` and `[test]`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ResistorRecipe {
+    /// The part.
+    pub part: PartData,
+    /// How it is measured.
+    pub test: TestPlan,
+}
+
+/// The part itself.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PartData {
+    /// Body along x, y, z as it lies in the nest, mm.
+    pub body_mm: [f64; 3],
+    /// Length of the pins below the body, mm.
+    pub pin_length_mm: f64,
+    /// Temperature that results refer to, degrees Celsius.
+    pub reference_temperature_c: f64,
+    /// Temperature coefficient of the resistor, ppm/K, either sign.
+    pub tcr_ppm_per_k: f64,
+}
+
+/// How the part is measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TestPlan {
+    /// Voltage across the part, V.
+    pub level_v: f64,
+    /// From the drive to the instant after which a conversion may begin, ms.
+    pub settles_ms: u32,
+    /// Readings that are averaged.
+    pub readings: u32,
+}
+
+impl ResistorRecipe {
+    /// The outside of the part.
+    pub fn body(&self) -> Body {
+        Body {
+            size_mm: self.part.body_mm,
+            pin_length_mm: self.part.pin_length_mm,
+        }
+    }
+
+    /// Checks that the rig has the bin and the points, that level and current lie within reach of the modules, and that the
+    /// uncertainty leaves something between the limits.
+    ///
+    /// # Errors
+    /// Names the first key that asks for what is not there.
+    pub fn feasible(
+        &self,
+        limits: &Limits,
+        wiring: &Wiring,
+        accuracy: &AccuracySettings,
+    ) -> Result<(), Fault> {
+        if !wiring.axis.has(BIN) {
+            let expected = format!("a rig with the bins of this kind: rig.toml has no bin.{BIN}");
+            return Err(Fault::new("kind", "\"resistor\"", expected));
+        }
+        let points = Points::resolve(wiring).map_err(|missing| {
+            let expected = "a rig with every point that its test needs";
+            Fault::new("test", missing, expected)
+        })?;
+        let promise = Promise {
+            accuracy: *accuracy,
+            volt_per_ampere: wiring.analog_in(points.current).gain,
+        };
+        check_modules(wiring, &points)?;
+        self.check_limit(limits.of(Parameter::Resistance), &promise)?;
+        wiring
+            .reaches(points.level, Volt(self.test.level_v))
+            .map_err(|cannot| Fault::new("test.level_v", self.test.level_v, cannot.to_string()))
+    }
+
+    fn check_limit(&self, limit: Limit, promise: &Promise) -> Result<(), Fault> {
+        if limit.is_open() {
+            let expected = "a low or a high limit: nothing else is measured";
+            return Err(Fault::new("limits.resistance_ohm", "neither", expected));
+        }
+        if let Some(low_ohm) = limit.low {
+            let least_ohm = self.test.level_v / promise.most_ampere();
+            if low_ohm < least_ohm {
+                let expected = format!(
+                    "at least {least_ohm:.1}: below it the current at test.level_v is over range"
+                );
+                return Err(Fault::new("limits.resistance_ohm.low", low_ohm, expected));
+            }
+        }
+        let (Some(low_ohm), Some(high_ohm)) = (limit.low, limit.high) else {
+            return Ok(());
+        };
+        let bands_ohm =
+            promise.budget(self, low_ohm).expanded() + promise.budget(self, high_ohm).expanded();
+        if high_ohm - low_ohm < bands_ohm {
+            let found = format!("{low_ohm} to {high_ohm}");
+            let expected = format!(
+                "limits more than {bands_ohm:.3} apart: the guard bands at both ends leave nothing between"
+            );
+            return Err(Fault::new("limits.resistance_ohm", found, expected));
+        }
+        Ok(())
+    }
+}
+
+/// The level steps, and the converter reads the channel of the current.
+fn check_modules(wiring: &Wiring, points: &Points) -> Result<(), Fault> {
+    let source = wiring.module(wiring.analog_out(points.level).module);
+    if source
+        .slew
+        .is_some_and(|code| code.volt_per_second().is_some())
+    {
+        let expected = "a supply level that steps (slew code 0)";
+        return Err(Fault::new("test.level_v", &source.name, expected));
+    }
+    let terminal = wiring.analog_in(points.current);
+    let reader = wiring.module(terminal.module);
+    let masked = |mask: u8| mask >> terminal.channel.get() & 1 == 0;
+    if reader.mask.is_some_and(masked) {
+        let expected = "a module that converts the channel of the current";
+        return Err(Fault::new("test", &reader.name, expected));
+    }
+    Ok(())
+}

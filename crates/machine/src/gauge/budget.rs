@@ -1,0 +1,126 @@
+//! Uncertainty budget of one result (GUM, ISO/IEC Guide 98-3): named standard uncertainties, added
+//! in quadrature because every term here comes from an instrument or effect of its own.
+
+use serde::Serialize;
+use units::Unit;
+
+/// Coverage factor of every expanded uncertainty that leaves the program.
+pub const COVERAGE_FACTOR: f64 = 2.0;
+
+/// Half width of a rectangular distribution to its standard uncertainty (GUM 4.3.7).
+pub fn rectangular(half_width: f64) -> f64 {
+    half_width / 3f64.sqrt()
+}
+
+/// Standard uncertainty of a quantity read in steps of `step` (GUM F.2.2.1).
+pub fn resolution(step: f64) -> f64 {
+    step / 12f64.sqrt()
+}
+
+/// One source of doubt, in the unit of the result.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Term {
+    /// What is in doubt: `coil temperature`, `slope`.
+    pub source: &'static str,
+    /// Standard uncertainty in the unit of the result.
+    pub u: f64,
+    /// Drawn anew at each repetition, so that averaging helps against it.
+    pub random: bool,
+}
+
+/// The terms of one result.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(transparent)]
+pub struct Budget(pub Vec<Term>);
+
+impl Budget {
+    /// Adds a term that stays the same however often one repeats; its sign does not matter.
+    pub fn with(mut self, source: &'static str, u: f64) -> Self {
+        self.0.push(Term {
+            source,
+            u: u.abs(),
+            random: false,
+        });
+        self
+    }
+
+    /// Adds a term that is drawn anew at each repetition.
+    pub fn with_random(mut self, source: &'static str, u: f64) -> Self {
+        self.0.push(Term {
+            source,
+            u: u.abs(),
+            random: true,
+        });
+        self
+    }
+
+    /// Combined standard uncertainty.
+    pub fn combined(&self) -> f64 {
+        root_sum(self.0.iter())
+    }
+
+    /// Standard uncertainty of what is drawn anew at each repetition.
+    pub fn random(&self) -> f64 {
+        root_sum(self.0.iter().filter(|term| term.random))
+    }
+
+    /// Expanded uncertainty, k = 2.
+    pub fn expanded(&self) -> f64 {
+        COVERAGE_FACTOR * self.combined()
+    }
+}
+
+fn root_sum<'a>(terms: impl Iterator<Item = &'a Term>) -> f64 {
+    terms.map(|term| term.u * term.u).sum::<f64>().sqrt()
+}
+
+/// A result with its budget.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// Corrected value.
+    pub value: f64,
+    /// Unit of the value and of every term of the budget.
+    pub unit: Unit,
+    /// Where its doubt comes from.
+    pub budget: Budget,
+}
+
+impl Reading {
+    /// Expanded uncertainty, k = 2.
+    pub fn expanded(&self) -> f64 {
+        self.budget.expanded()
+    }
+
+    /// False when value or uncertainty is not a finite number: such a reading is void.
+    pub fn is_usable(&self) -> bool {
+        self.value.is_finite() && self.expanded().is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn independent_terms_add_in_quadrature() {
+        let budget = Budget::default().with("a", 3.0).with("b", -4.0);
+        assert_eq!(budget.combined(), 5.0);
+        assert_eq!(budget.expanded(), 10.0);
+    }
+
+    #[test]
+    fn a_reading_without_a_number_is_not_usable() {
+        let reading = Reading {
+            value: f64::NAN,
+            unit: Unit::Volt,
+            budget: Budget::default(),
+        };
+        assert!(!reading.is_usable());
+        let endless = Reading {
+            value: 1.0,
+            unit: Unit::Volt,
+            budget: Budget::default().with("x", f64::INFINITY),
+        };
+        assert!(!endless.is_usable());
+    }
+}

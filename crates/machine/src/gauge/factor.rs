@@ -1,0 +1,31 @@
+//! A calibration factor and how well it is known.
+
+use serde::{Deserialize, Serialize};
+use units::Unit;
+
+/// A factor and how well it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Factor {
+    /// Value in the unit its field names.
+    pub value: f64,
+    /// Standard uncertainty in the same unit.
+    pub u: f64,
+}
+
+impl Factor {
+    /// A value with its standard uncertainty.
+    pub fn new(value: f64, u: f64) -> Self {
+        Self { value, u }
+    }
+}
+
+/// A factor with its name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Named {
+    /// Name in tables.
+    pub name: &'static str,
+    /// Unit of value and uncertainty.
+    pub unit: Unit,
+    /// Value and standard uncertainty.
+    pub factor: Factor,
+}

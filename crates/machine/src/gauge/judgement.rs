@@ -1,0 +1,192 @@
+//! One result against its limit, with a guard band.
+//!
+//! Rule `guard_band` (ISO 14253-1, ILAC-G8 with w = U): pass when the value lies inside the limit by at least U, fail when
+//! it lies outside by at least U, conditional in between. Rule `simple` judges the bare value. A result that is not usable
+//! is void, never pass.
+
+use super::budget::Reading;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use units::Unit;
+
+/// Limits of one characteristic, inclusive; a missing side is not judged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// Unit of both sides.
+    pub unit: Unit,
+    /// Least good value.
+    pub low: Option<f64>,
+    /// Greatest good value.
+    pub high: Option<f64>,
+}
+
+impl Limit {
+    /// True when neither side is judged.
+    pub fn is_open(&self) -> bool {
+        self.low.is_none() && self.high.is_none()
+    }
+}
+
+/// How the uncertainty enters a decision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Rule {
+    /// The limit is moved inwards by the expanded uncertainty (k = 2).
+    GuardBand,
+    /// The bare value is compared.
+    Simple,
+}
+
+/// Side of a limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Below the lower limit.
+    Low,
+    /// Above the upper limit.
+    High,
+}
+
+impl Side {
+    /// `low` or `high`, as in rows.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Low => "low",
+            Self::High => "high",
+        }
+    }
+
+    /// The side of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Low, Self::High]
+            .into_iter()
+            .find(|it| it.name() == name)
+    }
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// One result against its limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Judgement {
+    /// Proven inside.
+    Pass,
+    /// Proven outside.
+    Fail(Side),
+    /// Within U of the limit: to be measured again by the slow strategy.
+    Conditional(Side),
+    /// No usable number.
+    Void,
+}
+
+/// Judges one result by its limit; without a limit every usable result passes.
+///
+/// # Panics
+/// When both are not in the same unit.
+pub fn judge(reading: &Reading, limit: &Limit, rule: Rule) -> Judgement {
+    assert_eq!(reading.unit, limit.unit, "judged in another unit");
+    if !reading.is_usable() {
+        return Judgement::Void;
+    }
+    let band = match rule {
+        Rule::GuardBand => reading.expanded(),
+        Rule::Simple => 0.0,
+    };
+    let inside_low = limit.low.map_or(f64::INFINITY, |low| reading.value - low);
+    let inside_high = limit
+        .high
+        .map_or(f64::INFINITY, |high| high - reading.value);
+    let (inside, side) = if inside_low < inside_high {
+        (inside_low, Side::Low)
+    } else {
+        (inside_high, Side::High)
+    };
+    if inside >= band {
+        Judgement::Pass
+    } else if inside < -band || band == 0.0 {
+        Judgement::Fail(side)
+    } else {
+        Judgement::Conditional(side)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::budget::Budget;
+    use super::*;
+
+    fn reading(value: f64, u: f64) -> Reading {
+        Reading {
+            value,
+            unit: Unit::Ohm,
+            budget: Budget::default().with("test", u),
+        }
+    }
+
+    fn high(high: f64) -> Limit {
+        Limit {
+            unit: Unit::Ohm,
+            low: None,
+            high: Some(high),
+        }
+    }
+
+    #[test]
+    fn a_guard_band_moves_the_limit_inwards_by_u() {
+        let rule = Rule::GuardBand;
+        assert_eq!(
+            judge(&reading(8.97, 0.01), &high(9.0), rule),
+            Judgement::Pass
+        );
+        assert_eq!(
+            judge(&reading(8.99, 0.01), &high(9.0), rule),
+            Judgement::Conditional(Side::High)
+        );
+        assert_eq!(
+            judge(&reading(9.01, 0.01), &high(9.0), rule),
+            Judgement::Conditional(Side::High)
+        );
+        assert_eq!(
+            judge(&reading(9.03, 0.01), &high(9.0), rule),
+            Judgement::Fail(Side::High)
+        );
+    }
+
+    #[test]
+    fn the_simple_rule_judges_the_bare_value() {
+        let rule = Rule::Simple;
+        assert_eq!(judge(&reading(9.0, 0.5), &high(9.0), rule), Judgement::Pass);
+        assert_eq!(
+            judge(&reading(9.0001, 0.5), &high(9.0), rule),
+            Judgement::Fail(Side::High)
+        );
+    }
+
+    #[test]
+    #[should_panic(expected = "judged in another unit")]
+    fn a_result_is_never_judged_in_another_unit() {
+        let limit = Limit {
+            unit: Unit::Milliohm,
+            ..high(9.0)
+        };
+        judge(&reading(1.0, 0.01), &limit, Rule::Simple);
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_void_and_never_passes() {
+        let rule = Rule::GuardBand;
+        assert_eq!(
+            judge(&reading(f64::NAN, 0.01), &high(9.0), rule),
+            Judgement::Void
+        );
+        assert_eq!(
+            judge(&reading(1.0, f64::NAN), &high(9.0), rule),
+            Judgement::Void
+        );
+    }
+}

@@ -1,0 +1,234 @@
+//! One stroke swept through the space.
+//!
+//! Every body that moves with the stroke is swept, in its true shape, along the whole way and
+//! asked of the collision core against the room that every other body may take. A mover that also
+//! rides on an actuator of unknown position is swept as the cover of its own room. So, for every
+//! real combination of positions that the situation allows, the real bodies lie inside what was
+//! tested: a cleared stroke is clear for all of them.
+//!
+//! What the mover may do to each other body is named here; the core applies it.
+
+use super::carried::{Company, company};
+use super::motion::Stroke;
+use super::occupancy::{Offsets, room, scaled, sum};
+use super::part::{Role, shape_of};
+use super::scene::Scene;
+use super::situation::Situation;
+use super::space::Space;
+use lpm::{ElementKey, Flaw, Forbidden, Move, Mover, Passing, Permission, Pose, Shape};
+use std::borrow::Cow;
+
+/// The first contact of a stroke.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Finding {
+    pub stroke: Stroke,
+    /// Body numbers; `None` when the core could not decide.
+    pub mover: usize,
+    pub blocker: Option<usize>,
+    pub distance_mm: f64,
+    pub margin_mm: f64,
+    pub at_fraction: f64,
+    pub at: [f64; 3],
+    /// Where the stroke was swept from and where the margin is reached, mm; `None` when the start is
+    /// unknown or within the margin.
+    pub clear_way_mm: Option<(f64, f64)>,
+}
+
+/// A body on its way.
+struct Travel<'a> {
+    number: usize,
+    shape: Cow<'a, Shape>,
+    /// The same taken apart beforehand, where its place beside the stroke is known.
+    ready: Option<&'a Mover>,
+    pose: Pose,
+    /// Where it may be on the actuators that do not move.
+    unsure: Offsets,
+    from: [f64; 3],
+    to: [f64; 3],
+}
+
+/// Sweeps `stroke` from where `situation` has its actuator; `Ok(None)` is proof that it is clear.
+pub(super) fn sweep(
+    scene: &Scene,
+    space: &mut Space,
+    situation: &Situation,
+    stroke: &Stroke,
+) -> Result<Option<Finding>, Flaw> {
+    let company = company(scene, situation, stroke);
+    space.follow(scene, situation, &company.cast)?;
+    let span = scene.span_mm(stroke.actuator, situation);
+    let way = way(span, stroke.to_mm);
+    let travels = travels(scene, situation, stroke, &company, way);
+    let moving: Vec<usize> = travels.iter().map(|travel| travel.number).collect();
+    let mut first: Option<(usize, Forbidden)> = None;
+    for travel in &travels {
+        let permissions = permissions(scene, space, stroke, travel, &moving, &company);
+        let model = space.model();
+        let found = model.first_forbidden(&permissions, |depth_mm| travel.passing(depth_mm))?;
+        if let Some(found) = found
+            && first.is_none_or(|(_, known)| found.contact.t_stop < known.contact.t_stop)
+        {
+            first = Some((travel.number, found));
+        }
+    }
+    Ok(first.map(|first| finding(space, stroke, span.0 == span.1, way, first)))
+}
+
+/// Least distance of `stroke` to the bodies that it must keep apart from, mm; nothing beyond `range_mm`. Those that may
+/// touch do not count.
+pub(super) fn least_mm(
+    scene: &Scene,
+    space: &mut Space,
+    situation: &Situation,
+    stroke: &Stroke,
+    range_mm: f64,
+) -> Result<Option<f64>, Flaw> {
+    let company = company(scene, situation, stroke);
+    space.follow(scene, situation, &company.cast)?;
+    let way = way(scene.span_mm(stroke.actuator, situation), stroke.to_mm);
+    let travels = travels(scene, situation, stroke, &company, way);
+    let moving: Vec<usize> = travels.iter().map(|travel| travel.number).collect();
+    let all = travels.iter().filter_map(|travel| {
+        let permissions = permissions(scene, space, stroke, travel, &moving, &company);
+        let apart = |permission: &Permission| matches!(permission, Permission::Forbidden { .. });
+        let ignore: Vec<ElementKey> = permissions
+            .iter()
+            .filter(|(_, permission)| !apart(permission))
+            .map(|(key, _)| *key)
+            .collect();
+        let (shape, pose) = room(&travel.shape, &travel.pose, &travel.unsure);
+        let way = Move {
+            from: pose.moved_to(sum(pose.position, travel.from)),
+            to: pose.moved_to(sum(pose.position, travel.to)),
+            margin_mm: 0.0,
+            ignore: &ignore,
+        };
+        let least = space.model().clearance(&*shape, &way, range_mm)?;
+        Some(least.distance_mm)
+    });
+    Ok(all.min_by(f64::total_cmp))
+}
+
+/// From the far end of what is known to the target; both ends of the span when the target lies in it.
+fn way((low, high): (f64, f64), to_mm: f64) -> (f64, f64) {
+    if to_mm >= high {
+        (low, to_mm)
+    } else if to_mm <= low {
+        (high, to_mm)
+    } else {
+        (low, high)
+    }
+}
+
+fn travels<'a>(
+    scene: &'a Scene,
+    situation: &Situation,
+    stroke: &Stroke,
+    company: &Company,
+    way: (f64, f64),
+) -> Vec<Travel<'a>> {
+    let tooling = scene.bodies.iter().enumerate();
+    let tooling = tooling.map(|(number, body)| (number, Cow::Borrowed(&body.shape), body.pose));
+    let part = company.taken.map(|role| {
+        let shape = shape_of(&situation.part_size, &scene.policy);
+        (
+            scene.number_of(role),
+            Cow::Owned(shape),
+            scene.part_pose(role),
+        )
+    });
+    let all = tooling.chain(part);
+    all.filter_map(|(number, shape, pose)| {
+        let rides = scene.rides(number);
+        let (from, to) = match rides.iter().find(|ride| ride.actuator == stroke.actuator) {
+            Some(ride) => (scaled(ride.direction, way.0), scaled(ride.direction, way.1)),
+            None if number == scene.number_of(Role::Feed) => ([0.0; 3], scene.feed_way()),
+            None => return None,
+        };
+        let unsure = scene.offsets(rides, situation, Some(stroke.actuator));
+        Some(Travel {
+            number,
+            shape,
+            ready: scene
+                .bodies
+                .get(number)
+                .map(|body| &body.mover)
+                .filter(|_| unsure.is_point()),
+            pose,
+            unsure,
+            from,
+            to,
+        })
+    })
+    .collect()
+}
+
+/// What `travel` may do to every body in the space; those that move with it are ignored.
+fn permissions(
+    scene: &Scene,
+    space: &Space,
+    stroke: &Stroke,
+    travel: &Travel<'_>,
+    moving: &[usize],
+    company: &Company,
+) -> Vec<(ElementKey, Permission)> {
+    let left = company.left.map(|role| scene.number_of(role));
+    let permission = |number: usize| {
+        if moving.contains(&number) || left == Some(number) {
+            return Permission::Ignored;
+        }
+        let rules = &scene.rules;
+        rules.permission(travel.number, number, stroke.actuator)
+    };
+    let occupants = space.occupants();
+    occupants
+        .map(|(number, key)| (key, permission(number)))
+        .collect()
+}
+
+impl<'a> Travel<'a> {
+    /// The room of the body, less a depth off its faces, on its way.
+    fn passing(&self, depth_mm: f64) -> Result<Passing<'a>, Flaw> {
+        let (mover, pose) = match self.ready {
+            Some(ready) if depth_mm == 0.0 => {
+                let position = sum(self.pose.position, self.unsure.low);
+                (Cow::Borrowed(ready), self.pose.moved_to(position))
+            }
+            Some(_) | None => {
+                let shape = self.shape.less(depth_mm);
+                let (room, pose) = room(&shape, &self.pose, &self.unsure);
+                (Cow::Owned(Mover::new(&room)?), pose)
+            }
+        };
+        Ok(Passing {
+            mover,
+            from: pose.moved_to(sum(pose.position, self.from)),
+            to: pose.moved_to(sum(pose.position, self.to)),
+        })
+    }
+}
+
+fn finding(
+    space: &Space,
+    stroke: &Stroke,
+    start_known: bool,
+    way: (f64, f64),
+    (mover, found): (usize, Forbidden),
+) -> Finding {
+    let at_fraction = if start_known {
+        found.contact.t_stop
+    } else {
+        0.0
+    };
+    let reached = way.0 + at_fraction * (way.1 - way.0);
+    Finding {
+        stroke: *stroke,
+        mover,
+        blocker: space.number_of(found.contact.blocker),
+        distance_mm: found.distance_mm,
+        margin_mm: found.margin_mm,
+        at_fraction,
+        at: found.contact.at,
+        clear_way_mm: (at_fraction > 0.0).then_some((way.0, reached)),
+    }
+}

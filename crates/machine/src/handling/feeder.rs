@@ -1,0 +1,189 @@
+//! Feeder: pocket, nests, gripper and bins, each stepped once per turn.
+//!
+//! The sorter goes first and the feed last, so that a place is free before the next part is sent there.
+
+use super::feed::Feed;
+use super::ledger::Ledger;
+use super::moves::Move;
+use super::nest::{self, Nest, NestContext, NestState, TestTerms};
+use super::place::{NestId, Place};
+use super::sort::{self, Sort};
+use super::turn::Turn;
+use super::wants::NestDone;
+use crate::dut::Procedure;
+use crate::guard::PartPlaces;
+use crate::rig::axis::AxisTable;
+use crate::rig::bin::Bin;
+use crate::rig::point::DigitalInput;
+use units::RigTime;
+
+/// What may begin in a turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Permits {
+    /// Further parts may leave the magazine.
+    pub release: bool,
+    /// The part in the pocket may go to the nest.
+    pub push: bool,
+}
+
+/// Where feed, nests and sorter stand.
+#[derive(Debug)]
+pub struct Feeder {
+    table: AxisTable,
+    feed: Feed,
+    nests: Vec<Nest>,
+    sort: Sort,
+    /// The escapement may have let a part through when the sequence was cut off.
+    releasing: bool,
+    last_left: Option<RigTime>,
+}
+
+impl Feeder {
+    /// One nest, nothing known of parts yet.
+    pub fn new(table: AxisTable) -> Self {
+        Self {
+            table,
+            feed: Feed::Empty,
+            nests: vec![Nest::new(NestId::FIRST)],
+            sort: Sort::Returning,
+            releasing: false,
+            last_left: None,
+        }
+    }
+
+    /// One turn; true when a nest has taken up a new part.
+    pub fn step(
+        &mut self,
+        turn: &mut Turn,
+        mut job: Option<NestDone>,
+        terms: TestTerms,
+        permits: Permits,
+    ) -> bool {
+        let holds = |nest: &Nest| matches!(nest.state, NestState::Testing(_) | NestState::Judged);
+        let test_running = self.nests.iter().any(holds);
+        self.sort = self.sort.step(turn, &self.table, test_running);
+        let mut is_new = false;
+        for nest in &mut self.nests {
+            let was_empty = matches!(nest.state, NestState::Empty);
+            let context = NestContext {
+                done: nest::answer_for(nest.id, &mut job),
+                terms,
+                sort: &mut self.sort,
+                last_left: &mut self.last_left,
+            };
+            nest.step(turn, context);
+            is_new |= was_empty && !matches!(nest.state, NestState::Empty);
+        }
+        assert!(job.is_none(), "the job of a nest that is not there");
+        assert!(!self.nests.is_empty(), "a feeder without a nest");
+        let free = self.nests[0].id;
+        self.feed = self.feed.step(turn, free, permits.release, permits.push);
+        is_new
+    }
+
+    /// Watches the part that is falling; goes on whatever else has stopped.
+    pub fn confirm(&self, turn: &mut Turn) {
+        sort::confirm(turn, &self.table);
+    }
+
+    /// A motion was cleared and driven: fingers that open let their part go.
+    pub fn driven(&mut self, movement: Move, ledger: &mut Ledger, now: RigTime) {
+        self.sort = self.sort.driven(movement, ledger, now);
+    }
+
+    /// Every output has gone safe: nothing is under way any more.
+    pub fn cut_off(&mut self, ledger: &Ledger) {
+        self.releasing |= matches!(self.feed, Feed::Releasing { .. } | Feed::Closing { .. });
+        self.stand_still(ledger);
+    }
+
+    /// The sequence goes on after a homing, from the parts that are inside.
+    pub fn take_up(&mut self, ledger: &Ledger) {
+        self.releasing = false;
+        self.last_left = None;
+        self.stand_still(ledger);
+        if ledger.holds(Place::Gripper) {
+            self.sort = Sort::Loaded;
+        }
+    }
+
+    fn stand_still(&mut self, ledger: &Ledger) {
+        self.feed = match ledger.holds(Place::Pocket) {
+            true => Feed::Ready,
+            false => Feed::Empty,
+        };
+        for nest in &mut self.nests {
+            nest.state = NestState::Empty;
+        }
+        self.sort = Sort::Returning;
+    }
+
+    /// The escapement may have let a part through when the sequence was cut off.
+    pub fn is_releasing(&self) -> bool {
+        self.releasing
+    }
+
+    /// Where the feed stands.
+    pub fn feed(&self) -> Feed {
+        self.feed
+    }
+
+    /// The nests.
+    pub fn nests(&self) -> &[Nest] {
+        &self.nests
+    }
+
+    /// Where the sorter stands.
+    pub fn sort(&self) -> Sort {
+        self.sort
+    }
+
+    /// The test under way.
+    pub fn test(&self) -> Option<&Procedure> {
+        self.nests.iter().find_map(Nest::test)
+    }
+
+    /// The beam in the chute of each bin, in the order of the line.
+    pub fn beams(&self) -> impl Iterator<Item = (Bin, DigitalInput)> + '_ {
+        self.table.bins().map(|bin| (bin, self.table.beam(bin)))
+    }
+
+    /// Parts where the guard has to expect them.
+    pub fn part_places(&self, ledger: &Ledger) -> PartPlaces {
+        let pushing = self.feed == Feed::Pushing;
+        let lifts = |nest: &Nest| matches!(nest.state, NestState::Lifting);
+        let lifting = self.nests.iter().any(lifts);
+        let waits = ledger.holds(Place::Pocket);
+        PartPlaces {
+            pocket: waits && !pushing,
+            on_pusher: waits && pushing,
+            nest: ledger.holds(Place::NEST) && !lifting,
+            gripper: ledger.holds(Place::Gripper) || lifting,
+        }
+    }
+
+    /// Every part stands where it may wait; `bin_full`: one may wait over its bin.
+    pub fn is_at_rest(&self, bin_full: bool) -> bool {
+        let rests = |nest: &Nest| matches!(nest.state, NestState::Empty | NestState::Judged);
+        let over_bin = matches!(self.sort, Sort::OverBin(..)) && bin_full;
+        let sort = matches!(self.sort, Sort::OverNest | Sort::AtPart) || over_bin;
+        self.nests.iter().all(rests) && sort && self.feed_rests()
+    }
+
+    /// Neither feed nor sorter has a part on its way.
+    pub fn is_empty_handed(&self) -> bool {
+        let sort = matches!(self.sort, Sort::Returning | Sort::OverNest | Sort::Opening);
+        sort && self.feed_rests()
+    }
+
+    fn feed_rests(&self) -> bool {
+        match self.feed {
+            Feed::Empty | Feed::Ready => true,
+            Feed::Releasing { .. }
+            | Feed::Closing { .. }
+            | Feed::Holding
+            | Feed::Pushing
+            | Feed::Retracting => false,
+        }
+    }
+}

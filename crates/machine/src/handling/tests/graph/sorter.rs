@@ -1,0 +1,170 @@
+//! The sorter: nine states, eleven inputs, and what falls.
+
+use super::{Graph, SEEN, Seen, show, truths};
+use crate::handling::ledger::Ledger;
+use crate::handling::moves::Move;
+use crate::handling::place::{NestId, Place};
+use crate::handling::sort::Sort;
+use crate::handling::tests::Shop;
+use crate::handling::tests::shop::Asked;
+use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
+use crate::rig::point::DigitalIn;
+use units::{RigTime, Span};
+
+fn name(sort: Sort) -> &'static str {
+    match sort {
+        Sort::Returning => "Returning",
+        Sort::OverNest => "OverNest",
+        Sort::Lowering => "Lowering",
+        Sort::AtPart => "AtPart",
+        Sort::Loaded => "Loaded",
+        Sort::Carrying(_) => "Carrying",
+        Sort::OverBin(..) => "OverBin",
+        Sort::LettingGo(..) => "LettingGo",
+        Sort::Opening => "Opening",
+    }
+}
+
+/// Every state, and the point of the axis that it has to do with.
+fn states(shop: &Shop) -> [(Sort, AxisStation); 9] {
+    let over = RigTime(shop.now.0 - 500);
+    let bin = AxisStation::Bin(Bin::PASS);
+    [
+        (Sort::Returning, AxisStation::Nest),
+        (Sort::OverNest, AxisStation::Nest),
+        (Sort::Lowering, AxisStation::Nest),
+        (Sort::AtPart, AxisStation::Nest),
+        (Sort::Loaded, bin),
+        (Sort::Carrying(Bin::PASS), bin),
+        (Sort::OverBin(Bin::PASS, over), bin),
+        (Sort::LettingGo(Bin::PASS, 0), bin),
+        (Sort::Opening, bin),
+    ]
+}
+
+/// A part is in the gripper from `Loaded` to `LettingGo`; one that was let go may fall, since long or not.
+fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
+    let mut ledger = Ledger::default();
+    let mut lift = || {
+        ledger.enter_pocket();
+        ledger.enter_nest(NestId::FIRST, None);
+        ledger.lift(NestId::FIRST);
+    };
+    if falling {
+        lift();
+    }
+    let carries = matches!(
+        sort,
+        Sort::Loaded | Sort::Carrying(_) | Sort::OverBin(..) | Sort::LettingGo(..)
+    );
+    if falling {
+        ledger.drop_over(Bin::PASS, since, 0);
+    }
+    if carries {
+        ledger.enter_pocket();
+        ledger.enter_nest(NestId::FIRST, None);
+        ledger.lift(NestId::FIRST);
+    }
+    if let Some(part) = ledger.part_mut(Place::Gripper) {
+        part.bin = Some(Bin::PASS);
+    }
+    ledger
+}
+
+#[test]
+fn the_sorter_is_the_drawing() {
+    let mut graph = Graph::default();
+    let mut shop = Shop::at_rest();
+    let table = shop.wiring.axis.clone();
+    for number in 0..9 {
+        let (_, station) = states(&shop)[number];
+        shop.stands(Move::AxisTo(station));
+        shop.carried_out(Move::AxisTo(station));
+        for (z, gripper) in SEEN.iter().flat_map(|one| SEEN.map(|other| (*one, other))) {
+            for [axis, pusher, dark, part] in truths() {
+                show(&mut shop, &[DigitalIn::SortZUp], &[DigitalIn::SortZDown], z);
+                shop.set(DigitalIn::AxisInPosition, axis);
+                shop.set(DigitalIn::PusherRetracted, pusher);
+                shop.set(DigitalIn::GripperOpen, gripper == Seen::Rest);
+                shop.set(DigitalIn::GripperPart, part);
+                shop.set(table.beam(Bin::PASS), dark);
+                shop.after(1);
+                for [counted, testing, resting, falling, late, recorded] in truths() {
+                    if counted {
+                        shop.beam(table.beam(Bin::PASS), 0);
+                    }
+                    let (sort, _) = states(&shop)[number];
+                    let ago = if late { Span::ms(501) } else { Span::ms(500) };
+                    shop.ledger = ledger(sort, falling, RigTime(shop.now.0 - ago.0));
+                    shop.recorded = if recorded { u64::MAX } else { 0 };
+                    let mut turn = shop.turn();
+                    turn.resting = resting;
+                    let next = sort.step(&mut turn, &table, testing);
+                    graph.add(name(sort), name(next), &shop.wants);
+                    assert!(shop.ledger.balances());
+                    if matches!(sort, Sort::LettingGo(..)) && !falling {
+                        let driven = sort.driven(Move::GripperOpen, &mut shop.ledger, shop.now);
+                        graph.add(name(sort), name(driven), &Asked::default());
+                        assert!(shop.ledger.balances());
+                    }
+                }
+            }
+        }
+    }
+    graph.is(
+        "sorter",
+        include_str!("../golden/sorter.dot"),
+        9 * 9 * 16 * 64 + 9 * 16 * 32,
+    );
+    graph.is_told_by(FACTS, include_str!("../sort.rs"));
+}
+
+/// From, to, and the test that walks there.
+const FACTS: &[(&str, &str, &str)] = &[
+    (
+        "Returning",
+        "OverNest",
+        "z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open",
+    ),
+    (
+        "OverNest",
+        "Lowering",
+        "z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open",
+    ),
+    (
+        "Lowering",
+        "AtPart",
+        "the_fingers_stand_around_the_part_once_z_is_down",
+    ),
+    (
+        "Loaded",
+        "Carrying",
+        "a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest",
+    ),
+    (
+        "Carrying",
+        "OverBin",
+        "a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest",
+    ),
+    (
+        "OverBin",
+        "LettingGo",
+        "a_part_is_let_go_only_when_its_record_is_durable",
+    ),
+    (
+        "LettingGo",
+        "Opening",
+        "a_part_is_in_the_fingers_until_their_opening_is_driven",
+    ),
+    (
+        "Opening",
+        "Returning",
+        "open_fingers_go_back_when_they_are_seen_empty",
+    ),
+    (
+        "Opening",
+        "Opening",
+        "a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told",
+    ),
+];

@@ -1,0 +1,28 @@
+//! Facts about feed, nest and sorter, on the default rig with sensors set by hand.
+#![allow(clippy::unwrap_used)]
+
+mod feed;
+mod graph;
+mod inside;
+
+mod ledger;
+mod mechanism;
+mod nest;
+mod recovery;
+mod shop;
+mod sort;
+
+pub(crate) use crate::dut::em_relay::tests::{context, device, device_of, golden_parts};
+pub(crate) use shop::{Shop, mechanism as mechanism_of};
+
+use crate::rig::settings::RigSettings;
+use crate::rig::wiring::Wiring;
+use std::sync::Arc;
+
+const RIG: &str = include_str!("../../../../../config/rig.toml");
+
+/// The default rig.
+pub(crate) fn wiring() -> Arc<Wiring> {
+    let settings: RigSettings = toml::from_str(RIG).unwrap();
+    Arc::new(Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap())
+}

@@ -1,0 +1,242 @@
+//! The nest takes a part, has it tested and hands it to the gripper, never letting it loose in between.
+
+use super::{Shop, context, device};
+use crate::dut::em_relay::points::DigitalOut;
+use crate::dut::{Bin, Reason, Verdict};
+use crate::handling::moves::Move;
+use crate::handling::nest::{self, NestContext, NestState, TestTerms};
+use crate::handling::place::{NestId, Place};
+use crate::handling::sort::Sort;
+use crate::handling::wants::NestJob;
+use crate::instrument::act::{Job, JobDone};
+use crate::rig::axis::AxisStation;
+use crate::rig::point::DigitalIn;
+use units::{RigTime, Second};
+
+/// The nest with what stands beside it.
+struct Nest {
+    shop: Shop,
+    sort: Sort,
+    last_left: Option<RigTime>,
+}
+
+impl Nest {
+    /// A part was just pushed in; the pusher is still there, the axis waits over the nest.
+    fn loaded(golden: Option<String>) -> Self {
+        let mut shop = Shop::at_rest();
+        shop.carried_out(Move::AxisTo(AxisStation::Nest));
+        shop.ledger.enter_pocket();
+        shop.ledger.enter_nest(NestId::FIRST, golden);
+        shop.set(DigitalIn::NestPresent, true);
+        shop.stands(Move::PusherExtend);
+        shop.scan();
+        Self {
+            shop,
+            sort: Sort::OverNest,
+            last_left: None,
+        }
+    }
+
+    fn step(&mut self, state: NestState, done: Option<JobDone>) -> NestState {
+        let device = device();
+        let context = NestContext {
+            done,
+            terms: TestTerms {
+                device: &device,
+                thorough: false,
+                teaching: None,
+            },
+            sort: &mut self.sort,
+            last_left: &mut self.last_left,
+        };
+        let id = NestId::FIRST;
+        let mut nest = nest::Nest { id, state };
+        nest.step(&mut self.shop.turn(), context);
+        nest.state
+    }
+
+    fn motions(&self) -> &[Move] {
+        &self.shop.wants.rig.motions
+    }
+
+    /// Up to the first job of the test.
+    fn testing(&mut self) -> NestState {
+        let state = self.step(NestState::Empty, None);
+        assert_eq!(self.motions(), [Move::ClampClose]);
+        self.shop.carried_out(Move::ClampClose);
+        let state = self.step(state, None);
+        assert!(self.motions().is_empty(), "the pusher is not back");
+        self.shop.carried_out(Move::PusherRetract);
+        let state = self.step(state, None);
+        assert_eq!(self.motions(), [Move::ProbesUp]);
+        self.shop.carried_out(Move::ProbesUp);
+        self.step(state, None)
+    }
+
+    /// The test ends in trouble 40 ms after it began.
+    fn judged(&mut self) -> NestState {
+        let state = self.testing();
+        self.fails(state)
+    }
+
+    fn fails(&mut self, state: NestState) -> NestState {
+        self.shop.after(40);
+        let failed = JobDone {
+            at: self.shop.now,
+            trouble: Some("measure 05: silent".into()),
+        };
+        // The first one ends the stage, the second one the switching off that follows.
+        let state = self.step(state, Some(failed.clone()));
+        assert!(matches!(state, NestState::Testing(_)));
+        self.step(state, Some(failed))
+    }
+
+    /// The open fingers have come down around the part.
+    fn fingers_around(&mut self) {
+        self.shop.carried_out(Move::SortDown);
+        self.sort = Sort::AtPart;
+    }
+}
+
+/// The first job of a test.
+fn pins() -> NestJob {
+    NestJob {
+        nest: NestId::FIRST,
+        job: Job::Set(vec![(
+            context().points.output(DigitalOut::KelvinTest),
+            true,
+        )]),
+    }
+}
+
+#[test]
+fn an_empty_nest_asks_for_nothing() {
+    let mut nest = Nest::loaded(None);
+    nest.shop.ledger = Default::default();
+    let state = nest.step(NestState::Empty, None);
+    assert!(matches!(state, NestState::Empty) && nest.motions().is_empty());
+}
+
+#[test]
+fn the_test_begins_with_the_pins_once_the_probes_are_up() {
+    let mut nest = Nest::loaded(None);
+    let state = nest.testing();
+    assert!(matches!(state, NestState::Testing(_)));
+    assert_eq!(nest.shop.wants.rig.job, Some(pins()));
+    let part = nest.shop.ledger.part(Place::NEST).unwrap();
+    assert_eq!(part.probed_at, Some(nest.shop.now));
+}
+
+#[test]
+fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
+    let mut nest = Nest::loaded(None);
+    let state = nest.judged();
+    assert!(matches!(state, NestState::Judged));
+    let judged = &nest.shop.wants.parts.judged[0];
+    let why = Verdict::Void(vec![Reason::rig_trouble("measure 05: silent")]);
+    assert_eq!(
+        (&judged.verdict, judged.part.bin),
+        (&why, Some(Bin::RETEST))
+    );
+    assert_eq!(judged.part.test, Some(Second(0.04)));
+    let part = nest.shop.ledger.part(Place::NEST);
+    assert_eq!(part, Some(&judged.part));
+}
+
+#[test]
+fn a_golden_part_that_could_not_be_judged_is_tested_three_times_and_ends_in_retest_under_its_serial()
+ {
+    let mut nest = Nest::loaded(Some("G-12-1".into()));
+    let mut state = nest.judged();
+    for tests in 1..3 {
+        assert!(nest.shop.wants.parts.judged.is_empty(), "after {tests}");
+        let job = &nest.shop.wants.rig.job;
+        assert_eq!(*job, Some(pins()), "from the beginning");
+        state = nest.fails(state);
+    }
+    assert!(matches!(state, NestState::Judged));
+    let part = &nest.shop.wants.parts.judged[0].part;
+    assert_eq!(part.bin, Some(Bin::RETEST));
+    assert_eq!(format!("{:?}", part.kind), "Golden(\"G-12-1\")");
+}
+
+#[test]
+fn a_judged_part_stays_clamped_until_the_gripper_has_it() {
+    let mut nest = Nest::loaded(None);
+    let state = nest.judged();
+    let state = nest.step(state, None);
+    assert!(nest.motions().is_empty(), "no fingers around it");
+    nest.fingers_around();
+    let state = nest.step(state, None);
+    assert_eq!(nest.motions(), [Move::ProbesDown, Move::GripperClose]);
+    nest.shop.carried_out(Move::ProbesDown);
+    let state = nest.step(state, None);
+    assert!(nest.motions().is_empty(), "the gripper is not closed");
+    nest.shop.carried_out(Move::GripperClose);
+    let state = nest.step(state, None);
+    assert_eq!(nest.motions(), [Move::ClampOpen]);
+    nest.shop.carried_out(Move::ClampOpen);
+    let state = nest.step(state, None);
+    assert_eq!(nest.motions(), [Move::SortUp]);
+    assert!(matches!(state, NestState::Lifting));
+}
+
+/// Takes the part up and out of the nest.
+fn lift(nest: &mut Nest) -> NestState {
+    let state = nest.judged();
+    nest.fingers_around();
+    let mut state = nest.step(state, None);
+    for movement in [Move::ProbesDown, Move::GripperClose, Move::ClampOpen] {
+        nest.shop.carried_out(movement);
+        state = nest.step(state, None);
+    }
+    nest.shop.carried_out(Move::SortUp);
+    state
+}
+
+#[test]
+fn the_part_changes_hands_when_z_is_up_and_the_nest_is_seen_empty() {
+    let mut nest = Nest::loaded(None);
+    let state = lift(&mut nest);
+    let state = nest.step(state, None);
+    assert!(matches!(state, NestState::Lifting), "nest still occupied");
+    assert!(!nest.shop.ledger.holds(Place::Gripper));
+    nest.shop.set(DigitalIn::NestPresent, false);
+    nest.shop.after(8);
+    let state = nest.step(state, None);
+    assert!(matches!(state, NestState::Empty));
+    assert!(nest.shop.ledger.holds(Place::Gripper) && !nest.shop.ledger.holds(Place::NEST));
+    assert_eq!(nest.sort, Sort::Loaded);
+}
+
+#[test]
+fn the_first_part_has_no_cycle_and_the_next_counts_from_it() {
+    for (before_ms, cycle) in [(None, None), (Some(500), Some(0.5))] {
+        let mut nest = Nest::loaded(None);
+        let state = lift(&mut nest);
+        nest.shop.set(DigitalIn::NestPresent, false);
+        nest.shop.after(8);
+        nest.last_left = before_ms.map(|ms: u64| RigTime(nest.shop.now.0 - ms * 1000));
+        nest.step(state, None);
+        let left = nest.shop.wants.parts.left[0];
+        assert_eq!((left.ordinal, left.cycle), (1, cycle.map(Second)));
+        assert_eq!(nest.last_left, Some(nest.shop.now));
+    }
+}
+
+#[test]
+fn a_part_that_was_interrupted_is_clamped_and_not_tested() {
+    let mut nest = Nest::loaded(None);
+    let part = nest.shop.ledger.part_mut(Place::NEST).unwrap();
+    part.interrupted = Some("emergency_stop".into());
+    let state = nest.step(NestState::Empty, None);
+    nest.shop.carried_out(Move::ClampClose);
+    nest.shop.carried_out(Move::PusherRetract);
+    let state = nest.step(state, None);
+    assert!(matches!(state, NestState::Judged) && nest.motions().is_empty());
+    let part = nest.shop.ledger.part(Place::NEST).unwrap();
+    assert_eq!(
+        (part.bin, nest.shop.wants.parts.judged.len()),
+        (Some(Bin::RETEST), 1)
+    );
+}

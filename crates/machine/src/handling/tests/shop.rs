@@ -1,0 +1,300 @@
+//! A rig whose sensors are set by hand: what a step machine sees and asks for, without any module.
+
+use super::wiring;
+use crate::dut::em_relay::points::{self, AnalogIn, Counter, Points};
+use crate::guard::{Actuator, PartSize};
+use crate::handling::ledger::Ledger;
+use crate::handling::mechanism::Mechanism;
+use crate::handling::moves::{Move, Strokes};
+use crate::handling::trouble::Trouble;
+use crate::handling::turn::Turn;
+use crate::handling::wants::{Commands, PartEvents};
+use crate::rig::image::Image;
+use crate::rig::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Point};
+use crate::rig::wiring::{ModuleId, Wiring};
+use crate::station::trouble::Alarm;
+use dcon::{Bits, Command, Reply};
+use std::collections::{BTreeSet, VecDeque};
+use std::sync::Arc;
+use units::{RigTime, Span};
+
+/// Longest stroke of every actuator in these tests.
+pub const TIMEOUT: Span = Span::ms(900);
+
+/// Sensors that are on with every actuator at its rest end, no part and safety as it should be.
+const AT_REST: [DigitalIn; 11] = [
+    DigitalIn::EmergencyStopOk,
+    DigitalIn::DoorClosed,
+    DigitalIn::AirOk,
+    DigitalIn::EscapementHold,
+    DigitalIn::PusherRetracted,
+    DigitalIn::JawLeftOpen,
+    DigitalIn::JawRightOpen,
+    DigitalIn::ProbeDown,
+    DigitalIn::AxisInPosition,
+    DigitalIn::SortZUp,
+    DigitalIn::GripperOpen,
+];
+
+/// What a turn asked for and told.
+#[derive(Debug, Default)]
+pub struct Asked {
+    pub rig: Commands,
+    pub parts: PartEvents,
+    pub trouble: Vec<Trouble>,
+}
+
+impl Asked {
+    /// Codes of the alarms that come of it.
+    pub fn alarms(&self) -> Vec<String> {
+        let alarms = self.trouble.iter().cloned().map(Alarm::from);
+        alarms.map(|alarm| alarm.code).collect()
+    }
+}
+
+/// Everything that a turn needs.
+pub struct Shop {
+    pub wiring: Arc<Wiring>,
+    pub image: Image,
+    pub now: RigTime,
+    pub mechanism: Mechanism,
+    pub ledger: Ledger,
+    pub wants: Asked,
+    pub golden: VecDeque<String>,
+    pub recorded: u64,
+    pub points: Points,
+    on: BTreeSet<DigitalInput>,
+}
+
+impl Shop {
+    /// At rest, but no sensor was read yet.
+    pub fn unread() -> Self {
+        let wiring = wiring();
+        let points = Points::resolve(&wiring).unwrap();
+        let at_rest = AT_REST.into_iter().map(DigitalInput::from);
+        let nc_closed = points.input(points::DigitalIn::NcClosed);
+        Self {
+            on: at_rest.chain([nc_closed]).collect(),
+            points,
+            image: Image::new(Arc::clone(&wiring)),
+            now: RigTime(1_000_000),
+            mechanism: mechanism(&wiring),
+            wiring,
+            ledger: Ledger::default(),
+            wants: Asked::default(),
+            golden: VecDeque::new(),
+            recorded: 0,
+        }
+    }
+
+    /// At rest and read.
+    pub fn at_rest() -> Self {
+        let mut shop = Self::unread();
+        shop.scan();
+        shop
+    }
+
+    /// A sensor changes; nobody has read it yet.
+    pub fn set(&mut self, point: impl Into<DigitalInput>, state: bool) {
+        if state {
+            self.on.insert(point.into());
+        } else {
+            self.on.remove(&point.into());
+        }
+    }
+
+    /// An input of the interface board changes.
+    pub fn set_board(&mut self, point: points::DigitalIn, state: bool) {
+        self.set(self.points.input(point), state);
+    }
+
+    /// State of a sensor, read or not.
+    pub fn is_on(&self, point: impl Into<DigitalInput>) -> bool {
+        self.on.contains(&point.into())
+    }
+
+    /// Every digital module is read now.
+    pub fn scan(&mut self) {
+        let inputs = self.wiring.digital_inputs();
+        let modules: BTreeSet<ModuleId> = inputs
+            .map(|(_, point)| self.wiring.digital_in(point).module)
+            .collect();
+        for module in modules {
+            self.scan_module(module);
+        }
+    }
+
+    fn scan_module(&mut self, module: ModuleId) {
+        let mut word = 0;
+        for (_, point) in self.wiring.digital_inputs() {
+            let terminal = self.wiring.digital_in(point);
+            if terminal.module == module && self.on.contains(&point) != terminal.active_low {
+                word |= terminal.bit();
+            }
+        }
+        let [first, second] = u16::to_be_bytes(word);
+        let reply = Reply::Bits(Bits { first, second });
+        let line = self.wiring.module(module).line;
+        let command = self.wiring.poll(module);
+        self.image
+            .accept(line, &command, &reply, "", self.now)
+            .unwrap();
+    }
+
+    /// Time passes and everything is read.
+    pub fn after(&mut self, ms: u64) {
+        self.now = self.now + Span::ms(ms);
+        self.scan();
+    }
+
+    /// One module answers a command of the wiring in its own words.
+    pub fn answer(&mut self, command: Command, module: ModuleId, reply: &str) {
+        let decoded = command
+            .decode(format!("{reply}\r").as_bytes(), false)
+            .unwrap();
+        let line = self.wiring.module(module).line;
+        self.image
+            .accept(line, &command, &decoded, reply, self.now)
+            .unwrap();
+    }
+
+    /// Beam of a chute answers its count.
+    pub fn beam(&mut self, point: DigitalInput, count: u16) {
+        let command = self.wiring.read_events(point);
+        let module = self.wiring.digital_in(point).module;
+        let address = self.wiring.module(module).address;
+        self.answer(command, module, &format!("!{address}{count:05}"));
+    }
+
+    /// A converter answers volts at one terminal.
+    pub fn volts(&mut self, point: AnalogIn, volts: f64) {
+        self.volts_at(self.points.analog(point), volts);
+    }
+
+    /// The same of a point that a job has named.
+    pub fn volts_at(&mut self, point: AnalogInput, volts: f64) {
+        let steps = (volts / 10.0 * 32768.0).round() as i16;
+        let module = self.wiring.analog_in(point).module;
+        self.reads(Point::Analog(point), module, &format!(">{steps:04X}"));
+    }
+
+    /// A gate counter answers.
+    pub fn gate(&mut self, counter: Counter, count: u32) {
+        self.count(self.points.counter(counter), count);
+    }
+
+    /// The same of a counter that a job has named.
+    pub fn count(&mut self, counter: GatedCounter, count: u32) {
+        let module = self.wiring.counter(counter).module;
+        self.reads(Point::Count(counter), module, &format!(">{count:08X}"));
+    }
+
+    /// The thermometer of the track answers.
+    pub fn track(&mut self, celsius: f64) {
+        let track = self.points.track;
+        let module = self.wiring.temperature(track).module;
+        self.reads(
+            Point::Temperature(track),
+            module,
+            &format!(">{celsius:+07.2}"),
+        );
+    }
+
+    fn reads(&mut self, point: Point, module: ModuleId, reply: &str) {
+        let command = self.wiring.reads(&[point])[0].1;
+        self.answer(command, module, reply);
+    }
+
+    /// The sensors of a motion's end, as if the actuator were there.
+    pub fn stands(&mut self, movement: Move) {
+        for (point, state) in opposite(movement).iter().chain(movement.arrival()) {
+            self.set(*point, *state);
+        }
+    }
+
+    /// A motion is driven and has arrived and been seen 100 ms later.
+    pub fn carried_out(&mut self, movement: Move) {
+        self.mechanism.driven(movement, self.now, &self.image);
+        self.stands(movement);
+        self.after(100);
+        let found = self.mechanism.update(self.now, &self.image);
+        assert!(found.trouble.is_empty(), "{found:?}");
+    }
+
+    /// A turn that begins with empty wants.
+    pub fn turn(&mut self) -> Turn<'_> {
+        self.wants = Asked::default();
+        Turn {
+            now: self.now,
+            image: &self.image,
+            mechanism: &self.mechanism,
+            ledger: &mut self.ledger,
+            rig: &mut self.wants.rig,
+            parts: &mut self.wants.parts,
+            trouble: &mut self.wants.trouble,
+            golden: &mut self.golden,
+            recorded: self.recorded,
+            resting: false,
+        }
+    }
+
+    /// Codes of the alarms of the last turn.
+    pub fn alarms(&self) -> Vec<String> {
+        self.wants.alarms()
+    }
+}
+
+/// Sensors of the other end, which a motion leaves.
+fn opposite(movement: Move) -> &'static [(DigitalIn, bool)] {
+    match movement {
+        Move::ClampClose => &[
+            (DigitalIn::JawLeftOpen, false),
+            (DigitalIn::JawRightOpen, false),
+        ],
+        Move::ClampOpen => &[
+            (DigitalIn::JawLeftClosed, false),
+            (DigitalIn::JawRightClosed, false),
+        ],
+        Move::GripperOpen => &[(DigitalIn::GripperPart, false)],
+        Move::EscapementRelease
+        | Move::EscapementHold
+        | Move::PusherExtend
+        | Move::PusherRetract
+        | Move::ProbesUp
+        | Move::ProbesDown
+        | Move::AxisTo(_)
+        | Move::SortDown
+        | Move::SortUp
+        | Move::GripperClose => &[],
+    }
+}
+
+/// Strokes in the order of the actuators; the axis has its table.
+pub const LENGTH_MM: [f64; 8] = [12.0, 60.0, 8.0, 8.0, 12.0, 0.0, 40.0, 6.0];
+
+/// Nothing under way.
+pub fn mechanism(wiring: &Wiring) -> Mechanism {
+    assert_eq!(Actuator::ALL.len(), LENGTH_MM.len());
+    let strokes = Strokes {
+        length_mm: LENGTH_MM,
+        axis_mm: wiring
+            .axis
+            .stations()
+            .map(|at| (at, wiring.axis.point(at).x_mm))
+            .collect(),
+    };
+    let keys = [
+        "escapement",
+        "pusher",
+        "clamp",
+        "probe_lift",
+        "sort_z",
+        "gripper",
+        "axis",
+    ];
+    let part = PartSize {
+        body_mm: [22.5, 16.5, 16.5],
+        pin_length_mm: 3.5,
+    };
+    Mechanism::new(strokes, keys.map(|key| (key, TIMEOUT)).to_vec(), part)
+}

@@ -1,0 +1,125 @@
+//! What the acts of a stage have read, point by point, in the order it came.
+
+use super::act::{Read, Word};
+use super::trace::Trace;
+use crate::rig::image::Image;
+use crate::rig::point::{AnalogInput, DigitalInput, GatedCounter, Point, Thermometer};
+use crate::rig::sample::{AnalogPoint, CountPoint, CountSample, Sample};
+use thiserror::Error;
+use units::RigTime;
+
+/// Everything a stage has read.
+#[derive(Debug, Clone, Default)]
+pub struct Readings {
+    states: Vec<(DigitalInput, bool)>,
+    samples: Vec<Sample>,
+    counts: Vec<CountSample>,
+    /// Outcomes of [`Act::Until`](super::act::Act::Until).
+    pub seen: Vec<bool>,
+    /// All of it sample by sample, and what was asked of the outputs.
+    pub trace: Trace,
+}
+
+/// Why a finished reading says nothing.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub(super) enum Unread {
+    /// A point has no value.
+    #[error("{0} was answered without a value")]
+    Missing(String),
+    /// An input of this word was last read too long ago.
+    #[error("a {0} input is stale")]
+    Stale(&'static str),
+}
+
+impl Readings {
+    /// States of a digital input.
+    pub fn states(&self, point: DigitalInput) -> impl Iterator<Item = bool> {
+        let here = self.states.iter().filter(move |(it, _)| *it == point);
+        here.map(|(_, state)| *state)
+    }
+
+    /// Samples of an analog input.
+    pub fn analog(&self, point: AnalogInput) -> impl Iterator<Item = &Sample> {
+        self.samples_of(AnalogPoint::Input(point))
+    }
+
+    /// Samples of a thermometer.
+    pub fn temperatures(&self, point: Thermometer) -> impl Iterator<Item = &Sample> {
+        self.samples_of(AnalogPoint::Temperature(point))
+    }
+
+    /// Counts of a gated counter.
+    pub fn counts(&self, point: GatedCounter) -> impl Iterator<Item = &CountSample> {
+        let here = move |it: &&CountSample| it.point == CountPoint::Gate(point);
+        self.counts.iter().filter(here)
+    }
+
+    fn samples_of(&self, point: AnalogPoint) -> impl Iterator<Item = &Sample> {
+        self.samples.iter().filter(move |it| it.point == point)
+    }
+
+    /// Keeps what a finished reading brought. `at`: now, and when its last reply was complete.
+    ///
+    /// # Errors
+    /// A point that has no value, by its name.
+    pub(super) fn take(
+        &mut self,
+        read: &Read,
+        image: &Image,
+        at: (RigTime, RigTime),
+    ) -> Result<(), Unread> {
+        match read {
+            Read::Word(word) => {
+                let states = word.states(image, at.0).ok_or_else(|| missing(word.name))?;
+                self.trace.word(word.name, &states, at.1);
+                self.keep_word(word, &states);
+            }
+            Read::Points { asked, beside } => {
+                for point in asked.iter().chain(beside) {
+                    self.take_point(*point, image, at.0)?;
+                }
+            }
+            Read::Restarts => {}
+        }
+        Ok(())
+    }
+
+    pub(super) fn keep_word(&mut self, word: &Word, states: &[bool]) {
+        assert_eq!(word.inputs.len(), states.len(), "a state for each input");
+        let states = states.iter().copied();
+        self.states.extend(word.inputs.iter().copied().zip(states));
+    }
+
+    fn take_point(&mut self, point: Point, image: &Image, now: RigTime) -> Result<(), Unread> {
+        let wiring = image.wiring();
+        match point {
+            Point::Input(input) => {
+                let state = image.answered_input(input, now);
+                let state = state.ok_or_else(|| missing(wiring.input_name(input)))?;
+                self.states.push((input, state));
+            }
+            Point::Analog(input) => {
+                let quantity = wiring.quantity(input);
+                let sample = image.analog(input).ok_or_else(|| missing(quantity.name))?;
+                self.trace.input(quantity, sample);
+                self.samples.push(sample.clone());
+            }
+            Point::Temperature(point) => {
+                let sample = image.temperature(point).cloned();
+                let name = wiring.thermometer_name(point);
+                self.samples.push(sample.ok_or_else(|| missing(name))?);
+            }
+            Point::Count(counter) => {
+                let name = wiring.counter_name(counter);
+                let count = image.counter(counter).ok_or_else(|| missing(name))?;
+                self.trace.count(name, count);
+                self.counts.push(count.clone());
+            }
+        }
+        Ok(())
+    }
+}
+
+fn missing(name: &str) -> Unread {
+    Unread::Missing(name.to_owned())
+}

@@ -1,0 +1,389 @@
+//! The process image: the last thing each module said, and when.
+//!
+//! Nothing in it is a guess. A point that was never read, or was read too long ago, has no value; after
+//! [`Image::forget`] (module silent or reset) it has none until it is read again. Times are those at which the
+//! module was asked, so that an age is never understated.
+
+use super::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Thermometer};
+use super::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
+use super::wiring::{LineId, Module, ModuleId, Wiring};
+use dcon::{Address, Channel, Command, Common, Digital, Reading, Reply, Unit, Value};
+use std::sync::Arc;
+use thiserror::Error;
+use units::{RigTime, Span};
+
+/// An answer that does not belong to this rig.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum Unexpected {
+    /// No module of the wiring has this address.
+    #[error("line {line}: an answer from address {address}, where no module is wired")]
+    Stranger {
+        /// Name of the line.
+        line: String,
+        /// The address asked.
+        address: Address,
+    },
+    /// A decoded reply that cannot be one to this command.
+    #[error("line {line}, address {address}: the reply does not belong to its command")]
+    WrongReply {
+        /// Name of the line.
+        line: String,
+        /// The address asked.
+        address: Address,
+    },
+}
+
+/// Bits of a digital module and when they were asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Word {
+    bits: u16,
+    at: RigTime,
+}
+
+/// What is known of the rig.
+#[derive(Debug, Clone)]
+pub struct Image {
+    wiring: Arc<Wiring>,
+    words: Vec<Option<Word>>,
+    analog: Vec<Option<Sample>>,
+    temperatures: Vec<Option<Sample>>,
+    counters: Vec<Option<CountSample>>,
+    events: Vec<Option<CountSample>>,
+    levels: Vec<Option<(f64, RigTime)>>,
+    resets: Vec<ModuleId>,
+}
+
+impl Image {
+    /// Nothing is known yet.
+    pub fn new(wiring: Arc<Wiring>) -> Self {
+        let modules = wiring.modules.len();
+        Self {
+            words: vec![None; modules],
+            analog: vec![None; wiring.analog_in.len()],
+            temperatures: vec![None; wiring.temperature.len()],
+            counters: vec![None; wiring.counter.len()],
+            events: vec![None; wiring.digital_in.len()],
+            levels: vec![None; modules],
+            resets: Vec::new(),
+            wiring,
+        }
+    }
+
+    /// The rig that this is the image of.
+    pub fn wiring(&self) -> &Wiring {
+        &self.wiring
+    }
+
+    /// Takes in a good reply. `at` is when the module was asked. Replies that carry no process value are ignored.
+    ///
+    /// # Errors
+    /// [`Unexpected`], and nothing is changed.
+    pub fn accept(
+        &mut self,
+        line: LineId,
+        command: &Command,
+        reply: &Reply,
+        raw: &str,
+        at: RigTime,
+    ) -> Result<(), Unexpected> {
+        let Some(address) = command.address() else {
+            return Ok(());
+        };
+        let Some(module) = self.wiring.at(line, address) else {
+            return Err(Unexpected::Stranger {
+                line: self.wiring.line(line).name.clone(),
+                address,
+            });
+        };
+        let arrival = Arrival {
+            line,
+            module,
+            command: *command,
+            raw,
+            at,
+        };
+        if self.file(&arrival, reply) {
+            return Ok(());
+        }
+        Err(Unexpected::WrongReply {
+            line: self.wiring.line(line).name.clone(),
+            address,
+        })
+    }
+
+    /// Puts a reply where it belongs; false when it cannot be a reply to this command.
+    fn file(&mut self, arrival: &Arrival<'_>, reply: &Reply) -> bool {
+        use dcon::AnalogIn::{ReadAll, ReadAllHex, ReadOne};
+        match (&arrival.command, reply) {
+            (Command::AnalogIn(_, ReadAll(_) | ReadAllHex(_)), Reply::Readings(readings)) => {
+                self.file_readings(arrival, |channel| readings.get(usize::from(channel.get())));
+                true
+            }
+            (Command::AnalogIn(_, ReadOne { channel: asked, .. }), Reply::Reading(reading)) => {
+                self.file_readings(arrival, |channel| (channel == *asked).then_some(*reading));
+                true
+            }
+            (Command::Digital(_, Digital::ReadPort | Digital::ReadAll), Reply::Bits(bits)) => {
+                self.words[arrival.module.0] = Some(Word {
+                    bits: bits.word(),
+                    at: arrival.at,
+                });
+                true
+            }
+            (Command::Digital(_, Digital::ReadEvents { channel }), Reply::Events(count)) => {
+                self.file_events(arrival, *channel, *count);
+                true
+            }
+            (Command::Counter(_, dcon::Counter::Read(number)), Reply::Count(count)) => {
+                self.file_count(arrival, number.get(), *count);
+                true
+            }
+            (Command::AnalogOut(_, dcon::AnalogOut::ReadPresent { .. }), Reply::Level(level)) => {
+                let range = self.wiring.module(arrival.module).type_code;
+                self.levels[arrival.module.0] =
+                    level.in_units(range).map(|volts| (volts, arrival.at));
+                true
+            }
+            (Command::Common(_, Common::ReadResetStatus), Reply::Flag(was_reset)) => {
+                if *was_reset {
+                    self.forget(arrival.module);
+                    self.resets.push(arrival.module);
+                }
+                true
+            }
+            (
+                Command::HostOk
+                | Command::SampleAll
+                | Command::Common(..)
+                | Command::AnalogIn(..)
+                | Command::AnalogOut(..)
+                | Command::Digital(..)
+                | Command::Counter(..),
+                _,
+            ) => !carries_value(&arrival.command),
+        }
+    }
+
+    fn file_readings(
+        &mut self,
+        arrival: &Arrival<'_>,
+        reading: impl Fn(Channel) -> Option<Reading>,
+    ) {
+        let wiring = Arc::clone(&self.wiring);
+        let module = wiring.module(arrival.module);
+        let raw: Arc<str> = Arc::from(arrival.raw);
+        for (index, (_, terminal)) in wiring.analog_in.iter().enumerate() {
+            if terminal.module == arrival.module
+                && let Some(reading) = reading(terminal.channel)
+            {
+                let origin = arrival.origin(terminal.channel, &raw);
+                let point = AnalogPoint::Input(AnalogInput::at(index));
+                self.analog[index] = Some(sample(point, &reading, module, terminal.gain, origin));
+            }
+        }
+        for (index, (_, terminal)) in wiring.temperature.iter().enumerate() {
+            if terminal.module == arrival.module
+                && let Some(reading) = reading(terminal.channel)
+            {
+                let origin = arrival.origin(terminal.channel, &raw);
+                let point = AnalogPoint::Temperature(Thermometer::at(index));
+                self.temperatures[index] = Some(sample(point, &reading, module, 1.0, origin));
+            }
+        }
+    }
+
+    fn file_events(&mut self, arrival: &Arrival<'_>, channel: Channel, count: u16) {
+        let mut terminals = self.wiring.digital_in.iter().map(|(_, terminal)| terminal);
+        let here = terminals
+            .position(|terminal| terminal.module == arrival.module && terminal.channel == channel);
+        if let Some(index) = here {
+            let origin = arrival.origin(channel, &Arc::from(arrival.raw));
+            self.events[index] = Some(CountSample {
+                point: CountPoint::Events(DigitalInput::at(index)),
+                count: u32::from(count),
+                origin,
+            });
+        }
+    }
+
+    fn file_count(&mut self, arrival: &Arrival<'_>, number: u8, count: u32) {
+        for (index, (_, terminal)) in self.wiring.counter.iter().enumerate() {
+            if terminal.module == arrival.module && terminal.channel.get() == number {
+                let origin = arrival.origin(terminal.channel, &Arc::from(arrival.raw));
+                self.counters[index] = Some(CountSample {
+                    point: CountPoint::Gate(GatedCounter::at(index)),
+                    count,
+                    origin,
+                });
+            }
+        }
+    }
+
+    /// Drops everything known of a module: it is silent, or was reset.
+    pub fn forget(&mut self, module: ModuleId) {
+        self.words[module.0] = None;
+        self.levels[module.0] = None;
+        for sample in self.analog.iter_mut().chain(&mut self.temperatures) {
+            sample.take_if(|sample| sample.origin.module == module);
+        }
+        for sample in self.counters.iter_mut().chain(&mut self.events) {
+            sample.take_if(|sample| sample.origin.module == module);
+        }
+    }
+
+    /// Modules that reported a reset (`$AA5` = 1) since the last call: their outputs are at the power-on value.
+    pub fn take_resets(&mut self) -> Vec<ModuleId> {
+        std::mem::take(&mut self.resets)
+    }
+
+    /// State of an input that was just asked for: as [`Image::input`], no older than a transaction of its line may
+    /// take at worst.
+    pub fn answered_input(&self, point: impl Into<DigitalInput>, now: RigTime) -> Option<bool> {
+        let point = point.into();
+        let line = self
+            .wiring
+            .module(self.wiring.digital_in(point).module)
+            .line;
+        self.input(point, now, self.wiring.answer_max_age(line))
+    }
+
+    /// A digital input, if it was asked for at most `max_age` ago.
+    pub fn input(
+        &self,
+        point: impl Into<DigitalInput>,
+        now: RigTime,
+        max_age: Span,
+    ) -> Option<bool> {
+        let terminal = self.wiring.digital_in(point);
+        let word = self.words[terminal.module.0]?;
+        let fresh = word.at <= now && now.since(word.at) <= max_age;
+        let model = self.wiring.module(terminal.module).model;
+        fresh.then(|| terminal.read(model.input_bits(word.bits)))
+    }
+
+    /// The emergency-stop contact; unknown from the age on at which it counts as open.
+    pub fn emergency_stop_ok(&self, now: RigTime) -> Option<bool> {
+        let max_age = self.wiring.emergency_stop_max_age();
+        self.input(DigitalIn::EmergencyStopOk, now, max_age)
+    }
+
+    /// Last instant at which the emergency-stop contact is known unless it is read again.
+    pub fn emergency_stop_known_until(&self) -> Option<RigTime> {
+        let asked = self.input_at(DigitalIn::EmergencyStopOk)?;
+        Some(asked + self.wiring.emergency_stop_max_age())
+    }
+
+    /// When a digital input was last asked for.
+    pub fn input_at(&self, point: impl Into<DigitalInput>) -> Option<RigTime> {
+        self.words[self.wiring.digital_in(point).module.0].map(|word| word.at)
+    }
+
+    /// The bits that a digital module last answered, and when it was asked.
+    pub fn word(&self, module: ModuleId) -> Option<(u16, RigTime)> {
+        self.words[module.0].map(|word| (word.bits, word.at))
+    }
+
+    /// The last sample of an analog input, however old.
+    pub fn analog(&self, point: AnalogInput) -> Option<&Sample> {
+        self.analog[point.index()].as_ref()
+    }
+
+    /// The last sample of an analog input, if it was asked for at `not_before` or later. May be out of range:
+    /// see [`Sample::good`].
+    pub fn fresh_analog(&self, point: AnalogInput, not_before: RigTime) -> Option<&Sample> {
+        self.analog(point)
+            .filter(|sample| sample.origin.at >= not_before)
+    }
+
+    /// The last sample of a thermometer, however old.
+    pub fn temperature(&self, point: Thermometer) -> Option<&Sample> {
+        self.temperatures[point.index()].as_ref()
+    }
+
+    /// The last sample of a gated counter, however old.
+    pub fn counter(&self, point: GatedCounter) -> Option<&CountSample> {
+        self.counters[point.index()].as_ref()
+    }
+
+    /// The last count of events on a digital input, however old.
+    pub fn events(&self, point: impl Into<DigitalInput>) -> Option<&CountSample> {
+        self.events[point.into().index()].as_ref()
+    }
+
+    /// Where an analog output last said it was, V at its terminal, and when it was asked.
+    pub fn level(&self, module: ModuleId) -> Option<(f64, RigTime)> {
+        self.levels[module.0]
+    }
+}
+
+/// A reply with its circumstances.
+struct Arrival<'a> {
+    line: LineId,
+    module: ModuleId,
+    command: Command,
+    raw: &'a str,
+    at: RigTime,
+}
+
+impl Arrival<'_> {
+    fn origin(&self, channel: Channel, raw: &Arc<str>) -> Origin {
+        Origin {
+            line: self.line,
+            module: self.module,
+            channel,
+            command: self.command,
+            raw: Arc::clone(raw),
+            at: self.at,
+        }
+    }
+}
+
+fn sample(
+    point: AnalogPoint,
+    reading: &Reading,
+    module: &Module,
+    gain: f64,
+    origin: Origin,
+) -> Sample {
+    let quality = match reading.value {
+        Value::Engineering(_) | Value::Percent(_) | Value::Hex(_) | Value::HexUnipolar(_) => {
+            Quality::Good
+        }
+        Value::OverRange => Quality::OverRange,
+        Value::UnderRange => Quality::UnderRange,
+        Value::Blank => Quality::Blank,
+    };
+    let scale = match module.type_code.full_scale().map(|scale| scale.unit) {
+        Some(Unit::Millivolt) => 1e-3,
+        Some(Unit::Volt | Unit::Celsius | Unit::Milliampere) | None => 1.0,
+    };
+    let terminal_volts = reading
+        .value
+        .in_units(module.type_code)
+        .map_or(f64::NAN, |value| value * scale);
+    Sample {
+        point,
+        value: terminal_volts / gain,
+        terminal_volts,
+        quality,
+        origin,
+    }
+}
+
+/// Commands whose reply the image lives on; another kind of reply to them is a contradiction.
+fn carries_value(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::AnalogIn(
+            _,
+            dcon::AnalogIn::ReadAll(_)
+                | dcon::AnalogIn::ReadAllHex(_)
+                | dcon::AnalogIn::ReadOne { .. }
+        ) | Command::Digital(
+            _,
+            Digital::ReadPort | Digital::ReadAll | Digital::ReadEvents { .. }
+        ) | Command::Counter(_, dcon::Counter::Read(_))
+            | Command::AnalogOut(_, dcon::AnalogOut::ReadPresent { .. })
+            | Command::Common(_, Common::ReadResetStatus)
+    )
+}

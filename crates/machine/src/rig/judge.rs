@@ -1,0 +1,211 @@
+//! One answer of one module against the wiring.
+//!
+//! Bits of the format byte that no setting speaks of (mains filter, model codes of digital modules) are
+//! left as found.
+
+use super::commission::Mismatch;
+use super::model::Model;
+use super::wiring::{Module, Wiring};
+use dcon::{BaudCode, Common, Config, DataFormat, FormatByte, Level};
+
+/// One module against its answers.
+pub(super) struct Judge<'a> {
+    pub(super) wiring: &'a Wiring,
+    pub(super) module: &'a Module,
+}
+
+impl Judge<'_> {
+    fn mismatch(
+        &self,
+        what: &'static str,
+        found: impl ToString,
+        expected: impl ToString,
+    ) -> Mismatch {
+        Mismatch {
+            line: self.wiring.line(self.module.line).name.clone(),
+            address: self.module.address,
+            module: self.module.name.clone(),
+            what,
+            found: found.to_string(),
+            expected: expected.to_string(),
+            remedy: None,
+        }
+    }
+
+    pub(super) fn config(&self, found: Config) -> Option<Mismatch> {
+        let module = self.module;
+        if found.type_code != module.type_code {
+            let foreign = !module.model.accepts_type(found.type_code.0);
+            let what = if foreign {
+                "wrong module type at address"
+            } else {
+                "type code"
+            };
+            let expected = format!(
+                "type {:02X} of an {}",
+                module.type_code.0,
+                module.model.name()
+            );
+            return Some(self.mismatch(what, format!("type {:02X}", found.type_code.0), expected));
+        }
+        let line = self.wiring.line(module.line);
+        if found.baud.rate() != Some(line.baud) {
+            return Some(self.mismatch("baud code", format!("{:02X}", found.baud.0), line.baud));
+        }
+        let wanted = self.wanted_format(found.format);
+        if found.format == wanted {
+            return None;
+        }
+        let config = Config {
+            type_code: module.type_code,
+            baud: BaudCode(found.baud.0),
+            format: wanted,
+        };
+        let remedy = Common::WriteConfig {
+            address: module.address,
+            config,
+        }
+        .to(module.address);
+        let expected = format!("{:02X}", wanted.0);
+        let difference = self.mismatch("format byte", format!("{:02X}", found.format.0), expected);
+        Some(Mismatch {
+            remedy: Some(remedy),
+            ..difference
+        })
+    }
+
+    /// The format byte as it must be: bits that are not ours to judge are left as found.
+    fn wanted_format(&self, found: FormatByte) -> FormatByte {
+        const CHECKSUM: u8 = 0x40;
+        const FAST: u8 = 0x20;
+        const SLEW: u8 = 0x3C;
+        const NOTATION: u8 = 0x03;
+        let mut byte = found.0 & !CHECKSUM;
+        if self.wiring.line(self.module.line).checksum {
+            byte |= CHECKSUM;
+        }
+        if let Some(format) = self.module.format {
+            byte = byte & !NOTATION | notation(format);
+        }
+        if matches!(self.module.model, Model::I7017F | Model::I7017R) {
+            byte = byte & !FAST | if self.module.fast { FAST } else { 0 };
+        }
+        if let Some(slew) = self.module.slew {
+            byte = byte & !SLEW | slew.0.get() << 2;
+        }
+        FormatByte(byte)
+    }
+
+    pub(super) fn name(&self, name: &str) -> Option<Mismatch> {
+        let bare = |model: Model| model.name().trim_start_matches("I-");
+        let own = name.starts_with(bare(self.module.model));
+        if own
+            || !Model::ALL
+                .iter()
+                .any(|model| name.starts_with(bare(*model)))
+        {
+            return None;
+        }
+        Some(self.mismatch(
+            "wrong module type at address",
+            name,
+            self.module.model.name(),
+        ))
+    }
+
+    pub(super) fn mask(&self, found: u8) -> Option<Mismatch> {
+        match self.module.mask {
+            Some(mask) if mask != found => {
+                let remedy = dcon::AnalogIn::WriteMask(mask).to(self.module.address);
+                let difference = self.mismatch(
+                    "channel mask",
+                    format!("{found:02X}"),
+                    format!("{mask:02X}"),
+                );
+                Some(Mismatch {
+                    remedy: Some(remedy),
+                    ..difference
+                })
+            }
+            Some(_) | None => None,
+        }
+    }
+
+    pub(super) fn status(&self, status: u8) -> Option<Mismatch> {
+        /// Bit 2: the host watchdog has timed out.
+        const TRIPPED: u8 = 0x04;
+        if status & TRIPPED == 0 {
+            return None;
+        }
+        let remedy = Common::ClearWatchdogStatus.to(self.module.address);
+        Some(Mismatch {
+            remedy: Some(remedy),
+            ..self.mismatch("host watchdog", "tripped", "not tripped")
+        })
+    }
+
+    pub(super) fn watchdog(&self, enabled: Option<bool>, timeout_tenths: u8) -> Option<Mismatch> {
+        let wanted_tenths = (self.wiring.bus.host_watchdog_ms / 100.0).round() as u8;
+        let wanted = self.module.watchdog;
+        let same_switch = enabled.is_none_or(|on| on == wanted);
+        if same_switch && (!wanted || timeout_tenths == wanted_tenths) {
+            return None;
+        }
+        let words = |on: Option<bool>, tenths: u8| {
+            let on = match on {
+                Some(true) => "on",
+                Some(false) => "off",
+                None => "set",
+            };
+            format!("{on}, {:.1} s", f64::from(tenths) / 10.0)
+        };
+        let command = Common::WriteWatchdog {
+            enabled: wanted,
+            timeout_tenths: wanted_tenths,
+        };
+        let difference = self.mismatch(
+            "host watchdog",
+            words(enabled, timeout_tenths),
+            words(Some(wanted), wanted_tenths),
+        );
+        Some(Mismatch {
+            remedy: Some(command.to(self.module.address)),
+            ..difference
+        })
+    }
+
+    /// A safe value can only be stored from the present output: no single command sets it right.
+    pub(super) fn safe_level(&self, found: Level) -> Option<Mismatch> {
+        let safe = self.module.safe_volts;
+        let volts = found.in_units(self.module.type_code).unwrap_or(f64::NAN);
+        // Two steps of a 12-bit output.
+        if (volts - safe).abs() <= 0.005 {
+            return None;
+        }
+        Some(self.mismatch(
+            "safe value",
+            format!("{volts:.3} V"),
+            format!("{safe:.3} V"),
+        ))
+    }
+
+    pub(super) fn safe_bits(&self, found: u16) -> Option<Mismatch> {
+        let wanted = self.module.safe_outputs;
+        if found == wanted {
+            return None;
+        }
+        Some(self.mismatch(
+            "safe value",
+            format!("{found:04X}"),
+            format!("{wanted:04X}"),
+        ))
+    }
+}
+
+fn notation(format: DataFormat) -> u8 {
+    match format {
+        DataFormat::Engineering => 0,
+        DataFormat::Percent => 1,
+        DataFormat::Hex => 2,
+    }
+}

@@ -1,0 +1,92 @@
+//! From volts of the coil supply to the level of an analog output, with its calibration.
+
+use super::point::AnalogOutput;
+use super::wiring::{Module, Wiring};
+use dcon::{Level, LevelError};
+use thiserror::Error;
+use units::Volt;
+
+/// Calibration of an analog output: volts at the terminal = `gain` x level written + `offset_v`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Correction {
+    /// Near 1.
+    pub gain: f64,
+    /// Near 0, V at the terminal.
+    pub offset_v: f64,
+}
+
+impl Correction {
+    /// Before any calibration.
+    pub const NONE: Self = Self {
+        gain: 1.0,
+        offset_v: 0.0,
+    };
+}
+
+/// Why a share of a supply cannot be set.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SupplyError {
+    /// The module of this point has no analog output.
+    #[error("{point} is not wired to an analog output")]
+    NotAnOutput {
+        /// The output.
+        point: &'static str,
+    },
+    /// Outside the range of the output, or no number.
+    #[error("{point} cannot give {supply}")]
+    Level {
+        /// The output.
+        point: &'static str,
+        /// The share asked for, V of the coil supply.
+        supply: Volt,
+        /// What the module can do.
+        source: LevelError,
+    },
+}
+
+/// A level this little below zero (V at the terminal) is an offset that cannot be taken away: zero is written.
+const UNREACHABLE_OFFSET_V: f64 = 0.02;
+
+impl Wiring {
+    /// Checks that a source can give this share of the supply, V at the supply.
+    ///
+    /// # Errors
+    /// Says what the source cannot give.
+    pub fn reaches(&self, point: AnalogOutput, supply: Volt) -> Result<(), SupplyError> {
+        let terminal = self.analog_out(point);
+        let (name, module) = (self.source_name(point), self.module(terminal.module));
+        nearest_level(name, module, terminal.gain, supply, Correction::NONE).map(|_| ())
+    }
+}
+
+/// The level nearest to a share of the supply, and the share it really gives. `gain`: supply volts per terminal volt.
+pub(super) fn nearest_level(
+    point: &'static str,
+    module: &Module,
+    gain: f64,
+    supply: Volt,
+    correction: Correction,
+) -> Result<(Level, Volt), SupplyError> {
+    let form = module
+        .output_form()
+        .ok_or(SupplyError::NotAnOutput { point })?;
+    let wanted = (supply.0 / gain - correction.offset_v) / correction.gain;
+    let reachable = if (-UNREACHABLE_OFFSET_V..0.0).contains(&wanted) {
+        0.0
+    } else {
+        wanted
+    };
+    let level =
+        Level::nearest(form, module.type_code, reachable).map_err(|source| SupplyError::Level {
+            point,
+            supply,
+            source,
+        })?;
+    let written = level
+        .in_units(module.type_code)
+        .ok_or(SupplyError::NotAnOutput { point })?;
+    Ok((
+        level,
+        Volt((written * correction.gain + correction.offset_v) * gain),
+    ))
+}

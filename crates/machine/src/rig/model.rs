@@ -1,0 +1,225 @@
+//! The module models this program can wire, and what their terminals are.
+
+use dcon::Width;
+
+/// A model of the I-7000 family.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Model {
+    /// 8 analog inputs, 16 bit at 10 conversions a second.
+    I7017,
+    /// 8 analog inputs with a fast mode.
+    I7017F,
+    /// 8 protected analog inputs with a fast mode.
+    I7017R,
+    /// 1 analog output, 12 bit.
+    I7021,
+    /// 1 analog output, 16 bit.
+    I7021P,
+    /// 3 resistance thermometers.
+    I7033,
+    /// 14 isolated digital inputs.
+    I7041,
+    /// 16 digital outputs.
+    I7043,
+    /// 16 isolated digital outputs.
+    I7045,
+    /// 7 digital inputs and 8 outputs.
+    I7050,
+    /// 16 isolated digital inputs with event counters.
+    I7051,
+    /// 4 digital inputs and 4 relays.
+    I7060,
+    /// 8 digital inputs and 3 relays.
+    I7063,
+    /// 4 digital inputs and 5 relays.
+    I7065,
+    /// 7 relays.
+    I7067,
+    /// 2 gated 32-bit counters.
+    I7080,
+}
+
+/// The kind of terminal a point needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Terminals {
+    /// Voltage inputs.
+    AnalogIn,
+    /// Resistance thermometers.
+    Temperature,
+    /// Voltage or current output.
+    AnalogOut,
+    /// Gated counters.
+    Counter,
+    /// Digital inputs.
+    DigitalIn,
+    /// Digital outputs.
+    DigitalOut,
+}
+
+impl Model {
+    /// Every model.
+    pub const ALL: &'static [Model] = &[
+        Self::I7017,
+        Self::I7017F,
+        Self::I7017R,
+        Self::I7021,
+        Self::I7021P,
+        Self::I7033,
+        Self::I7041,
+        Self::I7043,
+        Self::I7045,
+        Self::I7050,
+        Self::I7051,
+        Self::I7060,
+        Self::I7063,
+        Self::I7065,
+        Self::I7067,
+        Self::I7080,
+    ];
+
+    /// The names of [`Self::ALL`], as `config/rig.toml` writes them.
+    pub const NAMES: &'static [&'static str] = &[
+        "I-7017", "I-7017F", "I-7017R", "I-7021", "I-7021P", "I-7033", "I-7041", "I-7043",
+        "I-7045", "I-7050", "I-7051", "I-7060", "I-7063", "I-7065", "I-7067", "I-7080",
+    ];
+
+    /// The model of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        let index = Self::NAMES.iter().position(|known| *known == name)?;
+        Self::ALL.get(index).copied()
+    }
+
+    /// The name in `config/rig.toml`; a module answers `$AAM` with it, less the `I-`.
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// How many terminals of a kind it has; 0 when none.
+    pub fn channels(self, kind: Terminals) -> u8 {
+        let count = |has: bool, channels: u8| if has { channels } else { 0 };
+        match kind {
+            Terminals::AnalogIn => {
+                count(matches!(self, Self::I7017 | Self::I7017F | Self::I7017R), 8)
+            }
+            Terminals::Temperature => count(matches!(self, Self::I7033), 3),
+            Terminals::AnalogOut => count(matches!(self, Self::I7021 | Self::I7021P), 1),
+            Terminals::Counter => count(matches!(self, Self::I7080), 2),
+            Terminals::DigitalIn => self.digital().0,
+            Terminals::DigitalOut => self.digital().1,
+        }
+    }
+
+    /// Digital inputs and outputs.
+    fn digital(self) -> (u8, u8) {
+        match self {
+            Self::I7041 => (14, 0),
+            Self::I7051 => (16, 0),
+            Self::I7043 | Self::I7045 => (0, 16),
+            Self::I7050 => (7, 8),
+            Self::I7060 => (4, 4),
+            Self::I7063 => (8, 3),
+            Self::I7065 => (4, 5),
+            Self::I7067 => (0, 7),
+            Self::I7017
+            | Self::I7017F
+            | Self::I7017R
+            | Self::I7021
+            | Self::I7021P
+            | Self::I7033
+            | Self::I7080 => (0, 0),
+        }
+    }
+
+    /// Whether `type` may be this code: the ranges the rig can scale.
+    pub fn accepts_type(self, code: u8) -> bool {
+        self.type_codes().contains(&code)
+    }
+
+    /// The type codes that the rig can use with this model. Voltage inputs, 0 to 10 V outputs,
+    /// Pt100 ranges; a counter must count, not measure frequency.
+    pub fn type_codes(self) -> &'static [u8] {
+        match self {
+            Self::I7017 | Self::I7017F | Self::I7017R => &[0x08, 0x09, 0x0A, 0x0B, 0x0C],
+            Self::I7021 | Self::I7021P => &[0x32],
+            Self::I7033 => &[0x20, 0x21, 0x22, 0x23, 0x24, 0x25, 0x26, 0x27],
+            Self::I7041
+            | Self::I7043
+            | Self::I7045
+            | Self::I7050
+            | Self::I7051
+            | Self::I7060
+            | Self::I7063
+            | Self::I7065
+            | Self::I7067 => &[0x40],
+            Self::I7080 => &[0x50],
+        }
+    }
+
+    /// Whether its readings or settings have a data format.
+    pub fn is_analog(self) -> bool {
+        self.is_analog_in() || self.channels(Terminals::AnalogOut) > 0
+    }
+
+    /// Whether it converts: its replies are slower than those of other modules.
+    pub fn is_analog_in(self) -> bool {
+        self.channels(Terminals::AnalogIn) > 0 || self.channels(Terminals::Temperature) > 0
+    }
+
+    /// Whether it has outputs, and with them a host watchdog that matters.
+    pub fn has_outputs(self) -> bool {
+        self.channels(Terminals::AnalogOut) > 0 || self.channels(Terminals::DigitalOut) > 0
+    }
+
+    /// Whether its digital inputs count events (slow pulses, up to 100 a second).
+    pub fn counts_events(self) -> bool {
+        self.channels(Terminals::DigitalIn) > 0
+    }
+
+    /// Width of an absolute output write `@AA(data)`; `None` without digital outputs.
+    pub fn write_width(self) -> Option<Width> {
+        match self.digital().1 {
+            0 => None,
+            1..=4 => Some(Width::One),
+            5..=8 => Some(Width::Two),
+            9.. => Some(Width::Four),
+        }
+    }
+
+    /// The input bits in the two bytes of a digital reply: outputs come first where there are both.
+    pub fn input_bits(self, word: u16) -> u16 {
+        if self.digital().1 > 0 {
+            word & 0x00FF
+        } else {
+            word
+        }
+    }
+}
+
+impl Terminals {
+    /// In words, for messages.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::AnalogIn => "analog inputs",
+            Self::Temperature => "resistance thermometers",
+            Self::AnalogOut => "an analog output",
+            Self::Counter => "counters",
+            Self::DigitalIn => "digital inputs",
+            Self::DigitalOut => "digital outputs",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_model_answers_to_its_name() {
+        for &model in Model::ALL {
+            assert_eq!(Model::from_name(model.name()), Some(model));
+        }
+        assert_eq!(Model::I7021P.name(), "I-7021P");
+        assert_eq!(Model::I7063.write_width(), Some(Width::One));
+        assert_eq!(Model::I7065.write_width(), Some(Width::Two));
+    }
+}

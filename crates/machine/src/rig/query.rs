@@ -1,0 +1,174 @@
+//! Which command asks for which point.
+
+use super::model::{Model, Terminals};
+use super::point::{AnalogInput, DigitalInput, GatedCounter, Point};
+use super::wiring::{AnalogTerminal, LineId, Module, ModuleId, Terminal, Wiring};
+use dcon::{Channel, Command, DataFormat, Digital, InputForm, OutputForm, UpTo};
+use std::collections::BTreeSet;
+
+impl Module {
+    /// How its readings are printed; `None` unless it measures.
+    pub fn input_form(&self) -> Option<InputForm> {
+        let format = self.format?;
+        if self.model.channels(Terminals::AnalogIn) > 0 {
+            Some(InputForm::eight(format, self.type_code))
+        } else if self.model.channels(Terminals::Temperature) > 0 {
+            Some(InputForm::three(format, self.type_code))
+        } else {
+            None
+        }
+    }
+
+    /// How its levels are written; `None` unless it has an analog output.
+    pub fn output_form(&self) -> Option<OutputForm> {
+        if self.model.channels(Terminals::AnalogOut) == 0 {
+            return None;
+        }
+        Some(match self.format? {
+            DataFormat::Engineering => OutputForm::Engineering,
+            DataFormat::Percent => OutputForm::Percent,
+            DataFormat::Hex if self.model == Model::I7021P => OutputForm::Hex16,
+            DataFormat::Hex => OutputForm::Hex12,
+        })
+    }
+
+    /// The only enabled channel of an analog input module, when there is only one.
+    fn lone_channel(&self) -> Option<Channel> {
+        let mask = self.mask?;
+        if mask.count_ones() == 1 {
+            Channel::new(mask.trailing_zeros() as u8)
+        } else {
+            None
+        }
+    }
+}
+
+impl Wiring {
+    /// The read that refreshes what the image knows of a module: all inputs or outputs, all readings (the one
+    /// enabled channel, if only one is), the present level, counter 0.
+    pub fn poll(&self, module: ModuleId) -> Command {
+        let module = self.module(module);
+        if let Some(form) = module.input_form() {
+            return match module.lone_channel() {
+                Some(channel) => dcon::AnalogIn::ReadOne { channel, form }.to(module.address),
+                None => dcon::AnalogIn::ReadAll(form).to(module.address),
+            };
+        }
+        if let Some(form) = module.output_form() {
+            return dcon::AnalogOut::ReadPresent {
+                channel: None,
+                form,
+            }
+            .to(module.address);
+        }
+        if module.model.channels(Terminals::Counter) > 0 {
+            return dcon::Counter::Read(FIRST).to(module.address);
+        }
+        Digital::ReadPort.to(module.address)
+    }
+
+    /// The transactions that read these points, in their order, each with its line: all inputs of a module in one,
+    /// several of its analog channels in one scan, everything else by itself.
+    pub fn reads(&self, points: &[Point]) -> Vec<(LineId, Command)> {
+        let mut asked: Vec<(ModuleId, Command)> = Vec::new();
+        for point in points {
+            let one @ (module, command) = self.read(*point, points);
+            let known = |it: &(ModuleId, Command)| it.0 == module && it.1 == command;
+            if !asked.iter().any(known) {
+                asked.push(one);
+            }
+        }
+        let sent = |(module, command)| (self.module(module).line, command);
+        asked.into_iter().map(sent).collect()
+    }
+
+    /// What reads one point, while others are wanted beside it.
+    fn read(&self, point: Point, wanted: &[Point]) -> (ModuleId, Command) {
+        match point {
+            Point::Input(input) => {
+                let module = self.digital_in(input).module;
+                (module, self.poll(module))
+            }
+            Point::Analog(input) => {
+                let at = self.analog_in(input);
+                let here = |it: &&Point| matches!(it, Point::Analog(other) if self.analog_in(*other).module == at.module);
+                let command = match wanted.iter().filter(here).count() {
+                    1 => self.read_one(at),
+                    _ => self.scan(at.module),
+                };
+                (at.module, command)
+            }
+            Point::Temperature(point) => {
+                let at = self.temperature(point);
+                (at.module, self.read_one(at))
+            }
+            Point::Count(counter) => (self.counter(counter).module, self.read_counter(counter)),
+        }
+    }
+
+    /// All enabled channels of a converter.
+    fn scan(&self, module: ModuleId) -> Command {
+        match self.module(module).input_form() {
+            Some(form) => dcon::AnalogIn::ReadAll(form).to(self.module(module).address),
+            None => self.poll(module),
+        }
+    }
+
+    /// The writes after which the converters of these inputs convert them and nothing else. They write EEPROM.
+    pub fn masks(&self, inputs: &[AnalogInput]) -> Vec<(LineId, Command)> {
+        let modules: BTreeSet<ModuleId> =
+            inputs.iter().map(|it| self.analog_in(*it).module).collect();
+        let write = |id: ModuleId| {
+            let (module, mask) = (self.module(id), self.mask_of(id, inputs));
+            (
+                module.line,
+                dcon::AnalogIn::WriteMask(mask).to(module.address),
+            )
+        };
+        modules.into_iter().map(write).collect()
+    }
+
+    /// Channel mask of one converter while these inputs are converted and nothing else; 0 when it has none of them.
+    pub fn mask_of(&self, module: ModuleId, inputs: &[AnalogInput]) -> u8 {
+        let here = inputs.iter().map(|input| self.analog_in(*input));
+        let here = here.filter(|at| at.module == module);
+        here.fold(0, |mask, at| mask | 1 << at.channel.get())
+    }
+
+    fn read_counter(&self, point: GatedCounter) -> Command {
+        let terminal = self.counter(point);
+        let number = UpTo::new(terminal.channel.get()).unwrap_or(FIRST);
+        dcon::Counter::Read(number).to(self.module(terminal.module).address)
+    }
+
+    /// Reads the event counter of a digital input.
+    pub fn read_events(&self, point: impl Into<DigitalInput>) -> Command {
+        let Terminal {
+            module, channel, ..
+        } = self.digital_in(point);
+        Digital::ReadEvents { channel }.to(self.module(module).address)
+    }
+
+    /// Clears the event counter of a digital input. Prefer differences modulo 65536.
+    pub fn clear_events(&self, point: impl Into<DigitalInput>) -> Command {
+        let Terminal {
+            module, channel, ..
+        } = self.digital_in(point);
+        Digital::ClearEvents { channel }.to(self.module(module).address)
+    }
+
+    fn read_one(&self, terminal: AnalogTerminal) -> Command {
+        let module = self.module(terminal.module);
+        match module.input_form() {
+            Some(form) => dcon::AnalogIn::ReadOne {
+                channel: terminal.channel,
+                form,
+            }
+            .to(module.address),
+            None => self.poll(terminal.module),
+        }
+    }
+}
+
+/// The first counter of a module.
+const FIRST: UpTo<1> = UpTo::<1>::new(0).expect("0 is a counter");

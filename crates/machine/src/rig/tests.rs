@@ -1,0 +1,29 @@
+//! Facts about points, samples, outputs and commissioning, on the default rig.
+#![allow(clippy::unwrap_used)]
+
+mod commission;
+mod drive;
+mod image;
+mod reaction;
+
+use super::settings::RigSettings;
+use super::wiring::{LineId, Wiring};
+use dcon::Command;
+use std::sync::Arc;
+
+fn wiring() -> Arc<Wiring> {
+    let settings: RigSettings =
+        toml::from_str(include_str!("../../../../config/rig.toml")).unwrap();
+    Arc::new(Wiring::resolve(&settings, crate::dut::FIXTURES).unwrap())
+}
+
+fn motion(wiring: &Wiring) -> LineId {
+    wiring.line_named("motion").unwrap()
+}
+
+/// The request as it goes out on a line without check sum, CR left off.
+fn text(command: &Command) -> String {
+    let mut bytes = Vec::new();
+    command.encode(false, &mut bytes);
+    String::from_utf8(bytes).unwrap().trim_end().to_owned()
+}

@@ -1,0 +1,36 @@
+//! How long the emergency-stop contact may go unnoticed.
+
+use crate::rig::settings::RigSettings;
+use crate::rig::wiring::Wiring;
+use units::Span;
+
+fn settings() -> RigSettings {
+    toml::from_str(include_str!("../../../../../config/rig.toml")).unwrap()
+}
+
+#[test]
+fn the_bound_is_poll_failure_poll_and_a_write_to_each_module() {
+    // Frames of 13 + 12 + 2 characters with 30 ms, eleven times (poll, poll again, who is there, asked, given up,
+    // who is there, poll, given up, who is there, two writes), and 12 characters with 30 ms twice, for silence; each
+    // wire time rounded up to the microsecond.
+    let bound = Wiring::resolve(&settings(), crate::dut::FIXTURES)
+        .unwrap()
+        .longest_reaction();
+    assert_eq!(bound, Span(11 * (2_344 + 30_000) + 2 * (1_042 + 30_000)));
+}
+
+#[test]
+fn a_slower_line_or_an_analog_module_beside_the_contact_lengthens_it() {
+    let mut slow = settings();
+    slow.line.get_mut("motion").unwrap().baud = 9600;
+    slow.safety.estop_reaction_ms = 800.0;
+    let bound = Wiring::resolve(&slow, crate::dut::FIXTURES)
+        .unwrap()
+        .longest_reaction();
+    assert_eq!(bound, Span(11 * (28_125 + 30_000) + 2 * (12_500 + 30_000)));
+    let mut shared = settings();
+    let contact = shared.digital_in.get_mut("emergency_stop_ok").unwrap();
+    (contact.module, contact.channel) = ("board_di".to_owned(), 11);
+    let fault = Wiring::resolve(&shared, crate::dut::FIXTURES).unwrap_err();
+    assert_eq!(fault.key, "safety.estop_reaction_ms");
+}

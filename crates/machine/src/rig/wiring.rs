@@ -1,0 +1,339 @@
+//! The rig as it is wired: every name of `config/rig.toml` resolved to line, module and channel.
+//!
+//! A [`Wiring`] exists only after all of it was checked (see [`super::resolve`]): every point has a
+//! terminal of its own on a module that has such terminals, no address is used twice on a line, and
+//! the reaction to the emergency stop is as short as the plant demands.
+
+use super::axis::AxisTable;
+use super::model::Model;
+use super::point::{
+    AnalogInput, AnalogOutput, DigitalIn, DigitalInput, DigitalOut, DigitalOutput, GatedCounter,
+    Quantity, Switch, Thermometer,
+};
+use super::settings::{BusSettings, SafetySettings};
+use dcon::{Address, Channel, DataFormat, SlewCode, TypeCode};
+use std::collections::BTreeSet;
+use units::Span;
+
+/// Index of a line in [`Wiring::lines`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LineId(pub usize);
+
+/// Index of a module in [`Wiring::modules`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ModuleId(pub usize);
+
+/// One RS-485 line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Line {
+    /// Its name in the file.
+    pub name: String,
+    /// Path of the serial port.
+    pub port: String,
+    /// Bits per second.
+    pub baud: u32,
+    /// Whether its modules check and send check sums.
+    pub checksum: bool,
+}
+
+/// One module, as it must be found at start.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Module {
+    /// Its name in the file.
+    pub name: String,
+    /// The line it hangs on.
+    pub line: LineId,
+    /// Its address on that line.
+    pub address: Address,
+    /// Its model.
+    pub model: Model,
+    /// Type code TT of the configuration word.
+    pub type_code: TypeCode,
+    /// Data format; `None` for modules without analog data.
+    pub format: Option<DataFormat>,
+    /// Fast mode of an analog input module.
+    pub fast: bool,
+    /// Enabled channels of an analog input module, bit n = channel n.
+    pub mask: Option<u8>,
+    /// Slew code of an analog output module.
+    pub slew: Option<SlewCode>,
+    /// Whether its host watchdog must be on.
+    pub watchdog: bool,
+    /// Safe value of an analog output, V at the terminal.
+    pub safe_volts: f64,
+    /// Safe value of its digital outputs.
+    pub safe_outputs: u16,
+}
+
+/// Where a digital point is wired.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Terminal {
+    /// The module.
+    pub module: ModuleId,
+    /// Channel, from 0.
+    pub channel: Channel,
+    /// True when the bit reads 0 while the signal is present.
+    pub active_low: bool,
+}
+
+impl Terminal {
+    /// The signal in a word of this module's bits.
+    pub fn read(self, bits: u16) -> bool {
+        (bits & self.bit() != 0) != self.active_low
+    }
+
+    /// The bit of this channel.
+    pub fn bit(self) -> u16 {
+        1 << self.channel.get()
+    }
+}
+
+/// Where an analog point is wired.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AnalogTerminal {
+    /// The module.
+    pub module: ModuleId,
+    /// Channel, from 0.
+    pub channel: Channel,
+    /// Inputs: volts at the terminal per unit of the quantity. Outputs: volts of the coil supply per
+    /// volt at the terminal. Thermometers and counters: 1.
+    pub gain: f64,
+}
+
+/// Longest time a stroke may take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StrokeLimits {
+    /// Escapement.
+    pub escapement: Span,
+    /// Feed pusher.
+    pub pusher: Span,
+    /// Clamp, both jaws.
+    pub clamp: Span,
+    /// Probe lift.
+    pub probe_lift: Span,
+    /// Sort z.
+    pub sort_z: Span,
+    /// Gripper.
+    pub gripper: Span,
+    /// Longest travel of the sort axis.
+    pub axis: Span,
+}
+
+/// The whole rig, resolved and checked. Unchanging while the program runs.
+#[derive(Debug, Clone)]
+pub struct Wiring {
+    /// Lines in alphabetical order.
+    pub lines: Vec<Line>,
+    /// Modules by line and address.
+    pub modules: Vec<Module>,
+    /// Times and counts of every line.
+    pub bus: BusSettings,
+    /// What the plant demands of the emergency stop.
+    pub safety: SafetySettings,
+    /// Longest strokes.
+    pub strokes: StrokeLimits,
+    /// Points of the sort axis and the bins at them.
+    pub axis: AxisTable,
+    /// Inputs of the machine, of the fixtures, beams.
+    pub(super) digital_in: Vec<(String, Terminal)>,
+    /// Outputs of the machine, of the fixtures.
+    pub(super) digital_out: Vec<(Switch, Terminal)>,
+    pub(super) analog_in: Vec<(Quantity, AnalogTerminal)>,
+    pub(super) analog_out: Vec<(&'static str, AnalogTerminal)>,
+    pub(super) temperature: Vec<(&'static str, AnalogTerminal)>,
+    pub(super) counter: Vec<(&'static str, AnalogTerminal)>,
+    /// How many of the digital inputs belong to the machine and the fixtures: the beams come behind them.
+    pub(super) before_beams: usize,
+}
+
+/// The place of a name in a table.
+fn named<'a>(mut names: impl Iterator<Item = &'a str>, name: &str) -> Option<usize> {
+    names.position(|known| known == name)
+}
+
+impl Wiring {
+    /// A line by its index.
+    pub fn line(&self, line: LineId) -> &Line {
+        &self.lines[line.0]
+    }
+
+    /// A module by its index.
+    pub fn module(&self, module: ModuleId) -> &Module {
+        &self.modules[module.0]
+    }
+
+    /// A line by its name.
+    pub fn line_named(&self, name: &str) -> Option<LineId> {
+        self.lines
+            .iter()
+            .position(|line| line.name == name)
+            .map(LineId)
+    }
+
+    /// A module by its name.
+    pub fn module_named(&self, name: &str) -> Option<ModuleId> {
+        self.modules
+            .iter()
+            .position(|module| module.name == name)
+            .map(ModuleId)
+    }
+
+    /// The module at an address of a line.
+    pub fn at(&self, line: LineId, address: Address) -> Option<ModuleId> {
+        let here = |module: &Module| module.line == line && module.address == address;
+        self.modules.iter().position(here).map(ModuleId)
+    }
+
+    /// Every line.
+    pub fn line_ids(&self) -> impl Iterator<Item = LineId> + use<> {
+        (0..self.lines.len()).map(LineId)
+    }
+
+    /// Every module.
+    pub fn module_ids(&self) -> impl Iterator<Item = ModuleId> + use<> {
+        (0..self.modules.len()).map(ModuleId)
+    }
+
+    /// The modules of a line, by address.
+    pub fn modules_on(&self, line: LineId) -> impl Iterator<Item = ModuleId> {
+        self.module_ids()
+            .filter(move |module| self.module(*module).line == line)
+    }
+
+    /// Where a digital input is wired.
+    pub fn digital_in(&self, point: impl Into<DigitalInput>) -> Terminal {
+        self.digital_in[point.into().index()].1
+    }
+
+    /// Where a digital output is wired.
+    pub fn digital_out(&self, point: impl Into<DigitalOutput>) -> Terminal {
+        self.digital_out[point.into().index()].1
+    }
+
+    /// Where an analog input is wired.
+    pub fn analog_in(&self, point: AnalogInput) -> AnalogTerminal {
+        self.analog_in[point.index()].1
+    }
+
+    /// Where an analog output is wired.
+    pub fn analog_out(&self, point: AnalogOutput) -> AnalogTerminal {
+        self.analog_out[point.index()].1
+    }
+
+    /// Where a thermometer is wired.
+    pub fn temperature(&self, point: Thermometer) -> AnalogTerminal {
+        self.temperature[point.index()].1
+    }
+
+    /// Where a counter is wired.
+    pub fn counter(&self, point: GatedCounter) -> AnalogTerminal {
+        self.counter[point.index()].1
+    }
+
+    /// What a kind declares of an output: its name, and whether it is traced.
+    pub fn switch(&self, point: DigitalOutput) -> Switch {
+        self.digital_out[point.index()].0
+    }
+
+    /// What an analog input measures.
+    pub fn quantity(&self, point: AnalogInput) -> Quantity {
+        self.analog_in[point.index()].0
+    }
+
+    /// Name of a digital input.
+    pub fn input_name(&self, point: impl Into<DigitalInput>) -> &str {
+        &self.digital_in[point.into().index()].0
+    }
+
+    /// Name of a thermometer.
+    pub fn thermometer_name(&self, point: Thermometer) -> &'static str {
+        self.temperature[point.index()].0
+    }
+
+    /// Name of an analog output.
+    pub fn source_name(&self, point: AnalogOutput) -> &'static str {
+        self.analog_out[point.index()].0
+    }
+
+    /// Name of a counter.
+    pub fn counter_name(&self, point: GatedCounter) -> &'static str {
+        self.counter[point.index()].0
+    }
+
+    /// The digital input of this name; `None` when the rig has none.
+    pub fn digital_input(&self, name: &str) -> Option<DigitalInput> {
+        named(self.digital_in.iter().map(|it| it.0.as_str()), name).map(DigitalInput::at)
+    }
+
+    /// The digital output of this name.
+    pub fn digital_output(&self, name: &str) -> Option<DigitalOutput> {
+        named(self.digital_out.iter().map(|it| it.0.name), name).map(DigitalOutput::at)
+    }
+
+    /// The analog input of this name.
+    pub fn analog_input(&self, name: &str) -> Option<AnalogInput> {
+        named(self.analog_in.iter().map(|it| it.0.name), name).map(AnalogInput::at)
+    }
+
+    /// The analog output of this name.
+    pub fn analog_output(&self, name: &str) -> Option<AnalogOutput> {
+        named(self.analog_out.iter().map(|it| it.0), name).map(AnalogOutput::at)
+    }
+
+    /// The thermometer of this name.
+    pub fn thermometer(&self, name: &str) -> Option<Thermometer> {
+        named(self.temperature.iter().map(|it| it.0), name).map(Thermometer::at)
+    }
+
+    /// The counter of this name.
+    pub fn gated_counter(&self, name: &str) -> Option<GatedCounter> {
+        named(self.counter.iter().map(|it| it.0), name).map(GatedCounter::at)
+    }
+
+    /// Every digital input with its name, as screens list them: fixtures, machine, beams.
+    pub fn digital_inputs(&self) -> impl Iterator<Item = (&str, DigitalInput)> {
+        let (machine, all) = (DigitalIn::COUNT, self.digital_in.len());
+        (machine..self.before_beams)
+            .chain(0..machine)
+            .chain(self.before_beams..all)
+            .map(|at| (self.digital_in[at].0.as_str(), DigitalInput::at(at)))
+    }
+
+    /// Every digital output with its name, as screens list them: fixtures, machine.
+    pub fn digital_outputs(&self) -> impl Iterator<Item = (&'static str, DigitalOutput)> {
+        let machine = DigitalOut::COUNT;
+        (machine..self.digital_out.len())
+            .chain(0..machine)
+            .map(|at| (self.digital_out[at].0.name, DigitalOutput::at(at)))
+    }
+
+    /// Lines that carry points of a fixture: there measuring jobs go. In order, each once.
+    pub fn measuring_lines(&self) -> Vec<LineId> {
+        let inputs = self.digital_in[DigitalIn::COUNT..self.before_beams].iter();
+        let outputs = self.digital_out[DigitalOut::COUNT..].iter();
+        let digital = inputs
+            .map(|it| it.1.module)
+            .chain(outputs.map(|it| it.1.module));
+        let analog = self.analog_in.iter().map(|it| it.1.module);
+        let other = [&self.analog_out, &self.temperature, &self.counter];
+        let other = other.into_iter().flatten().map(|it| it.1.module);
+        let modules = digital.chain(analog).chain(other);
+        let lines: BTreeSet<LineId> = modules.map(|it| self.module(it).line).collect();
+        lines.into_iter().collect()
+    }
+
+    /// The module that carries the emergency-stop contact: every second transaction of its line.
+    pub fn emergency_stop_module(&self) -> ModuleId {
+        self.digital_in(DigitalIn::EmergencyStopOk).module
+    }
+
+    /// Attempts at a repeatable command. One on the line of the emergency stop, where a repetition
+    /// would delay the next look at the contact: there the next scan is the repetition.
+    pub fn tries_on(&self, line: LineId) -> u8 {
+        if self.module(self.emergency_stop_module()).line == line {
+            1
+        } else {
+            self.bus.tries
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! What the station learns before and during a lot: factors from the references, and whatever the kind of part learns
+//! from reference parts and from every part of the lot.
+
+use super::Station;
+use super::gates::Told;
+use super::trouble::Alarm;
+use super::wants::Wants;
+use crate::dut::device::{CalibrationFault, Made};
+use crate::dut::{Calibration, Verdict};
+use crate::handling::Place;
+use crate::handling::ledger::Kind;
+use crate::instrument::act::Runner;
+use std::collections::VecDeque;
+use units::RigTime;
+
+impl Station {
+    /// Draws the factors from what was read against the references.
+    pub(super) fn conclude_references(
+        &mut self,
+        now: RigTime,
+        runner: &Runner,
+    ) -> Result<(), CalibrationFault> {
+        let made = Made {
+            at_us: self.plan.epoch_us + i64::try_from(now.0).unwrap_or(i64::MAX),
+            valid_us: self.plan.valid_us,
+            simulated: self.plan.simulated,
+        };
+        self.device.conclude_references(&runner.readings, made)
+    }
+
+    /// References and golden parts are measured again with the next start; the golden parts have to lie in front.
+    pub(super) fn recalibrate(&mut self) {
+        self.plan.calibrated = false;
+        self.referenced = false;
+        let all: VecDeque<String> = self.plan.golden.iter().cloned().collect();
+        self.lot.golden_planned += all.len().saturating_sub(self.lot.golden_left.len()) as u64;
+        self.lot.golden_left = all;
+        self.device.forget_calibration();
+    }
+
+    /// What the parts judged in this turn say of the rig and of the lot.
+    pub(super) fn learn(&mut self, wants: &mut Wants) {
+        let mut told = Told::default();
+        for judged in &wants.record.parts.judged {
+            match &judged.part.kind {
+                Kind::Golden(serial) if self.lot.gates.is_checking() => {
+                    self.check(judged, serial, &mut told);
+                }
+                Kind::Golden(_) | Kind::Lot(_) if judged.part.interrupted.is_some() => {}
+                Kind::Golden(serial) => {
+                    let last = self.lot.golden_left.is_empty();
+                    let learned = self.device.learn_reference(serial, &judged.record, last);
+                    calibrated(learned, &mut wants.record.calibrated, &mut told);
+                }
+                Kind::Lot(_) => {
+                    self.count_discards(judged, &mut told);
+                    let pass = judged.verdict == Verdict::Pass;
+                    self.device.learn(&judged.record, pass);
+                }
+            }
+        }
+        wants.notes.trouble.extend(told.trouble);
+        wants.record.checked = told.checked;
+    }
+
+    /// Serial number of the golden part in the nest, while golden parts teach and are not checked.
+    pub(super) fn teaching(&self) -> Option<&str> {
+        match self.line.ledger.part(Place::NEST).map(|part| &part.kind) {
+            Some(Kind::Golden(serial)) if !self.lot.gates.is_checking() => Some(serial),
+            Some(Kind::Golden(_) | Kind::Lot(_)) | None => None,
+        }
+    }
+
+    /// The last golden part was interrupted: what the others taught has to do, or the calibration has failed.
+    pub(super) fn end_golden_run(&mut self, wants: &mut Wants) {
+        if self.referenced && self.lot.golden_left.is_empty() && self.is_calibrating() {
+            let mut told = Told::default();
+            let complete = self.device.conclude_reference_parts().map(Some);
+            calibrated(complete, &mut wants.record.calibrated, &mut told);
+            wants.notes.trouble.extend(told.trouble);
+        }
+    }
+}
+
+fn calibrated(
+    learned: Result<Option<Calibration>, CalibrationFault>,
+    calibration: &mut Option<Calibration>,
+    told: &mut Told,
+) {
+    match learned {
+        Ok(complete) => *calibration = complete.or(calibration.take()),
+        Err(why) => told.trouble.push(Alarm::calibration(&why.to_string())),
+    }
+}

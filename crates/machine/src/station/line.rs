@@ -1,0 +1,131 @@
+//! The line as the station holds it: feeder, mechanism, where parts are, and motions that wait.
+
+use super::wants::{Inputs, Wants};
+use crate::guard::Situation;
+use crate::handling::mechanism::DEBOUNCE;
+use crate::handling::recovery::Recovery;
+use crate::handling::turn::Turn;
+use crate::handling::{Feeder, Ledger, Mechanism, Move, Place};
+use crate::rig::image::Image;
+use crate::rig::point::DigitalInput;
+use std::collections::VecDeque;
+use units::RigTime;
+
+/// Feeder, mechanism and ledger.
+#[derive(Debug)]
+pub(super) struct Line {
+    pub feeder: Feeder,
+    pub ledger: Ledger,
+    pub mechanism: Mechanism,
+    pub recovery: Recovery,
+    /// Every actuator was brought home and nothing was moved by hand or made safe since.
+    pub homed: bool,
+    /// Beams that are dark, and since when.
+    pub dark: Vec<(DigitalInput, RigTime)>,
+    /// Motions that wait for a step in maintenance.
+    pub stepwise: VecDeque<Move>,
+    /// Motions that wait until no end sensor is in doubt.
+    pub postponed: Vec<Move>,
+}
+
+impl Line {
+    pub fn new(feeder: Feeder, ledger: Ledger, mechanism: Mechanism) -> Self {
+        Self {
+            feeder,
+            ledger,
+            mechanism,
+            recovery: Recovery::default(),
+            homed: false,
+            dark: Vec::new(),
+            stepwise: VecDeque::new(),
+            postponed: Vec::new(),
+        }
+    }
+
+    /// Feeder and homing, and the turn that either of them may have.
+    pub fn at<'a>(
+        &'a mut self,
+        now: RigTime,
+        inputs: &'a Inputs,
+        wants: &'a mut Wants,
+        golden: &'a mut VecDeque<String>,
+        resting: bool,
+    ) -> (&'a mut Feeder, &'a mut Recovery, Turn<'a>) {
+        assert!(wants.notes.feeder.is_empty(), "trouble was left over");
+        let turn = Turn {
+            now,
+            image: inputs.image,
+            mechanism: &self.mechanism,
+            ledger: &mut self.ledger,
+            rig: &mut wants.rig,
+            parts: &mut wants.record.parts,
+            trouble: &mut wants.notes.feeder,
+            golden,
+            recorded: inputs.recorded,
+            resting,
+        };
+        (&mut self.feeder, &mut self.recovery, turn)
+    }
+
+    /// Checks what holds after every turn.
+    pub fn check(&self) {
+        let ledger = &self.ledger;
+        assert!(ledger.balances(), "a part is in two places or in none");
+        let places = self.feeder.nests().len() as u64 + 3;
+        assert!(ledger.inside() <= places, "more parts than places");
+        let beams = self.feeder.beams().count();
+        assert!(self.dark.len() <= beams, "a dark beam of no bin");
+    }
+
+    /// Every output has gone safe: nothing is known of any position from here on.
+    pub fn cut_off(&mut self) {
+        self.feeder.cut_off(&self.ledger);
+        self.stepwise.clear();
+        self.postponed.clear();
+        self.mechanism.forget();
+        self.homed = false;
+    }
+
+    /// A motion was cleared and driven.
+    pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
+        self.mechanism.driven(movement, now, image);
+        self.feeder.driven(movement, &mut self.ledger, now);
+    }
+
+    /// Situation for the guard.
+    pub fn situation(&self, now: RigTime, image: &Image) -> Situation {
+        let parts = self.feeder.part_places(&self.ledger);
+        self.mechanism.situation(parts, now, image)
+    }
+
+    /// No motion begins while an end sensor is in doubt: the guard would have to assume the whole stroke.
+    pub fn postpone(&mut self, now: RigTime, wants: &mut Wants) {
+        self.postponed.append(&mut wants.rig.motions);
+        if self.mechanism.is_in_doubt() {
+            let soon = now + DEBOUNCE;
+            let wake_at = &mut wants.rig.wake_at;
+            *wake_at = Some(wake_at.map_or(soon, |at| at.min(soon)));
+        } else {
+            wants.rig.motions.append(&mut self.postponed);
+        }
+        let waiting = self.stepwise.iter().chain(&self.postponed).copied();
+        self.mechanism.keep_waiting(&waiting.collect::<Vec<_>>());
+    }
+
+    /// Every part stands where it may wait.
+    pub fn is_at_rest(&self) -> bool {
+        self.feeder.is_at_rest(!self.dark.is_empty())
+            && !self.ledger.holds(Place::Falling)
+            && self.mechanism.moving().next().is_none()
+    }
+
+    /// Nothing inside but, without `pocket`, a part that waits there; rows of the last one are durable.
+    pub fn is_finished(&self, pocket: bool, recorded: u64, wants: &Wants) -> bool {
+        let ledger = &self.ledger;
+        let empty = ledger.each().all(|(place, _)| place == Place::Pocket);
+        let waiting = ledger.holds(Place::Pocket) && (pocket || ledger.is_pocket_found());
+        let mut judged = wants.record.parts.judged.iter();
+        let durable = judged.all(|judged| judged.part.ordinal <= recorded);
+        empty && !waiting && durable && self.feeder.is_empty_handed()
+    }
+}

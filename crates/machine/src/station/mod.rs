@@ -1,0 +1,315 @@
+//! The station: the sequence as a specification.
+//!
+//! `Station::step(now, inputs) -> Wants` is a function of its state and arguments: no clock, no I/O, no
+//! `async`. It may be called at any time and as often as one likes; deadlines are kept in the states.
+//!
+//! The outer machine is [`packml`]; what a state does is in `states`, who may ask for what in `asked`.
+//! 1. `Resetting`: [`crate::handling::recovery`] brings every actuator to its rest end and discharges what is found inside;
+//! 2. `Starting`: without a valid calibration probes up in the empty nest, measurements of the references;
+//! 3. `Execute`: golden parts when there is no calibration, then the lot behind its [`gates`], through the
+//!    [`crate::handling::feeder`];
+//! 4. `Completing`, `Stopping`, `Holding`, `Suspending`: the parts inside go as far as they can rest.
+//!
+//! Trouble: an [`trouble::Alarm`] stops what the [`catalogue`] says and stands in the [`annunciator`] until its
+//! cause is gone and somebody has seen it. After `clear` and `reset` the station goes on from where it is. A
+//! part inside is void, "interrupted". A stale sensor is trouble, never a guess.
+//!
+//! A run ends with its lot, or when a person leaves the lot for another one. Without a person at a screen
+//! ([`Plan::stays`] is false) an alarm that would need one ends the run, too. The station resets and starts a lot by
+//! itself; between lots ([`Plan::between_lots`]) it does nothing unless it is asked.
+
+pub mod annunciator;
+mod asked;
+pub mod catalogue;
+mod chinese;
+pub mod gates;
+mod lamps;
+mod learning;
+mod line;
+mod machine;
+pub mod orders;
+pub mod packml;
+mod panel;
+mod patience;
+mod produce;
+mod safety;
+mod states;
+pub mod trouble;
+pub mod wants;
+
+use crate::dut::Device;
+use crate::guard::{Motion, Situation};
+use crate::handling::inside::Inside;
+use crate::handling::wear::Uses;
+use crate::handling::{Feeder, Ledger, Mechanism, Move};
+use crate::instrument::act::Runner;
+use crate::rig::axis::AxisTable;
+use crate::rig::image::Image;
+use annunciator::Annunciator;
+use gates::{Gates, LotSettings};
+use lamps::Lamps;
+use line::Line;
+use machine::Machine;
+use packml::{Mode, State};
+use panel::Panel;
+use patience::Patience;
+use std::collections::VecDeque;
+use units::RigTime;
+use wants::{Inputs, Wants};
+
+/// What a run is to do.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Parts of the lot; `None` goes on until stopped.
+    pub count: Option<u64>,
+    /// Serial numbers of the golden parts at the head of the magazine, used when there is no calibration.
+    pub golden: Vec<String>,
+    /// A calibration is at hand: neither references nor golden parts are run.
+    pub calibrated: bool,
+    /// Life of a calibration, microseconds.
+    pub valid_us: i64,
+    /// Wall clock at rig time zero, microseconds since 1970 UTC.
+    pub epoch_us: i64,
+    /// The rig is simulated.
+    pub simulated: bool,
+    /// A person is at a screen: alarms and stops do not end the run.
+    pub stays: bool,
+    /// Between lots nothing begins by itself and no part is wanted; what is found inside is discharged. The machine
+    /// rests in this state, as the lot before has left it. None: there is a lot.
+    pub between_lots: Option<State>,
+    /// Gates of the lot.
+    pub lot: LotSettings,
+    /// Uses of what wears before this run.
+    pub worn: Uses,
+    /// What the run before left inside.
+    pub left: Inside,
+}
+
+/// What `Starting` is doing.
+#[derive(Debug)]
+enum Start {
+    /// Nothing asked for yet.
+    Begin,
+    /// Probes rise in the empty nest.
+    Up,
+    References(Box<Runner>),
+    /// Probes go down again.
+    Down,
+}
+
+/// State of the whole station.
+#[derive(Debug)]
+pub struct Station {
+    plan: Plan,
+    /// The kind under test, with what parts have taught.
+    device: Device,
+    start: Start,
+    /// References were measured in this run.
+    referenced: bool,
+    machine: Machine,
+    line: Line,
+    lot: LotControl,
+    alarms: Alarms,
+}
+
+/// What the lot lets be judged next.
+#[derive(Debug)]
+struct LotControl {
+    gates: Gates,
+    golden_left: VecDeque<String>,
+    /// Golden parts that this run has asked for so far.
+    golden_planned: u64,
+    /// Calibration and golden parts are over.
+    began: bool,
+}
+
+impl LotControl {
+    /// Checks what holds after every turn.
+    fn check(&self) {
+        let left = self.golden_left.len() as u64;
+        assert!(self.golden_planned >= left, "golden parts nobody planned");
+    }
+}
+
+/// What watches the machine, and what shows it to a person beside it.
+#[derive(Debug, Default)]
+struct Alarms {
+    annunciator: Annunciator,
+    patience: Patience,
+    panel: Panel,
+    lamps: Lamps,
+    /// When the emergency-stop chain was last seen open.
+    chain_open: Option<RigTime>,
+    /// Safety inputs were read since the start or since the modules were verified.
+    sensed: bool,
+}
+
+impl Station {
+    /// A station that knows nothing of its sensors yet.
+    pub fn new(plan: Plan, device: Device, table: AxisTable, mechanism: Mechanism) -> Self {
+        let golden_left = if plan.calibrated {
+            VecDeque::new()
+        } else {
+            plan.golden.iter().cloned().collect()
+        };
+        let ledger = Ledger::after(plan.left);
+        let mut station = Self {
+            machine: Machine::new(plan.between_lots.unwrap_or(State::Stopped)),
+            line: Line::new(Feeder::new(table), ledger, mechanism),
+            lot: LotControl {
+                gates: Gates::default(),
+                golden_planned: golden_left.len() as u64,
+                golden_left,
+                began: false,
+            },
+            alarms: Alarms::default(),
+            plan,
+            device,
+            start: Start::Begin,
+            referenced: false,
+        };
+        if station.plan.calibrated && station.plan.lot.golden_check.at_start {
+            station.begin_check();
+        }
+        station
+    }
+
+    /// The part ledger.
+    pub fn ledger(&self) -> &Ledger {
+        &self.line.ledger
+    }
+
+    /// Sensors and motions.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.line.mechanism
+    }
+
+    /// Alarms that stand.
+    pub fn annunciator(&self) -> &Annunciator {
+        &self.alarms.annunciator
+    }
+
+    /// The same, to put in what a run before left unseen.
+    pub fn annunciator_mut(&mut self) -> &mut Annunciator {
+        &mut self.alarms.annunciator
+    }
+
+    /// A person is at a screen.
+    pub fn stays(&self) -> bool {
+        self.plan.stays
+    }
+
+    /// There is no lot.
+    pub fn is_between_lots(&self) -> bool {
+        self.plan.between_lots.is_some()
+    }
+
+    /// Strokes, touches and bounces since the start, by name.
+    pub fn wear(&self) -> Vec<(&'static str, u64)> {
+        self.line.mechanism.wear()
+    }
+
+    /// State of the outer machine.
+    pub fn outer(&self) -> State {
+        self.machine.state
+    }
+
+    /// What the machine is used for.
+    pub fn mode(&self) -> Mode {
+        self.machine.mode
+    }
+
+    /// What the station is doing, in words for a screen.
+    pub fn state(&self) -> String {
+        match self.machine.state {
+            _ if self.machine.ended => "ended".into(),
+            State::Resetting if !self.alarms.sensed => "waiting for sensors".into(),
+            State::Resetting if !self.line.homed => "homing".into(),
+            State::Resetting => "discharging".into(),
+            State::Starting => "calibrating".into(),
+            State::Execute | State::Completing => match self.line.feeder.test() {
+                Some(test) => format!("testing: {}", test.stage()),
+                None if self.lot.began => "running".into(),
+                None if self.lot.golden_left.is_empty() => "running".into(),
+                None => "golden parts".into(),
+            },
+            State::Stopped
+            | State::Idle
+            | State::Complete
+            | State::Holding
+            | State::Held
+            | State::Unholding
+            | State::Suspending
+            | State::Suspended
+            | State::Unsuspending
+            | State::Stopping
+            | State::Aborting
+            | State::Aborted
+            | State::Clearing => self.machine.state.name().to_lowercase(),
+        }
+    }
+
+    /// One turn.
+    pub fn step(&mut self, now: RigTime, mut inputs: Inputs) -> Wants {
+        let mut wants = Wants::default();
+        if self.machine.ended {
+            return wants;
+        }
+        self.machine.turn(now);
+        let ordered = inputs.orders.len();
+        if inputs.verified {
+            // What was read before the modules were asked is stale by now, and no trouble.
+            (self.alarms.sensed, self.machine.began) = (false, Some(now));
+        }
+        self.machine.began.get_or_insert(now);
+        for order in std::mem::take(&mut inputs.orders) {
+            let answer = self.order(order, now, &mut wants);
+            wants.answers.push(answer);
+        }
+        let stuck = self.pressed(now, inputs.image, &mut wants);
+        self.by_itself(now, &inputs, &mut wants);
+        if self.machine.ended {
+            return wants;
+        }
+        self.look(now, &inputs, stuck, &mut wants);
+        self.raise_all(now, &mut wants);
+        if !wants.rig.safe && !self.machine.ended {
+            self.act(now, inputs, &mut wants);
+            self.raise_all(now, &mut wants);
+        }
+        self.line.postpone(now, &mut wants);
+        self.alarms.annunciator.unshelve(now);
+        wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
+        let stack = self.alarms.lamps.show(
+            now,
+            self.machine.state,
+            self.alarms.annunciator.standing(),
+            wants.rig.safe,
+        );
+        wants.rig.outputs.extend(stack);
+        self.line.check();
+        self.lot.check();
+        wants.check(now, ordered);
+        let ends = wants.record.ending.is_some();
+        assert_eq!(ends, self.machine.ended, "the end and its event differ");
+        wants
+    }
+
+    /// A motion was cleared and driven.
+    pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
+        self.line.driven(movement, now, image);
+    }
+
+    /// The motion as the guard knows it.
+    pub fn motion(&self, movement: Move) -> Motion {
+        movement.motion(self.line.mechanism.strokes())
+    }
+
+    /// Situation for the guard.
+    pub fn situation(&self, now: RigTime, image: &Image) -> Situation {
+        self.line.situation(now, image)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

@@ -1,0 +1,117 @@
+//! The three push buttons at the machine. What they ask for is an order like any other: it may be refused, and goes to the
+//! audit with the origin `panel`.
+//!
+//! | button | order |
+//! |---|---|
+//! | start | goes on: `unhold` in Held, `unsuspend` in Suspended, else `start` |
+//! | stop | `stop`; nobody at a screen: the run ends when the parts inside are finished |
+//! | reset | `clear` after an abort, else `reset` |
+//!
+//! A button orders once, when it has been down for [`SETTLED`] after it was up for as long: neither a bounce nor a held
+//! button orders twice, and one that is down when the program begins orders nothing until it was let go. Stop goes
+//! before reset and start. One that stays down for [`HELD`] is stuck, or something leans on it: `button_stuck`, which
+//! stops nothing. An input that is not read says nothing.
+//!
+//! Times are those of the samples, so that one sample, however long it stands, never settles anything.
+
+use super::packml::{Command, State};
+use super::trouble::Alarm;
+use crate::handling::mechanism::SENSOR_AGE;
+use crate::rig::image::Image;
+use crate::rig::point::DigitalIn;
+use units::{RigTime, Span};
+
+/// Contacts of push buttons bounce for some 10 ms; a finger stays for 100.
+const SETTLED: Span = Span::ms(30);
+/// Nobody presses a button for so long.
+const HELD: Span = Span::ms(5_000);
+
+/// The buttons.
+#[derive(Debug)]
+pub(super) struct Panel([Button; 3]);
+
+#[derive(Debug)]
+struct Button {
+    point: DigitalIn,
+    /// As it was sampled last, and since which sample.
+    seen: Option<(bool, RigTime)>,
+    /// It was let go since it ordered, or since the start.
+    armed: bool,
+}
+
+impl Default for Panel {
+    fn default() -> Self {
+        let button = |point| Button {
+            point,
+            seen: None,
+            armed: false,
+        };
+        let points = [
+            DigitalIn::ButtonStop,
+            DigitalIn::ButtonReset,
+            DigitalIn::ButtonStart,
+        ];
+        Self(points.map(button))
+    }
+}
+
+impl Panel {
+    /// What was pressed, for a machine in `state`, and what is stuck.
+    pub(super) fn look(
+        &mut self,
+        now: RigTime,
+        image: &Image,
+        state: State,
+    ) -> (Vec<Command>, Vec<Alarm>) {
+        let (mut pressed, mut stuck) = (Vec::new(), Vec::new());
+        for button in &mut self.0 {
+            if button.orders(now, image) {
+                pressed.push(command(button.point, state));
+            }
+            if button.is_stuck(now) {
+                stuck.push(Alarm::button_stuck(button.point));
+            }
+        }
+        // Stop and start at once is stop.
+        pressed.truncate(1);
+        (pressed, stuck)
+    }
+}
+
+impl Button {
+    /// True once per press.
+    fn orders(&mut self, now: RigTime, image: &Image) -> bool {
+        let sample = image.input(self.point, now, SENSOR_AGE);
+        let (Some(down), Some(at)) = (sample, image.input_at(self.point)) else {
+            return false;
+        };
+        let since = match self.seen {
+            Some((seen, since)) if seen == down => since,
+            Some(_) | None => at,
+        };
+        assert!(since <= at, "a button changed after it was sampled");
+        self.seen = Some((down, since));
+        if at.since(since) < SETTLED {
+            return false;
+        }
+        let orders = down && self.armed;
+        self.armed = !down;
+        orders
+    }
+
+    fn is_stuck(&self, now: RigTime) -> bool {
+        self.seen
+            .is_some_and(|(down, since)| down && now.since(since) >= HELD)
+    }
+}
+
+fn command(button: DigitalIn, state: State) -> Command {
+    match (button, state) {
+        (DigitalIn::ButtonStop, _) => Command::Stop,
+        (DigitalIn::ButtonReset, State::Aborted) => Command::Clear,
+        (DigitalIn::ButtonReset, _) => Command::Reset,
+        (_, State::Held) => Command::Unhold,
+        (_, State::Suspended) => Command::Unsuspend,
+        (_, _) => Command::Start,
+    }
+}

@@ -1,0 +1,168 @@
+//! How long each step may wait: the deadline of every state that has none of its own.
+//!
+//! | step | waits for | at most |
+//! |---|---|---|
+//! | feed on its way | strokes, each with its own time-out and one more try | 6 s |
+//! | clamping, probing, gripping, unclamping | strokes | 6 s |
+//! | testing | the measuring line; the slow strategy takes below 10 s | 60 s |
+//! | judged | the sorter over the nest, fingers open, z down | 15 s |
+//! | lifting | z up and the nest empty | 2.5 s |
+//! | sorter on its way | strokes and the axis | 8 s |
+//! | over the bin | rows of the part durable, beam read, the part before landed | 15 s |
+//!
+//! The others wait for their neighbours, which have a deadline, or for parts, which are nobody's fault.
+//! A bin that is full stops the clock over the bin; in maintenance nothing is late.
+
+use super::packml::{Mode, State};
+use super::trouble::Alarm;
+use crate::handling::Feeder;
+use crate::handling::feed::Feed;
+use crate::handling::nest::NestState;
+use crate::handling::place::NestId;
+use crate::handling::sort::Sort;
+use units::{RigTime, Span};
+
+/// What waits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Who {
+    Feed,
+    Nest(NestId),
+    Sort,
+}
+
+/// A step under way.
+#[derive(Debug, Clone, Copy)]
+struct Step {
+    who: Who,
+    name: &'static str,
+    limit: Option<Span>,
+}
+
+/// Since when feed, nests and sorter are in their step.
+#[derive(Debug, Default)]
+pub struct Patience {
+    since: Vec<(Who, &'static str, RigTime)>,
+}
+
+impl Patience {
+    /// A new state of the outer machine: every clock begins anew.
+    pub fn forget(&mut self) {
+        self.since.clear();
+    }
+
+    /// The last of the steps that wait for too long.
+    pub fn look(
+        &mut self,
+        now: RigTime,
+        state: State,
+        mode: Mode,
+        feeder: &Feeder,
+    ) -> Option<Alarm> {
+        if !runs(state) || mode == Mode::Maintenance {
+            self.forget();
+            return None;
+        }
+        let machines = feeder.nests().len() + 2;
+        assert!(self.since.len() <= machines, "a clock of no machine");
+        let mut late = None;
+        for step in steps(feeder) {
+            let began = self.began(step, now);
+            assert!(began <= now, "{} began in the future", step.name);
+            let waited = now.since(began);
+            if step.limit.is_some_and(|limit| waited > limit) {
+                late = Some(match step.name {
+                    LIFTING => Alarm::part_stuck(),
+                    name => Alarm::step_too_long(name, waited),
+                });
+            }
+        }
+        late
+    }
+
+    /// Since when a step lasts; one that is new begins now.
+    fn began(&mut self, step: Step, now: RigTime) -> RigTime {
+        match self.since.iter_mut().find(|(who, ..)| *who == step.who) {
+            Some((_, name, began)) => {
+                if *name != step.name {
+                    (*name, *began) = (step.name, now);
+                }
+                *began
+            }
+            None => {
+                self.since.push((step.who, step.name, now));
+                now
+            }
+        }
+    }
+
+    /// A bin is full: what waits over it is not late.
+    pub fn wait_for_bin(&mut self) {
+        self.since.retain(|(who, ..)| *who != Who::Sort);
+    }
+}
+
+/// The step whose end is a part that stays behind.
+const LIFTING: &str = "lifting";
+
+fn steps(feeder: &Feeder) -> impl Iterator<Item = Step> {
+    let step = |who, (name, limit)| Step { who, name, limit };
+    let nests = feeder.nests().iter();
+    std::iter::once(step(Who::Feed, of_feed(feeder.feed())))
+        .chain(nests.map(move |nest| step(Who::Nest(nest.id), of_nest(&nest.state))))
+        .chain([step(Who::Sort, of_sort(feeder.sort()))])
+}
+
+/// The sequence turns in these states.
+fn runs(state: State) -> bool {
+    matches!(
+        state,
+        State::Resetting
+            | State::Execute
+            | State::Completing
+            | State::Stopping
+            | State::Holding
+            | State::Suspending
+    )
+}
+
+fn of_feed(feed: Feed) -> (&'static str, Option<Span>) {
+    let stroke = Some(Span::ms(6000));
+    match feed {
+        Feed::Empty => ("feed empty", None),
+        Feed::Releasing { .. } => ("releasing", stroke),
+        Feed::Closing { .. } => ("escapement closing", stroke),
+        Feed::Holding => ("escapement holding", stroke),
+        Feed::Ready => ("part ready", None),
+        Feed::Pushing => ("pushing", stroke),
+        Feed::Retracting => ("retracting", stroke),
+    }
+}
+
+fn of_nest(nest: &NestState) -> (&'static str, Option<Span>) {
+    let stroke = Some(Span::ms(6000));
+    match nest {
+        NestState::Empty => ("nest empty", None),
+        NestState::Clamping => ("clamping", stroke),
+        NestState::Probing => ("probing", stroke),
+        NestState::Testing(_) => ("testing", Some(Span::ms(60_000))),
+        NestState::Judged => ("waiting for the gripper", Some(Span::ms(15_000))),
+        NestState::Gripping => ("gripping", stroke),
+        NestState::Unclamping => ("unclamping", stroke),
+        NestState::Lifting => (LIFTING, Some(Span::ms(2500))),
+    }
+}
+
+fn of_sort(sort: Sort) -> (&'static str, Option<Span>) {
+    let stroke = Some(Span::ms(8000));
+    match sort {
+        Sort::Returning => ("axis returning", stroke),
+        Sort::OverNest => ("over the nest", None),
+        Sort::Lowering => ("z lowering", stroke),
+        Sort::AtPart => ("fingers around the part", None),
+        Sort::Loaded => ("loaded", stroke),
+        Sort::Carrying(_) => ("carrying", stroke),
+        Sort::OverBin(..) => ("over the bin", Some(Span::ms(15_000))),
+        Sort::LettingGo(..) => ("letting go", stroke),
+        Sort::Opening => ("fingers opening", stroke),
+    }
+}

@@ -1,0 +1,56 @@
+//! The sequence in a turn, and what the lot wants of it.
+
+use super::Station;
+use super::packml::Mode;
+use super::wants::{Inputs, Wants};
+use crate::handling::feeder::Permits;
+use crate::handling::nest::TestTerms;
+use units::RigTime;
+
+impl Station {
+    /// One turn of the sequence.
+    pub(super) fn produce(
+        &mut self,
+        now: RigTime,
+        mut inputs: Inputs,
+        wants: &mut Wants,
+        permits: Permits,
+    ) {
+        self.note_begin(wants);
+        let job = inputs.job.take();
+        let teaching = self.teaching().map(str::to_owned);
+        let terms = TestTerms {
+            thorough: self.is_thorough(),
+            teaching: teaching.as_deref(),
+            device: &self.device,
+        };
+        let before = wants.rig.motions.len();
+        let resting = self.machine.is_coming_to_rest();
+        let (feeder, _, mut turn) =
+            self.line
+                .at(now, &inputs, wants, &mut self.lot.golden_left, resting);
+        if feeder.step(&mut turn, job, terms, permits) {
+            self.line.mechanism.new_part();
+        }
+        wants.notes.take_over();
+        if self.machine.mode == Mode::Maintenance {
+            let motions = wants.rig.motions.drain(before..);
+            self.line.stepwise.extend(motions);
+        }
+        self.learn(wants);
+    }
+
+    fn note_begin(&mut self, wants: &mut Wants) {
+        if !self.lot.began && self.lot.golden_left.is_empty() && self.device.is_calibrated() {
+            self.lot.began = true;
+            wants.record.lot_began = true;
+        }
+    }
+
+    /// Parts of the lot still to come out of the magazine.
+    pub(super) fn wants_more(&self) -> bool {
+        self.plan
+            .count
+            .is_none_or(|count| self.line.ledger.own() < self.lot.golden_planned + count)
+    }
+}

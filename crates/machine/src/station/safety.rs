@@ -1,0 +1,301 @@
+//! What a turn looks at whatever the state, and what alarms do.
+
+use super::Station;
+use super::annunciator::Standing;
+use super::catalogue::{self, Goes, Stops};
+use super::packml::{self, Command, On, State};
+use super::trouble::Alarm;
+use super::wants::{Ending, Inputs, Wants};
+use crate::dut::verdict::Verdict;
+use crate::handling::ledger::Part;
+use crate::handling::mechanism::SENSOR_AGE;
+use crate::handling::trouble::Trouble;
+use crate::handling::wants::{Interrupted, Judged};
+use crate::handling::{Move, Place};
+use crate::rig::bin::Bin;
+use crate::rig::image::Image;
+use crate::rig::point::DigitalIn;
+use units::{RigTime, Span};
+
+/// Sensors must be there so long after the start at the latest.
+pub(super) const FIRST_SCAN: Span = Span::ms(3000);
+/// A beam that is dark for so long has a part standing in it; a falling one darkens it for 11 ms.
+const FULL: Span = Span::ms(500);
+
+/// Pressure is back so long after the emergency-stop chain has closed, or something is wrong with the supply.
+const PRESSURE_RETURNS: Span = Span::ms(2000);
+
+impl Station {
+    /// Sensors, motions, lines, and the part that is falling.
+    pub(super) fn look(
+        &mut self,
+        now: RigTime,
+        inputs: &Inputs,
+        stuck: Vec<Alarm>,
+        wants: &mut Wants,
+    ) {
+        let mut found = self.line.mechanism.update(now, inputs.image);
+        wants.rig.motions.extend(found.motions);
+        wants.rig.suspicious = self.line.mechanism.is_suspicious(now);
+        self.still_in_nest(now, inputs.image, &mut found.trouble);
+        let mut there = self.safety(now, inputs.image);
+        there.extend(stuck);
+        there.extend(self.full_bins(now, inputs.image));
+        there.extend(self.still_starved(now, inputs.image));
+        self.alarms.annunciator.sensed(&there);
+        let trouble = &mut wants.notes.trouble;
+        if !packml::is_aborted(self.machine.state) {
+            trouble.extend(found.trouble.into_iter().map(Alarm::from));
+        }
+        trouble.extend(inputs.bus.clone());
+        trouble.extend(there);
+        trouble.extend(self.worn());
+        let golden = &mut self.lot.golden_left;
+        let (feeder, _, mut turn) = self.line.at(now, inputs, wants, golden, false);
+        feeder.confirm(&mut turn);
+        wants.notes.take_over();
+        if !self.line.dark.is_empty() {
+            self.alarms.patience.wait_for_bin();
+        }
+        let feeder = &self.line.feeder;
+        let late = self
+            .alarms
+            .patience
+            .look(now, self.machine.state, self.machine.mode, feeder);
+        wants.notes.trouble.extend(late);
+    }
+
+    /// Fingers that lost their part before it was handed over have left it in the nest.
+    fn still_in_nest(&self, now: RigTime, image: &Image, found: &mut [Trouble]) {
+        let there = !self.line.ledger.holds(Place::Gripper)
+            && image.input(DigitalIn::NestPresent, now, SENSOR_AGE) == Some(true);
+        let dropped = found.iter_mut().filter(|one| **one == Trouble::Dropped);
+        for one in dropped.filter(|_| there) {
+            *one = Trouble::Stuck;
+        }
+    }
+
+    /// Safety inputs: open is an alarm, unknown is one after the first scan.
+    fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
+        let inputs = [
+            (
+                DigitalIn::EmergencyStopOk,
+                "emergency_stop",
+                "Emergency stop pressed. Release it, then clear and reset.",
+                "急停按下。请复位急停，然后清除并复位。",
+            ),
+            (
+                DigitalIn::DoorClosed,
+                "door_open",
+                "The door is open. Close it, then clear and reset.",
+                "安全门打开。请关门，然后清除并复位。",
+            ),
+            (
+                DigitalIn::AirOk,
+                "air_lost",
+                "Air pressure is missing. Check the supply.",
+                "气压不足。请检查气源。",
+            ),
+        ];
+        let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
+        let (mut alarms, mut unread) = (Vec::new(), Vec::new());
+        for (point, code, en, zh) in inputs {
+            let seen = match point {
+                DigitalIn::EmergencyStopOk => image.emergency_stop_ok(now),
+                other => image.input(other, now, SENSOR_AGE),
+            };
+            if point == DigitalIn::EmergencyStopOk && seen == Some(false) {
+                self.alarms.chain_open = Some(now);
+            }
+            match seen {
+                Some(true) => {}
+                Some(false) if point == DigitalIn::AirOk && self.is_vented(now) => {}
+                Some(false) => alarms.push(Alarm::safety(code, en, zh)),
+                None => unread.push(point),
+            }
+        }
+        let others = [
+            DigitalIn::SortZUp,
+            DigitalIn::NestPresent,
+            DigitalIn::GripperPart,
+        ];
+        let all = unread.is_empty()
+            && others
+                .iter()
+                .all(|point| image.input(*point, now, SENSOR_AGE).is_some());
+        if let Some(point) = unread.first()
+            && (late || self.alarms.sensed)
+        {
+            alarms.push(Alarm::stale(*point));
+        }
+        self.alarms.sensed |= all;
+        alarms
+    }
+
+    /// The emergency stop vents the air, and after its release the pressure needs a while: no trouble of its own, as
+    /// long as nothing is to move.
+    fn is_vented(&self, now: RigTime) -> bool {
+        let rests = packml::is_aborted(self.machine.state)
+            || matches!(self.machine.state, State::Stopped | State::Complete);
+        let since = self.alarms.chain_open.map(|at| now.since(at));
+        since == Some(Span(0)) || rests && since.is_some_and(|since| since <= PRESSURE_RETURNS)
+    }
+
+    fn full_bins(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
+        let mut alarms = Vec::new();
+        for (bin, beam) in self.line.feeder.beams() {
+            let dark = image.input(beam, now, SENSOR_AGE) == Some(true);
+            let since = self.line.dark.iter().find(|(known, _)| *known == beam);
+            match (dark, since.map(|(_, since)| *since)) {
+                (true, None) => self.line.dark.push((beam, now)),
+                (true, Some(since)) if now.since(since) >= FULL => {
+                    alarms.push(Alarm::bin_full(bin.name()));
+                }
+                (true, Some(_)) | (false, None) => {}
+                (false, Some(_)) => self.line.dark.retain(|(known, _)| *known != beam),
+            }
+        }
+        alarms
+    }
+
+    fn still_starved(&self, now: RigTime, image: &Image) -> Option<Alarm> {
+        let standing = self.alarms.annunciator.standing().iter();
+        let starved = standing
+            .filter(|one| one.is_active())
+            .any(|one| one.alarm.code == "magazine_empty");
+        let parts = [DigitalIn::TrackLevel, DigitalIn::PocketPresent]
+            .iter()
+            .any(|point| image.input(*point, now, SENSOR_AGE) == Some(true));
+        (starved && !parts).then(Alarm::magazine_empty)
+    }
+
+    /// A motion that the guard refused: in homing another one goes first, else it is an alarm.
+    pub fn refused(&mut self, movement: Move, refusal: &str, now: RigTime, wants: &mut Wants) {
+        if self.machine.state == State::Resetting && self.line.recovery.refused(movement) {
+            return;
+        }
+        wants.notes.trouble.push(Alarm::refused(movement, refusal));
+        self.raise_all(now, wants);
+        let standing = self.alarms.annunciator.standing();
+        let stack = self
+            .alarms
+            .lamps
+            .show(now, self.machine.state, standing, wants.rig.safe);
+        wants.rig.outputs.extend(stack);
+        wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
+    }
+
+    /// Alarms of this turn into the list; what is left in the wants is what came anew.
+    pub(super) fn raise_all(&mut self, now: RigTime, wants: &mut Wants) {
+        for alarm in std::mem::take(&mut wants.notes.trouble) {
+            if self.alarms.annunciator.raise(&alarm, now) {
+                wants.record.alarms.push(alarm.clone());
+            }
+            self.react(&alarm, now, wants);
+        }
+    }
+
+    fn react(&mut self, alarm: &Alarm, now: RigTime, wants: &mut Wants) {
+        let Some(entry) = catalogue::entry(&alarm.code) else {
+            return self.abort(&alarm.code, now, wants);
+        };
+        if catalogue::NEEDS_CALIBRATION.contains(&entry.code)
+            && !packml::is_aborted(self.machine.state)
+        {
+            self.recalibrate();
+        }
+        match entry.stops {
+            Stops::Abort => {
+                let parked = matches!(self.machine.state, State::Stopped | State::Complete);
+                if !(parked && entry.goes == Goes::BySensor) {
+                    self.abort(&alarm.code, now, wants);
+                }
+            }
+            Stops::Hold if !self.plan.stays => self.abort(&alarm.code, now, wants),
+            Stops::Hold => self.rest(Command::Hold, now, wants),
+            Stops::Suspend => {
+                if self.machine.state == State::Execute {
+                    self.machine.suspended_by_order = false;
+                }
+                self.rest(Command::Suspend, now, wants);
+            }
+            Stops::Nothing => {}
+        }
+    }
+
+    fn rest(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+        if packml::next(self.machine.state, On::Command(command)).is_some() {
+            self.enter(command, now, wants);
+        }
+    }
+
+    /// Outputs safe at once, parts inside interrupted. Without a person there the run is over.
+    pub(super) fn abort(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
+        if packml::is_aborted(self.machine.state) || self.machine.ended {
+            return;
+        }
+        self.make_safe(why, now, wants);
+        self.enter(Command::Abort, now, wants);
+        if !self.plan.stays {
+            self.end(Ending::Alarm, now, wants);
+        }
+    }
+
+    /// Nothing is known of any position from here on.
+    pub(super) fn make_safe(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
+        wants.rig.motions.clear();
+        wants.rig.jog = None;
+        wants.rig.job = None;
+        wants.rig.safe = true;
+        self.interrupt(why, now, wants);
+        self.line.cut_off();
+    }
+
+    /// Parts in nest and gripper go to retest; one that was judged gets that into its row.
+    fn interrupt(&mut self, why: &str, now: RigTime, wants: &mut Wants) {
+        let parts = &mut wants.record.parts;
+        for part in self.line.ledger.held_mut() {
+            if part.interrupted.is_some() && part.bin == Some(Bin::RETEST) {
+                continue;
+            }
+            let why = part
+                .interrupted
+                .get_or_insert_with(|| why.to_owned())
+                .clone();
+            let ordinal = part.ordinal;
+            if part.bin.replace(Bin::RETEST).is_some() {
+                parts.interrupted.push(Interrupted { ordinal, why });
+                continue;
+            }
+            let mut judged = Judged::interrupted(part.clone(), &why, now);
+            if let Some(test) = self.line.feeder.test() {
+                judged.record = test.record();
+                judged.judgements = test.judgements();
+            }
+            assert!(
+                matches!(judged.verdict, Verdict::Void(_)),
+                "judged after all"
+            );
+            parts.judged.push(judged);
+        }
+        let to_retest = |part: &mut Part| part.bin == Some(Bin::RETEST);
+        let all = self.line.ledger.held_mut().all(to_retest);
+        assert!(all, "an interrupted part goes elsewhere");
+    }
+
+    /// The alarm whose sensor still shows its cause, for a clear or reset that comes too early.
+    pub(super) fn cause(&self) -> Option<&Standing> {
+        self.alarms.annunciator.still_sensed()
+    }
+}
+
+/// Every safety input was read after `since`, open or closed.
+pub(super) fn safety_was_read(image: &Image, since: RigTime) -> bool {
+    let inputs = [
+        DigitalIn::EmergencyStopOk,
+        DigitalIn::DoorClosed,
+        DigitalIn::AirOk,
+    ];
+    let read = |point: &DigitalIn| image.input_at(*point).is_some_and(|at| at > since);
+    inputs.iter().all(read)
+}

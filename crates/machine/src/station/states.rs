@@ -1,0 +1,364 @@
+//! What each state of the outer machine does in a turn, and how it is left.
+
+use super::catalogue::Stops;
+use super::packml::{self, Command, On, State};
+use super::safety::{FIRST_SCAN, safety_was_read};
+use super::trouble::Alarm;
+use super::wants::{Ending, Inputs, Wants};
+use super::{Start, Station};
+use crate::handling::feeder::Permits;
+use crate::handling::recovery::Recovery;
+use crate::handling::wants::{Interrupted, Judged, NestJob};
+use crate::handling::{Move, NestId, Place};
+use crate::instrument::act::{Doing, Runner};
+use crate::rig::bin::Bin;
+use units::{RigTime, Span};
+
+/// Outputs that did not confirm their safe value in this time are told, and the abort goes on without.
+const SAFE_WITHIN: Span = Span::ms(2000);
+/// Why a part is not tested that nothing had interrupted before.
+const BY_A_RESET: &str = "by a reset";
+/// Nobody is there to fill a magazine or empty a bin: after so long the run ends.
+const ALONE: Span = Span::ms(60_000);
+
+impl Station {
+    /// Orders that nobody has to give when nobody is there, and the end of the program.
+    pub(super) fn by_itself(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        if self.machine.ended {
+            return;
+        }
+        if inputs.stop && !self.machine.stopping {
+            self.machine.stopping = true;
+            if packml::next(self.machine.state, On::Command(Command::Stop)).is_some() {
+                self.enter(Command::Stop, now, wants);
+            }
+        }
+        if inputs.abort && !packml::is_aborted(self.machine.state) {
+            self.make_safe("stopped by the operator", now, wants);
+            self.end(Ending::Stopped, now, wants);
+        }
+        let rests = matches!(
+            self.machine.state,
+            State::Stopped | State::Complete | State::Aborted
+        );
+        match (self.machine.stopping, self.plan.stays, self.machine.state) {
+            (true, ..) if rests => {
+                self.make_safe("stopped", now, wants);
+                let aborted = packml::is_aborted(self.machine.state);
+                let in_trouble = aborted && !self.alarms.annunciator.standing().is_empty();
+                self.end(
+                    if in_trouble {
+                        Ending::Alarm
+                    } else {
+                        Ending::Stopped
+                    },
+                    now,
+                    wants,
+                );
+            }
+            (false, ..) if self.is_between_lots() => {}
+            (false, _, State::Stopped) if self.machine.entered == RigTime(0) => {
+                self.enter(Command::Reset, now, wants)
+            }
+            (false, _, State::Idle) if self.machine.fresh => self.enter(Command::Start, now, wants),
+            (false, false, State::Suspended) if now.since(self.machine.entered) > ALONE => {
+                self.make_safe("suspended for too long", now, wants);
+                self.end(Ending::Alarm, now, wants);
+            }
+            (..) => {}
+        }
+    }
+
+    /// The run is over. Nobody will look for a part that is on its way to its bin: it is told.
+    pub(super) fn end(&mut self, ending: Ending, now: RigTime, wants: &mut Wants) {
+        let over = self.line.ledger.fall().map(|fall| fall.bin);
+        if let Some(bin) = over {
+            self.line.ledger.lose(Place::Falling);
+            let alarm = Alarm::beam_unread(bin.name());
+            if self.alarms.annunciator.raise(&alarm, now) {
+                wants.record.alarms.push(alarm);
+                wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
+            }
+        }
+        assert!(
+            self.line.ledger.fall().is_none(),
+            "a part falls on after the end"
+        );
+        wants.rig.safe = true;
+        wants.record.ending = Some(ending);
+        self.machine.ended = true;
+    }
+
+    /// Enters the state that a command leads to; the caller has looked whether it may.
+    pub(super) fn enter(&mut self, command: Command, now: RigTime, wants: &mut Wants) {
+        if let Some(to) = self.machine.follow(On::Command(command), now) {
+            self.entered(to, now, wants);
+        }
+    }
+
+    /// The state has done what it is for.
+    fn done(&mut self, now: RigTime, wants: &mut Wants) {
+        if let Some(to) = self.machine.follow(On::Done, now) {
+            self.entered(to, now, wants);
+        }
+    }
+
+    /// What a state begins with.
+    fn entered(&mut self, to: State, now: RigTime, wants: &mut Wants) {
+        self.alarms.patience.forget();
+        wants.rig.wake_at = Some(now);
+        match to {
+            State::Resetting => {
+                self.line.recovery = Recovery::default();
+                self.line.homed = false;
+            }
+            State::Starting => {
+                self.machine.fresh = false;
+                self.start = Start::Begin;
+            }
+            State::Clearing => (self.machine.asked_verify, self.machine.verified) = (false, None),
+            State::Stopped | State::Complete => self.make_safe("stopped", now, wants),
+            State::Idle
+            | State::Execute
+            | State::Completing
+            | State::Holding
+            | State::Held
+            | State::Unholding
+            | State::Suspending
+            | State::Suspended
+            | State::Unsuspending
+            | State::Stopping
+            | State::Aborting
+            | State::Aborted => {}
+        }
+        if to == State::Complete {
+            let ending = if self.machine.stopping {
+                Ending::Stopped
+            } else {
+                Ending::Complete
+            };
+            self.end(ending, now, wants);
+        }
+    }
+
+    /// The outer machine's turn.
+    pub(super) fn act(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
+        match self.machine.state {
+            State::Resetting => self.reset(now, inputs, wants),
+            State::Starting => self.begin(now, &inputs, wants),
+            State::Execute => {
+                self.look_for_check(now, wants);
+                let permits = Permits {
+                    release: self.wants_more(),
+                    push: true,
+                };
+                self.produce(now, inputs, wants, permits);
+                let done = !self.wants_more() && !self.lot.gates.is_checking();
+                if self.machine.state == State::Execute && done {
+                    self.done(now, wants);
+                }
+            }
+            State::Completing => self.finish(now, inputs, wants, true),
+            State::Stopping if self.line.homed => self.finish(now, inputs, wants, false),
+            State::Holding | State::Suspending => {
+                let permits = Permits {
+                    release: false,
+                    push: false,
+                };
+                self.produce(now, inputs, wants, permits);
+                if self.machine.is_coming_to_rest() && self.line.is_at_rest() {
+                    self.done(now, wants);
+                }
+            }
+            State::Aborting => self.wait_for_safe(now, &inputs, wants),
+            State::Clearing => self.clear(now, &inputs, wants),
+            State::Suspended => {
+                let cause = self.alarms.annunciator.stopping(Stops::Suspend).is_some();
+                if !cause && !self.machine.suspended_by_order {
+                    self.enter(Command::Unsuspend, now, wants);
+                }
+            }
+            State::Stopping | State::Unholding | State::Unsuspending => self.done(now, wants),
+            State::Stopped | State::Idle | State::Complete | State::Held | State::Aborted => {}
+        }
+    }
+
+    fn reset(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants) {
+        if !self.alarms.sensed {
+            return;
+        }
+        if self.line.homed {
+            return self.finish(now, inputs, wants, false);
+        }
+        if self.line.recovery.drive_reset(now) {
+            self.line.mechanism.drive_reset(now);
+        }
+        let golden = &mut self.lot.golden_left;
+        let (feeder, recovery, mut turn) = self.line.at(now, &inputs, wants, golden, false);
+        let home = recovery.step(&mut turn, feeder.is_releasing());
+        wants.notes.take_over();
+        if home {
+            let moves = self.line.mechanism.moving().next();
+            assert_eq!(moves, None, "home, and something moves");
+            self.line.homed = true;
+            self.take_up(now, wants);
+        }
+    }
+
+    /// The sequence goes on from the parts that are inside.
+    fn take_up(&mut self, now: RigTime, wants: &mut Wants) {
+        self.line.feeder.take_up(&self.line.ledger);
+        if self.lot.gates.is_checking() {
+            self.begin_check();
+        }
+        self.end_golden_run(wants);
+        self.take_up_gripped(now, wants);
+        self.take_up_nested(wants);
+        wants.rig.wake_at = Some(now);
+    }
+
+    /// A part in the nest is not tested any more. One that has a bin was judged before, lost on its way and laid back: it
+    /// goes to retest, and its row says why.
+    fn take_up_nested(&mut self, wants: &mut Wants) {
+        let Some(part) = self.line.ledger.part_mut(Place::NEST) else {
+            return;
+        };
+        let why = part
+            .interrupted
+            .get_or_insert_with(|| BY_A_RESET.into())
+            .clone();
+        if part.bin.is_some_and(|bin| bin != Bin::RETEST) {
+            part.bin = Some(Bin::RETEST);
+            let ordinal = part.ordinal;
+            let interrupted = &mut wants.record.parts.interrupted;
+            interrupted.push(Interrupted { ordinal, why });
+        }
+    }
+
+    /// What the fingers hold goes to retest, and its row says why; one that they never let go had a row for its bin.
+    fn take_up_gripped(&mut self, now: RigTime, wants: &mut Wants) {
+        let Some(part) = self.line.ledger.part_mut(Place::Gripper) else {
+            return;
+        };
+        let told = part.interrupted.is_some();
+        let why = part
+            .interrupted
+            .get_or_insert_with(|| BY_A_RESET.into())
+            .clone();
+        if part.bin.replace(Bin::RETEST).is_none() {
+            let judged = Judged::interrupted(part.clone(), &why, now);
+            wants.record.parts.judged.push(judged);
+        } else if !told {
+            let ordinal = part.ordinal;
+            let interrupted = &mut wants.record.parts.interrupted;
+            interrupted.push(Interrupted { ordinal, why });
+        }
+    }
+
+    fn begin(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        if self.plan.calibrated || self.referenced {
+            return self.done(now, wants);
+        }
+        match std::mem::replace(&mut self.start, Start::Begin) {
+            Start::Begin => {
+                wants.rig.motions.push(Move::ProbesUp);
+                self.start = Start::Up;
+            }
+            Start::Up => {
+                let up = self
+                    .line
+                    .mechanism
+                    .has_arrived(Move::ProbesUp, now, inputs.image);
+                self.start = if up {
+                    let acts = self.device.reference_acts();
+                    Start::References(Box::new(Runner::new(acts, now)))
+                } else {
+                    Start::Up
+                };
+                wants.rig.wake_at = up.then_some(now);
+            }
+            Start::References(runner) => self.measure(now, inputs, runner, wants),
+            Start::Down => {
+                if self
+                    .line
+                    .mechanism
+                    .has_arrived(Move::ProbesDown, now, inputs.image)
+                {
+                    self.referenced = true;
+                    self.done(now, wants);
+                } else {
+                    self.start = Start::Down;
+                }
+            }
+        }
+    }
+
+    fn measure(
+        &mut self,
+        now: RigTime,
+        inputs: &Inputs,
+        mut runner: Box<Runner>,
+        wants: &mut Wants,
+    ) {
+        let done = inputs.job.as_ref().map(|job| &job.done);
+        match runner.step(now, done, inputs.image) {
+            Doing::Job(job) => {
+                let nest = NestId::FIRST;
+                wants.rig.job = Some(NestJob { nest, job });
+            }
+            Doing::Wait(until) => wants.rig.wake_at = Some(until),
+            Doing::Busy => {}
+            Doing::Trouble(why) => wants.notes.trouble.push(Alarm::calibration(&why)),
+            Doing::Done => {
+                if let Err(why) = self.conclude_references(now, &runner) {
+                    let alarm = Alarm::calibration(&why.to_string());
+                    wants.notes.trouble.push(alarm);
+                    return;
+                }
+                wants.rig.motions.push(Move::ProbesDown);
+                self.start = Start::Down;
+                return;
+            }
+        }
+        self.start = Start::References(runner);
+    }
+
+    /// The parts inside to the end; `push`: the one in the pocket too.
+    fn finish(&mut self, now: RigTime, inputs: Inputs, wants: &mut Wants, push: bool) {
+        let (state, recorded) = (self.machine.state, inputs.recorded);
+        let permits = Permits {
+            release: false,
+            push,
+        };
+        self.produce(now, inputs, wants, permits);
+        if self.machine.state == state && self.line.is_finished(push, recorded, wants) {
+            self.done(now, wants);
+        }
+    }
+
+    fn wait_for_safe(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        if inputs.settled {
+            self.done(now, wants);
+        } else if now.since(self.machine.entered) > SAFE_WITHIN {
+            wants.notes.trouble.push(Alarm::not_safe());
+            self.done(now, wants);
+        }
+    }
+
+    /// The modules are verified first, which keeps the lines from the scan: whoever resets afterwards finds the safety inputs
+    /// read.
+    fn clear(&mut self, now: RigTime, inputs: &Inputs, wants: &mut Wants) {
+        if inputs.verified {
+            self.machine.verified = Some(now);
+        }
+        if let Some(at) = self.machine.verified {
+            assert!(at <= now, "verified in the future");
+            if safety_was_read(inputs.image, at) || now.since(at) > FIRST_SCAN {
+                self.done(now, wants);
+            }
+        } else if !self.machine.asked_verify {
+            self.machine.asked_verify = true;
+            wants.rig.verify = true;
+        }
+    }
+}

@@ -1,0 +1,430 @@
+//! A machine whose actuators always arrive and whose parts are bad in a known way, with its station.
+
+use super::{Shop, context, device, device_of};
+use crate::dut::em_relay::bins;
+use crate::dut::em_relay::points::{self, AnalogIn};
+use crate::handling::inside::Inside;
+use crate::handling::moves::Move;
+use crate::handling::tests::mechanism_of;
+use crate::handling::wants::{NestDone, NestJob};
+use crate::handling::wear::Uses;
+use crate::instrument::act::{Job, JobDone};
+use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
+use crate::rig::image::Image;
+use crate::rig::point::{DigitalIn, DigitalInput, DigitalOut, Point};
+use crate::station::gates::LotSettings;
+use crate::station::orders::{Order, Refused};
+use crate::station::trouble::Alarm;
+use crate::station::wants::{Ending, Inputs, Wants};
+use crate::station::{Plan, Station};
+use std::collections::{BTreeMap, VecDeque};
+use units::{RigTime, Span};
+
+/// How a part of the magazine is bad.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Specimen {
+    /// No pin at NO: void.
+    MissingPin,
+    /// NO is welded: fails at rest.
+    StuckNo,
+    /// Its coil is broken: no current.
+    OpenCoil,
+}
+
+impl Specimen {
+    /// Where it belongs.
+    pub fn bin(self) -> Bin {
+        match self {
+            Self::MissingPin => Bin::RETEST,
+            Self::StuckNo => bins::CONTACT,
+            Self::OpenCoil => bins::COIL,
+        }
+    }
+}
+
+/// What the station was told in one turn, and what was driven after it.
+pub struct Told {
+    pub now: RigTime,
+    pub image: Image,
+    pub job: Option<NestDone>,
+    pub recorded: u64,
+    pub bus: Option<Alarm>,
+    pub stop: bool,
+    pub driven: Vec<Move>,
+    pub wants: String,
+}
+
+/// A station with its machine.
+pub struct Machine {
+    pub station: Station,
+    pub shop: Shop,
+    pub bus: Option<Alarm>,
+    pub stop: bool,
+    pub abort: bool,
+    /// Key of an actuator that never arrives.
+    pub sticking: Option<&'static str>,
+    magazine: VecDeque<Specimen>,
+    under_way: Vec<(RigTime, Move)>,
+    job: Option<NestJob>,
+    reversed: bool,
+    axis: AxisStation,
+    beams: BTreeMap<DigitalInput, u16>,
+    beam: Option<DigitalInput>,
+    recorded: u64,
+    orders: Vec<Order>,
+    answers: Vec<Result<(), Refused>>,
+    verify: bool,
+    /// Outputs of the last turn.
+    pub last_outputs: Vec<(DigitalOut, bool)>,
+    /// Every turn.
+    pub told: Vec<Told>,
+    /// Ordinals and bins in the order of landing.
+    pub landed: Vec<(u64, Bin)>,
+    /// Parts that left the nest.
+    pub left: usize,
+    /// How the run ended.
+    pub ending: Option<Ending>,
+}
+
+/// Nothing ordered, nothing to answer, every output confirmed.
+pub fn quiet(image: &Image) -> Inputs<'_> {
+    Inputs {
+        image,
+        job: None,
+        recorded: 0,
+        bus: None,
+        stop: false,
+        abort: false,
+        orders: Vec::new(),
+        settled: true,
+        verified: false,
+    }
+}
+
+/// A calibrated station that knows nothing yet.
+pub fn station(count: Option<u64>, shop: &Shop) -> Station {
+    of_plan(plan(count), shop)
+}
+
+fn plan(count: Option<u64>) -> Plan {
+    Plan {
+        stays: false,
+        between_lots: None,
+        simulated: true,
+        count,
+        golden: Vec::new(),
+        calibrated: true,
+        valid_us: 0,
+        epoch_us: 0,
+        lot: LotSettings::default(),
+        worn: Uses::default(),
+        left: Inside::default(),
+    }
+}
+
+fn of_plan(plan: Plan, shop: &Shop) -> Station {
+    let mechanism = mechanism_of(&shop.wiring);
+    Station::new(plan, device(), shop.wiring.axis.clone(), mechanism)
+}
+
+impl Machine {
+    pub fn new(count: Option<u64>, magazine: Vec<Specimen>) -> Self {
+        let mut shop = Shop::at_rest();
+        shop.track(23.0);
+        Self {
+            station: station(count, &shop),
+            shop,
+            bus: None,
+            stop: false,
+            abort: false,
+            sticking: None,
+            magazine: magazine.into(),
+            under_way: Vec::new(),
+            job: None,
+            reversed: false,
+            axis: AxisStation::Park,
+            beams: BTreeMap::new(),
+            beam: None,
+            recorded: 0,
+            orders: Vec::new(),
+            answers: Vec::new(),
+            verify: false,
+            last_outputs: Vec::new(),
+            told: Vec::new(),
+            landed: Vec::new(),
+            left: 0,
+            ending: None,
+        }
+    }
+
+    /// The same with a person at a screen.
+    pub fn attended(count: Option<u64>, magazine: Vec<Specimen>) -> Self {
+        let mut machine = Self::new(count, magazine);
+        let plan = Plan {
+            stays: true,
+            ..plan(count)
+        };
+        machine.station = of_plan(plan, &machine.shop);
+        machine
+    }
+
+    /// Between lots, with a person at a screen.
+    pub fn between_lots() -> Self {
+        let mut machine = Self::new(Some(0), Vec::new());
+        let plan = Plan {
+            stays: true,
+            between_lots: Some(crate::station::packml::State::Stopped),
+            ..plan(Some(0))
+        };
+        machine.station = of_plan(plan, &machine.shop);
+        machine
+    }
+
+    /// Behind these gates, with the golden parts of the default plant.
+    pub fn of_lot(
+        count: Option<u64>,
+        magazine: Vec<Specimen>,
+        lot: LotSettings,
+        stays: bool,
+    ) -> Self {
+        let mut machine = Self::new(count, magazine);
+        let plan = Plan {
+            stays,
+            lot,
+            golden: device().reference_serials(),
+            ..plan(count)
+        };
+        machine.station = of_plan(plan, &machine.shop);
+        machine
+    }
+
+    /// The calibration may not be used any more from now on.
+    pub fn calibration_runs_out(&mut self) {
+        let mut context = context();
+        std::sync::Arc::make_mut(&mut context.calibration).due_at_us =
+            i64::try_from(self.shop.now.0).unwrap();
+        self.station.device = device_of(context);
+    }
+
+    /// What wears was used so often before.
+    pub fn wore(&mut self, worn: Uses) {
+        self.station.plan.worn = worn;
+    }
+
+    /// Gives an order and has it answered in the next turn.
+    pub fn order(&mut self, order: Order) -> Result<(), Refused> {
+        self.orders.push(order);
+        self.turn();
+        self.answers.pop().unwrap()
+    }
+
+    /// One more part into the magazine.
+    pub fn fill(&mut self, specimen: Specimen) {
+        self.magazine.push_back(specimen);
+    }
+
+    /// Motions driven so far.
+    pub fn driven(&self) -> usize {
+        self.told.iter().map(|told| told.driven.len()).sum()
+    }
+
+    /// 4 ms pass, everything is read, the station has its turn and gets what it asks for.
+    pub fn turn(&mut self) -> Wants {
+        self.shop.now = self.shop.now + Span::ms(4);
+        let now = self.shop.now;
+        let (there, still): (Vec<_>, Vec<_>) =
+            self.under_way.iter().partition(|(at, _)| *at <= now);
+        self.under_way = still;
+        there.into_iter().for_each(|(_, m)| self.arrive(m));
+        self.shop.scan();
+        if let Some(beam) = self.beam {
+            let count = self.beams.get(&beam).copied().unwrap_or(0);
+            self.shop.beam(beam, count);
+        }
+        self.turn_without_scan()
+    }
+
+    /// A turn on what was read before.
+    pub fn turn_without_scan(&mut self) -> Wants {
+        let job = self.job.take().map(|NestJob { nest, job }| NestDone {
+            nest,
+            done: self.answer(&job),
+        });
+        let image = self.shop.image.clone();
+        let (now, recorded, stop) = (self.shop.now, self.recorded, self.stop);
+        let bus = self.bus.take();
+        let level = !self.magazine.is_empty();
+        self.shop.set(DigitalIn::TrackLevel, level);
+        let inputs = Inputs {
+            orders: std::mem::take(&mut self.orders),
+            verified: std::mem::take(&mut self.verify),
+            image: &image,
+            job: job.clone(),
+            recorded,
+            bus: bus.clone(),
+            stop,
+            abort: self.abort,
+            ..quiet(&image)
+        };
+        let mut wants = self.station.step(now, inputs);
+        self.answers.append(&mut wants.answers);
+        self.verify = wants.rig.verify;
+        self.ending = wants.record.ending.clone().or(self.ending.take());
+        self.last_outputs.clone_from(&wants.rig.outputs);
+        if wants.rig.safe {
+            self.make_safe();
+        }
+        for movement in &wants.rig.motions {
+            self.drive(*movement);
+        }
+        self.obey(&wants);
+        self.told.push(Told {
+            now,
+            image,
+            job,
+            recorded,
+            bus,
+            stop,
+            driven: wants.rig.motions.clone(),
+            wants: format!("{wants:?}"),
+        });
+        wants
+    }
+
+    /// Springs and brakes: bistable cylinders stay, the others go to rest.
+    fn make_safe(&mut self) {
+        self.under_way.clear();
+        self.job = None;
+        for movement in [
+            Move::SortUp,
+            Move::ProbesDown,
+            Move::PusherRetract,
+            Move::EscapementHold,
+        ] {
+            self.shop.stands(movement);
+        }
+        self.shop.set(DigitalIn::AxisInPosition, false);
+    }
+
+    fn obey(&mut self, wants: &Wants) {
+        if wants.rig.job.is_some() {
+            assert!(self.job.is_none(), "two jobs at once");
+            self.job.clone_from(&wants.rig.job);
+        }
+        self.beam = wants.rig.beam;
+        for judged in &wants.record.parts.judged {
+            self.recorded = judged.part.ordinal;
+        }
+        let landed = wants.record.parts.landed.iter();
+        self.landed
+            .extend(landed.map(|landed| (landed.part.ordinal, landed.bin)));
+        self.left += wants.record.parts.left.len();
+    }
+
+    fn drive(&mut self, movement: Move) {
+        self.station
+            .driven(movement, self.shop.now, &self.shop.image);
+        if let Move::AxisTo(_) = movement {
+            self.shop.set(DigitalIn::AxisInPosition, false);
+        }
+        if self.sticking != Some(movement.actuator_key()) {
+            let at = self.shop.now + Span::ms(60);
+            self.under_way.push((at, movement));
+        }
+    }
+
+    fn arrive(&mut self, movement: Move) {
+        let held = self.station.ledger().fall().is_some();
+        self.shop.stands(movement);
+        match movement {
+            Move::EscapementRelease if !self.magazine.is_empty() => {
+                self.shop.set(DigitalIn::PocketPresent, true);
+            }
+            Move::PusherExtend => {
+                self.shop.set(DigitalIn::PocketPresent, false);
+                self.shop.set(DigitalIn::NestPresent, true);
+                self.insert();
+            }
+            Move::SortUp if self.shop.is_on(DigitalIn::GripperPart) => {
+                self.shop.set(DigitalIn::NestPresent, false);
+            }
+            Move::AxisTo(station) => self.axis = station,
+            Move::GripperOpen if held => {
+                let AxisStation::Bin(bin) = self.axis else {
+                    panic!("a part was let go over {:?}", self.axis);
+                };
+                let beam = self.shop.wiring.axis.beam(bin);
+                *self.beams.entry(beam).or_default() += 1;
+            }
+            _ => {}
+        }
+    }
+
+    /// The next part of the magazine lies in the nest.
+    fn insert(&mut self) {
+        let specimen = self.magazine.pop_front().unwrap();
+        let kelvin = [
+            points::DigitalIn::KelvinCoilA,
+            points::DigitalIn::KelvinCoilB,
+            points::DigitalIn::KelvinCom,
+            points::DigitalIn::KelvinNo,
+            points::DigitalIn::KelvinNc,
+        ];
+        self.shop.set_board(points::DigitalIn::ProbeChain, true);
+        for point in kelvin {
+            self.shop.set_board(point, true);
+        }
+        let missing = specimen == Specimen::MissingPin;
+        self.shop.set_board(points::DigitalIn::KelvinNo, !missing);
+        let stuck = specimen == Specimen::StuckNo;
+        self.shop.set_board(points::DigitalIn::NoClosed, stuck);
+    }
+
+    fn answer(&mut self, job: &Job) -> JobDone {
+        match job {
+            Job::Set(outputs) => {
+                let reverse = self.shop.points.output(points::DigitalOut::SourceReverse);
+                for (_, state) in outputs.iter().filter(|(point, _)| *point == reverse) {
+                    self.reversed = *state;
+                }
+            }
+            Job::Read(asked) => asked.iter().for_each(|point| self.read(*point)),
+            Job::Level(_) | Job::Restarts | Job::Mask(_) => {}
+        }
+        JobDone {
+            at: self.shop.now,
+            trouble: None,
+        }
+    }
+
+    /// The coil is open, contacts are good, nothing is timed.
+    fn read(&mut self, point: Point) {
+        let known = |input| self.shop.points.analog(input);
+        match point {
+            Point::Analog(input) if input == known(AnalogIn::CoilVoltageFine) => {
+                self.shop.volts_at(input, 8.0);
+            }
+            Point::Analog(input) if input == known(AnalogIn::ContactDrop) => {
+                let volts = if self.reversed { -1.1 } else { 1.1 };
+                self.shop.volts_at(input, volts);
+            }
+            Point::Analog(input) => self.shop.volts_at(input, 0.0),
+            Point::Count(counter) => self.shop.count(counter, 0),
+            Point::Temperature(_) => self.shop.track(23.0),
+            Point::Input(_) => {}
+        }
+    }
+
+    /// Turns until the run is over.
+    pub fn run(&mut self) -> Wants {
+        for _ in 0..10_000 {
+            let wants = self.turn();
+            assert!(self.station.ledger().balances());
+            if wants.record.ending.is_some() {
+                return wants;
+            }
+        }
+        panic!("the run does not end: {}", self.station.state());
+    }
+}

@@ -1,0 +1,264 @@
+//! The page as text: whole, self-contained, and with every word in both languages.
+
+#![allow(clippy::unwrap_used)]
+
+mod contrast;
+
+use super::*;
+use history::report::Language;
+use machine::dut::reason::{Code, Reason};
+use machine::dut::{Characteristic, Kind};
+use machine::gauge::Side;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+type Table = BTreeMap<String, BTreeMap<String, String>>;
+
+fn table() -> Table {
+    serde_json::from_str(&WORDS).unwrap()
+}
+
+/// Texts between `before` and the next `"`.
+fn quoted(text: &str, before: &str) -> BTreeSet<String> {
+    let pieces = text.split(before).skip(1);
+    pieces
+        .map(|it| it.split('"').next().unwrap().to_owned())
+        .collect()
+}
+
+#[test]
+fn every_word_is_there_in_both_languages() {
+    for (key, word) in table() {
+        let languages: Vec<&str> = word.keys().map(String::as_str).collect();
+        assert_eq!(languages, ["en", "zh"], "{key}");
+        assert!(word.values().all(|it| !it.trim().is_empty()), "{key}");
+    }
+}
+
+#[test]
+fn no_word_stands_in_two_tables() {
+    let kinds = Kind::ALL.into_iter().map(Kind::words);
+    let tables = std::iter::once(OWN_WORDS).chain(kinds);
+    let words = tables.map(|it| serde_json::from_str::<Table>(it).unwrap().len());
+    assert_eq!(words.sum::<usize>(), table().len());
+}
+
+#[test]
+fn every_reason_that_names_a_limit_has_words_on_page_and_paper() {
+    let table = table();
+    let operate = Characteristic::from_key("operate_voltage_v").unwrap();
+    let sides = [Side::Low, Side::High];
+    let limits = sides.map(|side| Reason::outside(operate, side));
+    let doubts = sides.map(|side| Reason::not_proven(operate, side));
+    let missing = [Reason::of(Code::NotMeasured(operate))];
+    for reason in limits.into_iter().chain(doubts).chain(missing) {
+        let side = reason.side.map_or(String::new(), |side| format!(".{side}"));
+        let word = format!("reason.{}{side}", reason.code.name());
+        assert!(table.contains_key(&word), "{word}");
+        assert!(Language::Zh.reason(&reason).starts_with("动作电压"));
+    }
+}
+
+#[test]
+fn every_quantity_and_finding_reaches_the_page_by_its_kind() {
+    let kinds: Value = serde_json::from_str(&kinds::json()).unwrap();
+    assert!(PAGE.contains(&kinds::json()));
+    let keys: Vec<&str> = kinds["characteristics"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|it| it["key"].as_str().unwrap())
+        .collect();
+    assert!(Characteristic::all().map(|it| it.key()).eq(keys));
+    assert_eq!(kinds["findings"]["coil_open"]["zh"], "线圈开路");
+    for text in [SCRIPT, WORDS.as_str()] {
+        assert!(!Characteristic::all().any(|it| text.contains(it.key())));
+    }
+}
+
+#[test]
+fn every_word_that_the_page_uses_is_in_the_table() {
+    let table = table();
+    let mut used = BTreeSet::new();
+    for (text, before) in [FRAME, PAGES]
+        .iter()
+        .flat_map(|it| [(it, "data-word=\""), (it, "data-label=\"")])
+    {
+        used.extend(quoted(text, before));
+    }
+    used.extend(quoted(SCRIPT, "word(\""));
+    used.extend(quoted(SCRIPT, "{word: \""));
+    // A key that ends in a dot is the begin of a family, completed by what the rig says.
+    let (families, words): (Vec<_>, Vec<_>) = used.iter().partition(|it| it.ends_with('.'));
+    for word in words {
+        assert!(table.contains_key(word), "{word}");
+    }
+    for family in families {
+        assert!(
+            table.keys().any(|it| it.starts_with(family.as_str())),
+            "{family}"
+        );
+    }
+}
+
+#[test]
+fn every_word_in_the_table_is_used() {
+    let families = [
+        "link",
+        "order",
+        "state",
+        "stage",
+        "verdict",
+        "bin",
+        "login",
+        "reason",
+        "actuator",
+        "jog",
+        "mode",
+        "signal",
+        "alarm",
+        "q",
+        "r",
+        "field",
+        "choice",
+        "lots",
+        "lot_state",
+        "counter",
+        "role",
+        "factor",
+        "body",
+    ];
+    for key in table().keys() {
+        let family = key.split('.').next().unwrap();
+        let used = [FRAME, PAGES, SCRIPT]
+            .iter()
+            .any(|it| it.contains(&format!("\"{key}\"")));
+        assert!(
+            used || (key.contains('.') && families.contains(&family)),
+            "{key}"
+        );
+    }
+}
+
+#[test]
+fn every_listed_bin_verdict_and_mode_has_a_name() {
+    let table = table();
+    let list = |name: &str| {
+        let text = SCRIPT.split(&format!("const {name} = [")).nth(1).unwrap();
+        let text = text.split(']').next().unwrap();
+        text.split('"')
+            .skip(1)
+            .step_by(2)
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    for (name, family, count) in [
+        ("BINS", "bin", 6),
+        ("VERDICTS", "verdict", 3),
+        ("JOGS", "jog", 15),
+        ("MODES", "mode", 3),
+    ] {
+        let names = list(name);
+        assert_eq!(names.len(), count);
+        assert!(
+            names
+                .iter()
+                .all(|it| table.contains_key(&format!("{family}.{it}"))),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_words() {
+    let table = table();
+    let recipe = config::revision("config".as_ref(), "jzc-22f-012", None).unwrap();
+    for field in serde_json::to_value(recipe).unwrap()["fields"]
+        .as_array()
+        .unwrap()
+    {
+        let path = field["path"].as_str().unwrap();
+        let mut parts = path.split('.');
+        let named = parts.any(|it| Characteristic::from_key(it).is_some());
+        assert!(
+            named || table.contains_key(&format!("field.{path}")),
+            "{path}"
+        );
+        for word in field["words"].as_array().into_iter().flatten() {
+            let name = format!("choice.{}", word.as_str().unwrap());
+            assert!(table.contains_key(&name), "{name}");
+        }
+    }
+}
+
+#[test]
+fn every_body_of_the_scene_has_a_word_on_the_screen() {
+    let table = table();
+    let scene = std::fs::read_to_string("config/scene.toml").unwrap();
+    let scene: toml::Table = scene.parse().unwrap();
+    let bodies = scene["elements"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|it| it["id"].as_str().unwrap());
+    let parts = [
+        "part_feed",
+        "part_pocket",
+        "part_pusher",
+        "part_nest",
+        "part_gripper",
+    ];
+    for body in bodies.chain(parts) {
+        assert!(table.contains_key(&format!("body.{body}")), "{body}");
+    }
+}
+
+/// All scripts share one scope: the later of two functions would take the place of the other without a word.
+#[test]
+fn no_two_scripts_of_the_page_give_one_name_twice() {
+    let mut seen = std::collections::BTreeSet::new();
+    for line in SCRIPT.lines() {
+        let words = line.strip_prefix("async ").unwrap_or(line);
+        let Some(("function" | "const" | "let", rest)) = words.split_once(' ') else {
+            continue;
+        };
+        let end = rest
+            .find(|it: char| !it.is_alphanumeric() && it != '_')
+            .unwrap_or(rest.len());
+        assert!(seen.insert(&rest[..end]), "{line}");
+    }
+    assert!(seen.len() > 100, "{}", seen.len());
+}
+
+#[test]
+fn the_page_is_whole_small_and_asks_nobody_else() {
+    assert!(PAGE.len() < 150_000, "{}", PAGE.len());
+    for mark in [
+        "<!--pages-->",
+        "/*look*/",
+        "/*words*/",
+        "/*kinds*/",
+        "/*script*/",
+    ] {
+        assert_eq!(FRAME.matches(mark).count(), 1);
+        assert!(!PAGE.contains(mark));
+    }
+    for foreign in ["http://", "https://", "//cdn", "@import", "src=", "url("] {
+        assert!(!PAGE.contains(foreign), "{foreign}");
+    }
+}
+
+#[test]
+fn nothing_inside_ends_its_element_early() {
+    let kinds = kinds::json();
+    for (text, end) in [
+        (LOOK, "</style"),
+        (&WORDS, "</script"),
+        (&kinds, "</script"),
+        (SCRIPT, "</script"),
+    ] {
+        assert!(!text.to_ascii_lowercase().contains(end));
+    }
+    assert!(PAGE.contains(&format!("<style>{LOOK}</style>")));
+    assert!(PAGE.contains(&format!("<script>{SCRIPT}</script>")));
+}

@@ -1,0 +1,273 @@
+//! Every route as a client sees it, without a browser.
+
+#![allow(clippy::unwrap_used)]
+
+mod api;
+mod calibration;
+mod events;
+mod history;
+mod login;
+mod lots;
+mod mimic;
+mod orders;
+mod recipes;
+mod rejudge;
+mod routes;
+mod shutdown;
+
+use super::access::{Register, Role};
+use super::{Gate, Shared, Traffic, WAITING, router};
+use axum::Router;
+use axum::body::{Body, to_bytes};
+use axum::http::{Request, StatusCode};
+use machine::view::{
+    LastPart, LineTraffic, Message, Mimic, MimicBody, NotTaken, OrderRequest, View,
+};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex};
+use tokio::sync::{mpsc, watch};
+use tokio::task::JoinHandle;
+use tower::ServiceExt;
+
+/// Of everybody at the bench.
+const PASSWORD: &str = "open sesame";
+
+/// A screen with both ends of its channels.
+type Denied = Arc<Mutex<Vec<String>>>;
+
+struct Bench {
+    view: watch::Sender<View>,
+    ended: watch::Sender<bool>,
+    stop: Arc<AtomicBool>,
+    /// Orders that came for the audit alone.
+    denied: Denied,
+    controller: JoinHandle<()>,
+    orders: mpsc::Sender<OrderRequest>,
+    router: Router,
+    db: PathBuf,
+    gate: Gate,
+    /// Session of an operator.
+    token: String,
+}
+
+impl Bench {
+    fn new() -> Self {
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let number = NEXT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("relayrig-hmi-{}-{number}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        Self::over(folder.join("history.db"))
+    }
+
+    fn over(db: PathBuf) -> Self {
+        let (view, looking) = watch::channel(some_view());
+        let (ended, over) = watch::channel(false);
+        let stop = Arc::new(AtomicBool::new(false));
+        let denied = Denied::default();
+        let (orders, asked) = mpsc::channel(WAITING);
+        let controller = tokio::spawn(controller(asked, Arc::clone(&stop), Arc::clone(&denied)));
+        let people = db.with_file_name("people.db");
+        let mut register = Register::open(&people).unwrap();
+        for (name, role) in [("li", Role::Operator), ("wang", Role::Maintainer)] {
+            register.add(name, role, PASSWORD, 0).unwrap();
+        }
+        let now_us = jiff::Timestamp::now().as_microsecond();
+        let (_, token) = register.log_in("li", PASSWORD, now_us).unwrap().unwrap();
+        let (gate, _) = Gate::open(&people).unwrap();
+        let shared = Shared {
+            gate: gate.clone(),
+            mimic: Arc::new(some_mimic()),
+            view: looking,
+            traffic: some_traffic(),
+            db: db.clone(),
+            config: some_config(&db),
+            orders: orders.clone(),
+        };
+        let router = router::router(shared, over);
+        Self {
+            view,
+            ended,
+            stop,
+            denied,
+            controller,
+            orders,
+            router,
+            db,
+            gate,
+            token,
+        }
+    }
+
+    async fn ask(&self, request: Request<Body>) -> Answer {
+        let response = self.router.clone().oneshot(request).await.unwrap();
+        let (parts, body) = response.into_parts();
+        let body = to_bytes(body, usize::MAX).await.unwrap();
+        Answer {
+            status: parts.status,
+            headers: parts.headers,
+            body: body.to_vec(),
+        }
+    }
+
+    async fn get(&self, path: &str) -> Answer {
+        self.ask(Request::get(path).body(Body::empty()).unwrap())
+            .await
+    }
+
+    async fn order(&self, body: impl Into<Body>) -> Answer {
+        let request = Request::post("/api/orders").header("content-type", "application/json");
+        let request = request.header("authorization", self.bearer());
+        self.ask(request.body(body.into()).unwrap()).await
+    }
+
+    fn bearer(&self) -> String {
+        format!("Bearer {}", self.token)
+    }
+
+    /// Nobody makes views any more.
+    async fn end_of_the_controller(&mut self) {
+        self.view = watch::channel(View::default()).0;
+        self.controller.abort();
+        let _ = (&mut self.controller).await;
+    }
+
+    fn stopped(&self) -> bool {
+        self.stop.load(Ordering::SeqCst)
+    }
+}
+
+/// Takes `stop` and the orders of maintenance, and nothing else.
+async fn controller(
+    mut asked: mpsc::Receiver<OrderRequest>,
+    stop: Arc<AtomicBool>,
+    denied: Denied,
+) {
+    while let Some(asked) = asked.recv().await {
+        if let Some(why) = &asked.denied {
+            denied.lock().unwrap().push(format!(
+                "{} {} {}: {why}",
+                asked.by.role, asked.by.who, asked.order.order
+            ));
+            continue;
+        }
+        let answer = match asked.order.order.as_str() {
+            "stop" => {
+                stop.store(true, Ordering::SeqCst);
+                Ok(())
+            }
+            "jog" | "mode" | "step" | "shelve" | "hold_lot" | "release_lot" | "close_lot"
+            | "replaced" => Ok(()),
+            _other => Err(NotTaken {
+                en: "not in this state".into(),
+                zh: "当前状态不允许".into(),
+            }),
+        };
+        asked.say(answer);
+    }
+}
+
+impl Drop for Bench {
+    fn drop(&mut self) {
+        if let Some(folder) = self.db.parent() {
+            let _ = std::fs::remove_dir_all(folder);
+        }
+    }
+}
+
+struct Answer {
+    status: StatusCode,
+    headers: axum::http::HeaderMap,
+    body: Vec<u8>,
+}
+
+impl Answer {
+    fn json(&self) -> serde_json::Value {
+        serde_json::from_slice(&self.body).unwrap()
+    }
+
+    fn text(&self) -> &str {
+        std::str::from_utf8(&self.body).unwrap()
+    }
+
+    /// The reason of a refusal with this status.
+    fn refused(&self, status: u16) -> String {
+        assert_eq!(self.status.as_u16(), status, "{}", self.text());
+        let json = self.json();
+        assert!(json["error"].is_string());
+        json["reason"].as_str().unwrap().to_owned()
+    }
+}
+
+/// A copy of the configuration beside the history.
+fn some_config(db: &Path) -> PathBuf {
+    let original = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+    let copy = db.with_file_name("config");
+    std::fs::create_dir_all(copy.join("recipes")).unwrap();
+    for file in [
+        "rig.toml",
+        "scene.toml",
+        "golden.toml",
+        "card.toml",
+        "recipes/jzc-22f-006.toml",
+        "recipes/jzc-22f-012.toml",
+    ] {
+        std::fs::copy(original.join(file), copy.join(file)).unwrap();
+    }
+    copy
+}
+
+fn some_mimic() -> Mimic {
+    let square = vec![vec![[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]];
+    let body = |id: &str, rides: &[(&str, [f64; 3])]| MimicBody {
+        id: id.to_owned(),
+        rides: rides
+            .iter()
+            .map(|(it, way)| ((*it).to_owned(), *way))
+            .collect(),
+        above: square.clone(),
+        front: square.clone(),
+    };
+    let lift = [("sort_z", [0.0, 0.0, -1.0]), ("sort_axis", [1.0, 0.0, 0.0])];
+    Mimic {
+        bodies: vec![
+            body("base<plate>", &[]),
+            body("finger", &lift),
+            body("part_nest", &[]),
+        ],
+    }
+}
+
+fn some_traffic() -> Traffic {
+    Traffic::new(|last| {
+        let message = Message {
+            way: ">".into(),
+            text: "@11A2\\r".into(),
+            ..Message::default()
+        };
+        vec![LineTraffic {
+            line: "motion".into(),
+            entries: vec![message; last.min(300)],
+        }]
+    })
+}
+
+fn some_view() -> View {
+    View {
+        simulated: true,
+        lot: "A".into(),
+        recipe: "jzc-22f-012".into(),
+        state: "running".into(),
+        judged: 3,
+        count: Some(20),
+        verdicts: [("pass".to_owned(), 2), ("fail".to_owned(), 1)].into(),
+        bins: [("pass".to_owned(), 2)].into(),
+        last: Some(LastPart {
+            seq: 3,
+            verdict: "pass".into(),
+            ..LastPart::default()
+        }),
+        ..View::default()
+    }
+}

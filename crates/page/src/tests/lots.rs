@@ -1,0 +1,87 @@
+//! The book of lots and the counters of what wears, over HTTP.
+
+use super::*;
+use ::history::{Decision, Identity, LotRecord, LotState, LotStateRecord, Row, Store, WearRecord};
+
+fn with_lots(states: &[(&str, LotState)]) -> Bench {
+    let bench = Bench::new();
+    let mut store = Store::open(&bench.db, &Identity::of_this_program()).unwrap();
+    for (n, (lot, state)) in states.iter().enumerate() {
+        let at_us = i64::try_from(n).unwrap() * 1_000_000;
+        store
+            .begin_lot(&LotRecord {
+                lot: (*lot).into(),
+                recipe: "jzc-22f-012".into(),
+                opened_at_us: at_us,
+                simulated: true,
+                ..LotRecord::default()
+            })
+            .unwrap();
+        let why = (*state == LotState::Held).then(|| "wrong label (li)".to_owned());
+        let row = LotStateRecord {
+            lot: (*lot).into(),
+            state: *state,
+            why,
+            at_us,
+        };
+        store.record(&[Row::LotState(row)]).unwrap();
+    }
+    bench
+}
+
+#[tokio::test]
+async fn every_lot_says_what_may_be_ordered_of_it_and_why_not() {
+    let bench = with_lots(&[
+        ("A", LotState::Complete),
+        ("B", LotState::Held),
+        ("C", LotState::Open),
+    ]);
+    let lots = bench.get("/api/lots").await.json();
+    let told: Vec<_> = lots.as_array().unwrap().iter().collect();
+    let names: Vec<_> = told.iter().map(|it| it["lot"].as_str().unwrap()).collect();
+    assert_eq!(names, ["C", "B", "A"], "the last one first");
+    assert_eq!(told[1]["why"], "wrong label (li)");
+    let live = |lot: &serde_json::Value| {
+        let why_not = lot["why_not"].as_object().unwrap();
+        assert_eq!(why_not.len(), Decision::ALL.len() + 1);
+        let live = why_not.iter().filter(|(_, why)| why.is_null());
+        live.map(|(order, _)| order.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(live(told[0]), ["close_lot", "hold_lot", "start"]);
+    assert_eq!(live(told[1]), ["close_lot", "release_lot"]);
+    assert_eq!(live(told[2]), ["hold_lot", "start"]);
+    let why = &told[1]["why_not"]["start"];
+    assert!(why["en"].as_str().unwrap().contains("release it first"));
+    assert!(why["zh"].as_str().unwrap().contains("放行"));
+}
+
+#[tokio::test]
+async fn the_book_of_lots_is_turned_page_by_page() {
+    let all = ["A", "B", "C", "D", "E"].map(|lot| (lot, LotState::Open));
+    let bench = with_lots(&all);
+    let page = bench.get("/api/lots?limit=2&offset=1").await.json();
+    assert_eq!(
+        (&page[0]["lot"], &page[1]["lot"]),
+        (&"D".into(), &"C".into())
+    );
+    for limit in ["0", "201", "-1", "many"] {
+        let path = format!("/api/lots?limit={limit}");
+        assert!(!bench.get(&path).await.refused(400).is_empty());
+    }
+}
+
+#[tokio::test]
+async fn counters_of_the_rig_that_is_shown_are_told() {
+    let bench = with_lots(&[("A", LotState::Open)]);
+    let mut store = Store::open(&bench.db, &Identity::of_this_program()).unwrap();
+    for (simulated, more) in [(true, 7), (false, 9)] {
+        let row = WearRecord {
+            simulated,
+            name: "probe_touches".into(),
+            more,
+        };
+        store.record(&[Row::Wear(row)]).unwrap();
+    }
+    let wear = bench.get("/api/wear").await.json();
+    assert_eq!(wear[0]["count"], 7, "{wear}");
+}

@@ -1,0 +1,313 @@
+//! Recipes: everybody reads, an engineer revises, and nobody gets past what loading refuses.
+
+use super::*;
+use ::history::{Archive, Filter, Ordered};
+use serde_json::{Value, json};
+
+impl Bench {
+    /// Session of somebody with this role.
+    fn session(&self, role: Role) -> String {
+        let mut register = Register::open(&self.db.with_file_name("people.db")).unwrap();
+        let now_us = jiff::Timestamp::now().as_microsecond();
+        // Whoever was added before stays.
+        let _ = register.add(role.word(), role, PASSWORD, 0);
+        let session = register.log_in(role.word(), PASSWORD, now_us).unwrap();
+        session.unwrap().1
+    }
+
+    async fn revise(&self, token: Option<&str>, body: impl Into<Body>) -> Answer {
+        let mut request =
+            Request::post("/api/recipes/revise").header("content-type", "application/json");
+        if let Some(token) = token {
+            request = request.header("authorization", format!("Bearer {token}"));
+        }
+        self.ask(request.body(body.into()).unwrap()).await
+    }
+
+    async fn newest(&self) -> Value {
+        let answer = self.get("/api/recipes/show?name=jzc-22f-012").await;
+        assert_eq!(answer.status, 200, "{}", answer.text());
+        answer.json()
+    }
+
+    /// A change of the newest revision, as a page sends it.
+    async fn change(&self, values: Value) -> String {
+        json!({"name": "jzc-22f-012", "from": self.newest().await["hash"], "values": values})
+            .to_string()
+    }
+
+    fn recipe_text(&self) -> String {
+        std::fs::read_to_string(
+            self.db
+                .with_file_name("config")
+                .join("recipes/jzc-22f-012.toml"),
+        )
+        .unwrap()
+    }
+
+    fn audit(&self) -> Vec<Ordered> {
+        let archive = Archive::open(&self.db).unwrap();
+        archive.orders(&Filter::default(), None).unwrap()
+    }
+}
+
+#[tokio::test]
+async fn every_recipe_is_listed_and_one_that_does_not_load_says_why() {
+    let bench = Bench::new();
+    let broken = bench
+        .db
+        .with_file_name("config")
+        .join("recipes/broken.toml");
+    std::fs::write(broken, "name = \"broken\"\n").unwrap();
+    let listed = bench.get("/api/recipes").await.json();
+    let names: Vec<&str> = listed
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|it| it["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["broken", "jzc-22f-006", "jzc-22f-012"]);
+    assert!(
+        listed[0]["trouble"]
+            .as_str()
+            .unwrap()
+            .contains("found nothing"),
+        "{listed}"
+    );
+    assert_eq!(
+        (&listed[2]["number"], &listed[2]["trouble"]),
+        (&json!(1), &json!(null))
+    );
+    assert!(listed[2]["title_zh"].as_str().unwrap().contains("继电器"));
+}
+
+#[tokio::test]
+async fn a_revision_is_shown_with_form_unit_range_and_value_of_every_key() {
+    let shown = Bench::new().newest().await;
+    let fields = shown["fields"].as_array().unwrap();
+    let field = fields
+        .iter()
+        .find(|it| it["path"] == "limits.operate_voltage_v.high")
+        .unwrap();
+    assert_eq!(
+        *field,
+        json!({"path": "limits.operate_voltage_v.high", "form": "number", "unit": "V", "low": 0.0, "low_allowed": true,
+            "high": 20.0, "optional": true, "value": 9.0})
+    );
+}
+
+#[tokio::test]
+async fn an_engineer_revises_and_earlier_revisions_stay_to_be_read() {
+    let bench = Bench::new();
+    let engineer = bench.session(Role::Engineer);
+    let old = bench.newest().await;
+    let change = bench
+        .change(json!({"limits.operate_voltage_v.high": 8.75}))
+        .await;
+    let saved = bench.revise(Some(&engineer), change).await;
+    assert_eq!(saved.status, 200, "{}", saved.text());
+    assert_eq!(saved.json()["number"], 2);
+    assert_eq!(bench.newest().await, saved.json());
+    assert!(bench.recipe_text().contains("high = 8.75"));
+    let first = bench
+        .get("/api/recipes/show?name=jzc-22f-012&revision=1")
+        .await
+        .json();
+    assert_eq!(
+        (&first["hash"], &first["newest"]),
+        (&old["hash"], &json!(2))
+    );
+    let [noted] = bench.audit().try_into().unwrap();
+    assert_eq!(
+        (noted.who.as_str(), noted.role.as_str(), noted.refused),
+        ("engineer", "engineer", None)
+    );
+    assert_eq!(noted.what["order"], "revise");
+    assert_eq!(
+        (&noted.what["revision"], &noted.what["from"]),
+        (&json!(2), &old["hash"])
+    );
+    assert_eq!(
+        noted.what["values"],
+        json!({"limits.operate_voltage_v.high": 8.75})
+    );
+}
+
+#[tokio::test]
+async fn a_weaker_role_revises_nothing_and_is_noted_and_a_stranger_leaves_nothing() {
+    let bench = Bench::new();
+    let before = bench.recipe_text();
+    let change = bench.change(json!({"decision.slow_repeats": 4})).await;
+    assert!(
+        bench
+            .revise(None, change.clone())
+            .await
+            .refused(401)
+            .contains("log in")
+    );
+    assert!(!bench.db.exists());
+    for role in [Role::Operator, Role::Maintainer] {
+        let token = bench.session(role);
+        let refused = bench
+            .revise(Some(&token), change.clone())
+            .await
+            .refused(403);
+        assert_eq!(
+            refused,
+            format!("this takes the role engineer; you are {role}")
+        );
+        assert_eq!(bench.audit().last().unwrap().refused, Some(refused));
+    }
+    assert_eq!(bench.recipe_text(), before);
+}
+
+#[tokio::test]
+async fn a_value_that_loading_refuses_is_told_with_its_key_and_nothing_is_written() {
+    let bench = Bench::new();
+    let engineer = bench.session(Role::Engineer);
+    let before = bench.recipe_text();
+    for (values, key) in [
+        (
+            json!({"limits.operate_voltage_v.high": 99}),
+            "limits.operate_voltage_v.high",
+        ),
+        (json!({"part.body_mm": [22.5, 0, 16.5]}), "part.body_mm.1"),
+        (json!({"part.nominal_v": "NaN"}), "part.nominal_v"),
+        (json!({"hastily.typed": 1}), "hastily.typed"),
+        (json!({"passwd": 1}), "passwd"),
+        (json!({"title_en": {"a": 1}}), "title_en"),
+    ] {
+        let change = bench.change(values).await;
+        let answer = bench.revise(Some(&engineer), change).await;
+        let reason = answer.refused(400);
+        assert_eq!(answer.json()["key"], key, "{reason}");
+        assert!(answer.json()["found"].is_string() && answer.json()["expected"].is_string());
+        assert_eq!(bench.audit().last().unwrap().refused, Some(reason));
+    }
+    assert_eq!(bench.recipe_text(), before);
+}
+
+#[tokio::test]
+async fn the_second_of_two_engineers_is_told_in_both_languages() {
+    let bench = Bench::new();
+    let engineer = bench.session(Role::Engineer);
+    let first = bench.change(json!({"decision.slow_repeats": 4})).await;
+    let second = bench.change(json!({"decision.slow_repeats": 5})).await;
+    assert_eq!(bench.revise(Some(&engineer), first).await.status, 200);
+    let before = bench.recipe_text();
+    let answer = bench.revise(Some(&engineer), second).await;
+    assert!(
+        answer
+            .refused(409)
+            .contains("no longer the newest, which is 2")
+    );
+    assert!(
+        answer.json()["reason_zh"]
+            .as_str()
+            .unwrap()
+            .contains("第 2 版")
+    );
+    assert_eq!(bench.recipe_text(), before);
+}
+
+#[tokio::test]
+async fn what_is_no_change_is_refused_before_any_file_is_looked_at() {
+    let bench = Bench::new();
+    let engineer = bench.session(Role::Engineer);
+    let before = bench.recipe_text();
+    let large = format!("{{\"name\":\"{}\"}}", "x".repeat(router::BODY_LIMIT));
+    let hash = bench.newest().await["hash"].clone();
+    for (body, status) in [
+        (large, 413),
+        ("{".into(), 400),
+        ("[]".into(), 400),
+        ("{}".into(), 400),
+        (
+            json!({"name": "jzc-22f-012", "from": hash, "values": {}, "why": "x"}).to_string(),
+            400,
+        ),
+        (
+            format!(
+                "{{\"name\":\"jzc-22f-012\",\"from\":{hash},\"values\":{{\"part.nominal_v\":NaN}}}}"
+            ),
+            400,
+        ),
+        (
+            format!(
+                "{{\"name\":\"jzc-22f-012\",\"from\":{hash},\"values\":{{\"part.nominal_v\":1e999}}}}"
+            ),
+            400,
+        ),
+        (
+            json!({"name": "jzc-22f-012", "from": hash, "values": {}}).to_string(),
+            400,
+        ),
+        (
+            json!({"name": "../rig", "from": hash, "values": {}}).to_string(),
+            404,
+        ),
+        (
+            json!({"name": "revisions/jzc-22f-012/1", "from": hash, "values": {}}).to_string(),
+            404,
+        ),
+        (
+            json!({"name": "jzc-22f-012", "from": "", "values": {}}).to_string(),
+            409,
+        ),
+    ] {
+        let said = body.chars().take(90).collect::<String>();
+        let answer = bench.revise(Some(&engineer), body).await;
+        assert!(!answer.refused(status).is_empty(), "{said}");
+    }
+    assert_eq!(bench.recipe_text(), before);
+}
+
+#[tokio::test]
+async fn where_nothing_can_be_noted_nothing_is_changed() {
+    let bench = Bench::new();
+    let engineer = bench.session(Role::Engineer);
+    let before = bench.recipe_text();
+    let change = bench.change(json!({"decision.slow_repeats": 4})).await;
+    std::fs::write(&bench.db, "this is a letter, not a database\n".repeat(100)).unwrap();
+    let reason = bench.revise(Some(&engineer), change).await.refused(500);
+    assert!(reason.contains("is not a relayrig history"), "{reason}");
+    assert_eq!(bench.recipe_text(), before);
+}
+
+#[tokio::test]
+async fn the_process_card_of_a_recipe_is_paper() {
+    let bench = Bench::new();
+    for (lang, word) in [("zh", "继电器"), ("en", "changeover")] {
+        let answer = bench
+            .get(&format!("/api/recipes/card?name=jzc-22f-012&lang={lang}"))
+            .await;
+        assert_eq!(answer.status, 200, "{}", answer.text());
+        assert!(answer.text().contains(word) && !answer.text().contains("<script"));
+    }
+    bench
+        .get("/api/recipes/card?name=..%2Frig")
+        .await
+        .refused(404);
+}
+
+#[tokio::test]
+async fn a_revision_or_recipe_that_never_was_is_not_there() {
+    let bench = Bench::new();
+    for query in [
+        "name=..%2Frig",
+        "name=",
+        "name=jzc-22f-012&revision=7",
+        "name=jzc-22f-012&revision=0",
+    ] {
+        bench
+            .get(&format!("/api/recipes/show?{query}"))
+            .await
+            .refused(404);
+    }
+    for query in ["", "name=jzc-22f-012&revision=-1", "name=jzc-22f-012&rev=1"] {
+        bench
+            .get(&format!("/api/recipes/show?{query}"))
+            .await
+            .refused(400);
+    }
+}
