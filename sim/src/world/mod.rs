@@ -12,6 +12,7 @@
 
 pub mod axis;
 pub mod board;
+#[cfg_attr(not(feature = "bodies"), path = "unwatched.rs")]
 pub mod bodies;
 pub mod cylinder;
 pub mod defect;
@@ -23,6 +24,7 @@ pub mod gates;
 pub mod magazine;
 pub mod mechanism;
 pub mod places;
+pub mod posture;
 pub mod probes;
 pub mod relay;
 pub mod resistor;

@@ -172,7 +172,7 @@ fn every_listed_bin_verdict_and_mode_has_a_name() {
 #[test]
 fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_words() {
     let table = table();
-    let recipe = config::revision("config".as_ref(), "jzc-22f-012", None).unwrap();
+    let recipe = config::revision("../../config".as_ref(), "jzc-22f-012", None).unwrap();
     for field in serde_json::to_value(recipe).unwrap()["fields"]
         .as_array()
         .unwrap()
@@ -194,7 +194,7 @@ fn every_key_of_a_recipe_and_every_word_that_it_may_have_is_on_the_screen_in_wor
 #[test]
 fn every_body_of_the_scene_has_a_word_on_the_screen() {
     let table = table();
-    let scene = std::fs::read_to_string("config/scene.toml").unwrap();
+    let scene = std::fs::read_to_string("../../config/scene.toml").unwrap();
     let scene: toml::Table = scene.parse().unwrap();
     let bodies = scene["elements"]
         .as_array()

@@ -6,7 +6,7 @@ use parry3d_f64::query::contact;
 
 use super::scene::{Element, Scene, Size};
 use super::shape::{self, Solid};
-use super::{ACTUATORS, Posture};
+use crate::world::posture::{ACTUATORS, Posture};
 
 const PUSHER: usize = 1;
 const SORT_Z: usize = 5;

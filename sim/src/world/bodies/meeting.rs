@@ -1,8 +1,8 @@
 //! What two bodies may do: nothing, or press into each other so deep and by certain actuators.
 
-use super::ACTUATORS;
 use super::body::Body;
 use super::scene::{Rule, Scene};
+use crate::world::posture::ACTUATORS;
 
 /// What two bodies may do.
 #[derive(Debug, Clone)]

@@ -6,6 +6,7 @@
 //!
 //! Between two events of the mechanism everything moves on a known course. [`Bodies::watch`] looks back over such a
 //! span, only at bodies that moved and only at pairs whose swept boxes meet, in steps of [`STEP_MM`] of the longer way.
+//! Without the feature `bodies` the rig has the stand-in of `unwatched.rs` instead.
 
 mod body;
 mod meeting;
@@ -17,6 +18,7 @@ use std::path::Path;
 
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 
+use super::posture::{ACTUATORS, Posture};
 use crate::config::ConfigError;
 use body::{Body, PARTS, depth_mm, element, parts};
 use meeting::{Meeting, meeting};
@@ -27,34 +29,8 @@ const STEP_MM: f64 = 2.0;
 /// Bodies that stand side by side are apart by less than this in floating point, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// Names of the actuators, in the order of [`Posture::mm`]: cylinders first, the axis last.
-pub const ACTUATORS: [&str; 8] = [
-    "escapement",
-    "pusher",
-    "jaw_left",
-    "jaw_right",
-    "probe_lift",
-    "sort_z",
-    "gripper",
-    "sort_axis",
-];
-
-/// Where everything is at an instant.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Posture {
-    /// Way of each actuator from rest, mm.
-    pub mm: [f64; 8],
-    /// A part lies in the pocket.
-    pub pocket: bool,
-    /// A part is before the pusher, on its way to the nest or back.
-    pub pushed: bool,
-    /// A part lies in the nest and nobody lifts it.
-    pub nest: bool,
-    /// The fingers hold a part.
-    pub held: bool,
-    /// Only springs move, or fingers slide off: a grip gives way without harm.
-    pub slack: bool,
-}
+/// True: this program looks for bodies that touch.
+pub const WATCHED: bool = true;
 
 /// All bodies of the rig.
 #[derive(Debug, Clone)]

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::{Mechanism, Stroke};
-use crate::world::bodies::{Bodies, Posture};
+use crate::world::bodies::Bodies;
+use crate::world::posture::Posture;
 
 /// The bodies, and up to when they were looked at.
 #[derive(Debug, Clone)]
