@@ -67,3 +67,8 @@ pub use reply::{Reply, Text};
 pub use type_code::{FullScale, TypeCode, Unit};
 pub use understand::{Family, factory, understand};
 pub use written::readings;
+
+/// Keeps the example of the README compiling.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -124,3 +124,8 @@ pub use outline::{Seen, outlines};
 pub use permission::{Forbidden, Passing, Permission};
 pub use pose::Pose;
 pub use shape::{Flaw, LARGEST_COORDINATE_MM, Mesh, Shape};
+
+/// Keeps the example of the README compiling.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
