@@ -1,4 +1,4 @@
-//! `cargo bench --bench bus`: how fast the parser is and whether it allocates, how much of the time a line keeps busy
+//! `cargo bench -p bus`: how fast the parser is and whether it allocates, how much of the time a line keeps busy
 //! against the paced simulated modules, and ten million random frames.
 
 #![allow(missing_docs)]

@@ -1,4 +1,4 @@
-//! Speed of the collision core against its peers, in one run: `cargo bench --bench lpm`.
+//! Speed of the collision core against its peers, in one run: `cargo bench -p lpm`.
 //!
 //! Printed are nanoseconds and ratios (how many times the peer needs) of mean and 99th percentile,
 //! warm, in an order that nobody can learn, and cold, and how many answers differ; below a missed bar, what it is made of ([`missed`]).
