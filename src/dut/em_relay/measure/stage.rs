@@ -11,6 +11,8 @@ use std::collections::VecDeque;
 pub enum Stage {
     /// Five Kelvin bits and the resting contacts.
     Kelvin,
+    /// Operations before the first measurement, where the recipe asks for them.
+    Conditioning,
     /// NC contact at rest, both polarities.
     NcContact,
     /// Coil resistance at the pre-bias.
@@ -39,7 +41,9 @@ pub(super) fn order(context: &Context) -> VecDeque<Stage> {
         context.strategy(Parameter::OperateVoltage),
         context.strategy(Parameter::ReleaseVoltage),
     );
-    let mut stages = VecDeque::from([
+    let conditioning = context.relay.test.conditioning_operations > 0;
+    let mut stages = VecDeque::from_iter(conditioning.then_some(Stage::Conditioning));
+    stages.extend([
         Stage::NcContact,
         Stage::TimedOperate,
         Stage::TimedRelease,
@@ -66,6 +70,7 @@ impl Stage {
             Self::OperateFine(_) => Some(Direction::Rising),
             Self::ReleaseFine(_) => Some(Direction::Falling),
             Self::Kelvin
+            | Self::Conditioning
             | Self::NcContact
             | Self::Coil
             | Self::Search(_)
@@ -81,6 +86,7 @@ impl Stage {
     pub fn measures(self) -> &'static str {
         match self {
             Self::Kelvin => "kelvin",
+            Self::Conditioning => "conditioning",
             Self::NcContact => "nc_contact",
             Self::Coil => "coil",
             Self::OperateCoarse | Self::OperateFine(_) | Self::Search(Direction::Rising) => {

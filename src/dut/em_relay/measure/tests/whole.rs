@@ -36,6 +36,32 @@ fn stages_of_a_good_part() -> Vec<(Stage, Vec<Act>, Armature)> {
     stages.map(enter).collect()
 }
 
+#[test]
+fn conditioning_operates_before_the_first_measurement() {
+    let mut context = context();
+    assert!(!order(&context).contains(&Stage::Conditioning));
+    std::sync::Arc::make_mut(&mut context.relay)
+        .test
+        .conditioning_operations = 3;
+    assert_eq!(order(&context)[0], Stage::Conditioning);
+    let mut state = at_23_c();
+    let acts = state.enter(Stage::Conditioning, &context);
+    assert_eq!(state.board.armature, Armature::Released);
+    let nominal = Volt(context.relay.part.nominal_v);
+    assert!((state.board.supply.total() - nominal).abs() < Volt(1e-6));
+    let driven: Vec<bool> = acts
+        .iter()
+        .filter_map(|act| match act {
+            Act::Board(outputs) => outputs.iter().find(|(it, _)| *it == DigitalOut::CoilDrive),
+            _ => None,
+        })
+        .map(|(_, on)| *on)
+        .collect();
+    assert_eq!(driven, [true, false].repeat(3));
+    let live = |act: &Act| matches!(act, Act::Board(outputs) if outputs.contains(&(DigitalOut::SourceOn, true)));
+    assert!(!acts.iter().any(live), "no contact load");
+}
+
 /// Acts of every stage in the order of a good part.
 fn all_acts() -> Vec<(Stage, Vec<Act>)> {
     let stages = stages_of_a_good_part().into_iter();
