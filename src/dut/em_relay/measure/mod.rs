@@ -61,6 +61,7 @@ use crate::units::{RigTime, Span};
 use board::Armature;
 pub use context::Context;
 pub use record::{Ramp, Seen, TestRecord};
+pub use release::SEAL;
 pub use stage::Stage;
 use stage::order;
 use state::TestState;

@@ -20,7 +20,7 @@ use crate::dut::em_relay::threshold::{Direction, indicated};
 use crate::units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
-const SEAL: f64 = 0.95;
+pub const SEAL: f64 = 0.95;
 /// Refreshes of the output before the end of the ramp in which it may have stopped already: an event there gives no
 /// estimate.
 const LAST_REFRESHES: f64 = 1.5;
