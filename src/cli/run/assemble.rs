@@ -52,7 +52,7 @@ pub fn cycle(
     let calibrated = calibration.is_some();
     let rig = Rig {
         wiring: &wiring,
-        reference: &plant.reference,
+        reference: plant.reference.as_ref(),
         accuracy: &plant.accuracy,
         reference_parts: &plant.golden,
     };

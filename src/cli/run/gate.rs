@@ -157,7 +157,7 @@ fn pass_gates(
         return Err(NotAdmitted::NoGoldenPart {
             file: plant.dir.join("lot.toml"),
             nominal_v,
-            golden: plant.calibration.golden.clone(),
+            golden: plant.calibration.golden.clone().unwrap_or_default(),
         });
     }
     let standing = match db.exists() {

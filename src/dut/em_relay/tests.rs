@@ -2,13 +2,14 @@
 #![allow(clippy::unwrap_used)]
 
 use crate::dut;
+use crate::dut::accuracy::AccuracySettings;
 use crate::dut::em_relay::Calibration;
 use crate::dut::em_relay::Device;
 use crate::dut::em_relay::calibration::{InputLine, Lag, Lags, OutputLine};
 use crate::dut::em_relay::lag::LagLaw;
 use crate::dut::em_relay::measure::Context;
 use crate::dut::em_relay::points::Points;
-use crate::dut::em_relay::settings::{AccuracySettings, GoldenPart, GoldenSet, ReferenceSettings};
+use crate::dut::em_relay::settings::{GoldenPart, GoldenSet, ReferenceSettings};
 use crate::dut::recipe::{DeviceRecipe, Recipe};
 use crate::gauge::Factor;
 use crate::handling::tests::wiring;
