@@ -9,7 +9,7 @@ mod rage;
 
 use dcon::{Address, AnalogIn, Channel, DataFormat, InputForm, TypeCode};
 use rage::{EVERY_FAULT, Weather, rage};
-use rigsim::fault::Faults;
+use rigsim::fault::LineFaults;
 use std::process::ExitCode;
 
 /// The bar: that many transactions without a lie.
@@ -116,7 +116,7 @@ fn chance(faults: &[&str], name: &str) -> f64 {
 /// that are whole.
 fn passing(asked: AnalogIn, digits: usize) -> (f64, f64) {
     let command = asked.to(Address(1));
-    let mut faults = Faults::none(1);
+    let mut faults = LineFaults::none(1);
     faults.add("clash", Some("1")).expect("a known fault");
     let (mut other, mut close) = (0u32, 0u32);
     for draw in 0..CLASHES {

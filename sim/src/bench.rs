@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::config::LineSpec;
 use crate::error::SimError;
-use crate::fault::Faults;
+use crate::fault::LineFaults;
 use crate::module::habit::{self, Habit};
 use crate::module::plate::Commissioning;
 use crate::module::{Module, setting};
@@ -88,7 +88,7 @@ const KEYS: [&str; 32] = [
 ///
 /// # Errors
 /// The file cannot be read, or a module in it has a key or value that it cannot take.
-pub fn build(file: &Path, faults: Faults) -> Result<Rig, SimError> {
+pub fn build(file: &Path, faults: LineFaults) -> Result<Rig, SimError> {
     let text = std::fs::read_to_string(file).map_err(|error| bench(file, error.to_string()))?;
     parse(&text)
         .map_err(|why| bench(file, why.to_string().trim().to_owned()))?
@@ -106,7 +106,7 @@ pub fn build(file: &Path, faults: Faults) -> Result<Rig, SimError> {
 pub fn build_text(text: &str) -> Result<Rig, SimError> {
     parse(text)
         .map_err(|why| bench(Path::new("-"), why.to_string().trim().to_owned()))?
-        .build(Faults::none(0))
+        .build(LineFaults::none(0))
 }
 
 fn parse(text: &str) -> Result<BenchFile, toml::de::Error> {
@@ -121,7 +121,7 @@ fn bench(file: &Path, why: String) -> SimError {
 }
 
 impl BenchFile {
-    fn build(self, faults: Faults) -> Result<Rig, SimError> {
+    fn build(self, faults: LineFaults) -> Result<Rig, SimError> {
         let mut signals = Signals::default();
         let mut modules = Vec::new();
         for (number, module) in self.module.into_iter().enumerate() {

@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::config::LineSpec;
 use crate::error::SimError;
-use crate::fault::Faults;
+use crate::fault::LineFaults;
 use crate::module::Module;
 use crate::module::habit::{self, Habit};
 use crate::module::plate::Commissioning;
@@ -81,7 +81,7 @@ impl FingerprintLine {
     /// # Errors
     /// A fault is unknown or its value unfit.
     pub fn build(seed: u64, baud: u32, faults: &[&str]) -> Result<Self, SimError> {
-        let mut on_the_line = Faults::none(seed);
+        let mut on_the_line = LineFaults::none(seed);
         for text in faults {
             let (name, value) = split(text);
             if !on_the_line.add(name, value)? {

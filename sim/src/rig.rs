@@ -12,7 +12,7 @@ use std::sync::mpsc::Receiver;
 use crate::config::LineSpec;
 use crate::dcon;
 use crate::error::SimError;
-use crate::fault::{Event, Faults};
+use crate::fault::{Event, LineFaults};
 use crate::journal::{Entry, Watched};
 use crate::line::wire_us;
 use crate::module::Module;
@@ -85,7 +85,7 @@ pub struct Rig {
     /// From when to when each module is at a reply that holds it up: it serves one request after the other.
     serving_us: Vec<(u64, u64)>,
     lines: Vec<LineSpec>,
-    faults: Faults,
+    faults: LineFaults,
     now_us: u64,
 }
 
@@ -95,7 +95,7 @@ impl Rig {
         scene: Box<dyn Scene>,
         modules: Vec<Module>,
         lines: Vec<LineSpec>,
-        faults: Faults,
+        faults: LineFaults,
     ) -> Self {
         let mut rig = Self {
             due_us: vec![u64::MAX; modules.len()],

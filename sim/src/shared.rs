@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use crate::bench;
 use crate::config::{LineSpec, RigFile, WorldTable, read_rig, read_world};
 use crate::error::SimError;
-use crate::fault::{self, FaultInfo, Faults};
+use crate::fault::{self, FaultInfo, LineFaults};
 use crate::module::Module;
 use crate::module::habit::{self, Habit};
 use crate::module::plate::Commissioning;
@@ -65,7 +65,7 @@ impl Options {
 pub fn build(options: &Options) -> Result<SharedRig, SimError> {
     let file = read_rig(&options.config_dir)?;
     let table = read_world(&options.config_dir, options.world.as_deref())?;
-    let mut faults = Faults::none(options.seed);
+    let mut faults = LineFaults::none(options.seed);
     let mut world_faults = Vec::new();
     for text in &options.faults {
         let (name, value) = split(text);
@@ -89,7 +89,7 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
 /// # Errors
 /// As [`bench::build`], or a fault is unknown or its value unfit.
 pub fn build_bench(file: &Path, faults: &[String]) -> Result<SharedRig, SimError> {
-    let mut on_the_line = Faults::none(0);
+    let mut on_the_line = LineFaults::none(0);
     for text in faults {
         let (name, value) = split(text);
         if !on_the_line.add(name, value)? {
@@ -147,7 +147,10 @@ pub(crate) fn number(name: &str, text: &str) -> Result<f64, SimError> {
 }
 
 /// A fault that strikes a module or line which does not exist would silently do nothing.
-pub(crate) fn check_targets(faults: &Faults, known: impl Fn(&str) -> bool) -> Result<(), SimError> {
+pub(crate) fn check_targets(
+    faults: &LineFaults,
+    known: impl Fn(&str) -> bool,
+) -> Result<(), SimError> {
     match faults.targets().find(|target| !known(target)) {
         None => Ok(()),
         Some(target) => Err(SimError::FaultValue {

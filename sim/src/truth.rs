@@ -30,6 +30,9 @@ pub struct PartTruth {
     /// Resistance of a dummy at the reference temperature; absent for an open one. Relays have no such key.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resistance_ohm: Option<f64>,
+    /// Operations of a relay at full voltage, from rest to the first make of NO. Dummies have no such key.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub operations: Option<u64>,
     /// Name of the defect.
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.

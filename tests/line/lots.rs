@@ -360,3 +360,23 @@ fn the_history_tells_of_the_lot() {
     assert_eq!(none.stdout, "");
     workshop.run("history check").with_status(0);
 }
+
+#[test]
+fn conditioning_operates_the_relay_as_often_as_the_recipe_says() {
+    let operations = |name: &str, count: u64| {
+        let workshop = Workshop::new(name);
+        workshop.change(
+            "config/recipes/jzc-22f-012.toml",
+            "conditioning_operations = 0",
+            &format!("conditioning_operations = {count}"),
+        );
+        let lot = run_in(workshop, "jzc-22f-012", 2, "--seed 1");
+        assert!(lot.parts.iter().all(|part| text(part, "bin") == "pass"));
+        let operations = lot.truth.iter().map(|it| it["operations"].as_u64());
+        operations.collect::<Option<Vec<u64>>>().unwrap()
+    };
+    let without = operations("unconditioned", 0);
+    let with = operations("conditioned", 3);
+    let added: Vec<u64> = with.iter().zip(&without).map(|(a, b)| a - b).collect();
+    assert_eq!(added, [3, 3], "{with:?} after {without:?}");
+}

@@ -83,9 +83,9 @@ impl File {
     fn form(&self, path: &str, node: &Node, form: &Form) -> Result<(), ConfigError> {
         match form {
             Form::Table(keys) => self.table(path, node, keys),
-            Form::Named(entry) => self.named(path, node, &[], entry),
-            Form::NamedWith(names, entry) => self.named(path, node, names, entry),
-            Form::Each(names, entry) => self.each(path, node, names, entry),
+            Form::Named(entry) => self.named(path, node, (&[], true), entry),
+            Form::NamedWith(names, entry) => self.named(path, node, (names, true), entry),
+            Form::Each(names, entry) => self.named(path, node, (names, false), entry),
             Form::Points(points) => self.points(path, node, points),
             Form::List(entry) => self.list(path, node, entry),
             Form::Numbers(count, range) => self.numbers(path, node, *count, range),
@@ -122,49 +122,26 @@ impl File {
         }
     }
 
+    /// Entries of one form: all of `needed`, and others as well if the names are `free`.
     fn named(
         &self,
         path: &str,
         node: &Node,
-        needed: &[&str],
+        (needed, free): (&[&str], bool),
         form: &Form,
     ) -> Result<(), ConfigError> {
         for (name, entry) in self.entries(path, node)? {
             let own = join(path, name);
-            if !is_plain_name(name) {
+            if !free && !needed.contains(&name.as_str()) {
+                return Err(self.unknown(path, name, needed));
+            }
+            if free && !is_plain_name(name) {
                 let expected = "a name of lower-case letters, digits and underscores".to_owned();
                 return Err(self.value_error(&own, format!("the name \"{name}\""), expected));
             }
             self.form(&own, entry, form)?;
         }
-        self.all_there(path, node, needed, form)
-    }
-
-    fn each(
-        &self,
-        path: &str,
-        node: &Node,
-        names: &[&str],
-        form: &Form,
-    ) -> Result<(), ConfigError> {
-        for (name, entry) in self.entries(path, node)? {
-            if !names.contains(&name.as_str()) {
-                return Err(self.unknown(path, name, names));
-            }
-            self.form(&join(path, name), entry, form)?;
-        }
-        self.all_there(path, node, names, form)
-    }
-
-    /// Names the first of `names` that the table lacks.
-    fn all_there(
-        &self,
-        path: &str,
-        node: &Node,
-        names: &[&str],
-        form: &Form,
-    ) -> Result<(), ConfigError> {
-        match names.iter().find(|name| node.get(name).is_none()) {
+        match needed.iter().find(|name| node.get(name).is_none()) {
             Some(missing) => Err(self.missing(path, missing, form)),
             None => Ok(()),
         }

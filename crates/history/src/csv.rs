@@ -4,11 +4,15 @@
 //! lines end with LF or CRLF. Every record carries the number of the line it begins on. A record
 //! with another number of fields than the header is an error, never padded.
 
+use ::csv::{ReaderBuilder, StringRecord, Terminator, WriterBuilder};
 use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// What spreadsheets need in front to take a file for UTF-8.
 pub const BYTE_ORDER_MARK: &str = "\u{feff}";
+
+/// What ends a line.
+const LINE_END: [char; 2] = ['\r', '\n'];
 
 /// A record and the line it begins on, from 1.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,79 +47,64 @@ pub enum CsvError {
     },
 }
 
-/// Header first, then the records; empty lines are passed over.
+/// Reads header and records; passes over empty lines.
+///
+/// # Errors
+/// Names the line of a record with another number of fields than the header, or with a quote out of place.
 pub fn read(text: &str) -> Result<Vec<Record>, CsvError> {
     let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+    let mut reader = ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .from_reader(text.as_bytes());
     let mut records: Vec<Record> = Vec::new();
-    let mut rest = text;
-    let mut line = 1;
-    while !rest.is_empty() {
-        let (fields, consumed) = record(rest).ok_or(CsvError::Quote { line })?;
-        let (taken, left) = rest.split_at(consumed);
-        if fields.len() > 1 || fields.iter().any(|field| !field.is_empty()) {
-            let expected = records
-                .first()
-                .map_or(fields.len(), |header| header.fields.len());
-            if fields.len() != expected {
-                return Err(CsvError::Ragged {
-                    line,
-                    found: fields.len(),
-                    expected,
-                });
-            }
-            records.push(Record { line, fields });
+    let (mut row, mut line, mut from) = (StringRecord::new(), 1, 0);
+    while matches!(reader.read_record(&mut row), Ok(true)) {
+        let end = reader.position().byte() as usize;
+        let raw = text[from..end].trim_start_matches(LINE_END);
+        line += text[from..end - raw.len()].matches('\n').count();
+        if !is_strict(raw.trim_end_matches(LINE_END), &row) {
+            return Err(CsvError::Quote { line });
         }
-        line += taken.matches('\n').count();
-        rest = left;
+        if row.iter().any(|field| !field.is_empty()) || row.len() > 1 {
+            records.push(record(&row, line, records.first())?);
+        }
+        line += raw.matches('\n').count();
+        from = end;
     }
-    if records.is_empty() {
-        Err(CsvError::Empty)
-    } else {
-        Ok(records)
+    match records.is_empty() {
+        true => Err(CsvError::Empty),
+        false => Ok(records),
     }
 }
 
-/// Fields of the first record and the bytes it takes, line end included.
-fn record(text: &str) -> Option<(Vec<String>, usize)> {
-    let mut fields = Vec::new();
-    let mut at = 0;
-    loop {
-        let (field, length) = field(&text[at..])?;
-        fields.push(field);
-        at += length;
-        match text.as_bytes().get(at) {
-            Some(b',') => at += 1,
-            Some(b'\r') if text[at..].starts_with("\r\n") => return Some((fields, at + 2)),
-            Some(b'\n') => return Some((fields, at + 1)),
-            None => return Some((fields, at)),
-            Some(_) => return None,
-        }
+/// Checks the number of fields against that of the header.
+fn record(row: &StringRecord, line: usize, header: Option<&Record>) -> Result<Record, CsvError> {
+    let fields: Vec<String> = row.iter().map(str::to_owned).collect();
+    let expected = header.map_or(fields.len(), |header| header.fields.len());
+    match fields.len() == expected {
+        true => Ok(Record { line, fields }),
+        false => Err(CsvError::Ragged {
+            line,
+            found: fields.len(),
+            expected,
+        }),
     }
 }
 
-/// The first field and the bytes it takes, without what ends it.
-fn field(text: &str) -> Option<(String, usize)> {
-    let Some(quoted) = text.strip_prefix('"') else {
-        let end = text.find([',', '\n']).unwrap_or(text.len());
-        let plain = &text[..end];
-        let plain = if text[end..].starts_with('\n') {
-            plain.strip_suffix('\r').unwrap_or(plain)
-        } else {
-            plain
+/// True when a field that begins with a quote ends with one, which the reader does not demand.
+fn is_strict(raw: &str, row: &StringRecord) -> bool {
+    let mut rest = raw;
+    for (n, field) in row.iter().enumerate() {
+        let begin = rest.strip_prefix(',').filter(|_| n > 0).unwrap_or(rest);
+        let end = match begin.starts_with('"') {
+            true => begin.strip_prefix(&format!("\"{}\"", field.replace('"', "\"\""))),
+            false => begin.strip_prefix(field),
         };
-        return Some((plain.to_owned(), plain.len()));
-    };
-    let mut value = String::new();
-    let mut at = 0;
-    loop {
-        let quote = at + quoted[at..].find('"')?;
-        value.push_str(&quoted[at..quote]);
-        if !quoted[quote + 1..].starts_with('"') {
-            return Some((value, quote + 2));
-        }
-        value.push('"');
-        at = quote + 2;
+        let Some(end) = end else { return false };
+        rest = end;
     }
+    rest.is_empty()
 }
 
 /// What a spreadsheet takes for the begin of a formula. A sign before a figure is none: only texts are asked.
@@ -141,23 +130,22 @@ pub fn as_typed(text: &str) -> &str {
     inner.unwrap_or(text)
 }
 
-/// One record with CRLF.
+/// Writes one record with CRLF.
+///
+/// # Errors
+/// `out` cannot be written.
 pub fn write(
     out: &mut impl Write,
     fields: impl IntoIterator<Item = impl AsRef<str>>,
 ) -> io::Result<()> {
-    for (n, field) in fields.into_iter().enumerate() {
-        let field = field.as_ref();
-        if n > 0 {
-            out.write_all(b",")?;
-        }
-        if field.contains([',', '"', '\n', '\r']) {
-            write!(out, "\"{}\"", field.replace('"', "\"\""))?;
-        } else {
-            out.write_all(field.as_bytes())?;
-        }
+    let mut writer = WriterBuilder::new()
+        .terminator(Terminator::CRLF)
+        .from_writer(out);
+    for field in fields {
+        writer.write_field(field.as_ref())?;
     }
-    out.write_all(b"\r\n")
+    writer.write_record(None::<&str>)?;
+    writer.flush()
 }
 
 #[cfg(test)]

@@ -8,173 +8,160 @@ use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
 use axum::response::IntoResponse;
 use machine::view::{ModuleView, View};
+use prometheus_client::collector::Collector;
+use prometheus_client::encoding::text::encode_registry;
+use prometheus_client::encoding::{DescriptorEncoder, EncodeGaugeValue};
+use prometheus_client::metrics::MetricType;
+use prometheus_client::registry::Registry;
 use std::collections::BTreeMap;
-use std::fmt::{Display, Write};
+use std::fmt;
 use std::sync::atomic::Ordering;
 
 /// `GET /metrics`.
 pub(super) async fn metrics(State(desk): State<Desk>) -> impl IntoResponse {
     let alive = desk.shared.view.has_changed().is_ok();
     let screens = desk.screens.load(Ordering::Relaxed);
-    let text = text(&desk.shared.view.borrow(), alive, screens);
+    let text = text(Scrape {
+        view: desk.shared.view.borrow().clone(),
+        alive,
+        screens,
+    });
     (
         [(CONTENT_TYPE, "text/plain; version=0.0.4; charset=utf-8")],
         text,
     )
 }
 
-fn text(view: &View, alive: bool, screens: usize) -> String {
-    let mut out = Figures::default();
-    let about = [
-        ("lot", view.lot.as_str()),
-        ("recipe", &view.recipe),
-        ("state", &view.state),
-    ];
-    out.named(
-        "relayrig_info",
-        "What is being done; always 1.",
-        &[(&about, 1)],
-    );
-    out.one(
-        "relayrig_up",
-        "1 while a controller makes views.",
-        u8::from(alive),
-    );
-    out.one(
-        "relayrig_simulated",
-        "1 if the rig is simulated.",
-        u8::from(view.simulated),
-    );
-    out.one("relayrig_screens", "Open streams of events.", screens);
-    out.one(
-        "relayrig_lot_parts_judged",
-        "Parts of the lot judged.",
-        view.judged,
-    );
+fn text(scrape: Scrape) -> String {
+    let mut registry = Registry::default();
+    registry.register_collector(Box::new(scrape));
+    let mut text = String::new();
+    // Without the end mark of OpenMetrics, which this format does not have.
+    encode_registry(&mut text, &registry).expect("a String takes every text");
+    text
+}
+
+/// The figures of one request.
+#[derive(Debug)]
+struct Scrape {
+    view: View,
+    /// A controller makes views.
+    alive: bool,
+    screens: usize,
+}
+
+impl Collector for Scrape {
+    fn encode(&self, encoder: DescriptorEncoder<'_>) -> fmt::Result {
+        let mut out = Figures(encoder);
+        self.program(&mut out)?;
+        parts(&mut out, &self.view)?;
+        modules(&mut out, &self.view)?;
+        let lines = self.view.lines.iter();
+        let lost = lines.map(|line| ([("line", line.name.as_str())], line.ports_lost));
+        let help = "Transactions that found no port.";
+        out.known("relayrig_line_ports_lost", help, lost)
+    }
+}
+
+impl Scrape {
+    fn program(&self, out: &mut Figures<'_>) -> fmt::Result {
+        let view = &self.view;
+        let about = [
+            ("lot", view.lot.as_str()),
+            ("recipe", &view.recipe),
+            ("state", &view.state),
+        ];
+        let help = "What is being done; always 1.";
+        out.each("relayrig_info", help, [(about, 1_u64)])?;
+        let (up, simulated) = (u64::from(self.alive), u64::from(view.simulated));
+        out.one("relayrig_up", "1 while a controller makes views.", up)?;
+        let help = "1 if the rig is simulated.";
+        out.one("relayrig_simulated", help, simulated)?;
+        out.one("relayrig_screens", "Open streams of events.", self.screens)
+    }
+}
+
+fn parts(out: &mut Figures<'_>, view: &View) -> fmt::Result {
+    let help = "Parts of the lot judged.";
+    out.one("relayrig_lot_parts_judged", help, view.judged)?;
     if let Some(count) = view.count {
         out.one(
             "relayrig_lot_parts_wanted",
             "Parts of the lot wanted.",
             count,
-        );
+        )?;
     }
-    out.one(
-        "relayrig_parts_inside",
-        "Parts between pocket and beam.",
-        view.inside,
-    );
-    out.one(
-        "relayrig_parts_came_in",
-        "Parts that came in, golden ones too.",
-        view.came_in,
-    );
-    out.one(
-        "relayrig_parts_went_out",
-        "Parts a beam confirmed, golden ones too.",
-        view.went_out,
-    );
+    let help = "Parts between pocket and beam.";
+    out.one("relayrig_parts_inside", help, view.inside)?;
+    let help = "Parts that came in, golden ones too.";
+    out.one("relayrig_parts_came_in", help, view.came_in)?;
+    let help = "Parts a beam confirmed, golden ones too.";
+    out.one("relayrig_parts_went_out", help, view.went_out)?;
     if let Some(rate) = view.parts_per_hour.filter(|it| it.is_finite()) {
         out.one(
             "relayrig_lot_parts_per_hour",
             "Parts per hour of rig time.",
             rate,
-        );
+        )?;
     }
-    out.each(
-        "relayrig_lot_parts_in_bin",
-        "Confirmed parts of the lot.",
-        "bin",
-        &view.bins,
-    );
-    out.each(
-        "relayrig_lot_verdicts",
-        "Verdicts of the lot.",
-        "verdict",
-        &view.verdicts,
-    );
-    out.each(
-        "relayrig_alarms",
-        "Alarms shown, by code.",
-        "code",
-        &alarms(view),
-    );
-    out.each(
-        "relayrig_cycle_seconds",
-        "Wall time of the cycle in each phase of its turns.",
-        "phase",
-        &view.machine.phases_s,
-    );
-    bus(&mut out, view);
-    out.0
+    let help = "Confirmed parts of the lot.";
+    out.each("relayrig_lot_parts_in_bin", help, by("bin", &view.bins))?;
+    let help = "Verdicts of the lot.";
+    out.each("relayrig_lot_verdicts", help, by("verdict", &view.verdicts))?;
+    let help = "Alarms shown, by code.";
+    out.each("relayrig_alarms", help, by("code", &alarms(view)))?;
+    let help = "Wall time of the cycle in each phase of its turns.";
+    let phases = by("phase", &view.machine.phases_s);
+    out.each("relayrig_cycle_seconds", help, phases)
 }
 
+/// Name after the prefix, help and figure of a module.
+type Figure<V> = (&'static str, &'static str, fn(&ModuleView) -> V);
+
+const COUNTS: [Figure<u64>; 6] = [
+    ("transactions", "Tries, repeats included.", |it| {
+        it.transactions
+    }),
+    ("time_outs", "Tries without a whole reply in time.", |it| {
+        it.time_outs
+    }),
+    ("checksum_errors", "Replies that did not add up.", |it| {
+        it.checksum_errors
+    }),
+    ("other_errors", "Replies wrong in another way.", |it| {
+        it.other_errors
+    }),
+    ("refusals", "Answers that said no.", |it| it.refusals),
+    ("resets", "Restarts that were noticed.", |it| it.resets),
+];
+const LATENCIES: [Figure<Option<f64>>; 2] = [
+    (
+        "latency_p50_ms",
+        "Median latency, wire time left out.",
+        |it| it.p50_ms,
+    ),
+    ("latency_p99_ms", "Latency that 99 of 100 keep.", |it| {
+        it.p99_ms
+    }),
+];
+
 /// How the modules are doing, one row for each.
-fn bus(out: &mut Figures, view: &View) {
-    /// Name, help, and the figure; none is left out.
-    type Figure = (&'static str, &'static str, fn(&ModuleView) -> Option<f64>);
-    const FIGURES: [Figure; 8] = [
-        ("transactions", "Tries, repeats included.", |it| {
-            Some(it.transactions as f64)
-        }),
-        (
-            "latency_p50_ms",
-            "Median latency, wire time left out.",
-            |it| it.p50_ms,
-        ),
-        ("latency_p99_ms", "Latency that 99 of 100 keep.", |it| {
-            it.p99_ms
-        }),
-        ("time_outs", "Tries without a whole reply in time.", |it| {
-            Some(it.time_outs as f64)
-        }),
-        ("checksum_errors", "Replies that did not add up.", |it| {
-            Some(it.checksum_errors as f64)
-        }),
-        ("other_errors", "Replies wrong in another way.", |it| {
-            Some(it.other_errors as f64)
-        }),
-        ("refusals", "Answers that said no.", |it| {
-            Some(it.refusals as f64)
-        }),
-        ("resets", "Restarts that were noticed.", |it| {
-            Some(it.resets as f64)
-        }),
-    ];
-    let modules = || {
-        let lines = view.lines.iter();
-        lines.flat_map(|line| line.modules.iter().map(move |module| (line, module)))
+fn modules(out: &mut Figures<'_>, view: &View) -> fmt::Result {
+    let labelled = || {
+        view.lines.iter().flat_map(|line| {
+            let rows = line.modules.iter();
+            rows.map(|it| ([("line", &*line.name), ("address", &*it.address)], it))
+        })
     };
-    for (name, help, figure) in FIGURES {
-        let rows: Vec<([Label<'_>; 2], f64)> = modules()
-            .filter_map(|(line, module)| {
-                let labels = [("line", line.name.as_str()), ("address", &*module.address)];
-                Some((labels, figure(module)?))
-            })
-            .collect();
-        if !rows.is_empty() {
-            let rows: Vec<(&[Label<'_>], f64)> = rows
-                .iter()
-                .map(|(labels, value)| (&labels[..], *value))
-                .collect();
-            out.named(&format!("relayrig_module_{name}"), help, &rows);
-        }
+    for (name, help, figure) in COUNTS {
+        let rows = labelled().map(|(labels, it)| (labels, figure(it)));
+        out.known(&format!("relayrig_module_{name}"), help, rows)?;
     }
-    let lost: Vec<_> = view
-        .lines
-        .iter()
-        .map(|line| ([("line", line.name.as_str())], line.ports_lost))
-        .collect();
-    if !lost.is_empty() {
-        let rows: Vec<(&[Label<'_>], u64)> = lost
-            .iter()
-            .map(|(labels, value)| (&labels[..], *value))
-            .collect();
-        out.named(
-            "relayrig_line_ports_lost",
-            "Transactions that found no port.",
-            &rows,
-        );
+    for (name, help, figure) in LATENCIES {
+        let rows = labelled().filter_map(|(labels, it)| Some((labels, figure(it)?)));
+        out.known(&format!("relayrig_module_{name}"), help, rows)?;
     }
+    Ok(())
 }
 
 fn alarms(view: &View) -> BTreeMap<String, u64> {
@@ -188,53 +175,54 @@ fn alarms(view: &View) -> BTreeMap<String, u64> {
 /// A label and its value.
 type Label<'a> = (&'static str, &'a str);
 
-#[derive(Default)]
-struct Figures(String);
+/// One row for each entry of a table.
+fn by<'a, V: Copy>(
+    label: &'static str,
+    table: &'a BTreeMap<String, V>,
+) -> impl Iterator<Item = ([Label<'a>; 1], V)> {
+    let rows = table.iter();
+    rows.map(move |(key, value)| ([(label, key.as_str())], *value))
+}
 
-impl Figures {
-    fn one(&mut self, name: &str, help: &str, value: impl Display) {
-        self.named(name, help, &[(&[], value)]);
+struct Figures<'a>(DescriptorEncoder<'a>);
+
+impl Figures<'_> {
+    fn one(&mut self, name: &str, help: &str, value: impl EncodeGaugeValue) -> fmt::Result {
+        let mut figure = self
+            .0
+            .encode_descriptor(name, help, None, MetricType::Gauge)?;
+        figure.encode_gauge(&value)
     }
 
-    fn each(
+    /// A row for each set of labels.
+    fn each<'a, const N: usize, V: EncodeGaugeValue>(
         &mut self,
         name: &str,
         help: &str,
-        label: &'static str,
-        by: &BTreeMap<String, impl Display>,
-    ) {
-        let labels: Vec<_> = by
-            .iter()
-            .map(|(key, value)| ([(label, key.as_str())], value))
-            .collect();
-        let rows: Vec<(&[Label<'_>], _)> =
-            labels.iter().map(|(it, value)| (&it[..], *value)).collect();
-        self.named(name, help, &rows);
+        rows: impl IntoIterator<Item = ([Label<'a>; N], V)>,
+    ) -> fmt::Result {
+        let mut figure = self
+            .0
+            .encode_descriptor(name, help, None, MetricType::Gauge)?;
+        for (labels, value) in rows {
+            figure.encode_family(&labels)?.encode_gauge(&value)?;
+        }
+        Ok(())
     }
 
-    fn named(&mut self, name: &str, help: &str, rows: &[(&[Label<'_>], impl Display)]) {
-        self.line(format_args!("# HELP {name} {help}"));
-        self.line(format_args!("# TYPE {name} gauge"));
-        for (labels, value) in rows {
-            let labels: Vec<String> = labels.iter().map(label).collect();
-            match labels.is_empty() {
-                true => self.line(format_args!("{name} {value}")),
-                false => self.line(format_args!("{name}{{{}}} {value}", labels.join(","))),
-            }
+    /// The same; leaves the figure out where it has no row.
+    fn known<'a, const N: usize, V: EncodeGaugeValue>(
+        &mut self,
+        name: &str,
+        help: &str,
+        rows: impl Iterator<Item = ([Label<'a>; N], V)>,
+    ) -> fmt::Result {
+        let mut rows = rows.peekable();
+        match rows.peek() {
+            Some(_) => self.each(name, help, rows),
+            None => Ok(()),
         }
     }
-
-    fn line(&mut self, line: std::fmt::Arguments<'_>) {
-        writeln!(self.0, "{line}").expect("a String takes every text");
-    }
-}
-
-fn label((name, value): &Label<'_>) -> String {
-    let value = value
-        .replace('\\', "\\\\")
-        .replace('"', "\\\"")
-        .replace('\n', "\\n");
-    format!("{name}=\"{value}\"")
 }
 
 #[cfg(test)]
@@ -247,7 +235,11 @@ mod tests {
             judged: 7,
             ..View::default()
         };
-        let text = text(&view, true, 2);
+        let text = text(Scrape {
+            view,
+            alive: true,
+            screens: 2,
+        });
         assert!(
             text.contains("# TYPE relayrig_lot_parts_judged gauge\nrelayrig_lot_parts_judged 7\n")
         );
@@ -261,6 +253,11 @@ mod tests {
             lot: "a\"b\\c\nd".into(),
             ..View::default()
         };
-        assert!(text(&view, true, 0).contains(r#"lot="a\"b\\c\nd""#));
+        let text = text(Scrape {
+            view,
+            alive: true,
+            screens: 0,
+        });
+        assert!(text.contains(r#"lot="a\"b\\c\nd""#));
     }
 }

@@ -146,10 +146,10 @@ fn twin(reply: &[u8], rng: &mut ChaCha8Rng) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::Faults;
+    use super::super::LineFaults;
 
     fn struck(fault: &str) -> Vec<u8> {
-        let mut faults = Faults::none(7);
+        let mut faults = LineFaults::none(7);
         faults.add(fault, Some("1")).unwrap();
         let mut reply = b">+05.123\r".to_vec();
         faults.clash("timer", &mut reply, 0);

@@ -91,11 +91,11 @@ impl Loss {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::Faults;
+    use super::super::LineFaults;
 
     #[test]
     fn a_truncation_never_leaves_all_and_a_drop_leaves_nothing() {
-        let mut faults = Faults::none(7);
+        let mut faults = LineFaults::none(7);
         faults.add("truncate", Some("1")).unwrap();
         for _ in 0..100 {
             let left = faults.strike(b"#01", b">+05.123\r".to_vec(), 0);
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn a_module_is_silent_and_requests_are_unheard_while_it_was_asked() {
-        let mut faults = Faults::none(7);
+        let mut faults = LineFaults::none(7);
         faults.add("silence", Some("timer@1..2")).unwrap();
         faults.add("deaf", Some("1@3")).unwrap();
         assert!(!faults.silent("timer", 999_999) && faults.silent("timer", 1_000_000));

@@ -9,7 +9,7 @@
 //! | `port` | lines that are dead, ports that vanish and come back |
 //!
 //! Any number of them can be asked for together, and one more than once. How a value is written: `value`.
-//! Draws come from a stream of their own, so that a fault changes nothing else of the rig. Faults of the world
+//! Draws come from a stream of their own, so that a fault changes nothing else of the rig. LineFaults of the world
 //! (mechanism, board, part) are listed in `sim.toml`.
 
 mod damage;
@@ -66,15 +66,15 @@ pub fn list() -> Vec<FaultInfo> {
         default: known.default.into(),
         what: known.what.into(),
     };
-    let none = Faults::none(0);
+    let none = LineFaults::none(0);
     let families = none.families().into_iter();
     families
         .flat_map(|family| family.list().iter().map(info))
         .collect()
 }
 
-/// All faults of this layer.
-pub struct Faults {
+/// The faults that strike lines and modules.
+pub struct LineFaults {
     rng: ChaCha8Rng,
     loss: loss::Loss,
     timing: timing::Timing,
@@ -83,7 +83,7 @@ pub struct Faults {
     port: port::Port,
 }
 
-impl Faults {
+impl LineFaults {
     /// None at all.
     pub fn none(seed: u64) -> Self {
         Self {
@@ -107,7 +107,7 @@ impl Faults {
     /// Adds one whose times are counted from `now_us`.
     ///
     /// # Errors
-    /// As [`Faults::add`].
+    /// As [`LineFaults::add`].
     pub fn add_from(
         &mut self,
         now_us: u64,
@@ -220,7 +220,7 @@ mod tests {
 
     #[test]
     fn every_listed_fault_can_be_asked_for_without_a_value() {
-        let mut all = Faults::none(1);
+        let mut all = LineFaults::none(1);
         for fault in list() {
             assert!(all.add(&fault.name, None).unwrap(), "{}", fault.name);
         }
@@ -230,19 +230,19 @@ mod tests {
 
     #[test]
     fn a_rig_without_faults_changes_nothing_and_draws_nothing() {
-        let mut faults = Faults::none(1);
+        let mut faults = LineFaults::none(1);
         for now_us in [0, 5_000_000] {
             assert!(!faults.swallows(now_us) && !faults.line_dead("measure", now_us));
             assert_eq!(faults.before_a_request(now_us), None);
             let reply = faults.strike(b"#01", b">\r".to_vec(), now_us);
             assert_eq!(reply, Some((0, b">\r".to_vec())));
         }
-        assert_eq!(faults.rng, Faults::none(1).rng);
+        assert_eq!(faults.rng, LineFaults::none(1).rng);
     }
 
     #[test]
     fn a_fault_of_a_running_rig_counts_its_times_from_now() {
-        let mut faults = Faults::none(1);
+        let mut faults = LineFaults::none(1);
         let value = Some("motion@1..3");
         assert!(faults.add_from(10_000_000, "line_cut", value).unwrap());
         for (now_us, dead) in [
@@ -257,7 +257,7 @@ mod tests {
 
     #[test]
     fn faults_combine() {
-        let mut faults = Faults::none(1);
+        let mut faults = LineFaults::none(1);
         for (name, value) in [("echo", "1"), ("late", "1/350"), ("delay", "1")] {
             assert!(faults.add(name, Some(value)).unwrap());
         }

@@ -114,11 +114,11 @@ impl Port {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::Faults;
+    use super::super::LineFaults;
 
     #[test]
     fn a_cut_line_comes_back_after_two_seconds() {
-        let mut faults = Faults::none(1);
+        let mut faults = LineFaults::none(1);
         faults.add("line_cut", Some("motion@1")).unwrap();
         assert!(!faults.line_dead("motion", 999_999));
         assert!(faults.line_dead("motion", 1_000_000));
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn a_lost_port_says_when_it_goes_and_when_it_is_back() {
-        let mut faults = Faults::none(1);
+        let mut faults = LineFaults::none(1);
         faults.add("port_lost", Some("motion@1..1.5")).unwrap();
         assert_eq!(faults.next_port_loss_us("motion", 0), Some(1_000_000));
         assert_eq!(faults.next_port_loss_us("measure", 0), None);

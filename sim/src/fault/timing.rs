@@ -74,11 +74,11 @@ impl Timing {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::Faults;
+    use super::super::LineFaults;
 
     #[test]
     fn delays_add_up_and_lateness_is_what_was_asked_for() {
-        let mut faults = Faults::none(1);
+        let mut faults = LineFaults::none(1);
         faults.add("delay", Some("5")).unwrap();
         faults.add("delay", Some("2.5@1")).unwrap();
         let mut extra = |now_us| faults.strike(b"#01", b">\r".to_vec(), now_us).unwrap().0;

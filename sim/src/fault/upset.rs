@@ -115,12 +115,12 @@ impl Upset {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
-    use super::super::Faults;
+    use super::super::LineFaults;
     use super::Event;
 
     #[test]
     fn events_by_name_strike_once_and_in_order_of_time() {
-        let mut faults = Faults::none(1);
+        let mut faults = LineFaults::none(1);
         faults.add("reset", Some("timer@3")).unwrap();
         faults.add("watchdog_trip", Some("board_do@2")).unwrap();
         assert_eq!(faults.due(1_999_999), None);
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn events_by_chance_strike_before_a_request() {
-        let mut faults = Faults::none(1);
+        let mut faults = LineFaults::none(1);
         assert_eq!(faults.before_a_request(0), None);
         faults.add("watchdog_trip", Some("1@1")).unwrap();
         assert_eq!(faults.before_a_request(0), None);

@@ -59,11 +59,11 @@ faults! {
     }
 }
 
-/// The faults asked for, with their values.
+/// The faults that strike the machine and its parts, with their values.
 #[derive(Debug, Clone, Default)]
-pub struct Faults(Vec<(Fault, f64)>);
+pub struct WorldFaults(Vec<(Fault, f64)>);
 
-impl Faults {
+impl WorldFaults {
     /// Resolves names; a value that is NaN takes the default of the table.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use super::specimen::{Arrival, Lot, Specimen};
 use super::table::WorldTable;
 use super::{
     WorldOptions,
-    fault::{Fault, Faults},
+    fault::{Fault, WorldFaults},
 };
 use crate::config::ConfigError;
 use crate::truth::{BodyTruth, PartTruth, Place};
@@ -91,7 +91,7 @@ impl Magazine {
     pub fn load(
         options: &WorldOptions,
         world: &WorldTable,
-        faults: &Faults,
+        faults: &WorldFaults,
         track_c: f64,
         ambient_c: f64,
     ) -> Result<Self, ConfigError> {
@@ -145,7 +145,7 @@ impl Magazine {
     }
 
     /// The next part leaves; `None` from an empty track.
-    pub fn take(&mut self, now_us: u64, faults: &mut Faults) -> Option<Part> {
+    pub fn take(&mut self, now_us: u64, faults: &mut WorldFaults) -> Option<Part> {
         if self.waiting() == 0 {
             return None;
         }
@@ -168,7 +168,7 @@ impl Magazine {
     }
 
     /// A part that is fed again is the same body, and operates anew.
-    fn lot_part(&self, index: u64, now_us: u64, faults: &mut Faults) -> Specimen {
+    fn lot_part(&self, index: u64, now_us: u64, faults: &mut WorldFaults) -> Specimen {
         let asked = |fault| faults.values(fault).next().map(|it| it as u64);
         let seed = asked(Fault::PartsSeed).unwrap_or(self.seed);
         let noise = faults.noise_seed().unwrap_or(self.seed);
@@ -186,7 +186,7 @@ impl Magazine {
     }
 
     /// After the last one the first golden part comes again.
-    fn golden_part(&self, index: u64, now_us: u64, faults: &Faults) -> Option<Specimen> {
+    fn golden_part(&self, index: u64, now_us: u64, faults: &WorldFaults) -> Option<Specimen> {
         let place = index - self.filled_at.0;
         let body = if place < self.lot.golden() { place } else { 0 };
         let noise = faults.noise_seed();

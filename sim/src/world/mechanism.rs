@@ -14,7 +14,7 @@ use super::axis::Axis;
 use super::bodies::Bodies;
 use super::cylinder::Cylinder;
 use super::draw::Draw;
-use super::fault::{Fault, Faults};
+use super::fault::{Fault, WorldFaults};
 use super::magazine::{Magazine, Part};
 use super::places::Places;
 use super::signal::{Commands, In, Out};
@@ -90,7 +90,7 @@ pub struct Mechanism {
     magazine: Magazine,
     /// Where the parts are.
     pub places: Places,
-    faults: Faults,
+    faults: WorldFaults,
     draw: Draw,
     commands: Commands,
     disturbed: Vec<Fault>,
@@ -108,7 +108,7 @@ impl Mechanism {
         axis: Axis,
         (bins, bodies): (Vec<Bin>, Bodies),
         magazine: Magazine,
-        faults: Faults,
+        faults: WorldFaults,
         draw: Draw,
     ) -> Self {
         let means = [
@@ -158,7 +158,10 @@ impl Mechanism {
     }
 
     /// The magazine is emptied and filled with what `load` makes of the faults that still wait.
-    pub fn fill<E>(&mut self, load: impl FnOnce(&Faults) -> Result<Magazine, E>) -> Result<(), E> {
+    pub fn fill<E>(
+        &mut self,
+        load: impl FnOnce(&WorldFaults) -> Result<Magazine, E>,
+    ) -> Result<(), E> {
         self.magazine = load(&self.faults)?.in_place_of(&self.magazine);
         Ok(())
     }

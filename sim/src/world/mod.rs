@@ -45,7 +45,7 @@ use bodies::Bodies;
 use draw::{Draw, Subject};
 use edges::Edges;
 use environment::Environment;
-use fault::{Fault, Faults, Kind};
+use fault::{Fault, Kind, WorldFaults};
 use magazine::{Magazine, Part};
 use mechanism::Mechanism;
 use signal::{Commands, In, Source};
@@ -97,7 +97,7 @@ impl World {
         let rig = read_rig(&options.config_dir)?;
         let table = read_world(&options.config_dir, options.world_file.as_deref())?;
         let path = options.config_dir.join("sim.toml");
-        let faults = Faults::resolve(&options.faults, &table.fault, &path)?;
+        let faults = WorldFaults::resolve(&options.faults, &table.fault, &path)?;
         let mut draw = Draw::new(options.seed, Subject::Rig, 0);
         let environment = Environment::new(&table.environment, &mut draw);
         let (track, ambient) = (environment.track_c, environment.ambient_c);

@@ -20,10 +20,10 @@ pub struct Change {
     pub closed: bool,
 }
 
-/// What stands at the input pins.
+/// What drives the input pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Supply {
-    /// A source of so many volts.
+    /// A source, V.
     Volts(f64),
     /// Nothing but the clamp, volts across it while current flows.
     Off {

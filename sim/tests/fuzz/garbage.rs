@@ -1,6 +1,8 @@
 //! Bytes from a seed: half of them nearly requests, a quarter damaged requests, a quarter anything at all. After
 //! everything that was met with silence the module must say of itself exactly what it said before.
 
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rigsim::bench;
 use rigsim::rig::Rig;
 
@@ -24,15 +26,11 @@ pub struct Seen {
     pub unheard: u64,
 }
 
-struct Random(u64);
+struct Random(SplitMix64);
 
 impl Random {
-    /// SplitMix64.
     fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mixed = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        mixed ^ mixed >> 31
+        self.0.next_u64()
     }
 
     fn below(&mut self, most: usize) -> usize {
@@ -113,7 +111,7 @@ fn input(random: &mut Random) -> Vec<u8> {
 
 /// Throws so many inputs at every model in turn.
 pub fn throw(seed: u64, inputs: u64) -> Seen {
-    let mut random = Random(seed);
+    let mut random = Random(SplitMix64::seed_from_u64(seed));
     let mut seen = Seen::default();
     for (place, model) in MODELS.iter().cycle().take(2 * MODELS.len()).enumerate() {
         let checksum = place >= MODELS.len();

@@ -15,6 +15,8 @@ use super::fleet::{Folder, Order};
 use super::output::Report;
 use anyhow::Context;
 use history::{Archive, Filter, Part};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use serde_json::Value;
 use std::fs::File;
 use std::path::Path;
@@ -57,8 +59,10 @@ pub fn study(order: &Order) -> anyhow::Result<Report> {
     let mut counts = Counts::default();
     let mut instants = Vec::new();
     let bar = crate::cli::history::progress(order.lots);
+    // A seed of its own, so that each run of the study kills at the same instants.
+    let mut draws = SplitMix64::seed_from_u64(0);
     for round in 0..order.lots {
-        let instant = scattered(round) % LONGEST_MS;
+        let instant = draws.next_u64() % LONGEST_MS;
         let told = killed(order, &folder.0, &db, round, instant)?;
         instants.push(instant as f64);
         counts.early += u64::from(told.is_empty());
@@ -227,12 +231,4 @@ fn same(row: &Part, told: &Value) -> bool {
             .landed_bin
             .as_ref()
             .is_none_or(|bin| told["bin"] == bin.as_str())
-}
-
-/// A number that looks random, the same for the same round (SplitMix64's last steps).
-fn scattered(round: u64) -> u64 {
-    let mut it = (round + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-    it = (it ^ (it >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    it = (it ^ (it >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    it ^ (it >> 31)
 }

@@ -2,6 +2,7 @@
 
 use super::chart::Chart;
 use super::figure::{Bar, Figure, shown};
+use history::csv;
 use serde_json::json;
 use std::fmt::Write;
 
@@ -76,13 +77,11 @@ impl Report {
     /// All figures under one header; numbers in full.
     pub fn csv(&self) -> String {
         let all: Vec<Figure> = self.figures().cloned().collect();
-        let mut text = String::new();
+        let mut bytes = Vec::new();
         for row in cells(&all, |value| value.to_string()) {
-            let quoted: Vec<String> = row.iter().map(|cell| quoted(cell)).collect();
-            text.push_str(&quoted.join(","));
-            text.push_str("\r\n");
+            csv::write(&mut bytes, row).expect("memory takes every record");
         }
-        text
+        String::from_utf8(bytes).expect("fields are text")
     }
 }
 
@@ -152,13 +151,5 @@ fn aligned(text: &mut String, table: &[Vec<String>]) {
             };
         }
         let _ = writeln!(text, "{}", line.trim_end());
-    }
-}
-
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.to_owned()
     }
 }

@@ -14,6 +14,8 @@ use dcon::{
     Address, AnalogIn, AnalogOut, Channel, Command, Common, Counter, DataFormat, Digital,
     InputForm, Level, OutputForm, OutputWord, Reply, ReplyError, TypeCode, UpTo, Value,
 };
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rigsim::fingerprint::{self, FingerprintLine};
 use rigsim::wire::{self, Plug};
 use std::collections::BTreeMap;
@@ -135,7 +137,7 @@ pub async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
         answer,
     ));
     let mut host = Host {
-        random: seed,
+        random: SplitMix64::seed_from_u64(seed),
         written: 0,
         next: None,
     };
@@ -164,18 +166,15 @@ pub async fn storm(seed: u64, transactions: u64, faults: &[&str]) -> Weather {
 
 /// Chooses what to ask.
 struct Host {
-    random: u64,
+    random: SplitMix64,
     written: u16,
     next: Option<Command>,
 }
 
 impl Host {
-    /// SplitMix64: a number from 0, below `most`.
+    /// A number from 0, below `most`.
     fn below(&mut self, most: u8) -> u8 {
-        self.random = self.random.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mixed = (self.random ^ self.random >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((mixed >> 32) % u64::from(most)) as u8
+        ((self.random.next_u64() >> 32) % u64::from(most)) as u8
     }
 
     fn command(&mut self) -> Command {

@@ -46,9 +46,9 @@ impl Cycle {
         }
     }
 
-    /// One event for whoever keeps the record.
+    /// Sends one event to the history.
     pub(super) fn tell(&self, event: Event) {
-        // The receiver ends only with the program; then nobody is left to tell.
+        // The receiver ends only with the program.
         let _ = self.outside.events.send(event);
     }
 }

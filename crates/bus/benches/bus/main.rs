@@ -10,6 +10,8 @@ use dcon::{
     self, Address, AnalogIn, Command, Common, Counter, DataFormat, Digital, InputForm, TypeCode,
     UpTo,
 };
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -62,19 +64,6 @@ fn sealed(text: &str) -> Vec<u8> {
 
 // ---- random frames --------------------------------------------------------------------------------------------------
 
-/// Splitmix64: the same frames in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-}
-
 fn fuzz() {
     const LETTERS: &[u8] = b"!>?#$%@~0123456789ABCDEF+-. RDOCLHPSTGIM*";
     let asks = [
@@ -86,14 +75,15 @@ fn fuzz() {
         Counter::Read(UpTo::new(1).expect("1 is a counter")).to(Address(1)),
     ];
     let begun = Instant::now();
-    let mut random = Random(1);
+    // The same frames in every run.
+    let mut random = SplitMix64::seed_from_u64(1);
     let mut frame = Vec::with_capacity(80);
     let (mut taken, mut read) = (0u64, 0u64);
     for turn in 0..FUZZED {
         frame.clear();
-        let length = random.next() % 24;
+        let length = random.next_u64() % 24;
         for _ in 0..length {
-            let draw = random.next();
+            let draw = random.next_u64();
             // One byte in sixteen is anything, the others are characters of the protocol.
             frame.push(if draw.is_multiple_of(16) {
                 (draw >> 8) as u8
@@ -101,7 +91,7 @@ fn fuzz() {
                 LETTERS[(draw >> 8) as usize % LETTERS.len()]
             });
         }
-        let checksum = random.next().is_multiple_of(8);
+        let checksum = random.next_u64().is_multiple_of(8);
         if checksum {
             let sum = dcon::checksum(&frame);
             frame.extend(format!("{sum:02X}").bytes());

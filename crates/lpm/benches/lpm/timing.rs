@@ -75,7 +75,7 @@ impl<'a, Q> Timed<'a, Q> {
     /// The same in another order in each pass: what comes next has not been learned by anybody.
     pub fn unlearned(queries: &'a [Q], clock_ns: f64) -> Timed<'a, Q> {
         Timed {
-            dice: Some(Dice(7)),
+            dice: Some(Dice::new(7)),
             ..Timed::new(queries, clock_ns)
         }
     }

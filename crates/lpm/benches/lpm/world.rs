@@ -5,31 +5,30 @@
 //! that density stays the same. The mover is two fingers, a palm and a spindle.
 
 use lpm::{Move, Pose, Shape};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// Distance between stacks, mm.
 const PITCH_MM: f64 = 60.0;
 /// Mean number of elements of a stack.
 const MEAN_STACK: f64 = 3.0;
 
-/// Numbers that look drawn and are the same in every run (SplitMix64).
-pub struct Dice(pub u64);
+/// Numbers that look drawn and are the same in every run.
+pub struct Dice(SplitMix64);
 
 impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+    /// Draws from a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(SplitMix64::seed_from_u64(seed))
     }
 
     /// Uniform in `low..high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        low + (high - low) * (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     fn below(&mut self, count: u64) -> u64 {
-        self.next() % count
+        self.0.next_u64() % count
     }
 
     /// Puts things in another order.
@@ -52,7 +51,7 @@ pub struct World {
 
 /// `count` elements and the plate under them.
 pub fn world(count: usize) -> World {
-    let mut dice = Dice(count as u64);
+    let mut dice = Dice::new(count as u64);
     let side = (count as f64 / MEAN_STACK).sqrt().ceil().max(1.0) as u64;
     let edge_mm = side as f64 * PITCH_MM;
     let plate = Shape::Block {
@@ -151,7 +150,7 @@ pub const KINDS: [&str; 6] = [
 
 /// `count` moves of one kind.
 pub fn moves(world: &World, kind: &str, count: usize) -> Vec<Move<'static>> {
-    let mut dice = Dice(kind.bytes().map(u64::from).sum());
+    let mut dice = Dice::new(kind.bytes().map(u64::from).sum());
     (0..count).map(|_| drawn(world, kind, &mut dice)).collect()
 }
 

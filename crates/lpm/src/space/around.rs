@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn whatever_meets_a_box_is_shown_however_large_the_box_and_wherever_it_is() {
-        let mut dice = Dice(19);
+        let mut dice = Dice::new(19);
         let mut large = 0;
         for round in 0..40 {
             let covers: Vec<Cover> = (0..60)

@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn whoever_shares_a_point_is_met_and_nobody_else() {
-        let mut dice = Dice(9);
+        let mut dice = Dice::new(9);
         let mut met = 0;
         for _ in 0..2_000 {
             let (mut boxes, asked) = (Boxes::<8>::NOWHERE, drawn(&mut dice));
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn a_crossing_begins_no_later_than_the_boxes_meet() {
-        let mut dice = Dice(10);
+        let mut dice = Dice::new(10);
         let (mut met, mut missed, mut alone) = (0, 0, 0);
         for _ in 0..2_000 {
             let (element, mover) = (drawn(&mut dice), drawn(&mut dice));

@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_cover_holds_what_it_covers() {
-        let mut dice = Dice(7);
+        let mut dice = Dice::new(7);
         for exponent in -45..7 {
             for _ in 0..200 {
                 let at = dice.vector().map(|member| member * 10f64.powi(exponent));
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn the_cover_of_a_way_holds_its_end() {
-        let mut dice = Dice(11);
+        let mut dice = Dice::new(11);
         for exponent in -12..6 {
             for _ in 0..200 {
                 let at = dice.vector().map(|member| member * 1e3);

@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn four_at_a_time_are_what_one_by_one_would_be() {
-        let mut dice = Dice(8);
+        let mut dice = Dice::new(8);
         for _ in 0..4_000 {
             let (a, b) = (drawn(&mut dice), drawn(&mut dice));
             let (fast_a, fast_b) = (sse::of(&a), sse::of(&b));
@@ -282,7 +282,7 @@ mod tests {
 
     #[test]
     fn what_is_rounded_is_the_nearest_whole_number() {
-        let mut dice = Dice(12);
+        let mut dice = Dice::new(12);
         for exponent in -30..22 {
             for _ in 0..100 {
                 let x = (dice.signed() * 2f64.powi(exponent)) as f32;

@@ -219,7 +219,7 @@ mod tests {
 
     #[test]
     fn no_layer_that_reaches_into_the_asked_heights_is_left_out() {
-        let mut dice = Dice(3);
+        let mut dice = Dice::new(3);
         let mut layers = Layers::default();
         let mut standing: Vec<(f32, f32, Reach)> = Vec::new();
         for round in 0..3_000 {
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn layers_of_many_pieces_at_once_are_those_of_one_after_the_other() {
-        let mut dice = Dice(29);
+        let mut dice = Dice::new(29);
         for count in [0, 1, 7, 400] {
             let covers: Vec<Cover> = (0..count)
                 .map(|_| {

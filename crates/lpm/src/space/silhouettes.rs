@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_bundle_reaches_from_the_lowest_to_the_highest_layer_of_all_that_stay() {
-        let mut dice = Dice(17);
+        let mut dice = Dice::new(17);
         for _ in 0..2_000 {
             let mut bundle = Bundle::before(NONE);
             let mut reaches = Vec::new();

@@ -129,7 +129,7 @@ mod tests {
 
     #[test]
     fn whatever_a_box_passes_of_a_band_is_in_the_strip() {
-        let mut dice = Dice(23);
+        let mut dice = Dice::new(23);
         let (mut passed, mut spared) = (0, 0);
         for _ in 0..400 {
             let [x, y, z] = dice.vector().map(|member| 40.0 * member.abs());

@@ -60,7 +60,7 @@ fn judged(element: &Body, mover: &Body, run: [i64; 3], dice: &mut Dice) {
 #[test]
 fn what_is_stacked_or_stands_side_by_side_touches_exactly_when_it_does() {
     for seed in 0..150 {
-        let mut dice = Dice(seed);
+        let mut dice = Dice::new(seed);
         let (element, mover) = (upright(&mut dice), upright(&mut dice));
         let (a, b) = (reach(&element), reach(&mover));
         for delta in DELTAS {
@@ -80,7 +80,7 @@ fn what_is_stacked_or_stands_side_by_side_touches_exactly_when_it_does() {
 #[test]
 fn a_slide_or_a_tangent_of_any_length_touches_exactly_when_it_does() {
     for seed in 0..150 {
-        let mut dice = Dice(1_000 + seed);
+        let mut dice = Dice::new(1_000 + seed);
         let (element, mover) = (upright(&mut dice), upright(&mut dice));
         let (a, b) = (reach(&element), reach(&mover));
         let length = [MM, 20 * MM, 100 * MM, 1_000 * MM, 5_000 * MM][dice.pick(5) as usize];
@@ -99,7 +99,7 @@ fn a_slide_or_a_tangent_of_any_length_touches_exactly_when_it_does() {
 #[test]
 fn a_head_on_stop_ends_where_it_touches_or_a_hair_before() {
     for seed in 0..150 {
-        let mut dice = Dice(2_000 + seed);
+        let mut dice = Dice::new(2_000 + seed);
         let (element, mover) = (upright(&mut dice), upright(&mut dice));
         let (a, b) = (reach(&element), reach(&mover));
         for delta in DELTAS {
@@ -115,7 +115,7 @@ fn a_head_on_stop_ends_where_it_touches_or_a_hair_before() {
 #[test]
 fn a_corner_and_a_rim_three_four_five_apart_are_told_to_the_nanometre() {
     for seed in 0..150 {
-        let mut dice = Dice(3_000 + seed);
+        let mut dice = Dice::new(3_000 + seed);
         let half = [size(&mut dice), size(&mut dice), size(&mut dice)];
         let radius = 5 * (size(&mut dice) / 5);
         let element = Body::block([0; 3], half);
@@ -143,7 +143,7 @@ fn a_corner_and_a_rim_three_four_five_apart_are_told_to_the_nanometre() {
 #[test]
 fn what_is_inside_or_on_the_same_axis_is_blocked() {
     for seed in 0..150 {
-        let mut dice = Dice(4_000 + seed);
+        let mut dice = Dice::new(4_000 + seed);
         let outer = upright(&mut dice);
         let reach = reach(&outer);
         let inner = Body::cylinder([0; 3], reach[0].min(reach[1]) / 3, reach[2] / 2);
@@ -159,7 +159,7 @@ fn what_is_inside_or_on_the_same_axis_is_blocked() {
 fn turned_blocks_touch_exactly_when_whole_numbers_say_so() {
     // Millimetres of 1/1024, quaternions of single digits, any axis: edges cross, corners meet faces.
     for seed in 0..2_500 {
-        let mut dice = Dice(5_000 + seed);
+        let mut dice = Dice::new(5_000 + seed);
         let mut turned = |most: u64| {
             let mut digit = || dice.pick(7) as i64 - 3;
             let rotation = [1 + digit().abs(), digit(), digit(), digit()];
@@ -182,7 +182,7 @@ fn triangles_touch_exactly_when_whole_numbers_say_so() {
     // A coarse grid, so that corners fall on edges and planes coincide again and again.
     let mut touched = 0;
     for seed in 0..2_500 {
-        let mut dice = Dice(8_000 + seed);
+        let mut dice = Dice::new(8_000 + seed);
         let mut triangle = || loop {
             let mut whole = || dice.pick(5) as i64 - 2;
             let corners = [0; 3].map(|_| [whole(), whole(), whole()]);

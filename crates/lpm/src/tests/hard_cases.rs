@@ -210,7 +210,7 @@ fn a_graze_of_turned_bodies_within_a_metre_stops_at_most_a_ten_thousandth_of_a_m
         position: [0.0; 3],
         rotation: [2.0, 0.0, 0.0, 1.0],
     };
-    let mut dice = Dice(77);
+    let mut dice = Dice::new(77);
     let mut earliest = 0.0_f64;
     for _ in 0..400 {
         let mut whole = |most: u64| 1.0 + dice.pick(most) as f64;

@@ -67,7 +67,7 @@ fn same(a: (Option<f64>, f64), b: (Option<f64>, f64), seed: u64) {
 #[test]
 fn it_does_not_matter_which_of_both_moves() {
     for seed in 0..500 {
-        let it = drawn(&mut Dice(seed));
+        let it = drawn(&mut Dice::new(seed));
         let back = it.run.map(|member| -member);
         same(
             answer(&it.element, it.at, &it.mover, it.from, it.run),
@@ -80,7 +80,7 @@ fn it_does_not_matter_which_of_both_moves() {
 #[test]
 fn a_common_shift_and_a_change_of_axes_change_nothing() {
     for seed in 1_000..1_400 {
-        let it = drawn(&mut Dice(seed));
+        let it = drawn(&mut Dice::new(seed));
         let plain = answer(&it.element, it.at, &it.mover, it.from, it.run);
         let shifted = |pose: Pose| {
             pose.moved_to([0, 1, 2].map(|axis| pose.position[axis] + [4096.0, -512.0, 64.0][axis]))
@@ -122,7 +122,7 @@ fn a_common_shift_and_a_change_of_axes_change_nothing() {
 #[test]
 fn a_larger_margin_stops_no_later_and_a_longer_way_no_less() {
     for seed in 2_000..2_300 {
-        let it = drawn(&mut Dice(seed));
+        let it = drawn(&mut Dice::new(seed));
         let model = standing(&it.element, it.at);
         let to = |share: f64| {
             it.from
@@ -149,7 +149,7 @@ fn a_larger_margin_stops_no_later_and_a_longer_way_no_less() {
 #[test]
 fn what_came_and_went_leaves_every_answer_as_it_was_bit_for_bit() {
     for seed in 3_000..3_060 {
-        let mut dice = Dice(seed);
+        let mut dice = Dice::new(seed);
         let it = drawn(&mut dice);
         let mut model = standing(&it.element, it.at);
         let to = it
@@ -177,7 +177,7 @@ fn what_came_and_went_leaves_every_answer_as_it_was_bit_for_bit() {
 fn the_stop_is_where_the_clearance_runs_out() {
     // The way up to the stop is clear but for its last hair, and the stop itself is within the margin.
     for seed in 4_000..4_400 {
-        let it = drawn(&mut Dice(seed));
+        let it = drawn(&mut Dice::new(seed));
         let model = standing(&it.element, it.at);
         let to = |share: f64| {
             it.from
@@ -197,7 +197,7 @@ fn the_stop_is_where_the_clearance_runs_out() {
 
 #[test]
 fn a_body_at_rest_is_judged_like_the_beginning_of_its_way() {
-    let mut dice = Dice(41);
+    let mut dice = Dice::new(41);
     let (mut met, mut clear) = (0, 0);
     for round in 0..60 {
         let mut model = Model::new();

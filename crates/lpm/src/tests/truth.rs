@@ -84,7 +84,7 @@ fn the_exact_truth_knows_a_triangle_of_three_four_five() {
 #[test]
 fn the_exact_truth_sees_what_dense_sampling_sees() {
     // A coarse world in which sampling at a thousand places cannot miss a meeting of whole units.
-    let mut dice = crate::distance::tests::Dice(5);
+    let mut dice = crate::distance::tests::Dice::new(5);
     let mut met = 0;
     for _ in 0..3_000 {
         let mut whole = |most: u64| dice.pick(most) as i64;

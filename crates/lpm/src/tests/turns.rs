@@ -42,7 +42,7 @@ struct Turned {
 
 impl Turned {
     fn drawn(seed: u64) -> Turned {
-        let mut dice = Dice(seed);
+        let mut dice = Dice::new(seed);
         let mut shape = || match dice.pick(3) {
             0 => block(
                 2.0 + dice.pick(40) as f64,

@@ -9,7 +9,7 @@ use super::verdict::Verdict;
 use crate::gauge::Judgement;
 use crate::instrument::act::{Doing, JobDone};
 use crate::rig::image::Image;
-use units::RigTime;
+use units::{RigTime, Span};
 
 /// What a test wants from its surroundings.
 #[derive(Debug)]
@@ -19,6 +19,9 @@ pub enum Progress {
     /// The part is judged.
     Judged,
 }
+
+/// Longest time of the stages that measure; the slow strategy takes below 10 s.
+const MEASURING: Span = Span::ms(60_000);
 
 /// A test under way, by kind.
 #[derive(Debug)]
@@ -43,6 +46,14 @@ impl Procedure {
         match self {
             Self::EmRelay(test) => test.number(),
             Self::Resistor(test) => test.number(),
+        }
+    }
+
+    /// Longest time of the test; one that takes longer is stuck.
+    pub fn longest(&self) -> Span {
+        match self {
+            Self::EmRelay(test) => MEASURING + test.conditioning(),
+            Self::Resistor(_) => MEASURING,
         }
     }
 

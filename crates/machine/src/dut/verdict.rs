@@ -16,7 +16,7 @@ pub(super) fn rank(bin: Bin) -> usize {
     known.unwrap_or(by_rank.len())
 }
 
-/// What is said of a part.
+/// The conclusion of a test on its part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
     /// Every limit proven.

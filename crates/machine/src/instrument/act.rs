@@ -36,7 +36,7 @@ pub enum Read {
         /// Points that are kept beside them as they last were.
         beside: Vec<Point>,
     },
-    /// Whether a module with outputs has restarted since it was asked last; one that has is an alarm.
+    /// Asks each module with outputs whether it has restarted since the last such read; a restart raises an alarm.
     Restarts,
 }
 

@@ -12,7 +12,10 @@ use super::model::Terminals;
 use super::modules::resolve_modules;
 use super::point::{DigitalIn, DigitalOut, Fixture, Quantity, Switch};
 use super::reaction::check_reaction;
-use super::settings::{ActuatorSettings, ChannelSettings, RigSettings};
+use super::settings::{
+    ActuatorSettings, AnalogInSettings, AnalogOutSettings, ChannelSettings, DigitalInSettings,
+    RigSettings,
+};
 use super::wiring::{AnalogTerminal, Line, Module, ModuleId, StrokeLimits, Terminal, Wiring};
 use dcon::Channel;
 use std::collections::BTreeMap;
@@ -39,26 +42,54 @@ impl Wiring {
         inputs.check(settings)?;
         let strokes = resolve_strokes(&settings.actuator)?;
         let declared = Declared { settings, fixtures };
+        let quantities = declared.quantities();
+        check_units(&settings.analog_in, &quantities)?;
         let mut terminals = TerminalBook {
             modules: &modules,
             taken: BTreeMap::new(),
         };
         let wiring = Self {
-            digital_in: terminals.digital_in(settings, &inputs.names)?,
-            digital_out: terminals.digital_out(settings, &declared.outputs())?,
-            analog_in: terminals.analog_in(settings, &declared.quantities())?,
-            analog_out: terminals.analog_out(settings, &declared.sources())?,
-            temperature: terminals.channels(
-                "temperature",
-                &declared.thermometers(),
-                &settings.temperature,
-                Terminals::Temperature,
+            digital_in: digital(
+                terminals.wire(
+                    ("digital_in", Terminals::DigitalIn),
+                    &inputs.names,
+                    String::as_str,
+                    &settings.digital_in,
+                )?,
+                |name| settings.digital_in[name].active == "low",
+            ),
+            digital_out: digital(
+                terminals.wire(
+                    ("digital_out", Terminals::DigitalOut),
+                    &declared.outputs(),
+                    |output: &Switch| output.name,
+                    &settings.digital_out,
+                )?,
+                |_| false,
+            ),
+            analog_in: terminals.wire(
+                ("analog_in", Terminals::AnalogIn),
+                &quantities,
+                |quantity| quantity.name,
+                &settings.analog_in,
             )?,
-            counter: terminals.channels(
-                "counter",
+            analog_out: terminals.wire(
+                ("analog_out", Terminals::AnalogOut),
+                &declared.sources(),
+                |name| name,
+                &settings.analog_out,
+            )?,
+            temperature: terminals.wire(
+                ("temperature", Terminals::Temperature),
+                &declared.thermometers(),
+                |name| name,
+                &settings.temperature,
+            )?,
+            counter: terminals.wire(
+                ("counter", Terminals::Counter),
                 &declared.counters(),
+                |name| name,
                 &settings.counter,
-                Terminals::Counter,
             )?,
             before_beams: inputs.before_beams,
             lines,
@@ -142,127 +173,101 @@ impl TerminalBook<'_> {
         })
     }
 
-    fn digital_in(
+    /// Gives each point of a section its terminal.
+    fn wire<P: Clone, W: Wired>(
         &mut self,
-        settings: &RigSettings,
-        names: &[String],
-    ) -> Result<Vec<(String, Terminal)>, Fault> {
-        let mut terminals = Vec::with_capacity(names.len());
-        for name in names {
-            let key = format!("digital_in.{name}");
-            let point = settings.digital_in.get(name).ok_or_else(|| unwired(&key))?;
-            let Place { module, channel } =
-                self.take(&key, &point.module, point.channel, Terminals::DigitalIn)?;
-            let terminal = Terminal {
+        (section, kind): (&str, Terminals),
+        points: &[P],
+        name: impl Fn(&P) -> &str,
+        wired: &BTreeMap<String, W>,
+    ) -> Result<Vec<(P, AnalogTerminal)>, Fault> {
+        let terminal = |point: &P| {
+            let key = format!("{section}.{}", name(point));
+            let wired = wired.get(name(point)).ok_or_else(|| unwired(&key))?;
+            let (module, channel) = wired.at();
+            let Place { module, channel } = self.take(&key, module, channel, kind)?;
+            let gain = wired.gain();
+            let terminal = AnalogTerminal {
                 module,
                 channel,
-                active_low: point.active == "low",
+                gain,
             };
-            terminals.push((name.clone(), terminal));
-        }
-        Ok(terminals)
+            Ok((point.clone(), terminal))
+        };
+        points.iter().map(terminal).collect()
     }
+}
 
-    fn digital_out(
-        &mut self,
-        settings: &RigSettings,
-        outputs: &[Switch],
-    ) -> Result<Vec<(Switch, Terminal)>, Fault> {
-        let names: Vec<&'static str> = outputs.iter().map(|it| it.name).collect();
-        let wired = &settings.digital_out;
-        let terminals = self.channels("digital_out", &names, wired, Terminals::DigitalOut)?;
-        let plain = |at: AnalogTerminal| Terminal {
+/// Settings of a point that is wired to a terminal.
+trait Wired {
+    /// Name of the module, and channel.
+    fn at(&self) -> (&str, u8);
+    fn gain(&self) -> f64 {
+        1.0
+    }
+}
+
+impl Wired for DigitalInSettings {
+    fn at(&self) -> (&str, u8) {
+        (&self.module, self.channel)
+    }
+}
+
+impl Wired for ChannelSettings {
+    fn at(&self) -> (&str, u8) {
+        (&self.module, self.channel)
+    }
+}
+
+impl Wired for AnalogInSettings {
+    fn at(&self) -> (&str, u8) {
+        (&self.module, self.channel)
+    }
+    fn gain(&self) -> f64 {
+        self.gain
+    }
+}
+
+impl Wired for AnalogOutSettings {
+    fn at(&self) -> (&str, u8) {
+        (&self.module, 0)
+    }
+    fn gain(&self) -> f64 {
+        self.gain
+    }
+}
+
+/// Terminals of bits.
+fn digital<P>(
+    points: Vec<(P, AnalogTerminal)>,
+    active_low: impl Fn(&P) -> bool,
+) -> Vec<(P, Terminal)> {
+    let terminal = |(point, at): (P, AnalogTerminal)| {
+        let terminal = Terminal {
             module: at.module,
             channel: at.channel,
-            active_low: false,
+            active_low: active_low(&point),
         };
-        let both = outputs.iter().zip(terminals);
-        Ok(both.map(|(it, (_, at))| (*it, plain(at))).collect())
-    }
+        (point, terminal)
+    };
+    points.into_iter().map(terminal).collect()
+}
 
-    fn analog_in(
-        &mut self,
-        settings: &RigSettings,
-        quantities: &[Quantity],
-    ) -> Result<Vec<(Quantity, AnalogTerminal)>, Fault> {
-        let mut terminals = Vec::with_capacity(quantities.len());
-        for point in quantities {
-            let (name, unit) = (point.name, point.unit);
-            let key = format!("analog_in.{name}");
-            let wired = settings.analog_in.get(name).ok_or_else(|| unwired(&key))?;
-            if wired.unit != unit {
-                let expected = format!("\"{unit}\", the unit of {name}");
-                return Err(Fault::new(
-                    format!("{key}.unit"),
-                    format!("\"{}\"", wired.unit),
-                    expected,
-                ));
-            }
-            let Place { module, channel } =
-                self.take(&key, &wired.module, wired.channel, Terminals::AnalogIn)?;
-            let gain = wired.gain;
-            terminals.push((
-                *point,
-                AnalogTerminal {
-                    module,
-                    channel,
-                    gain,
-                },
+/// Every quantity is wired in its own unit.
+fn check_units(
+    wired: &BTreeMap<String, AnalogInSettings>,
+    quantities: &[Quantity],
+) -> Result<(), Fault> {
+    for Quantity { name, unit, .. } in quantities {
+        if let Some(wired) = wired.get(*name).filter(|wired| wired.unit != *unit) {
+            return Err(Fault::new(
+                format!("analog_in.{name}.unit"),
+                format!("\"{}\"", wired.unit),
+                format!("\"{unit}\", the unit of {name}"),
             ));
         }
-        Ok(terminals)
     }
-
-    fn analog_out(
-        &mut self,
-        settings: &RigSettings,
-        names: &[&'static str],
-    ) -> Result<Vec<(&'static str, AnalogTerminal)>, Fault> {
-        let mut terminals = Vec::with_capacity(names.len());
-        for name in names {
-            let key = format!("analog_out.{name}");
-            let wired = settings
-                .analog_out
-                .get(*name)
-                .ok_or_else(|| unwired(&key))?;
-            let Place { module, channel } =
-                self.take(&key, &wired.module, 0, Terminals::AnalogOut)?;
-            let gain = wired.gain;
-            terminals.push((
-                *name,
-                AnalogTerminal {
-                    module,
-                    channel,
-                    gain,
-                },
-            ));
-        }
-        Ok(terminals)
-    }
-
-    fn channels(
-        &mut self,
-        section: &str,
-        names: &[&'static str],
-        wired: &BTreeMap<String, ChannelSettings>,
-        kind: Terminals,
-    ) -> Result<Vec<(&'static str, AnalogTerminal)>, Fault> {
-        let mut terminals = Vec::with_capacity(names.len());
-        for name in names {
-            let key = format!("{section}.{name}");
-            let point = wired.get(*name).ok_or_else(|| unwired(&key))?;
-            let Place { module, channel } = self.take(&key, &point.module, point.channel, kind)?;
-            terminals.push((
-                *name,
-                AnalogTerminal {
-                    module,
-                    channel,
-                    gain: 1.0,
-                },
-            ));
-        }
-        Ok(terminals)
-    }
+    Ok(())
 }
 
 fn unwired(key: &str) -> Fault {

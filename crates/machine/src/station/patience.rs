@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | feed on its way | strokes, each with its own time-out and one more try | 6 s |
 //! | clamping, probing, gripping, unclamping | strokes | 6 s |
-//! | testing | the measuring line; the slow strategy takes below 10 s | 60 s |
+//! | testing | the measuring line; the slow strategy takes below 10 s | 60 s and the conditioning |
 //! | judged | the sorter over the nest, fingers open, z down | 15 s |
 //! | lifting | z up and the nest empty | 2.5 s |
 //! | sorter on its way | strokes and the axis | 8 s |
@@ -144,7 +144,7 @@ fn of_nest(nest: &NestState) -> (&'static str, Option<Span>) {
         NestState::Empty => ("nest empty", None),
         NestState::Clamping => ("clamping", stroke),
         NestState::Probing => ("probing", stroke),
-        NestState::Testing(_) => ("testing", Some(Span::ms(60_000))),
+        NestState::Testing(test) => ("testing", Some(test.longest())),
         NestState::Judged => ("waiting for the gripper", Some(Span::ms(15_000))),
         NestState::Gripping => ("gripping", stroke),
         NestState::Unclamping => ("unclamping", stroke),

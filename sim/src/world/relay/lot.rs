@@ -17,7 +17,7 @@ pub struct Lot {
 }
 
 impl Lot {
-    /// The relays of a recipe, with the golden parts of their voltage where these are asked for.
+    /// Reads the relays of a recipe; with `options.golden` also the golden parts of their nominal voltage.
     ///
     /// # Errors
     /// The recipe or the certificates cannot be read.

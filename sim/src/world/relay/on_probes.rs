@@ -53,6 +53,7 @@ impl OnProbes for Relay {
             release_bounce_ms: record.bounce_ms(Contact::Nc),
             contact_resistance_no_mohm: record.mean_mohm(Contact::No),
             contact_resistance_nc_mohm: record.mean_mohm(Contact::Nc),
+            operations: Some(record.operations()),
             defect: drawn.defect.map(Defect::name),
             levels: self.levels(),
             ..PartTruth::default()

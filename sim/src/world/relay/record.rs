@@ -33,6 +33,7 @@ pub struct Record {
     nominal_v: f64,
     closures: [Closures; 2],
     timing: [Timing; 2],
+    operations: u64,
 }
 
 impl Record {
@@ -42,6 +43,7 @@ impl Record {
             nominal_v: drawn.nominal_v,
             closures: Default::default(),
             timing: Default::default(),
+            operations: 0,
         }
     }
 
@@ -53,6 +55,11 @@ impl Record {
     /// Time of the last full-voltage make of this contact, ms: operate for NO, release for NC.
     pub fn time_ms(&self, contact: Contact) -> Option<f64> {
         self.timing[contact as usize].time_ms
+    }
+
+    /// Full-voltage operations: drive on to first make of NO.
+    pub fn operations(&self) -> u64 {
+        self.operations
     }
 
     /// Open time after that make, ms.
@@ -105,6 +112,7 @@ impl Record {
             timing.time_ms = Some((t_us - start) / 1000.0);
             timing.bounce_us = 0.0;
             timing.open_since_us = None;
+            self.operations += u64::from(contact == Contact::No);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::config::read_world;
-use crate::world::fault::Faults;
+use crate::world::fault::WorldFaults;
 use crate::world::magazine::Magazine;
 
 fn loaded(parts: u64) -> Magazine {
@@ -15,12 +15,12 @@ fn loaded(parts: u64) -> Magazine {
         ..WorldOptions::default()
     };
     let world = read_world(&config_dir(), None).unwrap();
-    Magazine::load(&options, &world, &Faults::default(), 23.0, 23.0).unwrap()
+    Magazine::load(&options, &world, &WorldFaults::default(), 23.0, 23.0).unwrap()
 }
 
 /// Place in the lot of every part that comes out, none of golden ones, and its coil.
 fn emptied(magazine: &mut Magazine) -> Vec<(Option<u64>, f64)> {
-    let mut faults = Faults::default();
+    let mut faults = WorldFaults::default();
     let parts = std::iter::from_fn(|| magazine.take(0, &mut faults));
     let told = parts.map(|part| (part.number, part.truth().coil_resistance_ohm.unwrap()));
     told.collect()
@@ -52,7 +52,7 @@ fn on_another_day_the_golden_parts_are_the_same_bodies_with_other_temperatures()
             .into_iter()
             .collect();
         let world = read_world(&config_dir(), None).unwrap();
-        let mut faults = Faults::resolve(&asked, &world.fault, &config_dir()).unwrap();
+        let mut faults = WorldFaults::resolve(&asked, &world.fault, &config_dir()).unwrap();
         let part = loaded(0).take(0, &mut faults).unwrap();
         let Specimen::Relay(relay) = part.specimen else {
             unreachable!("a recipe for relays")

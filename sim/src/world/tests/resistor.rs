@@ -18,7 +18,7 @@ fn folder(kind: &str) -> tempfile::TempDir {
     folder
 }
 
-/// Three dummies in the magazine; golden parts are asked for, and there are none.
+/// Puts three dummies in the magazine and asks for golden parts, which do not exist.
 fn dummies(folder: &tempfile::TempDir) -> WorldOptions {
     WorldOptions {
         config_dir: folder.path().to_path_buf(),

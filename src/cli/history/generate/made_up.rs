@@ -4,6 +4,8 @@ use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
 use machine::dut::made_up::{Looks, Scatter, evidence, scatter};
 use machine::dut::{Characteristic, Judgement, Recipe, Verdict};
 use machine::gauge::{Budget, Limit, Reading, judge};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// Share of parts with a defect, as in the default world.
 const DEFECTS: f64 = 0.04;
@@ -40,7 +42,7 @@ impl Line {
             recipe: recipe.clone(),
             made: made.collect(),
             looks: evidence(recipe),
-            draws: Draws(seed),
+            draws: Draws(SplitMix64::seed_from_u64(seed)),
         }
     }
 
@@ -164,21 +166,13 @@ fn reply(at_us: i64) -> SampleRecord {
     }
 }
 
-/// SplitMix64: small, seeded, the same everywhere.
-struct Draws(u64);
+/// Draws from a seed, the same on every machine.
+struct Draws(SplitMix64);
 
 impl Draws {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut it = self.0;
-        it = (it ^ (it >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        it = (it ^ (it >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        it ^ (it >> 31)
-    }
-
     /// From 0 up to, but not including, 1.
     fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// Mean 0, deviation 1 (Box and Muller).

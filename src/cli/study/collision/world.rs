@@ -8,6 +8,8 @@
 
 use lpm::exact::{Body, Form, UPRIGHT, first_contact};
 use lpm::{Move, Pose, Shape};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// Millimetres of a unit: a power of two, so that every number is exact in `f32` and `f64`.
 pub const UNIT_MM: f64 = 1.0 / 1024.0;
@@ -77,7 +79,7 @@ pub struct World {
 impl World {
     /// Draws everything; `each` moves of every kind.
     pub fn drawn(seed: u64, each: usize) -> World {
-        let mut dice = Dice(seed);
+        let mut dice = Dice(SplitMix64::seed_from_u64(seed));
         let (elements, edge, top) = stacks(&mut dice);
         let parts = gripper();
         let mut world = World {
@@ -301,16 +303,13 @@ fn gripper() -> Vec<Body> {
     ]
 }
 
-/// A small generator (splitmix64), so that the study is the same on every machine.
-struct Dice(u64);
+/// A small generator, so that the study is the same on every machine.
+struct Dice(SplitMix64);
 
 impl Dice {
     /// A whole number, both ends included.
     fn within(&mut self, low: i64, high: i64) -> i64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        low + ((z ^ (z >> 31)) % (high - low + 1) as u64) as i64
+        low + (self.0.next_u64() % (high - low + 1) as u64) as i64
     }
 
     /// A direction whose length is 13 exactly.

@@ -1,32 +1,26 @@
-//! Throws of a die from a seed: the same seed, the same throws, on every machine (splitmix64 of Steele, Lea and
-//! Flood, 2014).
+//! Throws of a die from a seed: the same seed, the same throws, on every machine.
+
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
 /// A die.
 #[derive(Debug, Clone)]
-pub struct Dice(u64);
+pub struct Dice(SplitMix64);
 
 impl Dice {
     /// From a seed.
     pub fn new(seed: u64) -> Self {
-        Self(seed)
+        Self(SplitMix64::seed_from_u64(seed))
     }
 
     /// A die that throws otherwise, for another purpose of the same seed.
     pub fn apart(&mut self) -> Self {
-        Self(self.throw())
-    }
-
-    fn throw(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        Self::new(self.0.next_u64())
     }
 
     /// A number below `n`, n > 0; the bias is below n / 2^64.
     pub fn below(&mut self, n: u64) -> u64 {
-        self.throw() % n.max(1)
+        self.0.next_u64() % n.max(1)
     }
 
     /// True once in `n` throws.

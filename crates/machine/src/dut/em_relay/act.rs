@@ -22,7 +22,7 @@ pub enum Read {
     Gate,
     /// Temperature of the magazine track, which the part has.
     Track,
-    /// Whether a module with outputs has restarted since it was asked last; one that has is an alarm.
+    /// Asks each module with outputs whether it has restarted since the last such read; a restart raises an alarm.
     Resets,
 }
 

@@ -1,6 +1,7 @@
 //! The nine characteristics of a relay, as data: a new one is a variant, its place in [`Parameter::ALL`] and a row of the table.
 
 use super::bins;
+use super::card::CardStep;
 use super::measure::Stage;
 use super::threshold::Direction;
 use crate::dut::characteristic::{Characteristic, Definition};
@@ -73,6 +74,8 @@ pub struct Facts {
     pub definition: Definition,
     /// Goes with the copper of the coil, so that results are brought to the reference temperature.
     pub copper: bool,
+    /// Steps of the process card that demand it.
+    pub card: &'static [CardStep],
     /// Stage that measures it once more.
     pub stage: Stage,
     /// What a lot is expected to show.
@@ -133,6 +136,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
             bin: bins::COIL,
         },
         copper: true,
+        card: &[CardStep::Coil],
         stage: Stage::Coil,
         expected: Expected::Coil,
         allowed_rms: 0.12,
@@ -147,6 +151,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
             bin: bins::VOLTAGE,
         },
         copper: true,
+        card: &[CardStep::OperateVoltage],
         stage: Stage::OperateFine(0),
         expected: Expected::Threshold(Direction::Rising),
         allowed_rms: 9.0,
@@ -161,6 +166,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
             bin: bins::VOLTAGE,
         },
         copper: true,
+        card: &[CardStep::ReleaseVoltage],
         stage: Stage::ReleaseFine(0),
         expected: Expected::Threshold(Direction::Falling),
         allowed_rms: 4.0,
@@ -175,6 +181,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
             bin: bins::TIME,
         },
         copper: false,
+        card: &[CardStep::OperateTime],
         stage: Stage::TimedOperate,
         expected: Expected::usual(4.7, 0.25, 0.008),
         allowed_rms: 0.02,
@@ -189,6 +196,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
             bin: bins::TIME,
         },
         copper: false,
+        card: &[CardStep::ReleaseTime],
         stage: Stage::TimedRelease,
         expected: Expected::usual(2.9, 0.15, 0.008),
         allowed_rms: 0.02,
@@ -203,6 +211,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
             bin: bins::TIME,
         },
         copper: false,
+        card: &[CardStep::OperateTime],
         stage: Stage::TimedOperate,
         expected: Expected::lognormal(0.4, 0.4, 0.012),
         allowed_rms: 0.05,
@@ -217,6 +226,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
             bin: bins::TIME,
         },
         copper: false,
+        card: &[CardStep::ReleaseTime],
         stage: Stage::TimedRelease,
         expected: Expected::lognormal(0.5, 0.4, 0.012),
         allowed_rms: 0.05,
@@ -231,6 +241,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
             bin: bins::CONTACT,
         },
         copper: false,
+        card: &[CardStep::OperateTime],
         stage: Stage::TimedOperate,
         expected: Expected::lognormal(18.0, 0.25, 0.04),
         allowed_rms: 0.3,
@@ -245,6 +256,7 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
             bin: bins::CONTACT,
         },
         copper: false,
+        card: &[CardStep::Kelvin, CardStep::ReleaseTime],
         stage: Stage::TimedRelease,
         expected: Expected::lognormal(22.0, 0.25, 0.04),
         allowed_rms: 0.3,

@@ -66,8 +66,8 @@ impl Default for ContactSampling {
 }
 
 impl ContactSampling {
-    /// True when more closures would not change what is said of this contact: `values_mohm` are those of the closures
-    /// so far, `u_mohm` the standard uncertainty they share.
+    /// True when more closures would not change the judgement of this contact: `values_mohm` holds the closures
+    /// so far, `u_mohm` is the standard uncertainty that they share.
     pub fn is_clear(&self, values_mohm: &[f64], u_mohm: f64, limit: &Limit) -> bool {
         assert_eq!(limit.unit, Unit::Milliohm, "the limit of something else");
         let n = values_mohm.len() as f64;

@@ -1,6 +1,6 @@
 //! The coil supply as three outputs that add up: level (steps), coarse ramp, fine ramp.
 //!
-//! Keeps what was asked of each, so that a stage can ask for a sum and leave a ramp where
+//! Keeps the voltage last written to each, so that a stage sets a sum and leaves a ramp where
 //! the stage before has left it: the coarse ramp goes up once for operate and down once for release.
 
 use crate::dut::em_relay::Calibration;

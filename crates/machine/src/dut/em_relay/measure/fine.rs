@@ -12,7 +12,7 @@ use crate::dut::em_relay::readings::Readings;
 use crate::dut::em_relay::threshold::{Direction, indicated};
 use units::{Second, Span, Volt};
 
-/// A test whose threshold so many fine ramps have missed is void.
+/// Fine ramps that may miss the threshold before the test is void.
 const ATTEMPTS: u8 = 5;
 
 /// What came of a fine ramp.

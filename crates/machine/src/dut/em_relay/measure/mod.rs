@@ -1,9 +1,10 @@
 //! The test of one part: the order of its stages, and when it repeats or leaves out some.
 //!
 //! ```text
-//! kelvin -> NC contact -> timed operate + NO contact -> timed release + NC contact -> coil
+//! kelvin -> conditioning -> NC contact -> timed operate + NO contact -> timed release + NC contact -> coil
 //!        -> operate coarse -> release coarse -> operate fine -> release fine -> off -> verdict
 //! ```
+//! Conditioning takes part where the recipe asks for operations before the first measurement.
 //! Each release follows on the operation before it, so that a part operates three times and not five.
 //! The times come first: a relay that is late on a step is late on a ramp, and its times and its coil predict by how much
 //! ([`crate::dut::em_relay::lag`]), which places the fine ramps. The test so finds a contact that does not move at nominal
@@ -27,6 +28,7 @@
 
 mod board;
 mod coil;
+mod conditioning;
 mod contact;
 pub mod context;
 mod fine;
@@ -58,6 +60,7 @@ use crate::rig::sample::CountSample;
 use board::Armature;
 pub use context::Context;
 pub use record::{Ramp, Seen, TestRecord};
+pub use release::SEAL;
 pub use stage::Stage;
 use stage::order;
 use state::TestState;
@@ -125,6 +128,11 @@ impl Test {
     /// Tests of this part so far, this one included.
     pub fn number(&self) -> u8 {
         self.number
+    }
+
+    /// Longest time of the conditioning, 0 without.
+    pub fn conditioning(&self) -> Span {
+        conditioning::longest(self.context.relay.test.conditioning_operations)
     }
 
     /// Stage under way, for screens.

@@ -20,8 +20,9 @@ use crate::dut::em_relay::threshold::{Direction, indicated};
 use units::{Span, Volt};
 
 /// Fraction of nominal at which the armature is sealed.
-const SEAL: f64 = 0.95;
-/// Within so many refreshes of its end the output may have stopped already: an event there is no estimate.
+pub const SEAL: f64 = 0.95;
+/// Refreshes of the output before the end of the ramp in which it may have stopped already: an event there gives no
+/// estimate.
 const LAST_REFRESHES: f64 = 1.5;
 /// Operate, bounce and settling of the flux.
 const SEAL_TIME: Span = Span::ms(25);

@@ -1,9 +1,10 @@
 //! The stages of a test and their order.
 
 use super::Context;
-use crate::dut::em_relay::Parameter;
-
+use crate::dut::em_relay::card::CardStep;
+use crate::dut::em_relay::recipe::TestPlan;
 use crate::dut::em_relay::threshold::Direction;
+use crate::dut::em_relay::{Parameter, Strategy};
 use std::collections::VecDeque;
 
 /// One stage of the test.
@@ -11,6 +12,8 @@ use std::collections::VecDeque;
 pub enum Stage {
     /// Five Kelvin bits and the resting contacts.
     Kelvin,
+    /// Operations before the first measurement, where the recipe asks for them.
+    Conditioning,
     /// NC contact at rest, both polarities.
     NcContact,
     /// Coil resistance at the pre-bias.
@@ -33,39 +36,71 @@ pub enum Stage {
     Off,
 }
 
-/// Stages of a good part: what comes before the strategies, what they ask for, what comes after.
+/// Stages of a good part on this rig, after the pins were checked.
 pub(super) fn order(context: &Context) -> VecDeque<Stage> {
-    let (operate, release) = (
-        context.strategy(Parameter::OperateVoltage),
-        context.strategy(Parameter::ReleaseVoltage),
-    );
-    let mut stages = VecDeque::from([
-        Stage::NcContact,
-        Stage::TimedOperate,
-        Stage::TimedRelease,
-        Stage::Coil,
-    ]);
-    stages.push_back(match operate.ramps() {
-        true => Stage::OperateCoarse,
-        false => Stage::Search(Direction::Rising),
-    });
-    stages.push_back(match release.ramps() {
-        true => Stage::ReleaseCoarse,
-        false => Stage::Search(Direction::Falling),
-    });
-    stages.extend(operate.always_fine().then_some(Stage::OperateFine(0)));
-    stages.extend(release.always_fine().then_some(Stage::ReleaseFine(0)));
-    stages.push_back(Stage::Off);
-    stages
+    let strategy = [Parameter::OperateVoltage, Parameter::ReleaseVoltage];
+    let strategy = strategy.map(|parameter| context.strategy(parameter));
+    Stage::planned(&context.relay.test, strategy)
+        .skip(1)
+        .collect()
 }
 
 impl Stage {
+    /// Stages of a good part in their order, with the strategies of operate and release threshold: what comes before
+    /// the strategies, what they ask for, what comes after.
+    pub fn planned(
+        test: &TestPlan,
+        [operate, release]: [Strategy; 2],
+    ) -> impl Iterator<Item = Self> {
+        let conditioning = test.conditioning_operations > 0;
+        let rising = match operate.ramps() {
+            true => Self::OperateCoarse,
+            false => Self::Search(Direction::Rising),
+        };
+        let falling = match release.ramps() {
+            true => Self::ReleaseCoarse,
+            false => Self::Search(Direction::Falling),
+        };
+        let stages = [
+            Some(Self::Kelvin),
+            conditioning.then_some(Self::Conditioning),
+            Some(Self::NcContact),
+            Some(Self::TimedOperate),
+            Some(Self::TimedRelease),
+            Some(Self::Coil),
+            Some(rising),
+            Some(falling),
+            operate.always_fine().then_some(Self::OperateFine(0)),
+            release.always_fine().then_some(Self::ReleaseFine(0)),
+            Some(Self::Off),
+        ];
+        stages.into_iter().flatten()
+    }
+
+    /// The step of the process card that it belongs to.
+    pub fn card_step(self) -> CardStep {
+        match self {
+            Self::Kelvin | Self::Conditioning | Self::NcContact => CardStep::Kelvin,
+            Self::TimedOperate => CardStep::OperateTime,
+            Self::TimedRelease => CardStep::ReleaseTime,
+            Self::Coil => CardStep::Coil,
+            Self::OperateCoarse | Self::OperateFine(_) | Self::Search(Direction::Rising) => {
+                CardStep::OperateVoltage
+            }
+            Self::ReleaseCoarse | Self::ReleaseFine(_) | Self::Search(Direction::Falling) => {
+                CardStep::ReleaseVoltage
+            }
+            Self::Off => CardStep::Unclamp,
+        }
+    }
+
     /// The direction of a fine ramp.
     pub(super) fn is_fine(self) -> Option<Direction> {
         match self {
             Self::OperateFine(_) => Some(Direction::Rising),
             Self::ReleaseFine(_) => Some(Direction::Falling),
             Self::Kelvin
+            | Self::Conditioning
             | Self::NcContact
             | Self::Coil
             | Self::Search(_)
@@ -81,6 +116,7 @@ impl Stage {
     pub fn measures(self) -> &'static str {
         match self {
             Self::Kelvin => "kelvin",
+            Self::Conditioning => "conditioning",
             Self::NcContact => "nc_contact",
             Self::Coil => "coil",
             Self::OperateCoarse | Self::OperateFine(_) | Self::Search(Direction::Rising) => {

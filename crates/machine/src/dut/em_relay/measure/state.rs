@@ -5,7 +5,9 @@ use super::pace::Pace;
 use super::plan::Plan;
 use super::search::Search;
 use super::{Context, Stage, TestRecord};
-use super::{coil, contact, fine, kelvin, operate, operate_fine, release, search, timing};
+use super::{
+    coil, conditioning, contact, fine, kelvin, operate, operate_fine, release, search, timing,
+};
 use crate::dut::em_relay::Parameter;
 use crate::dut::em_relay::act::Act;
 use crate::dut::em_relay::readings::Readings;
@@ -46,6 +48,7 @@ impl TestState {
         let interval = |direction| self.plan.interval(record, direction);
         match stage {
             Stage::Kelvin => (kelvin::acts(), board),
+            Stage::Conditioning => conditioning::acts(context, board),
             Stage::NcContact => contact::acts_nc(context, board),
             Stage::Coil => {
                 let repeated = record.attempts(Parameter::CoilResistance) > 0;
@@ -79,6 +82,7 @@ impl TestState {
     ) -> Option<Stage> {
         match stage {
             Stage::Kelvin => kelvin::conclude(readings, self),
+            Stage::Conditioning => None,
             Stage::NcContact => contact::conclude_nc(context, readings, self),
             Stage::Coil => coil::conclude(context, readings, self),
             Stage::Search(direction) => search::conclude(context, readings, self, direction),

@@ -22,7 +22,7 @@ use units::{Span, Volt};
 const LONGEST: Span = Span::ms(60);
 /// The window closes 20 ms after the latch; gate 1 counts bounce until then.
 const WINDOW_AFTER_LATCH: Span = Span::ms(21);
-/// Gate 1 is open whenever gate 0 is; their delays may differ by so many counts.
+/// Greatest difference of the delays of both gates, in counts. Gate 1 is open whenever gate 0 is.
 const GATE_SKEW: u32 = 4;
 /// Bounce is over (6 ms is twice what the sheet class allows) and the contact has been closed for the 5 ms
 /// that the source asks for.

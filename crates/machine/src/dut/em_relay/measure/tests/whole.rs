@@ -2,8 +2,10 @@
 
 use super::super::{Armature, Progress, Stage, Test, TestRecord, TestState, order};
 use super::{at_23_c, context};
+use crate::dut::card::Card;
 use crate::dut::em_relay::Finding;
 use crate::dut::em_relay::act::{Act, Read};
+use crate::dut::em_relay::card::STEPS;
 use crate::dut::em_relay::measure::ramp::Expected;
 use crate::dut::em_relay::points::{AnalogOut, DigitalOut};
 use crate::dut::em_relay::threshold::Direction;
@@ -34,6 +36,48 @@ fn stages_of_a_good_part() -> Vec<(Stage, Vec<Act>, Armature)> {
         (stage, acts, left)
     };
     stages.map(enter).collect()
+}
+
+#[test]
+fn conditioning_operates_before_the_first_measurement() {
+    let mut context = context();
+    assert!(!order(&context).contains(&Stage::Conditioning));
+    std::sync::Arc::make_mut(&mut context.relay)
+        .test
+        .conditioning_operations = 3;
+    assert_eq!(order(&context)[0], Stage::Conditioning);
+    let mut state = at_23_c();
+    let acts = state.enter(Stage::Conditioning, &context);
+    assert_eq!(state.board.armature, Armature::Released);
+    let nominal = Volt(context.relay.part.nominal_v);
+    assert!((state.board.supply.total() - nominal).abs() < Volt(1e-6));
+    let driven: Vec<bool> = acts
+        .iter()
+        .filter_map(|act| match act {
+            Act::Board(outputs) => outputs.iter().find(|(it, _)| *it == DigitalOut::CoilDrive),
+            _ => None,
+        })
+        .map(|(_, on)| *on)
+        .collect();
+    assert_eq!(driven, [true, false].repeat(3));
+    let live = |act: &Act| matches!(act, Act::Board(outputs) if outputs.contains(&(DigitalOut::SourceOn, true)));
+    assert!(!acts.iter().any(live), "no contact load");
+}
+
+#[test]
+fn the_card_has_its_steps_in_the_order_of_the_test() {
+    let entered = stages_of_a_good_part().into_iter();
+    let entered = entered.map(|(stage, ..)| stage.card_step().name());
+    let mut firsts: Vec<&str> = Vec::new();
+    for step in entered {
+        if !firsts.contains(&step) {
+            firsts.push(step);
+        }
+    }
+    let steps = Card::of(&context().recipe).steps.into_iter();
+    let steps: Vec<&str> = steps.map(|it| it.name).collect();
+    assert_eq!(steps, STEPS);
+    assert_eq!(steps[2..steps.len() - 1], firsts);
 }
 
 /// Acts of every stage in the order of a good part.

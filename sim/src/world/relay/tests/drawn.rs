@@ -1,0 +1,164 @@
+//! The relays of a lot as the table of the world draws them.
+
+use super::*;
+use crate::world::relay::fit::Pace;
+
+#[test]
+fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
+    use crate::world::relay::lumped::Model;
+    let world = still_world();
+    for (nominal_v, nominal_coil_ohm) in [(12.0, 400.0), (9.0, 225.0)] {
+        let scale = Scale {
+            nominal_v,
+            nominal_coil_ohm,
+        };
+        let lot = (0..650).map(|i| Drawn::of_lot(&world, scale, 7, i));
+        let (good, bad): (Vec<_>, Vec<_>) = lot.partition(|s| s.defect.is_none());
+        for part in good.iter().take(6).chain(&bad) {
+            let wanted = part.wanted(&world);
+            let model = Model::new(&wanted.fit(&world.relay.lumped));
+            let what = format!("part {} {:?}", part.index, part.defect);
+            let near = |found: f64, drawn: f64, within: f64| {
+                assert!(
+                    (found / drawn - 1.0).abs() < within,
+                    "{what}: {found}, drawn {drawn}"
+                );
+            };
+            near(model.pickup().volts, part.operate_v, 1e-9);
+            near(model.release().volts, part.release_v, 1e-9);
+            // A defect is drawn without regard to the times that a relay with such springs can have: they come as near as they can.
+            let sound = part.defect.is_none() && part.pace == Pace::Drawn;
+            if sound || part.pace == Pace::Hinge {
+                near(wanted.operate_s(&model) * 1e3, part.operate_ms, 1e-3);
+            }
+            if sound || part.pace == Pace::Iron {
+                near(wanted.release_s(&model) * 1e3, part.release_ms, 1e-3);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
+    let world = read_world(&config_dir(), None).unwrap();
+    let scale = Scale {
+        nominal_v: 12.0,
+        nominal_coil_ohm: 400.0,
+    };
+    let lot: Vec<Drawn> = (0..2600)
+        .map(|i| Drawn::of_lot(&world, scale, 7, i))
+        .collect();
+    let good: Vec<&Drawn> = lot.iter().filter(|s| s.defect.is_none()).collect();
+    assert_eq!(lot.len() - good.len(), 104, "4 % of 2600");
+    for &kind in Defect::ALL {
+        let count = lot.iter().filter(|s| s.defect == Some(kind)).count();
+        assert_eq!(count, 8, "{kind:?}");
+    }
+    let moments = |f: fn(&Drawn) -> f64| {
+        let n = good.len() as f64;
+        let mean = good.iter().map(|s| f(s)).sum::<f64>() / n;
+        (
+            mean,
+            (good.iter().map(|s| (f(s) - mean).powi(2)).sum::<f64>() / n).sqrt(),
+        )
+    };
+    for (f, mean, sd) in [
+        ((|s| s.operate_v) as fn(&Drawn) -> f64, 7.88, 0.26),
+        (|s| s.release_v, 2.35, 0.10),
+        (|s| s.coil_ohm, 400.0, 6.0),
+        (|s| s.operate_ms, 4.7, 0.25),
+        (|s| s.release_ms, 2.9, 0.15),
+    ] {
+        let (m, s) = moments(f);
+        assert!(
+            (m - mean).abs() < 4.0 * sd / 50.0 && (s / sd - 1.0).abs() < 0.06,
+            "{m} {s}"
+        );
+    }
+}
+
+#[test]
+fn a_seed_draws_the_relays_that_it_always_drew() {
+    let world = read_world(&config_dir(), None).unwrap();
+    let drawn = |seed, index, nominal_v, nominal_coil_ohm| {
+        let scale = Scale {
+            nominal_v,
+            nominal_coil_ohm,
+        };
+        Drawn::of_lot(&world, scale, seed, index)
+    };
+    let near = |found: &[f64], recorded: &[f64]| {
+        assert_eq!(found.len(), recorded.len());
+        for (one, other) in found.iter().zip(recorded) {
+            assert!(
+                (one / other - 1.0).abs() < 1e-9,
+                "{found:?}, recorded {recorded:?}"
+            );
+        }
+    };
+    for (part, recorded) in [
+        (
+            drawn(7, 0, 12.0, 400.0),
+            [
+                401.511_188_744_249_6,
+                7.967_415_220_424_96,
+                2.433_121_701_086_573,
+                4.666_511_589_636_086_5,
+                2.942_183_166_974_364_5,
+                224.787_348_413_739_58,
+                476.562_963_023_108_24,
+                0.008_331_520_656_415_613,
+                1.868_740_064_397_995_6e-6,
+            ],
+        ),
+        (
+            drawn(1, 0, 9.0, 225.0),
+            [
+                225.043_700_390_099_81,
+                5.863_349_987_004_486,
+                1.811_359_684_970_613,
+                4.574_565_416_007_003,
+                3.053_115_215_277_251,
+                186.408_768_336_615,
+                454.037_948_318_580_56,
+                -0.149_521_722_064_091_4,
+                1.538_452_732_939_932e-5,
+            ],
+        ),
+    ] {
+        let found = [
+            part.coil_ohm,
+            part.operate_v,
+            part.release_v,
+            part.operate_ms,
+            part.release_ms,
+            part.bounce_no_us[1],
+            part.bounce_nc_us[1],
+            part.offset_k,
+            part.emf_v,
+        ];
+        near(&found, &recorded);
+    }
+    let defects: Vec<(u64, &str)> = (0..230)
+        .filter_map(|i| Some((i, drawn(7, i, 12.0, 400.0).defect?.name())))
+        .collect();
+    let recorded = [
+        (11, "turned"),
+        (52, "open_coil"),
+        (134, "stuck_no"),
+        (172, "unstable_contact"),
+        (178, "stiff_spring"),
+        (188, "missing_pin"),
+        (200, "shorted_turns"),
+        (215, "high_contact"),
+        (226, "bouncing"),
+    ];
+    assert_eq!(defects, recorded);
+    let shorted = drawn(7, 200, 12.0, 400.0);
+    near(
+        &[shorted.coil_ohm, shorted.operate_v],
+        &[313.800_691_032_685_73, 7.926_989_756_170_821],
+    );
+    let pinless = drawn(7, 188, 12.0, 400.0);
+    assert_eq!(pinless.pins.present, [true, true, false, true, true]);
+}
