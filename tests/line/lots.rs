@@ -380,3 +380,22 @@ fn conditioning_operates_the_relay_as_often_as_the_recipe_says() {
     let added: Vec<u64> = with.iter().zip(&without).map(|(a, b)| a - b).collect();
     assert_eq!(added, [3, 3], "{with:?} after {without:?}");
 }
+
+#[test]
+fn a_rig_without_references_sorts_resistors() {
+    let workshop = Workshop::new("unreferenced");
+    let rig = workshop.read("config/rig.toml");
+    let (before, rest) = rig.split_once("[reference]\n").unwrap();
+    let (_, after) = rest.split_once("\n[accuracy]\n").unwrap();
+    let bare: String = format!("{before}[accuracy]\n{after}")
+        .lines()
+        .filter(|line| !line.starts_with("golden = "))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    workshop.write("config/rig.toml", &bare);
+    std::fs::remove_file(workshop.folder.join("config/golden.toml")).unwrap();
+    let lot = run_in(workshop, "resistor-390", 3, "--seed 1");
+    assert_eq!(lot.parts.len(), 3);
+    let refused = lot.workshop.run("config check").with_status(2);
+    assert!(refused.stderr.contains("[reference]"), "{refused}");
+}

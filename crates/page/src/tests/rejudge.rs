@@ -40,7 +40,7 @@ fn part(seq: u64, operate_v: f64) -> PartRecord {
 /// Four parts that passed, one of them above 9 V.
 fn bench() -> Bench {
     let bench = Bench::new();
-    let recipe = std::fs::read_to_string("config/recipes/jzc-22f-012.toml").unwrap();
+    let recipe = std::fs::read_to_string("../../config/recipes/jzc-22f-012.toml").unwrap();
     let mut store = Store::open(&bench.db, &Identity::of_this_program()).unwrap();
     let lot = LotRecord {
         lot: "A".into(),
