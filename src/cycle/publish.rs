@@ -266,24 +266,23 @@ mod tests {
     use crate::station::orders::JOGS;
     use crate::station::packml::{Mode, State};
     use crate::view::{ORDERS, Order};
+    use std::collections::BTreeSet;
 
     #[test]
     fn every_signal_motion_actuator_mode_and_state_has_a_word_on_the_screen() {
-        let table = include_str!("../hmi/page/words.json");
-        let table: std::collections::BTreeMap<String, serde_json::Value> =
-            serde_json::from_str(table).unwrap();
         let signals = DigitalIn::ALL.iter().map(|it| it.name());
         let signals = signals.chain(DigitalOut::ALL.iter().map(|it| it.name()));
-        let keys = (signals.map(|it| format!("signal.{it}")))
-            .chain(JOGS.iter().map(|(name, _)| format!("jog.{name}")))
-            .chain(Actuator::names().map(|it| format!("actuator.{it}")))
-            .chain(Mode::ALL.iter().map(|it| format!("mode.{}", it.name())))
+        let keys = (signals.map(|it| format!("signal-{it}")))
+            .chain(JOGS.iter().map(|(name, _)| format!("motion-{name}")))
+            .chain(Actuator::names().map(|it| format!("actuator-{it}")))
+            .chain(Mode::ALL.iter().map(|it| format!("mode-{}", it.name())))
             .chain(
                 State::ALL
                     .iter()
-                    .map(|it| format!("state.{}", it.name().to_lowercase())),
+                    .map(|it| format!("state-{}", it.name().to_lowercase())),
             );
-        let missing: Vec<String> = keys.filter(|it| !table.contains_key(it)).collect();
+        let words: BTreeSet<&str> = texts::plain().map(|it| it.id).collect();
+        let missing: Vec<String> = keys.filter(|it| !words.contains(it.as_str())).collect();
         assert!(missing.is_empty(), "{missing:?}");
     }
 

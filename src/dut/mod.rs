@@ -18,7 +18,6 @@ pub mod record;
 pub mod rejudge;
 pub mod resistor;
 pub mod verdict;
-pub mod words;
 
 pub use crate::gauge::Judgement;
 pub use calibration::Calibration;
@@ -88,15 +87,6 @@ impl Kind {
         match self {
             Self::EmRelay => em_relay::Parameter::ALL.map(Characteristic::from).to_vec(),
             Self::Resistor => resistor::Parameter::ALL.map(Characteristic::from).to_vec(),
-        }
-    }
-
-    /// Words of the page that only this kind needs: a JSON object of `{"en", "zh"}` by key. No two kinds
-    /// share a key.
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::EmRelay => em_relay::WORDS,
-            Self::Resistor => resistor::WORDS,
         }
     }
 

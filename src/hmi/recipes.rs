@@ -18,7 +18,7 @@ use super::{gate, origin};
 use crate::config::{self, Change, Plant, Revision};
 use crate::history::{Identity, OrderRecord, Row, Store};
 use crate::inquiry::paper::paper;
-use crate::report::Language;
+use crate::report::Lang;
 use crate::report::card;
 use axum::Json;
 use axum::extract::rejection::{ExtensionRejection, JsonRejection, QueryRejection};
@@ -97,7 +97,7 @@ pub(super) async fn show(
 #[serde(deny_unknown_fields)]
 pub(super) struct Printed {
     name: String,
-    lang: Option<Language>,
+    lang: Option<Lang>,
 }
 
 /// `GET /api/recipes/card`.
@@ -109,7 +109,7 @@ pub(super) async fn card(
     let dir = desk.shared.config.clone();
     let made = move || {
         let recipe = config::load_recipe(&dir, &name)?;
-        let paper = paper(lang.unwrap_or(Language::Zh));
+        let paper = paper(lang.unwrap_or(Lang::Zh));
         let plant = config::load_card(&dir)?;
         Ok(on_paper(card::card(
             paper.language,

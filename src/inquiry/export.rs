@@ -3,7 +3,7 @@
 use super::Result;
 use crate::history::columns::{self, Cell};
 use crate::history::{Archive, Filter, csv};
-use crate::report::Language;
+use crate::report::Lang;
 use crate::report::sheet::Sheet;
 use jiff::tz::TimeZone;
 use rust_xlsxwriter::Workbook;
@@ -33,7 +33,7 @@ pub fn spreadsheet(
     archive: &Archive,
     filter: &Filter,
     parameters: &[String],
-    language: Language,
+    language: Lang,
     mut each: impl FnMut(),
 ) -> Result<Workbook> {
     let mut sheet = Sheet::new(language, TimeZone::system(), parameters)?;

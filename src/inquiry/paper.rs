@@ -6,11 +6,11 @@ use super::{InquiryError, Result, checks};
 use crate::history::{Archive, Filter};
 use crate::report::certificate::certificate;
 use crate::report::lot::{LotReport, ParameterValues};
-use crate::report::{Language, Paper, alarms};
+use crate::report::{Lang, Paper, alarms};
 use jiff::{Timestamp, tz::TimeZone};
 
 /// Paper with the zone of this computer, and a foot with time and version.
-pub fn paper(language: Language) -> Paper {
+pub fn paper(language: Lang) -> Paper {
     let zone = TimeZone::system();
     let now = Timestamp::now().to_zoned(zone.clone());
     let program = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));

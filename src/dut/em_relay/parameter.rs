@@ -127,8 +127,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "coil_resistance_ohm",
             unit: Unit::Ohm,
-            name_en: "Coil resistance",
-            name_zh: "线圈电阻",
             spoken_of: SpokenOf::Part,
             bin: bins::COIL,
         },
@@ -141,8 +139,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "operate_voltage_v",
             unit: Unit::Volt,
-            name_en: "Operate voltage",
-            name_zh: "动作电压",
             spoken_of: SpokenOf::Part,
             bin: bins::VOLTAGE,
         },
@@ -155,8 +151,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "release_voltage_v",
             unit: Unit::Volt,
-            name_en: "Release voltage",
-            name_zh: "释放电压",
             spoken_of: SpokenOf::Part,
             bin: bins::VOLTAGE,
         },
@@ -169,8 +163,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "operate_time_ms",
             unit: Unit::Millisecond,
-            name_en: "Operate time",
-            name_zh: "动作时间",
             spoken_of: SpokenOf::Operation,
             bin: bins::TIME,
         },
@@ -183,8 +175,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "release_time_ms",
             unit: Unit::Millisecond,
-            name_en: "Release time",
-            name_zh: "释放时间",
             spoken_of: SpokenOf::Operation,
             bin: bins::TIME,
         },
@@ -197,8 +187,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "operate_bounce_ms",
             unit: Unit::Millisecond,
-            name_en: "Operate bounce",
-            name_zh: "动作回跳",
             spoken_of: SpokenOf::Operation,
             bin: bins::TIME,
         },
@@ -211,8 +199,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "release_bounce_ms",
             unit: Unit::Millisecond,
-            name_en: "Release bounce",
-            name_zh: "释放回跳",
             spoken_of: SpokenOf::Operation,
             bin: bins::TIME,
         },
@@ -225,8 +211,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "contact_resistance_no_mohm",
             unit: Unit::Milliohm,
-            name_en: "Contact resistance NO",
-            name_zh: "常开触点电阻",
             spoken_of: SpokenOf::Closures,
             bin: bins::CONTACT,
         },
@@ -239,8 +223,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "contact_resistance_nc_mohm",
             unit: Unit::Milliohm,
-            name_en: "Contact resistance NC",
-            name_zh: "常闭触点电阻",
             spoken_of: SpokenOf::Closures,
             bin: bins::CONTACT,
         },

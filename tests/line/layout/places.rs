@@ -19,6 +19,7 @@ const TOP: &[&str] = &[
     "benches",
     "clippy.toml",
     "config",
+    "crates",
     "docs",
     "rustfmt.toml",
     "samples",
