@@ -36,6 +36,7 @@ use crate::rig::level::Correction;
 use crate::rig::point::DigitalIn;
 use crate::rig::wiring::{LineId, Wiring};
 use crate::station::Station;
+use crate::station::catalogue::AlarmCode;
 use crate::station::packml;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Inputs, Wants};
@@ -296,7 +297,7 @@ impl Cycle {
 
     fn step(&mut self, now: RigTime) -> Wants {
         if self.outside.history_lost.load(Ordering::Acquire) {
-            self.bus_alarm.get_or_insert(Alarm::history());
+            self.bus_alarm.get_or_insert(AlarmCode::HistoryLost.into());
         }
         if let Some(asked_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
             self.worst_age = self.worst_age.max(now.since(asked_at));

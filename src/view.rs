@@ -17,6 +17,7 @@ pub use traffic::{LineTraffic, Message};
 use crate::dut::Reason;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use texts::Args;
 
 /// The whole view.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -98,6 +99,8 @@ pub struct LastPart {
 pub struct AlarmLine {
     /// Short name.
     pub code: String,
+    /// Arguments of its text by name.
+    pub args: Args,
     /// English text.
     pub text_en: String,
     /// Chinese text.

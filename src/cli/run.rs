@@ -22,6 +22,7 @@ use crate::config::Plant;
 use crate::cycle::{Event, Outside};
 use crate::dut::Calibration;
 use crate::dut::Recipe;
+use crate::station::catalogue::AlarmCode;
 use crate::station::packml::State;
 use crate::station::wants::Ending;
 use crate::view::{LineTraffic, View};
@@ -163,7 +164,7 @@ pub fn run_with(
     let calibrates = controls.calibrates.is_some();
     let recipe = gate::admit(db, &plant, args, calibrates)?;
     if !calibrates && let Some(why) = gate::uncalibrated(db, &recipe, args)? {
-        tracing::error!(code = gate::INVALID, "{why}");
+        tracing::error!(code = AlarmCode::CalibrationInvalid.name(), "{why}");
         gate::refuse(db, &recipe, args, &why)?;
         return Ok(super::RIG_TROUBLE);
     }

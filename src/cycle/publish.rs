@@ -8,12 +8,13 @@ use crate::handling::mechanism::SENSOR_AGE;
 use crate::rig::point::DigitalInput;
 use crate::station::Station;
 use crate::station::annunciator::Standing;
-use crate::station::catalogue::{self, Stops};
+use crate::station::catalogue::Stops;
 use crate::station::orders::{self, Order, Refused};
 use crate::station::packml::{Command, Mode};
 use crate::units::{RigTime, Span};
 use crate::view::{self, ActuatorView, AlarmLine, Button, Machine, Reaction, Token};
 use std::collections::BTreeMap;
+use texts::Lang;
 
 /// Least time between two views.
 pub const PACE: Span = Span::ms(50);
@@ -229,31 +230,28 @@ fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
 }
 
 fn line(one: &Standing, epoch_us: i64) -> AlarmLine {
-    let entry = catalogue::entry(&one.alarm.code);
-    let help = |pick: fn(&(&str, &str)) -> String| {
-        entry.map_or_else(Default::default, |entry| {
-            [&entry.cause, &entry.consequence, &entry.action].map(pick)
-        })
-    };
-    let stops = match entry.map(|entry| entry.stops) {
-        Some(Stops::Abort) | None => "abort",
-        Some(Stops::Hold) => "hold",
-        Some(Stops::Suspend) => "suspend",
-        Some(Stops::Nothing) => "nothing",
+    let alarm = &one.alarm;
+    let help = |lang| alarm.code.help(lang).map(str::to_owned);
+    let stops = match alarm.code.entry().stops {
+        Stops::Abort => "abort",
+        Stops::Hold => "hold",
+        Stops::Suspend => "suspend",
+        Stops::Nothing => "nothing",
     };
     let raised = epoch_us + i64::try_from(one.raised.0).unwrap_or(i64::MAX);
     AlarmLine {
-        code: one.alarm.code.clone(),
-        text_en: one.alarm.text_en.clone(),
-        text_zh: one.alarm.text_zh.clone(),
+        code: alarm.code.name(),
+        args: alarm.args.clone(),
+        text_en: alarm.text(Lang::En),
+        text_zh: alarm.text(Lang::Zh),
         state: one.condition.name().into(),
         first_out: one.first_out,
         count: one.count,
         raised_at_us: (!one.inherited).then_some(raised),
         shelved: one.shelved_until.is_some(),
         stops: stops.into(),
-        help_en: help(|text| text.0.to_owned()),
-        help_zh: help(|text| text.1.to_owned()),
+        help_en: help(Lang::En),
+        help_zh: help(Lang::Zh),
     }
 }
 

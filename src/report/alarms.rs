@@ -37,10 +37,20 @@ pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
                     td.state { (state(paper, it)) }
                     td.text { (it.lot.as_deref().unwrap_or("–")) @if let Some(run) = it.run { " / " (run) } }
                     td { (it.code) }
-                    td.text { @if let (Lang::Zh, Some(cause)) = (paper.language, it.cause_zh) { (cause) br; }
-                        (it.text) @if let Some(line) = &it.line { " (" (line) ")" } }
+                    td.text { (text(paper.language, it)) @if let Some(line) = &it.line { " (" (line) ")" } }
                 } } }
             }
+        }
+    }
+}
+
+/// The message in the language of the page; a row of before its arguments were kept says its cause beside it.
+fn text(language: Lang, alarm: &Alarm) -> Markup {
+    html! {
+        @match (language, &alarm.text_zh, alarm.cause_zh) {
+            (Lang::Zh, Some(text), _) => { (text) }
+            (Lang::Zh, None, Some(cause)) => { (cause) br; (alarm.text) }
+            (Lang::Zh, None, None) | (Lang::En, _, _) => { (alarm.text) }
         }
     }
 }

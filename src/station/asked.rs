@@ -287,8 +287,8 @@ impl Station {
 fn still_there(cause: &Standing) -> Refused {
     let alarm = &cause.alarm;
     Refused::new(
-        format!("the cause is still there: {}", alarm.text_en),
-        format!("原因仍然存在：{}", alarm.text_zh),
+        format!("the cause is still there: {}", alarm.text(texts::Lang::En)),
+        format!("原因仍然存在：{}", alarm.text(texts::Lang::Zh)),
     )
 }
 

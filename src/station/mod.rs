@@ -21,7 +21,6 @@
 pub mod annunciator;
 mod asked;
 pub mod catalogue;
-mod chinese;
 pub mod gates;
 mod lamps;
 mod learning;

@@ -8,9 +8,11 @@ use crate::history::{
     AlarmRecord, Archive, HistoryError, Identity, LOT_NAME, LotRecord, LotStanding, LotState,
     Store, is_lot_name,
 };
+use crate::station::trouble::Alarm;
 use crate::view::NotTaken;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use texts::Lang;
 
 /// Why a lot is not run. The text is that of the command line, where it names the option.
 #[derive(Debug, thiserror::Error)]
@@ -196,9 +198,6 @@ pub fn uncalibrated(db: &Path, recipe: &Recipe, args: &RunArgs) -> anyhow::Resul
     }
 }
 
-/// Alarm of a rig that takes no lot before it was calibrated again.
-pub const INVALID: &str = "calibration_invalid";
-
 /// The lot gets a run without parts, whose alarm says why.
 pub fn refuse(db: &Path, recipe: &Recipe, args: &RunArgs, why: &str) -> anyhow::Result<()> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
@@ -212,10 +211,12 @@ pub fn refuse(db: &Path, recipe: &Recipe, args: &RunArgs, why: &str) -> anyhow::
         retest: args.retest.clone(),
         ..LotRecord::default()
     })?;
+    let alarm = Alarm::calibration_invalid(why);
     store.alarm(&AlarmRecord {
         lot: Some(args.lot.clone()),
-        code: INVALID.into(),
-        text: why.to_owned(),
+        code: alarm.code.name(),
+        text: alarm.text(Lang::En),
+        args: alarm.args,
         raised_at_us: now_us,
         ..AlarmRecord::default()
     })?;

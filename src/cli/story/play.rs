@@ -176,7 +176,7 @@ impl Seen {
             Event::State(state) => self.state = Some(*state),
             Event::LotBegan(_) => self.lot = true,
             Event::Alarm(alarm, _) => {
-                self.alarms.insert(alarm.code.clone());
+                self.alarms.insert(alarm.code.name());
             }
             Event::Judged(judged) => {
                 if let Kind::Lot(number) = judged.part.kind {

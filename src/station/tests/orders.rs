@@ -7,6 +7,7 @@ use crate::station::orders::Order;
 use crate::station::packml::{Command, Mode, State};
 use crate::station::trouble::Alarm;
 use crate::station::wants::Ending;
+use texts::Lang;
 
 fn attended(parts: usize) -> Machine {
     Machine::attended(Some(parts as u64), vec![Specimen::MissingPin; parts])
@@ -25,7 +26,7 @@ fn until(machine: &mut Machine, state: State) {
         .annunciator()
         .standing()
         .iter()
-        .map(|one| &one.alarm.text_en)
+        .map(|one| one.alarm.text(Lang::En))
         .collect();
     panic!("{found:?} instead of {state:?}: {list:?}");
 }
@@ -216,7 +217,7 @@ fn a_lamp_test_lights_everything_and_ends() {
 fn a_beam_that_counts_wrong_holds_the_line_until_a_person_says_go_on() {
     let mut machine = attended(4);
     testing(&mut machine);
-    machine.bus = Some(Alarm::beam("pass", 0));
+    machine.bus = Some(Alarm::beam(Bin::PASS, 0));
     machine.turn();
     until(&mut machine, State::Held);
     give(&mut machine, Command::Unhold);

@@ -91,9 +91,9 @@ async function readPast() {
   showPast();
 }
 
-// The very words are kept in English; beside them the cause that the catalogue has for the code.
+// Rows of before have their text in English only: beside it the cause that the catalogue has for the code.
 function pastText(it) {
-  const text = make("span", language === "zh" && it.cause_zh ? it.cause_zh : it.text);
+  const text = make("span", (language === "zh" && (it.text_zh || it.cause_zh)) || it.text);
   text.title = it.text;
   return text;
 }
