@@ -21,12 +21,10 @@ pub const PACE: Span = Span::ms(50);
 
 /// An order in words; the error says what was expected.
 pub fn read(order: &view::Order) -> Result<Order, Refused> {
-    let expected = |what: &str, known: Vec<&str>, found: Option<&str>| {
-        let (found, known) = (found.unwrap_or("nothing"), known.join(", "));
-        Refused::new(
-            format!("{what}: found {found}, expected one of {known}"),
-            format!("{what}：收到 {found}，应为 {known} 之一"),
-        )
+    let expected = |member, known: Vec<&'static str>, found: Option<&str>| Refused::UnknownWord {
+        member,
+        found: found.unwrap_or_default().to_owned(),
+        known,
     };
     let named = order.alarm.clone();
     match order.order.as_str() {
@@ -58,10 +56,7 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
             (Some(code), Some(reason)) if !reason.is_empty() => {
                 Ok(Order::Shelve(code, orders::shelf_minutes(order.minutes)))
             }
-            (Some(_), _) => Err(Refused::new(
-                "reason: found nothing, expected why the alarm is shelved",
-                "reason：未填写，应说明搁置原因",
-            )),
+            (Some(_), _) => Err(Refused::ShelveWithoutReason),
             (None, _) => Err(expected("alarm", vec!["the code of an alarm"], None)),
         },
         other => Command::from_name(other)
@@ -84,7 +79,10 @@ impl Cycle {
         let at_us = jiff::Timestamp::now().as_microsecond();
         self.outside.view.send_modify(|view| {
             view.at_us = at_us;
-            view.state = station.state();
+            let doing = station.doing();
+            view.state = doing.name();
+            view.doing = doing.code();
+            view.stage = doing.stage();
             view.inside = station.ledger().inside();
             // Between lots what the last one has come to stays on the screen.
             if !station.is_between_lots() {
@@ -166,13 +164,15 @@ impl Cycle {
 
 fn buttons(station: &Station) -> Vec<Button> {
     let button = |order: &str, with: &str, may: Result<(), Refused>| {
-        let (why_en, why_zh) = may.err().map(|why| (why.en, why.zh)).unwrap_or_default();
+        let why = may.err().map(|why| why.message());
+        let said = |lang| why.as_ref().map(|it| it.say(lang)).unwrap_or_default();
         Button {
             order: order.into(),
             with: with.into(),
-            enabled: why_en.is_empty(),
-            why_en,
-            why_zh,
+            enabled: why.is_none(),
+            why_en: said(Lang::En),
+            why_zh: said(Lang::Zh),
+            why,
         }
     };
     let commands = Command::ALL
@@ -265,6 +265,7 @@ mod tests {
     use crate::station::packml::{Mode, State};
     use crate::view::{ORDERS, Order};
     use std::collections::BTreeSet;
+    use texts::Lang;
 
     #[test]
     fn every_signal_motion_actuator_mode_and_state_has_a_word_on_the_screen() {
@@ -311,7 +312,9 @@ mod tests {
                 order: word.into(),
                 ..Order::default()
             };
-            let why = read(&order).map(|_| ()).map_err(|why| why.en);
+            let why = read(&order)
+                .map(|_| ())
+                .map_err(|why| why.message().say(Lang::En));
             assert!(why.is_err_and(|why| why.contains(expected)), "{word}");
         }
     }
@@ -325,7 +328,9 @@ mod tests {
                 reason,
                 ..Order::default()
             };
-            let why = read(&order).map(|_| ()).map_err(|why| why.en);
+            let why = read(&order)
+                .map(|_| ())
+                .map_err(|why| why.message().say(Lang::En));
             assert!(why.is_err_and(|why| why.contains("why the alarm is shelved")));
         }
     }

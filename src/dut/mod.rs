@@ -90,6 +90,14 @@ impl Kind {
         }
     }
 
+    /// Names of the stages of its test.
+    pub fn stages(self) -> Vec<&'static str> {
+        match self {
+            Self::EmRelay => em_relay::measure::Stage::ALL.map(|it| it.name()).to_vec(),
+            Self::Resistor => resistor::measure::Stage::ALL.map(|it| it.name()).to_vec(),
+        }
+    }
+
     /// What only a test of this kind finds.
     pub fn findings(self) -> Vec<reason::Code> {
         match self {

@@ -189,7 +189,7 @@ impl AlarmCode {
     }
 
     /// Its name in the catalogue of texts, which says the same of every actuator.
-    const fn text_id(self) -> &'static str {
+    pub const fn text_id(self) -> &'static str {
         match self {
             Self::EmergencyStop => "emergency_stop",
             Self::DoorOpen => "door_open",

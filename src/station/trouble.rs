@@ -9,7 +9,7 @@ use crate::handling::trouble::Trouble;
 use crate::handling::wear::Wearing;
 use crate::rig::point::DigitalIn;
 use crate::units::Span;
-use texts::{Args, Lang};
+use texts::{Args, Lang, Message};
 
 /// One alarm.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -57,6 +57,12 @@ impl Alarm {
         let said = self.code.message(self.args.clone()).try_say(lang);
         let [cause, ..] = self.code.help(lang);
         said.unwrap_or_else(|| cause.to_owned())
+    }
+
+    /// The text of a refusal that speaks of this alarm.
+    pub fn inside(&self, refusal: &'static str) -> Message {
+        let args = self.args.clone().with("alarm", self.code.text_id());
+        Message::of("refusal", refusal, args)
     }
 
     fn with(mut self, name: &'static str, value: impl ToString) -> Self {

@@ -15,7 +15,7 @@ mod catalogue;
 mod message;
 
 pub use catalogue::{Plain, arguments, attributes, ids, plain};
-pub use message::{Args, Message, Said};
+pub use message::{Args, Message};
 
 use serde::Deserialize;
 

@@ -2,7 +2,8 @@
 
 use crate::{Lang, catalogue};
 use fluent_bundle::FluentArgs;
-use serde::{Deserialize, Serialize};
+use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize, Serializer};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
@@ -12,7 +13,8 @@ use std::collections::BTreeMap;
 pub struct Args(BTreeMap<Cow<'static, str>, String>);
 
 /// Arguments that name a thing of the catalogue: `bin` = `coil` is said as `bin-coil`, `needed_role` by the family `role`.
-const NAMES: [&str; 7] = [
+const NAMES: [&str; 8] = [
+    "alarm",
     "bin",
     "place",
     "motion",
@@ -25,25 +27,12 @@ const NAMES: [&str; 7] = [
 /// The argument that chooses one of several texts of a code: the attribute of this name.
 const CASE: &str = "case";
 
-/// A text with its arguments, in no language yet.
+/// A text with its arguments, in no language yet. Programs get it as `{"code", "args", "en", "zh"}`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
     family: &'static str,
     code: Cow<'static, str>,
     args: Args,
-}
-
-/// A message as pages and programs get it: `{"code", "args", "en", "zh"}`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Said {
-    /// Code within its family.
-    pub code: String,
-    /// Arguments by name.
-    pub args: Args,
-    /// English.
-    pub en: String,
-    /// Simplified Chinese.
-    pub zh: String,
 }
 
 impl Args {
@@ -80,15 +69,17 @@ impl Args {
             .collect()
     }
 
-    /// The name of a thing; that of a motion may speak of a bin.
+    /// The text of a thing, which may speak of the other arguments: the way of the axis of a bin, an alarm of all its own.
     fn named<'a>(&'a self, lang: Lang, name: &str, code: &'a str) -> Cow<'a, str> {
         let family = name.rsplit('_').next().unwrap_or(name);
-        let Some(pattern) = catalogue::pattern(lang, &format!("{family}-{code}"), None) else {
+        let id = format!("{family}-{code}");
+        let case = catalogue::pattern(lang, &id, self.get(CASE));
+        let Some(pattern) = case.or_else(|| catalogue::pattern(lang, &id, None)) else {
             return Cow::Borrowed(code);
         };
-        let bin = self.get("bin").map(|bin| ("bin", lang.name("bin", bin)));
-        let args: FluentArgs<'_> = bin.into_iter().collect();
-        let text = catalogue::filled(lang, pattern, &args);
+        let mut others = self.clone();
+        others.0.remove(name);
+        let text = catalogue::filled(lang, pattern, &others.fluent(lang));
         Cow::Owned(text.unwrap_or_default())
     }
 }
@@ -119,6 +110,11 @@ impl Message {
     #[must_use]
     pub fn case(self, case: &'static str) -> Self {
         self.with(CASE, case)
+    }
+
+    /// Code within its family.
+    pub fn code(&self) -> &str {
+        &self.code
     }
 
     /// Its arguments.
@@ -154,17 +150,18 @@ impl Message {
         catalogue::filled(lang, pattern, &self.args.fluent(lang))
     }
 
-    /// For pages and programs.
-    pub fn said(&self) -> Said {
-        Said {
-            code: self.code.clone().into_owned(),
-            args: self.args.clone(),
-            en: self.say(Lang::En),
-            zh: self.say(Lang::Zh),
-        }
-    }
-
     fn pattern(&self, lang: Lang) -> Option<&'static fluent_syntax::ast::Pattern<&'static str>> {
         catalogue::pattern(lang, &self.id(), self.args.get(CASE))
+    }
+}
+
+impl Serialize for Message {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Message", 4)?;
+        object.serialize_field("code", &self.code)?;
+        object.serialize_field("args", &self.args)?;
+        object.serialize_field("en", &self.say(Lang::En))?;
+        object.serialize_field("zh", &self.say(Lang::Zh))?;
+        object.end()
     }
 }

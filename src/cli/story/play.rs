@@ -167,7 +167,7 @@ async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), R
         .await
         .map_err(|_| Refusal::Ended)?;
     let answer = answered.await.map_err(|_| Refusal::Ended)?;
-    answer.map_err(|why| Refusal::Said(why.en))
+    answer.map_err(|why| Refusal::Said(why.say(texts::Lang::En)))
 }
 
 impl Seen {

@@ -11,6 +11,7 @@ use crate::handling::ledger::Kind;
 use crate::handling::place::Place;
 use crate::handling::wear::Uses;
 use crate::rig::sample::Sample;
+use crate::station::Doing;
 use crate::station::catalogue::AlarmCode;
 use crate::station::gates::{CheckSettings, LotSettings, WearSettings};
 use crate::station::orders::Order;
@@ -242,5 +243,5 @@ fn a_calibration_that_runs_out_stops_the_lot_and_the_next_start_calibrates() {
         }
         machine.order(Order::Command(command)).unwrap();
     }
-    assert_eq!(machine.station.state(), "calibrating");
+    assert_eq!(machine.station.doing(), Doing::Calibrating);
 }

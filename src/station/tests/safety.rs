@@ -4,6 +4,7 @@ use super::machine::{Machine, Specimen};
 use crate::dut::{Reason, Verdict};
 use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::station::Doing;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Wants};
 use crate::units::Span;
@@ -14,11 +15,11 @@ fn under_test() -> Machine {
     let mut machine = Machine::new(Some(3), vec![Specimen::MissingPin; 3]);
     for _ in 0..3000 {
         machine.turn();
-        if machine.station.state().starts_with("testing") {
+        if machine.station.doing().stage().is_some() {
             return machine;
         }
     }
-    panic!("no test began: {}", machine.station.state());
+    panic!("no test began: {:?}", machine.station.doing());
 }
 
 fn assert_safe(wants: &Wants, code: &str) {
@@ -50,7 +51,7 @@ fn an_open_safety_input_makes_everything_safe_and_voids_the_part_inside() {
             (&why, Some(Bin::RETEST))
         );
         assert!(machine.station.ledger().balances());
-        assert_eq!(machine.station.state(), "ended");
+        assert_eq!(machine.station.doing(), Doing::Ended);
     }
 }
 
@@ -140,7 +141,7 @@ fn before_the_first_scan_the_station_waits_but_not_for_ever() {
     assert!(
         wants.rig.motions.is_empty() && wants.rig.job.is_none() && wants.record.alarms.is_empty()
     );
-    assert_eq!(machine.station.state(), "waiting for sensors");
+    assert_eq!(machine.station.doing(), Doing::WaitingForSensors);
     machine.shop.now = machine.shop.now + Span::ms(3000);
     assert!(machine.turn_without_scan().record.alarms.is_empty());
     machine.shop.now = machine.shop.now + Span(1);

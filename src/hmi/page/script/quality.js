@@ -61,7 +61,7 @@ let seen = [];
 function notice() {
   const now = performance.now();
   const busy = view.machine.actuators.filter((it) => it.moving).map((it) => it.name);
-  if (view.state.startsWith("testing")) busy.push("test");
+  if (view.stage) busy.push("test");
   seen = [...seen.filter((it) => now - it.at < SPAN_MS), {at: now, busy}];
 }
 

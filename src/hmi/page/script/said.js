@@ -1,9 +1,8 @@
-// Words made of what the rig says.
+// Words made of the codes of the rig.
 
-function stateText(state) {
-  const testing = /^testing: (\w+)/.exec(state);
-  if (!testing) return known("state-" + state, state);
-  return word("state-testing") + ": " + known("stage-" + testing[1], testing[1]);
+function stateText({doing, stage}) {
+  const state = word("state-" + (doing || "none"));
+  return stage ? state + ": " + known("stage-" + stage, stage) : state;
 }
 
 // Why a part did not pass.
