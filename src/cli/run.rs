@@ -23,6 +23,7 @@ use bus::Pace;
 use config::Plant;
 use machine::dut::Calibration;
 use machine::dut::Recipe;
+use machine::station::catalogue::AlarmCode;
 use machine::station::packml::State;
 use machine::station::wants::Ending;
 use machine::view::{LineTraffic, View};
@@ -163,7 +164,7 @@ pub fn run_with(
     let calibrates = controls.calibrates.is_some();
     let recipe = gate::admit(db, &plant, args, calibrates)?;
     if !calibrates && let Some(why) = gate::uncalibrated(db, &recipe, args)? {
-        tracing::error!(code = gate::INVALID, "{why}");
+        tracing::error!(code = AlarmCode::CalibrationInvalid.name(), "{why}");
         gate::refuse(db, &recipe, args, &why)?;
         return Ok(super::RIG_TROUBLE);
     }

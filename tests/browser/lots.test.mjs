@@ -56,12 +56,12 @@ test("a lot is started, watched, held and closed at the page, and the next one b
   assert.match(await page.textContent("#l_answer"), /stop it first/);
   await decide(page, "A", "close_lot", "rest of the reel returned");
   await rig.until("closed", (view) => !view.under_way);
-  await lotRow(page, "A").getByText(WORDS["lot_state.complete"].en).waitFor();
+  await lotRow(page, "A").getByText(WORDS["lot_state-complete"].en).waitFor();
   await startLot(page, "B", 2);
   await rig.until("complete", (view) => view.lot === "B" && !view.under_way && view.judged === 2);
-  await lotRow(page, "B").getByText(WORDS["lot_state.complete"].en).waitFor();
+  await lotRow(page, "B").getByText(WORDS["lot_state-complete"].en).waitFor();
   await page.click('nav a[href="#operator"]');
-  await shown(page, "#state", WORDS["state.complete"].en);
+  await shown(page, "#state", WORDS["state-complete"].en);
   await picture(page, "operator-complete");
   await page.click('nav a[href="#lots"]');
   await shown(page, "#l_audit", "li (operator)");
@@ -83,13 +83,13 @@ test("a lot that is held takes no run until somebody who may releases it", async
   const maintainer = await visit(browser, rig, { role: "maintainer", path: "/#lots" });
   await lotRow(maintainer, "A").waitFor();
   await decide(maintainer, "A", "release_lot", "label was corrected");
-  await lotRow(maintainer, "A").getByText(WORDS["lot_state.open"].en).waitFor();
+  await lotRow(maintainer, "A").getByText(WORDS["lot_state-open"].en).waitFor();
   await leave(maintainer);
 });
 
 test("what was replaced is counted anew", async () => {
   const page = await visit(browser, rig, { role: "maintainer", path: "/#lots" });
-  const probes = page.locator("#l_wear li", { hasText: WORDS["counter.probe_touches"].en });
+  const probes = page.locator("#l_wear li", { hasText: WORDS["counter-probe_touches"].en });
   await probes.getByRole("button").click();
   await page.waitForFunction(() => document.querySelector("#l_wear li:last-child b").textContent === "0");
   await leave(page);

@@ -39,7 +39,7 @@ test("parts move through the picture, and the last verdict stays with its values
 test("whoever has not logged in is told so by every button, and by the rig", async () => {
   const page = await visit(browser, rig);
   await page.click('#orders [data-order="stop"]', { force: true });
-  await shown(page, "#order_answer", WORDS["stop.login"].en);
+  await shown(page, "#order_answer", WORDS["stop-login"].en);
   const status = await page.evaluate(async () => (await fetch("/api/orders", { method: "POST",
     headers: { "Content-Type": "application/json" }, body: '{"order":"stop"}' })).status);
   assert.equal(status, 401);
@@ -52,7 +52,7 @@ test("a wrong password opens nothing, the right one does, and logging out closes
   await page.fill("#user", rig.who("operator"));
   await page.fill("#password", "guessed wrong");
   await page.click("#login_go");
-  await shown(page, "#login_answer", WORDS["login.401"].en);
+  await shown(page, "#login_answer", WORDS["login-401"].en);
   await page.click("#login_cancel");
   await logIn(page, rig, "operator");
   await page.reload();

@@ -100,9 +100,9 @@ test("factors are told with uncertainty and due date, and golden parts with what
   const page = await visit(browser, rig, { path: "/#calibration" });
   await page.waitForSelector("#c_factors .due");
   assert.equal(await page.$$eval("#c_factors .due.bad", (all) => all.length), 0);
-  await shown(page, "#c_factors", WORDS["factor.operate_lag"].en);
+  await shown(page, "#c_factors", WORDS["factor-operate_lag"].en);
   await shown(page, "#c_golden", "G-12-1");
-  await shown(page, "#c_check", WORDS["c.agreed"].en);
+  await shown(page, "#c_check", WORDS["c-agreed"].en);
   await leave(page);
 });
 

@@ -37,7 +37,7 @@ test("a stranger and an operator read every key in words and change none", async
   for (const role of [undefined, "operator"]) {
     const page = await visit(browser, rig, { role, path: "/#recipes" });
     await choose(page);
-    await shown(page, "#r_fields", WORDS["field.decision.slow_repeats"].en);
+    await shown(page, "#r_fields", WORDS["field-decision-slow_repeats"].en);
     assert.equal(await page.$$eval("#r_fields input, #r_fields select", (all) => all.length), 0);
     assert.equal(await page.isVisible("#r_save"), false);
     await leave(page);
@@ -53,14 +53,14 @@ test("a value out of its range is refused at its field, what was typed stays, an
   await shown(page, "#r_fields tr:has(" + HIGH.slice(10) + ") + tr .trouble", "20");
   assert.equal((await newest()).number, number);
   await page.click("#language");
-  await shown(page, "#r_fields .trouble", WORDS["r.found"].zh + " 44");
-  await shown(page, "#r_answer", WORDS["r.refused"].zh);
+  await shown(page, "#r_fields .trouble", WORDS["r-found"].zh + " 44");
+  await shown(page, "#r_answer", WORDS["r-refused"].zh);
   assert.equal(await page.inputValue(HIGH), "44", "what was typed stays");
   await looks(page, "recipes-refused-1280");
   await page.click("#language");
   await page.fill(HIGH, "4.4");
   await page.click("#r_save");
-  await shown(page, "#r_answer", WORDS["r.saved"].en + " " + (number + 1));
+  await shown(page, "#r_answer", WORDS["r-saved"].en + " " + (number + 1));
   const saved = await newest();
   assert.equal(saved.number, number + 1);
   assert.equal(saved.fields.find((it) => it.path === "limits.operate_voltage_v.high").value, 4.4);
@@ -79,7 +79,7 @@ test("the second of two engineers is told, and keeps what was typed", async () =
     pages.push(page);
   }
   await pages[0].click("#r_save");
-  await shown(pages[0], "#r_answer", WORDS["r.saved"].en);
+  await shown(pages[0], "#r_answer", WORDS["r-saved"].en);
   await pages[1].click("#r_save");
   await shown(pages[1], "#r_answer", "no longer the newest");
   assert.equal(await pages[1].inputValue('[data-path="limits.release_voltage_v.low"]'), "0.62");

@@ -84,7 +84,13 @@ class Rig {
   }
 }
 
-const words = (path) => JSON.parse(readFileSync(new URL("../../crates/" + path, import.meta.url)));
+/** Texts of a language by id, without attributes. */
+function texts(tag) {
+  const file = readFileSync(new URL(`../../locale/${tag}.ftl`, import.meta.url), "utf8");
+  return file.split("\n").map((line) => /^([a-z][\w-]*) = (.*)$/i.exec(line)).filter(Boolean).map(([, id, text]) => [id, text]);
+}
 
-/** Every word of the page, from its own table and those of the kinds. */
-export const WORDS = {...words("page/src/page/words.json"), ...words("machine/src/dut/em_relay/words.json"), ...words("machine/src/dut/resistor/words.json")};
+const ZH = Object.fromEntries(texts("zh"));
+
+/** Every text in both languages. */
+export const WORDS = Object.fromEntries(texts("en").map(([id, en]) => [id, {en, zh: ZH[id]}]));

@@ -38,6 +38,7 @@ use machine::rig::level::Correction;
 use machine::rig::point::DigitalIn;
 use machine::rig::wiring::{LineId, Wiring};
 use machine::station::Station;
+use machine::station::catalogue::AlarmCode;
 use machine::station::packml;
 use machine::station::trouble::Alarm;
 use machine::station::wants::{Ending, Inputs, Wants};
@@ -296,7 +297,7 @@ impl Cycle {
 
     fn step(&mut self, now: RigTime) -> Wants {
         if self.outside.history_lost.load(Ordering::Acquire) {
-            self.bus_alarm.get_or_insert(Alarm::history());
+            self.bus_alarm.get_or_insert(AlarmCode::HistoryLost.into());
         }
         if let Some(asked_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
             self.worst_age = self.worst_age.max(now.since(asked_at));

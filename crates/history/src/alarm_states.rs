@@ -4,8 +4,10 @@
 //! simulated one): an alarm that came three times is acknowledged once.
 
 use super::Store;
+use super::alarms::args;
 use super::error::{Doing, Result};
 use rusqlite::{Connection, Transaction, params};
+use texts::Args;
 
 /// What happened to an alarm.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,8 +48,10 @@ pub struct AlarmChangeRecord {
 pub struct AlarmLeft {
     /// Its code.
     pub code: String,
-    /// The message as shown.
+    /// The message as shown, English.
     pub text: String,
+    /// Arguments of the message by name.
+    pub args: Args,
     /// How often it came.
     pub count: u32,
     /// Not to be shown before this.
@@ -102,7 +106,8 @@ pub(super) fn change(tx: &Transaction<'_>, it: &AlarmChangeRecord) -> Result<()>
 fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<AlarmLeft>> {
     connection
         .prepare(
-            "SELECT alarm.code, alarm.text, count(*), max(alarm_state.shelved_until_us), max(alarm.id)
+            "SELECT alarm.code, alarm.text, count(*), max(alarm_state.shelved_until_us), max(alarm.id),
+             alarm.args
              FROM alarm LEFT JOIN alarm_state ON alarm_state.alarm_id = alarm.id
              WHERE alarm_state.acknowledged_at_us IS NULL
                AND alarm.run_id IN (SELECT id FROM run WHERE (source = 'simulated') = ?1)
@@ -114,6 +119,7 @@ fn left(connection: &Connection, simulated: bool) -> rusqlite::Result<Vec<AlarmL
                 text: row.get(1)?,
                 count: row.get(2)?,
                 shelved_until_us: row.get(3)?,
+                args: args(row.get(5)?),
             })
         })?
         .collect()

@@ -2,9 +2,10 @@
 
 use super::error::{Doing, Result};
 use super::{Archive, Filter, Moment};
-use machine::station::catalogue;
+use machine::station::catalogue::AlarmCode;
 use rusqlite::params_from_iter;
 use serde::Serialize;
+use texts::{Args, Lang};
 
 /// Where an alarm stands (ISA-18.2, states B to E; a shelved one keeps its state).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -42,8 +43,12 @@ pub struct Alarm {
     pub code: String,
     /// Serial line, when it concerns one.
     pub line: Option<String>,
-    /// The message as shown.
+    /// The message as shown, English.
     pub text: String,
+    /// Arguments of the message by name; none in rows of before schema 9.
+    pub args: Args,
+    /// The message in Chinese; none where its arguments are missing, and for a code of another program.
+    pub text_zh: Option<String>,
     /// The cause that the catalogue has for the code, Chinese; none for a code of another program.
     pub cause_zh: Option<&'static str>,
     /// When it came.
@@ -71,6 +76,12 @@ impl AlarmState {
     }
 }
 
+/// Arguments as they are stored.
+pub(super) fn args(stored: Option<serde_json::Value>) -> Args {
+    let args = stored.and_then(|it| serde_json::from_value(it).ok());
+    args.unwrap_or_default()
+}
+
 impl Archive {
     /// Alarms of the runs that the filter leaves (lot, run, recipe), raised in its span, in order of time;
     /// the filter's page of them.
@@ -85,11 +96,14 @@ impl Archive {
             };
             let (cleared, acknowledged) = (moment(6)?, moment(7)?);
             let code: String = row.get(2)?;
+            let (known, args) = (AlarmCode::from_name(&code), args(row.get(12)?));
             Ok(Alarm {
                 lot: row.get(0)?,
                 run: row.get(1)?,
-                cause_zh: catalogue::entry(&code).map(|it| it.cause.1),
+                text_zh: known.and_then(|it| it.message(args.clone()).try_say(Lang::Zh)),
+                cause_zh: known.map(|it| it.help(Lang::Zh)[0]),
                 code,
+                args,
                 line: row.get(3)?,
                 text: row.get(4)?,
                 raised: Moment(row.get(5)?),

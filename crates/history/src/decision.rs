@@ -1,6 +1,7 @@
 //! What a person decides about a lot that is not under way, and when that makes no sense.
 
 use super::LotState;
+use texts::Message;
 
 /// A decision about a lot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,14 +41,15 @@ impl Decision {
         }
     }
 
-    /// Why it makes no sense of a lot in this state, English and Chinese.
-    pub const fn why_not(self, state: LotState) -> Option<(&'static str, &'static str)> {
+    /// Why it makes no sense of a lot in this state.
+    pub fn why_not(self, state: LotState) -> Option<Message> {
+        let refused = |code| Some(Message::new("refusal", code));
         match (self, state) {
-            (Self::Hold, LotState::Held) => Some(("the lot is held already", "批次已被扣留")),
+            (Self::Hold, LotState::Held) => refused("lot_held_already"),
             (Self::Release, LotState::Open | LotState::Running | LotState::Complete) => {
-                Some(("the lot is not held", "批次未被扣留"))
+                refused("lot_not_held")
             }
-            (Self::Close, LotState::Complete) => Some(("the lot is complete", "批次已完成")),
+            (Self::Close, LotState::Complete) => refused("lot_complete"),
             (Self::Hold, LotState::Open | LotState::Running | LotState::Complete)
             | (Self::Release, LotState::Held)
             | (Self::Close, LotState::Open | LotState::Running | LotState::Held) => None,

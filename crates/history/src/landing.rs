@@ -99,8 +99,8 @@ pub(super) fn alarm(tx: &Transaction<'_>, known: &Known, it: &AlarmRecord) -> Re
     let cleared_after = it.cleared_at_us.is_none_or(|at| at >= it.raised_at_us);
     assert!(cleared_after, "{} went before it came", it.code);
     tx.prepare_cached(
-        "INSERT INTO alarm (run_id, code, line, text, raised_at_us, cleared_at_us)
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6)
+        "INSERT INTO alarm (run_id, code, line, text, raised_at_us, cleared_at_us, args)
+         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7)
          ON CONFLICT (raised_at_us, code, ifnull(line, ''), ifnull(run_id, 0))
          DO UPDATE SET cleared_at_us = ifnull(cleared_at_us, excluded.cleared_at_us)",
     )
@@ -111,7 +111,8 @@ pub(super) fn alarm(tx: &Transaction<'_>, known: &Known, it: &AlarmRecord) -> Re
             it.line,
             it.text,
             it.raised_at_us,
-            it.cleared_at_us
+            it.cleared_at_us,
+            serde_json::json!(it.args)
         ])
     })
     .doing("recording an alarm")?;

@@ -10,6 +10,7 @@ use super::{
 use machine::dut::Reason;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use texts::Args;
 
 /// One opening of a lot. A lot opened again gets the next run number; nothing is overwritten.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -146,8 +147,10 @@ pub struct AlarmRecord {
     pub code: String,
     /// Serial line, when it concerns one.
     pub line: Option<String>,
-    /// The message as shown.
+    /// The message as shown, English.
     pub text: String,
+    /// Arguments of the message by name.
+    pub args: Args,
     /// When it came.
     pub raised_at_us: i64,
     /// When it went.

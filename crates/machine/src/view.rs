@@ -10,13 +10,14 @@ mod traffic;
 pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
 pub use mimic::{Mimic, MimicBody};
 pub use motion::{MotionView, RefusedView, StrokeView};
-pub use order::{Answered, By, LOT_ORDERS, NotTaken, ORDERS, Order};
+pub use order::{Answered, By, LOT_ORDERS, ORDERS, Order};
 pub use request::{Answer, OrderRequest};
 pub use traffic::{LineTraffic, Message};
 
 use crate::dut::Reason;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use texts::Args;
 
 /// The whole view.
 #[derive(Debug, Clone, Default, Serialize)]
@@ -31,8 +32,12 @@ pub struct View {
     pub under_way: bool,
     /// Recipe of the lot.
     pub recipe: String,
-    /// What the station is doing, in words.
+    /// What the station is doing, with the stage of a test behind it.
     pub state: String,
+    /// The same as a code; empty before the first turn.
+    pub doing: String,
+    /// Stage of the test under way; null while there is none.
+    pub stage: Option<&'static str>,
     /// Parts of the lot judged so far.
     pub judged: u64,
     /// Parts wanted; none for an endless lot.
@@ -98,6 +103,8 @@ pub struct LastPart {
 pub struct AlarmLine {
     /// Short name.
     pub code: String,
+    /// Arguments of its text by name.
+    pub args: Args,
     /// English text.
     pub text_en: String,
     /// Chinese text.

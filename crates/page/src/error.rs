@@ -10,6 +10,7 @@ use history::HistoryError;
 use history::inquiry::InquiryError;
 use serde_json::json;
 use std::time::Duration;
+use texts::{Lang, Message};
 
 /// Why a request was not fulfilled.
 #[derive(Debug, thiserror::Error)]
@@ -41,10 +42,10 @@ pub(super) enum HmiError {
         reason: &'static str,
     },
     /// 401: which of them is not said.
-    #[error("user name or password is wrong")]
+    #[error("{}", refusal("wrong_password").say(Lang::En))]
     WrongPassword,
     /// 403: known, but not trusted with this.
-    #[error("this takes the role {needed}; you are {found}")]
+    #[error("{}", not_allowed(*.found, *.needed).say(Lang::En))]
     NotAllowed {
         /// The role that the person has.
         found: Role,
@@ -52,7 +53,7 @@ pub(super) enum HmiError {
         needed: Role,
     },
     /// 429; the header `Retry-After` says it in seconds.
-    #[error("too many wrong passwords; try again in {} s", .wait.as_secs() + 1)]
+    #[error("{}", too_many_tries(*.wait).say(Lang::En))]
     TooManyTries {
         /// Until the next try.
         wait: Duration,
@@ -77,14 +78,12 @@ pub(super) enum HmiError {
         known: String,
     },
     /// 409: known, but not now or not here.
-    #[error("{order}: {reason}")]
+    #[error("{order}: {}", .why.say(Lang::En))]
     NotNow {
         /// The order.
         order: &'static str,
         /// Why not.
-        reason: String,
-        /// The same in Chinese.
-        reason_zh: String,
+        why: Message,
     },
     /// 400: a query string that is no filter.
     #[error("{reason}")]
@@ -152,46 +151,54 @@ impl HmiError {
                         found, expected, ..
                     },
             } => json!({ "key": refused.key(), "found": found, "expected": expected }),
-            _ => match self.in_chinese() {
-                Some(reason_zh) => json!({ "reason_zh": reason_zh }),
+            _ => match self.message() {
+                Some(why) => {
+                    json!({ "reason_zh": why.say(Lang::Zh), "code": why.code(), "args": why.args() })
+                }
                 None => json!({}),
             },
         }
     }
 
-    /// What an operator meets, in Chinese; the rest is met by scripts and by whoever mends the plant.
-    fn in_chinese(&self) -> Option<String> {
+    /// What an operator meets; the rest is met by scripts and by whoever mends the plant.
+    fn message(&self) -> Option<Message> {
         Some(match self {
-            Self::NotNow { reason_zh, .. } => reason_zh.clone(),
-            Self::NotLoggedIn { .. } => "请先登录".into(),
-            Self::WrongPassword => "用户名或密码错误".into(),
-            Self::NotAllowed { found, needed } => format!(
-                "此操作需要{}权限，您的角色是{}",
-                needed.in_chinese(),
-                found.in_chinese()
-            ),
-            Self::TooManyTries { wait } => {
-                format!("密码错误次数过多，请 {} 秒后再试", wait.as_secs() + 1)
-            }
+            Self::NotNow { why, .. } => why.clone(),
+            Self::NotLoggedIn { .. } => refusal("not_logged_in"),
+            Self::WrongPassword => refusal("wrong_password"),
+            Self::NotAllowed { found, needed } => not_allowed(*found, *needed),
+            Self::TooManyTries { wait } => too_many_tries(*wait),
             Self::History(history) | Self::Inquiry(InquiryError::History(history)) => {
-                of_history(history)?.into()
+                refusal(of_history(history)?)
             }
             Self::Revision {
                 refused: ConfigError::NotNewest { newest, .. },
-            } => format!(
-                "这份修改所依据的版本已不是最新版本（最新为第 {newest} 版），未保存任何内容"
-            ),
+            } => refusal("not_newest").with("newest", newest),
             _ => return None,
         })
     }
 }
 
+fn refusal(code: &'static str) -> Message {
+    Message::new("refusal", code)
+}
+
+fn not_allowed(found: Role, needed: Role) -> Message {
+    refusal("not_allowed")
+        .with("found_role", found)
+        .with("needed_role", needed)
+}
+
+fn too_many_tries(wait: Duration) -> Message {
+    refusal("too_many_tries").with("wait_s", wait.as_secs() + 1)
+}
+
 fn of_history(history: &HistoryError) -> Option<&'static str> {
     match history {
-        HistoryError::Missing { .. } => Some("尚无历史记录"),
-        HistoryError::Locked { .. } => Some("历史文件被其他程序占用"),
-        HistoryError::DiskFull { .. } => Some("磁盘已满"),
-        HistoryError::ReadOnly { .. } => Some("历史文件为只读"),
+        HistoryError::Missing { .. } => Some("history_missing"),
+        HistoryError::Locked { .. } => Some("history_locked"),
+        HistoryError::DiskFull { .. } => Some("disk_full"),
+        HistoryError::ReadOnly { .. } => Some("history_read_only"),
         _ => None,
     }
 }

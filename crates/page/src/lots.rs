@@ -5,7 +5,7 @@
 //! | `GET /api/lots` | `limit`, `offset` | array of lots, the one run last first: state, recipe, counts over all runs, and `why_not` |
 //! | `GET /api/wear` | | array of counters of what wears, of the rig that is shown |
 //!
-//! `why_not` names each order about lots with null, or with the reasons (`en`, `zh`) for which the state of the lot
+//! `why_not` names each order about lots with null, or with the reason (`code`, `args`, `en`, `zh`) for which the state of the lot
 //! forbids it. Of the lot under way the buttons of the view tell the same.
 
 use super::error::HmiError;
@@ -15,8 +15,8 @@ use axum::extract::rejection::QueryRejection;
 use axum::extract::{Query, State};
 use history::{Archive, Decision, LotLine, LotState, Wear};
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use texts::Message;
 
 /// Lots of an answer when nobody says how many.
 const SHOWN: u32 = 20;
@@ -28,7 +28,7 @@ const MOST: u32 = 200;
 pub(super) struct Listed {
     #[serde(flatten)]
     line: LotLine,
-    why_not: BTreeMap<&'static str, Value>,
+    why_not: BTreeMap<&'static str, Option<Message>>,
 }
 
 /// Of the query string.
@@ -59,17 +59,12 @@ pub(super) async fn lots(
     Ok(Json(listed.collect()))
 }
 
-fn why_not(state: LotState) -> BTreeMap<&'static str, Value> {
-    let told =
-        |why: Option<(&str, &str)>| why.map_or(Value::Null, |(en, zh)| json!({"en": en, "zh": zh}));
+fn why_not(state: LotState) -> BTreeMap<&'static str, Option<Message>> {
     let decisions = Decision::ALL
         .into_iter()
-        .map(|it| (it.order(), told(it.why_not(state))));
-    let held = (state == LotState::Held).then_some((
-        "the lot is held; release it first",
-        "批次已被扣留；请先放行",
-    ));
-    decisions.chain([("start", told(held))]).collect()
+        .map(|it| (it.order(), it.why_not(state)));
+    let held = (state == LotState::Held).then(|| Message::new("refusal", "release_first"));
+    decisions.chain([("start", held)]).collect()
 }
 
 /// `GET /api/wear`.

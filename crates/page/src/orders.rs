@@ -16,6 +16,7 @@ use axum::http::HeaderMap;
 use machine::view::{Answer, By, LOT_ORDERS, ORDERS, Order, OrderRequest};
 use serde::Serialize;
 use std::net::SocketAddr;
+use texts::Message;
 use tokio::sync::oneshot;
 
 /// Orders that wait for the next turn; more at once than fingers on a panel.
@@ -52,14 +53,9 @@ pub(super) async fn order(
     match give(&desk, order, by).await {
         None => Err(HmiError::NotNow {
             order: word,
-            reason: "the controller has ended or does not answer; nothing was done".into(),
-            reason_zh: "控制器已结束或无应答；未执行任何操作".into(),
+            why: Message::new("refusal", "controller_ended"),
         }),
-        Some(Err(why)) => Err(HmiError::NotNow {
-            order: word,
-            reason: why.en,
-            reason_zh: why.zh,
-        }),
+        Some(Err(why)) => Err(HmiError::NotNow { order: word, why }),
         Some(Ok(())) => Ok(Json(Taken { order: word })),
     }
 }

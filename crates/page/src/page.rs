@@ -1,6 +1,6 @@
 //! The page: one answer that holds everything, so that it shows even when nothing else is reachable.
 //!
-//! Texts, looks, words and scripts are put together once from the files in `page/`. The policy sent along lets
+//! Texts, looks and scripts are put together once from the files in `page/`, words from the catalogue. The policy sent along lets
 //! the browser run just that script, by its hash, and talk to this rig only.
 
 mod kinds;
@@ -25,7 +25,6 @@ const LOOK: &str = concat!(
     include_str!("page/look.css"),
     include_str!("page/pages.css")
 );
-const OWN_WORDS: &str = include_str!("page/words.json");
 /// One script in the order of use: what is shared, a file per page, and the start of everything.
 const SCRIPT: &str = concat!(
     include_str!("page/script/shared.js"),
@@ -49,7 +48,7 @@ const SCRIPT: &str = concat!(
     include_str!("page/script/start.js"),
 );
 
-static WORDS: LazyLock<String> = LazyLock::new(|| kinds::words(OWN_WORDS));
+static WORDS: LazyLock<String> = LazyLock::new(kinds::words);
 static PAGE: LazyLock<String> = LazyLock::new(|| {
     FRAME
         .replace("<!--pages-->", PAGES)

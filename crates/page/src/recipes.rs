@@ -21,7 +21,7 @@ use axum::extract::{ConnectInfo, Query, State};
 use axum::http::HeaderMap;
 use config::{self, Change, Plant, Revision};
 use history::inquiry::paper::paper;
-use history::report::Language;
+use history::report::Lang;
 use history::report::card;
 use history::{Identity, OrderRecord, Row, Store};
 use serde::{Deserialize, Serialize};
@@ -97,7 +97,7 @@ pub(super) async fn show(
 #[serde(deny_unknown_fields)]
 pub(super) struct Printed {
     name: String,
-    lang: Option<Language>,
+    lang: Option<Lang>,
 }
 
 /// `GET /api/recipes/card`.
@@ -109,7 +109,7 @@ pub(super) async fn card(
     let dir = desk.shared.config.clone();
     let made = move || {
         let recipe = config::load_recipe(&dir, &name)?;
-        let paper = paper(lang.unwrap_or(Language::Zh));
+        let paper = paper(lang.unwrap_or(Lang::Zh));
         let plant = config::load_card(&dir)?;
         Ok(on_paper(card::card(
             paper.language,

@@ -20,9 +20,7 @@ use super::{Gate, Shared, Traffic, WAITING, router};
 use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
-use machine::view::{
-    LastPart, LineTraffic, Message, Mimic, MimicBody, NotTaken, OrderRequest, View,
-};
+use machine::view::{LastPart, LineTraffic, Message, Mimic, MimicBody, OrderRequest, View};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
@@ -159,10 +157,7 @@ async fn controller(
             }
             "jog" | "mode" | "step" | "shelve" | "hold_lot" | "release_lot" | "close_lot"
             | "replaced" => Ok(()),
-            _other => Err(NotTaken {
-                en: "not in this state".into(),
-                zh: "当前状态不允许".into(),
-            }),
+            _other => Err(texts::Message::new("refusal", "run_ended")),
         };
         asked.say(answer);
     }

@@ -30,7 +30,7 @@ pub(super) struct ExportArgs {
     /// Form of the file; when absent, from the end of its name
     #[arg(long, value_enum)]
     format: Option<Kind>,
-    /// Language of the spreadsheet's summary
+    /// Lang of the spreadsheet's summary
     #[arg(long, value_enum, default_value = "zh")]
     lang: Tongue,
 }
@@ -101,7 +101,7 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use calamine::{Data, Reader, Xlsx};
     use history::Part;
-    use history::report::Language;
+    use history::report::Lang;
     use history::report::sheet::Sheet;
     use jiff::tz::TimeZone;
     use std::io::Cursor;
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn a_spreadsheet_reads_back_as_it_was_written_with_its_charts_and_no_formula() {
         let keys = ["operate_voltage_v".to_owned()];
-        let mut sheet = Sheet::new(Language::En, TimeZone::UTC, &keys).unwrap();
+        let mut sheet = Sheet::new(Lang::En, TimeZone::UTC, &keys).unwrap();
         for _ in 0..3 {
             sheet.part(&part(7.704_22)).unwrap();
         }

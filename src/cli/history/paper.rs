@@ -4,7 +4,7 @@ use super::output::Output;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use history::inquiry;
-use history::report::{Language, Paper};
+use history::report::{Lang, Paper};
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ pub(in crate::cli) enum Tongue {
 /// Where the page goes, and in which language.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct PaperArgs {
-    /// Language of the page
+    /// Lang of the page
     #[arg(long, value_enum, default_value = "zh")]
     lang: Tongue,
     /// HTML file to write, for A4 (print it from a browser); - is stdout
@@ -29,10 +29,10 @@ pub(in crate::cli) struct PaperArgs {
 }
 
 impl Tongue {
-    pub fn language(self) -> Language {
+    pub fn language(self) -> Lang {
         match self {
-            Self::En => Language::En,
-            Self::Zh => Language::Zh,
+            Self::En => Lang::En,
+            Self::Zh => Lang::Zh,
         }
     }
 }

@@ -15,7 +15,7 @@ use machine::handling::mechanism::Mechanism;
 use machine::handling::moves::Strokes;
 use machine::rig::axis::AxisStation;
 use machine::rig::wiring::StrokeLimits;
-use machine::station::catalogue;
+use machine::station::catalogue::AlarmCode;
 use machine::station::trouble::Alarm;
 use machine::station::{Plan, Station};
 use machine::view::Mimic;
@@ -90,10 +90,15 @@ pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
 
 /// An alarm of a run before stands again, unseen.
 fn inherit(station: &mut Station, left: AlarmLeft, epoch_us: i64) {
-    let zh = catalogue::entry(&left.code).map_or("", |entry| entry.cause.1);
+    let Some(code) = AlarmCode::from_name(&left.code) else {
+        return tracing::warn!(code = left.code, "an alarm of another version is left out");
+    };
     let until = left.shelved_until_us.map(|until_us| until_us - epoch_us);
     let until = until.and_then(|us| u64::try_from(us).ok()).map(RigTime);
-    let alarm = Alarm::new(left.code, left.text, zh);
+    let alarm = Alarm {
+        code,
+        args: left.args,
+    };
     station.annunciator_mut().inherit(alarm, left.count, until);
 }
 

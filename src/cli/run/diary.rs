@@ -7,15 +7,17 @@ use history::{
 use machine::handling::inside::Inside;
 use machine::handling::wear::Uses;
 use machine::station::annunciator::Standing;
+use machine::station::catalogue::AlarmCode;
 use machine::station::orders::shelf_minutes;
 use machine::station::trouble::Alarm;
 use machine::station::wants::{Checked, Ending};
 use machine::view::Answered;
+use texts::Lang;
 
 /// Alarms after which a lot takes no run before somebody releases it.
-const HOLDS: [&str; 2] = ["golden_check_failed", "lot_discard_limit"];
+const HOLDS: [AlarmCode; 2] = [AlarmCode::GoldenCheckFailed, AlarmCode::LotDiscardLimit];
 /// The alarm that says that golden parts do not agree with their certificates.
-const NOT_CALIBRATED: &str = "calibration_failed";
+const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
 
 /// What was told of a run so far.
 #[derive(Debug)]
@@ -68,20 +70,22 @@ impl Diary {
 
     /// An alarm came.
     pub fn alarm(&mut self, alarm: &Alarm, at_us: i64) -> Vec<Row> {
+        let text = alarm.text(Lang::En);
         let mut rows = vec![Row::Alarm(AlarmRecord {
             lot: self.lot.clone(),
-            code: alarm.code.clone(),
+            code: alarm.code.name(),
+            args: alarm.args.clone(),
             line: None,
-            text: alarm.text_en.clone(),
+            text: text.clone(),
             raised_at_us: at_us,
             cleared_at_us: None,
         })];
         if alarm.code == NOT_CALIBRATED {
-            rows.extend(self.check(false, &alarm.text_en, at_us));
+            rows.extend(self.check(false, &text, at_us));
         }
-        if HOLDS.contains(&alarm.code.as_str()) {
-            self.held = Some(alarm.code.clone());
-            rows.extend(self.lot(LotState::Held, Some(alarm.text_en.clone()), at_us));
+        if HOLDS.contains(&alarm.code) {
+            self.held = Some(alarm.code.name());
+            rows.extend(self.lot(LotState::Held, Some(text), at_us));
         }
         rows
     }
@@ -91,7 +95,7 @@ impl Diary {
         let active: Vec<String> = standing
             .iter()
             .filter(|one| one.is_active())
-            .map(|one| one.alarm.code.clone())
+            .map(|one| one.alarm.code.name())
             .collect();
         let gone = self.active.iter().filter(|code| !active.contains(code));
         let mut rows: Vec<Row> = gone.map(|code| self.returned(code, at_us)).collect();
@@ -244,7 +248,7 @@ mod tests {
     #[test]
     fn an_alarm_of_the_machine_leaves_the_lot_open() {
         let mut diary = diary();
-        let alarm = Alarm::no_part();
+        let alarm = AlarmCode::PartNotArrived.into();
         assert!(states(&diary.alarm(&alarm, 1)).is_empty());
         let row = diary.ended(&Ending::Alarm, 2);
         assert_eq!(

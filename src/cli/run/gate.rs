@@ -8,9 +8,10 @@ use history::{
     Store, is_lot_name,
 };
 use machine::dut::Recipe;
-use machine::view::NotTaken;
+use machine::station::trouble::Alarm;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use texts::{Lang, Message};
 
 /// Why a lot is not run. The text is that of the command line, where it names the option.
 #[derive(Debug, thiserror::Error)]
@@ -79,42 +80,22 @@ pub enum NotAdmitted {
 
 impl NotAdmitted {
     /// The same for a person at a screen.
-    pub fn at_the_screen(&self) -> NotTaken {
-        let (en, zh) = match self {
-            Self::Name { .. } => (
-                format!("the name of a lot has {LOT_NAME}"),
-                "批次名称应为 1 至 200 个字符，不能含控制字符，也不能全是空白".into(),
-            ),
-            Self::NoParts => (
-                "a lot has at least one part".into(),
-                "批次至少应有一件".into(),
-            ),
-            Self::Held { lot, standing } => {
-                let why = standing.why.as_deref().unwrap_or_default();
-                (
-                    format!("lot {lot} is held: {why}; release it first"),
-                    format!("批次 {lot} 已被扣留：{why}；请先放行"),
-                )
-            }
-            Self::OtherRecipe { lot, standing, .. } => {
-                let begun = &standing.recipe;
-                (
-                    format!(
-                        "lot {lot} was begun with recipe {begun} as it was then, and goes on with nothing else; \
-                         close it first"
-                    ),
-                    format!("批次 {lot} 以当时的配方 {begun} 开始，不能更换配方；请先关闭该批次"),
-                )
-            }
-            Self::NothingToRetest { lot } => (
-                format!("lot {lot} has no run whose parts could be tested again"),
-                format!("批次 {lot} 没有可复测的记录"),
-            ),
+    pub fn at_the_screen(&self) -> Message {
+        let of = |code| Message::new("refusal", code);
+        match self {
+            Self::Name { .. } => of("lot_name"),
+            Self::NoParts => of("lot_without_parts"),
+            Self::Held { lot, standing } => of("lot_held")
+                .with("lot", lot)
+                .with("why", standing.why.as_deref().unwrap_or_default()),
+            Self::OtherRecipe { lot, standing, .. } => of("other_recipe")
+                .with("lot", lot)
+                .with("recipe", &standing.recipe),
+            Self::NothingToRetest { lot } => of("nothing_to_retest").with("lot", lot),
             Self::Recipe(_) | Self::NoGoldenPart { .. } | Self::History(_) => {
-                (self.to_string(), format!("无法开始批次：{self}"))
+                of("lot_not_begun").with("detail", self)
             }
-        };
-        NotTaken { en, zh }
+        }
     }
 }
 
@@ -196,9 +177,6 @@ pub fn uncalibrated(db: &Path, recipe: &Recipe, args: &RunArgs) -> anyhow::Resul
     }
 }
 
-/// Alarm of a rig that takes no lot before it was calibrated again.
-pub const INVALID: &str = "calibration_invalid";
-
 /// The lot gets a run without parts, whose alarm says why.
 pub fn refuse(db: &Path, recipe: &Recipe, args: &RunArgs, why: &str) -> anyhow::Result<()> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
@@ -212,10 +190,12 @@ pub fn refuse(db: &Path, recipe: &Recipe, args: &RunArgs, why: &str) -> anyhow::
         retest: args.retest.clone(),
         ..LotRecord::default()
     })?;
+    let alarm = Alarm::calibration_invalid(why);
     store.alarm(&AlarmRecord {
         lot: Some(args.lot.clone()),
-        code: INVALID.into(),
-        text: why.to_owned(),
+        code: alarm.code.name(),
+        text: alarm.text(Lang::En),
+        args: alarm.args,
         raised_at_us: now_us,
         ..AlarmRecord::default()
     })?;

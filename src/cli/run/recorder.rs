@@ -36,6 +36,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
+use texts::Lang;
 use tokio::sync::mpsc;
 use units::RigTime;
 
@@ -203,8 +204,9 @@ impl<'a> Recorder<'a> {
             Event::Landed(landed) => self.landed(&landed, rows),
             Event::Alarm(alarm, at) => {
                 self.counts.alarms += 1;
-                self.bar
-                    .suspend(|| tracing::error!(code = alarm.code, "{}", alarm.text_en));
+                self.bar.suspend(|| {
+                    tracing::error!(code = alarm.code.name(), "{}", alarm.text(Lang::En))
+                });
                 for path in self.traces.dump(self.wall_us(at)) {
                     self.bar
                         .suspend(|| tracing::error!("last traffic: {}", path.display()));

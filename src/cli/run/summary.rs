@@ -22,7 +22,7 @@ pub fn of(counts: &Counts, ending: &Ending, elapsed_s: f64, wall: Duration) -> V
         "wall_s": rows::rounded(wall.as_secs_f64()),
         "parts_per_hour": counts.per_hour(elapsed_s).unwrap_or(0.0).round() as u64,
         "alarms": counts.alarms,
-        "ended": format!("{ending:?}").to_lowercase(),
+        "ended": ending.name(),
     })
 }
 

@@ -15,9 +15,10 @@ use crate::cli::rig::RigArgs;
 use crate::cli::run::{RunArgs, gate};
 use config::Plant;
 use history::{Archive, Decision, Identity, Store};
-use machine::view::{By, NotTaken, Order, OrderRequest};
+use machine::view::{By, Order, OrderRequest};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use texts::{Lang, Message};
 use tokio::sync::{mpsc, oneshot};
 
 /// What follows on a run that was left by order.
@@ -102,10 +103,7 @@ impl Office {
                 held(&order).map(|()| Some(Next::Hold(Box::new((order, by)))))
             }
             Some(Decision::Close) if ours => Ok(None),
-            Some(Decision::Release) if ours => Err(refused(
-                "the lot is under way; clear the alarm that stopped it",
-                "批次正在进行；请清除使其停止的报警",
-            )),
+            Some(Decision::Release) if ours => Err(refused("lot_under_way")),
             _not_under_way => return self.write(asked).await,
         };
         if let Err(why) = wanted.and_then(|next| self.expect(next)) {
@@ -117,7 +115,7 @@ impl Office {
 
     /// Noted before the station hears of it, for a run that is left ends at once. Refused while what was taken before
     /// has not begun yet.
-    fn expect(&self, next: Option<Next>) -> Result<(), NotTaken> {
+    fn expect(&self, next: Option<Next>) -> Result<(), Message> {
         let mut desk = self.desk();
         if desk.next.is_some() {
             return Err(not_now());
@@ -127,7 +125,7 @@ impl Office {
     }
 
     /// The lot of a `start`, once the gates have been asked.
-    async fn admitted(&self, order: &Order) -> Result<Next, NotTaken> {
+    async fn admitted(&self, order: &Order) -> Result<Next, Message> {
         let args = RunArgs {
             rig: self.0.rig.clone(),
             lot: order.lot.clone().unwrap_or_default(),
@@ -144,7 +142,7 @@ impl Office {
             let recipe = gate::admit(db, plant, &args, false).map_err(|why| why.at_the_screen())?;
             match gate::uncalibrated(db, &recipe, &args) {
                 Ok(None) => Ok(Next::Lot(Box::new((args, recipe)))),
-                Ok(Some(why)) => Err(refused(&why, &format!("校准无效：{why}"))),
+                Ok(Some(why)) => Err(refused("calibration_invalid").with("detail", why)),
                 Err(error) => Err(trouble(&error)),
             }
         };
@@ -166,9 +164,9 @@ impl Office {
     }
 
     /// Refused, and so told to the audit.
-    fn refuse(&self, asked: OrderRequest, why: NotTaken) {
+    fn refuse(&self, asked: OrderRequest, why: Message) {
         let (order, by) = (asked.order.clone(), asked.by.clone());
-        self.pass(OrderRequest::denied(order, by, why.en.clone()));
+        self.pass(OrderRequest::denied(order, by, why.say(Lang::En)));
         asked.say(Err(why));
     }
 
@@ -206,7 +204,7 @@ fn is_about_lots(order: &Order) -> bool {
     start || machine::view::LOT_ORDERS.contains(&order.order.as_str())
 }
 
-fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), NotTaken> {
+fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), Message> {
     if decision == Decision::Hold {
         held(order)?;
     }
@@ -216,13 +214,10 @@ fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), 
         false => Ok(None),
     };
     let Some(standing) = standing.map_err(|error| trouble(&error))? else {
-        return Err(refused(
-            &format!("there is no lot {name:?}"),
-            &format!("没有批次“{name}”"),
-        ));
+        return Err(refused("no_such_lot").with("lot", name));
     };
-    if let Some((en, zh)) = decision.why_not(standing.state) {
-        return Err(refused(en, zh));
+    if let Some(why) = decision.why_not(standing.state) {
+        return Err(why);
     }
     let rows = [lot::audit(order, by), lot::state(order, by, decision)];
     let store = Store::open(db, &Identity::of_this_program());
@@ -231,18 +226,15 @@ fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), 
 }
 
 /// A lot is held for a reason.
-fn held(order: &Order) -> Result<(), NotTaken> {
+fn held(order: &Order) -> Result<(), Message> {
     let reason = order.reason.as_deref().unwrap_or_default();
     if reason.trim().is_empty() {
-        return Err(refused(
-            "reason: found nothing, expected why the lot is held",
-            "reason：未填写，应说明扣留原因",
-        ));
+        return Err(refused("hold_without_reason"));
     }
     Ok(())
 }
 
-fn replaced(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), NotTaken> {
+fn replaced(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), Message> {
     let name = order.counter.as_deref().unwrap_or_default();
     let at_us = jiff::Timestamp::now().as_microsecond();
     let write = |mut store: Store| {
@@ -255,35 +247,26 @@ fn replaced(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), No
     let store = Store::open(db, &Identity::of_this_program());
     match store.and_then(write) {
         Ok(true) => Ok(()),
-        Ok(false) => Err(refused(
-            &format!("counter: found {name:?}, expected one that is shown"),
-            &format!("counter：收到“{name}”，没有该计数器"),
-        )),
+        Ok(false) => Err(refused("no_such_counter").with("counter", name)),
         Err(error) => Err(trouble(&error)),
     }
 }
 
 async fn beside<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, NotTaken> + Send + 'static,
-) -> Result<T, NotTaken> {
+    work: impl FnOnce() -> Result<T, Message> + Send + 'static,
+) -> Result<T, Message> {
     let done = tokio::task::spawn_blocking(work).await;
     done.unwrap_or_else(|error| Err(trouble(&error)))
 }
 
-fn refused(en: &str, zh: &str) -> NotTaken {
-    NotTaken {
-        en: en.into(),
-        zh: zh.into(),
-    }
+fn refused(code: &'static str) -> Message {
+    Message::new("refusal", code)
 }
 
-fn trouble(error: &dyn std::fmt::Display) -> NotTaken {
-    refused(&error.to_string(), &format!("出错：{error}"))
+fn trouble(error: &dyn std::fmt::Display) -> Message {
+    refused("program_trouble").with("detail", error)
 }
 
-fn not_now() -> NotTaken {
-    refused(
-        "the rig changes from one lot to another; try again",
-        "设备正在切换批次；请重试",
-    )
+fn not_now() -> Message {
+    refused("between_lots")
 }

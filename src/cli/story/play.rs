@@ -167,7 +167,7 @@ async fn ask(order: &Order, orders: &mpsc::Sender<OrderRequest>) -> Result<(), R
         .await
         .map_err(|_| Refusal::Ended)?;
     let answer = answered.await.map_err(|_| Refusal::Ended)?;
-    answer.map_err(|why| Refusal::Said(why.en))
+    answer.map_err(|why| Refusal::Said(why.say(texts::Lang::En)))
 }
 
 impl Seen {
@@ -176,7 +176,7 @@ impl Seen {
             Event::State(state) => self.state = Some(*state),
             Event::LotBegan(_) => self.lot = true,
             Event::Alarm(alarm, _) => {
-                self.alarms.insert(alarm.code.clone());
+                self.alarms.insert(alarm.code.name());
             }
             Event::Judged(judged) => {
                 if let Kind::Lot(number) = judged.part.kind {

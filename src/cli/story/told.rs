@@ -10,10 +10,11 @@ use machine::handling::ledger::{Kind, Part};
 use machine::handling::wants::Landed;
 use machine::rig::bin::Bin;
 use machine::station::annunciator::Standing;
-use machine::station::catalogue;
+use machine::station::catalogue::AlarmCode;
 use machine::station::trouble::Alarm;
 use rigsim::SimError;
 use std::collections::{BTreeMap, BTreeSet};
+use texts::Lang;
 use units::RigTime;
 
 /// Lines so far.
@@ -25,9 +26,9 @@ pub struct Told {
     /// Name and verdict by ordinal.
     parts: BTreeMap<u64, (String, &'static str)>,
     /// Alarms that were explained.
-    explained: BTreeSet<String>,
+    explained: BTreeSet<AlarmCode>,
     /// Alarms whose cause is there.
-    active: BTreeSet<String>,
+    active: BTreeSet<AlarmCode>,
     bins: BTreeMap<Bin, u64>,
 }
 
@@ -142,14 +143,13 @@ impl Told {
 
     fn alarm(&mut self, alarm: &Alarm, now: RigTime) {
         self.begin(now);
-        self.stamped(now, &format!("ALARM     {}: {}", alarm.code, alarm.text_en));
-        let entry = catalogue::entry(&alarm.code);
-        if let Some(entry) = entry.filter(|_| self.explained.insert(alarm.code.clone())) {
-            for (word, text) in [
-                ("cause", entry.cause.0),
-                ("follows", entry.consequence.0),
-                ("to do", entry.action.0),
-            ] {
+        self.stamped(
+            now,
+            &format!("ALARM     {}: {}", alarm.code, alarm.text(Lang::En)),
+        );
+        if self.explained.insert(alarm.code) {
+            let help = alarm.code.help(Lang::En);
+            for (word, text) in ["cause", "follows", "to do"].into_iter().zip(help) {
                 self.plain(&format!("          {word:<8} {text}"));
             }
         }
@@ -157,7 +157,7 @@ impl Told {
 
     fn standing(&mut self, standing: &[Standing], now: RigTime) {
         let active = standing.iter().filter(|one| one.is_active());
-        let active: BTreeSet<String> = active.map(|one| one.alarm.code.clone()).collect();
+        let active: BTreeSet<AlarmCode> = active.map(|one| one.alarm.code).collect();
         for code in std::mem::replace(&mut self.active, active.clone()) {
             if !active.contains(&code) {
                 self.stamped(now, &format!("gone      {code}"));

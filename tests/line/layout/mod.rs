@@ -6,4 +6,5 @@ mod imports;
 mod kinds;
 mod places;
 mod purity;
+mod texts;
 mod tree;

@@ -4,18 +4,12 @@ use super::{Cycle, Event, publish};
 use machine::handling::moves::Move;
 use machine::station::orders::{Order, Refused};
 use machine::station::wants::Wants;
-use machine::view::{self, Answered, By, NotTaken, OrderRequest};
+use machine::view::{self, Answered, By, OrderRequest};
+use texts::Lang;
 use units::RigTime;
 
 /// Origin of what is ordered with a button at the machine.
 pub const PANEL: &str = "panel";
-
-fn not_taken(why: Refused) -> NotTaken {
-    NotTaken {
-        en: why.en,
-        zh: why.zh,
-    }
-}
 
 impl Cycle {
     /// Orders that have come in; one that is denied or no order is answered at once.
@@ -25,7 +19,10 @@ impl Cycle {
         }
         let mut orders = Vec::new();
         for asked in std::mem::take(&mut self.asked) {
-            let denied = asked.denied.as_ref().map(|why| Refused::new(why, why));
+            let denied = asked
+                .denied
+                .as_ref()
+                .map(|why| Refused::Denied(why.clone()));
             match denied.map_or_else(|| publish::read(&asked.order), Err) {
                 Ok(order) => {
                     orders.push(order);
@@ -59,7 +56,7 @@ impl Cycle {
                     origin: PANEL.to_owned(),
                     ..By::default()
                 },
-                refused: answer.err().map(|why| why.en),
+                refused: answer.err().map(|why| why.message().say(Lang::En)),
             };
             self.tell(Event::Ordered(Box::new(answered), now));
         }
@@ -67,29 +64,29 @@ impl Cycle {
 
     /// Answers whoever asked, and tells the audit.
     fn say(&self, asked: OrderRequest, answer: Result<(), Refused>, now: RigTime) {
+        let said = answer.map_err(|why| why.message());
         let answered = Answered {
             order: asked.order.clone(),
             by: asked.by.clone(),
-            refused: answer.as_ref().err().map(|why| why.en.clone()),
+            refused: said.as_ref().err().map(|why| why.say(Lang::En)),
         };
         self.tell(Event::Ordered(Box::new(answered), now));
-        asked.say(answer.map_err(not_taken));
+        asked.say(said);
     }
 
     /// A motion by hand: refused is an answer to who asked, not an alarm.
     pub(super) fn jog(&mut self, movement: Move, now: RigTime) -> Result<(), Refused> {
         let situation = self.station.situation(now, &self.image);
-        let refused = |why: String| Refused::new(why.clone(), format!("防碰撞检查拒绝：{why}"));
         let cleared = self
             .guard
             .clear(&self.station.motion(movement), &situation)
             .map_err(|refusal| {
                 self.refused = Some(self.shown_refused(movement, &situation, &refusal));
-                refused(refusal.to_string())
+                Refused::Collision(refusal.to_string())
             })?;
         self.outputs
             .apply(cleared)
-            .map_err(|cannot| refused(cannot.to_string()))?;
+            .map_err(|cannot| Refused::Collision(cannot.to_string()))?;
         self.station.driven(movement, now, &self.image);
         self.station.jogged();
         self.refused = None;

@@ -75,9 +75,8 @@ impl Cycle {
                 to_mm: stroke.to_mm,
             }
         });
-        let named = orders::JOGS.iter().find(|(_, known)| *known == movement);
         MotionView {
-            motion: named.map_or_else(|| format!("{movement:?}"), |(name, _)| (*name).into()),
+            motion: movement.code().into(),
             strokes: strokes.collect(),
             ..MotionView::default()
         }

@@ -8,11 +8,12 @@ use machine::handling::mechanism::SENSOR_AGE;
 use machine::rig::point::DigitalInput;
 use machine::station::Station;
 use machine::station::annunciator::Standing;
-use machine::station::catalogue::{self, Stops};
+use machine::station::catalogue::Stops;
 use machine::station::orders::{self, Order, Refused};
 use machine::station::packml::{Command, Mode};
 use machine::view::{self, ActuatorView, AlarmLine, Button, Machine, Reaction, Token};
 use std::collections::BTreeMap;
+use texts::Lang;
 use units::{RigTime, Span};
 
 /// Least time between two views.
@@ -20,12 +21,10 @@ pub const PACE: Span = Span::ms(50);
 
 /// An order in words; the error says what was expected.
 pub fn read(order: &view::Order) -> Result<Order, Refused> {
-    let expected = |what: &str, known: Vec<&str>, found: Option<&str>| {
-        let (found, known) = (found.unwrap_or("nothing"), known.join(", "));
-        Refused::new(
-            format!("{what}: found {found}, expected one of {known}"),
-            format!("{what}：收到 {found}，应为 {known} 之一"),
-        )
+    let expected = |member, known: Vec<&'static str>, found: Option<&str>| Refused::UnknownWord {
+        member,
+        found: found.unwrap_or_default().to_owned(),
+        known,
     };
     let named = order.alarm.clone();
     match order.order.as_str() {
@@ -57,10 +56,7 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
             (Some(code), Some(reason)) if !reason.is_empty() => {
                 Ok(Order::Shelve(code, orders::shelf_minutes(order.minutes)))
             }
-            (Some(_), _) => Err(Refused::new(
-                "reason: found nothing, expected why the alarm is shelved",
-                "reason：未填写，应说明搁置原因",
-            )),
+            (Some(_), _) => Err(Refused::ShelveWithoutReason),
             (None, _) => Err(expected("alarm", vec!["the code of an alarm"], None)),
         },
         other => Command::from_name(other)
@@ -83,7 +79,10 @@ impl Cycle {
         let at_us = jiff::Timestamp::now().as_microsecond();
         self.outside.view.send_modify(|view| {
             view.at_us = at_us;
-            view.state = station.state();
+            let doing = station.doing();
+            view.state = doing.name();
+            view.doing = doing.code();
+            view.stage = doing.stage();
             view.inside = station.ledger().inside();
             // Between lots what the last one has come to stays on the screen.
             if !station.is_between_lots() {
@@ -165,13 +164,15 @@ impl Cycle {
 
 fn buttons(station: &Station) -> Vec<Button> {
     let button = |order: &str, with: &str, may: Result<(), Refused>| {
-        let (why_en, why_zh) = may.err().map(|why| (why.en, why.zh)).unwrap_or_default();
+        let why = may.err().map(|why| why.message());
+        let said = |lang| why.as_ref().map(|it| it.say(lang)).unwrap_or_default();
         Button {
             order: order.into(),
             with: with.into(),
-            enabled: why_en.is_empty(),
-            why_en,
-            why_zh,
+            enabled: why.is_none(),
+            why_en: said(Lang::En),
+            why_zh: said(Lang::Zh),
+            why,
         }
     };
     let commands = Command::ALL
@@ -229,31 +230,28 @@ fn lines(station: &Station, epoch_us: i64) -> Vec<AlarmLine> {
 }
 
 fn line(one: &Standing, epoch_us: i64) -> AlarmLine {
-    let entry = catalogue::entry(&one.alarm.code);
-    let help = |pick: fn(&(&str, &str)) -> String| {
-        entry.map_or_else(Default::default, |entry| {
-            [&entry.cause, &entry.consequence, &entry.action].map(pick)
-        })
-    };
-    let stops = match entry.map(|entry| entry.stops) {
-        Some(Stops::Abort) | None => "abort",
-        Some(Stops::Hold) => "hold",
-        Some(Stops::Suspend) => "suspend",
-        Some(Stops::Nothing) => "nothing",
+    let alarm = &one.alarm;
+    let help = |lang| alarm.code.help(lang).map(str::to_owned);
+    let stops = match alarm.code.entry().stops {
+        Stops::Abort => "abort",
+        Stops::Hold => "hold",
+        Stops::Suspend => "suspend",
+        Stops::Nothing => "nothing",
     };
     let raised = epoch_us + i64::try_from(one.raised.0).unwrap_or(i64::MAX);
     AlarmLine {
-        code: one.alarm.code.clone(),
-        text_en: one.alarm.text_en.clone(),
-        text_zh: one.alarm.text_zh.clone(),
+        code: alarm.code.name(),
+        args: alarm.args.clone(),
+        text_en: alarm.text(Lang::En),
+        text_zh: alarm.text(Lang::Zh),
         state: one.condition.name().into(),
         first_out: one.first_out,
         count: one.count,
         raised_at_us: (!one.inherited).then_some(raised),
         shelved: one.shelved_until.is_some(),
         stops: stops.into(),
-        help_en: help(|text| text.0.to_owned()),
-        help_zh: help(|text| text.1.to_owned()),
+        help_en: help(Lang::En),
+        help_zh: help(Lang::Zh),
     }
 }
 
@@ -266,24 +264,24 @@ mod tests {
     use machine::station::orders::JOGS;
     use machine::station::packml::{Mode, State};
     use machine::view::{ORDERS, Order};
+    use std::collections::BTreeSet;
+    use texts::Lang;
 
     #[test]
     fn every_signal_motion_actuator_mode_and_state_has_a_word_on_the_screen() {
-        let table = include_str!("../../../page/src/page/words.json");
-        let table: std::collections::BTreeMap<String, serde_json::Value> =
-            serde_json::from_str(table).unwrap();
         let signals = DigitalIn::ALL.iter().map(|it| it.name());
         let signals = signals.chain(DigitalOut::ALL.iter().map(|it| it.name()));
-        let keys = (signals.map(|it| format!("signal.{it}")))
-            .chain(JOGS.iter().map(|(name, _)| format!("jog.{name}")))
-            .chain(Actuator::names().map(|it| format!("actuator.{it}")))
-            .chain(Mode::ALL.iter().map(|it| format!("mode.{}", it.name())))
+        let keys = (signals.map(|it| format!("signal-{it}")))
+            .chain(JOGS.iter().map(|(name, _)| format!("motion-{name}")))
+            .chain(Actuator::names().map(|it| format!("actuator-{it}")))
+            .chain(Mode::ALL.iter().map(|it| format!("mode-{}", it.name())))
             .chain(
                 State::ALL
                     .iter()
-                    .map(|it| format!("state.{}", it.name().to_lowercase())),
+                    .map(|it| format!("state-{}", it.name().to_lowercase())),
             );
-        let missing: Vec<String> = keys.filter(|it| !table.contains_key(it)).collect();
+        let words: BTreeSet<&str> = texts::plain().map(|it| it.id).collect();
+        let missing: Vec<String> = keys.filter(|it| !words.contains(it.as_str())).collect();
         assert!(missing.is_empty(), "{missing:?}");
     }
 
@@ -314,7 +312,9 @@ mod tests {
                 order: word.into(),
                 ..Order::default()
             };
-            let why = read(&order).map(|_| ()).map_err(|why| why.en);
+            let why = read(&order)
+                .map(|_| ())
+                .map_err(|why| why.message().say(Lang::En));
             assert!(why.is_err_and(|why| why.contains(expected)), "{word}");
         }
     }
@@ -328,7 +328,9 @@ mod tests {
                 reason,
                 ..Order::default()
             };
-            let why = read(&order).map(|_| ()).map_err(|why| why.en);
+            let why = read(&order)
+                .map(|_| ())
+                .map_err(|why| why.message().say(Lang::En));
             assert!(why.is_err_and(|why| why.contains("why the alarm is shelved")));
         }
     }

@@ -2,7 +2,7 @@
 
 use super::traffic::Purpose;
 use super::{Cycle, Event, IDLE, commission};
-use machine::station::trouble::Alarm;
+use machine::station::catalogue::AlarmCode;
 use units::Span;
 
 /// Safe outputs must be written within this time at the end of a run.
@@ -64,6 +64,9 @@ impl Cycle {
             }
             self.wait(now, Some(end)).await;
         }
-        self.tell(Event::Alarm(Alarm::not_safe(), self.pace.now()));
+        self.tell(Event::Alarm(
+            AlarmCode::OutputsNotConfirmed.into(),
+            self.pace.now(),
+        ));
     }
 }

@@ -28,7 +28,7 @@ impl Filter {
         select.sql.push_str(
             "SELECT lot.name, run.number, alarm.code, alarm.line, alarm.text, alarm.raised_at_us, \
              alarm.cleared_at_us, alarm_state.acknowledged_at_us, alarm_state.acknowledged_by, \
-             alarm_state.shelved_until_us, alarm_state.shelved_by, alarm_state.shelf_reason \
+             alarm_state.shelved_until_us, alarm_state.shelved_by, alarm_state.shelf_reason, alarm.args \
              FROM alarm LEFT JOIN alarm_state ON alarm_state.alarm_id = alarm.id \
              LEFT JOIN run ON run.id = alarm.run_id LEFT JOIN lot ON lot.id = run.lot_id WHERE 1",
         );

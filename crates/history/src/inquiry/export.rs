@@ -2,7 +2,7 @@
 
 use super::Result;
 use crate::columns::{self, Cell};
-use crate::report::Language;
+use crate::report::Lang;
 use crate::report::sheet::Sheet;
 use crate::{Archive, Filter, csv};
 use jiff::tz::TimeZone;
@@ -33,7 +33,7 @@ pub fn spreadsheet(
     archive: &Archive,
     filter: &Filter,
     parameters: &[String],
-    language: Language,
+    language: Lang,
     mut each: impl FnMut(),
 ) -> Result<Workbook> {
     let mut sheet = Sheet::new(language, TimeZone::system(), parameters)?;

@@ -5,12 +5,12 @@ use super::use_of_time::use_of_time;
 use super::{InquiryError, Result, checks};
 use crate::report::certificate::certificate;
 use crate::report::lot::{LotReport, ParameterValues};
-use crate::report::{Language, Paper, alarms};
+use crate::report::{Lang, Paper, alarms};
 use crate::{Archive, Filter};
 use jiff::{Timestamp, tz::TimeZone};
 
 /// Paper with the zone of this computer, and a foot with time and version.
-pub fn paper(language: Language) -> Paper {
+pub fn paper(language: Lang) -> Paper {
     let zone = TimeZone::system();
     let now = Timestamp::now().to_zoned(zone.clone());
     let program = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));

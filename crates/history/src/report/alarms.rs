@@ -2,65 +2,76 @@
 
 use super::Paper;
 use super::page::{Format, head, page};
-use super::words::{Language, span};
+use super::words::span;
 use crate::{Alarm, AlarmState};
 use maud::{Markup, html};
+use texts::Lang;
 
 /// A page of alarms; `about` says of what.
 pub fn list(paper: &Paper, about: &str, alarms: &[Alarm]) -> String {
     let language = paper.language;
-    let title = language.of("Alarm list", "报警清单");
+    let title = language.text("paper-alarm_list");
     let body = html! { (head(title, about)) (table(paper, alarms)) };
     page(language, Format::Portrait, title, &paper.made, &body)
 }
 
 pub(super) fn table(paper: &Paper, alarms: &[Alarm]) -> Markup {
     let language = paper.language;
-    let of = |en, zh| language.of(en, zh);
+    let say = |id| language.text(id);
     html! {
         @if alarms.is_empty() {
-            p { (of("None.", "无。")) }
+            p { (say("paper-none")) }
         } @else {
             table {
                 thead { tr {
-                    th { (of("Raised", "发生时间")) } th.n { (of("Stood", "持续")) }
-                    th { (of("State", "状态")) } th { (of("Lot", "批次")) }
-                    th { (of("Code", "代码")) } th { (of("Message", "内容")) }
+                    th { (say("paper-raised")) } th.n { (say("paper-stood")) }
+                    th { (say("paper-state")) } th { (say("paper-lot")) }
+                    th { (say("paper-code")) } th { (say("paper-message")) }
                 } }
                 tbody { @for it in alarms { tr {
                     td { (paper.time(it.raised)) }
                     td.n { @match it.cleared {
                         Some(at) => { (span((at.0 - it.raised.0) as f64 / 1e6)) }
-                        None => { (of("to the end", "至结束")) }
+                        None => { (say("paper-end")) }
                     } }
                     td.state { (state(paper, it)) }
                     td.text { (it.lot.as_deref().unwrap_or("–")) @if let Some(run) = it.run { " / " (run) } }
                     td { (it.code) }
-                    td.text { @if let (Language::Zh, Some(cause)) = (paper.language, it.cause_zh) { (cause) br; }
-                        (it.text) @if let Some(line) = &it.line { " (" (line) ")" } }
+                    td.text { (text(paper.language, it)) @if let Some(line) = &it.line { " (" (line) ")" } }
                 } } }
             }
         }
     }
 }
 
+/// The message in the language of the page; a row of before its arguments were kept says its cause beside it.
+fn text(language: Lang, alarm: &Alarm) -> Markup {
+    html! {
+        @match (language, &alarm.text_zh, alarm.cause_zh) {
+            (Lang::Zh, Some(text), _) => { (text) }
+            (Lang::Zh, None, Some(cause)) => { (cause) br; (alarm.text) }
+            (Lang::Zh, None, None) | (Lang::En, _, _) => { (alarm.text) }
+        }
+    }
+}
+
 /// The state by ISA-18.2, who acknowledged when, and how it was shelved.
 fn state(paper: &Paper, alarm: &Alarm) -> Markup {
-    let of = |en, zh| paper.language.of(en, zh);
+    let say = |id| paper.language.text(id);
     let name = match alarm.state {
-        AlarmState::Unacknowledged => of("unacknowledged", "未确认"),
-        AlarmState::Acknowledged => of("acknowledged", "已确认"),
-        AlarmState::ReturnedUnacknowledged => of("returned, unacknowledged", "已恢复，未确认"),
-        AlarmState::Normal => of("normal", "已恢复"),
+        AlarmState::Unacknowledged => say("paper-unacknowledged"),
+        AlarmState::Acknowledged => say("paper-acknowledged"),
+        AlarmState::ReturnedUnacknowledged => say("paper-returned_unacknowledged"),
+        AlarmState::Normal => say("paper-normal"),
     };
     html! {
         (name)
         @if let Some(at) = alarm.acknowledged {
-            br; (of("seen", "确认")) " " (paper.time(at))
+            br; (say("paper-seen")) " " (paper.time(at))
             @if let Some(by) = &alarm.acknowledged_by { ", " (by) }
         }
         @if let Some(shelf) = &alarm.shelf {
-            br; (of("shelved until", "搁置至")) " " (paper.time(shelf.until)) ", " (shelf.by) ": " (shelf.reason)
+            br; (say("paper-shelved_until")) " " (paper.time(shelf.until)) ", " (shelf.by) ": " (shelf.reason)
         }
     }
 }

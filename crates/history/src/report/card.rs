@@ -6,68 +6,76 @@
 //! ([`CardSettings`]).
 
 use super::page::{Format, page};
-use super::words::{Language, figure};
+use super::words::{figure, parameter};
 use machine::dut::card::{Card, CardSettings, Demand, Piece};
 use machine::dut::{Characteristic, Recipe};
 use machine::gauge::Rule;
 use maud::{Markup, html};
+use texts::Lang;
 
 /// The card as one page of HTML, A4 lengthwise.
-pub fn card(language: Language, recipe: &Recipe, plant: &CardSettings, made: &str) -> String {
-    let title = language.of("Operation process card", "检验工序卡");
+pub fn card(language: Lang, recipe: &Recipe, plant: &CardSettings, made: &str) -> String {
+    let title = language.text("paper-operation_process_card");
     let kind = Card::of(recipe);
     let body = html! {
         (header(language, recipe, &kind, plant))
         (steps(language, recipe, &kind, plant))
         p.note { (remarks(language, recipe, &kind)) }
-        p.remark { (language.not_tested()) }
+        p.remark { (language.text("paper-not_tested")) }
         (signatures(language))
     };
     page(language, Format::Landscape, title, made, &body)
 }
 
-fn header(language: Language, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> Markup {
-    let of = |en, zh| language.of(en, zh);
+fn header(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> Markup {
+    let say = |id| language.text(id);
     let ((rating, rated), quota) = (&kind.rating, total(plant));
     let body = recipe.body();
     let [x, y, z] = body.size_mm;
     html! {
         table.card {
             tr {
-                th.title colspan="4" rowspan="2" { (of("Operation process card", "检验工序卡")) }
-                th { (of("Product type", "产品型号")) } td { (recipe.name) }
-                th { (of("Drawing no.", "零(部)件图号")) } td {}
+                th.title colspan="4" rowspan="2" { (say("paper-operation_process_card")) }
+                th { (say("paper-product_type")) } td { (recipe.name) }
+                th { (say("paper-drawing_no")) } td {}
             }
             tr {
-                th { (of("Product", "产品名称")) } td { (of(&recipe.title_en, &recipe.title_zh)) }
-                th { (of("Page", "页次")) } td { (of("1 of 1", "共 1 页 第 1 页")) }
+                th { (say("paper-product")) } td { (title(language, recipe)) }
+                th { (say("paper-page")) } td { (say("paper-1_1")) }
             }
             tr {
-                th { (of("Workshop", "车间")) } th { (of("Operation no.", "工序号")) }
-                th colspan="2" { (of("Operation", "工序名称")) }
-                th { (language.say(*rating)) } th { (of("Body x, y, z / mm", "外形尺寸 mm")) }
-                th { (of("Pins / mm", "引脚长 mm")) } th { (of("Reference temp.", "基准温度")) }
+                th { (say("paper-workshop")) } th { (say("paper-operation_no")) }
+                th colspan="2" { (say("paper-operation")) }
+                th { (language.text(*rating)) } th { (say("paper-body_x_y_z_mm")) }
+                th { (say("paper-pins_mm")) } th { (say("paper-reference_temp")) }
             }
             tr {
                 td { (plant.workshop) } td { (plant.operation_no) }
-                td colspan="2" { (of("Performance test and sorting", "性能检测与分选")) }
+                td colspan="2" { (say("paper-performance_test_sorting")) }
                 td { (joined(language, rated)) }
                 td { (figure(Some(x))) " × " (figure(Some(y))) " × " (figure(Some(z))) }
                 td { (figure(Some(body.pin_length_mm))) } td { (figure(Some(recipe.reference_temperature_c()))) " °C" }
             }
             tr {
-                th { (of("Equipment", "设备名称")) } th { (of("Type", "设备型号")) }
-                th { (of("No.", "设备编号")) } th { (of("Parts at once", "同时加工件数")) }
-                th { (of("Fixture", "夹具名称")) } th { (of("Fixture no.", "夹具编号")) }
-                th { (of("Preparation / min", "准终工时 min")) } th { (of("Per part / s", "单件工时 s")) }
+                th { (say("paper-equipment")) } th { (say("paper-type")) }
+                th { (say("paper-card_no")) } th { (say("paper-parts_at_once")) }
+                th { (say("paper-fixture")) } th { (say("paper-fixture_no")) }
+                th { (say("paper-preparation_min")) } th { (say("paper-per_part_s")) }
             }
             tr {
-                td { (of("Relay performance tester", "继电器性能测试机")) } td { (plant.equipment_model) }
+                td { (say("paper-relay_performance_tester")) } td { (plant.equipment_model) }
                 td { (plant.equipment_no) } td { (plant.pieces_at_once) }
-                td { (of("Nest, Kelvin pin block", "测试座、开尔文探针")) } td { (plant.fixture_no) }
+                td { (say("paper-nest_kelvin_pin_block")) } td { (plant.fixture_no) }
                 td { (figure(Some(plant.preparation_min))) } td { (format!("{quota:.2}")) }
             }
         }
+    }
+}
+
+fn title(language: Lang, recipe: &Recipe) -> &str {
+    match language {
+        Lang::En => &recipe.title_en,
+        Lang::Zh => &recipe.title_zh,
     }
 }
 
@@ -80,27 +88,27 @@ fn total(plant: &CardSettings) -> f64 {
         .sum()
 }
 
-fn steps(language: Language, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> Markup {
-    let of = |en, zh| language.of(en, zh);
+fn steps(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) -> Markup {
+    let say = |id| language.text(id);
     html! {
         table.card {
             thead {
                 tr {
-                    th rowspan="2" { (of("No.", "序号")) }
-                    th rowspan="2" { (of("Step", "工步内容")) }
-                    th rowspan="2" { (of("Tooling", "工艺装备")) }
-                    th rowspan="2" { (of("Drive", "激励条件")) }
-                    th rowspan="2" { (of("Demand", "技术要求")) }
-                    th colspan="2" { (of("Time quota / s", "时间定额 s")) }
+                    th rowspan="2" { (say("paper-card_no_2")) }
+                    th rowspan="2" { (say("paper-step")) }
+                    th rowspan="2" { (say("paper-tooling")) }
+                    th rowspan="2" { (say("paper-drive")) }
+                    th rowspan="2" { (say("paper-demand")) }
+                    th colspan="2" { (say("paper-time_quota_s")) }
                 }
-                tr { th { (of("machine", "机动")) } th { (of("auxiliary", "辅助")) } }
+                tr { th { (say("paper-machine")) } th { (say("paper-auxiliary")) } }
             }
             tbody {
                 @for (number, step) in (1..).zip(&kind.steps) {
                     @let quota = plant.quota.get(step.name).copied().unwrap_or_default();
                     tr {
-                        td { (number) } td.text { (language.say(step.what)) }
-                        td.text { (language.say(step.tooling)) }
+                        td { (number) } td.text { (language.text(step.what)) }
+                        td.text { (language.text(step.tooling)) }
                         td.text { (joined(language, &step.drive)) }
                         td.text { (demanded(language, recipe, &step.demand)) }
                         td { (format!("{:.2}", quota.machine_s)) } td { (format!("{:.2}", quota.auxiliary_s)) }
@@ -111,25 +119,26 @@ fn steps(language: Language, recipe: &Recipe, kind: &Card, plant: &CardSettings)
     }
 }
 
-fn joined(language: Language, pieces: &[Piece]) -> String {
+fn joined(language: Lang, pieces: &[Piece]) -> String {
     let one = |piece: &Piece| match piece {
         Piece::Figure(value) => figure(Some(*value)),
-        Piece::Text(words) => language.say(*words).to_owned(),
+        Piece::Literal(text) => (*text).to_owned(),
+        Piece::Text(id) => language.text(id).to_owned(),
     };
     pieces.iter().map(one).collect()
 }
 
-fn demanded(language: Language, recipe: &Recipe, demand: &Demand) -> String {
+fn demanded(language: Lang, recipe: &Recipe, demand: &Demand) -> String {
     match demand {
-        Demand::Seen(words) => language.say(*words).to_owned(),
+        Demand::Seen(words) => language.text(*words).to_owned(),
         Demand::Within(characteristics) => demands(language, recipe, characteristics),
     }
 }
 
-fn demands(language: Language, recipe: &Recipe, characteristics: &[Characteristic]) -> String {
+fn demands(language: Lang, recipe: &Recipe, characteristics: &[Characteristic]) -> String {
     let one = |characteristic: &Characteristic| {
         let limit = recipe.limits.of(*characteristic);
-        let name = language.parameter(characteristic.key());
+        let name = parameter(language, characteristic.key());
         match (limit.low, limit.high) {
             (None, None) => None,
             (Some(low), None) => Some(format!("{name} ≥ {}", figure(Some(low)))),
@@ -144,21 +153,18 @@ fn demands(language: Language, recipe: &Recipe, characteristics: &[Characteristi
     all.join("; ")
 }
 
-fn remarks(language: Language, recipe: &Recipe, kind: &Card) -> String {
+fn remarks(language: Lang, recipe: &Recipe, kind: &Card) -> String {
     let decision = &recipe.decision;
     let rule = match decision.rule {
-        Rule::GuardBand => language.of(
-            "Decision: limits are moved inwards by the expanded uncertainty U (k = 2)",
-            "判定规则：限值按扩展不确定度 U（k = 2）向内收缩",
-        ),
-        Rule::Simple => language.of("Decision: bare value", "判定规则：直接比较测得值"),
+        Rule::GuardBand => language.text("paper-decision_limits_are_moved_inwards"),
+        Rule::Simple => language.text("paper-decision_bare_value"),
     };
-    let repeats = language.of("slow repetitions near a limit", "近限值复测次数");
+    let repeats = language.text("paper-slow_repetitions_near_limit");
     let counts = kind.counts.iter();
     let counts: String = counts
-        .map(|(words, count)| format!("; {} {count}", language.say(*words)))
+        .map(|(words, count)| format!("; {} {count}", language.text(*words)))
         .collect();
-    let recipe_text = language.of("recipe SHA-256", "工艺文件 SHA-256");
+    let recipe_text = language.text("paper-card_recipe_sha_256");
     format!(
         "{rule}; {repeats} {}{counts}; {recipe_text} {}",
         decision.slow_repeats,
@@ -166,22 +172,22 @@ fn remarks(language: Language, recipe: &Recipe, kind: &Card) -> String {
     )
 }
 
-fn signatures(language: Language) -> Markup {
-    let of = |en, zh| language.of(en, zh);
+fn signatures(language: Lang) -> Markup {
+    let say = |id| language.text(id);
     let change = [
-        of("Mark", "标记"),
-        of("Places", "处数"),
-        of("Change note no.", "更改文件号"),
-        of("Signature", "签字"),
-        of("Date", "日期"),
+        say("paper-mark"),
+        say("paper-places"),
+        say("paper-change_note_no"),
+        say("paper-signature"),
+        say("paper-date"),
     ];
     html! {
         table.card.sign {
             tr {
                 @for name in change { th { (name) } }
-                th { (of("Drawn up (date)", "编制(日期)")) }
-                th { (of("Checked (date)", "审核(日期)")) }
-                th { (of("Countersigned (date)", "会签(日期)")) }
+                th { (say("paper-drawn_up_date")) }
+                th { (say("paper-checked_date")) }
+                th { (say("paper-countersigned_date")) }
             }
             tr.blank { @for _ in 0..8 { td {} } }
             tr.blank { @for _ in 0..8 { td {} } }

@@ -2,13 +2,14 @@
 
 use super::charts;
 use super::page::{Format, facts, head, page, sign_off};
-use super::words::{Language, figure, percent, span, unbroken};
+use super::words::{figure, parameter, percent, span, unbroken};
 use super::{Paper, alarms};
 use crate::{Alarm, LotSummary, Passed};
 use maud::{Markup, PreEscaped, html};
 use quality::capability::{Index, by_percentiles};
 use quality::effectiveness::Effectiveness;
 use quality::{Capability, Limits, Ordered, Spread, capability::D2_PAIR, spread};
+use texts::Lang;
 
 /// Everything that the report says.
 #[derive(Debug, Clone)]
@@ -42,24 +43,20 @@ impl LotReport<'_> {
     /// The report as a file of HTML.
     pub fn html(&self, paper: &Paper) -> String {
         let language = paper.language;
-        let title = language.of("Lot report", "批次检验报告");
+        let title = language.text("paper-lot_report");
         let body = html! {
             (head(title, &self.about(language)))
             (self.facts(paper))
-            h2 { (language.of("Result", "检验结果")) }
+            h2 { (language.text("paper-result")) }
             (self.counts(language))
-            h2 { (language.of("Parameters", "参数统计")) }
+            h2 { (language.text("paper-parameters")) }
             (self.table(language))
-            p.note { (language.of(
-                "Cpk from the mean moving range, Ppk from all values, each with its 95 % interval (Bissell). \
-                 Skewed: nearer limit by the percentiles 0.135, 50 and 99.865 %.",
-                "Cpk 由平均移动极差估计，Ppk 由全部数据估计，括号内为 95 % 置信区间（Bissell）。偏态指数按 0.135 %、50 %、99.865 % 分位数计算。"
-            )) }
+            p.note { (language.text("paper-cpk_from_mean_moving_range_ppk")) }
             (self.histograms(language))
             @if let Some(it) = &self.effectiveness { (use_of_time(language, it)) }
-            h2 { (language.of("Alarms", "报警记录")) }
+            h2 { (language.text("paper-alarms")) }
             (alarms::table(paper, self.alarms))
-            p.remark { (language.not_tested()) }
+            p.remark { (language.text("paper-not_tested")) }
             (sign_off(language))
         };
         page(
@@ -71,13 +68,13 @@ impl LotReport<'_> {
         )
     }
 
-    fn about(&self, language: Language) -> String {
-        format!("{} {}", language.of("Lot", "批次"), self.lot)
+    fn about(&self, language: Lang) -> String {
+        format!("{} {}", language.text("paper-lot"), self.lot)
     }
 
     fn facts(&self, paper: &Paper) -> Markup {
         let language = paper.language;
-        let of = |en, zh| language.of(en, zh);
+        let say = |id| language.text(id);
         let all = |text: &dyn Fn(&LotSummary) -> String| {
             let mut texts: Vec<String> = self.runs.iter().map(text).collect();
             texts.dedup();
@@ -86,34 +83,34 @@ impl LotReport<'_> {
         let short = |hash: &str| hash.get(..16).unwrap_or(hash).to_owned();
         let calibration =
             |it: &LotSummary| it.calibration_hash.as_deref().map_or("–".into(), short);
-        let open = of("not closed", "未关闭").to_owned();
+        let open = say("paper-not_closed").to_owned();
         facts(&[
-            (of("Recipe", "工艺文件"), all(&|it| it.recipe.clone())),
+            (say("paper-recipe"), all(&|it| it.recipe.clone())),
             (
-                of("Recipe SHA-256", "工艺 SHA-256"),
+                say("paper-recipe_sha_256"),
                 all(&|it| short(&it.recipe_hash)),
             ),
-            (of("Runs", "运行次数"), self.runs.len().to_string()),
-            (of("Calibration SHA-256", "校准 SHA-256"), all(&calibration)),
+            (say("paper-runs"), self.runs.len().to_string()),
+            (say("paper-calibration_sha_256"), all(&calibration)),
             (
-                of("Opened", "开始时间"),
+                say("paper-opened"),
                 self.runs
                     .first()
                     .map_or(String::new(), |it| paper.time(it.opened)),
             ),
             (
-                of("Closed", "结束时间"),
+                say("paper-closed"),
                 self.runs
                     .last()
                     .and_then(|it| it.closed)
                     .map_or(open, |at| paper.time(at)),
             ),
             (
-                of("Measured on", "数据来源"),
+                say("paper-measured_on"),
                 all(&|it| source(language, &it.source).to_owned()),
             ),
             (
-                of("Golden parts", "标准件"),
+                say("paper-golden_parts"),
                 self.runs
                     .iter()
                     .map(|it| it.golden)
@@ -123,8 +120,8 @@ impl LotReport<'_> {
         ])
     }
 
-    fn counts(&self, language: Language) -> Markup {
-        let of = |en, zh| language.of(en, zh);
+    fn counts(&self, language: Lang) -> Markup {
+        let say = |id| language.text(id);
         let sum = |count: fn(&LotSummary) -> u64| self.runs.iter().map(count).sum::<u64>();
         let parts = sum(|it| it.counts.parts);
         let judged = parts - sum(|it| it.counts.unjudged);
@@ -136,10 +133,10 @@ impl LotReport<'_> {
         html! {
             table {
                 thead { tr {
-                    th.n { (of("Tested", "检验数")) }
-                    @for (verdict, _) in verdicts { th.n { (language.verdict(verdict)) } }
-                    th.n { (of("First-pass yield", "一次合格率")) }
-                    th.n { (of("Final yield", "最终合格率")) }
+                    th.n { (say("paper-tested")) }
+                    @for (verdict, _) in verdicts { th.n { (language.name("paper_verdict", verdict)) } }
+                    th.n { (say("paper-first_pass_yield")) }
+                    th.n { (say("paper-final_yield")) }
                 } }
                 tbody { tr {
                     td.n { (parts) }
@@ -152,7 +149,7 @@ impl LotReport<'_> {
         }
     }
 
-    fn bins(&self, language: Language, parts: u64) -> Markup {
+    fn bins(&self, language: Lang, parts: u64) -> Markup {
         let mut bins = std::collections::BTreeMap::<&str, u64>::new();
         for (bin, n) in self.runs.iter().flat_map(|it| &it.bins) {
             *bins.entry(bin).or_default() += n;
@@ -162,41 +159,41 @@ impl LotReport<'_> {
         html! {
             table style="margin-top:2mm" {
                 thead { tr {
-                    th style="width:22%" { (language.of("Bin", "料箱")) }
-                    th.n style="width:14%" { (language.of("Parts", "数量")) }
-                    th.n style="width:14%" { (language.of("Share", "占比")) }
+                    th style="width:22%" { (language.text("paper-bin")) }
+                    th.n style="width:14%" { (language.text("paper-parts")) }
+                    th.n style="width:14%" { (language.text("paper-share")) }
                     th {}
                 } }
                 tbody { @for (bin, n) in bins { tr {
-                    td { (language.bin(bin)) } td.n { (n) } td.n { (percent(n, parts)) }
+                    td { (language.name("bin", bin)) } td.n { (n) } td.n { (percent(n, parts)) }
                     td { (PreEscaped(charts::share(n as f64 / parts.max(1) as f64))) }
                 } } }
             }
         }
     }
 
-    fn table(&self, language: Language) -> Markup {
-        let of = |en, zh| language.of(en, zh);
+    fn table(&self, language: Lang) -> Markup {
+        let say = |id| language.text(id);
         html! {
             table {
                 thead { tr {
-                    th { (of("Parameter", "参数")) } th.n { "n" }
-                    th.n { (of("Limits", "限值")) } th.n { (of("Mean", "均值")) }
-                    th.n { (of("SD", "标准差")) } th.n { (of("Min", "最小")) }
-                    th.n { (of("Median", "中位数")) } th.n { (of("Max", "最大")) }
-                    th.n { "Cpk" } th.n { "Ppk" } th.n { (of("skewed", "偏态")) }
+                    th { (say("paper-parameter")) } th.n { "n" }
+                    th.n { (say("paper-limits")) } th.n { (say("paper-mean")) }
+                    th.n { (say("paper-sd")) } th.n { (say("paper-min")) }
+                    th.n { (say("paper-median")) } th.n { (say("paper-max")) }
+                    th.n { "Cpk" } th.n { "Ppk" } th.n { (say("paper-skewed")) }
                 } }
                 tbody { @for it in &self.parameters { (row(language, it)) } }
             }
         }
     }
 
-    fn histograms(&self, language: Language) -> Markup {
+    fn histograms(&self, language: Lang) -> Markup {
         html! {
             div.figures style="margin-top:3mm" {
                 @for it in &self.parameters {
                     @if let Some(svg) = charts::histogram(&Ordered::of(&it.values), it.limits) {
-                        figure { figcaption { (language.parameter(&it.key)) } (PreEscaped(svg)) }
+                        figure { figcaption { (parameter(language, &it.key)) } (PreEscaped(svg)) }
                     }
                 }
             }
@@ -204,7 +201,7 @@ impl LotReport<'_> {
     }
 }
 
-fn row(language: Language, it: &ParameterValues) -> Markup {
+fn row(language: Lang, it: &ParameterValues) -> Markup {
     let moments = Spread::of(&it.values);
     let ordered = Ordered::of(&it.values);
     let within = spread::mean_moving_range(&it.values).map(|range| range / D2_PAIR);
@@ -217,7 +214,7 @@ fn row(language: Language, it: &ParameterValues) -> Markup {
         moments.max(),
     ];
     html! { tr {
-        td { (unbroken(&language.parameter(&it.key))) } td.n { (moments.n()) }
+        td { (unbroken(&parameter(language, &it.key))) } td.n { (moments.n()) }
         td.n { (limits(it.limits)) }
         @for value in figures { td.n { (figure(value)) } }
         td.n { (index(able.cpk)) } td.n { (index(able.ppk)) }
@@ -247,26 +244,26 @@ pub(super) fn limits(limits: Limits) -> String {
 }
 
 /// Where the values of a run come from.
-pub(super) fn source(language: Language, source: &str) -> &str {
+pub(super) fn source(language: Lang, source: &str) -> &str {
     match source {
-        "rig" => language.of("test rig", "测试台"),
-        "simulated" => language.of("SIMULATED RIG", "仿真台（非实测）"),
-        "import" => language.of("imported file", "导入文件"),
+        "rig" => language.text("paper-test_rig"),
+        "simulated" => language.text("paper-simulated_rig"),
+        "import" => language.text("paper-imported_file"),
         other => other,
     }
 }
 
-fn use_of_time(language: Language, it: &Effectiveness) -> Markup {
-    let of = |en, zh| language.of(en, zh);
+fn use_of_time(language: Lang, it: &Effectiveness) -> Markup {
+    let say = |id| language.text(id);
     let share = |part: f64| format!("{:.1} %", 100.0 * part);
     html! {
-        h2 { (of("Use of the time (OEE)", "设备综合效率 (OEE)")) }
+        h2 { (say("paper-use_time_oee")) }
         table {
             thead { tr {
-                th.n { "OEE" } th.n { (of("Availability", "时间开动率")) }
-                th.n { (of("Performance", "性能开动率")) } th.n { (of("Quality", "合格品率")) }
-                th.n { (of("Lost to alarms", "停机损失")) } th.n { (of("Lost to slow cycles", "速度损失")) }
-                th.n { (of("Lost to rejects", "不良损失")) }
+                th.n { "OEE" } th.n { (say("paper-availability")) }
+                th.n { (say("paper-performance")) } th.n { (say("paper-quality")) }
+                th.n { (say("paper-lost_alarms")) } th.n { (say("paper-lost_slow_cycles")) }
+                th.n { (say("paper-lost_rejects")) }
             } }
             tbody { tr {
                 td.n { (share(it.oee)) } td.n { (share(it.availability)) }

@@ -24,7 +24,7 @@ pub mod spc;
 mod svg;
 mod words;
 
-pub use words::Language;
+pub use texts::Lang;
 
 use crate::Moment;
 use jiff::{Timestamp, tz::TimeZone};
@@ -32,8 +32,8 @@ use jiff::{Timestamp, tz::TimeZone};
 /// What all pages need to know beside their data.
 #[derive(Debug, Clone)]
 pub struct Paper {
-    /// Language of the words.
-    pub language: Language,
+    /// Lang of the words.
+    pub language: Lang,
     /// Zone of the times; the history keeps UTC.
     pub zone: TimeZone,
     /// Foot of the page: when and by which program it was made.

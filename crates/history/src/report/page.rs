@@ -1,7 +1,7 @@
 //! The sheet of paper: A4, one style for all pages, head, foot, sign-off.
 
-use super::words::Language;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use texts::Lang;
 
 /// How the sheet lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,7 +16,7 @@ const STYLE: &str = include_str!("page.css");
 
 /// A complete file. `made` stands at its foot: when and by which program.
 pub(super) fn page(
-    language: Language,
+    language: Lang,
     format: Format,
     title: &str,
     made: &str,
@@ -70,16 +70,16 @@ pub(super) fn facts(pairs: &[(&str, String)]) -> Markup {
 }
 
 /// Boxes for names and dates.
-pub(super) fn sign_off(language: Language) -> Markup {
+pub(super) fn sign_off(language: Lang) -> Markup {
     let roles = [
-        language.of("Tested by", "检验"),
-        language.of("Checked by", "审核"),
-        language.of("Approved by", "批准"),
+        language.text("paper-tested_by"),
+        language.text("paper-checked"),
+        language.text("paper-approved"),
     ];
     html! {
         table.sign {
             tr { @for role in roles { th { (role) } td {} } }
-            tr { @for _ in roles { th { (language.of("Date", "日期")) } td {} } }
+            tr { @for _ in roles { th { (language.text("paper-date")) } td {} } }
         }
     }
 }

@@ -5,7 +5,7 @@
 //! parts. A sheet ends at the [`ROWS`] that spreadsheets can hold, and the next one begins. Texts are
 //! written as texts: what looks like a formula is none.
 
-use super::words::Language;
+use super::words::parameter;
 use crate::columns::{self, Cell};
 use crate::{Moment, Part};
 use jiff::tz::TimeZone;
@@ -14,6 +14,7 @@ use quality::ordered::Histogram;
 use quality::tally::Tally;
 use rust_xlsxwriter::{Chart, ChartType, Format, Workbook, Worksheet, XlsxError};
 use std::collections::BTreeMap;
+use texts::Lang;
 
 /// Rows of parts on one sheet; spreadsheets hold 1,048,576 with the header.
 const ROWS: u32 = 1_000_000;
@@ -25,7 +26,7 @@ const CHART_ROWS: u32 = 16;
 /// A spreadsheet under construction.
 pub struct Sheet {
     workbook: Workbook,
-    language: Language,
+    language: Lang,
     zone: TimeZone,
     time: Format,
     keys: Vec<String>,
@@ -37,15 +38,11 @@ pub struct Sheet {
 
 impl Sheet {
     /// An empty one with columns for these parameters.
-    pub fn new(
-        language: Language,
-        zone: TimeZone,
-        parameters: &[String],
-    ) -> Result<Self, XlsxError> {
+    pub fn new(language: Lang, zone: TimeZone, parameters: &[String]) -> Result<Self, XlsxError> {
         let mut workbook = Workbook::new();
         workbook
             .add_worksheet()
-            .set_name(language.of("Summary", "汇总"))?;
+            .set_name(language.text("paper-summary"))?;
         let mut sheet = Self {
             workbook,
             language,
@@ -82,16 +79,16 @@ impl Sheet {
 
     /// The finished workbook, to be saved.
     pub fn finish(mut self) -> Result<Workbook, XlsxError> {
-        let name = self.language.of("Summary", "汇总").to_owned();
+        let name = self.language.text("paper-summary").to_owned();
         let bold = Format::new().set_bold();
         let to = self.workbook.worksheet_from_index(0)?;
         let header = [
-            self.language.of("parameter", "参数"),
+            self.language.text("paper-sheet_parameter"),
             "n",
-            self.language.of("mean", "均值"),
-            self.language.of("sd", "标准差"),
-            self.language.of("min", "最小"),
-            self.language.of("max", "最大"),
+            self.language.text("paper-sheet_mean"),
+            self.language.text("paper-sheet_sd"),
+            self.language.text("paper-sheet_min"),
+            self.language.text("paper-sheet_max"),
         ];
         for (column, text) in (0..).zip(header) {
             to.write_string_with_format(0, column, text, &bold)?;
@@ -101,22 +98,22 @@ impl Sheet {
         let mut histograms = Vec::new();
         for (key, tally) in self.keys.iter().zip(self.tallies) {
             let (spread, histogram) = tally.finish();
-            to.write_string(row, 0, self.language.parameter(key))?;
+            to.write_string(row, 0, parameter(self.language, key))?;
             to.write_number(row, 1, spread.n() as f64)?;
             let figures = [spread.mean(), spread.sd(), spread.min(), spread.max()];
             for (column, value) in (2..).zip(figures) {
                 number(to, row, column, value)?;
             }
             row += 1;
-            histograms.extend(histogram.map(|it| (self.language.parameter(key), it)));
+            histograms.extend(histogram.map(|it| (parameter(self.language, key), it)));
         }
         row += 1;
         let bins: Vec<(String, u64)> = self
             .bins
             .into_iter()
-            .map(|(bin, n)| (self.language.bin(&bin).to_owned(), n))
+            .map(|(bin, n)| (self.language.name("bin", &bin).to_owned(), n))
             .collect();
-        let title = self.language.of("Parts by bin", "各料箱数量");
+        let title = self.language.text("paper-parts_bin");
         let mut next = counted(to, &name, row, title, &bins)?;
         for (title, histogram) in histograms {
             next = counted(to, &name, next, &title, &classes(&histogram))?;
@@ -126,7 +123,7 @@ impl Sheet {
 
     fn next_sheet(&mut self) -> Result<(), XlsxError> {
         self.sheets += 1;
-        let name = self.language.of("Parts", "明细");
+        let name = self.language.text("paper-sheet_parts");
         let name = match self.sheets {
             1 => name.to_owned(),
             more => format!("{name} {more}"),

@@ -3,10 +3,11 @@
 use super::Paper;
 use super::charts;
 use super::page::{Format, head, page};
-use super::words::{Language, figure};
+use super::words::{figure, parameter};
 use maud::{Markup, PreEscaped, html};
 use quality::chart::Chart;
 use quality::rules::Signal;
+use texts::{Lang, Message};
 
 /// A chart with the names of its points, if they have any.
 #[derive(Debug, Clone)]
@@ -22,7 +23,7 @@ pub struct Named<'a> {
 /// The page; of every chart the last `shown` points are drawn.
 pub fn spc(paper: &Paper, about: &str, charts: &[Named<'_>], shown: usize) -> String {
     let language = paper.language;
-    let heading = language.of("Control charts", "统计过程控制图");
+    let heading = language.text("paper-control_charts");
     let body = html! {
         (head(heading, about))
         @for it in charts {
@@ -37,41 +38,44 @@ pub fn spc(paper: &Paper, about: &str, charts: &[Named<'_>], shown: usize) -> St
 }
 
 /// What the chart is of, and its kind.
-fn title(language: Language, it: &Named<'_>) -> String {
+fn title(language: Lang, it: &Named<'_>) -> String {
+    let share = Message::new("paper", "bin_share").with("bin", it.of);
     let of = match it.chart.kind {
-        "share" => language.of("bin ", "料箱：").to_owned() + language.bin(it.of),
-        _ => language.parameter(it.of),
+        "share" => share.say(language),
+        _ => parameter(language, it.of),
     };
     format!("{of} – {}", kind(language, it.chart.kind))
 }
 
 /// Says that there are more points than are drawn.
-fn cut(language: Language, points: usize, shown: usize) -> String {
-    match language {
-        _ if points <= shown => String::new(),
-        Language::En => format!(", the last {shown} of {points} points"),
-        Language::Zh => format!("，共 {points} 点，图示最后 {shown} 点"),
+fn cut(language: Lang, points: usize, shown: usize) -> String {
+    let cut = Message::new("paper", "last_points")
+        .with("shown", shown)
+        .with("points", points);
+    match points > shown {
+        true => cut.say(language),
+        false => String::new(),
     }
 }
 
 /// Name of a kind of chart.
-fn kind(language: Language, kind: &str) -> &str {
+fn kind(language: Lang, kind: &str) -> &str {
     match kind {
-        "individuals" => language.of("individuals", "单值图 (I)"),
-        "moving range" => language.of("moving range", "移动极差图 (MR)"),
-        "means" => language.of("means of subgroups", "均值图 (X̄)"),
-        "ranges" => language.of("ranges of subgroups", "极差图 (R)"),
-        "share" => language.of("share of parts (p)", "占比图 (p)"),
+        "individuals" => language.text("paper-individuals"),
+        "moving range" => language.text("paper-moving_range"),
+        "means" => language.text("paper-means_subgroups"),
+        "ranges" => language.text("paper-ranges_subgroups"),
+        "share" => language.text("paper-share_parts_p"),
         other => other,
     }
 }
 
-fn legend(language: Language, charts: &[Named<'_>]) -> Markup {
+fn legend(language: Lang, charts: &[Named<'_>]) -> Markup {
     html! { div.together {
         table {
             thead { tr {
-                th { (language.of("Chart", "控制图")) } th.n { (language.of("Points", "点数")) }
-                th.n { (language.of("Centre", "中心线")) } th { (language.of("Signals", "异常信号")) }
+                th { (language.text("paper-chart")) } th.n { (language.text("paper-points")) }
+                th.n { (language.text("paper-centre")) } th { (language.text("paper-signals")) }
             } }
             tbody { @for it in charts { tr {
                 td { (title(language, it)) }
@@ -79,22 +83,17 @@ fn legend(language: Language, charts: &[Named<'_>]) -> Markup {
                 td.text { (told(language, &it.chart.signals)) }
             } } }
         }
-        p.note { (language.of(
-            "Limits at three deviations from short-term variation. A red point bears the number of the rule that \
-             objects: 1 beyond a limit; 2 a run on one side; 3 a trend; 4 up and down in turn; 5 two of three beyond \
-             2 sd; 6 four of five beyond 1 sd; 7 all within 1 sd; 8 none within 1 sd.",
-            "控制限取短期波动的三倍标准差。红点旁数字为判异准则：1 超出控制限；2 连续同侧；3 连续递增或递减；4 交替升降；5 三点中两点超 2σ；6 五点中四点超 1σ；7 连续在 1σ 内；8 连续在 1σ 外。"
-        )) }
+        p.note { (language.text("paper-limits_at_three_deviations_from")) }
     } }
 }
 
-fn told(language: Language, signals: &[Signal]) -> String {
+fn told(language: Lang, signals: &[Signal]) -> String {
     if signals.is_empty() {
-        return language.of("none", "无").to_owned();
+        return language.text("paper-spc_none").to_owned();
     }
     let one = |rule: u8| {
         let count = signals.iter().filter(|it| it.rule == rule).count();
-        let name = language.of("rule", "准则");
+        let name = language.text("paper-rule");
         (count > 0).then(|| format!("{name} {rule}: {count}"))
     };
     (1..=8).filter_map(one).collect::<Vec<_>>().join(", ")

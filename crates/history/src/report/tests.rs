@@ -15,11 +15,11 @@ use quality::chart::{individuals, shares};
 use quality::rules::Rules;
 use std::path::Path;
 
-const LANGUAGES: [Language; 2] = [Language::En, Language::Zh];
+const LANGUAGES: [Lang; 2] = [Lang::En, Lang::Zh];
 /// What an operator may type.
 const EVIL: &str = "</td><script>alert('批次')</script>";
 
-fn paper(language: Language) -> Paper {
+fn paper(language: Lang) -> Paper {
     Paper {
         language,
         zone: TimeZone::UTC,
@@ -71,13 +71,15 @@ fn part(verdict: &str) -> Part {
     part
 }
 
-fn lot_report(language: Language) -> String {
+fn lot_report(language: Lang) -> String {
     let alarms = [Alarm {
         lot: Some(EVIL.into()),
         run: Some(1),
         code: "late".into(),
         line: None,
         text: EVIL.into(),
+        args: Default::default(),
+        text_zh: None,
         cause_zh: None,
         raised: Moment(5_000_000),
         cleared: Some(Moment(65_000_000)),
@@ -136,8 +138,8 @@ fn a_text_of_an_operator_stays_text_on_every_page() {
 #[test]
 fn whatever_says_that_a_part_is_good_says_what_was_not_tested() {
     for (language, words) in [
-        (Language::En, ["insulation", "dielectric", "endurance"]),
-        (Language::Zh, ["绝缘电阻", "介质耐压", "寿命"]),
+        (Lang::En, ["insulation", "dielectric", "endurance"]),
+        (Lang::Zh, ["绝缘电阻", "介质耐压", "寿命"]),
     ] {
         let pages = [
             lot_report(language),
@@ -152,9 +154,9 @@ fn whatever_says_that_a_part_is_good_says_what_was_not_tested() {
 
 #[test]
 fn a_part_that_failed_gets_a_record_and_no_certificate() {
-    let good = certificate(&paper(Language::En), &part("pass"), &run());
+    let good = certificate(&paper(Lang::En), &part("pass"), &run());
     assert!(good.contains("<h1>Test certificate</h1>"));
-    let bad = certificate(&paper(Language::En), &part("fail"), &run());
+    let bad = certificate(&paper(Lang::En), &part("fail"), &run());
     assert!(bad.contains("<h1>Test record</h1>") && !bad.contains("certificate"));
 }
 
@@ -164,10 +166,10 @@ fn a_record_says_in_its_language_why_the_part_failed() {
     let failed = part("fail").because(why.into());
     for (language, words) in [
         (
-            Language::En,
+            Lang::En,
             ["Operate voltage / V: above the upper limit", "coil open"],
         ),
-        (Language::Zh, ["动作电压 / V：超出上限", "线圈开路"]),
+        (Lang::Zh, ["动作电压 / V：超出上限", "线圈开路"]),
     ] {
         let page = certificate(&paper(language), &failed, &run());
         assert!(words.iter().all(|it| page.contains(it)), "{page}");
@@ -182,7 +184,7 @@ fn a_chart_of_a_bin_bears_its_name_and_says_what_it_leaves_out() {
         chart: &chart,
         names: &[],
     };
-    let page = spc(&paper(Language::Zh), "", &[named], 2);
+    let page = spc(&paper(Lang::Zh), "", &[named], 2);
     assert!(
         page.contains("料箱：线圈 – 占比图 (p)，共 3 点，图示最后 2 点"),
         "{page}"
@@ -191,7 +193,7 @@ fn a_chart_of_a_bin_bears_its_name_and_says_what_it_leaves_out() {
 
 #[test]
 fn a_certificate_shows_the_last_attempt_rounded_by_its_uncertainty() {
-    let page = certificate(&paper(Language::En), &part("pass"), &run());
+    let page = certificate(&paper(Lang::En), &part("pass"), &run());
     assert!(
         page.contains(">7.704<") && page.contains(">0.011<"),
         "{page}"
@@ -201,13 +203,13 @@ fn a_certificate_shows_the_last_attempt_rounded_by_its_uncertainty() {
 
 #[test]
 fn a_simulated_lot_says_so() {
-    assert!(lot_report(Language::En).contains("SIMULATED RIG"));
-    assert!(lot_report(Language::Zh).contains("仿真台"));
+    assert!(lot_report(Lang::En).contains("SIMULATED RIG"));
+    assert!(lot_report(Lang::Zh).contains("仿真台"));
 }
 
 #[test]
 fn a_lot_report_tells_both_yields_and_how_long_an_alarm_stood() {
-    let page = lot_report(Language::En);
+    let page = lot_report(Lang::En);
     assert!(page.contains("33.33 %") && page.contains("66.67 %"));
     assert!(page.contains("0:01:00"));
 }
@@ -217,7 +219,7 @@ fn recipe() -> Recipe {
     load_recipe(&config, "jzc-22f-012").unwrap()
 }
 
-fn process_card(language: Language) -> String {
+fn process_card(language: Lang) -> String {
     let quota = Quota {
         machine_s: 0.25,
         auxiliary_s: 0.125,
@@ -282,6 +284,8 @@ fn every_state_of_an_alarm_has_its_word_in_both_languages() {
             code: "late".into(),
             line: None,
             text: "late".into(),
+            args: Default::default(),
+            text_zh: None,
             cause_zh: None,
             raised: Moment(0),
             cleared: None,
@@ -290,7 +294,7 @@ fn every_state_of_an_alarm_has_its_word_in_both_languages() {
             shelf: None,
             state,
         };
-        for (language, word) in [(Language::En, en), (Language::Zh, zh)] {
+        for (language, word) in [(Lang::En, en), (Lang::Zh, zh)] {
             let page = alarms::list(&paper(language), "", std::slice::from_ref(&alarm));
             assert!(page.contains(&format!(">{word}<")), "{word}: {page}");
         }

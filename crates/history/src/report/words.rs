@@ -1,123 +1,25 @@
-//! The words of the pages in both languages, in one place.
+//! Names and figures as paper shows them.
 
-use machine::dut::reason::Code;
-use machine::dut::words::Words;
 use machine::dut::{Characteristic, Reason};
-use machine::gauge::Side;
-use serde::Deserialize;
+use texts::{Lang, Message};
 
-/// Language of a page.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Language {
-    /// English.
-    En,
-    /// Simplified Chinese.
-    Zh,
+/// Name of a parameter with its unit; the key itself for one that only a recipe knows.
+pub fn parameter(lang: Lang, key: &str) -> String {
+    match Characteristic::from_key(key) {
+        Some(known) => format!("{} / {}", known.name(lang), known.unit().sign()),
+        None => key.to_owned(),
+    }
 }
 
-impl Language {
-    /// The word of this language.
-    pub fn of<'a>(self, en: &'a str, zh: &'a str) -> &'a str {
-        match self {
-            Self::En => en,
-            Self::Zh => zh,
-        }
-    }
-
-    /// The text of this language.
-    pub fn say(self, words: Words) -> &'static str {
-        self.of(words.en, words.zh)
-    }
-
-    /// Tag for the `lang` of a page.
-    pub fn tag(self) -> &'static str {
-        match self {
-            Self::En => "en",
-            Self::Zh => "zh-CN",
-        }
-    }
-
-    /// Name of a parameter with its unit; the key itself for one that only a recipe knows.
-    pub fn parameter(self, key: &str) -> String {
-        let Some(known) = Characteristic::from_key(key) else {
-            return key.to_owned();
-        };
-        let name = self.of(known.definition().name_en, known.definition().name_zh);
-        format!("{name} / {}", known.unit().sign())
-    }
-
-    /// Why a part did not pass; what has no words of its own stands there as the history says it.
-    pub fn reason(self, reason: &Reason) -> String {
-        let side = reason.side;
-        let said = match (reason.code, reason.code.words()) {
-            (_, Some(words)) => self.say(words).to_owned(),
-            (Code::OutsideLimit(_), None) => self.outside(side).to_owned(),
-            (Code::NotProven(_), None) => self.not_proven(side).to_owned(),
-            (Code::NotMeasured(_), None) => self.of("not measured", "未测得").to_owned(),
-            (
-                Code::EmRelay(_)
-                | Code::Resistor(_)
-                | Code::Interrupted
-                | Code::RigTrouble
-                | Code::Unclassified,
-                None,
-            ) => reason.to_string(),
-        };
-        match reason.characteristic() {
-            None => said,
-            Some(it) => format!("{}{}{said}", self.parameter(it.key()), self.of(": ", "：")),
-        }
-    }
-
-    fn outside(self, side: Option<Side>) -> &'static str {
-        match side {
-            Some(Side::High) => self.of("above the upper limit", "超出上限"),
-            Some(Side::Low) => self.of("below the lower limit", "低于下限"),
-            None => self.of("outside its limits", "超出限值"),
-        }
-    }
-
-    fn not_proven(self, side: Option<Side>) -> &'static str {
-        match side {
-            Some(Side::High) => self.of("not proven below the upper limit", "未能证明低于上限"),
-            Some(Side::Low) => self.of("not proven above the lower limit", "未能证明高于下限"),
-            None => self.of("not proven", "未能证明"),
-        }
-    }
-
-    /// Name of a verdict.
-    pub fn verdict(self, verdict: &str) -> &str {
-        match verdict {
-            "pass" => self.of("pass", "合格"),
-            "fail" => self.of("fail", "不合格"),
-            "void" => self.of("not judged", "未判定"),
-            "unjudged" => self.of("imported without verdict", "导入未判定"),
-            other => other,
-        }
-    }
-
-    /// Name of a bin.
-    pub fn bin(self, bin: &str) -> &str {
-        match bin {
-            "pass" => self.of("pass", "合格"),
-            "coil" => self.of("coil", "线圈"),
-            "voltage" => self.of("voltage", "电压"),
-            "time" => self.of("time", "时间"),
-            "contact" => self.of("contact", "触点"),
-            "retest" => self.of("retest", "复测"),
-            other => other,
-        }
-    }
-
-    /// What no test of this rig covers; stands on every page that says a part is good.
-    pub fn not_tested(self) -> &'static str {
-        match self {
-            Self::En => {
-                "Not tested: insulation resistance, dielectric strength, electrical and mechanical endurance."
-            }
-            Self::Zh => "未测项目：绝缘电阻、介质耐压、电气寿命与机械寿命。",
-        }
+/// Why a part did not pass.
+pub fn reason(lang: Lang, reason: &Reason) -> String {
+    let text = reason.text(lang);
+    match reason.characteristic() {
+        None => text,
+        Some(it) => Message::new("paper", "of_characteristic")
+            .with("name", parameter(lang, it.key()))
+            .with("text", text)
+            .say(lang),
     }
 }
 

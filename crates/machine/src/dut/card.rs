@@ -2,7 +2,6 @@
 
 use super::characteristic::Characteristic;
 use super::recipe::{DeviceRecipe, Recipe};
-use super::words::Words;
 use super::{em_relay, resistor};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -10,15 +9,18 @@ use std::collections::BTreeMap;
 /// Steps of every kind by the names of `card.toml`, in the order of the card.
 pub const STEPS: &[&str] = &em_relay::card::STEPS;
 
+/// Id of a text of the catalogue, of the family `card`.
+pub type TextId = &'static str;
+
 /// What the kind says.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Card {
     /// What the part is rated, with its heading.
-    pub rating: (Words, Vec<Piece>),
+    pub rating: (TextId, Vec<Piece>),
     /// What is done to a part, in order.
     pub steps: Vec<Step>,
     /// Counts that the remarks name.
-    pub counts: Vec<(Words, u32)>,
+    pub counts: Vec<(TextId, u32)>,
 }
 
 /// One line of the card.
@@ -27,9 +29,9 @@ pub struct Step {
     /// Its name in `card.toml`.
     pub name: &'static str,
     /// What is done.
-    pub what: Words,
+    pub what: TextId,
     /// With what.
-    pub tooling: Words,
+    pub tooling: TextId,
     /// How the part is driven; empty where it is not.
     pub drive: Vec<Piece>,
     /// What must come out.
@@ -41,15 +43,17 @@ pub struct Step {
 pub enum Piece {
     /// A figure of the recipe.
     Figure(f64),
-    /// What stands between figures.
-    Text(Words),
+    /// What stands between figures, alike in every language.
+    Literal(&'static str),
+    /// A text.
+    Text(TextId),
 }
 
 /// What must come out of a step.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Demand {
     /// What sensors say.
-    Seen(Words),
+    Seen(TextId),
     /// The limits of these.
     Within(Vec<Characteristic>),
 }
@@ -99,13 +103,10 @@ impl Step {
     pub fn load() -> Self {
         Self {
             name: "load",
-            what: Words::of(
-                "Let one part into the pocket, push it into the nest",
-                "放行一件，推入测试座",
-            ),
-            tooling: Words::of("escapement, pusher", "隔料器、推料缸"),
+            what: "card-let_one_part_into_pocket_push_it",
+            tooling: "card-escapement_pusher",
             drive: Vec::new(),
-            demand: Demand::Seen(Words::of("part present", "有件到位")),
+            demand: Demand::Seen("card-part_present"),
         }
     }
 
@@ -113,13 +114,10 @@ impl Step {
     pub fn clamp() -> Self {
         Self {
             name: "clamp",
-            what: Words::of(
-                "Close both jaws, raise the pin block",
-                "两侧夹爪夹紧，探针上升",
-            ),
-            tooling: Words::of("jaws, probe lift", "夹爪、探针升降缸"),
+            what: "card-close_both_jaws_raise_pin_block",
+            tooling: "card-jaws_probe_lift",
             drive: Vec::new(),
-            demand: Demand::Seen(Words::of("closed and up by their sensors", "传感器确认")),
+            demand: Demand::Seen("card-closed_up_their_sensors"),
         }
     }
 
@@ -127,13 +125,10 @@ impl Step {
     pub fn sort() -> Self {
         Self {
             name: "sort",
-            what: Words::of(
-                "Carry the part to the bin of its verdict, confirm by beam",
-                "按判定送入料箱，光电确认",
-            ),
-            tooling: Words::of("gripper, sort axis", "气爪、分选轴"),
+            what: "card-carry_part_bin_its_verdict_confirm",
+            tooling: "card-gripper_sort_axis",
             drive: Vec::new(),
-            demand: Demand::Seen(Words::of("one count of the beam", "光电计数为一")),
+            demand: Demand::Seen("card-one_count_beam"),
         }
     }
 }

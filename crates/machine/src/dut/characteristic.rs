@@ -9,6 +9,7 @@ use super::{em_relay, resistor};
 use crate::gauge::repetition::SpokenOf;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
+use texts::Lang;
 use units::Unit;
 
 /// What the program knows of a characteristic.
@@ -18,10 +19,6 @@ pub struct Definition {
     pub key: &'static str,
     /// Unit in which values and limits are written.
     pub unit: Unit,
-    /// Name on English pages and paper.
-    pub name_en: &'static str,
-    /// Name on Chinese pages and paper.
-    pub name_zh: &'static str,
     /// What a mean of several readings speaks of.
     pub spoken_of: SpokenOf,
     /// Bin of a part that fails this one.
@@ -59,6 +56,11 @@ impl Characteristic {
     /// The key, with the unit as suffix.
     pub fn key(self) -> &'static str {
         self.definition().key
+    }
+
+    /// Its name on pages and paper.
+    pub fn name(self, lang: Lang) -> &'static str {
+        lang.text(&format!("characteristic-{}", self.key()))
     }
 
     /// The unit in which values and limits are written.

@@ -18,7 +18,6 @@ pub mod record;
 pub mod rejudge;
 pub mod resistor;
 pub mod verdict;
-pub mod words;
 
 pub use crate::gauge::Judgement;
 pub use calibration::Calibration;
@@ -91,12 +90,11 @@ impl Kind {
         }
     }
 
-    /// Words of the page that only this kind needs: a JSON object of `{"en", "zh"}` by key. No two kinds
-    /// share a key.
-    pub const fn words(self) -> &'static str {
+    /// Names of the stages of its test.
+    pub fn stages(self) -> Vec<&'static str> {
         match self {
-            Self::EmRelay => em_relay::WORDS,
-            Self::Resistor => resistor::WORDS,
+            Self::EmRelay => em_relay::measure::Stage::ALL.map(|it| it.name()).to_vec(),
+            Self::Resistor => resistor::measure::Stage::ALL.map(|it| it.name()).to_vec(),
         }
     }
 

@@ -57,11 +57,11 @@ impl Procedure {
         }
     }
 
-    /// The stage under way, for screens.
-    pub fn stage(&self) -> String {
+    /// Name of the stage under way.
+    pub fn stage(&self) -> &'static str {
         match self {
-            Self::EmRelay(test) => format!("{:?}", test.stage()),
-            Self::Resistor(test) => test.stage().to_owned(),
+            Self::EmRelay(test) => test.stage().name(),
+            Self::Resistor(test) => test.stage(),
         }
     }
 

@@ -1,17 +1,17 @@
 //! Why a part is not a pass: a code with its side and detail.
 //!
-//! Programs compare codes; a history keeps them, and JSON carries them as `{"code", "param", "side", "detail"}`. [`Reason`]
-//! prints as the string of rows, files and API, for example `operate_voltage_v high`. That string is read back in two places,
-//! once each: where a history from before codes is migrated, and where a file of another system is imported.
+//! Programs compare codes; a history keeps them, and JSON carries them as `{"code", "param", "side", "detail", "en", "zh"}`.
+//! [`Reason`] prints as the string of rows, files and API, for example `operate_voltage_v high`. That string is read back in
+//! two places, once each: where a history from before codes is migrated, and where a file of another system is imported.
 
 use super::characteristic::Characteristic;
 use super::verdict::Bin;
-use super::words::Words;
-use super::{em_relay, resistor};
+use super::{Kind, em_relay, resistor};
 use crate::gauge::Side;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::fmt;
+use texts::{Lang, Message};
 
 /// What was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -136,34 +136,99 @@ impl Reason {
 
     /// Reads a text that came without a code; what has none stays [`Code::Unclassified`].
     pub fn from_text(text: &str) -> Self {
-        if let Some(why) = text.strip_prefix(INTERRUPTED) {
-            return Self::interrupted(why);
-        }
-        if let Some((finding, detail)) = em_relay::Finding::from_text(text) {
-            return finding.with(detail);
-        }
-        if let Some(finding) = resistor::Finding::from_text(text) {
-            return finding.into();
-        }
-        Self::of_characteristic(text).unwrap_or_else(|| Self::unclassified(text))
+        let findings = Kind::ALL
+            .into_iter()
+            .flat_map(Kind::findings)
+            .map(Self::of_finding);
+        let every = findings
+            .chain([Self::interrupted("")])
+            .chain(Self::of_limits(text));
+        let found = every.filter_map(|reason| reason.read(text)).next();
+        found.unwrap_or_else(|| Self::unclassified(text))
     }
 
-    /// The reason of every kind that prints as this text.
-    fn of_characteristic(text: &str) -> Option<Self> {
-        let (key, _) = text.split_once(' ')?;
-        let characteristic = Characteristic::from_key(key)?;
-        let known = [
+    fn of_finding(code: Code) -> Self {
+        match code {
+            Code::EmRelay(finding) => finding.into(),
+            Code::Resistor(finding) => finding.into(),
+            Code::OutsideLimit(_)
+            | Code::NotProven(_)
+            | Code::NotMeasured(_)
+            | Code::Interrupted
+            | Code::RigTrouble
+            | Code::Unclassified => Self::of(code),
+        }
+    }
+
+    /// Every reason that speaks of the characteristic whose key begins the text.
+    fn of_limits(text: &str) -> Vec<Self> {
+        let key = text.split(' ').next().unwrap_or_default();
+        let Some(characteristic) = Characteristic::from_key(key) else {
+            return Vec::new();
+        };
+        vec![
             Self::outside(characteristic, Side::Low),
             Self::outside(characteristic, Side::High),
             Self::not_proven(characteristic, Side::Low),
             Self::not_proven(characteristic, Side::High),
             Self::of(Code::NotMeasured(characteristic)),
-        ];
-        known.into_iter().find(|reason| reason.to_string() == text)
+        ]
+    }
+
+    /// The reason with the detail for which it prints as this text.
+    fn read(self, text: &str) -> Option<Self> {
+        const PLACE: &str = "\0";
+        let detailed = |detail: &str| Self {
+            detail: detail.to_owned(),
+            ..self.clone()
+        };
+        let print = |detail| detailed(detail).to_string();
+        let detail = match print(PLACE).split_once(PLACE) {
+            Some((before, after)) => text.strip_prefix(before)?.strip_suffix(after)?,
+            None if print("") == text => "",
+            None => return None,
+        };
+        Some(detailed(detail))
+    }
+
+    fn message(&self) -> Message {
+        let param = self.characteristic().map_or("", Characteristic::key);
+        let message = Message::new("reason", self.code.name())
+            .with("param", param)
+            .with("detail", &self.detail);
+        match (self.code, self.side) {
+            (_, None) => message,
+            (Code::OutsideLimit(_) | Code::NotProven(_), Some(side)) => {
+                message.case(side.name()).with("side", side)
+            }
+            (
+                Code::NotMeasured(_)
+                | Code::EmRelay(_)
+                | Code::Resistor(_)
+                | Code::Interrupted
+                | Code::RigTrouble
+                | Code::Unclassified,
+                Some(side),
+            ) => message.with("side", side),
+        }
+    }
+
+    /// What paper says after the name of the characteristic.
+    pub fn text(&self, lang: Lang) -> String {
+        self.message().say(lang)
+    }
+
+    /// What a page says: the name of the characteristic, and what is wrong with it in a word.
+    pub fn short(&self, lang: Lang) -> String {
+        let message = self.message();
+        let said = message.try_attribute(lang, "short");
+        let said = said.unwrap_or_else(|| message.say(lang));
+        match self.characteristic() {
+            None => said,
+            Some(it) => format!("{} {said}", it.name(lang)),
+        }
     }
 }
-
-const INTERRUPTED: &str = "interrupted: ";
 
 impl Code {
     /// Its name in rows and exports.
@@ -193,46 +258,26 @@ impl Code {
                 .or_else(|| resistor::Finding::from_code(finding).map(Self::Resistor)),
         }
     }
-
-    /// What pages and paper say of a finding, after the name of its characteristic if it has one; none for codes that
-    /// every kind has, and for findings that are shown as [`Reason`] prints them.
-    pub fn words(self) -> Option<Words> {
-        match self {
-            Self::EmRelay(finding) => finding.words(),
-            Self::Resistor(finding) => Some(finding.words()),
-            Self::OutsideLimit(_)
-            | Self::NotProven(_)
-            | Self::NotMeasured(_)
-            | Self::Interrupted
-            | Self::RigTrouble
-            | Self::Unclassified => None,
-        }
-    }
 }
 
 impl Serialize for Reason {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut object = serializer.serialize_struct("Reason", 4)?;
+        let mut object = serializer.serialize_struct("Reason", 6)?;
         object.serialize_field("code", self.code.name())?;
         object.serialize_field("param", &self.characteristic())?;
         object.serialize_field("side", &self.side)?;
         object.serialize_field("detail", &self.detail)?;
+        object.serialize_field("en", &self.short(Lang::En))?;
+        object.serialize_field("zh", &self.short(Lang::Zh))?;
         object.end()
     }
 }
 
 impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let side = self.side.map_or(String::new(), |side| format!(" {side}"));
-        match self.code {
-            Code::OutsideLimit(it) => write!(f, "{it}{side}"),
-            Code::NotProven(it) => write!(f, "{it}{side} not proven"),
-            Code::NotMeasured(it) => write!(f, "{it} not measured"),
-            Code::Interrupted => write!(f, "{INTERRUPTED}{}", self.detail),
-            Code::EmRelay(finding) => f.write_str(&finding.text(&self.detail)),
-            Code::Resistor(finding) => f.write_str(finding.text()),
-            Code::RigTrouble | Code::Unclassified => f.write_str(&self.detail),
-        }
+        let message = self.message();
+        let row = message.try_attribute(Lang::En, "row");
+        f.write_str(&row.unwrap_or_else(|| message.say(Lang::En)))
     }
 }
 
@@ -290,6 +335,41 @@ mod tests {
         }
         assert_eq!(Reason::stored("outside_limit", None, None, ""), None);
         assert_eq!(Reason::stored("of tomorrow", None, None, ""), None);
+    }
+
+    #[test]
+    fn every_reason_is_read_back_from_its_row() {
+        for code in Kind::ALL.into_iter().flat_map(Kind::findings) {
+            let bare = Reason::of_finding(code);
+            let has_detail = Reason {
+                detail: "COM".into(),
+                ..bare.clone()
+            };
+            let names_it = has_detail.to_string().contains("COM");
+            let reason = if names_it && !bare.to_string().contains("COM") {
+                has_detail
+            } else {
+                bare
+            };
+            assert_eq!(Reason::from_text(&reason.to_string()), reason);
+        }
+    }
+
+    #[test]
+    fn every_reason_has_a_text_in_both_languages() {
+        for code in Kind::ALL.into_iter().flat_map(Kind::findings) {
+            let reason = Reason::of_finding(code);
+            let [en, zh] = Lang::ALL.map(|lang| reason.short(lang));
+            assert!(
+                !en.is_empty() && !zh.is_empty() && en != zh,
+                "{}",
+                code.name()
+            );
+        }
+        let high = Reason::outside(OPERATE, Side::High);
+        assert_eq!(high.short(Lang::En), "Operate voltage high");
+        assert_eq!(high.short(Lang::Zh), "动作电压 偏高");
+        assert_eq!(high.text(Lang::Zh), "超出上限");
     }
 
     #[test]

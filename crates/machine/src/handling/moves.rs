@@ -2,6 +2,7 @@
 
 use crate::guard::{Actuator, Motion, Position, Stroke};
 use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 
 /// One motion that a station may want.
@@ -196,16 +197,108 @@ impl Move {
         }
     }
 
-    /// Key of the actuator's time-out in `config/rig.toml`.
-    pub fn actuator_key(self) -> &'static str {
+    /// What drives it.
+    pub const fn key(self) -> ActuatorKey {
         match self {
-            Move::EscapementRelease | Move::EscapementHold => "escapement",
-            Move::PusherExtend | Move::PusherRetract => "pusher",
-            Move::ClampClose | Move::ClampOpen => "clamp",
-            Move::ProbesUp | Move::ProbesDown => "probe_lift",
-            Move::AxisTo(_) => "axis",
-            Move::SortDown | Move::SortUp => "sort_z",
-            Move::GripperClose | Move::GripperOpen => "gripper",
+            Move::EscapementRelease | Move::EscapementHold => ActuatorKey::Escapement,
+            Move::PusherExtend | Move::PusherRetract => ActuatorKey::Pusher,
+            Move::ClampClose | Move::ClampOpen => ActuatorKey::Clamp,
+            Move::ProbesUp | Move::ProbesDown => ActuatorKey::ProbeLift,
+            Move::AxisTo(_) => ActuatorKey::Axis,
+            Move::SortDown | Move::SortUp => ActuatorKey::SortZ,
+            Move::GripperClose | Move::GripperOpen => ActuatorKey::Gripper,
+        }
+    }
+
+    /// Key of the actuator's time-out in `config/rig.toml`.
+    pub const fn actuator_key(self) -> &'static str {
+        self.key().name()
+    }
+
+    /// Its name in orders, views and alarms; the axis goes to a bin ([`Self::bin`]) as `axis_bin`.
+    pub fn code(self) -> &'static str {
+        match self {
+            Move::EscapementRelease => "escapement_release",
+            Move::EscapementHold => "escapement_hold",
+            Move::PusherExtend => "pusher_extend",
+            Move::PusherRetract => "pusher_retract",
+            Move::ClampClose => "clamp_close",
+            Move::ClampOpen => "clamp_open",
+            Move::ProbesUp => "probes_up",
+            Move::ProbesDown => "probes_down",
+            Move::SortDown => "sort_down",
+            Move::SortUp => "sort_up",
+            Move::GripperClose => "gripper_close",
+            Move::GripperOpen => "gripper_open",
+            Move::AxisTo(AxisStation::Nest) => "axis_nest",
+            Move::AxisTo(AxisStation::Park) => "axis_park",
+            Move::AxisTo(AxisStation::Bin(Bin::RETEST)) => "axis_retest",
+            Move::AxisTo(AxisStation::Bin(_)) => "axis_bin",
+        }
+    }
+
+    /// The bin that the axis goes to.
+    pub const fn bin(self) -> Option<Bin> {
+        match self {
+            Move::AxisTo(AxisStation::Bin(bin)) => Some(bin),
+            Move::AxisTo(AxisStation::Nest | AxisStation::Park)
+            | Move::EscapementRelease
+            | Move::EscapementHold
+            | Move::PusherExtend
+            | Move::PusherRetract
+            | Move::ClampClose
+            | Move::ClampOpen
+            | Move::ProbesUp
+            | Move::ProbesDown
+            | Move::SortDown
+            | Move::SortUp
+            | Move::GripperClose
+            | Move::GripperOpen => None,
+        }
+    }
+}
+
+/// What a time-out, a retry and an alarm speak of; both jaws are one clamp.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ActuatorKey {
+    /// Lets parts into the pocket.
+    Escapement,
+    /// From the pocket to the nest.
+    Pusher,
+    /// Both jaws.
+    Clamp,
+    /// Probes to the pins.
+    ProbeLift,
+    /// Sort axis.
+    Axis,
+    /// Gripper up and down.
+    SortZ,
+    /// Fingers.
+    Gripper,
+}
+
+impl ActuatorKey {
+    /// Every one.
+    pub const ALL: [Self; 7] = [
+        Self::Escapement,
+        Self::Pusher,
+        Self::Clamp,
+        Self::ProbeLift,
+        Self::Axis,
+        Self::SortZ,
+        Self::Gripper,
+    ];
+
+    /// The key in `config/rig.toml`, counters and alarms.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Escapement => "escapement",
+            Self::Pusher => "pusher",
+            Self::Clamp => "clamp",
+            Self::ProbeLift => "probe_lift",
+            Self::Axis => "axis",
+            Self::SortZ => "sort_z",
+            Self::Gripper => "gripper",
         }
     }
 }

@@ -26,3 +26,25 @@ impl Uses {
         }
     }
 }
+
+/// What wears.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Wearing {
+    /// Probes, by touches.
+    Probes,
+    /// Jaws, by closings.
+    Jaws,
+}
+
+impl Wearing {
+    /// Every one.
+    pub const ALL: [Self; 2] = [Self::Probes, Self::Jaws];
+
+    /// The name in alarms.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Probes => "probes",
+            Self::Jaws => "jaws",
+        }
+    }
+}

@@ -11,7 +11,7 @@
 //! while it stands is counted, not listed twice. The first one after a quiet time is the *first-out*
 //! and stays so until the list is empty of causes. Acknowledging resets nothing.
 
-use super::catalogue::{self, Goes, Stops};
+use super::catalogue::{ABOUT_A_BODY, Entry, Goes, Stops};
 use super::trouble::Alarm;
 use units::RigTime;
 
@@ -65,8 +65,8 @@ impl Standing {
         self.condition != Condition::Returned
     }
 
-    fn entry(&self) -> Option<&'static catalogue::Entry> {
-        catalogue::entry(&self.alarm.code)
+    fn entry(&self) -> Entry {
+        self.alarm.code.entry()
     }
 }
 
@@ -106,13 +106,12 @@ impl Annunciator {
     /// An alarm is there; true when its cause was not there before, or when it is about a body of its own.
     pub fn raise(&mut self, alarm: &Alarm, now: RigTime) -> bool {
         let quiet = !self.standing.iter().any(Standing::is_active);
-        let at_once = catalogue::entry(&alarm.code).is_some_and(|entry| entry.goes == Goes::AtOnce);
+        let at_once = alarm.code.entry().goes == Goes::AtOnce;
         let condition = if at_once {
             Condition::Returned
         } else {
             Condition::Unacknowledged
         };
-        assert!(!alarm.code.is_empty(), "an alarm without a code");
         let twice = self
             .standing
             .iter()
@@ -136,11 +135,7 @@ impl Annunciator {
             return true;
         };
         let again = !known.is_active();
-        if again
-            || known
-                .entry()
-                .is_some_and(|entry| entry.goes == Goes::ByClear)
-        {
+        if again || known.entry().goes == Goes::ByClear {
             self.changed = true;
             known.count += 1;
             known.alarm = alarm.clone();
@@ -150,22 +145,20 @@ impl Annunciator {
             known.first_out = quiet && !at_once;
             known.inherited = false;
         }
-        again || catalogue::ABOUT_A_BODY.contains(&known.alarm.code.as_str())
+        again || ABOUT_A_BODY.contains(&known.alarm.code)
     }
 
     /// Alarms that go by their sensor and whose cause is not among `there` any more have gone.
     pub fn sensed(&mut self, there: &[Alarm]) {
         self.gone(|one| {
-            let by_sensor = one
-                .entry()
-                .is_some_and(|entry| entry.goes == Goes::BySensor);
+            let by_sensor = one.entry().goes == Goes::BySensor;
             by_sensor && !there.iter().any(|alarm| alarm.code == one.alarm.code)
         });
     }
 
     /// A person says that the causes are gone.
     pub fn cleared(&mut self) {
-        self.gone(|one| one.entry().is_none_or(|entry| entry.goes == Goes::ByClear));
+        self.gone(|one| one.entry().goes == Goes::ByClear);
     }
 
     fn gone(&mut self, is_gone: impl Fn(&Standing) -> bool) {
@@ -194,7 +187,7 @@ impl Annunciator {
     pub fn acknowledge(&mut self, code: Option<&str>) -> bool {
         let mut found = false;
         for one in &mut self.standing {
-            if code.is_none_or(|code| one.alarm.code == code) {
+            if code.is_none_or(|code| one.alarm.code.name() == code) {
                 found = true;
                 match one.condition {
                     Condition::Unacknowledged => one.condition = Condition::Acknowledged,
@@ -210,7 +203,10 @@ impl Annunciator {
 
     /// Shelves the alarm of this code; false when there is none.
     pub fn shelve(&mut self, code: &str, until: RigTime) -> bool {
-        let one = self.standing.iter_mut().find(|one| one.alarm.code == code);
+        let one = self
+            .standing
+            .iter_mut()
+            .find(|one| one.alarm.code.name() == code);
         self.changed |= one.is_some();
         one.map(|one| one.shelved_until = Some(until)).is_some()
     }
@@ -229,16 +225,14 @@ impl Annunciator {
     pub fn stopping(&self, stops: Stops) -> Option<&Standing> {
         self.standing
             .iter()
-            .find(|one| one.is_active() && one.entry().is_none_or(|entry| entry.stops == stops))
+            .find(|one| one.is_active() && one.entry().stops == stops)
     }
 
     /// The first active alarm whose sensor still shows the cause.
     pub fn still_sensed(&self) -> Option<&Standing> {
         self.standing.iter().find(|one| {
-            one.is_active()
-                && one.entry().is_some_and(|entry| {
-                    entry.goes == Goes::BySensor && entry.stops == Stops::Abort
-                })
+            let entry = one.entry();
+            one.is_active() && entry.goes == Goes::BySensor && entry.stops == Stops::Abort
         })
     }
 }

@@ -1,7 +1,6 @@
 //! Orders answered: what may be done now, and why not.
 
 use super::Station;
-use super::annunciator::Standing;
 use super::orders::{Order, Refused, shelf_minutes};
 use super::packml::{self, Command, Mode, On, State};
 use super::trouble::Alarm;
@@ -20,7 +19,7 @@ impl Station {
         wants: &mut Wants,
     ) -> Result<(), Refused> {
         if self.machine.ended {
-            return Err(Refused::new("the run has ended", "本次运行已结束"));
+            return Err(Refused::RunEnded);
         }
         match order {
             Order::Command(command) => {
@@ -55,7 +54,7 @@ impl Station {
             }
             Order::Acknowledge(code) => {
                 if !self.alarms.annunciator.acknowledge(code.as_deref()) && code.is_some() {
-                    return Err(no_alarm());
+                    return Err(Refused::NoSuchAlarm);
                 }
             }
             Order::Shelve(code, minutes) => {
@@ -63,7 +62,7 @@ impl Station {
                 let until = now + Span::ms(u64::from(minutes) * 60_000);
                 assert!(until > now, "shelved for no time");
                 if !self.alarms.annunciator.shelve(&code, until) {
-                    return Err(no_alarm());
+                    return Err(Refused::NoSuchAlarm);
                 }
             }
         }
@@ -88,11 +87,11 @@ impl Station {
     /// The reason why not.
     pub fn may(&self, command: Command) -> Result<(), Refused> {
         if packml::next(self.machine.state, On::Command(command)).is_none() {
-            return Err(Refused::wrong_state(command, self.machine.state));
+            return Err(Refused::WrongState(command, self.machine.state));
         }
         match command {
             Command::Reset | Command::Clear => match self.cause() {
-                Some(cause) => Err(still_there(cause)),
+                Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),
                 None => Ok(()),
             },
             Command::Start => self.may_start(),
@@ -101,7 +100,7 @@ impl Station {
                 .annunciator
                 .stopping(super::catalogue::Stops::Suspend)
             {
-                Some(cause) => Err(still_there(cause)),
+                Some(cause) => Err(Refused::CauseRemains(Box::new(cause.alarm.clone()))),
                 None => Ok(()),
             },
             Command::Stop
@@ -115,23 +114,13 @@ impl Station {
 
     fn may_start(&self) -> Result<(), Refused> {
         if self.machine.mode == Mode::Manual {
-            return Err(Refused::wrong_mode(
-                "start",
-                self.machine.mode,
-                Mode::Production,
-            ));
+            return Err(self.wrong_mode("start", Mode::Production));
         }
         if !self.line.homed {
-            return Err(Refused::new(
-                "actuators were moved by hand since the reset; stop and reset first",
-                "复位后执行机构被手动移动过；请先停止并复位",
-            ));
+            return Err(Refused::MovedByHand);
         }
         if self.is_between_lots() {
-            return Err(Refused::new(
-                "no lot is under way; choose one on the page of lots",
-                "当前没有批次；请在“批次”页选择",
-            ));
+            return Err(Refused::NoLot);
         }
         Ok(())
     }
@@ -142,11 +131,7 @@ impl Station {
     /// The reason why not.
     pub fn may_leave(&self) -> Result<(), Refused> {
         if self.machine.mode != Mode::Production {
-            return Err(Refused::wrong_mode(
-                "start",
-                self.machine.mode,
-                Mode::Production,
-            ));
+            return Err(self.wrong_mode("start", Mode::Production));
         }
         if !matches!(
             self.machine.state,
@@ -155,37 +140,30 @@ impl Station {
             return Err(self.not_at_rest());
         }
         if self.line.ledger.holds(Place::NEST) || self.line.ledger.holds(Place::Gripper) {
-            return Err(Refused::new(
-                "a part of this lot is inside; reset first, so that it gets into its bin",
-                "机内还有本批次的零件；请先复位，使其进入料仓",
-            ));
+            return Err(Refused::PartInside);
         }
         Ok(())
     }
 
-    fn not_at_rest(&self) -> Refused {
-        let state = self.machine.state.name();
-        Refused::new(
-            format!(
-                "another lot can be begun in Stopped, Idle and Complete; the machine is in {state}{}",
-                self.way_out().0
-            ),
-            format!(
-                "只能在 Stopped、Idle、Complete 状态开始其他批次；当前状态为 {state}{}",
-                self.way_out().1
-            ),
-        )
+    fn wrong_mode(&self, order: &'static str, needed: Mode) -> Refused {
+        let found = self.machine.mode;
+        Refused::WrongMode {
+            order,
+            found,
+            needed,
+        }
     }
 
-    /// What a person does first, in both languages.
-    fn way_out(&self) -> (&'static str, &'static str) {
-        if packml::is_aborted(self.machine.state) {
-            ("; clear it first", "；请先清除")
-        } else if packml::next(self.machine.state, On::Command(Command::Stop)).is_some() {
-            ("; stop it first", "；请先停止")
+    /// Names what a person does first, too.
+    fn not_at_rest(&self) -> Refused {
+        let state = self.machine.state;
+        let first = if packml::is_aborted(state) {
+            Some(Command::Clear)
         } else {
-            ("", "")
-        }
+            let stop = packml::next(state, On::Command(Command::Stop));
+            stop.map(|_| Command::Stop)
+        };
+        Refused::NotAtRest(state, first)
     }
 
     /// Whether the lot may be ended although its count is not reached.
@@ -204,13 +182,7 @@ impl Station {
         if packml::may_change_mode(self.machine.state) {
             return Ok(());
         }
-        let state = self.machine.state.name();
-        Err(Refused::new(
-            format!(
-                "the mode can be changed in Stopped, Idle, Complete and Aborted; the machine is in {state}"
-            ),
-            format!("只能在 Stopped、Idle、Complete、Aborted 状态切换模式；当前状态为 {state}"),
-        ))
+        Err(Refused::ModeLocked(self.machine.state))
     }
 
     /// Whether an actuator may be moved by hand now; what it would touch is the guard's to say.
@@ -219,20 +191,13 @@ impl Station {
     /// The reason why not.
     pub fn may_jog(&self) -> Result<(), Refused> {
         if self.machine.mode == Mode::Production {
-            return Err(Refused::wrong_mode("jog", self.machine.mode, Mode::Manual));
+            return Err(self.wrong_mode("jog", Mode::Manual));
         }
         if self.machine.state != State::Idle {
-            let state = self.machine.state.name();
-            return Err(Refused::new(
-                format!("unhomed: jogging needs Idle after a reset; the machine is in {state}"),
-                format!("未回原点：点动需要复位后处于 Idle 状态；当前状态为 {state}"),
-            ));
+            return Err(Refused::Unhomed(self.machine.state));
         }
         if self.line.mechanism.moving().next().is_some() {
-            return Err(Refused::new(
-                "the motion before has not arrived",
-                "上一个动作尚未到位",
-            ));
+            return Err(Refused::StillMoving);
         }
         Ok(())
     }
@@ -243,17 +208,10 @@ impl Station {
     /// The reason why not.
     pub fn may_step(&self) -> Result<(), Refused> {
         if self.machine.mode != Mode::Maintenance {
-            return Err(Refused::wrong_mode(
-                "step",
-                self.machine.mode,
-                Mode::Maintenance,
-            ));
+            return Err(self.wrong_mode("step", Mode::Maintenance));
         }
         if self.line.stepwise.is_empty() {
-            return Err(Refused::new(
-                "no motion waits for a step",
-                "没有等待单步的动作",
-            ));
+            return Err(Refused::NoMotionWaits);
         }
         Ok(())
     }
@@ -282,16 +240,4 @@ impl Station {
         }
         self.enter(command, now, wants);
     }
-}
-
-fn still_there(cause: &Standing) -> Refused {
-    let alarm = &cause.alarm;
-    Refused::new(
-        format!("the cause is still there: {}", alarm.text_en),
-        format!("原因仍然存在：{}", alarm.text_zh),
-    )
-}
-
-fn no_alarm() -> Refused {
-    Refused::new("no such alarm stands", "没有该报警")
 }

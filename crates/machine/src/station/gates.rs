@@ -12,6 +12,7 @@
 //!   mean over the last parts is beyond its limit.
 
 use super::Station;
+use super::catalogue::AlarmCode;
 use super::packml::State;
 use super::trouble::Alarm;
 use super::wants::{Checked, Wants};
@@ -19,7 +20,7 @@ use crate::dut::verdict::Verdict;
 use crate::handling::Place;
 use crate::handling::ledger::Kind;
 use crate::handling::wants::Judged;
-use crate::handling::wear::Uses;
+use crate::handling::wear::{Uses, Wearing};
 use serde::Deserialize;
 use std::collections::VecDeque;
 use units::{Ohm, RigTime, Span};
@@ -84,7 +85,7 @@ pub(super) struct Gates {
     /// The discard limit was told.
     discarded: bool,
     /// Counters whose limit was told.
-    worn: Vec<&'static str>,
+    worn: Vec<Wearing>,
     /// The limit of the probes' contact is passed, and was told.
     fouled: bool,
 }
@@ -149,7 +150,10 @@ impl Station {
                 .due_at_us()
                 .is_some_and(|due_us| due_us <= at_us)
         {
-            return wants.notes.trouble.push(Alarm::calibration_overdue());
+            return wants
+                .notes
+                .trouble
+                .push(AlarmCode::CalibrationOverdue.into());
         }
         let none = self.plan.golden.is_empty();
         if none || self.lot.gates.checking || self.is_calibrating() || !self.wants_more() {
@@ -247,8 +251,8 @@ impl Station {
         let uses = self.plan.worn.with(self.line.mechanism.uses());
         let limits = &self.plan.lot.wear;
         let each = [
-            ("probes", uses.probe_touches, limits.probe_touches),
-            ("jaws", uses.jaw_closings, limits.jaw_closings),
+            (Wearing::Probes, uses.probe_touches, limits.probe_touches),
+            (Wearing::Jaws, uses.jaw_closings, limits.jaw_closings),
         ];
         let mut alarms: Vec<Alarm> = self.fouled().into_iter().collect();
         for (what, count, limit) in each {

@@ -21,7 +21,7 @@
 pub mod annunciator;
 mod asked;
 pub mod catalogue;
-mod chinese;
+mod doing;
 pub mod gates;
 mod lamps;
 mod learning;
@@ -46,6 +46,7 @@ use crate::instrument::act::Runner;
 use crate::rig::axis::AxisTable;
 use crate::rig::image::Image;
 use annunciator::Annunciator;
+pub use doing::Doing;
 use gates::{Gates, LotSettings};
 use lamps::Lamps;
 use line::Line;
@@ -219,21 +220,20 @@ impl Station {
         self.machine.mode
     }
 
-    /// What the station is doing, in words for a screen.
-    pub fn state(&self) -> String {
+    /// What the station is doing.
+    pub fn doing(&self) -> Doing {
         match self.machine.state {
-            _ if self.machine.ended => "ended".into(),
-            State::Resetting if !self.alarms.sensed => "waiting for sensors".into(),
-            State::Resetting if !self.line.homed => "homing".into(),
-            State::Resetting => "discharging".into(),
-            State::Starting => "calibrating".into(),
+            _ if self.machine.ended => Doing::Ended,
+            State::Resetting if !self.alarms.sensed => Doing::WaitingForSensors,
+            State::Resetting if !self.line.homed => Doing::Homing,
+            State::Resetting => Doing::Discharging,
+            State::Starting => Doing::Calibrating,
             State::Execute | State::Completing => match self.line.feeder.test() {
-                Some(test) => format!("testing: {}", test.stage()),
-                None if self.lot.began => "running".into(),
-                None if self.lot.golden_left.is_empty() => "running".into(),
-                None => "golden parts".into(),
+                Some(test) => Doing::Testing(test.stage()),
+                None if self.lot.began || self.lot.golden_left.is_empty() => Doing::Running,
+                None => Doing::GoldenParts,
             },
-            State::Stopped
+            state @ (State::Stopped
             | State::Idle
             | State::Complete
             | State::Holding
@@ -245,7 +245,7 @@ impl Station {
             | State::Stopping
             | State::Aborting
             | State::Aborted
-            | State::Clearing => self.machine.state.name().to_lowercase(),
+            | State::Clearing) => Doing::Resting(state),
         }
     }
 

@@ -1,10 +1,11 @@
 //! Orders: what a person at a screen or another program may ask of the station, and why not.
 //!
-//! Every order is answered in the turn in which it comes: taken, or refused with the reason in English
-//! and Chinese. The same reasons stand beside the disabled buttons of a screen.
+//! Every order is answered in the turn in which it comes: taken, or refused with the reason as a code and its arguments. The same reasons stand beside the disabled buttons of a screen.
 
 use super::packml::{self, Command, Mode, State};
+use super::trouble::Alarm;
 use crate::handling::Move;
+use texts::Message;
 
 /// One order.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -36,39 +37,103 @@ pub fn shelf_minutes(asked: Option<u32>) -> u32 {
 
 /// Why an order was not taken.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Refused {
-    /// English.
-    pub en: String,
-    /// Chinese.
-    pub zh: String,
+pub enum Refused {
+    /// The run is over.
+    RunEnded,
+    /// The command belongs to other states.
+    WrongState(Command, State),
+    /// Only another mode knows this.
+    WrongMode {
+        /// Word of the order.
+        order: &'static str,
+        /// The mode.
+        found: Mode,
+        /// The mode that knows it.
+        needed: Mode,
+    },
+    /// Actuators were moved by hand since the reset.
+    MovedByHand,
+    /// There is no lot to go on with.
+    NoLot,
+    /// A part of the lot has to get into its bin first.
+    PartInside,
+    /// Another lot needs a machine at rest; the command that leads there, if one does.
+    NotAtRest(State, Option<Command>),
+    /// The mode is changed at rest only.
+    ModeLocked(State),
+    /// A jog needs known positions.
+    Unhomed(State),
+    /// The motion before has not arrived.
+    StillMoving,
+    /// No motion waits for a step.
+    NoMotionWaits,
+    /// The cause of this alarm is still there.
+    CauseRemains(Box<Alarm>),
+    /// No alarm of this code stands.
+    NoSuchAlarm,
+    /// The guard says no; its sentence.
+    Collision(String),
+    /// Somebody before the station has refused it; the sentence.
+    Denied(String),
+    /// A member of the order has none of the known words.
+    UnknownWord {
+        /// Name of the member.
+        member: &'static str,
+        /// Its word; empty when it is missing.
+        found: String,
+        /// Every word that it may have.
+        known: Vec<&'static str>,
+    },
+    /// An alarm is shelved for a reason.
+    ShelveWithoutReason,
 }
 
 impl Refused {
-    /// A reason in both languages.
-    pub fn new(en: impl Into<String>, zh: impl Into<String>) -> Self {
-        Self {
-            en: en.into(),
-            zh: zh.into(),
+    /// Its text with the arguments.
+    pub fn message(&self) -> Message {
+        let of = |code| Message::new("refusal", code);
+        let in_state = |code, state: &State| of(code).with("state", state.name());
+        match self {
+            Self::RunEnded => of("run_ended"),
+            Self::WrongState(command, state) => {
+                let states: Vec<&str> = packml::states_for(*command).map(State::name).collect();
+                in_state("wrong_state", state)
+                    .with("command", command.name())
+                    .with("states", states.join(", "))
+            }
+            Self::WrongMode {
+                order,
+                found,
+                needed,
+            } => of("wrong_mode")
+                .with("command", order)
+                .with("found", found.name())
+                .with("needed", needed.name()),
+            Self::MovedByHand => of("moved_by_hand"),
+            Self::NoLot => of("no_lot"),
+            Self::PartInside => of("part_inside"),
+            Self::NotAtRest(state, None) => in_state("not_at_rest", state),
+            Self::NotAtRest(state, Some(first)) => {
+                in_state("not_at_rest", state).case(first.name())
+            }
+            Self::ModeLocked(state) => in_state("mode_locked", state),
+            Self::Unhomed(state) => in_state("unhomed", state),
+            Self::StillMoving => of("still_moving"),
+            Self::NoMotionWaits => of("no_motion_waits"),
+            Self::CauseRemains(alarm) => alarm.inside("cause_remains"),
+            Self::NoSuchAlarm => of("no_such_alarm"),
+            Self::Collision(why) => of("collision").with("detail", why),
+            Self::Denied(why) => of("denied").with("detail", why),
+            Self::UnknownWord {
+                member,
+                found,
+                known,
+            } => of("unknown_word")
+                .with("member", member)
+                .with("found", if found.is_empty() { "nothing" } else { found })
+                .with("known", known.join(", ")),
+            Self::ShelveWithoutReason => of("shelve_without_reason"),
         }
-    }
-
-    /// The command belongs to other states.
-    pub fn wrong_state(command: Command, state: State) -> Self {
-        let states: Vec<&str> = packml::states_for(command).map(State::name).collect();
-        let (command, now, where_) = (command.name(), state.name(), states.join(", "));
-        Self::new(
-            format!("{command} is possible in {where_}; the machine is in {now}"),
-            format!("“{command}”只能在以下状态执行：{where_}；当前状态为 {now}"),
-        )
-    }
-
-    /// Only other modes know this.
-    pub fn wrong_mode(what: &str, mode: Mode, needs: Mode) -> Self {
-        let (found, needed) = (mode.name(), needs.name());
-        Self::new(
-            format!("{what} needs the mode {needed}; the mode is {found}"),
-            format!("“{what}”需要 {needed} 模式；当前模式为 {found}"),
-        )
     }
 }
 

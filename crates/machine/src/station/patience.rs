@@ -13,6 +13,7 @@
 //! The others wait for their neighbours, which have a deadline, or for parts, which are nobody's fault.
 //! A bin that is full stops the clock over the bin; in maintenance nothing is late.
 
+use super::catalogue::AlarmCode;
 use super::packml::{Mode, State};
 use super::trouble::Alarm;
 use crate::handling::Feeder;
@@ -71,7 +72,7 @@ impl Patience {
             let waited = now.since(began);
             if step.limit.is_some_and(|limit| waited > limit) {
                 late = Some(match step.name {
-                    LIFTING => Alarm::part_stuck(),
+                    LIFTING => AlarmCode::PartStuck.into(),
                     name => Alarm::step_too_long(name, waited),
                 });
             }

@@ -2,7 +2,7 @@
 
 use super::Station;
 use super::annunciator::Standing;
-use super::catalogue::{self, Goes, Stops};
+use super::catalogue::{self, AlarmCode, Goes, Stops};
 use super::packml::{self, Command, On, State};
 use super::trouble::Alarm;
 use super::wants::{Ending, Inputs, Wants};
@@ -78,28 +78,13 @@ impl Station {
     /// Safety inputs: open is an alarm, unknown is one after the first scan.
     fn safety(&mut self, now: RigTime, image: &Image) -> Vec<Alarm> {
         let inputs = [
-            (
-                DigitalIn::EmergencyStopOk,
-                "emergency_stop",
-                "Emergency stop pressed. Release it, then clear and reset.",
-                "急停按下。请复位急停，然后清除并复位。",
-            ),
-            (
-                DigitalIn::DoorClosed,
-                "door_open",
-                "The door is open. Close it, then clear and reset.",
-                "安全门打开。请关门，然后清除并复位。",
-            ),
-            (
-                DigitalIn::AirOk,
-                "air_lost",
-                "Air pressure is missing. Check the supply.",
-                "气压不足。请检查气源。",
-            ),
+            (DigitalIn::EmergencyStopOk, AlarmCode::EmergencyStop),
+            (DigitalIn::DoorClosed, AlarmCode::DoorOpen),
+            (DigitalIn::AirOk, AlarmCode::AirLost),
         ];
         let late = now.since(self.machine.began.unwrap_or(now)) > FIRST_SCAN;
         let (mut alarms, mut unread) = (Vec::new(), Vec::new());
-        for (point, code, en, zh) in inputs {
+        for (point, code) in inputs {
             let seen = match point {
                 DigitalIn::EmergencyStopOk => image.emergency_stop_ok(now),
                 other => image.input(other, now, SENSOR_AGE),
@@ -110,7 +95,7 @@ impl Station {
             match seen {
                 Some(true) => {}
                 Some(false) if point == DigitalIn::AirOk && self.is_vented(now) => {}
-                Some(false) => alarms.push(Alarm::safety(code, en, zh)),
+                Some(false) => alarms.push(code.into()),
                 None => unread.push(point),
             }
         }
@@ -149,7 +134,7 @@ impl Station {
             match (dark, since.map(|(_, since)| *since)) {
                 (true, None) => self.line.dark.push((beam, now)),
                 (true, Some(since)) if now.since(since) >= FULL => {
-                    alarms.push(Alarm::bin_full(bin.name()));
+                    alarms.push(Alarm::bin_full(bin));
                 }
                 (true, Some(_)) | (false, None) => {}
                 (false, Some(_)) => self.line.dark.retain(|(known, _)| *known != beam),
@@ -162,11 +147,11 @@ impl Station {
         let standing = self.alarms.annunciator.standing().iter();
         let starved = standing
             .filter(|one| one.is_active())
-            .any(|one| one.alarm.code == "magazine_empty");
+            .any(|one| one.alarm.code == AlarmCode::MagazineEmpty);
         let parts = [DigitalIn::TrackLevel, DigitalIn::PocketPresent]
             .iter()
             .any(|point| image.input(*point, now, SENSOR_AGE) == Some(true));
-        (starved && !parts).then(Alarm::magazine_empty)
+        (starved && !parts).then(|| AlarmCode::MagazineEmpty.into())
     }
 
     /// A motion that the guard refused: in homing another one goes first, else it is an alarm.
@@ -196,10 +181,8 @@ impl Station {
     }
 
     fn react(&mut self, alarm: &Alarm, now: RigTime, wants: &mut Wants) {
-        let Some(entry) = catalogue::entry(&alarm.code) else {
-            return self.abort(&alarm.code, now, wants);
-        };
-        if catalogue::NEEDS_CALIBRATION.contains(&entry.code)
+        let (entry, name) = (alarm.code.entry(), alarm.code.name());
+        if catalogue::NEEDS_CALIBRATION.contains(&alarm.code)
             && !packml::is_aborted(self.machine.state)
         {
             self.recalibrate();
@@ -208,10 +191,10 @@ impl Station {
             Stops::Abort => {
                 let parked = matches!(self.machine.state, State::Stopped | State::Complete);
                 if !(parked && entry.goes == Goes::BySensor) {
-                    self.abort(&alarm.code, now, wants);
+                    self.abort(&name, now, wants);
                 }
             }
-            Stops::Hold if !self.plan.stays => self.abort(&alarm.code, now, wants),
+            Stops::Hold if !self.plan.stays => self.abort(&name, now, wants),
             Stops::Hold => self.rest(Command::Hold, now, wants),
             Stops::Suspend => {
                 if self.machine.state == State::Execute {

@@ -1,6 +1,6 @@
 //! What each state of the outer machine does in a turn, and how it is left.
 
-use super::catalogue::Stops;
+use super::catalogue::{AlarmCode, Stops};
 use super::packml::{self, Command, On, State};
 use super::safety::{FIRST_SCAN, safety_was_read};
 use super::trouble::Alarm;
@@ -74,7 +74,7 @@ impl Station {
         let over = self.line.ledger.fall().map(|fall| fall.bin);
         if let Some(bin) = over {
             self.line.ledger.lose(Place::Falling);
-            let alarm = Alarm::beam_unread(bin.name());
+            let alarm = Alarm::beam_unread(bin);
             if self.alarms.annunciator.raise(&alarm, now) {
                 wants.record.alarms.push(alarm);
                 wants.record.alarms_changed |= self.alarms.annunciator.take_changed();
@@ -340,7 +340,10 @@ impl Station {
         if inputs.settled {
             self.done(now, wants);
         } else if now.since(self.machine.entered) > SAFE_WITHIN {
-            wants.notes.trouble.push(Alarm::not_safe());
+            wants
+                .notes
+                .trouble
+                .push(AlarmCode::OutputsNotConfirmed.into());
             self.done(now, wants);
         }
     }

@@ -3,6 +3,7 @@
 use super::MotionView;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use texts::Message;
 
 /// Outer machine and what may be asked of it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -48,6 +49,8 @@ pub struct Button {
     pub why_en: String,
     /// Why not, Chinese; empty when enabled.
     pub why_zh: String,
+    /// The same as code and arguments; null when enabled.
+    pub why: Option<Message>,
 }
 
 /// Where an actuator is, as far as its sensors tell.

@@ -83,12 +83,3 @@ pub struct Answered {
     /// Why it was refused, English; none when it was taken.
     pub refused: Option<String>,
 }
-
-/// Why an order was not taken.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct NotTaken {
-    /// English.
-    pub en: String,
-    /// Chinese.
-    pub zh: String,
-}

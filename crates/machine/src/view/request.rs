@@ -1,10 +1,11 @@
 //! An order on its way to the station, with the way back for its answer.
 
-use super::order::{By, NotTaken, Order};
+use super::order::{By, Order};
 use std::fmt;
+use texts::Message;
 
 /// What an order comes to.
-pub type Answer = Result<(), NotTaken>;
+pub type Answer = Result<(), Message>;
 
 /// An order on its way to the station.
 pub struct OrderRequest {

@@ -30,16 +30,6 @@ impl Role {
             Self::Engineer => "engineer",
         }
     }
-
-    /// As a person who reads Chinese is told.
-    #[must_use]
-    pub const fn in_chinese(self) -> &'static str {
-        match self {
-            Self::Operator => "操作员",
-            Self::Maintainer => "维修员",
-            Self::Engineer => "工程师",
-        }
-    }
 }
 
 impl fmt::Display for Role {

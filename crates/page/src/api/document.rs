@@ -49,6 +49,7 @@ pub(super) fn of(offers: &[Offer]) -> serde_json::Value {
         super::must("error", "The status in a word."),
         super::must("reason", "A sentence for whoever asked."),
         super::may("reason_zh", "The same in Chinese."),
+        super::may("code", "The same as a code, where it has one."),
     ]);
     components.schemas.insert("Refusal".into(), refusal.into());
     let document = OpenApiBuilder::new()

@@ -4,7 +4,7 @@ use super::super::error::HmiError;
 use axum::extract::Query;
 use axum::http::Uri;
 use history::Filter;
-use history::report::Language;
+use history::report::Lang;
 use quality::rules::Rules;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -30,7 +30,7 @@ pub(super) struct Charting {
     /// Only the last so many points; [`SHOWN`] when absent.
     last: Option<usize>,
     /// Of the page only: `zh` (when absent) or `en`.
-    pub lang: Option<Language>,
+    pub lang: Option<Lang>,
 }
 
 impl Own for Charting {
@@ -53,7 +53,7 @@ impl Charting {
 #[derive(Debug, Deserialize)]
 pub(super) struct Printed {
     /// `zh` (when absent) or `en`.
-    pub lang: Option<Language>,
+    pub lang: Option<Lang>,
     /// Of a certificate: the part.
     pub seq: Option<u64>,
     /// Of a lot report: the shortest cycle the line can keep, s.
@@ -75,9 +75,9 @@ impl Own for Audited {
     const MEMBERS: &'static [&'static str] = &["who"];
 }
 
-/// Language of what is printed when nobody names one.
-pub(super) fn language(asked: Option<Language>) -> Language {
-    asked.unwrap_or(Language::Zh)
+/// Lang of what is printed when nobody names one.
+pub(super) fn language(asked: Option<Lang>) -> Lang {
+    asked.unwrap_or(Lang::Zh)
 }
 
 /// The filter, and what is the route's own.

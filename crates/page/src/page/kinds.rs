@@ -1,40 +1,41 @@
-//! What the page has to know of the kinds of device: words of theirs among its own, and as JSON beside them every
-//! characteristic with unit and names, and what is said of a finding.
+//! What the page gets from the catalogue and the kinds of device, as JSON: its words, and every characteristic with its
+//! unit and names.
 
-use machine::dut::reason::Code;
-use machine::dut::words::Words;
-use machine::dut::{Characteristic, Kind};
+use machine::dut::Characteristic;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use texts::Lang;
 
-/// `{"characteristics": [{"key", "unit", "en", "zh"}], "findings": {code: {"en", "zh"}}}`.
+/// Families of texts that the page has no use for: their texts come with what they belong to, or stand on paper.
+const ELSEWHERE: [&str; 10] = [
+    "alarm",
+    "card",
+    "characteristic",
+    "paper",
+    "paper_verdict",
+    "place",
+    "reason",
+    "refusal",
+    "side",
+    "wears",
+];
+
+/// `{"characteristics": [{"key", "unit", "en", "zh"}]}`.
 pub(super) fn json() -> String {
     let characteristics: Vec<Value> = Characteristic::all().map(named).collect();
-    let codes = Kind::ALL.into_iter().flat_map(Kind::findings);
-    let findings: BTreeMap<&str, Words> = codes.filter_map(said).collect();
-    json!({ "characteristics": characteristics, "findings": findings }).to_string()
+    json!({ "characteristics": characteristics }).to_string()
 }
 
-/// The words of the page and of every kind as one JSON object.
-pub(super) fn words(page: &'static str) -> String {
-    let kinds = Kind::ALL.into_iter().map(Kind::words);
-    let entries: Vec<&str> = std::iter::once(page).chain(kinds).map(entries).collect();
-    format!("{{\n{}\n}}\n", entries.join(",\n"))
-}
-
-/// What stands between the braces of a JSON object.
-fn entries(object: &str) -> &str {
-    let inside = object.trim().strip_prefix('{');
-    let inside = inside.and_then(|it| it.strip_suffix('}'));
-    assert!(inside.is_some(), "words are a JSON object");
-    inside.unwrap_or_default().trim()
+/// `{id: {"en", "zh"}}`.
+pub(super) fn words() -> String {
+    let shown = texts::plain().filter(|it| {
+        let family = it.id.split_once('-').map(|(family, _)| family);
+        family.is_none_or(|family| !ELSEWHERE.contains(&family))
+    });
+    let words = shown.map(|it| (it.id.to_owned(), json!({ "en": it.en, "zh": it.zh })));
+    Value::Object(words.collect()).to_string()
 }
 
 fn named(it: Characteristic) -> Value {
-    let known = it.definition();
-    json!({ "key": known.key, "unit": known.unit, "en": known.name_en, "zh": known.name_zh })
-}
-
-fn said(code: Code) -> Option<(&'static str, Words)> {
-    Some((code.name(), code.words()?))
+    let [en, zh] = Lang::ALL.map(|lang| it.name(lang));
+    json!({ "key": it.key(), "unit": it.unit(), "en": en, "zh": zh })
 }

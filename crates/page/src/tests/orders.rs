@@ -20,8 +20,8 @@ async fn a_known_order_that_is_not_taken_says_why_in_both_languages() {
     let bench = Bench::new();
     for order in ["start", "hold", "unhold", "abort", "clear", "reset"] {
         let answer = bench.order(format!(r#"{{"order":"{order}"}}"#)).await;
-        assert_eq!(answer.refused(409), format!("{order}: not in this state"));
-        assert_eq!(answer.json()["reason_zh"], "当前状态不允许");
+        assert_eq!(answer.refused(409), format!("{order}: the run has ended"));
+        assert_eq!(answer.json()["reason_zh"], "本次运行已结束");
     }
     assert!(!bench.stopped());
 }

@@ -120,7 +120,7 @@ impl Operator {
             at: self.pace.now(),
             state,
             order: word,
-            refused: answer.err().map(|why| why.en),
+            refused: answer.err().map(|why| why.say(texts::Lang::En)),
         };
         self.said.send(said).ok()
     }

@@ -4,8 +4,7 @@ use super::Parameter;
 use super::measure::{SEAL, Stage};
 use super::recipe::{Clamp, RelayRecipe};
 use crate::dut::Characteristic;
-use crate::dut::card::{Card, Demand, Piece, Step};
-use crate::dut::words::Words;
+use crate::dut::card::{Card, Demand, Piece, Step, TextId};
 
 /// A step of the card.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -95,9 +94,9 @@ pub fn card(relay: &RelayRecipe) -> Card {
         Piece::Figure(part.nominal_coil_ohm),
         text(" Ω"),
     ];
-    let conditioning = Words::of("operations before the test", "测前预动作次数");
+    let conditioning = "card-operations_before_test";
     Card {
-        rating: (Words::of("Coil, nominal", "线圈额定值"), rating),
+        rating: ("card-coil_nominal", rating),
         steps: steps(relay),
         counts: vec![(conditioning, relay.test.conditioning_operations)],
     }
@@ -121,11 +120,8 @@ fn steps(relay: &RelayRecipe) -> Vec<Step> {
 fn kelvin() -> Step {
     Step {
         name: CardStep::Kelvin.name(),
-        what: Words::of(
-            "Check all five Kelvin connections and the pin map; NC contact",
-            "检查五路开尔文连接与引脚；测常闭触点",
-        ),
-        tooling: Words::of("pin block, 1 A source", "探针座、1 A 恒流源"),
+        what: "card-check_all_five_kelvin_connections",
+        tooling: "card-pin_block_1_source",
         drive: vec![text("1 A, ±")],
         demand: CardStep::Kelvin.demand(),
     }
@@ -134,8 +130,8 @@ fn kelvin() -> Step {
 fn coil(relay: &RelayRecipe) -> Step {
     Step {
         name: CardStep::Coil.name(),
-        what: Words::of("Measure the coil below pickup", "低于动作值测线圈电阻"),
-        tooling: Words::of("coil supply, current shunt", "线圈电源、分流器"),
+        what: "card-measure_coil_below_pickup",
+        tooling: "card-coil_supply_current_shunt",
         drive: vec![Piece::Figure(relay.test.prebias_v), text(" V")],
         demand: CardStep::Coil.demand(),
     }
@@ -145,10 +141,7 @@ fn operate_voltage(relay: &RelayRecipe) -> Step {
     let test = &relay.test;
     Step {
         name: CardStep::OperateVoltage.name(),
-        what: Words::of(
-            "Operate threshold: coarse ramp, then fine ramp",
-            "动作电压：粗扫后细扫",
-        ),
+        what: "card-operate_threshold_coarse_ramp_then",
         tooling: RAMP,
         drive: vec![
             Piece::Figure(test.prebias_v),
@@ -163,10 +156,7 @@ fn operate_voltage(relay: &RelayRecipe) -> Step {
 fn operate_time(relay: &RelayRecipe) -> Step {
     Step {
         name: CardStep::OperateTime.name(),
-        what: Words::of(
-            "Timed operate with bounce; NO contact on that closure",
-            "额定激励动作时间与回跳；测常开触点",
-        ),
+        what: "card-timed_operate_with_bounce_no",
         tooling: TIMER,
         drive: vec![
             text("0 → "),
@@ -179,15 +169,12 @@ fn operate_time(relay: &RelayRecipe) -> Step {
 
 fn release_time(relay: &RelayRecipe) -> Step {
     let suppression = match relay.test.clamp {
-        Clamp::Zener => Words::of("60 V zener", "60 V 稳压管"),
-        Clamp::Diode => Words::of("diode", "二极管"),
+        Clamp::Zener => "card-60_v_zener",
+        Clamp::Diode => "card-diode",
     };
     Step {
         name: CardStep::ReleaseTime.name(),
-        what: Words::of(
-            "Timed release with bounce; NC contact on that closure",
-            "释放时间与回跳；再测常闭触点",
-        ),
+        what: "card-timed_release_with_bounce_nc",
         tooling: TIMER,
         drive: vec![
             Piece::Figure(relay.part.nominal_v),
@@ -201,10 +188,7 @@ fn release_time(relay: &RelayRecipe) -> Step {
 fn release_voltage(relay: &RelayRecipe) -> Step {
     Step {
         name: CardStep::ReleaseVoltage.name(),
-        what: Words::of(
-            "Release threshold: coarse ramp, then fine ramp",
-            "释放电压：粗扫后细扫",
-        ),
+        what: "card-release_threshold_coarse_ramp_then",
         tooling: RAMP,
         drive: vec![Piece::Figure(SEAL * relay.part.nominal_v), text(" V → 0")],
         demand: CardStep::ReleaseVoltage.demand(),
@@ -214,19 +198,16 @@ fn release_voltage(relay: &RelayRecipe) -> Step {
 fn unclamp() -> Step {
     Step {
         name: CardStep::Unclamp.name(),
-        what: Words::of(
-            "Coil off, current < 1 mA; pin block down, jaws open",
-            "断电，电流 < 1 mA；探针下降，夹爪松开",
-        ),
-        tooling: Words::of("probe lift, jaws", "探针升降缸、夹爪"),
+        what: "card-coil_off_current_1_ma_pin_block",
+        tooling: "card-probe_lift_jaws",
         drive: Vec::new(),
-        demand: Demand::Seen(Words::of("down and open by their sensors", "传感器确认")),
+        demand: Demand::Seen("card-down_open_their_sensors"),
     }
 }
 
-const RAMP: Words = Words::of("coil supply, gated counter", "线圈电源、门控计数器");
-const TIMER: Words = Words::of("counters, 1 A source", "计数器、1 A 恒流源");
+const RAMP: TextId = "card-coil_supply_gated_counter";
+const TIMER: TextId = "card-counters_1_source";
 
 fn text(same: &'static str) -> Piece {
-    Piece::Text(Words::same(same))
+    Piece::Literal(same)
 }

@@ -4,7 +4,6 @@ use super::threshold::Direction;
 use super::{Parameter, bins};
 use crate::dut::reason::{Code, Reason};
 use crate::dut::verdict::Bin;
-use crate::dut::words::Words;
 use crate::gauge::Side;
 
 /// A changeover contact has two sides.
@@ -16,7 +15,7 @@ pub enum Contact {
     Nc,
 }
 
-/// One finding. Its text has a place for a figure or a pin where [`Finding::with`] adds one.
+/// One finding. Its text names the figure or the pin that [`Finding::with`] adds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Finding {
     /// No current through the coil.
@@ -82,34 +81,26 @@ pub enum Finding {
 /// What is fixed about a finding.
 struct Entry {
     code: &'static str,
-    /// `{}` is the place of the detail.
-    text: &'static str,
     /// Bin of a bad part; none where the part could not be judged.
     bin: Option<Bin>,
     /// What it proves of a limit.
     proves: Option<(Parameter, Side)>,
-    /// What pages and paper say instead of the text.
-    words: Option<Words>,
 }
 
 impl Entry {
-    const fn fail(code: &'static str, text: &'static str, bin: Bin) -> Self {
+    const fn fail(code: &'static str, bin: Bin) -> Self {
         Self {
             code,
-            text,
             bin: Some(bin),
             proves: None,
-            words: None,
         }
     }
 
-    const fn void(code: &'static str, text: &'static str) -> Self {
+    const fn void(code: &'static str) -> Self {
         Self {
             code,
-            text,
             bin: None,
             proves: None,
-            words: None,
         }
     }
 
@@ -118,19 +109,6 @@ impl Entry {
             proves: Some((parameter, side)),
             ..self
         }
-    }
-
-    const fn said(self, en: &'static str, zh: &'static str) -> Self {
-        Self {
-            words: Some(Words { en, zh }),
-            ..self
-        }
-    }
-
-    /// In Chinese; in English as it stands in the text.
-    const fn zh(self, zh: &'static str) -> Self {
-        let en = self.text;
-        self.said(en, zh)
     }
 }
 
@@ -178,154 +156,49 @@ impl Finding {
         use Contact::{Nc, No};
         use Direction::{Falling, Rising};
         match self {
-            Self::CoilOpen => Entry::fail("coil_open", "coil open", bins::COIL).zh("线圈开路"),
-            Self::CoilCurrentOverRange => Entry::fail(
-                "coil_current_over_range",
-                "coil_resistance_ohm low: current over range",
-                bins::COIL,
-            )
-            .proves(Parameter::CoilResistance, Side::Low)
-            .said("too low: current over range", "过低：电流超量程"),
-            Self::NoClosedAtRest => Entry::fail(
-                "no_closed_at_rest",
-                "contact stuck: NO closed at rest",
-                bins::CONTACT,
-            )
-            .zh("触点粘连：静止时常开触点闭合"),
-            Self::NcOpenAtRest => Entry::fail(
-                "nc_open_at_rest",
-                "contact stuck: NC open at rest",
-                bins::CONTACT,
-            )
-            .zh("触点故障：静止时常闭触点断开"),
-            Self::NcDoesNotOpen => Entry::fail(
-                "nc_does_not_open",
-                "contact stuck: NC does not open at nominal voltage",
-                bins::CONTACT,
-            )
-            .zh("触点粘连：额定电压下常闭触点不断开"),
-            Self::NoDoesNotMake => Entry::fail(
-                "no_does_not_make",
-                "contact stuck: NO does not make at nominal voltage",
-                bins::CONTACT,
-            )
-            .zh("触点故障：额定电压下常开触点不闭合"),
-            Self::OperatesTooLate => Entry::fail(
-                "operates_too_late",
-                "operate_time_ms high: NO makes too late",
-                bins::TIME,
-            )
-            .proves(Parameter::OperateTime, Side::High)
-            .said("high: NO makes too late", "过高：常开触点闭合过迟"),
-            Self::ReleasesTooLate => Entry::fail(
-                "releases_too_late",
-                "release_time_ms high: NC does not make after switch-off",
-                bins::TIME,
-            )
-            .proves(Parameter::ReleaseTime, Side::High)
-            .said(
-                "high: NC does not make after switch-off",
-                "过高：断电后常闭触点不闭合",
-            ),
-            Self::AboveCoarseRamp => Entry::fail(
-                "above_coarse_ramp",
-                "operate_voltage_v high: above the coarse ramp",
-                bins::VOLTAGE,
-            )
-            .proves(Parameter::OperateVoltage, Side::High)
-            .said("above the ramp", "超出扫描范围"),
-            Self::ContactOverRange(No) => Entry::fail(
-                "no_contact_over_range",
-                "NO contact resistance over range",
-                bins::CONTACT,
-            ),
-            Self::ContactOverRange(Nc) => Entry::fail(
-                "nc_contact_over_range",
-                "NC contact resistance over range",
-                bins::CONTACT,
-            ),
-            Self::ContactOpen(No) => Entry::fail(
-                "no_contact_open",
-                "NO contact open or far too high",
-                bins::CONTACT,
-            ),
-            Self::ContactOpen(Nc) => Entry::fail(
-                "nc_contact_open",
-                "NC contact open or far too high",
-                bins::CONTACT,
-            ),
-            Self::Misoriented => {
-                Entry::void("misoriented", "part turned or COM probe without contact")
-                    .zh("零件放反或公共端探针未接触")
-            }
-            Self::PinOpen => Entry::void(
-                "pin_open",
-                "no Kelvin contact at {}: missing pin or dirty probe",
-            ),
-            Self::PinsOpen => Entry::void("pins_open", "no Kelvin contact at {}"),
-            Self::ProbeChainOpen => Entry::void("probe_chain_open", "probe-up chain open"),
-            Self::BoardNotRead => Entry::void("board_not_read", "interface board not read"),
-            Self::CoilNotRead => {
-                Entry::void("coil_not_read", "coil converter gave no voltage or current")
-            }
-            Self::CoilVoltageNotReadable => {
-                Entry::void("coil_voltage_not_readable", "coil voltage not readable")
-            }
-            Self::CoilSupplyLow => {
-                Entry::void("coil_supply_low", "coil supply gives {} at the pre-bias")
-            }
-            Self::CoilCurrentRemains => Entry::void(
-                "coil_current_remains",
-                "coil current not gone after the test",
-            ),
-            Self::TrackNotReadable => {
-                Entry::void("track_not_readable", "track temperature not readable")
-            }
-            Self::DropNotReadable(No) => {
-                Entry::void("no_drop_not_readable", "NO contact drop not readable")
-            }
-            Self::DropNotReadable(Nc) => {
-                Entry::void("nc_drop_not_readable", "NC contact drop not readable")
-            }
-            Self::DropWithoutZero => {
-                Entry::void("nc_drop_without_zero", "NC drop without its zero")
-            }
-            Self::ContactImplausible(No) => Entry::void(
-                "no_contact_implausible",
-                "NO contact reads {}: no contact does, check the 1 A source",
-            ),
-            Self::ContactImplausible(Nc) => Entry::void(
-                "nc_contact_implausible",
-                "NC contact reads {}: no contact does, check the 1 A source",
-            ),
-            Self::GatesNotRead => Entry::void("gates_not_read", "gate counters not read"),
-            Self::GatesImplausible => {
-                Entry::void("gates_implausible", "gate counters implausible: {}")
-            }
-            Self::MadeOutsideWindow => Entry::void(
-                "made_outside_window",
-                "coarse operate ramp: contact made outside the window",
-            ),
-            Self::ThresholdNotFound(Rising) => Entry::void(
-                "operate_threshold_not_found",
-                "operate threshold not found in {} fine ramps",
-            ),
-            Self::ThresholdNotFound(Falling) => Entry::void(
-                "release_threshold_not_found",
-                "release threshold not found in {} fine ramps",
-            ),
-            Self::SearchWithoutThreshold(Rising) => Entry::void(
-                "operate_search_failed",
-                "operate_voltage_v: no threshold between the ends of the search",
-            ),
-            Self::SearchWithoutThreshold(Falling) => Entry::void(
-                "release_search_failed",
-                "release_voltage_v: no threshold between the ends of the search",
-            ),
+            Self::CoilOpen => Entry::fail("coil_open", bins::COIL),
+            Self::CoilCurrentOverRange => Entry::fail("coil_current_over_range", bins::COIL)
+                .proves(Parameter::CoilResistance, Side::Low),
+            Self::NoClosedAtRest => Entry::fail("no_closed_at_rest", bins::CONTACT),
+            Self::NcOpenAtRest => Entry::fail("nc_open_at_rest", bins::CONTACT),
+            Self::NcDoesNotOpen => Entry::fail("nc_does_not_open", bins::CONTACT),
+            Self::NoDoesNotMake => Entry::fail("no_does_not_make", bins::CONTACT),
+            Self::OperatesTooLate => Entry::fail("operates_too_late", bins::TIME)
+                .proves(Parameter::OperateTime, Side::High),
+            Self::ReleasesTooLate => Entry::fail("releases_too_late", bins::TIME)
+                .proves(Parameter::ReleaseTime, Side::High),
+            Self::AboveCoarseRamp => Entry::fail("above_coarse_ramp", bins::VOLTAGE)
+                .proves(Parameter::OperateVoltage, Side::High),
+            Self::ContactOverRange(No) => Entry::fail("no_contact_over_range", bins::CONTACT),
+            Self::ContactOverRange(Nc) => Entry::fail("nc_contact_over_range", bins::CONTACT),
+            Self::ContactOpen(No) => Entry::fail("no_contact_open", bins::CONTACT),
+            Self::ContactOpen(Nc) => Entry::fail("nc_contact_open", bins::CONTACT),
+            Self::Misoriented => Entry::void("misoriented"),
+            Self::PinOpen => Entry::void("pin_open"),
+            Self::PinsOpen => Entry::void("pins_open"),
+            Self::ProbeChainOpen => Entry::void("probe_chain_open"),
+            Self::BoardNotRead => Entry::void("board_not_read"),
+            Self::CoilNotRead => Entry::void("coil_not_read"),
+            Self::CoilVoltageNotReadable => Entry::void("coil_voltage_not_readable"),
+            Self::CoilSupplyLow => Entry::void("coil_supply_low"),
+            Self::CoilCurrentRemains => Entry::void("coil_current_remains"),
+            Self::TrackNotReadable => Entry::void("track_not_readable"),
+            Self::DropNotReadable(No) => Entry::void("no_drop_not_readable"),
+            Self::DropNotReadable(Nc) => Entry::void("nc_drop_not_readable"),
+            Self::DropWithoutZero => Entry::void("nc_drop_without_zero"),
+            Self::ContactImplausible(No) => Entry::void("no_contact_implausible"),
+            Self::ContactImplausible(Nc) => Entry::void("nc_contact_implausible"),
+            Self::GatesNotRead => Entry::void("gates_not_read"),
+            Self::GatesImplausible => Entry::void("gates_implausible"),
+            Self::MadeOutsideWindow => Entry::void("made_outside_window"),
+            Self::ThresholdNotFound(Rising) => Entry::void("operate_threshold_not_found"),
+            Self::ThresholdNotFound(Falling) => Entry::void("release_threshold_not_found"),
+            Self::SearchWithoutThreshold(Rising) => Entry::void("operate_search_failed"),
+            Self::SearchWithoutThreshold(Falling) => Entry::void("release_search_failed"),
         }
     }
 
-    /// The finding with the figure or the pins that its text has a place for.
+    /// The finding with the figure or the pins that its text names.
     pub fn with(self, detail: impl Into<String>) -> Reason {
         Reason {
             code: Code::EmRelay(self),
@@ -349,31 +222,9 @@ impl Finding {
         self.entry().proves.map(|(parameter, _)| parameter)
     }
 
-    /// What pages and paper say, after the name of the characteristic that it proves; none where they show the text.
-    pub fn words(self) -> Option<Words> {
-        self.entry().words
-    }
-
     /// The finding with this code.
     pub fn from_code(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|it| it.code() == code)
-    }
-
-    /// The text of rows and messages.
-    pub fn text(self, detail: &str) -> String {
-        self.entry().text.replacen("{}", detail, 1)
-    }
-
-    /// Reads `text` back: the finding and its detail. For histories written before reasons had codes.
-    pub fn from_text(text: &str) -> Option<(Self, String)> {
-        Self::ALL.into_iter().find_map(|finding| {
-            let detail = match finding.entry().text.split_once("{}") {
-                Some((before, after)) => text.strip_prefix(before)?.strip_suffix(after)?,
-                None if finding.entry().text == text => "",
-                None => return None,
-            };
-            Some((finding, detail.to_owned()))
-        })
     }
 }
 
@@ -385,35 +236,12 @@ impl From<Finding> for Reason {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
     use super::*;
     use std::collections::BTreeSet;
 
     #[test]
-    fn every_finding_has_a_code_and_text_of_its_own() {
+    fn every_finding_has_a_code_of_its_own() {
         let codes: BTreeSet<_> = Finding::ALL.map(Finding::code).into();
-        let texts: BTreeSet<_> = Finding::ALL.map(|it| it.entry().text).into();
-        assert_eq!(
-            (codes.len(), texts.len()),
-            (Finding::ALL.len(), Finding::ALL.len())
-        );
-    }
-
-    #[test]
-    fn what_follows_the_name_of_a_parameter_has_words() {
-        for finding in Finding::ALL {
-            assert!(finding.proves().is_none() || finding.words().is_some());
-        }
-    }
-
-    #[test]
-    fn every_text_reads_back_as_its_finding() {
-        for finding in Finding::ALL {
-            let has_place = finding.entry().text.contains("{}");
-            let detail = if has_place { "COM" } else { "" };
-            let found = Finding::from_text(&finding.text(detail)).unwrap();
-            assert_eq!(found, (finding, detail.to_owned()));
-        }
-        assert_eq!(Finding::from_text("module answers ?AA"), None);
+        assert_eq!(codes.len(), Finding::ALL.len());
     }
 }

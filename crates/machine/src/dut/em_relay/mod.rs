@@ -58,8 +58,5 @@ pub use measure::Seen;
 pub use parameter::Parameter;
 pub use strategy::Strategy;
 
-/// What the page calls bins, stages, points, keys of a recipe and factors.
-pub const WORDS: &str = include_str!("words.json");
-
 #[cfg(test)]
 pub(crate) mod tests;

@@ -130,8 +130,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "coil_resistance_ohm",
             unit: Unit::Ohm,
-            name_en: "Coil resistance",
-            name_zh: "线圈电阻",
             spoken_of: SpokenOf::Part,
             bin: bins::COIL,
         },
@@ -145,8 +143,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "operate_voltage_v",
             unit: Unit::Volt,
-            name_en: "Operate voltage",
-            name_zh: "动作电压",
             spoken_of: SpokenOf::Part,
             bin: bins::VOLTAGE,
         },
@@ -160,8 +156,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "release_voltage_v",
             unit: Unit::Volt,
-            name_en: "Release voltage",
-            name_zh: "释放电压",
             spoken_of: SpokenOf::Part,
             bin: bins::VOLTAGE,
         },
@@ -175,8 +169,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "operate_time_ms",
             unit: Unit::Millisecond,
-            name_en: "Operate time",
-            name_zh: "动作时间",
             spoken_of: SpokenOf::Operation,
             bin: bins::TIME,
         },
@@ -190,8 +182,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "release_time_ms",
             unit: Unit::Millisecond,
-            name_en: "Release time",
-            name_zh: "释放时间",
             spoken_of: SpokenOf::Operation,
             bin: bins::TIME,
         },
@@ -205,8 +195,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "operate_bounce_ms",
             unit: Unit::Millisecond,
-            name_en: "Operate bounce",
-            name_zh: "动作回跳",
             spoken_of: SpokenOf::Operation,
             bin: bins::TIME,
         },
@@ -220,8 +208,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "release_bounce_ms",
             unit: Unit::Millisecond,
-            name_en: "Release bounce",
-            name_zh: "释放回跳",
             spoken_of: SpokenOf::Operation,
             bin: bins::TIME,
         },
@@ -235,8 +221,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "contact_resistance_no_mohm",
             unit: Unit::Milliohm,
-            name_en: "Contact resistance NO",
-            name_zh: "常开触点电阻",
             spoken_of: SpokenOf::Closures,
             bin: bins::CONTACT,
         },
@@ -250,8 +234,6 @@ static TABLE: [Facts; Parameter::ALL.len()] = [
         definition: Definition {
             key: "contact_resistance_nc_mohm",
             unit: Unit::Milliohm,
-            name_en: "Contact resistance NC",
-            name_zh: "常闭触点电阻",
             spoken_of: SpokenOf::Closures,
             bin: bins::CONTACT,
         },

@@ -2,7 +2,6 @@
 
 use super::parameter::{BIN, Parameter};
 use crate::dut::reason::{Code, Reason};
-use crate::dut::words::Words;
 use crate::gauge::Side;
 use crate::rig::bin::Bin;
 
@@ -30,24 +29,6 @@ impl Finding {
         }
     }
 
-    /// The text of rows and messages.
-    pub fn text(self) -> &'static str {
-        match self {
-            Self::Open => "resistance_ohm high: no current",
-            Self::Short => "resistance_ohm low: current over range",
-            Self::CurrentNotReadable => "resistor current not readable",
-        }
-    }
-
-    /// What pages and paper say of it.
-    pub fn words(self) -> Words {
-        match self {
-            Self::Open => Words::of("open: no current", "开路：无电流"),
-            Self::Short => Words::of("too low: current over range", "过低：电流超量程"),
-            Self::CurrentNotReadable => Words::of("current not readable", "电流无法读取"),
-        }
-    }
-
     /// Bin of a bad part; none where the part could not be judged.
     pub fn bin(self) -> Option<Bin> {
         self.side().map(|_| BIN)
@@ -61,11 +42,6 @@ impl Finding {
     /// The finding with this code.
     pub fn from_code(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|it| it.code() == code)
-    }
-
-    /// The finding with this text.
-    pub fn from_text(text: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|it| it.text() == text)
     }
 
     fn side(self) -> Option<Side> {

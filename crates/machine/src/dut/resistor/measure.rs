@@ -131,11 +131,24 @@ impl Device {
 
 /// Stages of the test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Stage {
+pub enum Stage {
     /// Drive on, current read.
     Measure,
     /// Drive off.
     Off,
+}
+
+impl Stage {
+    /// Every one.
+    pub const ALL: [Self; 2] = [Self::Measure, Self::Off];
+
+    /// Its name in views.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Measure => "Resistance",
+            Self::Off => "Off",
+        }
+    }
 }
 
 /// A test under way.
@@ -224,12 +237,9 @@ impl Test {
         self.number
     }
 
-    /// The stage under way, for screens.
+    /// Name of the stage under way.
     pub fn stage(&self) -> &'static str {
-        match self.stage {
-            Stage::Measure => "Resistance",
-            Stage::Off => "Off",
-        }
+        self.stage.name()
     }
 
     /// The result against its limit.

@@ -25,9 +25,6 @@ pub mod points;
 pub mod promise;
 pub mod recipe;
 
-/// Words of the page that only this kind needs.
-pub const WORDS: &str = include_str!("words.json");
-
 pub use finding::Finding;
 pub use measure::{Device, Test};
 pub use parameter::Parameter;

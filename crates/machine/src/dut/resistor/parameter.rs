@@ -30,8 +30,6 @@ impl Parameter {
 static RESISTANCE: Definition = Definition {
     key: "resistance_ohm",
     unit: Unit::Ohm,
-    name_en: "Resistance",
-    name_zh: "电阻",
     spoken_of: SpokenOf::Part,
     bin: BIN,
 };

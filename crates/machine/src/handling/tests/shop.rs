@@ -48,7 +48,7 @@ impl Asked {
     /// Codes of the alarms that come of it.
     pub fn alarms(&self) -> Vec<String> {
         let alarms = self.trouble.iter().cloned().map(Alarm::from);
-        alarms.map(|alarm| alarm.code).collect()
+        alarms.map(|alarm| alarm.code.name()).collect()
     }
 }
 

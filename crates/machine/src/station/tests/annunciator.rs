@@ -1,23 +1,25 @@
 //! Alarms that stand: states of ISA-18.2, first-out, repeats, shelf.
 
+use crate::handling::Move;
+use crate::rig::bin::Bin;
 use crate::station::annunciator::{Annunciator, Condition};
-use crate::station::catalogue::Stops;
+use crate::station::catalogue::{AlarmCode, Stops};
 use crate::station::trouble::Alarm;
 use units::{RigTime, Span};
 
 fn door() -> Alarm {
-    Alarm::safety("door_open", "door", "门")
+    AlarmCode::DoorOpen.into()
 }
 
 fn jam() -> Alarm {
-    Alarm::new("pusher_not_reached", "jam", "卡")
+    Alarm::not_reached(Move::PusherExtend, Span::ms(900))
 }
 
-fn states(list: &Annunciator) -> Vec<(&str, Condition)> {
+fn states(list: &Annunciator) -> Vec<(String, Condition)> {
     let of = |one: &crate::station::annunciator::Standing| one.condition;
     list.standing()
         .iter()
-        .map(|one| (one.alarm.code.as_str(), of(one)))
+        .map(|one| (one.alarm.code.name(), of(one)))
         .collect()
 }
 
@@ -26,14 +28,23 @@ fn an_alarm_is_normal_again_only_when_it_was_seen_and_its_cause_is_gone() {
     for seen_first in [true, false] {
         let mut list = Annunciator::default();
         assert!(list.raise(&door(), RigTime(1)));
-        assert_eq!(states(&list), [("door_open", Condition::Unacknowledged)]);
+        assert_eq!(
+            states(&list),
+            [("door_open".to_owned(), Condition::Unacknowledged)]
+        );
         if seen_first {
             assert!(list.acknowledge(None));
-            assert_eq!(states(&list), [("door_open", Condition::Acknowledged)]);
+            assert_eq!(
+                states(&list),
+                [("door_open".to_owned(), Condition::Acknowledged)]
+            );
             list.sensed(&[]);
         } else {
             list.sensed(&[]);
-            assert_eq!(states(&list), [("door_open", Condition::Returned)]);
+            assert_eq!(
+                states(&list),
+                [("door_open".to_owned(), Condition::Returned)]
+            );
             assert!(list.acknowledge(Some("door_open")));
         }
         assert!(list.standing().is_empty());
@@ -46,7 +57,10 @@ fn a_cause_that_a_sensor_still_shows_is_not_cleared_by_a_person() {
     list.raise(&door(), RigTime(1));
     list.cleared();
     list.sensed(&[door()]);
-    assert_eq!(states(&list), [("door_open", Condition::Unacknowledged)]);
+    assert_eq!(
+        states(&list),
+        [("door_open".to_owned(), Condition::Unacknowledged)]
+    );
     assert_eq!(
         list.still_sensed().map(|one| one.alarm.clone()),
         Some(door())
@@ -60,10 +74,13 @@ fn what_no_sensor_shows_goes_when_a_person_says_so() {
     list.sensed(&[]);
     assert_eq!(
         states(&list),
-        [("pusher_not_reached", Condition::Unacknowledged)]
+        [("pusher_not_reached".to_owned(), Condition::Unacknowledged)]
     );
     list.cleared();
-    assert_eq!(states(&list), [("pusher_not_reached", Condition::Returned)]);
+    assert_eq!(
+        states(&list),
+        [("pusher_not_reached".to_owned(), Condition::Returned)]
+    );
 }
 
 #[test]
@@ -99,7 +116,10 @@ fn a_shelved_alarm_comes_back_when_its_time_is_over() {
 fn what_nobody_had_seen_before_a_restart_is_still_unseen_after_it() {
     let mut list = Annunciator::default();
     list.inherit(jam(), 3, Some(RigTime(10)));
-    assert_eq!(states(&list), [("pusher_not_reached", Condition::Returned)]);
+    assert_eq!(
+        states(&list),
+        [("pusher_not_reached".to_owned(), Condition::Returned)]
+    );
     assert!(
         list.stopping(Stops::Abort).is_none(),
         "its cause is found out anew"
@@ -113,9 +133,9 @@ fn what_nobody_had_seen_before_a_restart_is_still_unseen_after_it() {
 #[test]
 fn a_second_body_that_no_beam_saw_is_told_although_the_first_alarm_stands() {
     let mut list = Annunciator::default();
-    assert!(list.raise(&Alarm::beam("retest", 2), RigTime(1)));
-    assert!(list.raise(&Alarm::beam("pass", 0), RigTime(2)));
+    assert!(list.raise(&Alarm::beam(Bin::RETEST, 2), RigTime(1)));
+    assert!(list.raise(&Alarm::beam(Bin::PASS, 0), RigTime(2)));
     let standing = list.standing();
     assert_eq!((standing.len(), standing[0].count), (1, 2));
-    assert!(standing[0].alarm.text_en.contains("pass"));
+    assert!(standing[0].alarm.args.get("bin") == Some("pass"));
 }

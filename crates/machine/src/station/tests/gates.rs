@@ -11,6 +11,8 @@ use crate::handling::ledger::Kind;
 use crate::handling::place::Place;
 use crate::handling::wear::Uses;
 use crate::rig::sample::Sample;
+use crate::station::Doing;
+use crate::station::catalogue::AlarmCode;
 use crate::station::gates::{CheckSettings, LotSettings, WearSettings};
 use crate::station::orders::Order;
 use crate::station::packml::{Command, State};
@@ -109,7 +111,7 @@ fn nothing_but_a_golden_part_is_judged_after_a_check_that_failed() {
     machine.order(Order::Command(Command::Unhold)).unwrap();
     assert_eq!(kinds(&mut machine), ["golden"], "the gate stays closed");
     let failed = machine.station.annunciator().standing();
-    assert_eq!(failed[0].alarm.code, "golden_check_failed");
+    assert_eq!(failed[0].alarm.code, AlarmCode::GoldenCheckFailed);
 }
 
 #[test]
@@ -141,7 +143,7 @@ fn after_so_many_hours_the_line_holds_and_asks_for_the_golden_part() {
         "{made:?}"
     );
     let due = &machine.station.annunciator().standing()[0].alarm;
-    assert!(due.code == "golden_check_due" && due.text_en.contains("G-12-1"));
+    assert!(due.code == AlarmCode::GoldenCheckDue && due.args.get("serial") == Some("G-12-1"));
     machine.order(Order::Command(Command::Unhold)).unwrap();
     assert_eq!(
         kinds(&mut machine).first().map(String::as_str),
@@ -211,7 +213,7 @@ fn wear_of_earlier_runs_counts() {
                 .record
                 .alarms
                 .iter()
-                .map(|alarm| (alarm.code.clone(), machine.station.uses().probe_touches)),
+                .map(|alarm| (alarm.code.name(), machine.station.uses().probe_touches)),
         );
         if wants.record.ending.is_some() {
             break;
@@ -232,7 +234,7 @@ fn a_calibration_that_runs_out_stops_the_lot_and_the_next_start_calibrates() {
         .record
         .alarms
         .into_iter()
-        .map(|alarm| alarm.code)
+        .map(|alarm| alarm.code.name())
         .collect();
     assert_eq!(told, ["calibration_overdue"]);
     for command in [Command::Clear, Command::Reset, Command::Start] {
@@ -241,5 +243,5 @@ fn a_calibration_that_runs_out_stops_the_lot_and_the_next_start_calibrates() {
         }
         machine.order(Order::Command(command)).unwrap();
     }
-    assert_eq!(machine.station.state(), "calibrating");
+    assert_eq!(machine.station.doing(), Doing::Calibrating);
 }

@@ -425,6 +425,6 @@ impl Machine {
                 return wants;
             }
         }
-        panic!("the run does not end: {}", self.station.state());
+        panic!("the run does not end: {:?}", self.station.doing());
     }
 }

@@ -7,6 +7,11 @@ use crate::station::orders::Order;
 use crate::station::packml::{Command, Mode, State};
 use crate::station::trouble::Alarm;
 use crate::station::wants::Ending;
+use texts::Lang;
+
+fn said(why: &crate::station::orders::Refused) -> String {
+    why.message().say(Lang::En)
+}
 
 fn attended(parts: usize) -> Machine {
     Machine::attended(Some(parts as u64), vec![Specimen::MissingPin; parts])
@@ -25,14 +30,14 @@ fn until(machine: &mut Machine, state: State) {
         .annunciator()
         .standing()
         .iter()
-        .map(|one| &one.alarm.text_en)
+        .map(|one| one.alarm.text(Lang::En))
         .collect();
     panic!("{found:?} instead of {state:?}: {list:?}");
 }
 
 fn testing(machine: &mut Machine) {
     for _ in 0..6000 {
-        if machine.station.state().starts_with("testing") {
+        if machine.station.doing().stage().is_some() {
             return;
         }
         machine.turn();
@@ -85,7 +90,7 @@ fn after_an_emergency_stop_the_part_inside_goes_to_retest_and_the_lot_goes_on() 
     assert!(wants.rig.safe && wants.rig.motions.is_empty());
     until(&mut machine, State::Aborted);
     let early = machine.order(Order::Command(Command::Clear)).unwrap_err();
-    assert!(early.en.contains("still there"), "{}", early.en);
+    assert!(said(&early).contains("still there"), "{}", said(&early));
     machine.shop.set(DigitalIn::EmergencyStopOk, true);
     machine.turn();
     give(&mut machine, Command::Clear);
@@ -135,8 +140,8 @@ fn every_command_is_taken_or_refused_with_a_reason_in_both_languages() {
         match machine.station.may(*command) {
             Ok(()) => {}
             Err(why) => {
-                assert!(why.en.contains("Execute"), "{}", why.en);
-                assert!(why.zh.contains("状态"), "{}", why.zh);
+                assert!(said(&why).contains("Execute"), "{}", said(&why));
+                assert!(why.message().say(Lang::Zh).contains("状态"));
             }
         }
     }
@@ -148,16 +153,16 @@ fn jogging_needs_the_mode_and_a_homed_machine() {
     machine.turn();
     let jog = || Order::Jog(crate::handling::moves::Move::PusherExtend);
     let why = machine.order(jog()).unwrap_err();
-    assert!(why.en.contains("manual"), "{}", why.en);
+    assert!(said(&why).contains("manual"), "{}", said(&why));
     give(&mut machine, Command::Stop);
     until(&mut machine, State::Stopped);
     assert_eq!(machine.order(Order::Mode(Mode::Manual)), Ok(()));
     let why = machine.order(jog()).unwrap_err();
-    assert!(why.en.contains("unhomed"), "{}", why.en);
+    assert!(said(&why).contains("unhomed"), "{}", said(&why));
     give(&mut machine, Command::Reset);
     until(&mut machine, State::Idle);
     let why = machine.order(Order::Command(Command::Start)).unwrap_err();
-    assert!(why.en.contains("production"), "{}", why.en);
+    assert!(said(&why).contains("production"), "{}", said(&why));
     assert_eq!(machine.order(jog()), Ok(()));
 }
 
@@ -216,7 +221,7 @@ fn a_lamp_test_lights_everything_and_ends() {
 fn a_beam_that_counts_wrong_holds_the_line_until_a_person_says_go_on() {
     let mut machine = attended(4);
     testing(&mut machine);
-    machine.bus = Some(Alarm::beam("pass", 0));
+    machine.bus = Some(Alarm::beam(Bin::PASS, 0));
     machine.turn();
     until(&mut machine, State::Held);
     give(&mut machine, Command::Unhold);
@@ -249,7 +254,7 @@ fn between_lots_nothing_begins_by_itself_and_there_is_nothing_to_start() {
         machine.turn();
     }
     let why = machine.order(Order::Command(Command::Start)).unwrap_err();
-    assert!(why.en.contains("no lot is under way"), "{}", why.en);
+    assert!(said(&why).contains("no lot is under way"), "{}", said(&why));
     assert_eq!(machine.order(Order::Leave), Ok(()));
     assert_eq!(machine.ending, Some(Ending::Stopped));
 }
@@ -259,25 +264,25 @@ fn a_lot_is_left_while_the_machine_rests_and_at_no_other_time() {
     let mut machine = attended(3);
     testing(&mut machine);
     let why = machine.order(Order::Leave).unwrap_err();
-    assert!(why.en.contains("stop it first"), "{}", why.en);
+    assert!(said(&why).contains("stop it first"), "{}", said(&why));
     machine.shop.set(DigitalIn::DoorClosed, false);
     until(&mut machine, State::Aborted);
     machine.shop.set(DigitalIn::DoorClosed, true);
     let why = machine.order(Order::Leave).unwrap_err();
-    assert!(why.en.contains("clear it first"), "{}", why.en);
+    assert!(said(&why).contains("clear it first"), "{}", said(&why));
     give(&mut machine, Command::Clear);
     until(&mut machine, State::Stopped);
     let why = machine.order(Order::Leave).unwrap_err();
     assert!(
-        why.en.contains("a part of this lot is inside"),
+        said(&why).contains("a part of this lot is inside"),
         "{}",
-        why.en
+        said(&why)
     );
     give(&mut machine, Command::Reset);
     until(&mut machine, State::Idle);
     assert_eq!(machine.order(Order::Mode(Mode::Manual)), Ok(()));
     let why = machine.order(Order::Leave).unwrap_err();
-    assert!(why.en.contains("production"), "{}", why.en);
+    assert!(said(&why).contains("production"), "{}", said(&why));
     assert_eq!(machine.order(Order::Mode(Mode::Production)), Ok(()));
     assert_eq!(machine.ending, None);
     assert_eq!(machine.order(Order::Leave), Ok(()));

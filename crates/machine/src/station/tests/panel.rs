@@ -2,6 +2,7 @@
 
 use super::machine::{Machine, Specimen};
 use crate::rig::point::DigitalIn;
+use crate::station::catalogue::AlarmCode;
 use crate::station::orders::Refused;
 use crate::station::packml::{Command, State};
 use crate::station::wants::Ending;
@@ -98,7 +99,7 @@ fn a_held_button_orders_once_and_is_told_until_it_is_let_go() {
         let standing = machine.station.annunciator().standing();
         let mut stuck = standing
             .iter()
-            .filter(|one| one.alarm.code == "button_stuck");
+            .filter(|one| one.alarm.code == AlarmCode::ButtonStuck);
         stuck.any(|one| one.is_active())
     };
     assert!(active(&machine));

@@ -4,8 +4,10 @@ use super::machine::{Machine, Specimen};
 use crate::dut::{Reason, Verdict};
 use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalIn, DigitalOut};
+use crate::station::Doing;
 use crate::station::trouble::Alarm;
 use crate::station::wants::{Ending, Wants};
+use texts::Lang;
 use units::Span;
 
 /// Runs until the nest holds a part under test.
@@ -13,11 +15,11 @@ fn under_test() -> Machine {
     let mut machine = Machine::new(Some(3), vec![Specimen::MissingPin; 3]);
     for _ in 0..3000 {
         machine.turn();
-        if machine.station.state().starts_with("testing") {
+        if machine.station.doing().stage().is_some() {
             return machine;
         }
     }
-    panic!("no test began: {}", machine.station.state());
+    panic!("no test began: {:?}", machine.station.doing());
 }
 
 fn assert_safe(wants: &Wants, code: &str) {
@@ -28,7 +30,7 @@ fn assert_safe(wants: &Wants, code: &str) {
     );
     assert!(wants.rig.outputs.contains(&(DigitalOut::LampRed, true)));
     assert_eq!(wants.record.ending, Some(Ending::Alarm));
-    assert_eq!(wants.record.alarms[0].code, code);
+    assert_eq!(wants.record.alarms[0].code.name(), code);
 }
 
 #[test]
@@ -49,7 +51,7 @@ fn an_open_safety_input_makes_everything_safe_and_voids_the_part_inside() {
             (&why, Some(Bin::RETEST))
         );
         assert!(machine.station.ledger().balances());
-        assert_eq!(machine.station.state(), "ended");
+        assert_eq!(machine.station.doing(), Doing::Ended);
     }
 }
 
@@ -82,15 +84,15 @@ fn a_part_that_is_on_its_way_to_its_bin_when_the_run_ends_is_told() {
     }
     machine.bus = Some(Alarm::bus("line motion is silent"));
     let wants = machine.turn();
-    let codes: Vec<&str> = wants
+    let codes: Vec<String> = wants
         .record
         .alarms
         .iter()
-        .map(|it| it.code.as_str())
+        .map(|it| it.code.name())
         .collect();
     assert_eq!(codes, ["bus_trouble", "bin_beam"]);
     assert!(
-        wants.record.alarms[1].text_en.contains("contact"),
+        wants.record.alarms[1].text(Lang::En).contains("contact"),
         "{wants:?}"
     );
     assert!(wants.record.alarms_changed && wants.record.ending == Some(Ending::Alarm));
@@ -108,7 +110,11 @@ fn a_refused_motion_makes_everything_safe() {
         .station
         .refused(movement, "probes are up", now, &mut wants);
     assert_safe(&wants, "motion_refused");
-    assert!(wants.record.alarms[0].text_en.contains("probes are up"));
+    assert!(
+        wants.record.alarms[0]
+            .text(Lang::En)
+            .contains("probes are up")
+    );
 }
 
 #[test]
@@ -123,7 +129,7 @@ fn safety_inputs_that_are_no_longer_read_are_trouble() {
     machine.shop.now = machine.shop.now + Span(1);
     let wants = machine.turn_without_scan();
     assert_safe(&wants, "sensor_stale");
-    let stale = &wants.record.alarms[0].text_en;
+    let stale = wants.record.alarms[0].text(Lang::En);
     assert!(stale.contains("emergency_stop_ok"), "{stale}");
 }
 
@@ -135,7 +141,7 @@ fn before_the_first_scan_the_station_waits_but_not_for_ever() {
     assert!(
         wants.rig.motions.is_empty() && wants.rig.job.is_none() && wants.record.alarms.is_empty()
     );
-    assert_eq!(machine.station.state(), "waiting for sensors");
+    assert_eq!(machine.station.doing(), Doing::WaitingForSensors);
     machine.shop.now = machine.shop.now + Span::ms(3000);
     assert!(machine.turn_without_scan().record.alarms.is_empty());
     machine.shop.now = machine.shop.now + Span(1);
@@ -161,7 +167,7 @@ fn an_empty_magazine_that_nobody_fills_ends_the_run_after_a_minute() {
     let start = machine.shop.now;
     let ending = loop {
         let wants = machine.turn();
-        told.extend(wants.record.alarms.iter().map(|alarm| alarm.code.clone()));
+        told.extend(wants.record.alarms.iter().map(|alarm| alarm.code.name()));
         if let Some(ending) = wants.record.ending {
             break ending;
         }
@@ -185,7 +191,7 @@ fn told(machine: &mut Machine, ms: u64) -> Vec<String> {
                 .record
                 .alarms
                 .into_iter()
-                .map(|alarm| alarm.code),
+                .map(|alarm| alarm.code.name()),
         );
     }
     told

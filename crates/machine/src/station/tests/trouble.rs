@@ -1,12 +1,19 @@
-//! The catalogue knows every alarm, in both languages, once.
+//! Every alarm has a code, and its arguments are those of its texts.
 
+#![allow(clippy::unwrap_used)]
+
+use crate::handling::Place;
 use crate::handling::moves::Move;
 use crate::handling::tests::wiring;
 use crate::handling::trouble::Trouble;
+use crate::handling::wear::Wearing;
 use crate::rig::axis::AxisStation;
+use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
-use crate::station::catalogue::{entry, every};
+use crate::station::catalogue::AlarmCode;
 use crate::station::trouble::Alarm;
+use std::collections::BTreeSet;
+use texts::Lang;
 use units::Span;
 
 const MOVES: [Move; 13] = [
@@ -36,57 +43,82 @@ fn every_alarm() -> Vec<Alarm> {
             Alarm::refused(movement, "jaw_left"),
         ]
     };
+    let places = [Place::Pocket, Place::NEST, Place::Gripper];
+    let of_a_place = |it| {
+        [
+            Alarm::part_found(it),
+            Alarm::part_lost(it),
+            Alarm::part_gone(it),
+        ]
+    };
+    let of_a_bin = |bin| {
+        [
+            Alarm::beam(bin, 0),
+            Alarm::beam(bin, 2),
+            Alarm::beam_unread(bin),
+            Alarm::bin_full(bin),
+            Alarm::fall_unseen(bin),
+        ]
+    };
     let others = [
         Alarm::bus("silent"),
-        Alarm::history(),
-        Alarm::not_safe(),
-        Alarm::no_part(),
-        Alarm::magazine_empty(),
         Alarm::stale(DigitalIn::AirOk),
-        Alarm::nest_empty(),
-        Alarm::beam("pass", 0),
-        Alarm::bin_full("pass"),
         Alarm::button_stuck(DigitalIn::ButtonStop),
-        Alarm::part_found("nest"),
-        Alarm::part_lost("nest"),
-        Alarm::fall_unseen("coil"),
-        Alarm::part_dropped(),
-        Alarm::part_stuck(),
-        Alarm::axis_drive(),
+        Alarm::part_sticks(),
         Alarm::step_too_long("probing", after),
         Alarm::watchdog_tripped("mech_do_a"),
         Alarm::calibration("odd"),
-        Alarm::calibration_overdue(),
+        Alarm::calibration_invalid("odd"),
         Alarm::golden_check_due("G-12-1"),
         Alarm::golden_check_failed("odd"),
         Alarm::golden_repeated("G-12-1", "odd"),
         Alarm::discard_limit(3, 40, 5.0),
-        Alarm::worn("probes", 8, 8),
+        Alarm::worn(Wearing::Probes, 8, 8),
+        Alarm::worn(Wearing::Jaws, 8, 8),
         Alarm::probe_contact(3.2, 3.0),
         Alarm::calibration_cut_off("coil_ai"),
-        Alarm::safety("emergency_stop", "", ""),
-        Alarm::safety("door_open", "", ""),
-        Alarm::safety("air_lost", "", ""),
     ];
-    MOVES
-        .into_iter()
-        .flat_map(of_a_move)
+    let bins: Vec<Bin> = wiring().axis.bins().collect();
+    let to_bins = bins.iter().map(|bin| Move::AxisTo(AxisStation::Bin(*bin)));
+    let moved = MOVES.into_iter().chain(to_bins).flat_map(of_a_move);
+    let known: Vec<Alarm> = moved
+        .chain(places.into_iter().flat_map(of_a_place))
+        .chain(bins.iter().copied().flat_map(of_a_bin))
         .chain(others)
-        .collect()
+        .collect();
+    let codes: BTreeSet<AlarmCode> = known.iter().map(|it| it.code).collect();
+    let bare = AlarmCode::all()
+        .filter(|it| !codes.contains(it))
+        .map(Alarm::from);
+    bare.chain(known.iter().cloned()).collect()
 }
 
 #[test]
-fn every_alarm_that_the_station_can_raise_is_in_the_catalogue() {
+fn every_alarm_has_both_texts_with_its_arguments() {
     for alarm in every_alarm() {
-        assert!(entry(&alarm.code).is_some(), "{}", alarm.code);
+        let message = alarm.code.message(alarm.args.clone());
+        let [en, zh] = Lang::ALL.map(|lang| message.try_say(lang));
+        assert!(en.is_some_and(|it| it.is_ascii()), "{alarm:?}");
+        assert!(zh.is_some(), "{alarm:?}");
+        let case = alarm.args.get("case");
+        let wanted = texts::arguments(Lang::En, &message.id(), case).unwrap();
+        let given: BTreeSet<&str> = alarm.args.names().filter(|it| *it != "case").collect();
+        let unused: Vec<_> = given
+            .difference(&wanted)
+            .filter(|it| **it != "bin")
+            .collect();
+        assert!(unused.is_empty() || case.is_some(), "{alarm:?}: {unused:?}");
     }
-    for entry in every() {
-        let raised = every_alarm();
-        let used = raised.iter().any(|alarm| {
-            crate::station::catalogue::entry(&alarm.code).map(|one| one.code) == Some(entry.code)
-        });
-        assert!(used, "nothing raises {}", entry.code);
+}
+
+#[test]
+fn every_code_is_read_back_from_its_name() {
+    let names: BTreeSet<String> = AlarmCode::all().map(AlarmCode::name).collect();
+    assert_eq!(names.len(), AlarmCode::all().count());
+    for code in AlarmCode::all() {
+        assert_eq!(AlarmCode::from_name(&code.name()), Some(code));
     }
+    assert_eq!(AlarmCode::from_name("of_tomorrow"), None);
 }
 
 #[test]
@@ -94,62 +126,51 @@ fn a_stroke_that_does_not_arrive_is_told_with_its_sensors() {
     for movement in MOVES {
         let alarm = Alarm::from(Trouble::NotReached(movement, Span::ms(900)));
         let code = format!("{}_not_reached", movement.actuator_key());
-        assert_eq!(alarm.code, code);
+        assert_eq!(alarm.code.name(), code);
         for (point, _) in movement.arrival() {
-            assert!(alarm.text_en.contains(point.name()), "{}", alarm.text_en);
-            assert!(alarm.text_zh.contains(point.name()), "{}", alarm.text_zh);
+            assert!(
+                Lang::ALL
+                    .iter()
+                    .all(|lang| alarm.text(*lang).contains(point.name()))
+            );
         }
     }
 }
 
 #[test]
 fn cause_consequence_and_action_are_told_in_both_languages() {
-    let chinese = |text: &str| text.chars().any(|c| ('\u{4e00}'..='\u{9fff}').contains(&c));
-    for entry in every() {
-        for (en, zh) in [entry.cause, entry.consequence, entry.action] {
-            assert!(en.ends_with('.') && en.is_ascii(), "{}: {en}", entry.code);
-            assert!(zh.ends_with('。') && chinese(zh), "{}: {zh}", entry.code);
+    for code in AlarmCode::all() {
+        for (en, zh) in code.help(Lang::En).into_iter().zip(code.help(Lang::Zh)) {
+            assert!(en.ends_with('.') && en.is_ascii(), "{code}: {en}");
+            assert!(
+                zh.ends_with('。') && zh.chars().any(is_chinese),
+                "{code}: {zh}"
+            );
         }
     }
 }
 
+fn is_chinese(c: char) -> bool {
+    ('\u{4e00}'..='\u{9fff}').contains(&c)
+}
+
 #[test]
 fn what_a_chinese_text_is_about_is_named_in_chinese() {
-    let begins_chinese = |text: &str| text.starts_with(|c| ('\u{4e00}'..='\u{9fff}').contains(&c));
-    let places = ["pocket", "nest", "gripper"]
-        .map(|place| [Alarm::part_found(place), Alarm::part_lost(place)]);
-    let axis = &wiring().axis;
-    let bins = axis
-        .bins()
-        .map(|bin| [Alarm::beam(bin.name(), 2), Alarm::bin_full(bin.name())]);
-    let after = Span::ms(900);
-    let to_bins = axis.bins().map(|bin| Move::AxisTo(AxisStation::Bin(bin)));
-    let moves = MOVES.into_iter().chain(to_bins);
-    let moved = moves.map(|it| {
-        [
-            Alarm::not_reached(it, after),
-            Alarm::retried(it, after),
-            Alarm::refused(it, ""),
-        ]
-    });
-    let ended = MOVES.map(|it| [Alarm::left_end(it), Alarm::both_ends(it)]);
-    let gone = [Alarm::part_gone("nest"), Alarm::fall_unseen("coil")];
-    let of_two = places
-        .into_iter()
-        .chain(bins)
-        .chain(ended)
-        .chain([gone])
-        .flatten();
-    for alarm in of_two.chain(moved.flatten()) {
-        assert!(
-            begins_chinese(&alarm.text_zh),
-            "{}: {}",
-            alarm.code,
-            alarm.text_zh
-        );
+    for alarm in every_alarm() {
+        let names = ["place", "bin", "motion"];
+        if names.iter().any(|it| alarm.args.get(it).is_some()) {
+            let text = alarm.text(Lang::Zh);
+            assert!(text.starts_with(|c| is_chinese(c)), "{text}");
+        }
     }
     assert_eq!(
-        Alarm::part_lost("gripper").text_zh,
+        Alarm::part_lost(Place::Gripper).text(Lang::Zh),
         "夹爪的工件已不在原位。请找到并报废。"
     );
+}
+
+#[test]
+fn an_alarm_that_was_stored_without_its_arguments_says_its_cause() {
+    let left = Alarm::from(AlarmCode::BinBeam);
+    assert_eq!(left.text(Lang::Zh), left.code.help(Lang::Zh)[0]);
 }

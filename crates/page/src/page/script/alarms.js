@@ -28,23 +28,23 @@ function standing(alarm) {
   head.append(make("b", (alarm.first_out ? "▲ " : "△ ") + alarm.code), make("span", said(alarm, "text")));
   said(alarm, "help").forEach((text, place) => {
     const pair = make("div");
-    pair.append(make("dt", word(["alarm.cause", "alarm.consequence", "alarm.action"][place])), make("dd", text || NONE));
+    pair.append(make("dt", word(["alarms-cause", "alarms-consequence", "alarms-action"][place])), make("dd", text || NONE));
     help.append(pair);
   });
-  const state = [known("alarm.state." + alarm.state, alarm.state), known("alarm.stops." + alarm.stops, alarm.stops),
+  const state = [known("alarms-state-" + alarm.state, alarm.state), known("alarms-stops-" + alarm.stops, alarm.stops),
     alarm.count + " ×", clock(alarm.raised_at_us)];
-  if (alarm.shelved) state.push(word("alarm.shelved"));
+  if (alarm.shelved) state.push(word("alarms-shelved"));
   if (alarm.first_out) state.push(word("first_out"));
   const buttons = make("div", undefined, "row");
-  buttons.append(button(word("order.acknowledge"), () => tell({order: "acknowledge", alarm: alarm.code}), "acknowledge"),
-    button(word("order.shelve"), () => askShelve(alarm.code), "shelve"));
+  buttons.append(button(word("order-acknowledge"), () => tell({order: "acknowledge", alarm: alarm.code}), "acknowledge"),
+    button(word("order-shelve"), () => askShelve(alarm.code), "shelve"));
   item.append(head, make("p", state.join(" · "), "about"), help, buttons);
   return item;
 }
 
 async function tell(order) {
-  const why = me === null ? word("stop.login") : await give(order);
-  at("alarm_answer").textContent = why || word("order." + order.order) + ": " + word("order.taken");
+  const why = me === null ? word("stop-login") : await give(order);
+  at("alarm_answer").textContent = why || word("order-" + order.order) + ": " + word("order-taken");
 }
 
 function askShelve(code) {
@@ -91,9 +91,9 @@ async function readPast() {
   showPast();
 }
 
-// The very words are kept in English; beside them the cause that the catalogue has for the code.
+// Rows of before have their text in English only: beside it the cause that the catalogue has for the code.
 function pastText(it) {
-  const text = make("span", language === "zh" && it.cause_zh ? it.cause_zh : it.text);
+  const text = make("span", (language === "zh" && (it.text_zh || it.cause_zh)) || it.text);
   text.title = it.text;
   return text;
 }
@@ -117,7 +117,7 @@ const SOUND_EVERY_MS = 2000;
 // Two tones as long as somebody has to look: an alarm that is neither acknowledged nor shelved.
 function sound(alarms) {
   const wanted = alarms.some((it) => it.state === "unacknowledged" && !it.shelved);
-  at("mute").textContent = word(muted ? "sound.off" : "sound.on");
+  at("mute").textContent = word(muted ? "sound-off" : "sound-on");
   at("mute").setAttribute("aria-pressed", muted);
   at("mute").dataset.sounding = wanted && !muted;
   const now = performance.now();

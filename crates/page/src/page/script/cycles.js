@@ -35,8 +35,8 @@ function timeBars(rows, label) {
 // Probes up to verdict, and from there to the beam of the bin.
 function partBars(part) {
   const judged = seconds(part.time), bars = [];
-  if (part.test_s !== null) bars.push({from: judged - part.test_s, to: judged, name: word("h.test_s")});
-  if (part.landed_at) bars.push({from: judged, to: seconds(part.landed_at), name: word("g.travels"), kind: "soft"});
+  if (part.test_s !== null) bars.push({from: judged - part.test_s, to: judged, name: word("h-test_s")});
+  if (part.landed_at) bars.push({from: judged, to: seconds(part.landed_at), name: word("g-travels"), kind: "soft"});
   return bars;
 }
 
@@ -57,7 +57,7 @@ function showTestBars(part) {
     return [name + (it.attempt > 1 ? " " + it.attempt : ""), together(it.samples.map((sample) => seconds(sample.at)), name)];
   }).sort((a, b) => a[1][0].from - b[1][0].from);
   const test = partBars(part).slice(0, 1);
-  at("part_bars").replaceChildren(...(rows.length ? [timeBars(test.length ? [[word("h.test_s"), test], ...rows] : rows, word("g.test"))] : []));
+  at("part_bars").replaceChildren(...(rows.length ? [timeBars(test.length ? [[word("h-test_s"), test], ...rows] : rows, word("g-test"))] : []));
 }
 
 const LAST_PARTS = 12;
@@ -67,5 +67,5 @@ async function showStoredCycles(lot) {
   const {parts: count} = await (await ask("/api/history/count" + query({lot}))).json();
   const members = {lot, limit: LAST_PARTS, offset: Math.max(0, count - LAST_PARTS)};
   const parts = (await (await ask("/api/history/query" + query(members))).json()).filter((it) => partBars(it).length);
-  at("q_stored").replaceChildren(...(parts.length ? [timeBars(parts.map((it) => [word("h.part") + " " + it.seq, partBars(it)]), word("g.stored"))] : []));
+  at("q_stored").replaceChildren(...(parts.length ? [timeBars(parts.map((it) => [word("h-part") + " " + it.seq, partBars(it)]), word("g-stored"))] : []));
 }

@@ -12,8 +12,8 @@ function filter() {
 
 function makeFilter() {
   const all = ["", word("any")];
-  fillSelect(at("h_verdict"), [all, ...[...VERDICTS, "unjudged"].map((it) => [it, word("verdict." + it)])]);
-  fillSelect(at("h_bin"), [all, ...BINS.map((it) => [it, word("bin." + it)])]);
+  fillSelect(at("h_verdict"), [all, ...[...VERDICTS, "unjudged"].map((it) => [it, word("verdict-" + it)])]);
+  fillSelect(at("h_bin"), [all, ...BINS.map((it) => [it, word("bin-" + it)])]);
   fillSelect(at("h_param"), [all, ...keyOptions()]);
 }
 
@@ -48,7 +48,7 @@ async function readParts() {
 
 const verdictCell = (verdict) => {
   const cell = make("td", undefined, verdict);
-  cell.append(make("span", known("verdict." + verdict, verdict), "verdict"));
+  cell.append(make("span", known("verdict-" + verdict, verdict), "verdict"));
   return cell;
 };
 
@@ -61,12 +61,12 @@ function partLink(part) {
 function showParts(parts, count) {
   const key = at("h_param").value;
   at("h_value").textContent = key ? nameOf(key) + " / " + unitOf(key) : "";
-  at("h_count").textContent = count === 0 ? word("h.none")
+  at("h_count").textContent = count === 0 ? word("h-none")
     : (offset + 1) + " – " + (offset + parts.length) + " " + word("judged_of") + " " + whole(count);
   at("h_back").disabled = offset === 0;
   at("h_next").disabled = offset + parts.length >= count;
   at("parts").replaceChildren(...parts.map((part) => row(partLink(part), clock(part.time), part.recipe,
-    verdictCell(part.verdict), known("bin." + (part.landed_bin || part.bin), NONE),
+    verdictCell(part.verdict), known("bin-" + (part.landed_bin || part.bin), NONE),
     reasonTexts(part).join("; "), key ? measured(part.values[key], part.uncertainty[key]).join(" ± ") : "")));
 }
 
@@ -99,12 +99,12 @@ async function readPart() {
 }
 
 function showPart(part) {
-  const facts = [["h.time", clock(part.time)], ["recipe", part.recipe],
-    ["verdict", known("verdict." + part.verdict, part.verdict)],
-    ["h.bin", known("bin." + (part.landed_bin || part.bin), NONE)],
-    ["h.test_s", part.test_s === null ? NONE : part.test_s.toFixed(2) + " s"],
-    ["h.cycle_s", part.cycle_s === null ? NONE : part.cycle_s.toFixed(2) + " s"],
-    ["h.reasons", reasonTexts(part).join("; ") || NONE]];
+  const facts = [["h-time", clock(part.time)], ["recipe", part.recipe],
+    ["verdict", known("verdict-" + part.verdict, part.verdict)],
+    ["h-bin", known("bin-" + (part.landed_bin || part.bin), NONE)],
+    ["h-test_s", part.test_s === null ? NONE : part.test_s.toFixed(2) + " s"],
+    ["h-cycle_s", part.cycle_s === null ? NONE : part.cycle_s.toFixed(2) + " s"],
+    ["h-reasons", reasonTexts(part).join("; ") || NONE]];
   at("part_facts").replaceChildren(...facts.map(([key, text]) => {
     const pair = make("div");
     pair.append(make("dt", word(key)), make("dd", text));

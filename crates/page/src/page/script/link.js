@@ -14,7 +14,7 @@ function showLink() {
   const link = linkNow();
   document.body.classList.toggle("stale", link !== "live");
   at("link").className = link === "live" ? "" : "bad";
-  at("link").lastElementChild.textContent = word("link." + link);
+  at("link").lastElementChild.textContent = word("link-" + link);
   document.title = (view && view.simulated ? word("simulation") + " · " : "") + "relayrig";
 }
 

@@ -15,16 +15,16 @@ function lotAnswer(text) {
 }
 
 async function orderLot(order) {
-  const why = me === null ? word("stop.login") : await give(order);
-  lotAnswer(why || word("order." + order.order) + ": " + word("order.taken"));
+  const why = me === null ? word("stop-login") : await give(order);
+  lotAnswer(why || word("order-" + order.order) + ": " + word("order-taken"));
   if (!why) readBook();
 }
 
 // Why an order about a lot would not be taken now: the machine's reason, or the lot's own.
 function whyNotLot(order, line) {
-  if (order === "release_lot" && underWay(line.lot)) return word("lots.clear_alarm");
+  if (order === "release_lot" && underWay(line.lot)) return word("lots-clear_alarm");
   if (underWay(line.lot)) return order === "close_lot" ? whyNot("close_lot") : whyNot("start", "lot");
-  if (me === null) return word("stop.login");
+  if (me === null) return word("stop-login");
   const why = line.why_not[order];
   return why ? why[language] : order === "start" ? whyNot("start", "lot") : "";
 }
@@ -51,7 +51,7 @@ function choose(line) {
 at("l_form").addEventListener("submit", (event) => {
   event.preventDefault();
   const count = at("l_count").value, retest = at("l_retest").value.trim();
-  const why = me === null ? word("stop.login") : whyNot("start", "lot");
+  const why = me === null ? word("stop-login") : whyNot("start", "lot");
   if (why) { lotAnswer(why); return; }
   const order = {order: "start", lot: at("l_lot").value.trim(), recipe: at("l_recipe").value};
   if (count) order.count = Number(count);
@@ -62,7 +62,7 @@ at("l_form").addEventListener("submit", (event) => {
 // --- the book ---
 
 function lotRow(line) {
-  const state = make("span", word("lot_state." + line.state), "lot_state " + line.state);
+  const state = make("span", word("lot_state-" + line.state), "lot_state " + line.state);
   if (line.why) state.append(make("small", line.why));
   const orders = make("div", undefined, "row");
   orders.append(lotButton("start", line, () => choose(line)),
@@ -76,7 +76,7 @@ function lotRow(line) {
 function lotButton(order, line, press) {
   const element = button("", () => { element.title ? lotAnswer(element.title) : press(); });
   element.dataset.lotOrder = order;
-  element.textContent = word(order === "start" ? "lots.choose" : "order." + order);
+  element.textContent = word(order === "start" ? "lots-choose" : "order-" + order);
   element.line = line;
   return element;
 }
@@ -94,7 +94,7 @@ function showLotButtons() {
 
 function showBook() {
   at("l_book").replaceChildren(...book.map(lotRow));
-  if (!book.length) at("l_book").append(row(word("lots.none")));
+  if (!book.length) at("l_book").append(row(word("lots-none")));
   at("l_newer").hidden = skipped === 0;
   at("l_older").hidden = book.length < BOOK;
   showLotButtons();
@@ -119,10 +119,10 @@ at("l_older").addEventListener("click", () => { skipped += BOOK; readBook(); });
 function askDecision(order, lot) {
   at("decide").dataset.order = order;
   at("decide").dataset.lot = lot;
-  at("decide_order").textContent = word("order." + order);
+  at("decide_order").textContent = word("order-" + order);
   at("decide_lot").textContent = lot;
-  at("decide_about").textContent = word("lots.about." + order);
-  at("decide_go").textContent = word("order." + order);
+  at("decide_about").textContent = word("lots-about-" + order);
+  at("decide_go").textContent = word("order-" + order);
   at("decide_reason").value = "";
   at("decide_reason").required = order === "hold_lot";
   at("decide").showModal();
@@ -141,9 +141,9 @@ at("decide").addEventListener("submit", (event) => {
 function showWear(counters) {
   at("l_wear").replaceChildren(...counters.map((it) => {
     const item = make("li"), replaced = it.replaced ? clock(it.replaced) + " · " + it.replaced_by : NONE;
-    item.append(make("span", known("counter." + it.name, it.name)), make("b", whole(it.count)),
-      make("span", word("lots.replaced_at") + ": " + replaced),
-      button(word("order.replaced"), () => orderLot({order: "replaced", counter: it.name})));
+    item.append(make("span", known("counter-" + it.name, it.name)), make("b", whole(it.count)),
+      make("span", word("lots-replaced_at") + ": " + replaced),
+      button(word("order-replaced"), () => orderLot({order: "replaced", counter: it.name})));
     return item;
   }));
 }
@@ -155,13 +155,13 @@ const lately = () => new Date(Date.now() - 24 * 3600 * 1000).toISOString();
 function orderedText(what) {
   const {order, lot, recipe, count, ...others} = what;
   const members = [lot, recipe, count, ...Object.values(others)].filter((it) => ["string", "number"].includes(typeof it));
-  return [known("order." + order, order), ...members.filter((it) => it !== "")].join(" · ");
+  return [known("order-" + order, order), ...members.filter((it) => it !== "")].join(" · ");
 }
 
 function showAudit(orders) {
   const last = orders.slice(-AUDIT).reverse();
   at("l_audit").replaceChildren(...last.map((it) => row(clock(it.at), it.lot || NONE,
-    it.who + (it.role ? " (" + known("role." + it.role, it.role) + ")" : ""), orderedText(it.what), it.refused || word("order.taken"))));
+    it.who + (it.role ? " (" + known("role-" + it.role, it.role) + ")" : ""), orderedText(it.what), it.refused || word("order-taken"))));
 }
 
 function showLots() {

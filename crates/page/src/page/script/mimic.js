@@ -50,12 +50,12 @@ function showMimic() {
 // --- a motion that the guard refused: mover, blocker, the room it would sweep ---
 
 // A plant with a scene of its own has bodies without a word here.
-const bodyText = (id) => known("body." + id, id.replaceAll("_", " "));
+const bodyText = (id) => known("body-" + id, id.replaceAll("_", " "));
 
 const refusedText = ({mover, blocker, distance_mm: distance, margin_mm: margin, at: place, last_clear_mm: clear, text}) => (mover === "" ? text
   : bodyText(mover) + " → " + bodyText(blocker) + " (" + place.map((it) => it.toFixed(1)).join(", ") + " mm), " +
-    word("collision.distance") + " " + distance.toFixed(2) + " mm, " + word("collision.needed") + " > " + margin.toFixed(2) + " mm" +
-    (clear === null ? "" : ", " + word("collision.clear") + " " + clear.toFixed(2) + " mm"));
+    word("collision-distance") + " " + distance.toFixed(2) + " mm, " + word("collision-needed") + " > " + margin.toFixed(2) + " mm" +
+    (clear === null ? "" : ", " + word("collision-clear") + " " + clear.toFixed(2) + " mm"));
 
 // Corners around `points`, each [x, y]; Andrew's monotone chain.
 function hull(points) {
@@ -98,5 +98,5 @@ function showRefused(refused) {
   }
   at("refused").hidden = !refused;
   at("refused").replaceChildren(...(refused ? [make("b", "◆ " + word("collision") + ": " +
-    known("jog." + refused.motion, refused.motion)), make("span", refusedText(refused.refused))] : []));
+    known("motion-" + refused.motion, refused.motion)), make("span", refusedText(refused.refused))] : []));
 }

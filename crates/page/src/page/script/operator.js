@@ -14,8 +14,8 @@ function showLast(last) {
   at("seq").textContent = last ? whole(last.seq) : "";
   const [, verdict, bin] = at("verdict").children;
   at("verdict").className = last ? last.verdict : "";
-  verdict.textContent = last ? known("verdict." + last.verdict, last.verdict) : NONE;
-  bin.textContent = last ? word("to_bin") + " " + known("bin." + last.bin, last.bin) : word("no_part");
+  verdict.textContent = last ? known("verdict-" + last.verdict, last.verdict) : NONE;
+  bin.textContent = last ? word("to_bin") + " " + known("bin-" + last.bin, last.bin) : word("no_part");
   showRecent(view.recent);
   const reasons = last ? reasonTexts(last) : [];
   at("reasons").replaceChildren(...reasons.slice(0, 3).map((text) => make("li", text)));
@@ -64,7 +64,7 @@ const SHORT = {pass: "✓", fail: "✗", void: "?"};
 function showRecent(recent) {
   at("recent").replaceChildren(...recent.map((part) => {
     const item = make("li", SHORT[part.verdict], part.verdict);
-    item.title = part.seq + " · " + known("verdict." + part.verdict, part.verdict) + " · " + known("bin." + part.bin, part.bin);
+    item.title = part.seq + " · " + known("verdict-" + part.verdict, part.verdict) + " · " + known("bin-" + part.bin, part.bin);
     return item;
   }));
 }
@@ -78,7 +78,7 @@ function showBins(bins) {
     const item = make("li"), bar = make("div", undefined, "bar"), fill = make("i");
     fill.style.width = 100 * (bins[name] || 0) / most + "%";
     bar.append(fill);
-    item.append(make("span", known("bin." + name, name)), make("b", whole(bins[name] || 0)), bar);
+    item.append(make("span", known("bin-" + name, name)), make("b", whole(bins[name] || 0)), bar);
     return item;
   }));
 }
@@ -86,13 +86,13 @@ function showBins(bins) {
 function showVerdicts(verdicts) {
   at("verdicts").replaceChildren(...ordered(VERDICTS, verdicts).map((name) => {
     const pair = make("div");
-    pair.append(make("dt", known("verdict." + name, name)), make("dd", whole(verdicts[name] || 0)));
+    pair.append(make("dt", known("verdict-" + name, name)), make("dd", whole(verdicts[name] || 0)));
     return pair;
   }));
 }
 
 function showOperator() {
-  at("state").textContent = stateText(view.state);
+  at("state").textContent = stateText(view);
   for (const id of ["came_in", "inside", "went_out"]) at(id).textContent = whole(view[id]);
   at("rate").textContent = view.parts_per_hour === null ? NONE : whole(Math.round(view.parts_per_hour));
   const judged = Object.values(view.verdicts).reduce((sum, it) => sum + it, 0);

@@ -10,7 +10,7 @@ async function give(order) {
     const body = await reply.json();
     return reply.ok ? "" : (language === "zh" && refusedJog(order)) || whyRefused(body);
   } catch {
-    return word("stop.lost");
+    return word("stop-lost");
   }
 }
 
@@ -23,8 +23,8 @@ function refusedJog({order, motion}) {
 function whyNot(order, withWhat = "") {
   const buttons = view && view.machine ? view.machine.buttons : [];
   const found = buttons.find((it) => it.order === order && it.with === withWhat);
-  if (linkNow() === "ended" || !found) return word("stop.ended");
-  if (me === null) return word("stop.login");
+  if (linkNow() === "ended" || !found) return word("stop-ended");
+  if (me === null) return word("stop-login");
   if (found.enabled) return "";
   return language === "zh" ? found.why_zh : found.why_en;
 }
@@ -33,7 +33,7 @@ function whyNot(order, withWhat = "") {
 function orderButton(order, withWhat, body, name, answer) {
   const element = button("", async () => {
     const why = element.title;
-    answer(why || await give(body) || element.textContent + ": " + word("order.taken"));
+    answer(why || await give(body) || element.textContent + ": " + word("order-taken"));
   }, name);
   element.dataset.order = order;
   element.dataset.with = withWhat;
@@ -57,4 +57,4 @@ function makeOrders() {
     orderButton(order, "", {order}, order === "stop" ? "stop" : "", answer)));
 }
 
-const showOrders = () => showButtons(at("orders"), (order) => word("order." + order));
+const showOrders = () => showButtons(at("orders"), (order) => word("order-" + order));

@@ -31,10 +31,10 @@ at("login").addEventListener("submit", async (event) => {
       at("password").value = "";
       at("login").close();
     } else {
-      at("login_answer").textContent = known("login." + answer.status, whyRefused(body));
+      at("login_answer").textContent = known("login-" + answer.status, whyRefused(body));
     }
   } catch {
-    at("login_answer").textContent = word("stop.lost");
+    at("login_answer").textContent = word("stop-lost");
   }
   showWho();
 });

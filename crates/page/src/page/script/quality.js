@@ -28,7 +28,7 @@ async function readQuality() {
   const lot = at("q_lot").value, param = at("q_param").value;
   at("q_print").href = "/api/history/report/chart" + query({lot, param, lang: language});
   if (!lot) {
-    at("q_trouble").textContent = word("h.none");
+    at("q_trouble").textContent = word("h-none");
     return;
   }
   const read = [
@@ -47,7 +47,7 @@ function showCapability(stats, unit) {
   const figure = (value) => (Number.isFinite(value) ? String(Number(value.toPrecision(5))) : NONE);
   const rows = [["n", ""], ["mean", unit], ["sd", unit], ["min", unit], ["max", unit], ["median", unit],
     ["cp", ""], ["cpk", ""], ["cpk_low95", ""], ["ppk", ""], ["lag1", ""]];
-  at("q_stats").replaceChildren(...(stats ? rows : []).map(([key, of]) => row(word("q." + key), figure(stats[key]), of)));
+  at("q_stats").replaceChildren(...(stats ? rows : []).map(([key, of]) => row(word("q-" + key), figure(stats[key]), of)));
 }
 
 at("q_lot").addEventListener("change", readQuality);
@@ -61,7 +61,7 @@ let seen = [];
 function notice() {
   const now = performance.now();
   const busy = view.machine.actuators.filter((it) => it.moving).map((it) => it.name);
-  if (view.state.startsWith("testing")) busy.push("test");
+  if (view.stage) busy.push("test");
   seen = [...seen.filter((it) => now - it.at < SPAN_MS), {at: now, busy}];
 }
 
@@ -69,10 +69,10 @@ function showCycle() {
   const rows = [...view.machine.actuators.map((it) => it.name), "test"];
   const now = performance.now(), high = 22, left = 150, wide = 1000 - left;
   const x = (at) => left + wide * (1 - (now - at) / SPAN_MS);
-  const svg = drawn("svg", {viewBox: "0 0 1000 " + (rows.length * high + 4), role: "img", "aria-label": word("q.cycle")});
+  const svg = drawn("svg", {viewBox: "0 0 1000 " + (rows.length * high + 4), role: "img", "aria-label": word("q-cycle")});
   rows.forEach((name, place) => {
     const label = drawn("text", {x: 0, y: place * high + 16, class: "label"});
-    label.textContent = known("actuator." + name, name);
+    label.textContent = known("actuator-" + name, name);
     svg.append(label, drawn("path", {d: "M" + left + " " + ((place + 1) * high) + "H1000", class: "rule"}));
     seen.forEach((it, index) => {
       if (!it.busy.includes(name)) return;

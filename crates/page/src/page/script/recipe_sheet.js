@@ -35,8 +35,8 @@ function changedValues() {
 
 // --- fields ---
 
-const choiceText = (value) => (value === true || value === "true" ? word("r.yes") : value === false || value === "false" ? word("r.no")
-  : known("choice." + value, value));
+const choiceText = (value) => (value === true || value === "true" ? word("r-yes") : value === false || value === "false" ? word("r-no")
+  : known("choice-" + value, value));
 
 function shownText(field) {
   const {value} = field;
@@ -74,7 +74,7 @@ function fieldInputs(field) {
 
 const fieldName = (path) => {
   const [section, key, side] = path.split(".");
-  return section === "limits" ? nameOf(key) + " " + word("r." + side) : known("field." + path, nameOf(path.split(".").at(-1)));
+  return section === "limits" ? nameOf(key) + " " + word("r-" + side) : known("field-" + path.replaceAll(".", "-"), nameOf(path.split(".").at(-1)));
 };
 
 const isFixed = (field) => field.path === "name" || Boolean(field.words) && field.words.length === 1;
@@ -115,7 +115,7 @@ function limitRow(key, [low, high]) {
 
 function fieldTable(section) {
   const table = make("table", undefined, "list sheet " + section), body = make("tbody");
-  table.append(make("caption", word("r." + section)), body);
+  table.append(make("caption", word("r-" + section)), body);
   const fields = recipe.fields.filter((it) => recipeSection(it.path) === section);
   if (section !== "limits") {
     body.append(...fields.flatMap(fieldRow));
@@ -123,7 +123,7 @@ function fieldTable(section) {
   }
   const ofKey = (key) => fields.filter((it) => it.path.startsWith("limits." + key + "."));
   body.append(...keysOf((key) => ofKey(key).length).flatMap((key) => limitRow(key, ofKey(key))));
-  const head = make("thead"), heads = ["quantity", "r.low", "r.high", "unit"].map((it) => make("th", word(it)));
+  const head = make("thead"), heads = ["quantity", "r-low", "r-high", "unit"].map((it) => make("th", word(it)));
   heads.forEach((it) => { it.scope = "col"; });
   head.append(make("tr"));
   head.firstElementChild.append(...heads);

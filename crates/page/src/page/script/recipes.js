@@ -9,9 +9,9 @@ function drawRecipe() {
   at("r_save").hidden = at("r_discard").hidden = !mayRevise();
   at("r_note").hidden = mayRevise();
   const numbers = recipe ? Array.from({length: recipe.newest}, (_, place) => String(recipe.newest - place)) : [];
-  fillSelect(at("r_revision"), numbers.map((it, place) => [it, place === 0 ? it + " (" + word("r.newest") + ")" : it]));
+  fillSelect(at("r_revision"), numbers.map((it, place) => [it, place === 0 ? it + " (" + word("r-newest") + ")" : it]));
   if (recipe) at("r_revision").value = String(recipe.number);
-  at("r_saved").textContent = recipe ? word("r.saved_at") + " " + clock(recipe.saved_at_us) : "";
+  at("r_saved").textContent = recipe ? word("r-saved_at") + " " + clock(recipe.saved_at_us) : "";
   at("r_card").href = "/api/recipes/card" + query({name: at("r_name").value, lang: language});
   const [text, bad] = saidOfRecipe();
   at("r_answer").textContent = text;
@@ -62,28 +62,28 @@ function refusedValue(answer) {
   const field = recipe.fields.find((it) => (answer.key + ".").startsWith(it.path + "."));
   const against = /^at most high, which is (.+)$/.exec(answer.expected), below = /^less than \w+, (.+) V$/.exec(answer.expected);
   const ranged = field && field.low !== undefined && /^a (whole )?number/.test(answer.expected);
-  const expected = against ? word("r.at_most_high") + " " + against[1] : below ? "< " + below[1] + " V"
-    : ranged ? word(field.form === "whole" ? "r.whole" : "r.number") + ", " + rangeText(field) + " " + unitText(field.unit)
+  const expected = against ? word("r-at_most_high") + " " + against[1] : below ? "< " + below[1] + " V"
+    : ranged ? word(field.form === "whole" ? "r-whole" : "r-number") + ", " + rangeText(field) + " " + unitText(field.unit)
       : answer.expected;
-  return "▲ " + word("r.found") + " " + answer.found + word("r.expected") + " " + expected;
+  return "▲ " + word("r-found") + " " + answer.found + word("r-expected") + " " + expected;
 }
 
-const refusal = (answer) => () => [answer.key ? word("r.refused") : whyRefused(answer), true];
+const refusal = (answer) => () => [answer.key ? word("r-refused") : whyRefused(answer), true];
 
 async function saveRecipe() {
   const values = changedValues();
-  if (!mayRevise() || Object.keys(values).length === 0) return () => [word("r.nothing"), false];
+  if (!mayRevise() || Object.keys(values).length === 0) return () => [word("r-nothing"), false];
   try {
     const reply = await post("/api/recipes/revise", {name: recipe.name, from: recipe.hash, values});
     const answer = await reply.json();
     if (reply.ok) {
       await readRecipe();
-      return () => [word("r.saved") + " " + answer.number + ". " + word("r.applies"), false];
+      return () => [word("r-saved") + " " + answer.number + ". " + word("r-applies"), false];
     }
     if (answer.key) refusedField = answer;
     return refusal(answer);
   } catch {
-    return () => [word("stop.lost"), true];
+    return () => [word("stop-lost"), true];
   }
 }
 

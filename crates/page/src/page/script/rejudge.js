@@ -44,13 +44,13 @@ function showRejudged() {
   const parts = judgedAgain ? judgedAgain.slice(0, -1) : [], {changes} = judgedAgain ? judgedAgain.at(-1) : {changes: []};
   at("j_changes").replaceChildren(...changes.map(({was, now, parts: count}) => {
     const pair = make("div");
-    pair.append(make("dt", known("verdict." + was, was) + " → " + known("verdict." + now, now)), make("dd", whole(count)));
+    pair.append(make("dt", known("verdict-" + was, was) + " → " + known("verdict-" + now, now)), make("dd", whole(count)));
     return pair;
   }));
-  at("j_more").textContent = parts.length > MOST_ROWS ? word("j.first") + " " + MOST_ROWS
-    : judgedAgain && parts.length === 0 ? word("j.none") : "";
+  at("j_more").textContent = parts.length > MOST_ROWS ? word("j-first") + " " + MOST_ROWS
+    : judgedAgain && parts.length === 0 ? word("j-none") : "";
   at("j_parts").replaceChildren(...parts.slice(0, MOST_ROWS).map((it) => row(partLink({...it, kind: "lot"}),
-    verdictCell(it.verdict_was), verdictCell(it.verdict), known("bin." + it.bin, it.bin), reasonTexts(it).join("; "))));
+    verdictCell(it.verdict_was), verdictCell(it.verdict), known("bin-" + it.bin, it.bin), reasonTexts(it).join("; "))));
 }
 
 at("j_form").addEventListener("submit", (event) => {

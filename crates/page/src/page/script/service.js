@@ -12,8 +12,8 @@ function showBus() {
     return element;
   })));
   const {bound_ms: bound, accepted_ms: accepted, worst_age_ms: age} = view.machine.reaction;
-  at("reaction").textContent = [word("bus.bound") + " " + bound.toFixed(0) + " ms", word("bus.accepted") + " " +
-    accepted.toFixed(0) + " ms", word("bus.age") + " " + age.toFixed(0) + " ms"].join(" · ");
+  at("reaction").textContent = [word("bus-bound") + " " + bound.toFixed(0) + " ms", word("bus-accepted") + " " +
+    accepted.toFixed(0) + " ms", word("bus-age") + " " + age.toFixed(0) + " ms"].join(" · ");
 }
 
 PAGES.bus = {show: showBus};
@@ -39,7 +39,7 @@ function makeJogs() {
 // What the guard says before the motion is made.
 function showClearance(item, jog) {
   const text = !jog ? "" : jog.refused ? refusedText(jog.refused)
-    : word("io.clearance") + " " + (jog.clearance_mm === null ? word("io.far") : jog.clearance_mm.toFixed(2) + " mm");
+    : word("io-clearance") + " " + (jog.clearance_mm === null ? word("io-far") : jog.clearance_mm.toFixed(2) + " mm");
   item.lastElementChild.textContent = text;
   item.lastElementChild.title = jog && jog.refused ? jog.refused.text : text;
   item.classList.toggle("blocked", Boolean(jog && jog.refused));
@@ -47,7 +47,7 @@ function showClearance(item, jog) {
 
 function signal(name, on) {
   const item = make("li", undefined, on === null ? "unknown" : on ? "on" : "off");
-  item.append(make("i", undefined, "mark"), make("span", known("signal." + name, name)),
+  item.append(make("i", undefined, "mark"), make("span", known("signal-" + name, name)),
     make("b", on === null ? "?" : on ? "1" : "0"));
   item.title = name;
   return item;
@@ -62,15 +62,15 @@ function showIo() {
     at("inputs").replaceChildren(...Object.entries(view.machine.inputs).map(([name, on]) => signal(name, on)));
     at("outputs").replaceChildren(...Object.entries(view.machine.outputs).map(([name, on]) => signal(name, on)));
   }
-  const labels = {mode: (it) => word("mode." + it), jog: (it) => word("jog." + it)};
-  const label = (order, withWhat) => (labels[order] ? labels[order](withWhat) : word("order." + order));
+  const labels = {mode: (it) => word("mode-" + it), jog: (it) => word("motion-" + it)};
+  const label = (order, withWhat) => (labels[order] ? labels[order](withWhat) : word("order-" + order));
   showButtons(at("modes"), label);
   showButtons(at("jogs"), label);
   for (const item of at("jogs").children) showClearance(item, view.machine.jogs.find((it) => it.motion === item.dataset.motion));
   for (const element of at("modes").children) element.classList.toggle("now", element.dataset.with === view.machine.mode);
   const {wear, probe_contact_ohm: contact} = view.machine;
-  at("wear").replaceChildren(...Object.entries(wear).map(([name, count]) => row(known("actuator." + name, known("counter." + name, name)), whole(count))),
-    row(word("io.probe_contact"), contact === null ? "-" : contact.toFixed(2) + " Ω"));
+  at("wear").replaceChildren(...Object.entries(wear).map(([name, count]) => row(known("actuator-" + name, known("counter-" + name, name)), whole(count))),
+    row(word("io-probe_contact"), contact === null ? "-" : contact.toFixed(2) + " Ω"));
 }
 
 PAGES.io = {show: showIo};

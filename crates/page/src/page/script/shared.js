@@ -1,8 +1,8 @@
 "use strict";
 // What all pages share. Every text comes through textContent, every word from the table.
 const WORDS = JSON.parse(document.getElementById("words").textContent);
-// What is measured, and what a test may find, of every kind of device.
-const {characteristics: CHARACTERISTICS, findings: FINDINGS} = JSON.parse(document.getElementById("kinds").textContent);
+// What is measured of every kind of device.
+const {characteristics: CHARACTERISTICS} = JSON.parse(document.getElementById("kinds").textContent);
 const UNITS = {ohm: "Ω", mOhm: "mΩ", C: "°C"};
 const BINS = ["pass", "coil", "contact", "voltage", "time", "retest"];
 const VERDICTS = ["pass", "fail", "void"];

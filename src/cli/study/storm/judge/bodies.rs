@@ -191,7 +191,7 @@ fn is_counted(case: &Case, at_us: u64, bin: &str) -> bool {
         .is_none_or(|life| life.ended_us < confirmed_us && life.end == End::Killed);
     cut_off
         || is_told(case, at_us, |alarm| {
-            alarm.code == "bin_beam" && alarm.text.contains(bin)
+            alarm.code == "bin_beam" && alarm.args.get("bin") == Some(bin)
         })
 }
 

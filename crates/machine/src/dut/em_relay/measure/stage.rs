@@ -112,6 +112,39 @@ impl Stage {
         }
     }
 
+    /// One of every name.
+    pub const ALL: [Self; 11] = [
+        Self::Kelvin,
+        Self::NcContact,
+        Self::Coil,
+        Self::Search(Direction::Rising),
+        Self::OperateCoarse,
+        Self::OperateFine(0),
+        Self::TimedOperate,
+        Self::TimedRelease,
+        Self::ReleaseCoarse,
+        Self::ReleaseFine(0),
+        Self::Off,
+    ];
+
+    /// Its name in views, whatever the attempt.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Kelvin => "Kelvin",
+            Self::Conditioning => "Conditioning",
+            Self::NcContact => "NcContact",
+            Self::Coil => "Coil",
+            Self::Search(_) => "Search",
+            Self::OperateCoarse => "OperateCoarse",
+            Self::OperateFine(_) => "OperateFine",
+            Self::TimedOperate => "TimedOperate",
+            Self::TimedRelease => "TimedRelease",
+            Self::ReleaseCoarse => "ReleaseCoarse",
+            Self::ReleaseFine(_) => "ReleaseFine",
+            Self::Off => "Off",
+        }
+    }
+
     /// The account on which the record books its time.
     pub fn measures(self) -> &'static str {
         match self {

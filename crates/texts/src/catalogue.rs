@@ -1,0 +1,132 @@
+//! The two files, parsed once.
+
+use crate::Lang;
+use fluent_bundle::concurrent::FluentBundle;
+use fluent_bundle::{FluentArgs, FluentResource};
+use fluent_syntax::ast::{Entry, Expression, InlineExpression, Pattern, PatternElement};
+use std::collections::BTreeSet;
+use std::sync::LazyLock;
+use unic_langid::LanguageIdentifier;
+
+type Bundle = FluentBundle<&'static FluentResource>;
+type Text = Pattern<&'static str>;
+
+static EN: LazyLock<FluentResource> =
+    LazyLock::new(|| parsed(include_str!("../../../locale/en.ftl")));
+static ZH: LazyLock<FluentResource> =
+    LazyLock::new(|| parsed(include_str!("../../../locale/zh.ftl")));
+static EN_BUNDLE: LazyLock<Bundle> = LazyLock::new(|| bundle("en", &EN));
+static ZH_BUNDLE: LazyLock<Bundle> = LazyLock::new(|| bundle("zh-CN", &ZH));
+
+/// A text without arguments in both languages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Plain {
+    /// Family and code.
+    pub id: &'static str,
+    /// English.
+    pub en: &'static str,
+    /// Simplified Chinese.
+    pub zh: &'static str,
+}
+
+fn parsed(text: &str) -> FluentResource {
+    match FluentResource::try_new(text.to_owned()) {
+        Ok(resource) => resource,
+        Err((_, errors)) => panic!("a catalogue is no Fluent: {errors:?}"),
+    }
+}
+
+fn bundle(tag: &str, resource: &'static FluentResource) -> Bundle {
+    let locale: LanguageIdentifier = tag.parse().unwrap_or_default();
+    let mut bundle = Bundle::new_concurrent(vec![locale]);
+    bundle.set_use_isolating(false);
+    let added = bundle.add_resource(resource);
+    assert!(added.is_ok(), "an id stands twice: {added:?}");
+    bundle
+}
+
+fn resource(lang: Lang) -> &'static FluentResource {
+    match lang {
+        Lang::En => &EN,
+        Lang::Zh => &ZH,
+    }
+}
+
+fn of(lang: Lang) -> &'static Bundle {
+    match lang {
+        Lang::En => &EN_BUNDLE,
+        Lang::Zh => &ZH_BUNDLE,
+    }
+}
+
+/// Whether both files know the text.
+pub(crate) fn has(id: &str) -> bool {
+    EN_BUNDLE.has_message(id)
+}
+
+pub(crate) fn pattern(lang: Lang, id: &str, attribute: Option<&str>) -> Option<&'static Text> {
+    let message = of(lang).get_message(id)?;
+    match attribute {
+        None => message.value(),
+        Some(name) => Some(message.get_attribute(name)?.value()),
+    }
+}
+
+pub(crate) fn plain_text(lang: Lang, id: &str, attribute: Option<&str>) -> &'static str {
+    let found = pattern(lang, id, attribute).and_then(|it| match it.elements.as_slice() {
+        [PatternElement::TextElement { value }] => Some(*value),
+        _ => None,
+    });
+    assert!(
+        found.is_some(),
+        "no text {id} {attribute:?} without arguments in {lang:?}"
+    );
+    found.unwrap_or_default()
+}
+
+/// The pattern with its arguments; none when an argument is missing.
+pub(crate) fn filled(lang: Lang, pattern: &'static Text, args: &FluentArgs<'_>) -> Option<String> {
+    let mut errors = Vec::new();
+    let text = of(lang).format_pattern(pattern, Some(args), &mut errors);
+    errors.is_empty().then(|| text.into_owned())
+}
+
+/// Ids of every text, in the order of the file.
+pub fn ids(lang: Lang) -> impl Iterator<Item = &'static str> {
+    resource(lang).entries().filter_map(|entry| match entry {
+        Entry::Message(message) => Some(message.id.name),
+        _ => None,
+    })
+}
+
+/// Names of the attributes of a text.
+pub fn attributes(lang: Lang, id: &str) -> BTreeSet<&'static str> {
+    let message = of(lang).get_message(id);
+    let all = message.iter().flat_map(|it| it.attributes());
+    all.map(|it| it.id()).collect()
+}
+
+/// Names of the arguments of a text, or of an attribute of it; none where there is no such text.
+pub fn arguments(lang: Lang, id: &str, attribute: Option<&str>) -> Option<BTreeSet<&'static str>> {
+    let elements = pattern(lang, id, attribute)?.elements.iter();
+    let name = |element: &PatternElement<&'static str>| match element {
+        PatternElement::Placeable {
+            expression: Expression::Inline(InlineExpression::VariableReference { id }),
+        } => Some(id.name),
+        _ => None,
+    };
+    Some(elements.filter_map(name).collect())
+}
+
+/// Every text without arguments, in the order of the English file.
+pub fn plain() -> impl Iterator<Item = Plain> {
+    let without = |id: &&str| arguments(Lang::En, id, None).is_some_and(|it| it.is_empty());
+    ids(Lang::En).filter(without).map(|id| Plain {
+        id,
+        en: Lang::En.text(id),
+        zh: Lang::Zh.text(id),
+    })
+}
+
+#[cfg(test)]
+mod tests;

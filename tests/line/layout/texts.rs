@@ -1,0 +1,87 @@
+//! Texts that people read stand in the catalogue, none of them in the code.
+
+use super::tree::{Source, assert_none, files, rust_files};
+use std::collections::BTreeSet;
+use texts::Lang;
+
+/// Where texts are looked up.
+const USERS: [&str; 3] = ["src", "crates", "config"];
+
+/// Longest text that two sources may have in common by chance, characters.
+const CHANCE: usize = 24;
+
+/// Code without its tests, with its lines.
+fn code(source: &Source) -> impl Iterator<Item = (usize, &str)> {
+    let tests = source.text.find("\n#[cfg(test)]\nmod ");
+    let last = source.text[..tests.unwrap_or(source.text.len())]
+        .lines()
+        .count();
+    source.code().take_while(move |(line, _)| *line <= last)
+}
+
+fn sources() -> Vec<Source> {
+    let mut all = rust_files(&["src", "crates"]);
+    all.retain(|source| !source.is_test());
+    all
+}
+
+#[test]
+fn no_chinese_stands_in_the_code() {
+    let is_chinese = |c: char| matches!(c, '\u{3000}'..='\u{9fff}' | '\u{ff00}'..='\u{ffef}');
+    let mut broken = Vec::new();
+    for source in sources() {
+        for (line, text) in code(&source).filter(|(_, it)| it.contains(is_chinese)) {
+            if !text.trim_start().starts_with("//") {
+                broken.push(format!("{}:{line}: {}", source.path, text.trim()));
+            }
+        }
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn no_text_of_an_alarm_or_a_refusal_stands_in_the_code() {
+    let ours = |id: &&str| id.starts_with("alarm-") || id.starts_with("refusal-");
+    let spoken: BTreeSet<&str> = texts::plain()
+        .filter(|it| ours(&it.id))
+        .map(|it| it.en)
+        .chain(
+            texts::ids(Lang::En)
+                .filter(|it| it.starts_with("alarm-"))
+                .flat_map(|id| ["cause", "action"].map(|it| Lang::En.attribute(id, it))),
+        )
+        .filter(|it| it.len() > CHANCE)
+        .collect();
+    let mut broken = Vec::new();
+    for source in sources() {
+        for (line, text) in code(&source) {
+            let found = spoken.iter().filter(|it| text.contains(**it));
+            broken.extend(found.map(|it| format!("{}:{line}: {it}", source.path)));
+        }
+    }
+    assert_none(&broken);
+}
+
+/// A text is used where its id stands, or its code behind a family; what an enum or the plant names is data.
+#[test]
+fn no_text_is_left_without_use() {
+    let written: String = files(&USERS)
+        .into_iter()
+        .filter(|it| !it.is_test() && !it.path.ends_with(".ftl"))
+        .map(|it| it.text)
+        .collect();
+    let quoted: BTreeSet<&str> = written.split(['"', '\'', '`']).collect();
+    let words: BTreeSet<&str> = written
+        .split(|c: char| !(c.is_alphanumeric() || c == '_'))
+        .collect();
+    let is_used = |id: &str| {
+        let code = id.split_once('-').map_or(id, |(_, code)| code);
+        let last = code.rsplit('-').next().unwrap_or(code);
+        quoted.contains(id) || words.contains(code) || words.contains(last)
+    };
+    let unused: Vec<String> = texts::ids(Lang::En)
+        .filter(|id| !is_used(id))
+        .map(str::to_owned)
+        .collect();
+    assert_none(&unused);
+}
