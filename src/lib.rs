@@ -19,8 +19,11 @@
 //! - [`inquiry`]: what may be asked of the history, answered alike everywhere.
 //! - [`view`]: what a screen may know; [`hmi`]: the page, its events and orders.
 //! - [`form`]: what a configuration file may hold; [`config`]: files to settings, with the line of every mistake.
-//! - [`cli`]: one file per command; the only place that names the simulator.
+//! - [`app`]: what a lot, a day of service, a story, a calibration is; the only place that opens lines.
+//! - [`study`]: figures that anyone can reprint.
+//! - [`cli`]: a file per command: arguments into types of `app`, answers into text.
 
+pub mod app;
 pub mod bus;
 pub mod cli;
 pub mod config;
@@ -40,5 +43,7 @@ pub mod quality;
 pub mod report;
 pub mod rig;
 pub mod station;
+#[cfg(feature = "sim")]
+pub mod study;
 pub mod units;
 pub mod view;

@@ -1,12 +1,11 @@
 //! `relayrig bus`: find modules, send one command, watch a line. No rig file is needed.
 
-mod follow;
 mod found;
-pub mod meaning;
 mod monitor;
 mod scan;
 mod send;
 
+use crate::app::exit::Exit;
 use crate::bus::{LineSettings, open_serial};
 use anyhow::Context;
 use std::io::Write;
@@ -58,8 +57,8 @@ impl PortArgs {
     }
 }
 
-/// Runs the command; the result is the exit status.
-pub fn run(args: &BusArgs) -> anyhow::Result<i32> {
+/// Runs the command.
+pub fn run(args: &BusArgs) -> anyhow::Result<Exit> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()

@@ -2,7 +2,7 @@
 //!
 //! What a person decides here is an order like those of a screen: it stands in the audit of orders with the name.
 
-use super::DONE;
+use crate::app::exit::Exit;
 use crate::history::{
     Archive, Decision, Filter, Identity, LotStateRecord, OrderRecord, Row, Store,
 };
@@ -65,15 +65,15 @@ struct Decided {
     reason: String,
 }
 
-/// Runs the command; the result is the exit status.
-pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<i32> {
+/// Runs the command.
+pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<Exit> {
     match &args.action {
         Action::Show { lot, json } => show(&Archive::open(db)?, lot, *json)?,
         Action::Hold(it) => decide(db, it, Decision::Hold)?,
         Action::Release(it) => decide(db, it, Decision::Release)?,
         Action::Close(it) => decide(db, it, Decision::Close)?,
     }
-    Ok(DONE)
+    Ok(Exit::Done)
 }
 
 fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {

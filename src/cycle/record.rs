@@ -49,6 +49,6 @@ impl Cycle {
     /// One event for whoever keeps the record.
     pub(super) fn tell(&self, event: Event) {
         // The receiver ends only with the program; then nobody is left to tell.
-        let _ = self.outside.events.send(event);
+        let _ = self.links.events.send(event);
     }
 }

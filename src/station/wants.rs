@@ -52,6 +52,17 @@ pub enum Ending {
     Alarm,
 }
 
+impl Ending {
+    /// The name in files and answers.
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Stopped => "stopped",
+            Self::Alarm => "alarm",
+        }
+    }
+}
+
 /// Events for the record.
 #[derive(Debug, Default)]
 pub struct Record {
