@@ -39,7 +39,7 @@ pub struct Simulated {
     /// True values of every specimen go to this file.
     pub truth: Option<PathBuf>,
     /// A rig that lives before and after the run; none: one is built for the run.
-    pub live: Option<LiveRig>,
+    pub live: Option<Box<LiveRig>>,
 }
 
 /// How time passes on the simulated rig.
@@ -75,7 +75,7 @@ impl RigSource {
     pub(super) fn live(&self) -> Option<&LiveRig> {
         match self {
             Self::Serial(_) => None,
-            Self::Simulated(simulated) => simulated.live.as_ref(),
+            Self::Simulated(simulated) => simulated.live.as_deref(),
         }
     }
 

@@ -202,10 +202,10 @@ impl Service {
                 }
                 let now_us = i64::try_from(live.rig.now_us()).unwrap_or(i64::MAX);
                 return Ok(RigSource::Simulated(Simulated {
-                    live: Some(LiveRig {
+                    live: Some(Box::new(LiveRig {
                         epoch_us: live.epoch_us + now_us,
-                        ..live.clone()
-                    }),
+                        ..LiveRig::clone(live)
+                    })),
                     ..source.clone()
                 }));
             }
@@ -228,7 +228,7 @@ fn living(source: RigSource, plant: &Plant, order: &LotOrder) -> anyhow::Result<
                 calibration: None,
             };
             RigSource::Simulated(Simulated {
-                live: Some(live),
+                live: Some(Box::new(live)),
                 ..source
             })
         }

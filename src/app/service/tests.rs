@@ -47,7 +47,7 @@ fn a_part_that_is_found_inside_between_lots_gets_a_row_in_a_lot_of_its_own() {
             calibration: None,
         };
         RigSource::Simulated(Simulated {
-            live: Some(live),
+            live: Some(Box::new(live)),
             ..drawn.clone()
         })
     };

@@ -44,11 +44,11 @@ pub fn tell(
     let recipe = admit(&files.db, &plant, order, Purpose::Lot)?;
     let live = simulated::build(&plant, &rig, order)?;
     let source = RigSource::Simulated(Simulated {
-        live: Some(LiveRig {
+        live: Some(Box::new(LiveRig {
             rig: live.clone(),
             epoch_us: jiff::Timestamp::now().as_microsecond(),
             calibration: None,
-        }),
+        })),
         ..rig
     });
     let controls = Controls::new(true);

@@ -70,11 +70,11 @@ impl Shop<'_> {
     fn source(&self, calibration: Option<Calibration>) -> RigSource {
         let began_us = i64::try_from(self.rig.now_us()).unwrap_or(i64::MAX);
         RigSource::Simulated(Simulated {
-            live: Some(LiveRig {
+            live: Some(Box::new(LiveRig {
                 rig: self.rig.clone(),
                 epoch_us: EPOCH_US + began_us,
                 calibration,
-            }),
+            })),
             ..Simulated::drawn_by(1)
         })
     }
