@@ -1,4 +1,4 @@
-//! The commands, one file each. The only place that names the simulator.
+//! The commands, a file each: arguments into types of [`app`], answers into text.
 
 pub mod alarm;
 pub mod bus;
@@ -10,8 +10,7 @@ pub mod config;
 pub mod demo;
 pub mod history;
 pub mod lot;
-#[cfg(feature = "sim")]
-mod plug;
+mod progress;
 pub mod rig;
 pub mod run;
 pub mod serve;
@@ -19,22 +18,17 @@ pub mod serve;
 pub mod sim;
 #[cfg(feature = "sim")]
 pub mod story;
-#[cfg(feature = "sim")]
+#[cfg_attr(not(feature = "study"), path = "cli/study_absent.rs")]
 pub mod study;
+mod table;
+mod terminal;
 pub mod user;
 pub mod wear;
 
+use app::exit::Exit;
+use app::order::Files;
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;
-
-/// Everything finished, whatever the verdicts.
-pub const DONE: i32 = 0;
-/// Bad input or configuration.
-pub const BAD_INPUT: i32 = 2;
-/// An alarm ended the run.
-pub const RIG_TROUBLE: i32 = 3;
-/// The operator stopped it.
-pub const STOPPED: i32 = 4;
 
 /// Controller of a JZC-22F relay performance tester with automatic feed and discharge.
 #[derive(Debug, Parser)]
@@ -89,7 +83,6 @@ pub enum Command {
     #[cfg(feature = "sim")]
     Story(story::StoryArgs),
     /// Figures that anyone can reprint, each beside its bar
-    #[cfg(feature = "sim")]
     Study(study::StudyArgs),
     /// Check the configuration, or print the schema of a file
     #[command(subcommand)]
@@ -115,43 +108,47 @@ pub enum Command {
 }
 
 impl Cli {
-    /// Runs the command; the result is the exit status. An error is bad input, to be told once.
-    pub fn execute(self) -> anyhow::Result<i32> {
+    /// Runs the command. An error is bad input, to be told once.
+    pub fn execute(self) -> anyhow::Result<Exit> {
+        let files = Files {
+            config: self.config,
+            db: self.db,
+        };
+        let (config, db) = (&files.config, &files.db);
         match self.command {
             #[cfg(feature = "sim")]
-            Command::Demo(args) => demo::run(&self.config, &self.db, &args),
-            Command::Serve(args) => serve::run(&self.config, &self.db, &args),
-            Command::Run(args) => run::run(&self.config, &self.db, &args),
-            Command::Calibrate(args) => calibrate::run(&self.config, &self.db, &args),
+            Command::Demo(args) => demo::run(&files, &args),
+            Command::Serve(args) => serve::run(&files, &args, None),
+            Command::Run(args) => run::run(&files, &args),
+            Command::Calibrate(args) => calibrate::run(&files, &args),
             #[cfg(feature = "sim")]
-            Command::Sim(args) => sim::run(&self.config, &args),
+            Command::Sim(args) => sim::run(config, &args),
             #[cfg(feature = "sim")]
-            Command::Story(args) => story::run(&self.config, &self.db, &args),
-            #[cfg(feature = "sim")]
-            Command::Study(args) => study::run(&self.config, &args),
-            Command::Config(args) => config::run(&self.config, &args),
+            Command::Story(args) => story::run(&files, &args),
+            Command::Study(args) => study::run(config, &args),
+            Command::Config(args) => config::run(config, &args),
             Command::Bus(args) => bus::run(&args),
             Command::Check(args) => check::run(args),
-            Command::History(args) => history::run(&self.config, &self.db, args),
-            Command::Alarm(args) => alarm::run(&self.db, &args),
-            Command::Lot(args) => lot::run(&self.db, &args),
-            Command::Wear(args) => wear::run(&self.db, &args),
-            Command::User(args) => user::run(&self.db, args),
-            Command::Card(args) => card::run(&self.config, &args),
+            Command::History(args) => history::run(config, db, args),
+            Command::Alarm(args) => alarm::run(db, &args),
+            Command::Lot(args) => lot::run(db, &args),
+            Command::Wear(args) => wear::run(db, &args),
+            Command::User(args) => user::run(db, args),
+            Command::Card(args) => card::run(config, &args),
             Command::Quality(args) => history::run_quality(args),
         }
     }
 }
 
 /// A reader that has seen enough and closed the pipe is no error.
-fn unless_reader_left(done: anyhow::Result<i32>) -> anyhow::Result<i32> {
+fn unless_reader_left(done: anyhow::Result<Exit>) -> anyhow::Result<Exit> {
     let left = |cause: &(dyn std::error::Error + 'static)| {
         cause
             .downcast_ref::<std::io::Error>()
             .is_some_and(|it| it.kind() == std::io::ErrorKind::BrokenPipe)
     };
     match done {
-        Err(error) if error.chain().any(left) => Ok(DONE),
+        Err(error) if error.chain().any(left) => Ok(Exit::Done),
         done => done,
     }
 }

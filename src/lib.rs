@@ -1,3 +1,3 @@
-//! The command line of relayrig: one file per command; the only place that names the simulator.
+//! The command line of relayrig: a file per command turns arguments into types of `app` and answers into text.
 
 pub mod cli;

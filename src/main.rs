@@ -1,7 +1,8 @@
 //! Parses the command line, nothing else.
 
+use app::exit::Exit;
 use clap::Parser;
-use relayrig::cli::{BAD_INPUT, Cli};
+use relayrig::cli::Cli;
 use std::process::ExitCode;
 use tracing_subscriber::EnvFilter;
 
@@ -13,9 +14,9 @@ fn main() -> ExitCode {
         .with_writer(std::io::stderr)
         .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
         .init();
-    let status = cli.execute().unwrap_or_else(|error| {
+    let exit = cli.execute().unwrap_or_else(|error| {
         eprintln!("relayrig: {error:#}");
-        BAD_INPUT
+        Exit::BadInput
     });
-    ExitCode::from(u8::try_from(status).unwrap_or(1))
+    ExitCode::from(exit.code())
 }

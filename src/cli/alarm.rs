@@ -2,8 +2,8 @@
 //!
 //! While a controller runs its own screen is the place (`POST /api/orders`): it would not hear of what is done here.
 
-use super::DONE;
 use anyhow::{bail, ensure};
+use app::exit::Exit;
 use history::{
     AlarmChange, AlarmChangeRecord, AlarmLeft, Identity, Moment, OrderRecord, Row, Store,
 };
@@ -64,15 +64,15 @@ enum Action {
     },
 }
 
-/// Runs the command; the result is the exit status.
-pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<i32> {
+/// Runs the command.
+pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<Exit> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
     let left = store.alarms_left(args.sim)?;
     let now_us = jiff::Timestamp::now().as_microsecond();
     let (code, by, change, what) = match &args.action {
         Action::List { json } => {
             list(&left, *json)?;
-            return Ok(DONE);
+            return Ok(Exit::Done);
         }
         Action::Acknowledge { code, by } => {
             let change = AlarmChange::Acknowledged { by: by.clone() };
@@ -129,7 +129,7 @@ pub fn run(db: &Path, args: &AlarmArgs) -> anyhow::Result<i32> {
         change,
     };
     store.record(&[Row::Order(order), Row::AlarmChange(changed)])?;
-    Ok(DONE)
+    Ok(Exit::Done)
 }
 
 fn list(left: &[AlarmLeft], as_json: bool) -> anyhow::Result<()> {

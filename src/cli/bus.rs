@@ -1,13 +1,12 @@
 //! `relayrig bus`: find modules, send one command, watch a line. No rig file is needed.
 
-mod follow;
 mod found;
-pub mod meaning;
 mod monitor;
 mod scan;
 mod send;
 
 use anyhow::Context;
+use app::exit::Exit;
 use bus::{LineSettings, open_serial};
 use std::io::Write;
 use std::path::PathBuf;
@@ -58,8 +57,8 @@ impl PortArgs {
     }
 }
 
-/// Runs the command; the result is the exit status.
-pub fn run(args: &BusArgs) -> anyhow::Result<i32> {
+/// Runs the command.
+pub fn run(args: &BusArgs) -> anyhow::Result<Exit> {
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .build()

@@ -1,6 +1,7 @@
 //! `card`: the operation process card of a recipe.
 
 use super::history::paper::PaperArgs;
+use app::exit::Exit;
 use clap::Args;
 use config::{load_card, load_recipe};
 use history::report::card::card;
@@ -17,15 +18,15 @@ pub struct CardArgs {
     paper: PaperArgs,
 }
 
-/// Runs the command; the result is the exit status.
+/// Runs the command.
 ///
 /// # Errors
 /// Bad configuration, or a file that cannot be written.
-pub fn run(config: &Path, args: &CardArgs) -> anyhow::Result<i32> {
+pub fn run(config: &Path, args: &CardArgs) -> anyhow::Result<Exit> {
     let recipe = load_recipe(config, &args.recipe)?;
     let plant = load_card(config)?;
     let paper = args.paper.paper();
     args.paper
         .write(&card(paper.language, &recipe, &plant, &paper.made))?;
-    Ok(super::DONE)
+    Ok(Exit::Done)
 }

@@ -3,6 +3,7 @@
 //! Exit status: 0 every move is clear, 1 a move is blocked, 2 bad input (one message, nothing on stdout).
 
 use anyhow::{Context, anyhow, bail};
+use app::exit::Exit;
 use lpm::scene::{Elsewhere, Format, MeshFault, MoveOrder, Scene, read_moves, read_scene_of_rig};
 use lpm::{Answer, ElementKey, Model, Move, Mover};
 use machine::guard::{Actuator, part_names};
@@ -53,11 +54,11 @@ struct Line<'a> {
     normal: Option<[f64; 3]>,
 }
 
-/// Runs the command and returns its exit status (0 or 1).
+/// Runs the command and returns [`Exit::Done`] or [`Exit::AnswerIsNo`].
 ///
 /// # Errors
 /// Bad input; the caller reports the chain and exits with 2. Nothing has been written then.
-pub fn run(args: CheckArgs) -> anyhow::Result<i32> {
+pub fn run(args: CheckArgs) -> anyhow::Result<Exit> {
     if !(args.range >= 0.0 && args.range.is_finite()) {
         bail!(
             "--range: found {}, expected a distance in mm, 0 or above",
@@ -74,18 +75,18 @@ pub fn run(args: CheckArgs) -> anyhow::Result<i32> {
         .map(|mover| Mover::new(&mover.carried()).with_context(|| format!("mover {}", mover.id)))
         .collect::<anyhow::Result<Vec<Mover>>>()?;
     let mut out = std::io::BufWriter::new(std::io::stdout().lock());
-    let mut status = 0;
+    let mut exit = Exit::Done;
     for order in &orders {
         let line = answered(&model, &keys, &movers[order.mover], order, args.range);
         if line.verdict == "blocked" {
-            status = 1;
+            exit = Exit::AnswerIsNo;
         }
         match written(&mut out, &line, args.json) {
-            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => return Ok(status),
+            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => return Ok(exit),
             other => other.context("writing the answers")?,
         }
     }
-    Ok(status)
+    Ok(exit)
 }
 
 fn load_scene(path: &Path) -> anyhow::Result<Scene> {

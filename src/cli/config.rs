@@ -1,6 +1,7 @@
 //! `relayrig config check` and `relayrig config schema NAME`: nothing is opened, nothing moves.
 
 use anyhow::Context;
+use app::exit::Exit;
 use config::schema::{of_kinds, schema};
 use config::{Plant, keys, load_recipe, recipe_names};
 use machine::dut::Kind;
@@ -25,11 +26,11 @@ pub enum Args {
     },
 }
 
-/// Runs the command on the configuration in `dir`; the result is the exit status.
+/// Runs the command on the configuration in `dir`.
 ///
 /// # Errors
 /// The first fault of the configuration: exit status 2.
-pub fn run(dir: &Path, args: &Args) -> anyhow::Result<i32> {
+pub fn run(dir: &Path, args: &Args) -> anyhow::Result<Exit> {
     let text = match args {
         Args::Check => check(dir)?,
         Args::Schema { name } => schema_text(name)?,
@@ -38,7 +39,7 @@ pub fn run(dir: &Path, args: &Args) -> anyhow::Result<i32> {
         .lock()
         .write_all(text.as_bytes())
         .context("writing to stdout")?;
-    Ok(0)
+    Ok(Exit::Done)
 }
 
 /// Loads everything and says what was looked at.

@@ -2,9 +2,9 @@
 //! that starts by itself.
 
 use super::rig::{self, PaceArg, RigArgs};
-use super::run::RunArgs;
 use super::serve::{self, ServeArgs};
-use std::path::Path;
+use app::exit::Exit;
+use app::order::{Files, LotOrder};
 
 /// The main job with nothing to prepare.
 #[derive(Debug, clap::Args)]
@@ -43,8 +43,8 @@ pub enum DemoPace {
     Real,
 }
 
-/// Runs the command; the result is the exit status.
-pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
+/// Runs the command.
+pub fn run(files: &Files, args: &DemoArgs) -> anyhow::Result<Exit> {
     let rig = RigArgs {
         sim: true,
         pace: match args.pace {
@@ -57,16 +57,12 @@ pub fn run(config: &Path, db: &Path, args: &DemoArgs) -> anyhow::Result<i32> {
         fault: args.fault.clone(),
         line: Vec::new(),
     };
-    let first = RunArgs {
-        rig: rig.clone(),
+    let first = LotOrder {
         lot: format!("demo {}", jiff::Zoned::now().strftime("%Y-%m-%d %H:%M:%S")),
         recipe: "jzc-22f-012".into(),
         count: args.count,
-        truth: None,
         retest: None,
-        json: false,
-        study: None,
     };
     let listen = args.listen;
-    serve::day(config, db, &ServeArgs { listen, rig }, Some(first))
+    serve::run(files, &ServeArgs { listen, rig }, Some(first))
 }

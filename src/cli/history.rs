@@ -19,9 +19,9 @@ mod show;
 mod spc;
 mod stats;
 
-pub use generate::{GenerateArgs, Generated, generate, progress};
 pub use quality::{QualityArgs, run_quality};
 
+use app::exit::Exit;
 use clap::{Args, Subcommand};
 use history::inquiry::InquiryError;
 use history::{Archive, Filter, Identity, Store};
@@ -106,7 +106,7 @@ enum Command {
 }
 
 /// Runs the command on the history file `db`; gives the exit status. An error is bad input: status 2.
-pub fn run(config: &Path, db: &Path, args: HistoryArgs) -> anyhow::Result<i32> {
+pub fn run(config: &Path, db: &Path, args: HistoryArgs) -> anyhow::Result<Exit> {
     super::unless_reader_left(dispatch(config, db, *args.command).map_err(by_option))
 }
 
@@ -118,7 +118,7 @@ fn by_option(error: anyhow::Error) -> anyhow::Error {
     }
 }
 
-fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<i32> {
+fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<Exit> {
     match command {
         Command::Import(args) => return import::run(db, &args),
         Command::Generate(args) => return generate::run(config, db, &args),
@@ -139,7 +139,7 @@ fn dispatch(config: &Path, db: &Path, command: Command) -> anyhow::Result<i32> {
             copied(db, &Filter::default(), &file)?;
         }
     }
-    Ok(0)
+    Ok(Exit::Done)
 }
 
 /// Notes for the retention that `file` holds these runs whole.
@@ -152,15 +152,15 @@ fn copied(db: &Path, filter: &Filter, file: &Path) -> anyhow::Result<()> {
 }
 
 /// Damage is an answer (status 1), not bad input.
-fn check(db: &Path) -> anyhow::Result<i32> {
+fn check(db: &Path) -> anyhow::Result<Exit> {
     match Archive::open(db)?.check() {
         Ok(()) => {
             Output::stdout().line(&format!("{}: whole", db.display()))?;
-            Ok(0)
+            Ok(Exit::Done)
         }
         Err(damage) => {
             eprintln!("{damage}");
-            Ok(1)
+            Ok(Exit::AnswerIsNo)
         }
     }
 }

@@ -2,9 +2,10 @@
 //!
 //! What a person decides here is an order like those of a screen: it stands in the audit of orders with the name.
 
-use super::DONE;
 use anyhow::{Context, ensure};
-use history::{Archive, Decision, Filter, Identity, LotStateRecord, OrderRecord, Row, Store};
+use app::exit::Exit;
+use app::lot_decision;
+use history::{Archive, Decision, Filter};
 use machine::view::{By, Order};
 use serde_json::json;
 use std::io::Write;
@@ -63,15 +64,15 @@ struct Decided {
     reason: String,
 }
 
-/// Runs the command; the result is the exit status.
-pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<i32> {
+/// Runs the command.
+pub fn run(db: &Path, args: &LotArgs) -> anyhow::Result<Exit> {
     match &args.action {
         Action::Show { lot, json } => show(&Archive::open(db)?, lot, *json)?,
         Action::Hold(it) => decide(db, it, Decision::Hold)?,
         Action::Release(it) => decide(db, it, Decision::Release)?,
         Action::Close(it) => decide(db, it, Decision::Close)?,
     }
-    Ok(DONE)
+    Ok(Exit::Done)
 }
 
 fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
@@ -95,32 +96,7 @@ fn decide(db: &Path, it: &Decided, decision: Decision) -> anyhow::Result<()> {
         role: String::new(),
         origin: "command line".into(),
     };
-    let rows = [audit(&order, &by), state(&order, &by, decision)];
-    Ok(Store::open(db, &Identity::of_this_program())?.record(&rows)?)
-}
-
-/// The row of the audit of an order that was taken outside of a run.
-pub(super) fn audit(order: &Order, by: &By) -> Row {
-    Row::Order(OrderRecord {
-        lot: None,
-        at_us: jiff::Timestamp::now().as_microsecond(),
-        who: by.who.clone(),
-        role: by.role.clone(),
-        origin: by.origin.clone(),
-        what: json!(order).to_string(),
-        refused: None,
-    })
-}
-
-/// The row that puts the lot of an order into its new state.
-pub(super) fn state(order: &Order, by: &By, decision: Decision) -> Row {
-    let reason = order.reason.as_deref().unwrap_or_default();
-    Row::LotState(LotStateRecord {
-        lot: order.lot.clone().unwrap_or_default(),
-        state: decision.becomes(),
-        why: (decision == Decision::Hold).then(|| format!("{reason} ({})", by.who)),
-        at_us: jiff::Timestamp::now().as_microsecond(),
-    })
+    Ok(lot_decision::write(db, &order, &by, decision)?)
 }
 
 fn known(archive: &Archive, lot: &str) -> anyhow::Result<history::LotStanding> {
@@ -156,9 +132,13 @@ fn show(archive: &Archive, lot: &str, as_json: bool) -> anyhow::Result<()> {
         let calibration = run.calibration_hash.as_deref().map_or("none", short);
         let consent = run.retest.as_ref();
         let retest = consent.map_or_else(String::new, |who| format!(", retest agreed to by {who}"));
+        let cause = run.cause.as_ref().zip(run.cause_text.as_ref());
+        let cause = cause.map_or_else(String::new, |(code, text)| {
+            format!(", ended by {code}: {text}")
+        });
         writeln!(
             out,
-            "run {}: recipe {} {}, calibration {calibration}, {} of {} passed{retest}",
+            "run {}: recipe {} {}, calibration {calibration}, {} of {} passed{retest}{cause}",
             run.run,
             run.recipe,
             short(&run.recipe_hash),

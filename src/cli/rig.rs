@@ -1,6 +1,9 @@
 //! Which rig a command works on: the one at serial ports, or the simulated one.
 
-use anyhow::bail;
+use anyhow::{Context, bail};
+use app::source::{LinePort, RigSource};
+#[cfg(feature = "sim")]
+use app::source::{Simulated, SimulatedPace};
 use std::path::PathBuf;
 
 /// How rig time passes on the simulated rig.
@@ -39,21 +42,51 @@ pub struct RigArgs {
 }
 
 impl RigArgs {
-    /// Refuses what does not go together.
-    pub fn check(&self) -> anyhow::Result<()> {
-        if self.speed.is_some() && !self.is_virtual() {
+    /// The rig of these arguments; true values of a simulated one go to `truth`.
+    ///
+    /// # Errors
+    /// What does not go together, a line without its port, or no simulated rig in this build.
+    pub fn source(&self, truth: Option<PathBuf>) -> anyhow::Result<RigSource> {
+        if self.speed.is_some() && !(self.sim && self.pace == PaceArg::Virtual) {
             bail!("--speed: found with --pace real, expected --pace virtual");
         }
-        if self.sim && !cfg!(feature = "sim") {
-            bail!("--sim: this is a plant build without the simulated rig");
+        if !self.sim {
+            let ports: anyhow::Result<Vec<LinePort>> = self.line.iter().map(port).collect();
+            return Ok(RigSource::Serial(ports?));
         }
-        Ok(())
+        self.simulated(truth)
     }
 
-    /// The simulated rig in virtual time.
-    pub fn is_virtual(&self) -> bool {
-        self.sim && self.pace == PaceArg::Virtual
+    #[cfg(feature = "sim")]
+    fn simulated(&self, truth: Option<PathBuf>) -> anyhow::Result<RigSource> {
+        Ok(RigSource::Simulated(Simulated {
+            pace: match (self.pace, self.speed) {
+                (PaceArg::Real, _) => SimulatedPace::Real,
+                (PaceArg::Virtual, None) => SimulatedPace::Virtual,
+                (PaceArg::Virtual, Some(speed)) => SimulatedPace::Held(speed),
+            },
+            seed: self.seed,
+            world: self.world.clone(),
+            faults: self.fault.clone(),
+            truth,
+            live: None,
+        }))
     }
+
+    #[cfg(not(feature = "sim"))]
+    fn simulated(&self, _: Option<PathBuf>) -> anyhow::Result<RigSource> {
+        bail!("--sim: this is a plant build without the simulated rig");
+    }
+}
+
+fn port(text: &String) -> anyhow::Result<LinePort> {
+    let (line, port) = text
+        .split_once('=')
+        .with_context(|| format!("--line: found \"{text}\", expected NAME=PORT"))?;
+    Ok(LinePort {
+        line: line.to_owned(),
+        port: port.to_owned(),
+    })
 }
 
 /// No speed that a person can follow and a machine keep up with.

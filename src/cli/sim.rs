@@ -1,6 +1,7 @@
 //! `relayrig sim`: only the simulated rig, on pseudo-terminals in real time.
 
 use anyhow::Context;
+use app::exit::Exit;
 use rigsim::fault::FaultInfo;
 use rigsim::pty::{self, Rates};
 use rigsim::{Options, SharedRig};
@@ -55,8 +56,8 @@ pub struct SimArgs {
     pub faults: bool,
 }
 
-/// Runs the command until it is interrupted; the result is the exit status.
-pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
+/// Runs the command until it is interrupted.
+pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
     if args.faults {
         let faults = rigsim::faults(config, args.world.as_deref())?;
         let row = |fault: FaultInfo| {
@@ -67,7 +68,7 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
         };
         let rows: String = faults.into_iter().map(row).collect();
         let told = std::io::stdout().write_all(rows.as_bytes());
-        return super::unless_reader_left(told.map(|()| 0).context("writing the faults"));
+        return super::unless_reader_left(told.map(|()| Exit::Done).context("writing the faults"));
     }
     let rig = match &args.bench {
         Some(file) => rigsim::build_bench(file, &args.fault)?,
@@ -108,7 +109,7 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<i32> {
     if let Some(file) = &mut truth {
         file.write_rest(&rig)?;
     }
-    Ok(0)
+    Ok(Exit::Done)
 }
 
 /// Prints what the outputs do, until the program ends.

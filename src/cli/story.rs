@@ -1,23 +1,15 @@
 //! `relayrig story`: a script of troubles and orders on the simulated rig, and what happened, line by line.
 //!
-//! A script ([`script`]) says which faults strike the rig and what a person at the screen does, each after an event,
-//! not at a time: so it tells the same story on a faster line. What is seen is told as a mechanic who stood
-//! beside it would ([`told`]). Seconds count from the first trouble, in whole ones, and only of what has to do with it.
-//!
-//! A person is at the screen: alarms and stops end nothing. The story ends when the script has been played and the
-//! lot is complete, or when nothing has happened for [`play::PATIENCE`].
-//!
 //! Exit status: 0 the script was played and the lot completed, 1 something in it never came.
 
-mod play;
-mod script;
-mod told;
-
-use super::rig::{PaceArg, RigArgs};
-use super::run::{self, Controls, Orders, RunArgs};
+use super::terminal::Terminal;
 use anyhow::Context;
-pub use play::Play;
+use app::exit::Exit;
+use app::order::{Files, LotOrder};
+use app::source::Simulated;
+use app::story::{script, tell};
 use std::fs::File;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// A script to play.
@@ -52,47 +44,48 @@ pub struct StoryArgs {
     pub journal: Option<PathBuf>,
 }
 
-/// Runs the command; the result is the exit status.
+/// Runs the command.
 ///
 /// # Errors
 /// Bad input.
-pub fn run(config: &Path, db: &Path, args: &StoryArgs) -> anyhow::Result<i32> {
+pub fn run(files: &Files, args: &StoryArgs) -> anyhow::Result<Exit> {
     let named = || args.script.display().to_string();
     let text = std::fs::read_to_string(&args.script).with_context(named)?;
     let script = script::parse(&text).with_context(named)?;
-    let journal = args.journal.as_deref().map(created).transpose()?;
+    let journal = args
+        .journal
+        .as_deref()
+        .map(|path| created("--journal", path));
+    let journal = journal.transpose()?;
+    if let Some(path) = &args.truth {
+        created("--truth", path)?;
+    }
     let lot = args.script.file_stem().unwrap_or_default();
-    let order = RunArgs {
-        rig: RigArgs {
-            sim: true,
-            pace: PaceArg::Virtual,
-            speed: None,
-            seed: args.seed,
-            world: None,
-            fault: script.faults.clone(),
-            line: Vec::new(),
-        },
+    let order = LotOrder {
         lot: format!("story {}", lot.to_string_lossy()),
         recipe: args.recipe.clone(),
         count: Some(script.parts),
         retest: None,
+    };
+    let rig = Simulated {
+        faults: script.faults.clone(),
         truth: args.truth.clone(),
-        json: false,
-        study: None,
+        ..Simulated::drawn_by(args.seed)
     };
-    let controls = Controls {
-        stays: true,
-        ..Controls::new(true)
-    };
-    run::run_with(
-        config,
-        db,
+    let (told, exit) = tell(
+        files,
+        rig,
         &order,
-        &controls,
-        Orders::Script(Play::new(script, journal)),
-    )
+        (script, journal),
+        &mut Terminal::quiet(),
+    )?;
+    if let Some(told) = told {
+        // A reader that has gone away ends nothing.
+        std::io::stdout().write_all(told.text.as_bytes()).ok();
+    }
+    Ok(exit)
 }
 
-fn created(journal: &Path) -> anyhow::Result<File> {
-    File::create(journal).with_context(|| format!("--journal {}", journal.display()))
+fn created(option: &str, path: &Path) -> anyhow::Result<File> {
+    File::create(path).with_context(|| format!("{option} {}", path.display()))
 }

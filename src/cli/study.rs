@@ -1,178 +1,14 @@
-//! `relayrig study`: figures that anyone can reprint.
-//!
-//! A study runs lots on the simulated rig in virtual time, each in a process of its own with this very
-//! program, sets what the rows say against what the specimens really were (`--truth`), and prints every
-//! figure beside the bar it has to keep.
-//!
-//! - Lot `n` of a study runs with seed `n`, so a figure can be traced back to one `relayrig run`.
-//! - A good part is one without a defect; only good parts count for errors and coverage. One that was drawn
-//!   beyond a limit all the same is rejected with reason: it counts as neither good nor defective in the
-//!   figures about bins, and stands in a row of its own.
-//! - A figure that could not be had (nothing measured, nothing reported) has missed its bar.
-//! - Rig time and wall time are never mixed: wall time appears in `pace` and `collision` only.
-//!
-//! `collision` runs no lot and needs no rig: it sets ways to check a move against the exact truth.
+//! `relayrig study`: figures that anyone can reprint, see [`studies`].
 //!
 //! Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input or a lot that did not start.
 
-mod accuracy;
-mod bins;
-mod chance;
-mod chart;
-mod coil;
-mod collision;
-mod contact;
-mod coverage;
-mod cycle;
-mod decision;
-mod error;
-mod exception;
-mod figure;
-mod fleet;
-mod gantt;
-mod history;
-mod journal;
-mod kill;
-mod lot;
-mod method;
-mod output;
-mod pace;
-mod parameters;
-mod path;
-mod scatter;
-mod sorting;
-mod stop;
-#[cfg(feature = "sim")]
-mod storm;
-#[cfg(test)]
-mod tests;
-mod threshold;
-mod timing;
-#[cfg(feature = "sim")]
-mod transient;
-mod variant;
-mod verification;
-
 use anyhow::{Context, bail};
+use app::exit::Exit;
 use clap::ValueEnum;
-use config::load_recipe;
-use fleet::Order;
-use machine::dut::em_relay::Parameter;
-use output::Report;
 use serde_json::json;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-
-/// Every bar is kept.
-const ALL_MET: i32 = 0;
-/// A bar is missed.
-const BAR_MISSED: i32 = 1;
-
-/// What can be studied.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Study {
-    /// Error of every parameter against the truth, and where parts went
-    Accuracy,
-    /// Seconds against error of the coil resistance: settling, scans, self-heating, temperature
-    Coil,
-    /// Ways to check a move: time against error and wrong verdicts
-    Collision,
-    /// Seconds against error of contacts: polarities, drifting EMF, closures, early stop
-    Contact,
-    /// How often the stated uncertainty covers the truth
-    Coverage,
-    /// Rig time of a test and of a cycle, and where it goes
-    Cycle,
-    /// Speed of the history on a made-up file
-    History,
-    /// False accepts and rejects, counted and as the decision rule predicts them
-    Decision,
-    /// The emergency stop at every instant of a cycle and of homing, and how long outputs stay on
-    Stop,
-    /// Seconds against error of every strategy for the thresholds
-    Threshold,
-    /// Lots killed at random instants: rows lost, rows twice, damage
-    Kill,
-    /// Parts per second of wall time, and whether the same seed gives the same bytes
-    Pace,
-    /// Good parts rejected, defects by bin, over many lots
-    Sorting,
-    /// Short lots under random faults, orders and kills: bodies, rows, motions and endings
-    Storm,
-    /// Error of times and bounce: latched and raw gates, reference clock, gate delay
-    Timing,
-    /// The relay model of the simulated rig over the cases of a file
-    Transient,
-    /// How often a verification fails a rig that has not changed
-    Verification,
-}
-
-impl Study {
-    /// Lots and parts of a lot when nothing else is asked for; none where no lot is run.
-    const fn usual(self) -> Option<(u64, u64)> {
-        match self {
-            Self::Accuracy => Some((10, 500)),
-            Self::Coil | Self::Contact | Self::Timing => Some((4, 40)),
-            Self::Collision => None,
-            Self::Coverage => Some((100, 10)),
-            Self::Cycle => Some((1, 100)),
-            Self::Decision => Some((20, 500)),
-            Self::History => Some((1, 1_000_000)),
-            Self::Kill => Some((300, 1)),
-            Self::Pace => Some((3, 300)),
-            Self::Sorting => Some((100, 110)),
-            Self::Storm => Some((200, 4)),
-            Self::Threshold => Some((4, 40)),
-            Self::Stop => Some((16, 25)),
-            Self::Transient => None,
-            Self::Verification => Some((20, 10)),
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Accuracy => "accuracy",
-            Self::Coil => "coil",
-            Self::Collision => "collision",
-            Self::Contact => "contact",
-            Self::Coverage => "coverage",
-            Self::Cycle => "cycle",
-            Self::History => "history",
-            Self::Decision => "decision",
-            Self::Threshold => "threshold",
-            Self::Kill => "kill",
-            Self::Pace => "pace",
-            Self::Sorting => "sorting",
-            Self::Storm => "storm",
-            Self::Timing => "timing",
-            Self::Stop => "stop",
-            Self::Transient => "transient",
-            Self::Verification => "verification",
-        }
-    }
-
-    fn report(self, order: &Order) -> anyhow::Result<Report> {
-        match self {
-            Self::Accuracy => accuracy::study(order),
-            Self::Coil => coil::study(order),
-            Self::Collision => bail!("study collision runs no lot"),
-            Self::Contact => contact::study(order),
-            Self::Coverage => coverage::study(order),
-            Self::Cycle => cycle::study(order),
-            Self::History => history::study(order),
-            Self::Decision => decision::study(order),
-            Self::Threshold => threshold::study(order),
-            Self::Kill => kill::study(order),
-            Self::Pace => pace::study(order),
-            Self::Sorting => sorting::study(order),
-            Self::Storm => storms(order),
-            Self::Timing => timing::study(order),
-            Self::Stop => stop::study(order),
-            Self::Transient => bail!("study transient runs no lot"),
-            Self::Verification => verification::study(order),
-        }
-    }
-}
+use studies::{Order, Report, Study};
 
 /// A study, or the list of them.
 #[derive(Debug, Clone, clap::Args)]
@@ -186,7 +22,7 @@ impl Study {
   relayrig study storm --seeds 10000
   relayrig study storm --seeds 1000 --from 10001
   relayrig study storm --seed 17
-  relayrig study transient --cases src/cli/study/transient/cases.json --rtol 1e-10 --json
+  relayrig study transient --cases crates/studies/src/transient/cases.json --rtol 1e-10 --json
 
 Exit status: 0 every bar is kept, 1 a bar is missed, 2 bad input.")]
 pub struct StudyArgs {
@@ -225,38 +61,35 @@ pub struct StudyArgs {
     pub rtol: Option<f64>,
 }
 
-/// Runs the command; the result is the exit status.
+/// Runs the command.
 ///
 /// # Errors
 /// Bad input, a lot that ended with bad input, or an output that cannot be written.
-pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
-    let Some(study) = args.name else {
+pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<Exit> {
+    let Some(wanted) = args.name else {
         print(&listed(args.json))?;
-        return Ok(ALL_MET);
+        return Ok(Exit::Done);
     };
-    if study == Study::Collision {
+    if wanted == Study::Collision {
         return collisions(args);
     }
-    if !cfg!(feature = "sim") {
-        bail!("study: this is a plant build without the simulated rig");
-    }
-    match (study == Study::Transient, &args.cases, args.rtol) {
+    match (wanted == Study::Transient, &args.cases, args.rtol) {
         (true, _, _) => return transients(args),
         (false, None, None) => {}
         (false, _, _) => bail!("--cases and --rtol belong to `study transient`"),
     }
-    if (args.seed.is_some() || args.from.is_some()) && study != Study::Storm {
+    if (args.seed.is_some() || args.from.is_some()) && wanted != Study::Storm {
         bail!("--seed and --from belong to `study storm`");
     }
     if let Some(folder) = &args.out {
         made(folder)?;
     }
-    let (lots, parts) = study.usual().unwrap_or((1, 1));
+    let (lots, parts) = wanted.usual().unwrap_or((1, 1));
     let order = Order {
         program: std::env::current_exe().context("finding this program")?,
         config: config.to_owned(),
         recipe: args.recipe.clone(),
-        admitted: admitted(config, &args.recipe)?,
+        admitted: studies::admitted(config, &args.recipe)?,
         world: args.world.clone(),
         faults: Vec::new(),
         lots: args.seeds.unwrap_or(lots),
@@ -264,27 +97,30 @@ pub fn run(config: &Path, args: &StudyArgs) -> anyhow::Result<i32> {
         seed: args.seed,
         parts: args.parts.unwrap_or(parts),
     };
-    let report = study.report(&order)?;
-    if let (Study::Cycle, Some(folder)) = (study, &args.out) {
-        written(&folder.join("cycle-gantt.svg"), &gantt::svg(&order)?)?;
+    let report = wanted.report(&order)?;
+    if let (Study::Cycle, Some(folder)) = (wanted, &args.out) {
+        written(
+            &folder.join("cycle-gantt.svg"),
+            &studies::cycle_gantt(&order)?,
+        )?;
     }
     published(&report, args)
 }
 
-fn collisions(args: &StudyArgs) -> anyhow::Result<i32> {
+fn collisions(args: &StudyArgs) -> anyhow::Result<Exit> {
     if args.seeds.is_some() || args.parts.is_some() || args.world.is_some() {
         bail!("study collision: --seeds, --parts and --world belong to studies that run lots");
     }
-    let (report, plot) = collision::study()?;
+    let (report, plot) = studies::collision()?;
     if let Some(folder) = &args.out {
         made(folder)?;
-        written(&folder.join("collision-speed.svg"), &plot.svg())?;
+        written(&folder.join("collision-speed.svg"), &plot)?;
     }
     published(&report, args)
 }
 
 /// Writes the files that were asked for, prints, and turns the bars into the exit status.
-fn published(report: &Report, args: &StudyArgs) -> anyhow::Result<i32> {
+fn published(report: &Report, args: &StudyArgs) -> anyhow::Result<Exit> {
     if let Some(folder) = &args.out {
         made(folder)?;
         let file = |ending: &str| folder.join(format!("{}.{ending}", report.study));
@@ -297,9 +133,9 @@ fn published(report: &Report, args: &StudyArgs) -> anyhow::Result<i32> {
         report.text()
     })?;
     Ok(if report.all_met() {
-        ALL_MET
+        Exit::Done
     } else {
-        BAR_MISSED
+        Exit::AnswerIsNo
     })
 }
 
@@ -307,8 +143,7 @@ fn made(folder: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(folder).with_context(|| format!("--out {}", folder.display()))
 }
 
-#[cfg(feature = "sim")]
-fn transients(args: &StudyArgs) -> anyhow::Result<i32> {
+fn transients(args: &StudyArgs) -> anyhow::Result<Exit> {
     if args.out.is_some() || args.seeds.is_some() || args.parts.is_some() || args.world.is_some() {
         bail!(
             "study transient: --out, --seeds, --parts and --world belong to studies that run lots; it prints one answer per case"
@@ -317,24 +152,9 @@ fn transients(args: &StudyArgs) -> anyhow::Result<i32> {
     let Some(cases) = &args.cases else {
         bail!("study transient: --cases is missing, expected a file of cases or `-`");
     };
-    let rtol = args.rtol.unwrap_or(transient::USUAL_RTOL);
-    print(&transient::study(cases, rtol, args.json)?)?;
-    Ok(ALL_MET)
-}
-
-#[cfg(feature = "sim")]
-fn storms(order: &Order) -> anyhow::Result<Report> {
-    storm::study(order)
-}
-
-#[cfg(not(feature = "sim"))]
-fn storms(_: &Order) -> anyhow::Result<Report> {
-    bail!("study: this is a plant build without the simulated rig");
-}
-
-#[cfg(not(feature = "sim"))]
-fn transients(_: &StudyArgs) -> anyhow::Result<i32> {
-    bail!("study: this is a plant build without the simulated rig");
+    let rtol = args.rtol.unwrap_or(studies::USUAL_RTOL);
+    print(&studies::transient(cases, rtol, args.json)?)?;
+    Ok(Exit::Done)
 }
 
 /// No tolerance that the method and the arithmetic can keep.
@@ -348,20 +168,6 @@ fn tolerance(text: &str) -> Result<f64, NoTolerance> {
         Ok(value) if (1e-14..=1e-2).contains(&value) => Ok(value),
         Ok(_) | Err(_) => Err(NoTolerance),
     }
-}
-
-/// What the recipe admits; a limit that it does not set is infinite.
-fn admitted(config: &Path, recipe: &str) -> anyhow::Result<lot::Admitted> {
-    let limits = load_recipe(config, recipe)?.limits;
-    let range = |parameter: &Parameter| {
-        let limit = limits.of(*parameter);
-        let (low, high) = (limit.low, limit.high);
-        (
-            *parameter,
-            low.unwrap_or(f64::NEG_INFINITY)..=high.unwrap_or(f64::INFINITY),
-        )
-    };
-    Ok(Parameter::ALL.iter().map(range).collect())
 }
 
 fn listed(as_json: bool) -> String {

@@ -1,7 +1,7 @@
 //! `relayrig user`: who may order what at the screen.
 
-use super::DONE;
 use anyhow::Context;
+use app::exit::Exit;
 use page::access::{Register, Role, beside};
 use std::io::{BufRead, Write};
 use std::path::Path;
@@ -50,8 +50,8 @@ enum Action {
     },
 }
 
-/// Runs the command; the result is the exit status.
-pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<i32> {
+/// Runs the command.
+pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<Exit> {
     let mut register = Register::open(&beside(db))?;
     match args.action {
         Action::List => {
@@ -73,7 +73,7 @@ pub fn run(db: &Path, args: UserArgs) -> anyhow::Result<i32> {
         }
         Action::Remove { name } => register.remove(&name)?,
     }
-    Ok(DONE)
+    Ok(Exit::Done)
 }
 
 fn password(from_stdin: bool) -> anyhow::Result<String> {

@@ -1,7 +1,7 @@
 //! `relayrig wear`: how often probes and jaws were used since they were replaced.
 
-use super::{BAD_INPUT, DONE};
 use anyhow::ensure;
+use app::exit::Exit;
 use history::{Identity, Store};
 use serde_json::json;
 use std::io::Write;
@@ -42,8 +42,8 @@ enum Action {
     },
 }
 
-/// Runs the command; the result is the exit status.
-pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<i32> {
+/// Runs the command.
+pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<Exit> {
     let mut store = Store::open(db, &Identity::of_this_program())?;
     match &args.action {
         Action::List { json } => list(&store, args.sim, *json)?,
@@ -60,11 +60,11 @@ pub fn run(db: &Path, args: &WearArgs) -> anyhow::Result<i32> {
                     "relayrig: found no counter {name:?}, expected one of {}",
                     known.join(", ")
                 );
-                return Ok(BAD_INPUT);
+                return Ok(Exit::BadInput);
             }
         }
     }
-    Ok(DONE)
+    Ok(Exit::Done)
 }
 
 fn list(store: &Store, sim: bool, as_json: bool) -> anyhow::Result<()> {

@@ -75,6 +75,8 @@ fn a_rig_with_an_overdue_calibration_takes_no_lot_and_says_since_when() {
         ["calibration_invalid"],
         "an alarm stands in the history"
     );
+    let causes = workshop.texts("SELECT cause FROM run_end");
+    assert_eq!(causes, ["calibration_invalid"]);
 }
 
 #[test]

@@ -13,6 +13,7 @@ fn a_history_that_may_not_grow_stops_feeding_and_loses_no_part_that_fell() {
     let said = workshop.run_with_little_room(BLOCKS, lot).with_status(3);
     assert!(said.stderr.contains("history: recording"), "{said}");
     let told = said.objects();
+    assert_eq!(told.last().unwrap()["cause"]["code"], "history_lost");
     let landed: Vec<_> = told
         .iter()
         .filter(|it| it["type"] == "part" && it["bin"] != "")

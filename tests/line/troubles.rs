@@ -99,10 +99,30 @@ fn lost_rows(fault: &str, workshop: &Workshop, said: &Said) -> Vec<String> {
     if workshop.count("SELECT count(*) FROM run WHERE closed_at_us IS NULL") != 0 {
         lost.push(format!("{fault}: the run was left open"));
     }
+    if let Some(wrong) = cause_otherwise(workshop, said) {
+        lost.push(format!("{fault}: {wrong}"));
+    }
     if said.stderr.contains("touched") {
         lost.push(format!("{fault}: {}", said.stderr));
     }
     lost
+}
+
+/// A status of 3 has the same cause in the summary and in the history, an alarm of the run; no other status has one.
+fn cause_otherwise(workshop: &Workshop, said: &Said) -> Option<String> {
+    let summary = said.objects().pop()?;
+    let cause = summary["cause"]["code"].as_str().unwrap_or_default();
+    let alarms = workshop.texts("SELECT code FROM alarm");
+    if (said.status == 3) != alarms.iter().any(|code| code == cause) {
+        return Some(format!(
+            "status {}, cause {cause:?} of {alarms:?}",
+            said.status
+        ));
+    }
+    let listed = workshop.run("history list --json").objects().pop()?;
+    let kept = listed["cause"].as_str().unwrap_or_default();
+    let same = kept == cause && listed["ended"] == summary["ended"];
+    (!same).then(|| format!("the history keeps {listed}, the summary tells {summary}"))
 }
 
 #[test]

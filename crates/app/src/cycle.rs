@@ -58,7 +58,7 @@ const IDLE: Span = Span::ms(50);
 
 /// What the cycle shares with the outside.
 #[derive(Debug)]
-pub struct Outside {
+pub struct CycleLinks {
     /// Where events go; bounded by the parts inside the machine.
     pub events: mpsc::UnboundedSender<Event>,
     /// Ordinal up to which parts are durable; written by the history.
@@ -87,7 +87,7 @@ pub struct Cycle {
     outputs: Outputs,
     traffic: Traffic,
     patience: Patience,
-    outside: Outside,
+    links: CycleLinks,
     job_done: Option<JobDone>,
     /// The nest whose job is under way, or was last.
     job_nest: NestId,
@@ -123,7 +123,7 @@ impl Cycle {
         station: Station,
         guard: Guard,
         lines: Vec<LineEnds>,
-        outside: Outside,
+        links: CycleLinks,
     ) -> Self {
         assert_eq!(lines.len(), wiring.lines.len(), "a line without its task");
         Self {
@@ -136,7 +136,7 @@ impl Cycle {
             inside: station.ledger().to_look_for(),
             station,
             guard,
-            outside,
+            links,
             job_done: None,
             job_nest: NestId::FIRST,
             bus_alarm: None,
@@ -296,7 +296,7 @@ impl Cycle {
     }
 
     fn step(&mut self, now: RigTime) -> Wants {
-        if self.outside.history_lost.load(Ordering::Acquire) {
+        if self.links.history_lost.load(Ordering::Acquire) {
             self.bus_alarm.get_or_insert(AlarmCode::HistoryLost.into());
         }
         if let Some(asked_at) = self.image.input_at(DigitalIn::EmergencyStopOk) {
@@ -308,7 +308,7 @@ impl Cycle {
             self.patience.forgive();
         }
         let inputs = Inputs {
-            abort: self.outside.abort.load(Ordering::Acquire),
+            abort: self.links.abort.load(Ordering::Acquire),
             orders,
             settled: self.outputs.all_settled(),
             verified: std::mem::take(&mut self.verified),
@@ -317,9 +317,9 @@ impl Cycle {
                 nest: self.job_nest,
                 done,
             }),
-            recorded: self.outside.recorded.load(Ordering::Acquire),
+            recorded: self.links.recorded.load(Ordering::Acquire),
             bus: self.bus_alarm.take(),
-            stop: self.outside.stop.load(Ordering::Acquire),
+            stop: self.links.stop.load(Ordering::Acquire),
         };
         self.station.step(now, inputs)
     }
@@ -445,7 +445,7 @@ impl Cycle {
         tokio::select! {
             biased;
             () = self.traffic.answer() => {}
-            asked = self.outside.orders.recv(), if !self.orders_closed => {
+            asked = self.links.orders.recv(), if !self.orders_closed => {
                 self.orders_closed = asked.is_none();
                 self.asked.extend(asked);
             }

@@ -1,5 +1,109 @@
-//! What the program does with the machine: one turn of the rig, a lot, a day of service, a story.
+//! What a lot, a day of service, a story, a calibration and a follower of the traffic *are*, in types of their own.
 //!
-//! - [`cycle`]: scans, steps, clears, applies, records, publishes.
+//! The command line turns arguments into these types and answers into text. Nothing here reads an argument or writes
+//! to the terminal; what is logged goes through `tracing`.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`order`], [`source`] | which lot on which rig |
+//! | [`admission`] | whether the lot may be run at all |
+//! | [`lot`] | a run: one stream of events and its subscribers |
+//! | [`exit`] | why it ended |
+//! | [`cycle`] | one turn of the rig: scan, step, clear, apply, record, publish |
+//! | [`service`] | lot after lot under one program, ordered at a page |
+//! | [`calibration`], [`gauge_study`] | runs that measure the rig itself |
+//! | `story` | a script that strikes the simulated rig and orders as a person does |
 
+pub mod admission;
+pub mod calibration;
+pub mod controls;
 pub mod cycle;
+pub mod exit;
+pub mod follower;
+pub mod gauge_study;
+pub mod generate;
+pub mod links;
+pub mod lot;
+pub mod lot_decision;
+pub mod order;
+pub mod order_queue;
+#[cfg(feature = "sim")]
+mod plug;
+pub mod service;
+#[cfg(feature = "sim")]
+pub mod simulated;
+pub mod source;
+#[cfg(feature = "sim")]
+pub mod story;
+pub mod traces;
+
+use admission::admit;
+use anyhow::Context;
+use config::Plant;
+use controls::Controls;
+use exit::{Cause, Exit};
+use lot::{LotContext, LotRunner, Purpose, Subscriber};
+use order::{Files, LotOrder};
+use order_queue::OrderQueue;
+use source::RigSource;
+use std::time::Duration;
+
+/// Runs one lot that nobody attends; Ctrl-C stops it. `outer` hears every event.
+///
+/// # Errors
+/// Bad input: a configuration, a lot or a rig that is refused before anything moves.
+pub fn run_lot(
+    files: &Files,
+    source: &RigSource,
+    order: &LotOrder,
+    purpose: Purpose,
+    outer: &mut dyn Subscriber,
+) -> anyhow::Result<Exit> {
+    let plant = Plant::load(&files.config)?;
+    let recipe = admit(&files.db, &plant, order, purpose)?;
+    if purpose == Purpose::Lot
+        && let Some(why) = admission::uncalibrated(&files.db, &recipe, source)?
+    {
+        let cause = Cause::calibration_invalid(&why);
+        tracing::error!(code = cause.code, "{why}");
+        admission::refuse(&files.db, &recipe, order, &cause)?;
+        return Ok(Exit::Trouble(cause));
+    }
+    let controls = Controls::new(false);
+    let runner = LotRunner {
+        db: &files.db,
+        context: LotContext::new(&plant, (order, &recipe), source, purpose),
+        controls: &controls,
+    };
+    block_on(source, async {
+        controls.heed_signals();
+        runner.run(OrderQueue::nobody(), outer).await
+    })
+}
+
+/// Runs `work` on one thread, whose clock is the rig's in virtual time.
+///
+/// # Errors
+/// Those of `work`, or a runtime that cannot be started.
+pub fn block_on<T>(
+    source: &RigSource,
+    work: impl Future<Output = anyhow::Result<T>>,
+) -> anyhow::Result<T> {
+    let runtime = runtime(source)?;
+    let done = runtime.block_on(work);
+    runtime.shutdown_timeout(Duration::from_secs(1));
+    done
+}
+
+/// A runtime of one thread for runs on `source`.
+///
+/// # Errors
+/// The system refuses it.
+pub fn runtime(source: &RigSource) -> anyhow::Result<tokio::runtime::Runtime> {
+    let mut builder = tokio::runtime::Builder::new_current_thread();
+    builder.enable_all();
+    #[cfg(feature = "sim")]
+    builder.start_paused(source.is_virtual());
+    let _ = source;
+    builder.build().context("starting the runtime")
+}

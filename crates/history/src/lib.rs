@@ -44,6 +44,7 @@ mod reasons;
 mod record;
 mod rejudge;
 mod retention;
+mod run_end;
 mod series;
 mod store;
 mod values;
@@ -73,6 +74,7 @@ pub use record::{
 };
 pub use rejudge::rejudged;
 pub use retention::Pruned;
+pub use run_end::RunEndRecord;
 pub use store::{Identity, Store};
 pub use values::{LimitsSeen, Values};
 pub use wear::{Wear, WearRecord};

@@ -28,6 +28,12 @@ pub struct LotSummary {
     pub opened: Moment,
     /// End; none while it runs or when it was cut off.
     pub closed: Option<Moment>,
+    /// `complete`, `stopped` or `alarm`; none while it runs, when it was cut off, or of a run older than schema 9.
+    pub ended: Option<String>,
+    /// Code of the trouble that ended it: an alarm, or why the program could not go on.
+    pub cause: Option<String>,
+    /// What happened, English.
+    pub cause_text: Option<String>,
     /// Counts of production parts.
     #[serde(flatten)]
     pub counts: Yield,
@@ -152,8 +158,10 @@ impl Archive {
         let mut statement = self.connection.prepare(&format!(
             "SELECT lot.name, run.number, recipe.name, recipe.hash, run.calibration_hash,
                run.source, run.seed, run.opened_at_us, run.closed_at_us, run.id,
-               (SELECT consented_by FROM retest WHERE run_id = run.id)
+               (SELECT consented_by FROM retest WHERE run_id = run.id),
+               run_end.ended, run_end.cause, run_end.cause_text
              FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
+               LEFT JOIN run_end ON run_end.run_id = run.id
              WHERE run.id IN ({}) ORDER BY run.opened_at_us, run.id",
             runs.sql
         ))?;
@@ -169,6 +177,9 @@ impl Archive {
                 retest: row.get(10)?,
                 opened: Moment(row.get(7)?),
                 closed: row.get::<_, Option<i64>>(8)?.map(Moment),
+                ended: row.get(11)?,
+                cause: row.get(12)?,
+                cause_text: row.get(13)?,
                 counts: Yield::default(),
                 golden: 0,
                 alarms: 0,

@@ -5,7 +5,7 @@
 
 use super::{
     AlarmChangeRecord, CurveRecord, GoldenCheckRecord, InsideRecord, LotStateRecord, OrderRecord,
-    WearRecord,
+    RunEndRecord, WearRecord,
 };
 use machine::dut::Reason;
 use serde::{Deserialize, Serialize};
@@ -185,6 +185,8 @@ pub enum Row {
     Alarm(AlarmRecord),
     /// What became of an alarm.
     AlarmChange(AlarmChangeRecord),
+    /// A run of a lot has ended.
+    RunEnded(RunEndRecord),
     /// A lot changes its state.
     LotState(LotStateRecord),
     /// Golden parts were compared with their certificates.

@@ -6,7 +6,7 @@
 use super::error::{Doing, HistoryError, Result};
 use super::{
     AlarmRecord, CalibrationRecord, LandingRecord, LotRecord, PartRecord, Row, alarm_states, gates,
-    insert, inside, landing, open, orders, series, wear,
+    insert, inside, landing, open, orders, run_end, series, wear,
 };
 use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
 use std::collections::HashMap;
@@ -268,6 +268,7 @@ fn write(transaction: &Transaction<'_>, known: &mut Known, rows: &[Row]) -> Resu
         Row::Landed(landed) => landing::landing(transaction, known, landed),
         Row::Alarm(alarm) => landing::alarm(transaction, known, alarm),
         Row::AlarmChange(it) => alarm_states::change(transaction, it),
+        Row::RunEnded(it) => run_end::insert(transaction, known, it),
         Row::LotState(it) => gates::state(transaction, it)
             .map(|_| ())
             .doing("recording the state of a lot"),

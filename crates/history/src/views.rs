@@ -15,8 +15,10 @@ CREATE VIEW lots AS
     sum(ifnull(part.verdict = 'pass', 0)) AS pass, sum(ifnull(part.verdict = 'fail', 0)) AS fail,
     sum(ifnull(part.verdict = 'void', 0)) AS void,
     round(100.0 * sum(part.verdict = 'pass') / nullif(sum(part.verdict <> 'unjudged'), 0), 2)
-      AS yield_percent
+      AS yield_percent,
+    run_end.ended, run_end.cause, run_end.cause_text
   FROM run JOIN lot ON lot.id = run.lot_id JOIN recipe ON recipe.id = run.recipe_id
+    LEFT JOIN run_end ON run_end.run_id = run.id
     LEFT JOIN part ON part.run_id = run.id AND part.kind = 'lot'
   GROUP BY run.id;
 DROP VIEW IF EXISTS measurements;

@@ -66,6 +66,21 @@ pub struct View {
     pub lines: Vec<LineView>,
     /// Outer machine, buttons, mechanism, signals.
     pub machine: Machine,
+    /// How the run of a lot that ended last has ended; none before one has.
+    pub last_run: Option<RunEnd>,
+}
+
+/// How a run of a lot ended.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct RunEnd {
+    /// The lot.
+    pub lot: String,
+    /// `complete`, `stopped` or `alarm`.
+    pub ended: String,
+    /// Code of the trouble that ended it: an alarm, or why the program could not go on; none without trouble.
+    pub cause: Option<String>,
+    /// What happened, English.
+    pub cause_text: Option<String>,
 }
 
 /// A part in the strip of the last ones.

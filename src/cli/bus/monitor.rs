@@ -1,10 +1,11 @@
 //! `relayrig bus monitor`: what passes on a line, from a port that is only listened to, from a running controller, or from
 //! the trace of an alarm.
 
-use super::meaning::Meaning;
-use super::{PortArgs, follow, print};
+use super::{PortArgs, print};
 use anyhow::{Context, bail};
-use bus::{Direction, Entry, Pace, Recorded, arrow, escaped, open_serial};
+use app::exit::Exit;
+use app::follower::{self, News, What};
+use bus::{Direction, Entry, Meaning, Pace, Recorded, arrow, escaped, open_serial, unescaped};
 use dcon;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -26,8 +27,8 @@ pub struct MonitorArgs {
     #[arg(long, value_name = "PATH", required_unless_present_any = ["trace", "from"])]
     port: Option<PathBuf>,
     /// Address of the page of a running controller
-    #[arg(long, value_name = "URL", value_parser = follow::page, conflicts_with_all = ["port", "trace"])]
-    from: Option<follow::Page>,
+    #[arg(long, value_name = "URL", value_parser = follower::page, conflicts_with_all = ["port", "trace"])]
+    from: Option<follower::Page>,
     /// Only this line of the controller
     #[arg(long, value_name = "NAME", requires = "from")]
     line: Option<String>,
@@ -58,7 +59,7 @@ pub(super) enum Level {
     Meaning,
 }
 
-pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<i32> {
+pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<Exit> {
     if let Some(path) = &args.trace {
         let text = if path.as_os_str() == "-" {
             std::io::read_to_string(std::io::stdin()).context("reading stdin")?
@@ -71,7 +72,7 @@ pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<i32> {
         for entry in &recorded.entries {
             print(&teller.tell(entry))?;
         }
-        return Ok(super::super::DONE);
+        return Ok(Exit::Done);
     }
     let seconds = Duration::from_secs(args.seconds.unwrap_or(u64::from(u32::MAX)));
     tokio::select! {
@@ -79,16 +80,16 @@ pub(super) async fn run(args: &MonitorArgs) -> anyhow::Result<i32> {
         _ = tokio::signal::ctrl_c() => {}
         () = tokio::time::sleep(seconds) => {}
     }
-    Ok(super::super::DONE)
+    Ok(Exit::Done)
 }
 
 /// For as long as there is something to watch.
 async fn watch(args: &MonitorArgs) -> anyhow::Result<()> {
     if let Some(page) = &args.from {
-        return follow::follow(page, |news| {
-            let wanted = args.line.as_ref().is_none_or(|line| news.is_of(line));
+        return follower::follow(page, |news| {
+            let wanted = args.line.as_ref().is_none_or(|line| news.line == *line);
             if wanted {
-                print(&format!("{}\n", news.row(args.level)))?;
+                print(&format!("{}\n", row(news, args.level)))?;
             }
             Ok(())
         })
@@ -98,6 +99,25 @@ async fn watch(args: &MonitorArgs) -> anyhow::Result<()> {
         bail!("--port, --from or --trace is needed");
     };
     listen(args, &PortArgs { port: path.clone() }).await
+}
+
+/// One row of a running controller, its end left off.
+fn row(news: &News, level: Level) -> String {
+    let (seconds, line) = (news.at_us as f64 / 1e6, &news.line);
+    let What::Message(message) = &news.what else {
+        return format!("{seconds:>14.6} {line} - more has passed than could be seen");
+    };
+    let said = match level {
+        Level::Bytes => unescaped(&message.text)
+            .unwrap_or_default()
+            .iter()
+            .map(|byte| format!("{byte:02X} "))
+            .collect(),
+        Level::Frames => message.text.clone(),
+        Level::Meaning => format!("{:<24} {}", message.text, message.meaning),
+    };
+    let row = format!("{seconds:>14.6} {line} {} {said}", message.way);
+    row.trim_end().to_owned()
 }
 
 /// Until the port goes away.
@@ -166,5 +186,33 @@ impl Teller {
             arrow(entry.direction),
             said.trim_end()
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use app::follower::Message;
+
+    #[test]
+    fn a_level_says_how_much_of_a_message_is_shown() {
+        let news = |what| News {
+            at_us: 4,
+            line: "motion".to_owned(),
+            what,
+        };
+        let message = news(What::Message(Message {
+            at_us: 4,
+            way: "<".to_owned(),
+            text: ">3E\\r".to_owned(),
+            meaning: "accepted".to_owned(),
+        }));
+        let bytes = row(&message, Level::Bytes);
+        assert_eq!(bytes, "      0.000004 motion < 3E 33 45 0D");
+        let frames = row(&message, Level::Frames);
+        assert_eq!(frames, "      0.000004 motion < >3E\\r");
+        assert!(row(&message, Level::Meaning).ends_with("accepted"));
+        let gap = row(&news(What::Gap), Level::Meaning);
+        assert!(gap.ends_with("motion - more has passed than could be seen"));
     }
 }

@@ -3,6 +3,7 @@
 use super::found::{Found, told};
 use super::{PortArgs, print};
 use anyhow::{Context, anyhow, bail};
+use app::exit::Exit;
 use bus::{Answer, LineLog, Pace, Request};
 use dcon::{Address, BaudCode, Command, Common, Reply};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -91,7 +92,7 @@ const RATES: [u32; 8] = [115_200, 9_600, 19_200, 38_400, 57_600, 4_800, 2_400, 1
 /// Times each found module is asked again for the spread of its latency.
 const ASKED_AGAIN: usize = 16;
 
-pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<i32> {
+pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<Exit> {
     let mut found: Vec<Found> = Vec::new();
     let interrupted = tokio::select! {
         asked = ask_all(args, &mut found) => asked.map(|()| false)?,
@@ -100,9 +101,9 @@ pub(super) async fn run(args: &ScanArgs) -> anyhow::Result<i32> {
     found.sort_by_key(|module| module.asked);
     print(&told(&found, args.json))?;
     Ok(match (interrupted, found.is_empty()) {
-        (true, _) => super::super::STOPPED,
-        (false, true) => 1,
-        (false, false) => super::super::DONE,
+        (true, _) => Exit::Stopped,
+        (false, true) => Exit::AnswerIsNo,
+        (false, false) => Exit::Done,
     })
 }
 

@@ -2,6 +2,7 @@
 
 use super::{PortArgs, print};
 use anyhow::bail;
+use app::exit::Exit;
 use bus::{LineSettings, Pace, RawReply, escaped, send_raw};
 use dcon::{Command, Family};
 use serde_json::json;
@@ -38,10 +39,7 @@ pub struct SendArgs {
     command: String,
 }
 
-/// Exit status: the answer is no.
-const NO: i32 = 1;
-
-pub(super) async fn run(args: &SendArgs) -> anyhow::Result<i32> {
+pub(super) async fn run(args: &SendArgs) -> anyhow::Result<Exit> {
     let family = family(args.model.as_deref())?;
     let text = checked(&args.command)?;
     let mut request = text.to_vec();
@@ -80,9 +78,9 @@ pub(super) async fn run(args: &SendArgs) -> anyhow::Result<i32> {
         told(&request, &reply, &words, broadcast)
     })?;
     Ok(if good || broadcast {
-        super::super::DONE
+        Exit::Done
     } else {
-        NO
+        Exit::AnswerIsNo
     })
 }
 
@@ -140,14 +138,14 @@ async fn stands(
         .then(|| escaped(&said.bytes)))
 }
 
-fn told_standing(args: &SendArgs, found: &str) -> anyhow::Result<i32> {
+fn told_standing(args: &SendArgs, found: &str) -> anyhow::Result<Exit> {
     print(&if args.json {
         let object = json!({ "request": args.command, "written": false, "found": found });
         format!("{object}\n")
     } else {
         format!("  stands already, {found}: not written again, an EEPROM wears\n")
     })?;
-    Ok(super::super::DONE)
+    Ok(Exit::Done)
 }
 
 /// A command that can be a request of the protocol and is none that spoils a module.

@@ -1,8 +1,8 @@
 //! `history export`: CSV that spreadsheets open right, Chinese included, or a spreadsheet with charts.
 
 use super::filter::{PartArgs, RangeArgs};
-use super::generate::progress;
 use super::paper::{Tongue, sink};
+use crate::cli::progress::{PIECES, progress};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use history::inquiry::{checks, export};
@@ -87,7 +87,7 @@ fn spreadsheet(
         "a spreadsheet needs a file, found -"
     );
     let name = file.display();
-    let bar = progress(archive.how_many(filter)?);
+    let bar = progress(Some(archive.how_many(filter)?), PIECES);
     let language = args.lang.language();
     let mut workbook = export::spreadsheet(archive, filter, parameters, language, || bar.inc(1))?;
     bar.finish_and_clear();

@@ -4,6 +4,7 @@
 mod sheet;
 
 use anyhow::Context;
+use app::exit::Exit;
 use clap::Args;
 use history::{
     Archive, Filter, Identity, ImportRow, LOT_NAME, LotRecord, PartRecord, Store, csv, is_lot_name,
@@ -37,7 +38,7 @@ fn pair(text: &str) -> Result<(String, String), NoPair> {
     Ok((parts.0.trim().to_owned(), parts.1.trim().to_owned()))
 }
 
-pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<i32> {
+pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<Exit> {
     anyhow::ensure!(
         is_lot_name(&args.lot),
         "--lot: found {:?}, expected {LOT_NAME}",
@@ -67,7 +68,7 @@ pub(super) fn run(db: &Path, args: &ImportArgs) -> anyhow::Result<i32> {
     let count = parts.len();
     let run = store.import(&lot, parts)?;
     eprintln!("{name}: {count} parts into lot {:?}, run {run}", args.lot);
-    Ok(0)
+    Ok(Exit::Done)
 }
 
 /// In order of the file; a row without a time gets that of the import.

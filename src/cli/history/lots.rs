@@ -14,7 +14,7 @@ pub(super) struct ListArgs {
     format: FormatArgs,
 }
 
-const HEADER: [&str; 14] = [
+const HEADER: [&str; 16] = [
     "lot",
     "run",
     "recipe",
@@ -29,6 +29,8 @@ const HEADER: [&str; 14] = [
     "yield_percent",
     "golden",
     "alarms",
+    "ended",
+    "cause",
 ];
 
 pub(super) fn run(archive: &Archive, args: &ListArgs) -> anyhow::Result<()> {
@@ -73,5 +75,7 @@ fn cells(lot: &LotSummary) -> Vec<String> {
         text(counts.percent().map(|it| format!("{it:.2}"))),
         lot.golden.to_string(),
         lot.alarms.to_string(),
+        text(lot.ended.as_ref()),
+        text(lot.cause.as_ref()),
     ]
 }

@@ -1,6 +1,8 @@
 //! `history prune`: old runs that were copied whole lose their parts here; without `--yes` it only says which.
 
 use super::output::{Output, Table};
+use crate::cli::progress::{PIECES, progress};
+use app::exit::Exit;
 use clap::Args;
 use history::{Identity, Pruned, Store};
 use std::io::Write;
@@ -18,7 +20,7 @@ pub(super) struct PruneArgs {
 
 const DAY_US: i64 = 86_400_000_000;
 
-pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<i32> {
+pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<Exit> {
     anyhow::ensure!(db.exists(), "no history at {}", db.display());
     let mut store = Store::open(db, &Identity::of_this_program())?;
     let now_us = jiff::Timestamp::now().as_microsecond();
@@ -50,10 +52,10 @@ pub(super) fn run(db: &Path, args: &PruneArgs) -> anyhow::Result<i32> {
             "{} runs could go; nothing was deleted (say --yes)",
             runs.len()
         );
-        return Ok(0);
+        return Ok(Exit::Done);
     }
-    let bar = super::generate::progress(runs.len() as u64);
+    let bar = progress(Some(runs.len() as u64), PIECES);
     store.prune(before, now_us, |_| bar.inc(1))?;
     bar.finish_and_clear();
-    Ok(0)
+    Ok(Exit::Done)
 }

@@ -2,6 +2,7 @@
 
 use super::output::{Output, Table, figure};
 use anyhow::Context;
+use app::exit::Exit;
 use clap::{Args, Subcommand};
 use history::csv;
 use quality::average_range::average_and_range;
@@ -30,11 +31,11 @@ enum Command {
 }
 
 /// Runs the command; gives the exit status. An error is bad input: status 2.
-pub fn run_quality(args: QualityArgs) -> anyhow::Result<i32> {
+pub fn run_quality(args: QualityArgs) -> anyhow::Result<Exit> {
     super::super::unless_reader_left(dispatch(&args.command))
 }
 
-fn dispatch(command: &Command) -> anyhow::Result<i32> {
+fn dispatch(command: &Command) -> anyhow::Result<Exit> {
     let Command::Grr { file, json } = command;
     let name = file.display().to_string();
     let text = read(file).with_context(|| format!("reading {name}"))?;
@@ -52,7 +53,7 @@ fn dispatch(command: &Command) -> anyhow::Result<i32> {
         }
     }
     out.flush()?;
-    Ok(0)
+    Ok(Exit::Done)
 }
 
 fn read(file: &Path) -> std::io::Result<String> {

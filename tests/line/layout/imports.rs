@@ -19,10 +19,15 @@ const PURE: &[(&str, &[&str])] = &[
             "lpm",
             "serde",
             "serde_json",
+            "texts",
             "thiserror",
             "toml",
             "units",
         ],
+    ),
+    (
+        "texts",
+        &["fluent-bundle", "fluent-syntax", "serde", "unic-langid"],
     ),
 ];
 

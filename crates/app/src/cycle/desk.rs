@@ -14,7 +14,7 @@ pub const PANEL: &str = "panel";
 impl Cycle {
     /// Orders that have come in; one that is denied or no order is answered at once.
     pub(super) fn orders(&mut self, now: RigTime) -> Vec<Order> {
-        while let Ok(asked) = self.outside.orders.try_recv() {
+        while let Ok(asked) = self.links.orders.try_recv() {
             self.asked.push(asked);
         }
         let mut orders = Vec::new();

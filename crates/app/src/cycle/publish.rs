@@ -68,16 +68,16 @@ pub fn read(order: &view::Order) -> Result<Order, Refused> {
 impl Cycle {
     /// Screens see a turn only when one is looking, and at most one in [`PACE`].
     pub(super) fn publish(&mut self, now: RigTime, last: bool) {
-        if self.outside.view.receiver_count() == 0 || (now < self.publish_at && !last) {
+        if self.links.view.receiver_count() == 0 || (now < self.publish_at && !last) {
             return;
         }
         self.publish_at = now + PACE;
         let mut machine = self.machine(now);
         machine.jogs = self.foreseen(now);
-        let (station, epoch_us) = (&self.station, self.outside.epoch_us);
+        let (station, epoch_us) = (&self.station, self.links.epoch_us);
         let alarms = lines(station, epoch_us);
         let at_us = jiff::Timestamp::now().as_microsecond();
-        self.outside.view.send_modify(|view| {
+        self.links.view.send_modify(|view| {
             view.at_us = at_us;
             let doing = station.doing();
             view.state = doing.name();

@@ -49,6 +49,6 @@ impl Cycle {
     /// Sends one event to the history.
     pub(super) fn tell(&self, event: Event) {
         // The receiver ends only with the program.
-        let _ = self.outside.events.send(event);
+        let _ = self.links.events.send(event);
     }
 }

@@ -37,6 +37,9 @@ fn run() -> LotSummary {
         source: "simulated".into(),
         seed: None,
         retest: None,
+        ended: None,
+        cause: None,
+        cause_text: None,
         opened: Moment(0),
         closed: Some(Moment(60_000_000)),
         counts: Yield {

@@ -38,6 +38,9 @@ fn of_schema(file: &File, schema: usize) {
             [serde_json::json!(TEXTS)],
         )
         .unwrap();
+    if schema >= 8 {
+        super::super::reasons::read_texts(&by_hand).unwrap();
+    }
 }
 
 #[test]

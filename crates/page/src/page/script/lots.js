@@ -64,6 +64,7 @@ at("l_form").addEventListener("submit", (event) => {
 function lotRow(line) {
   const state = make("span", word("lot_state-" + line.state), "lot_state " + line.state);
   if (line.why) state.append(make("small", line.why));
+  if (line.cause && !underWay(line.lot)) state.append(make("small", line.cause + ": " + line.cause_text));
   const orders = make("div", undefined, "row");
   orders.append(lotButton("start", line, () => choose(line)),
     ...DECISIONS.map((order) => lotButton(order, line, () => askDecision(order, line.lot))));

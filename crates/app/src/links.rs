@@ -1,0 +1,193 @@
+//! Opens the lines of a run: serial ports, pseudo-terminals of the simulated rig, or in-process streams.
+
+use super::lot::LotContext;
+use super::source::{LinePort, RigSource};
+#[cfg(feature = "sim")]
+use super::{plug::PlugPorts, simulated, source::Simulated};
+use crate::cycle::LineEnds;
+use anyhow::anyhow;
+use bus::{self, LineLog, LineSettings, Pace, SerialPorts};
+use config::Plant;
+use machine::rig::wiring::LineId;
+#[cfg(feature = "sim")]
+use rigsim::{SharedRig, pty, wire};
+use tokio::sync::mpsc;
+
+/// How long a silent module of a measuring line is asked who it is before the line goes on without it. Three tries
+/// with this grace take 0.65 s, so the host watchdogs of the line's other modules still hear their host in time.
+const LATE_REPLY_MS: u64 = 180;
+
+/// EEPROM writes of all modules so far; `None` on a rig, where nobody can count them.
+pub type EepromCount = Box<dyn Fn() -> Option<u64> + Send>;
+
+/// Open lines, ready for the cycle.
+#[derive(Default)]
+pub struct Lines {
+    /// The cycle's ends.
+    pub ends: Vec<LineEnds>,
+    /// Trace and health of each line, by name.
+    pub logs: Vec<(String, LineLog)>,
+    /// The simulated rig behind the lines.
+    #[cfg(feature = "sim")]
+    rig: Option<SharedRig>,
+    #[cfg(feature = "sim")]
+    _ptys: Option<pty::Ptys>,
+}
+
+impl Lines {
+    /// Counts the EEPROM writes of the simulated modules.
+    pub fn eeprom_count(&self) -> EepromCount {
+        #[cfg(feature = "sim")]
+        if let Some(rig) = self.rig.clone() {
+            return Box::new(move || Some(rig.eeprom_writes()));
+        }
+        Box::new(|| None)
+    }
+
+    /// Writes the truth file of a simulated rig and logs bodies that touched.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn finish(&self, source: &RigSource) -> anyhow::Result<()> {
+        match source {
+            RigSource::Serial(_) => {}
+            #[cfg(feature = "sim")]
+            RigSource::Simulated(simulated) => {
+                let Some(rig) = &self.rig else { return Ok(()) };
+                if let Some(path) = &simulated.truth {
+                    let lines: String = rig.truth().iter().map(|it| format!("{it}\n")).collect();
+                    std::fs::write(path, lines)
+                        .map_err(|error| anyhow!("--truth {}: {error}", path.display()))?;
+                }
+                for crash in rig.crashes() {
+                    tracing::error!("bodies touched: {crash}");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Opens a line at a serial port or pseudo-terminal.
+    fn serial(&mut self, plant: &Plant, line: LineId, port: &str, pace: &Pace) {
+        let path = port.to_string();
+        let baud = plant.wiring.line(line).baud;
+        self.ports(plant, line, SerialPorts { path, baud }, pace);
+    }
+
+    /// Starts the task of a line over its ports.
+    fn ports<P: bus::Ports + Send + 'static>(
+        &mut self,
+        plant: &Plant,
+        line: LineId,
+        ports: P,
+        pace: &Pace,
+    ) where
+        P::Port: Send,
+    {
+        let settings = settings(plant, line);
+        self.logs
+            .push((settings.name.clone(), settings.log.clone()));
+        let (requests, requested) = mpsc::channel(1);
+        let (answer, answers) = mpsc::channel(1);
+        tokio::spawn(bus::run_reopening(
+            ports, settings, *pace, requested, answer,
+        ));
+        self.ends.push(LineEnds {
+            line,
+            requests,
+            answers,
+        });
+    }
+}
+
+fn settings(plant: &Plant, line: LineId) -> LineSettings {
+    let (wired, bus) = (plant.wiring.line(line), &plant.wiring.bus);
+    let mut settings = LineSettings::new(&wired.name, wired.baud);
+    settings.checksum = wired.checksum;
+    settings.digital_allowance_ms = bus.digital_allowance_ms as u64;
+    settings.analog_allowance_ms = bus.analog_allowance_ms as u64;
+    if line
+        != plant
+            .wiring
+            .module(plant.wiring.emergency_stop_module())
+            .line
+    {
+        // The line with the emergency stop keeps the shorter grace that its reaction bound is derived from.
+        settings.late_reply_ms = LATE_REPLY_MS;
+    }
+    settings.log = LineLog::with_trace(4096);
+    settings
+}
+
+/// Opens every line of the plant.
+///
+/// # Errors
+/// A line that is not wired, or a simulated rig that cannot be built.
+pub fn open(context: &LotContext, pace: &Pace) -> anyhow::Result<Lines> {
+    match context.source {
+        RigSource::Serial(given) => serial(context.plant, given, pace),
+        #[cfg(feature = "sim")]
+        RigSource::Simulated(source) => {
+            let rig = match &source.live {
+                Some(live) => live.rig.clone(),
+                None => simulated::build(context.plant, source, context.order)?,
+            };
+            simulated_lines(context.plant, source, rig, pace)
+        }
+    }
+}
+
+fn serial(plant: &Plant, given: &[LinePort], pace: &Pace) -> anyhow::Result<Lines> {
+    check(plant, given)?;
+    let mut lines = Lines::default();
+    for line in plant.wiring.line_ids() {
+        let wired = plant.wiring.line(line);
+        let other = given.iter().find(|it| it.line == wired.name);
+        let port = other.map_or(&wired.port, |it| &it.port);
+        lines.serial(plant, line, port, pace);
+    }
+    Ok(lines)
+}
+
+/// Checks that every line that gets another port is wired.
+///
+/// # Errors
+/// The first one that is not.
+pub fn check(plant: &Plant, given: &[LinePort]) -> anyhow::Result<()> {
+    let wired = plant.wiring.lines.iter().map(|line| line.name.as_str());
+    let known: Vec<&str> = wired.collect();
+    match given.iter().find(|it| !known.contains(&it.line.as_str())) {
+        Some(LinePort { line, .. }) => Err(anyhow!(
+            "--line: found \"{line}\", expected one of {}",
+            known.join(", ")
+        )),
+        None => Ok(()),
+    }
+}
+
+#[cfg(feature = "sim")]
+fn simulated_lines(
+    plant: &Plant,
+    source: &Simulated,
+    rig: SharedRig,
+    pace: &Pace,
+) -> anyhow::Result<Lines> {
+    let named = |name: &str| {
+        let line = plant.wiring.line_named(name);
+        line.ok_or_else(|| anyhow!("line {name} is not wired"))
+    };
+    let mut lines = Lines::default();
+    if source.pace == super::source::SimulatedPace::Real {
+        let ptys = pty::serve(&rig, pty::Rates::Any)?;
+        for (name, path) in ptys.paths() {
+            lines.serial(plant, named(&name)?, &path.to_string_lossy(), pace);
+        }
+        lines._ptys = Some(ptys);
+    } else {
+        for (name, plug) in wire::plugs(&rig) {
+            lines.ports(plant, named(&name)?, PlugPorts(plug), pace);
+        }
+    }
+    lines.rig = Some(rig);
+    Ok(lines)
+}

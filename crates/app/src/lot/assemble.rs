@@ -1,0 +1,121 @@
+//! Puts a cycle together from configuration, recipe and calibration.
+
+use super::LotContext;
+use super::taken_over::TakenOver;
+use crate::cycle::{Cycle, CycleLinks, LineEnds, mimic};
+use anyhow::Context;
+use bus::Pace;
+use config::Plant;
+use history::AlarmLeft;
+use machine::dut::Recipe;
+use machine::dut::device::{Device, Rig};
+use machine::guard::{Actuator, Guard, PartSize};
+use machine::handling::mechanism::Mechanism;
+use machine::handling::moves::Strokes;
+use machine::rig::axis::AxisStation;
+use machine::rig::wiring::StrokeLimits;
+use machine::station::catalogue::AlarmCode;
+use machine::station::trouble::Alarm;
+use machine::station::{Plan, Station};
+use machine::view::Mimic;
+use std::sync::Arc;
+use units::{RigTime, Span};
+
+/// A cycle that is ready to run.
+pub(super) fn cycle(
+    context: &LotContext,
+    taken_over: TakenOver,
+    pace: Pace,
+    lines: Vec<LineEnds>,
+    links: CycleLinks,
+    attended: bool,
+) -> anyhow::Result<Cycle> {
+    let TakenOver {
+        calibration,
+        worn,
+        alarms,
+        left,
+    } = taken_over;
+    let plant = context.plant;
+    let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
+    let wiring = Arc::clone(&plant.wiring);
+    let recipe = Arc::clone(context.recipe);
+    let strokes = Strokes {
+        length_mm: Actuator::ALL.map(|actuator| guard.stroke_mm(actuator).1),
+        axis_mm: wiring
+            .axis
+            .stations()
+            .map(|at| (at, wiring.axis.point(at).x_mm))
+            .collect::<Vec<(AxisStation, f64)>>(),
+    };
+    let calibrated = calibration.is_some();
+    let rig = Rig {
+        wiring: &wiring,
+        reference: &plant.reference,
+        accuracy: &plant.accuracy,
+        reference_parts: &plant.golden,
+    };
+    let device = Device::new(Arc::clone(&recipe), &rig, calibration)?;
+    let plan = Plan {
+        stays: attended,
+        between_lots: context.purpose.rests_in(),
+        count: context.order.count,
+        golden: match context.purpose.rests_in() {
+            Some(_) => Vec::new(),
+            None => device.reference_serials(),
+        },
+        calibrated: calibrated || !device.needs_calibration(),
+        valid_us: (plant.calibration.valid_h * 3.6e9) as i64,
+        epoch_us: context.epoch_us,
+        simulated: context.is_simulated(),
+        lot: plant.lot.clone(),
+        worn,
+        left,
+    };
+    let mechanism = Mechanism::new(strokes, timeouts(&wiring.strokes), size_of(context.recipe));
+    let mut station = Station::new(plan, device, wiring.axis.clone(), mechanism);
+    // Without a person nobody could see them.
+    for left in alarms.into_iter().filter(|_| attended) {
+        inherit(&mut station, left, context.epoch_us);
+    }
+    Ok(Cycle::new(wiring, pace, station, guard, lines, links))
+}
+
+/// The machine as a screen draws it, with parts of the size that `recipe` gives.
+pub fn mimic(plant: &Plant, recipe: &Recipe) -> anyhow::Result<Mimic> {
+    let guard = Guard::build(&plant.scene).context("config/scene.toml")?;
+    Ok(mimic::mimic(guard.drawing(&size_of(recipe))))
+}
+
+/// An alarm of a run before stands again, unseen.
+fn inherit(station: &mut Station, left: AlarmLeft, epoch_us: i64) {
+    let Some(code) = AlarmCode::from_name(&left.code) else {
+        return tracing::warn!(code = left.code, "an alarm of another version is left out");
+    };
+    let until = left.shelved_until_us.map(|until_us| until_us - epoch_us);
+    let until = until.and_then(|us| u64::try_from(us).ok()).map(RigTime);
+    let alarm = Alarm {
+        code,
+        args: left.args,
+    };
+    station.annunciator_mut().inherit(alarm, left.count, until);
+}
+
+fn size_of(recipe: &Recipe) -> PartSize {
+    PartSize {
+        body_mm: recipe.body().size_mm,
+        pin_length_mm: recipe.body().pin_length_mm,
+    }
+}
+
+fn timeouts(limits: &StrokeLimits) -> Vec<(&'static str, Span)> {
+    vec![
+        ("escapement", limits.escapement),
+        ("pusher", limits.pusher),
+        ("clamp", limits.clamp),
+        ("probe_lift", limits.probe_lift),
+        ("sort_z", limits.sort_z),
+        ("gripper", limits.gripper),
+        ("axis", limits.axis),
+    ]
+}

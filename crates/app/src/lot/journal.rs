@@ -1,0 +1,316 @@
+//! Rows of a run beside its parts: the state of its lot, alarms and what becomes of them, golden checks, wear.
+
+use crate::exit::Exit;
+use history::{
+    AlarmChange, AlarmChangeRecord, AlarmRecord, GoldenCheckRecord, InsideRecord, LotState,
+    LotStateRecord, OrderRecord, Row, RunEndRecord, WearRecord,
+};
+use machine::handling::inside::Inside;
+use machine::handling::wear::Uses;
+use machine::station::annunciator::Standing;
+use machine::station::catalogue::AlarmCode;
+use machine::station::orders::shelf_minutes;
+use machine::station::trouble::Alarm;
+use machine::station::wants::{Checked, Ending};
+use machine::view::Answered;
+use texts::Lang;
+
+/// Alarms after which a lot takes no run before somebody releases it.
+const HOLDS: [AlarmCode; 2] = [AlarmCode::GoldenCheckFailed, AlarmCode::LotDiscardLimit];
+/// The alarm that says that golden parts do not agree with their certificates.
+const NOT_CALIBRATED: AlarmCode = AlarmCode::CalibrationFailed;
+
+/// What was told of a run so far.
+#[derive(Debug)]
+pub struct Journal {
+    /// None between lots.
+    lot: Option<String>,
+    simulated: bool,
+    /// Codes of alarms whose cause is there.
+    active: Vec<String>,
+    /// The code of the alarm that holds the lot.
+    held: Option<String>,
+    uses: Uses,
+}
+
+impl Journal {
+    /// Of nothing but the rig.
+    pub fn new(simulated: bool) -> Self {
+        Self {
+            lot: None,
+            simulated,
+            active: Vec::new(),
+            held: None,
+            uses: Uses::default(),
+        }
+    }
+
+    /// A run of `lot` begins.
+    pub fn begin(&mut self, lot: &str, at_us: i64) -> Option<Row> {
+        self.lot = Some(lot.to_owned());
+        self.lot(LotState::Running, None, at_us)
+    }
+
+    /// No run has begun.
+    pub fn is_of_no_lot(&self) -> bool {
+        self.lot.is_none()
+    }
+
+    /// The lot is in this state from now on.
+    fn lot(&self, state: LotState, why: Option<String>, at_us: i64) -> Option<Row> {
+        let row = |lot: &String| {
+            Row::LotState(LotStateRecord {
+                lot: lot.clone(),
+                state,
+                why,
+                at_us,
+            })
+        };
+        self.lot.as_ref().map(row)
+    }
+
+    /// An alarm came.
+    pub fn alarm(&mut self, alarm: &Alarm, at_us: i64) -> Vec<Row> {
+        let text = alarm.text(Lang::En);
+        let mut rows = vec![Row::Alarm(AlarmRecord {
+            lot: self.lot.clone(),
+            code: alarm.code.name(),
+            args: alarm.args.clone(),
+            line: None,
+            text: text.clone(),
+            raised_at_us: at_us,
+            cleared_at_us: None,
+        })];
+        if alarm.code == NOT_CALIBRATED {
+            rows.extend(self.check(false, &text, at_us));
+        }
+        if HOLDS.contains(&alarm.code) {
+            self.held = Some(alarm.code.name());
+            rows.extend(self.lot(LotState::Held, Some(text), at_us));
+        }
+        rows
+    }
+
+    /// The alarms that stand have changed: some causes may have gone, and the lot may go on.
+    pub fn standing(&mut self, standing: &[Standing], at_us: i64) -> Vec<Row> {
+        let active: Vec<String> = standing
+            .iter()
+            .filter(|one| one.is_active())
+            .map(|one| one.alarm.code.name())
+            .collect();
+        let gone = self.active.iter().filter(|code| !active.contains(code));
+        let mut rows: Vec<Row> = gone.map(|code| self.returned(code, at_us)).collect();
+        if self.held.take_if(|held| !active.contains(held)).is_some() {
+            rows.extend(self.lot(LotState::Running, None, at_us));
+        }
+        self.active = active;
+        rows
+    }
+
+    fn returned(&self, code: &str, at_us: i64) -> Row {
+        Row::AlarmChange(AlarmChangeRecord {
+            simulated: self.simulated,
+            code: Some(code.to_owned()),
+            at_us,
+            change: AlarmChange::Returned,
+        })
+    }
+
+    /// An order was answered; what it does to alarms is kept with them.
+    pub fn ordered(&self, it: &Answered, at_us: i64) -> Vec<Row> {
+        let by = &it.by;
+        let mut rows = vec![Row::Order(OrderRecord {
+            lot: self.lot.clone(),
+            at_us,
+            who: by.who.clone(),
+            role: by.role.clone(),
+            origin: by.origin.clone(),
+            what: serde_json::to_string(&it.order).unwrap_or_else(|_| "null".into()),
+            refused: it.refused.clone(),
+        })];
+        let minutes = i64::from(shelf_minutes(it.order.minutes));
+        let who = by.who.clone();
+        let change = match it.order.order.as_str() {
+            "acknowledge" => AlarmChange::Acknowledged { by: who },
+            "shelve" => AlarmChange::Shelved {
+                until_us: at_us + minutes * 60_000_000,
+                by: who,
+                reason: it.order.reason.clone().unwrap_or_default(),
+            },
+            _other => return rows,
+        };
+        if it.refused.is_none() {
+            rows.push(Row::AlarmChange(AlarmChangeRecord {
+                simulated: self.simulated,
+                code: it.order.alarm.clone(),
+                at_us,
+                change,
+            }));
+        }
+        rows
+    }
+
+    /// A golden check has come out.
+    pub fn checked(&self, checked: &Checked, at_us: i64) -> Option<Row> {
+        self.check(checked.passed, &checked.text, at_us)
+    }
+
+    /// A calibration is complete, which is a check by itself.
+    pub fn calibrated(&self, at_us: i64) -> Option<Row> {
+        self.check(true, "calibration", at_us)
+    }
+
+    fn check(&self, passed: bool, text: &str, at_us: i64) -> Option<Row> {
+        let row = |lot: &String| {
+            Row::GoldenCheck(GoldenCheckRecord {
+                lot: lot.clone(),
+                at_us,
+                passed,
+                text: text.to_owned(),
+            })
+        };
+        self.lot.as_ref().map(row)
+    }
+
+    /// Uses since the last time.
+    pub fn uses(&mut self, uses: Uses) -> Vec<Row> {
+        let before = std::mem::replace(&mut self.uses, uses);
+        let each = uses.each().into_iter().zip(before.each());
+        each.filter(|((_, now), (_, before))| now > before)
+            .map(|((name, now), (_, before))| {
+                Row::Wear(WearRecord {
+                    simulated: self.simulated,
+                    name: name.to_owned(),
+                    more: now - before,
+                })
+            })
+            .collect()
+    }
+
+    /// Parts have moved on inside.
+    pub fn inside(&self, inside: Inside) -> Row {
+        Row::Inside(InsideRecord {
+            simulated: self.simulated,
+            inside,
+        })
+    }
+
+    /// How the run ended, and where the lot stands after it.
+    pub fn ended(&self, ending: &Ending, exit: &Exit, at_us: i64) -> Vec<Row> {
+        let Some(lot) = &self.lot else {
+            return Vec::new();
+        };
+        let mut rows = vec![Row::RunEnded(RunEndRecord {
+            lot: lot.clone(),
+            ended: ending.clone(),
+            cause: exit.cause().map(|it| (it.code.clone(), it.text.clone())),
+        })];
+        let state = match ending {
+            Ending::Complete => LotState::Complete,
+            Ending::Stopped | Ending::Alarm => LotState::Open,
+        };
+        if self.held.is_none() {
+            rows.extend(self.lot(state, None, at_us));
+        }
+        rows
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exit::Cause;
+    use machine::station::annunciator::Annunciator;
+    use units::RigTime;
+
+    fn journal() -> Journal {
+        let mut journal = Journal::new(false);
+        journal.begin("A", 0);
+        journal
+    }
+
+    fn states(rows: &[Row]) -> Vec<LotState> {
+        let state = |row: &Row| match row {
+            Row::LotState(it) => Some(it.state),
+            _other => None,
+        };
+        rows.iter().filter_map(state).collect()
+    }
+
+    #[test]
+    fn a_failed_check_holds_the_lot_until_the_alarm_is_cleared() {
+        let mut journal = journal();
+        let alarm = Alarm::golden_check_failed("G-12-1 reads high");
+        let mut list = Annunciator::default();
+        list.raise(&alarm, RigTime(1));
+        assert_eq!(states(&journal.alarm(&alarm, 1)), [LotState::Held]);
+        assert!(journal.standing(list.standing(), 1).is_empty());
+        let trouble = Exit::Trouble(Cause::from(&alarm));
+        let ended = journal.ended(&Ending::Alarm, &trouble, 2);
+        assert!(states(&ended).is_empty());
+        let cause = ("golden_check_failed".to_owned(), alarm.text(Lang::En));
+        assert!(matches!(&ended[..], [Row::RunEnded(it)] if it.cause == Some(cause)));
+        list.cleared();
+        let rows = journal.standing(list.standing(), 3);
+        assert_eq!(states(&rows), [LotState::Running]);
+        assert_eq!(rows.len(), 2, "the alarm has returned and the lot runs");
+        let rows = journal.ended(&Ending::Complete, &Exit::Done, 4);
+        assert_eq!(states(&rows), [LotState::Complete]);
+    }
+
+    #[test]
+    fn an_alarm_of_the_machine_leaves_the_lot_open() {
+        let mut journal = journal();
+        let alarm: Alarm = AlarmCode::PartNotArrived.into();
+        assert!(states(&journal.alarm(&alarm, 1)).is_empty());
+        let trouble = Exit::Trouble(Cause::from(&alarm));
+        let rows = journal.ended(&Ending::Alarm, &trouble, 2);
+        assert_eq!(states(&rows), [LotState::Open]);
+    }
+
+    #[test]
+    fn between_lots_an_alarm_belongs_to_the_rig_and_no_lot_changes() {
+        let mut journal = Journal::new(false);
+        let rows = journal.alarm(&Alarm::golden_check_failed("G-12-1 reads high"), 1);
+        assert!(matches!(&rows[..], [Row::Alarm(it)] if it.lot.is_none()));
+        let ended = journal.ended(&Ending::Stopped, &Exit::Stopped, 2);
+        assert!(ended.is_empty());
+    }
+
+    #[test]
+    fn an_acknowledgement_is_kept_with_who_gave_it_and_one_that_was_refused_changes_no_alarm() {
+        let asked = |refused: Option<&str>| Answered {
+            order: machine::view::Order {
+                order: "acknowledge".into(),
+                alarm: Some("door_open".into()),
+                ..Default::default()
+            },
+            by: machine::view::By {
+                who: "li".into(),
+                ..Default::default()
+            },
+            refused: refused.map(str::to_owned),
+        };
+        let rows = journal().ordered(&asked(None), 5);
+        let [Row::Order(order), Row::AlarmChange(change)] = &rows[..] else {
+            panic!("{rows:?}")
+        };
+        assert_eq!((order.who.as_str(), order.at_us), ("li", 5));
+        assert_eq!(order.what, r#"{"order":"acknowledge","alarm":"door_open"}"#);
+        assert_eq!(change.code.as_deref(), Some("door_open"));
+        assert_eq!(journal().ordered(&asked(Some("no such alarm")), 5).len(), 1);
+    }
+
+    #[test]
+    fn wear_is_told_as_what_was_added() {
+        let mut journal = journal();
+        let uses = |probe_touches| Uses {
+            probe_touches,
+            jaw_closings: 0,
+        };
+        assert_eq!(journal.uses(uses(3)).len(), 1);
+        assert!(journal.uses(uses(3)).is_empty());
+        let rows = journal.uses(uses(5));
+        assert!(matches!(&rows[..], [Row::Wear(it)] if it.more == 2));
+    }
+}

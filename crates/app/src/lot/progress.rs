@@ -1,0 +1,197 @@
+//! What a run has come to so far.
+
+use super::context::LotContext;
+use super::counts::Counts;
+use super::event::LotEvent;
+use super::rows;
+use super::summary::{Summary, WallProfile};
+use crate::cycle::{Event, Profile};
+use crate::exit::{Cause, Exit};
+use crate::links::EepromCount;
+use bus::LineLog;
+use machine::dut::{Bin, Reason, Verdict};
+use machine::handling::ledger::Kind;
+use machine::handling::wants::{Interrupted, Judged, Landed};
+use machine::station::trouble::Alarm;
+use machine::station::wants::Ending;
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+use units::RigTime;
+
+/// A judged part that has not landed yet.
+#[derive(Debug)]
+pub struct PartUnderWay {
+    /// The part with its record and verdict.
+    pub judged: Box<Judged>,
+    /// Since the nest exit of the part before, seconds of rig time; none before it has left the nest.
+    pub cycle_s: Option<f64>,
+    /// Golden parts up to and with this one.
+    pub golden: u64,
+}
+
+impl PartUnderWay {
+    /// Number within its kind, and the kind's name.
+    pub fn number(&self) -> (u64, &'static str) {
+        rows::number(&self.judged.part.kind, self.golden)
+    }
+}
+
+/// What a run has come to so far.
+pub struct LotProgress<'a> {
+    /// What the run was started with.
+    pub context: LotContext<'a>,
+    /// Parts and alarms.
+    pub counts: Counts,
+    /// Golden parts judged.
+    pub golden: u64,
+    began: Instant,
+    lot_began: Option<RigTime>,
+    last_landed: Option<RigTime>,
+    under_way: BTreeMap<u64, PartUnderWay>,
+    eeprom: EepromCount,
+    eeprom_at_start: Option<u64>,
+    /// The alarm that began the trouble which is there, else the last one that came.
+    trouble: Option<Alarm>,
+}
+
+impl<'a> LotProgress<'a> {
+    /// Nothing has happened yet.
+    pub fn new(context: LotContext<'a>, eeprom: EepromCount) -> Self {
+        Self {
+            context,
+            counts: Counts::default(),
+            golden: 0,
+            began: Instant::now(),
+            lot_began: None,
+            last_landed: None,
+            under_way: BTreeMap::new(),
+            eeprom,
+            eeprom_at_start: None,
+            trouble: None,
+        }
+    }
+
+    /// The part with this ordinal, between verdict and beam.
+    pub fn part(&self, ordinal: u64) -> Option<&PartUnderWay> {
+        self.under_way.get(&ordinal)
+    }
+
+    /// Judged parts per hour of rig time at `now`; none before the lot has begun.
+    pub fn per_hour(&self, now: RigTime) -> Option<f64> {
+        let began = self.lot_began?;
+        self.counts.per_hour(now.since(began).as_seconds())
+    }
+
+    /// When the last part landed, else when the lot began, else rig time zero.
+    pub fn end(&self) -> RigTime {
+        self.last_landed.or(self.lot_began).unwrap_or_default()
+    }
+
+    /// Takes an event of the cycle in; the result follows from it.
+    pub fn take_in(&mut self, event: &Event) -> Option<LotEvent> {
+        match event {
+            Event::Judged(judged) => self.judged(judged),
+            Event::Left(left) => {
+                if let Some(part) = self.under_way.get_mut(&left.ordinal) {
+                    part.cycle_s = left.cycle.map(|cycle| cycle.0);
+                }
+            }
+            Event::Landed(landed) => return self.landed(landed),
+            Event::Interrupted(interrupted) => self.interrupted(interrupted),
+            Event::Alarm(alarm, _) => {
+                self.counts.alarms += 1;
+                self.trouble = Some(alarm.clone());
+            }
+            Event::Standing(standing, _) => {
+                let first = standing.iter().find(|it| it.first_out && it.is_active());
+                self.trouble = first.map(|it| it.alarm.clone()).or(self.trouble.take());
+            }
+            Event::LotBegan(at) => {
+                self.lot_began = Some(*at);
+                self.eeprom_at_start = (self.eeprom)();
+            }
+            Event::State(_)
+            | Event::Calibrated(_)
+            | Event::Checked(..)
+            | Event::Ordered(..)
+            | Event::Inside(..) => {}
+        }
+        None
+    }
+
+    fn judged(&mut self, judged: &Judged) {
+        let ordinal = judged.part.ordinal;
+        match judged.part.kind {
+            Kind::Golden(_) => self.golden += 1,
+            Kind::Lot(_) => self.counts.add(judged.verdict.name()),
+        }
+        let part = PartUnderWay {
+            judged: Box::new(judged.clone()),
+            cycle_s: None,
+            golden: self.golden,
+        };
+        let before = self.under_way.insert(ordinal, part);
+        assert!(before.is_none(), "part {ordinal} was judged twice");
+    }
+
+    /// A judged part that goes to retest.
+    fn interrupted(&mut self, interrupted: &Interrupted) {
+        let Some(part) = self.under_way.get_mut(&interrupted.ordinal) else {
+            return;
+        };
+        let mut reasons = part.judged.verdict.reasons().to_vec();
+        reasons.push(Reason::interrupted(&interrupted.why));
+        let before = std::mem::replace(&mut part.judged.verdict, Verdict::Void(reasons));
+        part.judged.part.bin = Some(Bin::RETEST);
+        if matches!(part.judged.part.kind, Kind::Lot(_)) {
+            self.counts.remove(before.name());
+            self.counts.add("void");
+        }
+    }
+
+    fn landed(&mut self, landed: &Landed) -> Option<LotEvent> {
+        let part = self.under_way.remove(&landed.part.ordinal)?;
+        if matches!(landed.part.kind, Kind::Lot(_)) {
+            self.last_landed = Some(landed.at);
+            *self.counts.bins.entry(landed.bin.to_string()).or_insert(0) += 1;
+        }
+        Some(LotEvent::PartDone(Box::new(part), Some(landed.clone())))
+    }
+
+    /// Parts that will never land, once.
+    pub fn take_left_behind(&mut self) -> impl Iterator<Item = LotEvent> + use<> {
+        let parts = std::mem::take(&mut self.under_way).into_values();
+        parts.map(|part| LotEvent::PartDone(Box::new(part), None))
+    }
+
+    /// Why the run ended: as the station says it, and of an alarm which one.
+    pub fn exit(&self, ending: &Ending) -> Exit {
+        match ending {
+            Ending::Complete => Exit::Done,
+            Ending::Stopped => Exit::Stopped,
+            Ending::Alarm => {
+                let alarm = self.trouble.as_ref();
+                Exit::Trouble(alarm.map_or_else(Cause::aborted, Cause::from))
+            }
+        }
+    }
+
+    /// The whole run in numbers; `writing` is the wall time of the history.
+    pub fn summary(
+        &self,
+        ending: &Ending,
+        cause: Option<&Cause>,
+        profile: &Profile,
+        writing: Duration,
+        logs: &[(String, LineLog)],
+    ) -> Summary {
+        let wall = self.began.elapsed();
+        let began = self.lot_began;
+        let elapsed_s = began.map_or(0.0, |began| self.end().since(began).as_seconds());
+        let eeprom = self.eeprom_at_start.zip((self.eeprom)());
+        let mut summary = Summary::new(&self.counts, (ending, cause), elapsed_s, wall, logs);
+        summary.eeprom_writes = eeprom.map(|(before, after)| after - before);
+        summary.wall_profile = WallProfile::new(profile, writing, wall);
+        summary
+    }
+}

@@ -1,0 +1,250 @@
+//! The subscriber that takes the events of a run to the history.
+//!
+//! Between lots there is no run in the history, until a part that was found inside needs a row: then the lot
+//! [`FOUND`](super::FOUND) gets one.
+//! Everything that has come in goes into one transaction; then the ordinal of the last judged part is
+//! published, which is what lets the sorter open its gripper. The database works on a blocking thread,
+//! one short task per transaction.
+
+use super::event::LotEvent;
+use super::journal::Journal;
+use super::progress::{LotProgress, PartUnderWay};
+use super::taken_over::TakenOver;
+use super::{LotContext, Purpose, rows};
+use crate::cycle::Event;
+use crate::exit::Exit;
+use anyhow::Context;
+use history::{
+    CalibrationRecord, Identity, InterruptedRecord, LandingRecord, LotRecord, Row, Store,
+    snapshot_hash,
+};
+use machine::dut::{Calibration, Reason};
+use machine::handling::inside::Inside;
+use machine::handling::wants::{Interrupted, Judged, Landed};
+use machine::handling::wear::Uses;
+use machine::station::wants::Ending;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// The recorder of one run.
+pub(super) struct Recorder {
+    store: Option<Store>,
+    journal: Journal,
+    /// Rows of the next transaction.
+    rows: Vec<Row>,
+    /// Ordinal of the last judged part among them.
+    judged: Option<u64>,
+    aside: Option<(Inside, Uses)>,
+    /// Wall time of the transactions.
+    pub writing: Duration,
+}
+
+impl Recorder {
+    /// Opens the history and the lot's run; on a rig, a calibration that is still valid comes back.
+    pub fn open(db: &Path, context: &LotContext) -> anyhow::Result<(Self, TakenOver)> {
+        let mut store = Store::open(db, &Identity::of_this_program())?;
+        store.cut_off(context.is_simulated(), context.epoch_us)?;
+        let taken_over = TakenOver::read(&store, context)?;
+        let mut recorder = Self {
+            store: Some(store),
+            journal: Journal::new(context.is_simulated()),
+            rows: Vec::new(),
+            judged: None,
+            aside: None,
+            writing: Duration::ZERO,
+        };
+        if !context.purpose.is_between_lots() {
+            recorder.begin(context, taken_over.calibration.as_ref())?;
+        }
+        Ok((recorder, taken_over))
+    }
+
+    fn store(&mut self) -> anyhow::Result<&mut Store> {
+        self.store.as_mut().context("the history is closed")
+    }
+
+    /// The run begins in the history.
+    fn begin(
+        &mut self,
+        context: &LotContext,
+        calibration: Option<&Calibration>,
+    ) -> anyhow::Result<()> {
+        let (order, recipe) = (context.order, context.recipe);
+        let begun = self.journal.begin(&order.lot, context.epoch_us);
+        let store = self.store()?;
+        store.begin_lot(&LotRecord {
+            lot: order.lot.clone(),
+            recipe: recipe.name.clone(),
+            recipe_snapshot: recipe.source_text.clone(),
+            recipe_hash: snapshot_hash(&recipe.source_text),
+            calibration_hash: calibration.map(hash),
+            opened_at_us: context.epoch_us,
+            simulated: context.is_simulated(),
+            seed: context.source.seed(),
+            retest: order.retest.clone(),
+        })?;
+        Ok(store.record(begun.as_slice())?)
+    }
+
+    /// Turns an event into rows of the next transaction.
+    ///
+    /// # Errors
+    /// A run or a calibration that cannot be written.
+    pub fn hear(&mut self, event: &LotEvent, lot: &LotProgress) -> anyhow::Result<()> {
+        match event {
+            LotEvent::Cycle(event) => self.of_the_cycle(event, lot)?,
+            LotEvent::PartDone(part, Some(landed)) => self.landed(part, landed, lot),
+            LotEvent::PartDone(_, None)
+            | LotEvent::Begun
+            | LotEvent::TracesKept(_)
+            | LotEvent::Ended(_) => {}
+        }
+        Ok(())
+    }
+
+    fn of_the_cycle(&mut self, event: &Event, lot: &LotProgress) -> anyhow::Result<()> {
+        let wall_us = |at| lot.context.wall_us(at);
+        match event {
+            Event::Judged(judged) => {
+                if self.journal.is_of_no_lot() {
+                    self.begin(&lot.context, None)?;
+                }
+                self.judged(judged, lot);
+            }
+            Event::Alarm(alarm, at) => self.rows.extend(self.journal.alarm(alarm, wall_us(*at))),
+            Event::Interrupted(interrupted) => self.interrupted(interrupted, lot),
+            Event::Standing(standing, at) => {
+                let rows = self.journal.standing(standing, wall_us(*at));
+                self.rows.extend(rows);
+            }
+            Event::Checked(checked, at) => {
+                self.rows
+                    .extend(self.journal.checked(checked, wall_us(*at)));
+            }
+            Event::Ordered(answered, at) => {
+                self.rows
+                    .extend(self.journal.ordered(answered, wall_us(*at)));
+            }
+            Event::Inside(inside, uses) => {
+                self.aside = Some((*inside, *uses));
+                if inside.is_hard_to_tell() {
+                    self.take_aside();
+                }
+            }
+            Event::Calibrated(calibration) => self.calibrated(calibration, &lot.context)?,
+            // What landed comes as a part that is done.
+            Event::State(_) | Event::Left(_) | Event::Landed(_) | Event::LotBegan(_) => {}
+        }
+        Ok(())
+    }
+
+    fn judged(&mut self, judged: &Judged, lot: &LotProgress) {
+        let row = rows::part(&lot.context, judged, lot.golden);
+        self.rows.push(Row::Part(row));
+        self.judged = Some(judged.part.ordinal);
+    }
+
+    /// A judged part that goes to retest: its row follows.
+    fn interrupted(&mut self, interrupted: &Interrupted, lot: &LotProgress) {
+        let Some(part) = lot.part(interrupted.ordinal) else {
+            return;
+        };
+        let (seq, kind) = part.number();
+        self.rows.push(Row::Interrupted(InterruptedRecord {
+            lot: lot.context.order.lot.clone(),
+            kind: kind.into(),
+            seq,
+            reason: Reason::interrupted(&interrupted.why),
+        }));
+    }
+
+    fn landed(&mut self, part: &PartUnderWay, landed: &Landed, lot: &LotProgress) {
+        let (seq, kind) = part.number();
+        self.rows.push(Row::Landed(LandingRecord {
+            lot: lot.context.order.lot.clone(),
+            kind: kind.into(),
+            seq,
+            bin: landed.bin.name().into(),
+            at_us: lot.context.wall_us(landed.at),
+            cycle_s: part.cycle_s,
+        }));
+    }
+
+    fn calibrated(
+        &mut self,
+        calibration: &Calibration,
+        context: &LotContext,
+    ) -> anyhow::Result<()> {
+        let check = self.journal.calibrated(calibration.made_at_us());
+        self.rows.extend(check);
+        if context.purpose == Purpose::Calibration {
+            return Ok(());
+        }
+        let record = CalibrationRecord {
+            made_at_us: calibration.made_at_us(),
+            due_at_us: calibration.due_at_us(),
+            hash: hash(calibration),
+            body: serde_json::to_string(calibration)?,
+            verified: true,
+        };
+        let store = self.store()?;
+        store.save_calibration(&record)?;
+        Ok(store.calibrated(&context.order.lot, &record.hash)?)
+    }
+
+    /// What is inside: written with the next rows, when a part is let go, when the next one stands behind a lifted one, and
+    /// at the end.
+    fn take_aside(&mut self) {
+        if let Some((inside, uses)) = self.aside.take() {
+            self.rows.extend(self.journal.uses(uses));
+            self.rows.push(self.journal.inside(inside));
+        }
+    }
+
+    /// Writes what has come in, and returns the ordinal up to which parts are durable when it has grown.
+    ///
+    /// # Errors
+    /// The transaction failed: nothing of it is written.
+    pub async fn commit(&mut self) -> anyhow::Result<Option<u64>> {
+        if !self.rows.is_empty() {
+            self.take_aside();
+            let from = Instant::now();
+            let rows = std::mem::take(&mut self.rows);
+            let mut store = self.store.take().context("the history is closed")?;
+            let (store, written) = tokio::task::spawn_blocking(move || {
+                let written = store.record(&rows);
+                (store, written)
+            })
+            .await
+            .context("the history writer ended")?;
+            self.store = Some(store);
+            self.writing += from.elapsed();
+            written?;
+        }
+        Ok(self.judged.take())
+    }
+
+    /// Writes how the run ended, and closes it.
+    ///
+    /// # Errors
+    /// A run that stays open in the history.
+    pub fn close(mut self, ending: &Ending, exit: &Exit, lot: &LotProgress) -> anyhow::Result<()> {
+        self.take_aside();
+        let end_us = lot.context.wall_us(lot.end());
+        self.rows.extend(self.journal.ended(ending, exit, end_us));
+        let Some(store) = &mut self.store else {
+            return Ok(());
+        };
+        store.record(&self.rows)?;
+        if !self.journal.is_of_no_lot() {
+            store.close_lot(&lot.context.order.lot, end_us)?;
+        }
+        Ok(())
+    }
+}
+
+fn hash(calibration: &Calibration) -> String {
+    serde_json::to_string(calibration)
+        .map(|body| snapshot_hash(&body))
+        .unwrap_or_default()
+}

@@ -1,0 +1,168 @@
+//! A judged part as rows of the history and as a JSON object.
+
+use super::LotContext;
+use history::{CurveRecord, MeasurementRecord, PartRecord, SampleRecord};
+use machine::dut::{Characteristic, Judgement, Verdict};
+use machine::gauge::{Limit, Reading};
+use machine::handling::ledger::Kind;
+use machine::handling::wants::Judged;
+use machine::instrument::trace::Trace;
+use serde_json::{Map, Value, json};
+use units::RigTime;
+
+/// Number of a part within its kind, and the kind's name.
+pub fn number(kind: &Kind, golden: u64) -> (u64, &'static str) {
+    match kind {
+        Kind::Lot(seq) => (*seq, "lot"),
+        Kind::Golden(_) => (golden, "golden"),
+    }
+}
+
+/// Row of a part with its measurements and the replies behind them.
+pub fn part(context: &LotContext, judged: &Judged, golden: u64) -> PartRecord {
+    let (seq, kind) = number(&judged.part.kind, golden);
+    let at = |time: RigTime| context.wall_us(time);
+    PartRecord {
+        lot: context.order.lot.clone(),
+        seq,
+        serial: match &judged.part.kind {
+            Kind::Golden(serial) => Some(serial.clone()),
+            Kind::Lot(_) => None,
+        },
+        verdict: judged.verdict.name().to_string(),
+        bin: judged
+            .part
+            .bin
+            .map_or_else(String::new, |bin| bin.name().to_string()),
+        reasons: judged.verdict.reasons().to_vec(),
+        judged_at_us: at(judged.at),
+        test_s: judged.part.test.map_or(f64::NAN, |test| test.0),
+        cycle_s: None,
+        landed_bin: None,
+        landed_at_us: None,
+        kind: kind.to_string(),
+        measurements: context
+            .recipe
+            .limits()
+            .filter_map(|of| measurement(context, judged, of))
+            .collect(),
+        curves: match judged.verdict {
+            Verdict::Pass => Vec::new(),
+            Verdict::Fail(_) | Verdict::Void(_) => curves(&judged.record.trace, at),
+        },
+    }
+}
+
+/// What the test saw, a curve per signal, in the order the signals were first looked at.
+fn curves(trace: &Trace, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
+    let mut curves: Vec<CurveRecord> = Vec::new();
+    for look in trace.looks() {
+        let sample = (at(look.at), Some(look.value).filter(|it| it.is_finite()));
+        let name = look.signal.name;
+        match curves.iter_mut().find(|curve| curve.signal == name) {
+            Some(curve) => curve.samples.push(sample),
+            None => curves.push(CurveRecord {
+                signal: name.to_owned(),
+                unit: look.signal.unit.to_owned(),
+                step: look.signal.step,
+                samples: vec![sample],
+            }),
+        }
+    }
+    curves
+}
+
+fn measurement(
+    context: &LotContext,
+    judged: &Judged,
+    (characteristic, limit): (Characteristic, Limit),
+) -> Option<MeasurementRecord> {
+    let reading = judged.record.result(characteristic)?;
+    let unit = characteristic.unit();
+    assert_eq!(reading.unit, unit, "{characteristic} in another unit");
+    assert_eq!(limit.unit, unit, "{characteristic} limited in another");
+    let judgement = judged
+        .judgements
+        .iter()
+        .find(|(known, _)| *known == characteristic)
+        .map(|(_, j)| *j);
+    let sample = |origin: &machine::rig::sample::Origin| SampleRecord {
+        line: context.plant.wiring.line(origin.line).name.clone(),
+        module: context.plant.wiring.module(origin.module).name.clone(),
+        channel: origin.channel.to_string(),
+        command: origin.request(),
+        raw: origin.raw.to_string(),
+        at_us: context.wall_us(origin.at),
+    };
+    Some(MeasurementRecord {
+        key: characteristic.key().to_string(),
+        value: Some(reading.value).filter(|value| value.is_finite()),
+        uncertainty: Some(reading.expanded()).filter(|u| u.is_finite()),
+        low: limit.low,
+        high: limit.high,
+        verdict: match judgement {
+            Some(Judgement::Pass) => "pass",
+            Some(Judgement::Fail(_) | Judgement::Conditional(_)) => "fail",
+            Some(Judgement::Void) | None => "void",
+        }
+        .to_string(),
+        attempt: u32::try_from(judged.record.attempts(characteristic)).unwrap_or(u32::MAX),
+        budget: budget(&reading),
+        samples: judged.record.evidence(characteristic).map(sample).collect(),
+    })
+}
+
+/// The budget as JSON; `None` while it holds a term that is not a number (JSON has no infinity).
+fn budget(reading: &Reading) -> Option<String> {
+    if !reading.expanded().is_finite() {
+        return None;
+    }
+    serde_json::to_string(&reading.budget).ok()
+}
+
+/// The part as one JSON object of `run --json`.
+pub fn json(context: &LotContext, judged: &Judged, cycle_s: Option<f64>, bin: &str) -> Value {
+    let mut values = Map::new();
+    let mut uncertainty = Map::new();
+    for characteristic in context.recipe.kind().characteristics() {
+        let Some(reading) = judged.record.usable(characteristic) else {
+            continue;
+        };
+        let key = characteristic.key();
+        values.insert(key.into(), json!(rounded(reading.value)));
+        uncertainty.insert(key.into(), json!(rounded(reading.expanded())));
+    }
+    let (seq, _) = number(&judged.part.kind, 0);
+    let spent = judged.record.spent;
+    json!({
+        "type": "part",
+        "seq": seq,
+        "lot": context.order.lot,
+        "recipe": context.recipe.name,
+        "verdict": judged.verdict.name(),
+        "bin": bin,
+        "reasons": judged.verdict.texts(),
+        "reason_codes": judged.verdict.reasons(),
+        "values": values,
+        "uncertainty": uncertainty,
+        "test_s": judged.part.test.map(|test| rounded(test.0)),
+        "cycle_s": cycle_s.map(rounded),
+        "stages": judged.record.stages.iter().map(|(what, time)| ((*what).to_string(), json!(time.as_seconds()))).collect::<Map<String, Value>>(),
+        "spent": {
+            "bus_s": spent.bus.as_seconds(),
+            "settling_s": spent.settling.as_seconds(),
+            "conversion_s": spent.conversion.as_seconds(),
+            "ramp_s": spent.ramp.as_seconds(),
+            "bound_s": spent.bound.as_seconds(),
+        },
+    })
+}
+
+/// Seven digits are enough to read and to compare.
+pub fn rounded(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return value;
+    }
+    let scale = 10f64.powi(6 - value.abs().log10().floor() as i32);
+    (value * scale).round() / scale
+}

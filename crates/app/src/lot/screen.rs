@@ -1,0 +1,122 @@
+//! The subscriber that shows a run on the page: the lot when it begins, then every judged part. What a lot has come
+//! to stays on the screen until the next one begins.
+
+use super::event::{LotEvent, Subscriber};
+use super::progress::LotProgress;
+use super::{LotContext, rows};
+use crate::cycle::Event;
+use crate::traces::Traces;
+use machine::handling::ledger::Kind;
+use machine::handling::wants::Judged;
+use machine::view::{LastPart, RecentPart, RunEnd, View};
+use tokio::sync::watch;
+
+/// Parts in the strip of the last ones: two rows of ten.
+const RECENT: usize = 20;
+
+/// Shows one run.
+pub(super) struct Screen {
+    /// What screens see.
+    pub view: watch::Sender<View>,
+    /// Tells how the lines are doing.
+    pub traces: Traces,
+}
+
+impl Subscriber for Screen {
+    fn hear(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
+        let lines = || self.traces.health();
+        let between = lot.context.purpose.is_between_lots();
+        match event {
+            LotEvent::Begun if between => self.view.send_modify(|view| {
+                view.simulated = lot.context.is_simulated();
+                view.under_way = false;
+            }),
+            LotEvent::Begun => self.view.send_modify(|view| begun(view, &lot.context)),
+            LotEvent::Cycle(Event::Alarm(..)) => {
+                let lines = lines();
+                self.view.send_modify(|view| view.lines = lines);
+            }
+            LotEvent::Cycle(Event::Judged(it)) if is_shown(it, between) => {
+                let lines = lines();
+                self.view.send_modify(|view| {
+                    view.lines = lines;
+                    judged(view, lot, it);
+                });
+            }
+            LotEvent::PartDone(part, Some(_)) if is_shown(&part.judged, between) => {
+                let bins = lot.counts.bins.clone();
+                self.view.send_modify(|view| view.bins = bins);
+            }
+            LotEvent::Ended(summary) if !between => {
+                let cause = summary.cause.clone();
+                let (cause, cause_text) = cause.map(|it| (it.code, it.text)).unzip();
+                let ended = RunEnd {
+                    lot: lot.context.order.lot.clone(),
+                    ended: summary.ended.to_owned(),
+                    cause,
+                    cause_text,
+                };
+                self.view.send_modify(|view| view.last_run = Some(ended));
+            }
+            LotEvent::Cycle(_)
+            | LotEvent::PartDone(..)
+            | LotEvent::TracesKept(_)
+            | LotEvent::Ended(_) => {}
+        }
+    }
+}
+
+/// A part of the lot under way.
+fn is_shown(judged: &Judged, between_lots: bool) -> bool {
+    !between_lots && matches!(judged.part.kind, Kind::Lot(_))
+}
+
+/// The lot and the limits it is judged by.
+fn begun(view: &mut View, context: &LotContext) {
+    let limits = context.recipe.limits();
+    *view = View {
+        simulated: context.is_simulated(),
+        lot: context.order.lot.clone(),
+        under_way: true,
+        recipe: context.recipe.name.clone(),
+        count: context.order.count,
+        limits: limits
+            .map(|(parameter, limit)| (parameter.key().to_owned(), [limit.low, limit.high]))
+            .collect(),
+        at_us: view.at_us,
+        alarms: std::mem::take(&mut view.alarms),
+        machine: std::mem::take(&mut view.machine),
+        last_run: view.last_run.take(),
+        ..View::default()
+    };
+}
+
+/// The part judged last, and the counts with it.
+fn judged(view: &mut View, lot: &LotProgress, judged: &Judged) {
+    let verdicts = lot.counts.verdicts.iter();
+    view.judged = lot.counts.parts();
+    view.verdicts = verdicts.map(|(name, n)| ((*name).to_owned(), *n)).collect();
+    view.parts_per_hour = lot.per_hour(judged.at);
+    let json = rows::json(&lot.context, judged, None, "");
+    let numbers = |key: &str| serde_json::from_value(json[key].clone()).unwrap_or_default();
+    let last = LastPart {
+        seq: rows::number(&judged.part.kind, 0).0,
+        verdict: judged.verdict.name().into(),
+        bin: judged
+            .part
+            .bin
+            .map_or_else(String::new, |bin| bin.to_string()),
+        reasons: judged.verdict.texts(),
+        reason_codes: judged.verdict.reasons().to_vec(),
+        values: numbers("values"),
+        uncertainty: numbers("uncertainty"),
+    };
+    view.recent.push(RecentPart {
+        seq: last.seq,
+        verdict: last.verdict.clone(),
+        bin: last.bin.clone(),
+    });
+    let older = view.recent.len().saturating_sub(RECENT);
+    view.recent.drain(..older);
+    view.last = Some(last);
+}

@@ -1,0 +1,107 @@
+//! The whole run in numbers: the object that ends `run --json`.
+
+use super::counts::Counts;
+use super::rows::rounded;
+use crate::cycle::Profile;
+use crate::exit::Cause;
+use bus::LineLog;
+use machine::station::wants::Ending;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// Counts, pace and how a run ended.
+#[derive(Debug, Clone, Serialize)]
+pub struct Summary {
+    /// Always `summary`.
+    #[serde(rename = "type")]
+    kind: &'static str,
+    /// Judged parts of the lot.
+    pub parts: u64,
+    /// Good ones.
+    pub pass: u64,
+    /// Bad ones.
+    pub fail: u64,
+    /// Those that could not be judged.
+    pub void: u64,
+    /// Parts that a beam has confirmed, by bin.
+    pub bins: BTreeMap<String, u64>,
+    /// Rig time from the first part to the last landing, seconds.
+    pub elapsed_s: f64,
+    /// Wall time of the run, seconds.
+    pub wall_s: f64,
+    /// Judged parts per hour of rig time, rounded.
+    pub parts_per_hour: u64,
+    /// Alarms that came.
+    pub alarms: u64,
+    /// `complete`, `stopped` or `alarm`.
+    pub ended: &'static str,
+    /// Why it ended with status 3; null when it did not.
+    pub cause: Option<Cause>,
+    /// EEPROM writes of all modules since the lot began; absent on a rig, where nobody can count them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub eeprom_writes: Option<u64>,
+    /// Where the wall time went.
+    pub wall_profile: WallProfile,
+    /// Fingerprint of everything that each line carried.
+    pub bytes: BTreeMap<String, String>,
+}
+
+impl Summary {
+    pub(super) fn new(
+        counts: &Counts,
+        (ending, cause): (&Ending, Option<&Cause>),
+        elapsed_s: f64,
+        wall: Duration,
+        logs: &[(String, LineLog)],
+    ) -> Self {
+        let fingerprint = |log: &LineLog| format!("{:016x}", log.fingerprint());
+        Self {
+            kind: "summary",
+            parts: counts.parts(),
+            pass: counts.of("pass"),
+            fail: counts.of("fail"),
+            void: counts.of("void"),
+            bins: counts.bins.clone(),
+            elapsed_s: rounded(elapsed_s),
+            wall_s: rounded(wall.as_secs_f64()),
+            parts_per_hour: counts.per_hour(elapsed_s).unwrap_or(0.0).round() as u64,
+            alarms: counts.alarms,
+            ended: ending.name(),
+            cause: cause.cloned(),
+            eeprom_writes: None,
+            wall_profile: WallProfile::default(),
+            bytes: logs
+                .iter()
+                .map(|(name, log)| (name.clone(), fingerprint(log)))
+                .collect(),
+        }
+    }
+}
+
+/// Where the wall time of a run went, seconds by phase.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct WallProfile {
+    scan: f64,
+    step: f64,
+    clear: f64,
+    apply: f64,
+    history: f64,
+    bus_simulator_runtime: f64,
+}
+
+impl WallProfile {
+    pub(super) fn new(profile: &Profile, writing: Duration, wall: Duration) -> Self {
+        let spent = profile.scan_s + profile.step_s + profile.clear_s + profile.apply_s;
+        let history_s = writing.as_secs_f64();
+        let rest = (wall.as_secs_f64() - spent - history_s).max(0.0);
+        Self {
+            scan: rounded(profile.scan_s),
+            step: rounded(profile.step_s),
+            clear: rounded(profile.clear_s),
+            apply: rounded(profile.apply_s),
+            history: rounded(history_s),
+            bus_simulator_runtime: rounded(rest),
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! A person holds, releases or closes a lot that is not under way: an order like those of a screen, in the audit with
+//! the name.
+
+use history::{Decision, HistoryError, Identity, LotStateRecord, OrderRecord, Row, Store};
+use machine::view::{By, Order};
+use serde_json::json;
+use std::path::Path;
+
+/// Writes an order about a lot and the state it puts the lot into.
+///
+/// # Errors
+/// The history cannot be written.
+pub fn write(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), HistoryError> {
+    let rows = [audit(order, by), state(order, by, decision)];
+    Store::open(db, &Identity::of_this_program())?.record(&rows)
+}
+
+/// The row of the audit of an order that was taken outside of a run.
+pub fn audit(order: &Order, by: &By) -> Row {
+    Row::Order(OrderRecord {
+        lot: None,
+        at_us: jiff::Timestamp::now().as_microsecond(),
+        who: by.who.clone(),
+        role: by.role.clone(),
+        origin: by.origin.clone(),
+        what: json!(order).to_string(),
+        refused: None,
+    })
+}
+
+/// The row that puts the lot of an order into its new state.
+pub fn state(order: &Order, by: &By, decision: Decision) -> Row {
+    let reason = order.reason.as_deref().unwrap_or_default();
+    Row::LotState(LotStateRecord {
+        lot: order.lot.clone().unwrap_or_default(),
+        state: decision.becomes(),
+        why: (decision == Decision::Hold).then(|| format!("{reason} ({})", by.who)),
+        at_us: jiff::Timestamp::now().as_microsecond(),
+    })
+}

@@ -1,0 +1,208 @@
+//! What happened, line by line.
+//!
+//! Seconds are whole ones and count from the first thing that a script did or the first alarm; what is the ordinary
+//! course of a lot has none. The first alarm of a code comes with why it happens, what follows and what to do.
+
+use super::play::Refusal;
+use super::script::{Awaited, Line, Script};
+use crate::cycle::{Event, PANEL};
+use machine::handling::ledger::{Kind, Part};
+use machine::handling::wants::Landed;
+use machine::rig::bin::Bin;
+use machine::station::annunciator::Standing;
+use machine::station::catalogue::AlarmCode;
+use machine::station::trouble::Alarm;
+use rigsim::SimError;
+use std::collections::{BTreeMap, BTreeSet};
+use texts::Lang;
+use units::RigTime;
+
+/// Lines so far.
+#[derive(Debug)]
+pub struct Narrator {
+    text: String,
+    /// When the trouble began.
+    zero: Option<RigTime>,
+    /// Name and verdict by ordinal.
+    parts: BTreeMap<u64, (String, &'static str)>,
+    /// Alarms that were explained.
+    explained: BTreeSet<AlarmCode>,
+    /// Alarms whose cause is there.
+    active: BTreeSet<AlarmCode>,
+    bins: BTreeMap<Bin, u64>,
+}
+
+impl Narrator {
+    /// Begins with the title.
+    pub fn new(script: &Script) -> Self {
+        let faults: String = script
+            .faults
+            .iter()
+            .map(|fault| format!(", fault {fault}"))
+            .collect();
+        Self {
+            text: format!("{}\nlot of {}{faults}\n\n", script.title, script.parts),
+            zero: None,
+            parts: BTreeMap::new(),
+            explained: BTreeSet::new(),
+            active: BTreeSet::new(),
+            bins: BTreeMap::new(),
+        }
+    }
+
+    /// Something happened on the line at `now`.
+    pub fn event(&mut self, event: &Event, now: RigTime) {
+        match event {
+            Event::LotBegan(_) => self.plain("the lot begins"),
+            Event::State(state) if self.zero.is_some() => {
+                self.stamped(now, &format!("machine   {}", state.name()));
+            }
+            Event::Alarm(alarm, _) => self.alarm(alarm, now),
+            Event::Judged(judged) => {
+                let (name, verdict) = (name(&judged.part), judged.verdict.name());
+                if let Some(why) = &judged.part.interrupted {
+                    self.stamped(now, &format!("{name:<9} not judged, to retest: {why}"));
+                }
+                self.parts.insert(judged.part.ordinal, (name, verdict));
+            }
+            Event::Interrupted(interrupted) => {
+                if let Some((name, verdict)) = self.parts.get_mut(&interrupted.ordinal) {
+                    let (name, was) = (name.clone(), std::mem::replace(verdict, "void"));
+                    let why = &interrupted.why;
+                    self.stamped(
+                        now,
+                        &format!("{name:<9} {was}, to retest all the same: {why}"),
+                    );
+                }
+            }
+            Event::Landed(landed) => self.landed(landed),
+            Event::Standing(standing, _) => self.standing(standing, now),
+            Event::Ordered(answered, _) if answered.by.origin == PANEL => {
+                let refused = answered.refused.as_ref();
+                let why = refused.map_or_else(String::new, |why| format!(": refused, {why}"));
+                self.stamped(now, &format!("panel     {}{why}", answered.order.order));
+            }
+            Event::State(_)
+            | Event::Left(_)
+            | Event::Checked(..)
+            | Event::Ordered(..)
+            | Event::Inside(..)
+            | Event::Calibrated(_) => {}
+        }
+    }
+
+    /// The script has struck the rig.
+    pub fn fault(&mut self, fault: &str, struck: Result<(), SimError>, now: RigTime) {
+        let text = match struck {
+            Ok(()) => format!("rig       {fault}"),
+            Err(why) => format!("rig       {fault}: {why}"),
+        };
+        self.begin(now);
+        self.stamped(now, &text);
+    }
+
+    /// The script has ordered something.
+    pub fn order(&mut self, words: &str, answer: Result<(), Refusal>, now: RigTime) {
+        let text = match answer {
+            Ok(()) => format!("operator  {words}"),
+            Err(why) => format!("operator  {words}: refused, {why}"),
+        };
+        self.begin(now);
+        self.stamped(now, &text);
+    }
+
+    /// Nothing has happened for too long.
+    pub fn silence(&mut self, awaited: Option<&Line>, now: RigTime) {
+        let text = match awaited.map(|line| &line.event) {
+            Some(event) => format!(
+                "nothing happens any more; the script waits for {}",
+                words(event)
+            ),
+            None => "nothing happens any more".to_owned(),
+        };
+        self.stamped(now, &text);
+    }
+
+    /// Everything that was told, with where the parts are and who has touched whom.
+    pub fn end(mut self, crashes: &[String]) -> String {
+        let bins: Vec<String> = self
+            .bins
+            .iter()
+            .map(|(bin, n)| format!("{bin} {n}"))
+            .collect();
+        self.text += &format!("\nin the bins: {}\n", bins.join(", "));
+        for crash in crashes {
+            self.text += &format!("BODIES TOUCHED: {crash}\n");
+        }
+        self.text
+    }
+
+    fn begin(&mut self, now: RigTime) {
+        self.zero.get_or_insert(now);
+    }
+
+    fn alarm(&mut self, alarm: &Alarm, now: RigTime) {
+        self.begin(now);
+        self.stamped(
+            now,
+            &format!("ALARM     {}: {}", alarm.code, alarm.text(Lang::En)),
+        );
+        if self.explained.insert(alarm.code) {
+            let help = alarm.code.help(Lang::En);
+            for (word, text) in ["cause", "follows", "to do"].into_iter().zip(help) {
+                self.plain(&format!("          {word:<8} {text}"));
+            }
+        }
+    }
+
+    fn standing(&mut self, standing: &[Standing], now: RigTime) {
+        let active = standing.iter().filter(|one| one.is_active());
+        let active: BTreeSet<AlarmCode> = active.map(|one| one.alarm.code).collect();
+        for code in std::mem::replace(&mut self.active, active.clone()) {
+            if !active.contains(&code) {
+                self.stamped(now, &format!("gone      {code}"));
+            }
+        }
+    }
+
+    fn landed(&mut self, landed: &Landed) {
+        let (part, bin) = (&landed.part, landed.bin);
+        if let (Kind::Lot(_), Some((name, verdict))) = (&part.kind, self.parts.get(&part.ordinal)) {
+            let text = format!("{name:<9} {verdict}, in bin {bin}");
+            *self.bins.entry(bin).or_insert(0) += 1;
+            self.plain(&text);
+        }
+    }
+
+    fn plain(&mut self, text: &str) {
+        self.text += &format!("        {text}\n");
+    }
+
+    fn stamped(&mut self, now: RigTime, text: &str) {
+        match self.zero {
+            Some(zero) => {
+                let seconds = now.since(zero).0 / 1_000_000;
+                self.text += &format!("{seconds:>4} s  {text}\n");
+            }
+            None => self.plain(text),
+        }
+    }
+}
+
+fn name(part: &Part) -> String {
+    match &part.kind {
+        Kind::Golden(serial) => format!("part {serial}"),
+        Kind::Lot(number) => format!("part {number}"),
+    }
+}
+
+fn words(event: &Awaited) -> String {
+    match event {
+        Awaited::Lot => "the lot".to_owned(),
+        Awaited::State(state) => format!("state {}", state.name()),
+        Awaited::Alarm(code) => format!("alarm {code}"),
+        Awaited::Judged(part) => format!("part {part} to be judged"),
+        Awaited::Left(part) => format!("part {part} to leave the nest"),
+        Awaited::Landed(part) => format!("part {part} to land"),
+    }
+}

@@ -1,0 +1,32 @@
+//! How a run ended, and the cause when it ended in trouble.
+
+use super::error::{Doing, Result};
+use super::store::Known;
+use machine::station::wants::Ending;
+use rusqlite::{Transaction, params};
+
+/// The end of the open run of a lot.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RunEndRecord {
+    /// The lot.
+    pub lot: String,
+    /// How it ended.
+    pub ended: Ending,
+    /// Code and English text of the trouble; none of a run that ended without.
+    pub cause: Option<(String, String)>,
+}
+
+/// Keeps the end of a run; the last one counts.
+pub(super) fn insert(tx: &Transaction<'_>, known: &Known, it: &RunEndRecord) -> Result<()> {
+    assert!(
+        it.cause.is_none() || it.ended == Ending::Alarm,
+        "trouble of a run that ended well"
+    );
+    let (cause, text) = it.cause.as_ref().map(|it| (&it.0, &it.1)).unzip();
+    tx.execute(
+        "INSERT OR REPLACE INTO run_end (run_id, ended, cause, cause_text) VALUES (?1, ?2, ?3, ?4)",
+        params![known.run(&it.lot)?, it.ended.name(), cause, text],
+    )
+    .doing("recording the end of a run")?;
+    Ok(())
+}

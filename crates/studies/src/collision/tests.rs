@@ -1,0 +1,182 @@
+//! The paper's method, the polygons and the small world, on things that can be seen without a program.
+#![allow(clippy::unwrap_used)]
+use super::outline::Outline;
+use super::paper::Stepping;
+use super::score::quantile;
+use super::small_world::{Judged, judged};
+use super::world::{Way, World, thinner};
+use super::*;
+use crate::scatter::Point;
+use lpm::exact::{Body, first_contact};
+
+const MM: i64 = 1024;
+
+fn way(from: [i64; 3], run: [i64; 3]) -> Way {
+    Way {
+        kind: 0,
+        from,
+        run,
+        truth: None,
+        deep: false,
+        near: 0,
+    }
+}
+
+#[test]
+fn stepping_stops_at_the_last_clear_pose_and_passes_a_foil_between_two_poses() {
+    let foil = [Body::block(
+        [50 * MM, 20 * MM, 0],
+        [MM / 8, 20 * MM, 20 * MM],
+    )];
+    let pin = [Body::block([0; 3], [MM, MM, MM])];
+    let mut stepping = Stepping::new(&foil, &pin);
+    let across = way([0, 20 * MM, 0], [101 * MM, 0, 0]);
+    let stop = stepping.first_contact(&across, 1.0).unwrap() * 101.0;
+    assert!((stop - 48.0).abs() < 1e-9, "{stop}");
+    assert_eq!(
+        stepping.first_contact(&across, 7.0),
+        None,
+        "poses at 43.3 and 50.5 would need a wider foil"
+    );
+}
+
+#[test]
+fn boxes_take_the_corner_beside_a_cylinder_for_the_cylinder() {
+    let post = [Body::cylinder([50 * MM, 50 * MM, 0], 10 * MM, 20 * MM)];
+    let pin = [Body::block([0; 3], [MM, MM, MM])];
+    let beside = way([41 * MM, 42 * MM, 0], [0, 0, 5 * MM]);
+    assert_eq!(
+        first_contact(&post[0], &pin[0].moved(beside.from), beside.run),
+        None
+    );
+    assert_eq!(Stepping::new(&post, &pin).first_contact(&beside, 1.0), None);
+    let mut exact = swept(&post, &pin).unwrap();
+    let mut boxes = swept(&post.map(|it| world::boxed(&it)), &pin).unwrap();
+    assert_eq!((exact(&beside), boxes(&beside)), (None, Some(0.0)));
+}
+
+#[test]
+fn outlines_meet_when_no_edge_of_either_has_the_other_outside() {
+    let square = Outline::rectangle([0.0, 0.0], [1.0, 1.0], 0.0);
+    let turned = Outline::rectangle([0.0, 0.0], [1.0, 1.0], std::f64::consts::FRAC_PI_4);
+    assert!(square.meets(&square, [2.0, 0.0]) && !square.meets(&square, [2.001, 0.0]));
+    assert!(square.meets(&turned, [2.41, 0.0]) && !square.meets(&turned, [2.42, 0.0]));
+    assert!(!square.meets(&turned, [1.8, 1.8]) && square.meets(&turned, [1.6, 1.6]));
+}
+
+#[test]
+fn the_drawn_moves_hold_contacts_and_free_ways_of_every_kind() {
+    let world = World::drawn(7, 12);
+    for (kind, name) in KINDS.iter().enumerate() {
+        let ways: Vec<&Way> = world.ways.iter().filter(|it| it.kind == kind).collect();
+        let hits = ways.iter().filter(|it| it.truth.is_some()).count();
+        assert_eq!(ways.len(), 12);
+        assert!(hits > 0, "{name}: no contact");
+        assert!(kind == 1 || hits < 12, "{name}: no free way");
+        assert!(ways.iter().all(|it| it.truth.is_none() || it.near > 0));
+    }
+}
+
+#[test]
+fn our_core_and_the_truth_agree_on_drawn_moves() {
+    let world = World::drawn(3, 12);
+    let mut ask = swept(&world.elements, &world.parts).unwrap();
+    for way in &world.ways {
+        let found = ask(way);
+        assert_eq!(found.is_some(), way.truth.is_some(), "{way:?}");
+        let late = way
+            .truth
+            .zip(found)
+            .map_or(0.0, |(truth, found)| found - truth);
+        assert!(late <= ROUNDING_MM, "{way:?}");
+    }
+}
+
+#[test]
+fn the_smallest_world_is_judged_without_a_wrong_answer() {
+    let expected = Judged {
+        moves: 27 * 27 * 125,
+        ..Judged::default()
+    };
+    assert_eq!(judged(2), expected);
+}
+
+#[test]
+fn a_quantile_is_one_of_the_values() {
+    assert_eq!(quantile(&mut [3.0, 1.0, 2.0], 0.5), Some(2.0));
+    assert_eq!(quantile(&mut [3.0, 1.0, 2.0], 0.99), Some(3.0));
+    assert_eq!(quantile(&mut [], 0.5), None);
+}
+
+#[test]
+fn a_plot_of_speed_and_error_marks_who_was_wrong_and_keeps_zero_on_the_bottom_line() {
+    let point = |name: &str, x: f64, y: f64, wrong: u64| Point {
+        name: name.to_owned(),
+        x,
+        y,
+        wrong,
+        series: 0,
+    };
+    let plot = Scatter {
+        title: "a < b".to_owned(),
+        points: vec![point("fast", 1.0, 10.0, 3), point("exact", 2.0, 0.0, 0)],
+        ..Scatter::default()
+    };
+    let svg = plot.svg();
+    assert!(svg.contains("a &lt; b") && svg.contains("fast, 3 wrong") && svg.contains(">exact<"));
+    assert!(svg.contains("cy=\"432.0\""), "{svg}");
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+}
+
+/// Single pairs on a coarse grid, where touching is common, asked of the peer and of the truth.
+#[test]
+fn the_peer_disagrees_about_touches_alone_and_the_exact_truth_decides_them_for_us() {
+    let mut disagreements = 0;
+    for code in 0..1_200_i64 {
+        let digit = |place: u32, base: i64| code * 7_919 / 13_i64.pow(place) % base;
+        let size = [1 + digit(0, 3), 1 + digit(1, 4), 1 + digit(2, 3)].map(|it| it * MM);
+        let element = match code % 2 {
+            0 => Body::block([0; 3], [2 * MM, 3 * MM, MM]),
+            _ => Body::cylinder([0; 3], 3 * MM, 2 * MM),
+        };
+        let mover = match code % 3 {
+            0 => Body::block([0; 3], size),
+            _ => Body::cylinder([0; 3], size[0], size[2]),
+        };
+        let from = [digit(1, 13) - 6, digit(0, 13) - 6, digit(2, 9) - 4].map(|it| it * MM);
+        let run = [digit(2, 25) - 12, digit(1, 25) - 12, digit(0, 5) - 2].map(|it| it * MM);
+        let asked = way(from, run);
+        let truth = first_contact(&element, &mover.moved(from), run);
+        let ours = swept(&[element], &[mover]).unwrap()(&asked);
+        assert_eq!(
+            ours.is_some(),
+            truth.is_some(),
+            "{element:?} {mover:?} {asked:?}"
+        );
+        let double = peer::double::Peer::new(&[element], &[mover]).first_contact(&asked);
+        let single = peer::single::Peer::new(&[element], &[mover]).first_contact(&asked);
+        for peer in [double, single] {
+            if peer.is_some() != ours.is_some() {
+                disagreements += 1;
+                // A mover thinner by 1 um passes freely: they only touch, and the peer sees nothing.
+                let thin = first_contact(&element, &thinner(&mover.moved(from)), run);
+                assert_eq!(
+                    (peer, thin),
+                    (None, None),
+                    "{element:?} {mover:?} {asked:?}"
+                );
+            }
+        }
+        if let (Some(peer), Some(ours)) = (double, ours) {
+            let apart_mm = (peer - ours).abs() * asked.length_mm();
+            assert!(
+                apart_mm < 0.01,
+                "{apart_mm} mm: {element:?} {mover:?} {asked:?}"
+            );
+        }
+    }
+    assert!(
+        (1..120).contains(&disagreements),
+        "{disagreements} of 2,400"
+    );
+}

@@ -1,0 +1,191 @@
+//! The emergency stop pressed at every instant of a cycle and of homing, and how long outputs that move something stay on.
+//!
+//! Every lot is a story (`relayrig story`) in which the stop is pressed again and again, each time a little later after
+//! a part has left the nest, or after the reset of a line that was stopped in the middle of a test; released, cleared,
+//! reset and started anew. The journal of the simulated rig tells at its terminals when the contact opened and when the
+//! last output that moves something went off. The bound is derived from `rig.toml` and holds whatever one transaction
+//! meets; so every second lot runs with replies that come at the last moment.
+
+mod reaction;
+mod sweep;
+
+use super::chart::Chart;
+use super::figure::{Bar, Figure};
+use super::fleet::{Folder, Order};
+use super::journal;
+use super::output::Report;
+use config::Plant;
+use machine::rig::point::DigitalOut;
+use machine::rig::wiring::Wiring;
+use quality::Ordered;
+use reaction::reactions;
+use std::collections::BTreeMap;
+use std::path::Path;
+use sweep::Sweep;
+
+/// Replies of every second lot come so much later, ms: what the allowance of `rig.toml` leaves, but for 3 ms.
+const LATE_MS: f64 = 25.0;
+/// Classes of the chart.
+const CLASSES: usize = 20;
+
+/// One stop.
+#[derive(Debug, Clone, Copy)]
+struct Stop {
+    /// Seconds after the begin of what is swept.
+    instant_s: f64,
+    /// Milliseconds from the contact to the last output off; none when nothing was on.
+    reaction_ms: Option<f64>,
+}
+
+/// What the lots of one sweep told, with modules as they are or with late replies.
+#[derive(Debug)]
+struct Told {
+    sweep: Sweep,
+    slow: bool,
+    stops: Vec<Stop>,
+    touched: u64,
+    unfinished: u64,
+}
+
+impl Told {
+    fn nothing(sweep: Sweep, slow: bool) -> Self {
+        Self {
+            sweep,
+            slow,
+            stops: Vec::new(),
+            touched: 0,
+            unfinished: 0,
+        }
+    }
+
+    fn name(&self) -> String {
+        let modules = match self.slow {
+            true => format!("replies {LATE_MS} ms late"),
+            false => "modules as they are".to_owned(),
+        };
+        format!("reaction {}, {modules}", self.sweep.name())
+    }
+}
+
+/// Plays the lots and draws the report up.
+///
+/// # Errors
+/// A configuration that does not load, or a story that could not be played.
+pub fn study(order: &Order) -> anyhow::Result<Report> {
+    let plant = Plant::load(&order.config)?;
+    let bound_ms = plant.wiring.longest_reaction().as_seconds() * 1e3;
+    let folder = Folder::new()?;
+    let of = |sweep| [false, true].map(|slow| Told::nothing(sweep, slow));
+    let mut all: Vec<Told> = Sweep::ALL.into_iter().flat_map(of).collect();
+    let bar = crate::progress::progress(order.lots * all.len() as u64 / 2);
+    for told in &mut all {
+        for lot in (u64::from(told.slow)..order.lots).step_by(2) {
+            played(order, &folder.0, &plant.wiring, lot, told)?;
+            bar.inc(1);
+        }
+    }
+    bar.finish_and_clear();
+    let sum = |of: fn(&Told) -> u64| all.iter().map(of).sum::<u64>();
+    let lots = order.lots * Sweep::ALL.len() as u64;
+    let mut reactions: Vec<Figure> = all.iter().map(|told| reaction(told, bound_ms)).collect();
+    reactions.push(Figure::new("bound of rig.toml", 1, Some(bound_ms), "ms"));
+    Ok(Report {
+        study: "stop",
+        about: format!(
+            "{} stops over a cycle and as many over homing after a stop",
+            order.lots * order.parts
+        ),
+        groups: vec![
+            reactions,
+            vec![
+                none("bodies that touched", sum(|it| it.touched), lots),
+                none("lots that did not go on", sum(|it| it.unfinished), lots),
+            ],
+        ],
+        notes: Vec::new(),
+        chart: chart(&all[0], bound_ms),
+    })
+}
+
+fn reaction(told: &Told, bound_ms: f64) -> Figure {
+    let times: Vec<f64> = told
+        .stops
+        .iter()
+        .filter_map(|stop| stop.reaction_ms)
+        .collect();
+    let ordered = Ordered::of(&times);
+    Figure::new(
+        told.name(),
+        told.stops.len() as u64,
+        ordered.quantile(1.0),
+        "ms",
+    )
+    .with("median", ordered.quantile(0.5))
+    .with("p99", ordered.quantile(0.99))
+    .with("outputs_were_on", Some(times.len() as f64))
+    .bar(Bar::AtMost(bound_ms))
+}
+
+fn none(name: &str, count: u64, of: u64) -> Figure {
+    Figure::count(name, of, Some(count)).bar(Bar::AtMost(0.0))
+}
+
+/// Worst reaction by the instant in the cycle.
+fn chart(told: &Told, bound_ms: f64) -> Chart {
+    let width = told.sweep.span_s() / CLASSES as f64;
+    let worst = |class: usize| {
+        let inside = told
+            .stops
+            .iter()
+            .filter(|stop| (stop.instant_s / width) as usize == class);
+        inside.filter_map(|stop| stop.reaction_ms).reduce(f64::max)
+    };
+    Chart {
+        title: "worst reaction to the emergency stop by the instant after a part has left the nest"
+            .into(),
+        unit: "ms",
+        from: 0.0,
+        marks: vec![bound_ms],
+        bars: (0..CLASSES)
+            .map(|class| (format!("{:.1} s", class as f64 * width), worst(class)))
+            .collect(),
+    }
+}
+
+fn played(
+    order: &Order,
+    folder: &Path,
+    wiring: &Wiring,
+    lot: u64,
+    told: &mut Told,
+) -> anyhow::Result<()> {
+    let sweep = told.sweep;
+    let instants = sweep.instants(order, lot);
+    let script = sweep.script(&instants, told.slow);
+    let played = journal::play(order, folder, &script, lot + 1)?;
+    let reactions = reactions(&played.entries, &moving(wiring));
+    let last = reactions
+        .chunks_exact(sweep.presses())
+        .map(|all| all[all.len() - 1]);
+    let stops = instants.iter().zip(last);
+    told.stops
+        .extend(stops.map(|(instant_s, reaction_ms)| Stop {
+            instant_s: *instant_s,
+            reaction_ms,
+        }));
+    told.touched += played.text.matches("BODIES TOUCHED").count() as u64;
+    told.unfinished += u64::from(!played.whole);
+    Ok(())
+}
+
+/// Bits that move something, by module.
+fn moving(wiring: &Wiring) -> BTreeMap<String, u16> {
+    let mut bits = BTreeMap::new();
+    for point in DigitalOut::ALL.iter().filter(|point| point.moves()) {
+        let terminal = wiring.digital_out(*point);
+        *bits
+            .entry(wiring.module(terminal.module).name.clone())
+            .or_insert(0) |= terminal.bit();
+    }
+    bits
+}

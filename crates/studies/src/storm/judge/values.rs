@@ -1,0 +1,113 @@
+//! No value but the body's own, and a verdict that its truth bears out. Only what was tested to the end counts: an
+//! interrupted test has no verdict.
+
+use super::Case;
+use super::bodies::owners;
+use crate::bins::bin_of;
+use history::Part;
+use machine::dut::em_relay::Parameter;
+use rigsim::truth::PartTruth;
+use serde_json::Value;
+
+/// A value further from its truth than so many expanded uncertainties (k = 2) is somebody else's. Over 10^6 values
+/// a true one is this far off less than once in 10^9 times.
+const SOMEBODY_ELSES: f64 = 4.0;
+/// A true value is beyond a limit, or clear of it, by so many expanded uncertainties.
+const CLEARLY: f64 = 2.0;
+
+pub fn broken(case: &Case) -> Vec<String> {
+    let mut broken = Vec::new();
+    for (row, number) in owners(case).0 {
+        let body = &case.bodies[number];
+        if body.golden || !matches!(row.verdict.as_str(), "pass" | "fail") {
+            continue;
+        }
+        let truth = serde_json::to_value(&body.part).unwrap_or_default();
+        let readings: Vec<Reading> = Parameter::ALL
+            .iter()
+            .filter_map(|parameter| Reading::of(parameter.name(), row, &truth))
+            .collect();
+        let found = strange(&readings, &body.part)
+            .into_iter()
+            .chain(misjudged(case, row, &readings, &body.part));
+        broken.extend(found.map(|what| format!("part {} of {}: {what}", row.seq, row.lot)));
+    }
+    broken
+}
+
+/// A value beside its truth.
+struct Reading {
+    key: &'static str,
+    value: f64,
+    expanded: f64,
+    truth: f64,
+}
+
+impl Reading {
+    fn of(key: &'static str, row: &Part, truth: &Value) -> Option<Self> {
+        Some(Self {
+            key,
+            value: row.values.get(key)?.as_f64()?,
+            expanded: row.uncertainty.get(key)?.as_f64()?,
+            truth: truth[key].as_f64()?,
+        })
+    }
+}
+
+fn strange(readings: &[Reading], part: &PartTruth) -> Option<String> {
+    // Its resistance is another one at every closure: there is no one truth.
+    let unstable = part.defect == Some("unstable_contact");
+    let far = |it: &&Reading| {
+        let defined = !(unstable && it.key.starts_with("contact"));
+        defined && (it.value - it.truth).abs() > SOMEBODY_ELSES * it.expanded
+    };
+    let it = readings.iter().find(far)?;
+    let (key, value, truth, u) = (it.key, it.value, it.truth, it.expanded);
+    Some(format!(
+        "{key} {value} +- {u} cannot be of a part with {truth}"
+    ))
+}
+
+fn misjudged(case: &Case, row: &Part, readings: &[Reading], part: &PartTruth) -> Option<String> {
+    let limit = |key: &str| case.limits.iter().find(|limit| limit.0 == key);
+    let clear = |it: &Reading| {
+        limit(it.key).is_none_or(|(_, low, high)| {
+            it.truth - low > CLEARLY * it.expanded && high - it.truth > CLEARLY * it.expanded
+        })
+    };
+    let beyond = |it: &&Reading| {
+        limit(it.key).is_some_and(|(_, low, high)| {
+            low - it.truth > CLEARLY * it.expanded || it.truth - high > CLEARLY * it.expanded
+        })
+    };
+    match (row.verdict.as_str(), part.defect) {
+        ("pass", Some(defect)) => Some(format!("passed with {defect}")),
+        ("pass", None) => readings
+            .iter()
+            .find(beyond)
+            .map(|it| format!("passed with a true {} of {}", it.key, it.truth)),
+        (_, Some(defect)) => {
+            let right = bin_of(defect).unwrap_or("");
+            let asked = row.bin.as_deref().unwrap_or("");
+            let near = readings.iter().any(|it| !clear(it) && !beyond(&it));
+            (asked != right && !near && !also_beyond(asked, readings, &beyond))
+                .then(|| format!("{defect} belongs to {right}, its row says {asked}"))
+        }
+        (_, None) => readings
+            .iter()
+            .all(clear)
+            .then(|| format!("a good part failed: {:?}", row.reasons)),
+    }
+}
+
+/// A part with a defect may be beyond another limit too.
+fn also_beyond(asked: &str, readings: &[Reading], beyond: &dyn Fn(&&Reading) -> bool) -> bool {
+    let of_bin = |key: &str| match asked {
+        "coil" => key.starts_with("coil"),
+        "voltage" => key.contains("voltage"),
+        "time" => key.contains("time") || key.contains("bounce"),
+        "contact" => key.starts_with("contact"),
+        _ => false,
+    };
+    readings.iter().filter(beyond).any(|it| of_bin(it.key))
+}

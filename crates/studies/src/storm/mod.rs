@@ -1,0 +1,351 @@
+//! The storm: short lots under random faults of world and line, random orders of a restless operator, and kills of
+//! the controller, in virtual time, in this process.
+//!
+//! A seed is one rig that lives through several lives of the controller: `weather` draws what strikes and when,
+//! `life` runs the program as `run` does and kills it, `operator` presses buttons. When the storm has passed
+//! the controller is started again, up to [`CALM`] times, and has to complete a lot. Then `judge` sets the rig's truth
+//! against the history.
+//!
+//! A seed that breaks a rule is printed with what was broken, the last lines of its trace, and the command that
+//! shows it again: the same seed gives the same trace, bit for bit.
+
+mod dice;
+mod judge;
+mod life;
+mod operator;
+mod trace;
+mod weather;
+
+use super::chart::Chart;
+use super::figure::{Bar, Figure};
+use super::fleet::{Folder, Order};
+use super::output::Report;
+use anyhow::Context;
+use app::exit::Exit;
+use config::{Plant, load_recipe};
+use history::{Archive, Filter};
+use judge::Case;
+use life::{End, Shop};
+use machine::dut::Calibration;
+use machine::dut::Recipe;
+use rigsim::{Options, SharedRig};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::time::Instant;
+use units::Span;
+use weather::{CEASES_US, Life, RIGS, Weather};
+
+/// Starts after the storm, one of which must complete its lot: the first may have to clear up.
+const CALM: u64 = 3;
+/// Parts of a calm lot.
+const CALM_PARTS: u64 = 2;
+/// Seeds that are shown; the figures count them all.
+const SHOWN: usize = 10;
+
+/// What one seed came to: a case is heavy, so it keeps counts, and a trace only where a rule was broken.
+struct Outcome {
+    seed: u64,
+    counts: Counts,
+    broken: Vec<String>,
+    faults: Vec<String>,
+    trace: Vec<String>,
+    digest: u64,
+}
+
+/// What there was to judge.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counts {
+    lives: u64,
+    kills: u64,
+    completed: u64,
+    bodies: u64,
+    rows: u64,
+    alarms: u64,
+    orders: u64,
+    motions: u64,
+    rig_us: u64,
+}
+
+impl Counts {
+    fn of(case: &Case) -> Self {
+        let ended = |end: &End| case.lives.iter().filter(|it| it.end == *end).count() as u64;
+        Self {
+            lives: case.lives.len() as u64,
+            kills: ended(&End::Killed),
+            completed: ended(&End::Exit(Exit::Done)),
+            bodies: case.bodies.len() as u64,
+            rows: case.rows.len() as u64,
+            alarms: case.alarms.len() as u64,
+            orders: case.lives.iter().map(|it| it.said.len() as u64).sum(),
+            motions: case.driven.len() as u64,
+            rig_us: case.lives.last().map_or(0, |life| life.ended_us),
+        }
+    }
+}
+
+/// What all seeds share.
+struct Sea<'a> {
+    order: &'a Order,
+    plant: Plant,
+    recipe: Arc<Recipe>,
+    folder: Folder,
+    calibrations: [OnceLock<Calibration>; RIGS as usize],
+}
+
+/// Runs the seeds (or the one that is asked for) and draws the report up.
+///
+/// # Errors
+/// Files that cannot be read or written, or a rig that cannot be built.
+pub fn study(order: &Order) -> anyhow::Result<Report> {
+    let began = Instant::now();
+    let sea = Sea::new(order)?;
+    let seeds: Vec<u64> = match order.seed {
+        Some(seed) => vec![seed],
+        None => (order.from..).take(order.lots as usize).collect(),
+    };
+    let outcomes = sea.all(&seeds)?;
+    let minutes = began.elapsed().as_secs_f64() / 60.0;
+    Ok(report(order, &outcomes, minutes))
+}
+
+impl<'a> Sea<'a> {
+    fn new(order: &'a Order) -> anyhow::Result<Self> {
+        let folder = Folder::new()?;
+        std::fs::write(folder.0.join("world.toml"), weather::WORLD)?;
+        Ok(Self {
+            order,
+            plant: Plant::load(&order.config)?,
+            recipe: Arc::new(load_recipe(&order.config, &order.recipe)?),
+            folder,
+            calibrations: Default::default(),
+        })
+    }
+
+    /// Every seed, on as many threads as the machine has.
+    fn all(&self, seeds: &[u64]) -> anyhow::Result<Vec<Outcome>> {
+        let next = AtomicU64::new(0);
+        let done: Mutex<Vec<anyhow::Result<Outcome>>> = Mutex::new(Vec::new());
+        let bar = crate::progress::progress(seeds.len() as u64);
+        let worker = || {
+            // Alarms are what a storm is made of; nobody wants to read them as they come.
+            tracing::subscriber::with_default(tracing::subscriber::NoSubscriber::new(), || {
+                while let Some(seed) = usize::try_from(next.fetch_add(1, Ordering::Relaxed))
+                    .ok()
+                    .and_then(|place| seeds.get(place))
+                {
+                    let outcome = self.one(*seed).with_context(|| format!("seed {seed}"));
+                    bar.inc(1);
+                    let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
+                    done.push(outcome);
+                }
+            });
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+                scope.spawn(worker);
+            }
+        });
+        bar.finish_and_clear();
+        let done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mut outcomes = done.into_iter().collect::<anyhow::Result<Vec<_>>>()?;
+        outcomes.sort_by_key(|one| one.seed);
+        Ok(outcomes)
+    }
+
+    fn one(&self, seed: u64) -> anyhow::Result<Outcome> {
+        let folder = self.folder.0.join(seed.to_string());
+        std::fs::create_dir(&folder)?;
+        let case = self.case(seed, &folder.join("history.db"))?;
+        std::fs::remove_dir_all(&folder)?;
+        let (broken, trace) = (case.broken(), trace::lines(&case));
+        let digest = trace::digest(trace.iter());
+        let is_shown = !broken.is_empty() || self.order.seed.is_some();
+        Ok(Outcome {
+            seed,
+            counts: Counts::of(&case),
+            faults: case.faults,
+            trace: if is_shown { trace } else { Vec::new() },
+            broken,
+            digest,
+        })
+    }
+
+    /// Lives through a seed.
+    fn case(&self, seed: u64, db: &Path) -> anyhow::Result<Case> {
+        let weather = Weather::of(seed, self.order.parts, &self.plant.wiring);
+        let rig = self.rig(weather.rig, weather.uncalibrated, &weather.faults)?;
+        let shop = self.shop(&rig, db);
+        let mut calibration = match weather.uncalibrated {
+            true => None,
+            false => Some(self.calibration(weather.rig, db)?),
+        };
+        let mut whims = weather.whims.clone();
+        let mut lives = Vec::new();
+        for life in &weather.lives {
+            let lot = format!("life-{}", lives.len() + 1);
+            lives.push(shop.live(&lot, life, calibration.clone(), whims.apart())?);
+        }
+        if calibration.is_none() {
+            calibration = Some(self.calibration(weather.rig, db)?);
+        }
+        rig.calm();
+        for n in 1..=CALM {
+            let pause_us = CEASES_US.saturating_sub(rig.now_us()) + 1_000_000;
+            let life = Life {
+                count: CALM_PARTS,
+                attended: false,
+                killed_after_us: None,
+                pause_us,
+            };
+            lives.push(shop.live(
+                &format!("calm-{n}"),
+                &life,
+                calibration.clone(),
+                whims.apart(),
+            )?);
+            if lives
+                .last()
+                .is_some_and(|life| life.end == End::Exit(Exit::Done))
+            {
+                break;
+            }
+        }
+        self.judged(&weather, &rig, lives, db)
+    }
+
+    fn judged(
+        &self,
+        weather: &Weather,
+        rig: &SharedRig,
+        lives: Vec<life::Lived>,
+        db: &Path,
+    ) -> anyhow::Result<Case> {
+        let archive = Archive::open(db)?;
+        let all = Filter {
+            kind: Some("all".into()),
+            ..Filter::default()
+        };
+        let wiring = &self.plant.wiring;
+        let reaction = wiring.longest_reaction();
+        let watchdog = Span::ms(wiring.bus.host_watchdog_ms as u64);
+        let limits = self.order.admitted.iter();
+        Ok(Case {
+            lives,
+            bodies: rig.bodies(),
+            driven: rig.driven(),
+            touched: rig.crashes(),
+            rows: archive.query(&all)?,
+            alarms: archive.alarms(&Filter::default())?,
+            limits: limits
+                .map(|(key, range)| (key.name(), *range.start(), *range.end()))
+                .collect(),
+            faults: weather.faults.clone(),
+            disturbed_us: weather.disturbed_us.clone(),
+            reaction,
+            reaction_in_trouble: reaction + watchdog + watchdog,
+            lines_suffer: weather.lines_suffer,
+        })
+    }
+
+    fn shop<'b>(&'b self, rig: &'b SharedRig, db: &'b Path) -> Shop<'b> {
+        Shop {
+            plant: &self.plant,
+            recipe: &self.recipe,
+            db,
+            rig,
+        }
+    }
+
+    fn rig(&self, seed: u64, golden: bool, faults: &[String]) -> anyhow::Result<SharedRig> {
+        let storms: PathBuf = self.folder.0.join("world.toml");
+        Ok(rigsim::build(&Options {
+            config_dir: self.order.config.clone(),
+            world: Some(self.order.world.clone().unwrap_or(storms)),
+            seed,
+            recipe: self.order.recipe.clone(),
+            parts: None,
+            golden,
+            faults: faults.to_vec(),
+        })?)
+    }
+
+    /// The factors of a rig, found on a calm day.
+    fn calibration(&self, rig: u64, db: &Path) -> anyhow::Result<Calibration> {
+        let place = usize::try_from(rig % RIGS)?;
+        if let Some(known) = self.calibrations[place].get() {
+            return Ok(known.clone());
+        }
+        let calm = self.rig(rig, true, &[])?;
+        let apart = db.with_file_name("calibration.db");
+        let found = self.shop(&calm, &apart).calibrated()?;
+        Ok(self.calibrations[place].get_or_init(|| found).clone())
+    }
+}
+
+fn report(order: &Order, outcomes: &[Outcome], minutes: f64) -> Report {
+    let n = outcomes.len() as u64;
+    let broken: Vec<&Outcome> = outcomes.iter().filter(|it| !it.broken.is_empty()).collect();
+    let sum = |of: fn(&Counts) -> u64| outcomes.iter().map(|it| of(&it.counts)).sum::<u64>();
+    let hours = sum(|it| it.rig_us) as f64 / 3.6e9;
+    let lives = sum(|it| it.lives);
+    let about = |name: &str, of: u64, count: u64| Figure::count(name, of, Some(count));
+    let rule = Figure::count("seeds that broke a rule", n, Some(broken.len() as u64));
+    let counts = vec![
+        about("kills of the controller", lives, sum(|it| it.kills)),
+        about("lots completed", lives, sum(|it| it.completed)),
+        about("bodies", n, sum(|it| it.bodies)),
+        about("rows", n, sum(|it| it.rows)),
+        about("alarms", n, sum(|it| it.alarms)),
+        about("orders", n, sum(|it| it.orders)),
+        about("motions", n, sum(|it| it.motions)),
+    ];
+    let per_minute = Some(hours / minutes);
+    let pace = Figure::new("virtual hours per minute of wall time", n, per_minute, "h");
+    let digests: Vec<String> = outcomes
+        .iter()
+        .map(|it| format!("{:016x}", it.digest))
+        .collect();
+    let digest = trace::digest(digests.iter());
+    let mut notes = vec![format!("digest of all traces: {digest:016x}")];
+    let shows = |it: &&Outcome| order.seed.is_some() || !it.broken.is_empty();
+    notes.extend(
+        outcomes
+            .iter()
+            .filter(shows)
+            .take(SHOWN)
+            .map(|it| shown(order, it)),
+    );
+    let alarms = |it: &Outcome| (format!("seed {}", it.seed), Some(it.counts.alarms as f64));
+    Report {
+        study: "storm",
+        about: order.about(),
+        groups: vec![vec![rule.bar(Bar::AtMost(0.0))], counts, vec![pace]],
+        notes,
+        chart: Chart {
+            title: format!("alarms by seed: {}", order.about()),
+            unit: "",
+            from: 0.0,
+            marks: Vec::new(),
+            bars: outcomes.iter().take(40).map(alarms).collect(),
+        },
+    }
+}
+
+fn shown(order: &Order, it: &Outcome) -> String {
+    let seed = it.seed;
+    // Who asks for one seed wants to see how it came to that.
+    let last = match order.seed {
+        Some(_) => it.trace.join("\n  "),
+        None => trace::last(&it.trace).join("\n  "),
+    };
+    let what = match it.broken.as_slice() {
+        [] => "no rule broken".to_owned(),
+        some => some.join("; "),
+    };
+    format!(
+        "seed {seed}: {what}\n  faults: {}\n  {last}\n  again: relayrig study storm --seed {seed} --parts {}",
+        it.faults.join(" "),
+        order.parts,
+    )
+}

@@ -1,0 +1,18 @@
+//! A progress bar on stderr, and only where somebody looks.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::IsTerminal;
+
+/// Template of work that is counted in pieces.
+pub const PIECES: &str = "{bar:40} {pos}/{len} {per_sec} {eta}";
+
+/// The bar of work with `length` pieces; without a length it has no end.
+pub fn progress(length: Option<u64>, template: &str) -> ProgressBar {
+    let target = match std::io::stderr().is_terminal() {
+        true => ProgressDrawTarget::stderr(),
+        false => ProgressDrawTarget::hidden(),
+    };
+    let bar = ProgressBar::with_draw_target(length, target);
+    let style = ProgressStyle::with_template(template);
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}

@@ -1,0 +1,23 @@
+//! `relayrig study` of a program that was built without the studies: names the feature.
+
+use anyhow::bail;
+use app::exit::Exit;
+use std::path::Path;
+
+/// Whatever follows `study`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct StudyArgs {
+    /// Name and options of a study
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    pub words: Vec<String>,
+}
+
+/// Refuses.
+///
+/// # Errors
+/// Always: there is no study in this program.
+pub fn run(_config: &Path, _args: &StudyArgs) -> anyhow::Result<Exit> {
+    bail!(
+        "study: this program was built without the studies; build it with `cargo build --release --features study`"
+    )
+}

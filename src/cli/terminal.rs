@@ -1,0 +1,121 @@
+//! What a person or a program at the terminal sees of a run: progress bar, alarms, rows, and what it came to.
+
+use super::progress::progress;
+use super::table::Table;
+use app::cycle::Event;
+use app::exit::Exit;
+use app::lot::{LotEvent, LotProgress, Subscriber, part_json};
+use indicatif::ProgressBar;
+use machine::handling::ledger::Kind;
+use machine::handling::wants::Judged;
+use std::io::Write;
+use texts::Lang;
+
+/// What goes to stdout.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Rows {
+    /// Nothing.
+    None,
+    /// A table when the run is over.
+    Table,
+    /// A JSON object per part, then the summary.
+    Json,
+}
+
+/// The terminal, from run to run.
+pub struct Terminal {
+    rows: Rows,
+    bar: ProgressBar,
+    table: Table,
+    /// The summary of the run has been printed.
+    summed_up: bool,
+}
+
+impl Terminal {
+    /// Alarms are logged, progress is shown where somebody looks, and `rows` go to stdout.
+    pub fn new(rows: Rows) -> Self {
+        Self {
+            rows,
+            bar: ProgressBar::hidden(),
+            table: Table::default(),
+            summed_up: false,
+        }
+    }
+
+    /// A run that ended in trouble without a summary says so in JSON all the same.
+    pub fn ended(&self, exit: &Exit) {
+        if let (Rows::Json, false, Some(cause)) = (self.rows, self.summed_up, exit.cause()) {
+            let it = serde_json::json!({"type": "trouble", "cause": cause});
+            self.print(&format!("{it}\n"));
+        }
+    }
+
+    /// Nothing goes to stdout.
+    pub fn quiet() -> Self {
+        Self::new(Rows::None)
+    }
+
+    fn begun(&mut self, lot: &LotProgress) {
+        self.bar = match lot.context.purpose.is_between_lots() {
+            true => ProgressBar::hidden(),
+            false => progress(lot.context.order.count, "{bar:30} {pos}/{len} {msg}"),
+        };
+        self.table = Table::default();
+    }
+
+    fn judged(&mut self, judged: &Judged, lot: &LotProgress) {
+        self.table.add(lot.context.recipe.kind(), judged);
+        if !lot.context.purpose.is_between_lots() {
+            self.bar.set_position(lot.counts.parts());
+            let pace = lot.counts.in_short(lot.per_hour(judged.at));
+            self.bar.set_message(pace);
+        }
+    }
+
+    /// A reader that has gone away does not stop the line.
+    fn print(&self, text: &str) {
+        self.bar
+            .suspend(|| std::io::stdout().write_all(text.as_bytes()).ok());
+    }
+}
+
+impl Subscriber for Terminal {
+    fn hear(&mut self, event: &LotEvent, lot: &LotProgress<'_>) {
+        let rows = match lot.context.purpose.is_between_lots() {
+            true => Rows::None,
+            false => self.rows,
+        };
+        match event {
+            LotEvent::Begun => self.begun(lot),
+            LotEvent::Cycle(Event::Judged(it)) if matches!(it.part.kind, Kind::Lot(_)) => {
+                self.judged(it, lot);
+            }
+            LotEvent::Cycle(Event::Alarm(alarm, _)) => self
+                .bar
+                .suspend(|| tracing::error!(code = alarm.code.name(), "{}", alarm.text(Lang::En))),
+            LotEvent::TracesKept(files) => self.bar.suspend(|| {
+                for path in files {
+                    tracing::error!("last traffic: {}", path.display());
+                }
+            }),
+            LotEvent::PartDone(part, landed) if rows == Rows::Json => {
+                if matches!(part.judged.part.kind, Kind::Lot(_)) {
+                    let bin = landed.as_ref().map_or("", |it| it.bin.name());
+                    let json = part_json(&lot.context, &part.judged, part.cycle_s, bin);
+                    self.print(&format!("{json}\n"));
+                }
+            }
+            LotEvent::Ended(summary) => {
+                if rows == Rows::Json {
+                    self.print(&format!("{}\n", serde_json::json!(summary)));
+                }
+                self.summed_up = true;
+                self.bar.finish_and_clear();
+                if rows == Rows::Table {
+                    self.print(&self.table.text(summary));
+                }
+            }
+            LotEvent::Cycle(_) | LotEvent::PartDone(..) => {}
+        }
+    }
+}
