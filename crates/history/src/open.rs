@@ -6,6 +6,8 @@
 //! 3. Write-ahead log with `synchronous = FULL`: a batch that was acknowledged survives power loss.
 //! 4. A plan is made once for a statement, whatever its values (`QPSG`): a statement that is asked part by part
 //!    would else be planned anew for each of them, which takes longer than its answer.
+//! 5. Reads go through the page cache, not through a memory map: there an I/O error would be a signal that ends the
+//!    process that drives the rig.
 
 use super::error::{Doing, HistoryError, Result};
 use super::{reasons, series, views};
