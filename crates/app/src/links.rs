@@ -6,7 +6,7 @@ use super::source::{LinePort, RigSource};
 use super::{plug::PlugPorts, simulated, source::Simulated};
 use crate::cycle::LineEnds;
 use anyhow::anyhow;
-use bus::{self, LineLog, LineSettings, Pace, SerialPorts};
+use bus::{LineLog, LineSettings, Pace, SerialPorts};
 use config::Plant;
 use machine::rig::wiring::LineId;
 #[cfg(feature = "sim")]

@@ -1,7 +1,6 @@
 //! What a reply means: the question before it decides.
 
 use super::{Direction, Entry};
-use dcon;
 
 /// Puts replies into words; remembers the last question.
 #[derive(Debug)]

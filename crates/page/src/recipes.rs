@@ -19,7 +19,7 @@ use axum::Json;
 use axum::extract::rejection::{ExtensionRejection, JsonRejection, QueryRejection};
 use axum::extract::{ConnectInfo, Query, State};
 use axum::http::HeaderMap;
-use config::{self, Change, Plant, Revision};
+use config::{Change, Plant, Revision};
 use history::inquiry::paper::paper;
 use history::report::Lang;
 use history::report::card;

@@ -6,7 +6,6 @@ use anyhow::{Context, bail};
 use app::exit::Exit;
 use app::follower::{self, News, What};
 use bus::{Direction, Entry, Meaning, Pace, Recorded, arrow, escaped, open_serial, unescaped};
-use dcon;
 use std::path::PathBuf;
 use std::time::Duration;
 use tokio::io::AsyncReadExt;

@@ -4,7 +4,7 @@ use crate::controls::Controls;
 use crate::order::Files;
 use anyhow::Context;
 use machine::view::{Mimic, OrderRequest};
-use page::{self, access};
+use page::access;
 use std::net::{SocketAddr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;

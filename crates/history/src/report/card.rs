@@ -46,7 +46,7 @@ fn header(language: Lang, recipe: &Recipe, kind: &Card, plant: &CardSettings) ->
             tr {
                 th { (say("paper-workshop")) } th { (say("paper-operation_no")) }
                 th colspan="2" { (say("paper-operation")) }
-                th { (language.text(*rating)) } th { (say("paper-body_x_y_z_mm")) }
+                th { (language.text(rating)) } th { (say("paper-body_x_y_z_mm")) }
                 th { (say("paper-pins_mm")) } th { (say("paper-reference_temp")) }
             }
             tr {
@@ -130,7 +130,7 @@ fn joined(language: Lang, pieces: &[Piece]) -> String {
 
 fn demanded(language: Lang, recipe: &Recipe, demand: &Demand) -> String {
     match demand {
-        Demand::Seen(words) => language.text(*words).to_owned(),
+        Demand::Seen(words) => language.text(words).to_owned(),
         Demand::Within(characteristics) => demands(language, recipe, characteristics),
     }
 }
@@ -162,7 +162,7 @@ fn remarks(language: Lang, recipe: &Recipe, kind: &Card) -> String {
     let repeats = language.text("paper-slow_repetitions_near_limit");
     let counts = kind.counts.iter();
     let counts: String = counts
-        .map(|(words, count)| format!("; {} {count}", language.text(*words)))
+        .map(|(words, count)| format!("; {} {count}", language.text(words)))
         .collect();
     let recipe_text = language.text("paper-card_recipe_sha_256");
     format!(

@@ -160,7 +160,7 @@ fn what_a_chinese_text_is_about_is_named_in_chinese() {
         let names = ["place", "bin", "motion"];
         if names.iter().any(|it| alarm.args.get(it).is_some()) {
             let text = alarm.text(Lang::Zh);
-            assert!(text.starts_with(|c| is_chinese(c)), "{text}");
+            assert!(text.starts_with(is_chinese), "{text}");
         }
     }
     assert_eq!(
