@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 use unic_langid::LanguageIdentifier;
 
 type Bundle = FluentBundle<&'static FluentResource>;
-type Text = Pattern<&'static str>;
+pub(crate) type Text = Pattern<&'static str>;
 
 static EN: LazyLock<FluentResource> =
     LazyLock::new(|| parsed(include_str!("../../../locale/en.ftl")));

@@ -1,5 +1,6 @@
 //! A code with its arguments: what a text is made of, and what programs compare.
 
+use crate::catalogue::Text as Pattern;
 use crate::{Lang, catalogue};
 use fluent_bundle::FluentArgs;
 use serde::ser::SerializeStruct;
@@ -150,8 +151,10 @@ impl Message {
         catalogue::filled(lang, pattern, &self.args.fluent(lang))
     }
 
-    fn pattern(&self, lang: Lang) -> Option<&'static fluent_syntax::ast::Pattern<&'static str>> {
-        catalogue::pattern(lang, &self.id(), self.args.get(CASE))
+    /// A text that speaks of another one carries the case of that one, and has none of its own.
+    fn pattern(&self, lang: Lang) -> Option<&'static Pattern> {
+        let case = catalogue::pattern(lang, &self.id(), self.args.get(CASE));
+        case.or_else(|| catalogue::pattern(lang, &self.id(), None))
     }
 }
 

@@ -53,13 +53,23 @@ fn no_text_of_an_alarm_or_a_refusal_stands_in_the_code() {
         .filter(|it| it.len() > CHANCE)
         .collect();
     let mut broken = Vec::new();
-    for source in sources() {
+    // The command line speaks English only and has sentences of its own.
+    let others = sources()
+        .into_iter()
+        .filter(|it| it.path != "src/cli/lot.rs");
+    for source in others {
         for (line, text) in code(&source) {
             let found = spoken.iter().filter(|it| text.contains(**it));
             broken.extend(found.map(|it| format!("{}:{line}: {it}", source.path)));
         }
     }
     assert_none(&broken);
+}
+
+/// The states of the outer machine are named by their words in PackML.
+fn capital(code: &str) -> String {
+    let (first, rest) = code.split_at(1);
+    first.to_uppercase() + rest
 }
 
 /// A text is used where its id stands, or its code behind a family; what an enum or the plant names is data.
@@ -77,7 +87,10 @@ fn no_text_is_left_without_use() {
     let is_used = |id: &str| {
         let code = id.split_once('-').map_or(id, |(_, code)| code);
         let last = code.rsplit('-').next().unwrap_or(code);
-        quoted.contains(id) || words.contains(code) || words.contains(last)
+        quoted.contains(id)
+            || words.contains(code)
+            || words.contains(last)
+            || id.starts_with("state-") && words.contains(capital(code).as_str())
     };
     let unused: Vec<String> = texts::ids(Lang::En)
         .filter(|id| !is_used(id))

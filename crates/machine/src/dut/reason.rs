@@ -182,10 +182,10 @@ impl Reason {
             detail: detail.to_owned(),
             ..self.clone()
         };
-        let print = |detail| detailed(detail).to_string();
-        let detail = match print(PLACE).split_once(PLACE) {
+        let row = |detail| detailed(detail).to_string();
+        let detail = match row(PLACE).split_once(PLACE) {
             Some((before, after)) => text.strip_prefix(before)?.strip_suffix(after)?,
-            None if print("") == text => "",
+            None if row("") == text => "",
             None => return None,
         };
         Some(detailed(detail))

@@ -311,3 +311,47 @@ fn a_lot_that_is_closed_at_rest_is_complete_at_once() {
     assert_eq!(machine.order(Order::Close), Ok(()));
     assert_eq!(machine.ending, Some(Ending::Complete));
 }
+
+#[test]
+fn every_refusal_has_a_text_in_both_languages() {
+    use crate::station::catalogue::AlarmCode;
+    use crate::station::orders::Refused;
+    use crate::station::packml::{Command, Mode, State};
+    let jam = Alarm::not_reached(crate::handling::Move::PusherExtend, units::Span::ms(900));
+    let every = [
+        Refused::RunEnded,
+        Refused::WrongState(Command::Start, State::Execute),
+        Refused::WrongMode {
+            order: "jog",
+            found: Mode::Production,
+            needed: Mode::Manual,
+        },
+        Refused::MovedByHand,
+        Refused::NoLot,
+        Refused::PartInside,
+        Refused::NotAtRest(State::Execute, None),
+        Refused::NotAtRest(State::Execute, Some(Command::Stop)),
+        Refused::NotAtRest(State::Aborted, Some(Command::Clear)),
+        Refused::ModeLocked(State::Execute),
+        Refused::Unhomed(State::Execute),
+        Refused::StillMoving,
+        Refused::NoMotionWaits,
+        Refused::CauseRemains(Box::new(AlarmCode::DoorOpen.into())),
+        Refused::CauseRemains(Box::new(jam)),
+        Refused::CauseRemains(Box::new(Alarm::beam(Bin::PASS, 2))),
+        Refused::NoSuchAlarm,
+        Refused::Collision("jaw_left".into()),
+        Refused::Denied("not yours".into()),
+        Refused::UnknownWord {
+            member: "mode",
+            found: String::new(),
+            known: vec!["manual"],
+        },
+        Refused::ShelveWithoutReason,
+    ];
+    for refused in every {
+        let [en, zh] = Lang::ALL.map(|lang| refused.message().say(lang));
+        let whole = !en.contains("not_reached") && !zh.contains("not_reached");
+        assert!(whole && !en.is_empty() && !zh.is_empty(), "{en}; {zh}");
+    }
+}
