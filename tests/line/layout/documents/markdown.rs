@@ -77,7 +77,8 @@ pub fn command_lines(text: &str) -> Vec<(usize, String)> {
     found
 }
 
-/// Splits a command line into the words that a shell gives to the program, without its name.
+/// Splits a command line into the words that a shell gives to the program, without its name. A placeholder in capitals
+/// becomes a number, which stands for a name as well.
 pub fn arguments(line: &str) -> Vec<String> {
     let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
     for c in line.chars() {
@@ -93,7 +94,11 @@ pub fn arguments(line: &str) -> Vec<String> {
         }
     }
     words.extend(word);
-    words.into_iter().skip(1).collect()
+    let filled = |word: String| match word.bytes().all(|c| c.is_ascii_uppercase()) {
+        true => "1".to_owned(),
+        false => word,
+    };
+    words.into_iter().skip(1).map(filled).collect()
 }
 
 fn numbered(text: &str) -> impl Iterator<Item = (usize, &str)> {
@@ -132,8 +137,8 @@ fn a_command_line_is_split_like_a_shell_does() {
         ["bus", "send", "--checksum", "@11"]
     );
     assert_eq!(
-        arguments("relayrig lot hold A --reason 'wrong label'"),
-        ["lot", "hold", "A", "--reason", "wrong label"]
+        arguments("relayrig lot hold LOT --reason 'wrong label'"),
+        ["lot", "hold", "1", "--reason", "wrong label"]
     );
 }
 
