@@ -25,11 +25,11 @@ pub fn links(text: &str) -> Vec<(usize, String)> {
 
 /// Returns the anchors that the headings of a text make.
 pub fn anchors(text: &str) -> Vec<String> {
-    let titles = prose(text).into_iter().filter_map(|(_, line)| {
-        line.starts_with('#')
-            .then(|| line.trim_start_matches('#').trim())
-    });
-    titles.map(anchor).collect()
+    let lines = prose(text).into_iter().map(|(_, line)| line);
+    let titles = lines.filter(|line| line.starts_with('#'));
+    titles
+        .map(|line| anchor(line.trim_start_matches('#').trim()))
+        .collect()
 }
 
 fn anchor(title: &str) -> String {
