@@ -1,35 +1,149 @@
-//! The documents speak of things that exist: paths, tests, commands.
+//! The documents speak of things that exist (paths, tests, links, commands), and stay short enough to be read.
+
+mod markdown;
 
 use super::tree::{Source, assert_none, root, rust_files};
+use markdown::quoted;
 use std::fs;
 
-const DOCUMENTS: &[&str] = &[
-    "README.md",
-    "ARCHITECTURE.md",
+/// Documents of a bounded length: bytes, of the Chinese one characters. One page each, for one reader.
+const BOUNDED: &[(&str, usize)] = &[
+    ("README.md", 6144),
+    ("ARCHITECTURE.md", 10_240),
+    ("docs/operating.md", 8192),
+    ("docs/operating.zh.md", 8192),
+    ("docs/commissioning.md", 8192),
+    ("docs/measuring.md", 12_288),
+    ("docs/integrating.md", 8192),
+    ("docs/extending.md", 6144),
+    ("docs/limits.md", 6144),
+];
+
+/// Documents that are as long as what they list.
+const UNBOUNDED: &[&str] = &[
     "CHANGELOG.md",
     "config/README.md",
-    "docs/extending.md",
+    "docs/SUMMARY.md",
+    "docs/figures.md",
 ];
+
+/// Longest table cell, words.
+const CELL: usize = 25;
 
 /// Folders in which a quoted path must lie to be taken for one.
 const ROOTS: &[&str] = &[
     "src/", "crates/", "sim/", "config/", "tests/", ".ci/", "docs/",
 ];
 
-/// The documents as they are.
+/// The documents as they are; one that is not written yet is left out.
 pub fn documents() -> Vec<Source> {
+    let names = BOUNDED.iter().map(|(name, _)| name);
+    let written = names
+        .chain(UNBOUNDED)
+        .filter(|name| root().join(name).exists());
     let read = |name: &&str| Source {
         path: (*name).to_owned(),
         text: fs::read_to_string(root().join(name)).unwrap(),
     };
-    DOCUMENTS.iter().map(read).collect()
+    written.map(read).collect()
+}
+
+/// Documents whose sentences people write: no list of keys or changes.
+fn bounded() -> impl Iterator<Item = (Source, usize)> {
+    documents().into_iter().filter_map(|document| {
+        let (_, most) = BOUNDED.iter().find(|(name, _)| *name == document.path)?;
+        Some((document, *most))
+    })
+}
+
+#[test]
+fn every_document_of_the_folder_has_a_bound() {
+    let entries = fs::read_dir(root().join("docs")).unwrap();
+    let names = entries.map(|entry| format!("docs/{}", entry.unwrap().file_name().display()));
+    let known: Vec<String> = documents().into_iter().map(|it| it.path).collect();
+    let unknown = names.filter(|name| name.ends_with(".md") && !known.contains(name));
+    let broken: Vec<String> = unknown.map(|name| format!("{name}: no bound")).collect();
+    assert_none(&broken);
+}
+
+#[test]
+fn no_document_is_longer_than_its_bound() {
+    let mut broken = Vec::new();
+    for (Source { path, text }, most) in bounded() {
+        let length = match path.ends_with(".zh.md") {
+            true => text.chars().count(),
+            false => text.len(),
+        };
+        if length > most {
+            broken.push(format!("{path}: {length}, expected at most {most}"));
+        }
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn no_table_cell_is_longer_than_a_sentence() {
+    let mut broken = Vec::new();
+    for (Source { path, text }, _) in bounded() {
+        let long = markdown::cells(&text)
+            .into_iter()
+            .filter(|(_, cell)| markdown::words(cell) > CELL);
+        broken.extend(long.map(|(line, cell)| format!("{path}:{line}: {cell}")));
+    }
+    assert_none(&broken);
+}
+
+#[test]
+fn every_link_in_the_documents_resolves() {
+    let mut broken = Vec::new();
+    for document in documents() {
+        for (line, target) in markdown::links(&document.text) {
+            if !target.contains("://") && !resolves(&document, &target) {
+                broken.push(format!("{}:{line}: {target} leads nowhere", document.path));
+            }
+        }
+    }
+    assert_none(&broken);
+}
+
+fn resolves(document: &Source, target: &str) -> bool {
+    let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+    let path = match (file, root().join(&document.path)) {
+        ("", own) => own,
+        (_, own) => own.with_file_name(file),
+    };
+    let has_anchor = || {
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        markdown::anchors(&text).iter().any(|it| it == anchor)
+    };
+    path.exists() && (anchor.is_empty() || has_anchor())
+}
+
+/// The program reads the words and then is asked for help, so that nothing runs.
+#[cfg(feature = "sim")]
+#[test]
+fn every_command_line_in_the_documents_parses() {
+    let mut broken = Vec::new();
+    for document in documents() {
+        for (number, line) in markdown::command_lines(&document.text) {
+            let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_relayrig"));
+            let words = markdown::arguments(&line);
+            let said = program.args(words).arg("--help").output().unwrap();
+            if !said.status.success() {
+                let why = String::from_utf8_lossy(&said.stderr);
+                let why = why.lines().next().unwrap_or_default();
+                broken.push(format!("{}:{number}: {line}: {why}", document.path));
+            }
+        }
+    }
+    assert_none(&broken);
 }
 
 #[test]
 fn every_path_named_in_the_documents_exists() {
     let mut broken = Vec::new();
     for document in documents() {
-        for (line, quoted) in quoted(&document) {
+        for (line, quoted) in quoted(&document.text) {
             for path in paths(&quoted) {
                 if !root().join(&path).exists() {
                     broken.push(format!("{}:{line}: `{path}` does not exist", document.path));
@@ -49,7 +163,7 @@ fn every_test_named_in_the_architecture_exists() {
         .into_iter()
         .filter(|document| document.path == "ARCHITECTURE.md")
     {
-        for (line, name) in quoted(&document) {
+        for (line, name) in quoted(&document.text) {
             let is_name = name
                 .bytes()
                 .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == b'_');
@@ -86,16 +200,6 @@ fn the_readme_names_the_command_that_the_checks_run() {
         last.starts_with(command),
         ".ci/run ends in {last:?}, expected `{command}`"
     );
-}
-
-/// What stands between single back-ticks, with its line.
-fn quoted(document: &Source) -> Vec<(usize, String)> {
-    let mut found = Vec::new();
-    for (index, line) in document.text.lines().enumerate() {
-        let inside = line.split('`').skip(1).step_by(2);
-        found.extend(inside.map(|text| (index + 1, text.to_owned())));
-    }
-    found
 }
 
 /// `crates/machine/src/handling/{feed,nest}.rs` is two paths; NAME and * stand for any name: then the folder must exist.
