@@ -1,8 +1,7 @@
-//! Silhouettes for a drawing: what a body covers when seen from above or from the front.
+//! Silhouettes for a drawing: the outline of a body seen from above or from the front.
 //!
-//! Every convex piece gives one convex polygon, counter-clockwise; a cylinder's rim is drawn with
-//! [`RIM`] corners, which miss the true outline by less than 1 % of its radius. For pictures only: no
-//! answer of this module rests on them.
+//! Every convex piece gives one convex polygon, counter-clockwise. The rim of a cylinder is drawn with [`RIM`]
+//! corners, less than 1 % of its radius off the true outline. For pictures only: no collision answer uses them.
 
 use super::pose::{Frame, Pose};
 use super::shape::Shape;
@@ -12,7 +11,7 @@ use std::f64::consts::TAU;
 /// Corners of a drawn rim.
 const RIM: usize = 24;
 
-/// From where a body is seen.
+/// Direction from which a drawing shows a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Seen {
     /// From above: x to the right, y up.
@@ -21,7 +20,7 @@ pub enum Seen {
     FromFront,
 }
 
-/// The silhouettes of the pieces of `shape` at `pose`, mm.
+/// Returns the silhouettes of the pieces of `shape` at `pose`, mm.
 pub fn outlines(shape: &Shape, pose: Pose, seen: Seen) -> Vec<Vec<[f64; 2]>> {
     let mut pieces = Vec::new();
     collect(
@@ -40,7 +39,7 @@ fn flat(corner: Vec3, seen: Seen) -> [f64; 2] {
     }
 }
 
-/// Gives the corners of every convex piece, placed.
+/// Passes the corners of every convex piece, placed, to `give`.
 fn collect(shape: &Shape, frame: &Frame, position: Vec3, give: &mut impl FnMut(Vec<Vec3>)) {
     let place = |corner: Vec3| add(frame.apply(corner), position);
     match shape {

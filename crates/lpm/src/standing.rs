@@ -1,7 +1,7 @@
-//! The pieces that stand, in one block of memory: what a question reads of them, and no more.
+//! The pieces of the stationary elements in one block of memory, reduced to what questions read.
 //!
-//! An upright piece is kept as its [`Prism`] alone, which says all there is to say of it. What is
-//! tilted, and triangles, need a whole [`Piece`] each and are kept apart.
+//! An upright piece is stored as its [`Prism`] alone, which describes it completely. Tilted pieces and triangles
+//! need a whole [`Piece`] each, stored separately.
 
 use super::answer::ElementKey;
 use super::piece::{Piece, each_piece};
@@ -10,29 +10,29 @@ use super::prism::Prism;
 use super::shape::Shape;
 use super::space::{Cover, Entering};
 
-/// No piece.
+/// Stands for no piece.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// A piece where it stands.
+/// A placed stationary piece.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Standing {
     pub(crate) form: Stands,
-    /// Its element.
+    /// The element to which the piece belongs.
     pub(crate) owner: ElementKey,
-    /// Another piece of the same element, or [`NONE`].
+    /// Number of another piece of the same element, or [`NONE`].
     pub(crate) sibling: u32,
 }
 
-/// How a piece stands.
+/// Form in which a piece is stored.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Stands {
-    /// Closed forms apply.
+    /// Upright: closed forms apply.
     Upright(Prism),
-    /// Number of the whole piece.
+    /// Tilted or a triangle: index of the whole piece.
     Askew(u32),
 }
 
-/// All standing pieces by the numbers that the space knows.
+/// All stationary pieces by the numbers that the space uses.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Pieces {
     standing: Vec<Standing>,
@@ -42,8 +42,8 @@ pub(crate) struct Pieces {
 }
 
 impl Pieces {
-    /// Takes the pieces of a checked shape in, enters their boxes into `space` and says the number of
-    /// the first in the chain of siblings.
+    /// Adds the pieces of a checked shape, enters their boxes into `space` and returns the number of the first
+    /// piece in the chain of siblings.
     #[inline]
     pub(crate) fn stand(
         &mut self,
@@ -52,7 +52,7 @@ impl Pieces {
         pose: &Pose,
         owner: ElementKey,
     ) -> u32 {
-        // What nearly all elements are needs no detour by the general piece.
+        // Nearly all elements are one upright block or cylinder and skip the general piece.
         if let Some(prism) = Prism::standing(shape, pose) {
             let cover = Cover::of(prism.bounds());
             return self.enter(space, Stands::Upright(prism), &cover, owner, NONE);
@@ -91,7 +91,7 @@ impl Pieces {
         number
     }
 
-    /// Forgets a piece and says which is the next one of its element.
+    /// Removes a piece and returns the number of the next piece of its element.
     #[inline]
     pub(crate) fn let_go(&mut self, number: u32) -> u32 {
         if let Stands::Askew(whole) = self.at(number).form {
@@ -106,7 +106,7 @@ impl Pieces {
         &self.standing[number as usize]
     }
 
-    /// The whole piece, for searches.
+    /// Returns the whole piece, for searches.
     pub(crate) fn piece(&self, number: u32) -> Piece {
         match &self.at(number).form {
             Stands::Upright(prism) => prism.piece(),
@@ -114,7 +114,7 @@ impl Pieces {
         }
     }
 
-    /// Room for so many more.
+    /// Reserves room for `count` more pieces.
     pub(crate) fn reserve(&mut self, count: usize) {
         self.standing.reserve(count);
     }
@@ -127,7 +127,7 @@ impl Pieces {
     }
 }
 
-/// Puts a thing in a free place, or behind the last.
+/// Stores a value in a free place, else at the end, and returns its index.
 #[inline]
 fn kept<T>(things: &mut Vec<T>, free: &mut Vec<u32>, thing: T) -> u32 {
     match free.pop() {

@@ -1,4 +1,4 @@
-//! Facts about the collision core: the hard cases by name.
+//! Tests of the collision core.
 #![allow(clippy::unwrap_used)]
 use super::*;
 
@@ -41,7 +41,7 @@ fn straight(from: [f64; 3], to: [f64; 3]) -> Move<'static> {
     way(Pose::at(from), Pose::at(to))
 }
 
-/// `None` when clear; the three questions must agree.
+/// Returns the fraction of the first contact, `None` when clear; asserts that the three questions agree.
 fn stop(model: &Model, mover: &Shape, way: &Move) -> Option<f64> {
     let stop = match model.first_contact(mover, way) {
         Answer::Clear => None,
