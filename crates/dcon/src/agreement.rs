@@ -1,30 +1,31 @@
-//! Several answers to the same question, some milliseconds apart: which of them can be believed, if one may be damaged?
+//! Chooses the answer to believe among several answers to one request, some milliseconds apart, of which one may be
+//! damaged.
 //!
-//! A checksum of eight bits lets one damaged reply in 256 pass. Damage hardly ever comes twice alike, so two answers in
-//! a row that say the same are both true. What moves, or is measured by a noisy converter, does not say the same; it is
-//! asked a third time, and the answer between the other two is believed: one damaged answer of three cannot put it
-//! farther off than the two that are whole.
+//! An eight-bit checksum lets one damaged reply in 256 pass. Damage rarely repeats identically, so two consecutive
+//! equal answers are both believed. Moving or noisy quantities differ between answers; they are read a third time
+//! and the answer between the other two is believed: one damaged answer of three cannot push it beyond the two
+//! intact ones.
 //!
-//! | three answers, no two in a row alike | believed |
+//! | three answers, no two consecutive ones equal | believed |
 //! |---|---|
-//! | analog reading, level, frequency | the middle value, whenever it was said |
-//! | all analog inputs at once | the second, if each input lies between before and after, or beyond by 1/1024 of its range: noise of the coarsest converter, twelve bits |
-//! | count | the second, if all go upwards, by 100 kHz at most: more than any input of a 7080 takes |
-//! | event counter | the same, by 100 Hz |
+//! | analog reading, level, frequency | the middle value |
+//! | all analog inputs at once | the second, if each input lies between its first and third reading, or beyond by 1/1024 of its range: noise of the coarsest converter, twelve bits |
+//! | count | the second, if the counts rise by at most 100 kHz, more than any input of a 7080 accepts |
+//! | event counter | the second, if the counts rise by at most 100 Hz |
 //! | everything else | none |
 
 use super::{Command, Reading, Reply, TypeCode};
 
-/// Share of the range by which one of many inputs may lie beyond its neighbours in time.
+/// How far one of many inputs may lie beyond its first and third reading, as a fraction of the range.
 const NOISE_SHARE: f64 = 1.0 / 1024.0;
-/// Counts in a millisecond at most.
+/// Most counts per millisecond.
 const COUNTS_PER_MS: u64 = 100;
-/// A digital input counts one event in so many milliseconds at most.
+/// Least time between two events on a digital input, milliseconds.
 const MS_PER_EVENT: u64 = 10;
 
 impl Command {
-    /// The place of the one to believe among two or three answers, the last asked `apart_ms` (rounded up) after the
-    /// first. None if one more must be asked, or three were not enough.
+    /// Returns the index of the answer to believe among two or three. `apart_ms` is the time between first and last
+    /// request, rounded up. Returns `None` when another answer is needed, or when three do not suffice.
     pub fn believed(&self, answers: &[Reply], apart_ms: u64) -> Option<usize> {
         let alike = answers.windows(2).position(|pair| pair[0] == pair[1]);
         let [first, second, third] = answers else {
@@ -61,7 +62,7 @@ impl Command {
         }
     }
 
-    /// What single quantities are compared by; none of what has no order.
+    /// Value by which single quantities are compared; `None` for quantities without order.
     fn size(&self, answer: &Reply) -> Option<f64> {
         match answer {
             Reply::Reading(reading) => reading.value.in_units(self.range()?),
@@ -71,7 +72,8 @@ impl Command {
         }
     }
 
-    /// Between its neighbours, but for noise; what is no number says the same all the time.
+    /// Whether a reading lies between its neighbours in time, allowing for noise; a state that is not a number must
+    /// stay the same.
     fn on_the_way(&self, before: &Reading, it: &Reading, after: &Reading) -> bool {
         let scale = self.range().and_then(TypeCode::full_scale);
         let noise = scale.map_or(0.0, |scale| (scale.high - scale.low) * NOISE_SHARE);
@@ -85,7 +87,7 @@ impl Command {
         }
     }
 
-    /// Of the analog inputs that are asked.
+    /// Range of the analog inputs that the command reads.
     fn range(&self) -> Option<TypeCode> {
         match self {
             Self::AnalogIn(_, ask) => ask.range(),
@@ -107,7 +109,7 @@ mod tests {
         UpTo,
     };
 
-    /// The place of the answer that is believed, all of them 3 ms apart.
+    /// Returns the index of the believed answer, with 3 ms between first and last.
     fn believed(command: Command, said: &[&str]) -> Option<usize> {
         let answers: Vec<_> = said
             .iter()

@@ -1,4 +1,4 @@
-//! The protocol as tables: what a command puts on the wire, what its reply means, and what is refused.
+//! The protocol as tables: the bytes of each command, the meaning of its reply, and replies that must be refused.
 
 #![allow(clippy::unwrap_used)]
 
@@ -41,7 +41,7 @@ fn word(width: Width, bits: u16) -> Digital {
     Digital::Write(OutputWord::new(width, bits).unwrap())
 }
 
-/// Commands whose readings are looked at below; here for the damage tests.
+/// Commands that return readings, with replies; the tests below damage these.
 const READINGS: [(Command, &str); 7] = [
     (
         Command::AnalogIn(A1, AnalogIn::ReadAll(VOLTS)),
@@ -142,7 +142,7 @@ fn a_reply_cut_off_anywhere_is_no_reply() {
     for (command, reply) in all_frames() {
         for with_checksum in [false, true] {
             let whole = sealed(reply, with_checksum);
-            // The CR alone may be missing where the length or the checksum proves the rest.
+            // A CR may only be missing where the length or the checksum proves the reply complete.
             for length in 0..whole.len() - 1 {
                 let outcome = command.decode(&whole[..length], with_checksum);
                 assert!(

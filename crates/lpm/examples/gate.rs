@@ -1,4 +1,4 @@
-//! Asks whether a gripper may travel over a fixture: `cargo run -p lpm --example gate`.
+//! Checks whether a gripper can travel over a fixture: `cargo run -p lpm --example gate`.
 
 use lpm::{Answer, Flaw, Model, Move, Mover, Pose, Shape};
 

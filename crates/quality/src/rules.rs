@@ -1,4 +1,4 @@
-//! Rules of runs: when points of a control chart are no longer chance.
+//! Run rules: patterns of points on a control chart that are unlikely by chance.
 //!
 //! | rule | Nelson | Western Electric |
 //! |---|---|---|
@@ -11,12 +11,12 @@
 //! | 7: all within one deviation | 15 | |
 //! | 8: none within one deviation, both sides | 8 | |
 //!
-//! A rule speaks at the point that completes its pattern, and is told there once.
+//! A rule signals once, at the point that completes its pattern.
 
 use super::chart::Point;
 use serde::{Deserialize, Serialize};
 
-/// Which set of rules.
+/// A published set of rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rules {
@@ -26,18 +26,19 @@ pub enum Rules {
     WesternElectric,
 }
 
-/// A rule that speaks.
+/// The completion of a rule's pattern.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Signal {
-    /// Which point completes the pattern, from 0.
+    /// Index of the point that completes the pattern, from 0.
     pub at: usize,
     /// Number of the rule, 1 to 8.
     pub rule: u8,
 }
 
-/// Everything that the set objects to, in order of points. `sigma` is one deviation of a point.
+/// Returns the signals of a set of rules, in the order of the points. `sigma` is the standard deviation of one
+/// point.
 pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Signal> {
-    // In deviations from the centre; without spread every other point is infinitely far.
+    // Deviations from the centre in units of `sigma`; with `sigma` zero, points off the centre are infinitely far.
     let z: Vec<f64> = points
         .iter()
         .map(|it| {
@@ -56,14 +57,14 @@ pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Sig
     found
 }
 
-/// Points outside their own limits: rule 1 where limits differ from point to point.
+/// Returns rule 1 for points outside their own limits, for charts whose limits differ from point to point.
 pub fn outside(points: &[Point]) -> Vec<Signal> {
     let beyond = |it: &Point| it.value > it.high || it.value < it.low;
     let places = points.iter().enumerate().filter(|(_, it)| beyond(it));
     places.map(|(at, _)| Signal { at, rule: 1 }).collect()
 }
 
-/// Rules whose pattern the last point completes.
+/// Returns the rules whose pattern the last point completes.
 fn speaking(z: &[f64], rules: Rules) -> Vec<u8> {
     let side = match rules {
         Rules::Nelson => 9,
@@ -101,26 +102,26 @@ fn last(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
     z.len() >= n && pattern(&z[z.len() - n..])
 }
 
-/// As [`last`], but told once when the pattern goes on for longer than `n`.
+/// Whether the last `n` points are the first to have the pattern: a longer run signals once.
 fn run(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
     last(z, n, &pattern) && !last(&z[..z.len() - 1], n, &pattern)
 }
 
-/// At least `n` points beyond `far` on one side.
+/// Whether at least `n` points lie beyond `far` on one side.
 fn one_side(z: &[f64], n: usize, far: f64) -> bool {
     let above = z.iter().filter(|&&it| it > far).count();
     let below = z.iter().filter(|&&it| it < -far).count();
     above >= n || below >= n
 }
 
-/// The last point is one of at least `n` beyond `far` on its side.
+/// Whether the last point is one of at least `n` beyond `far` on its side.
 fn ending(z: &[f64], n: usize, far: f64) -> bool {
     let Some(&end) = z.last() else { return false };
     let with_it = z.iter().filter(|&&it| it * end > 0.0 && it.abs() > far);
     end.abs() > far && with_it.count() >= n
 }
 
-/// Every two steps in a row relate as asked.
+/// Whether `relate` holds for every two consecutive steps.
 fn steps(z: &[f64], relate: impl Fn(f64, f64) -> bool) -> bool {
     z.windows(3).all(|it| relate(it[1] - it[0], it[2] - it[1]))
 }
@@ -129,7 +130,7 @@ fn steps(z: &[f64], relate: impl Fn(f64, f64) -> bool) -> bool {
 mod tests {
     use super::*;
 
-    /// Rules that speak, with their points, about 0 with a deviation of 1.
+    /// Returns the signals about a centre of 0 with a deviation of 1, as points and rules.
     fn told(points: &[f64], rules: Rules) -> Vec<(usize, u8)> {
         let found = signals(points, 0.0, 1.0, rules);
         found.into_iter().map(|it| (it.at, it.rule)).collect()

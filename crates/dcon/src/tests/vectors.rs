@@ -1,10 +1,10 @@
-//! Conformance vectors of the named modules, from their manuals: read, cut off, and damaged bit by bit.
+//! Conformance vectors of the named modules, from their manuals: decoded whole, cut off, and with each bit damaged.
 
 use super::sealed;
 use crate::{Family, ReplyError, readings, understand};
 use proptest::prelude::*;
 
-/// Model, request, reply and meaning, tab by tab; frames without checksum and CR.
+/// Model, request, reply and meaning, separated by tabs; frames without checksum and CR.
 const VECTORS: &str = include_str!("vectors.txt");
 
 struct Vector {
@@ -31,7 +31,7 @@ fn vectors() -> Vec<Vector> {
     .collect()
 }
 
-/// What a module of this model says with it, without repeats.
+/// Returns the meanings of the reply from a module of this model, without repeats.
 fn said(vector: &Vector, reply: &[u8], checksum: bool) -> Vec<String> {
     let family = Family::of_name(vector.model).unwrap();
     let request = sealed(vector.request, checksum);
@@ -77,7 +77,7 @@ fn no_vector_cut_off_anywhere_is_taken_for_a_value() {
                 .into_iter()
                 .filter(|it| family.knows(it))
             {
-                // A command that this reply is no answer to at all says nothing about cutting.
+                // Skips commands that do not accept the whole reply either.
                 if command.decode(&whole, checksum).is_err() {
                     continue;
                 }
@@ -173,7 +173,7 @@ proptest! {
             let mut written = Vec::new();
             command.encode(false, &mut written);
             let written = written.strip_suffix(b"\r").unwrap_or_default();
-            // `#AABBDD` has two spellings.
+            // `#AABBDD` (7 characters) has two spellings.
             prop_assert!(written == request.as_bytes() || request.len() == 7);
             prop_assert!(readings(written).contains(&command));
         }

@@ -1,4 +1,4 @@
-//! Facts about scene files.
+//! Tests of scene files.
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::pose::Frame;
@@ -91,7 +91,7 @@ fn moves_are_complained_about_with_their_line() {
     assert!(wrong("{").starts_with("line 1: not readable"));
 }
 
-/// What a scene adds for the rig, all of it as it should be.
+/// A valid example of all parts of a scene for the rig.
 const FOR_THE_RIG: &str = r#"{"units":"mm",
     "elements":[{"id":"pin","kind":"cylinder","radius":4,"height":30,"rides":"slide"},
                 {"id":"finger","kind":"block","half":[1,1,1],"rides":"slide"}],

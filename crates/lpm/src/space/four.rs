@@ -87,7 +87,7 @@ impl Four {
         machine::bits(machine::at_most(self.0, other.0))
     }
 
-    /// Returns bit k when the first of every pair is at most the second in number k.
+    /// Returns bit k when in all six pairs number k of the first is at most that of the second.
     #[inline(always)]
     pub(crate) fn all_at_most(pairs: [(Four, Four); 6]) -> u32 {
         let [a, b, c, d, e, f] = pairs.map(|(a, b)| machine::at_most(a.0, b.0));

@@ -1,13 +1,13 @@
-//! Pairs built to touch, to overlap and to miss by a known amount: from a millimetre down to a nanometre
-//! (2^-20 mm), near the origin and a kilometre away, where others were seen to fail.
+//! Pairs constructed to touch, to overlap and to miss by a known amount: from a millimetre down to a nanometre
+//! (2^-20 mm), near the origin and a kilometre away, where other libraries fail.
 use super::truth::agrees;
 use crate::distance::tests::Dice;
 use crate::exact::{Body, Form};
 
-/// 2^-20 mm, a little less than a nanometre... so that sums at 1e6 mm are still exact in f64.
+/// Unit of 2^-20 mm, a little less than a nanometre, so that sums at 1e6 mm are still exact in f64.
 const UNIT_MM: f64 = 1.0 / 1_048_576.0;
 const MM: i64 = 1_048_576;
-/// Overlap below zero, gap above.
+/// Distances in units: negative for overlap, positive for a gap.
 const DELTAS: [i64; 13] = [
     0,
     MM,
@@ -48,7 +48,7 @@ fn reach(body: &Body) -> [i64; 3] {
     }
 }
 
-/// Both bodies far from the origin, and the question both ways round.
+/// Checks the pair far from the origin, with either body as mover.
 fn judged(element: &Body, mover: &Body, run: [i64; 3], dice: &mut Dice) {
     let far = OFFSETS_MM[dice.pick(4) as usize] * MM;
     let place = [far, -far, far / 1_000];
@@ -157,7 +157,7 @@ fn what_is_inside_or_on_the_same_axis_is_blocked() {
 
 #[test]
 fn turned_blocks_touch_exactly_when_whole_numbers_say_so() {
-    // Millimetres of 1/1024, quaternions of single digits, any axis: edges cross, corners meet faces.
+    // In units of 1/1024 mm, quaternions with members of one digit, any axis: edges cross, corners meet faces.
     for seed in 0..2_500 {
         let mut dice = Dice::new(5_000 + seed);
         let mut turned = |most: u64| {
@@ -179,7 +179,7 @@ fn turned_blocks_touch_exactly_when_whole_numbers_say_so() {
 
 #[test]
 fn triangles_touch_exactly_when_whole_numbers_say_so() {
-    // A coarse grid, so that corners fall on edges and planes coincide again and again.
+    // A coarse grid, so that corners often fall on edges and planes coincide.
     let mut touched = 0;
     for seed in 0..2_500 {
         let mut dice = Dice::new(8_000 + seed);

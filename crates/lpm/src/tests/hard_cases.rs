@@ -1,4 +1,4 @@
-//! Straight moves where others fail: grazing, tiny tilts, foils, tangents.
+//! Straight moves that are numerically hard: grazing, tiny tilts, foils, tangents.
 use super::*;
 use crate::distance::tests::Dice;
 
@@ -162,7 +162,7 @@ fn crossed_and_tangent_cylinders_touch_where_their_mantles_do() {
 
 #[test]
 fn a_rim_stops_on_a_corner() {
-    // Corner of the block at 45 degrees: the rim touches at distance r from the corner.
+    // The corner of the block lies at 45 degrees: the rim touches at distance r from it.
     let model = standing(&block(10.0, 10.0, 10.0), Pose::IDENTITY);
     let mover = cylinder(5.0, 10.0);
     let slide = straight([40.0, 40.0, 15.0], [0.0, 0.0, 15.0]);
@@ -174,11 +174,11 @@ fn a_rim_stops_on_a_corner() {
 #[test]
 fn a_graze_that_touches_in_one_point_stops_there_to_a_nanometre() {
     let pin = standing(&cylinder(30.0, 20.0), Pose::at([1000.0, 500.0, 0.0]));
-    // The way (4, 3) touches a disc of 50 + 30 at 80 mm from its centre: (-48, 64).
+    // The path (4, 3) touches a disc of 50 + 30 at 80 mm from its centre: (-48, 64).
     let across = straight([-3048.0, -2436.0, 0.0], [4952.0, 3564.0, 0.0]);
     let cases = [
         (across, cylinder(50.0, 10.0), 0.5),
-        // Along the mantle, and a block whose side ends where the mantle is touched.
+        // Along the mantle; and past a block whose side ends where the mantle touches.
         (
             straight([1080.0, -500.0, 0.0], [1080.0, 1500.0, 0.0]),
             cylinder(50.0, 10.0),
@@ -198,14 +198,14 @@ fn a_graze_that_touches_in_one_point_stops_there_to_a_nanometre() {
     }
 }
 
-/// How early a contact that grazes a round side may stop a move where places were rounded, mm, within a metre:
-/// the root of twice the radius times the rounding.
+/// How early the stop at a grazed round side may come where places were rounded, mm, within a metre: the root of
+/// twice the radius times the rounding.
 const GRAZED_EARLY_MM: f64 = 1e-4;
 
 #[test]
 fn a_graze_of_turned_bodies_within_a_metre_stops_at_most_a_ten_thousandth_of_a_millimetre_early() {
-    // A turn of three, four, five takes [5k, 0] to [3k, 4k]; a cylinder then passes along x at just the distance
-    // at which it touches over that place, or comes to its margin.
+    // A turn by the 3-4-5 triangle takes [5k, 0] to [3k, 4k]; a cylinder then passes along x at exactly the
+    // distance at which it touches, or reaches its margin, above that place.
     let turned = Pose {
         position: [0.0; 3],
         rotation: [2.0, 0.0, 0.0, 1.0],
@@ -234,7 +234,7 @@ fn a_graze_of_turned_bodies_within_a_metre_stops_at_most_a_ten_thousandth_of_a_m
         );
         earliest = earliest.max(early);
     }
-    // It is a bound that is needed, not one for show.
+    // The bound is needed: the worst case comes within a factor of 100.
     assert!(earliest > GRAZED_EARLY_MM / 100.0, "{earliest}");
 }
 

@@ -1,4 +1,4 @@
-//! Meshes from files: one body, three ways of writing it down, and what is wrong with bad ones.
+//! Meshes from files: one body in three formats, and errors in damaged files.
 use super::*;
 use crate::scene::{Format, Scene, read_scene};
 
@@ -44,7 +44,7 @@ fn stl_text(triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
 }
 
 fn stl_binary(triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
-    // A head that begins like a text file, as some programs write it.
+    // Some programs write a binary header that begins like a text file.
     let mut bytes = b"solid in name only".to_vec();
     bytes.resize(80, b' ');
     bytes.extend((triangles.len() as u32).to_le_bytes());

@@ -103,7 +103,7 @@ fn a_closed_mesh_is_solid_and_an_open_one_is_hollow() {
     let open = standing(&box_mesh(20.0, false), Pose::IDENTITY);
     assert_eq!(stop(&open, &mover, &inside), None);
     assert!((least(&open, &mover, &inside) - 18.0).abs() < 1e-9);
-    // The other way round: the mover surrounds the element.
+    // Exchanged: the mover surrounds the element.
     let pin = standing(&cylinder(1.0, 2.0), Pose::IDENTITY);
     assert_eq!(stop(&pin, &box_mesh(20.0, true), &inside), Some(0.0));
     assert_eq!(stop(&pin, &box_mesh(20.0, false), &inside), None);
@@ -111,7 +111,7 @@ fn a_closed_mesh_is_solid_and_an_open_one_is_hollow() {
 
 #[test]
 fn a_turning_bar_stops_where_geometry_says_and_never_later() {
-    // Bar 200 x 10 about z, pin of radius 4 at 80 mm under 60 degrees.
+    // A bar of 200 x 10 about z, a pin of radius 4 at 80 mm and 60 degrees.
     let (distance, angle) = (80.0, 60f64.to_radians());
     let model = standing(
         &cylinder(4.0, 50.0),
@@ -125,7 +125,7 @@ fn a_turning_bar_stops_where_geometry_says_and_never_later() {
 
 #[test]
 fn half_a_turn_meets_what_stands_beside_both_ends_of_it() {
-    // Start and end look alike; the pin is only met on the way.
+    // Start and end look alike; the bar meets the pin only in between.
     let model = standing(&cylinder(4.0, 50.0), Pose::at([0.0, 90.0, 0.0]));
     let turn = way(Pose::IDENTITY, Pose::yawed([0.0; 3], 179f64.to_radians()));
     assert!(stop(&model, &block(100.0, 5.0, 5.0), &turn).is_some());

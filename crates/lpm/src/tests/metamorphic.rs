@@ -1,9 +1,9 @@
-//! What must not change an answer: which of both moves, mirrors, other axes, a shift, an element that
-//! was there and is gone. And what may change it one way only.
+//! Changes that must not alter an answer: exchanging mover and element, mirrors, other axes, a shift, an element
+//! inserted and removed again. And changes that may alter it in one direction only.
 use super::*;
 use crate::distance::tests::Dice;
 
-/// A drawn pair near each other: places on a grid of 1/64 mm, so that sums are exact.
+/// A random pair near each other: places on a grid of 1/64 mm, so that sums are exact.
 struct Drawn {
     element: Shape,
     mover: Shape,
@@ -96,7 +96,7 @@ fn a_common_shift_and_a_change_of_axes_change_nothing() {
             ),
             seed,
         );
-        // A third of a turn about the diagonal: x to y to z to x, exactly.
+        // A third of a turn about the diagonal takes x to y to z to x, exactly.
         let turned = |pose: Pose| {
             let ([x, y, z], [w, i, j, k]) = (pose.position, pose.rotation);
             Pose {
@@ -175,7 +175,7 @@ fn what_came_and_went_leaves_every_answer_as_it_was_bit_for_bit() {
 
 #[test]
 fn the_stop_is_where_the_clearance_runs_out() {
-    // The way up to the stop is clear but for its last hair, and the stop itself is within the margin.
+    // The path up to just before the stop is clear, and the stop itself is within the margin.
     for seed in 4_000..4_400 {
         let it = drawn(&mut Dice::new(seed));
         let model = standing(&it.element, it.at);
@@ -233,7 +233,8 @@ fn a_body_at_rest_is_judged_like_the_beginning_of_its_way() {
             assert_eq!(rests, begins, "{from:?} {margin_mm}");
             let first = model.first_contact(&hand, &asked(from));
             assert_eq!(first != Answer::Clear, begins, "{from:?} {margin_mm}");
-            // The same pose in other words: no way either, but not bit by bit.
+            // The negated quaternion is the same rotation, so the path has length zero, but its ends differ in
+            // their bits.
             let negated = from.rotation.map(|member| -member);
             let reworded = model.any_hit(
                 &hand,

@@ -1,4 +1,4 @@
-//! Properties over many drawn scenes.
+//! Properties over many random scenes.
 use super::*;
 use crate::distance::tests::Dice;
 

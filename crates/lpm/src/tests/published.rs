@@ -1,6 +1,6 @@
-//! Situations in which other libraries were reported to fail, built with numbers of our own.
+//! Situations in which other libraries were reported to fail, with numbers chosen here.
 //!
-//! In brackets who was reported with it, and how it failed.
+//! Brackets name the library, the number of the report and the failure.
 use super::truth::agrees;
 use super::*;
 use crate::exact::{Body, Form};
@@ -9,7 +9,7 @@ use crate::exact::{Body, Form};
 const UNIT_MM: f64 = 1.0 / 1024.0;
 const MM: i64 = 1024;
 
-/// Both ways round, at the origin and far away.
+/// Checks the pair with either body as mover, at the origin and far away.
 fn holds(element: Body, mover: Body, run: [i64; 3]) {
     for place in [
         [0; 3],

@@ -1,6 +1,6 @@
-//! Small worlds gone through completely: no draw, no chance to look away.
+//! Small worlds, enumerated completely instead of sampled.
 //!
-//! The larger world of corners 0 to 3 (16 million moves) is gone through by `relayrig study collision`.
+//! `relayrig study collision` enumerates the larger world of corners 0 to 3 (16 million moves).
 use super::truth::agrees;
 use crate::exact::{Body, Form};
 

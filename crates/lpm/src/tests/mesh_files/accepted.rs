@@ -1,4 +1,4 @@
-//! Ways of writing the same body down that are all right.
+//! Variants of file formats that must be accepted.
 use super::*;
 
 pub(super) fn shape(name: &str, bytes: &[u8]) -> Shape {

@@ -1,4 +1,4 @@
-//! Files that are damaged or could be read in two ways.
+//! Damaged or ambiguous files, which must be refused.
 use super::*;
 
 pub(super) fn refusal(name: &str, bytes: &[u8]) -> String {
