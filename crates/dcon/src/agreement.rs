@@ -51,7 +51,7 @@ impl Command {
                 a.iter()
                     .zip(b.iter())
                     .zip(c.iter())
-                    .all(|((before, it), after)| self.on_the_way(before, it, after)),
+                    .all(|((before, it), after)| self.lies_between(before, it, after)),
             ),
             [a, b, c] => {
                 let values = [self.size(a)?, self.size(b)?, self.size(c)?];
@@ -74,7 +74,7 @@ impl Command {
 
     /// Whether a reading lies between its neighbours in time, allowing for noise; a state that is not a number must
     /// stay the same.
-    fn on_the_way(&self, before: &Reading, it: &Reading, after: &Reading) -> bool {
+    fn lies_between(&self, before: &Reading, it: &Reading, after: &Reading) -> bool {
         let scale = self.range().and_then(TypeCode::full_scale);
         let noise = scale.map_or(0.0, |scale| (scale.high - scale.low) * NOISE_SHARE);
         let value = |reading: &Reading| reading.value.in_units(self.range()?);
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_twice_alike_is_believed_and_what_is_not_is_asked_again() {
+    fn two_equal_answers_are_believed() {
         let port = Digital::ReadPort.to(Address(3));
         assert_eq!(believed(port, &[">BEDE\r", ">BEDE\r"]), Some(0));
         assert_eq!(believed(port, &[">BEDE\r", ">BEDC\r"]), None);
@@ -140,7 +140,7 @@ mod tests {
     }
 
     #[test]
-    fn of_three_readings_the_middle_one_is_believed_whichever_is_damaged() {
+    fn the_middle_of_three_readings_is_believed() {
         let middle = |said: [&str; 3]| believed(volts(), &said);
         assert_eq!(middle([">+05.019\r", ">+05.001\r", ">+05.000\r"]), Some(1));
         assert_eq!(middle([">+05.001\r", ">+05.019\r", ">+05.000\r"]), Some(0));
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frequency_is_no_count_that_went_on() {
+    fn frequencies_may_fall_unlike_counts() {
         let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
         let said = [">00000032\r", ">00000009\r", ">00000031\r"];
         assert_eq!(believed(frequency, &said), Some(2));
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn all_inputs_lie_between_before_and_after_or_within_the_noise_of_twelve_bits() {
+    fn inputs_lie_between_neighbours_allowing_twelve_bit_noise() {
         let hex = AnalogIn::ReadAll(form(DataFormat::Hex)).to(Address(1));
         let all = |last: &str| format!(">{}{last}\r", "4000".repeat(7));
         let second = |last: [&str; 3]| {
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_count_goes_up_and_no_faster_than_its_input_can() {
+    fn a_count_rises_no_faster_than_its_input_allows() {
         let count = Counter::Read(UpTo::new(0).unwrap()).to(Address(3));
         let second = |said: [&str; 3]| believed(count, &said);
         assert_eq!(

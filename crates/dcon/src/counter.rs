@@ -126,7 +126,7 @@ pub enum Counter {
     DisableAlarmOf(UpTo<1>),
     /// `@AARP`, `@AARA`: alarm limit of counter 0 and 1; in mode 1 the high and the high-high limit of counter 0.
     ReadLimit(UpTo<1>),
-    /// `@AAPA(data)`, `@AASA(data)`: sets an alarm limit, numbered likewise.
+    /// `@AAPA(data)`, `@AASA(data)`: sets an alarm limit, numbered as in [`Counter::ReadLimit`].
     WriteLimit(UpTo<1>, u32),
     /// `@AADO0D`: sets the two outputs; refused while an alarm controls them.
     WriteOutputs(UpTo<3>),

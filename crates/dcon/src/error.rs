@@ -29,7 +29,7 @@ pub enum ReplyError {
         length: usize,
     },
     /// A byte is not printable ASCII.
-    #[error("byte {byte:#04x} at position {at} is no character of the protocol")]
+    #[error("byte {byte:#04x} at position {at} is not a printable ASCII character")]
     NotText {
         /// Position from the lead.
         at: usize,
@@ -40,7 +40,7 @@ pub enum ReplyError {
     #[error("no checksum at the end of the reply")]
     ChecksumMissing,
     /// The checksum does not match the characters.
-    #[error("checksum {found:02X} where the characters add up to {expected:02X}")]
+    #[error("checksum {found:02X} received, {expected:02X} computed")]
     ChecksumWrong {
         /// Checksum received.
         found: u8,
@@ -48,7 +48,7 @@ pub enum ReplyError {
         expected: u8,
     },
     /// The lead is that of another kind of reply.
-    #[error("lead `{}` where `{}` was expected", *found as char, *expected as char)]
+    #[error("lead `{}` received, `{}` expected", *found as char, *expected as char)]
     WrongLead {
         /// Lead received.
         found: u8,
@@ -64,7 +64,7 @@ pub enum ReplyError {
         asked: Address,
     },
     /// The reply has more or fewer characters than this command allows.
-    #[error("{found} characters before the checksum, which is no length of this reply")]
+    #[error("{found} characters before the checksum, not a valid length of this reply")]
     WrongLength {
         /// Number of characters from the lead, without checksum and CR.
         found: usize,

@@ -8,7 +8,7 @@
 //!
 //! ```
 //! use dcon::{Address, Command, Common, Reply, ReplyError};
-//! 
+//!
 //! let command: Command = Common::ReadResetStatus.to(Address(1));
 //! let mut request = Vec::new();
 //! command.encode(false, &mut request);
@@ -34,7 +34,7 @@
 //! | `command.rs`, `request.rs`, `frame.rs` | requests: the closed set, their fields, checksum and CR |
 //! | `reply.rs`, `shape.rs`, `fields.rs`, `error.rs` | replies: meanings, forms, fields, reasons for refusal |
 //! | `reading.rs`, `level.rs`, `bits.rs`, `bounded.rs`, `type_code.rs`, `config.rs` | values, ranges and configuration words |
-//! | `standing.rs` | whether a setting is already in effect, since writing wears the EEPROM |
+//! | `setting.rs` | whether a setting is already in effect, since writing wears the EEPROM |
 //! | `agreement.rs` | which of several answers to one request to believe |
 //! | `written.rs`, `understand.rs`, `words.rs` | requests back into commands, their meaning with a reply, both in words |
 //!
@@ -59,8 +59,8 @@ mod level;
 mod reading;
 mod reply;
 mod request;
+mod setting;
 mod shape;
-mod standing;
 mod type_code;
 mod understand;
 mod words;

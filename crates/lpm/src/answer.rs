@@ -35,7 +35,7 @@ pub struct Move<'a> {
 impl Move<'_> {
     /// Whether start and end agree bit by bit. (0 and -0 differ; such a move is checked as a path of length zero.)
     #[inline]
-    pub(crate) fn goes_nowhere(&self) -> bool {
+    pub(crate) fn is_at_rest(&self) -> bool {
         let (from, to) = (&self.from, &self.to);
         let places = from.position.iter().zip(&to.position);
         let turns = from.rotation.iter().zip(&to.rotation);

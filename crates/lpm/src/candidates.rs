@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn candidates_come_in_the_order_of_their_entries_as_long_as_they_matter() {
+    fn candidates_come_in_order_of_entry_up_to_until() {
         let mut candidates = Candidates::NONE;
         candidates.push(
             3,

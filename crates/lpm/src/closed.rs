@@ -39,8 +39,8 @@ pub(crate) struct Surface {
 /// index.
 pub(crate) fn parts(mesh: &Mesh) -> Vec<BTreeSet<Corners>> {
     let welded = weld(&mesh.vertices);
-    let named = |corners: &Corners| turned(corners.map(|vertex| welded[vertex]));
-    touching(&mesh.triangles.iter().map(named).collect())
+    let named = |corners: &Corners| lowest_first(corners.map(|vertex| welded[vertex]));
+    connected_by_corners(&mesh.triangles.iter().map(named).collect())
 }
 
 /// Returns the closed surfaces of a part.
@@ -56,16 +56,19 @@ pub(crate) fn closed_surfaces(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Ve
 /// Removes every open triangle of a part. Leaves walls out where the rest is closed without them and the walls
 /// enclose no space of their own.
 fn closed(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
-    let has_twin = |corners: &Corners| part.contains(&twin(*corners));
-    let (twins, alone): (Vec<Corners>, Vec<Corners>) = part.iter().partition(|it| has_twin(it));
-    let walls: Vec<Corners> = twins.into_iter().filter(|it| *it < twin(*it)).collect();
-    if !walls.is_empty() && peeled(walls.clone()).is_empty() {
-        let around = joined(vertices, alone.clone());
+    let has_reverse = |corners: &Corners| part.contains(&reversed(*corners));
+    let (paired, alone): (Vec<Corners>, Vec<Corners>) = part.iter().partition(|it| has_reverse(it));
+    let walls: Vec<Corners> = paired
+        .into_iter()
+        .filter(|it| *it < reversed(*it))
+        .collect();
+    if !walls.is_empty() && without_free_triangles(walls.clone()).is_empty() {
+        let around = cut_free_edges(vertices, alone.clone());
         if !around.is_empty() && free_edges(&around).is_empty() {
             return around;
         }
     }
-    peeled(joined(vertices, [alone, walls].concat()))
+    without_free_triangles(cut_free_edges(vertices, [alone, walls].concat()))
 }
 
 /// Returns for each vertex the index of the first vertex nearer to it than [`WELD_MM`].
@@ -93,7 +96,7 @@ fn weld(vertices: &[Vec3]) -> Vec<usize> {
 }
 
 /// Rotates the indices so that the lowest comes first: equal for triangles with the same corners and orientation.
-fn turned([a, b, c]: Corners) -> Corners {
+fn lowest_first([a, b, c]: Corners) -> Corners {
     if a < b && a < c {
         [a, b, c]
     } else if b < c {
@@ -103,7 +106,7 @@ fn turned([a, b, c]: Corners) -> Corners {
     }
 }
 
-fn touching(triangles: &BTreeSet<Corners>) -> Vec<BTreeSet<Corners>> {
+fn connected_by_corners(triangles: &BTreeSet<Corners>) -> Vec<BTreeSet<Corners>> {
     let mut around: BTreeMap<usize, Vec<Corners>> = BTreeMap::new();
     for corners in triangles {
         for vertex in corners {
@@ -125,8 +128,8 @@ fn touching(triangles: &BTreeSet<Corners>) -> Vec<BTreeSet<Corners>> {
 }
 
 /// The same triangle with the opposite orientation.
-fn twin([a, b, c]: Corners) -> Corners {
-    turned([a, c, b])
+fn reversed([a, b, c]: Corners) -> Corners {
+    lowest_first([a, c, b])
 }
 
 /// The directed edges in order around the triangle.
@@ -153,7 +156,7 @@ fn free_edges(triangles: &[Corners]) -> BTreeSet<(usize, usize)> {
 }
 
 /// Cuts triangles at the corners of other free edges that lie on their free edge.
-fn joined(vertices: &[Vec3], mut triangles: Vec<Corners>) -> Vec<Corners> {
+fn cut_free_edges(vertices: &[Vec3], mut triangles: Vec<Corners>) -> Vec<Corners> {
     for _ in 0..MOST_CUTS {
         let free = free_edges(&triangles);
         if free.is_empty() || free.len() > MOST_FREE {
@@ -196,7 +199,7 @@ fn lies_on(vertices: &[Vec3], vertex: usize, (p, q): (usize, usize)) -> bool {
 }
 
 /// Removes triangles with a free edge until none has one.
-fn peeled(mut triangles: Vec<Corners>) -> Vec<Corners> {
+fn without_free_triangles(mut triangles: Vec<Corners>) -> Vec<Corners> {
     let mut uses = uses(&triangles);
     loop {
         let before = triangles.len();

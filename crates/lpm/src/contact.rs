@@ -12,7 +12,7 @@ use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending};
 use super::prism::Prism;
 use super::space::{Boxes, Bundle, Cover, LANES, Sweep, Visit, above};
-use super::standing::Stands;
+use super::stationary::Stored;
 use super::straight::{self, Hit};
 use super::touch::touch;
 use super::vector::sub;
@@ -32,12 +32,12 @@ pub(crate) struct Found {
     t: f64,
     /// Number of the stationary piece.
     pub(crate) element: u32,
-    how: How,
+    evidence: Evidence,
 }
 
 /// How a contact was found, and what is needed to complete it.
 #[derive(Debug, Clone)]
-enum How {
+enum Evidence {
     /// Index of the piece of the mover; both pieces are upright and a closed form gives place and normal.
     Closed(u32),
     /// Result of a search. Boxed so that the more frequent closed forms stay small.
@@ -49,24 +49,24 @@ impl Found {
         Found {
             t: hit.t,
             element,
-            how: How::Searched(Box::new(hit.gap)),
+            evidence: Evidence::Searched(Box::new(hit.gap)),
         }
     }
 
     /// Fraction of the path, place and normal of the contact.
     #[inline]
     pub(crate) fn hit(&self, passage: &Passage) -> Hit {
-        let gap = match (&self.how, &passage.element(self.element).form) {
-            (How::Closed(local), Stands::Upright(element)) => {
+        let gap = match (&self.evidence, &passage.element(self.element).form) {
+            (Evidence::Closed(local), Stored::Upright(element)) => {
                 let mover = passage.prism_at(*local, self.t);
                 mover.map(|mover| touch(element, &mover, sub(mover.centre, element.centre)))
             }
-            (How::Closed(_), Stands::Askew(_)) => None,
-            (How::Searched(gap), _) => Some(**gap),
+            (Evidence::Closed(_), Stored::Askew(_)) => None,
+            (Evidence::Searched(gap), _) => Some(**gap),
         };
         Hit {
             t: self.t,
-            gap: gap.expect("closed forms are of upright pieces"),
+            gap: gap.expect("closed forms apply to upright pieces only"),
         }
     }
 }
@@ -240,18 +240,18 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         let local = self.group.first + place;
         match (&element.form, &passage.body.prisms[local]) {
-            (Stands::Upright(standing), Some(own)) if passage.level => {
+            (Stored::Upright(fixed), Some(own)) if passage.level => {
                 let path = passage.path;
                 let mover =
                     self.prisms[place].get_or_insert_with(|| own.carried(path.turned(), path.from));
                 let until = self.found.until();
                 let run = self.found.run.get_or_insert_with(|| Run::of(path));
-                let found = passage.met(run, standing, mover, until);
+                let found = passage.met(run, fixed, mover, until);
                 self.found.offer(found.map(|(t, gap)| Found {
                     t,
                     element: number,
-                    how: gap.map_or(How::Closed(local as u32), |gap| {
-                        How::Searched(Box::new(gap))
+                    evidence: gap.map_or(Evidence::Closed(local as u32), |gap| {
+                        Evidence::Searched(Box::new(gap))
                     }),
                 }));
             }

@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn twice_the_digits_keep_what_one_number_drops() {
+    fn double_double_sums_keep_digits_that_f64_drops() {
         let large = Twofold::of(1e16).plus(Twofold::of(1.0));
         assert_eq!(large.minus(Twofold::of(1e16)).value(), 1.0);
         let near = Twofold::of(1.0).plus(Twofold::of(1e-20));
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tangent_touches_in_the_middle_of_its_chord_and_a_hair_farther_not_at_all() {
+    fn a_tangent_touches_midway_and_misses_slightly_farther_out() {
         let at = |y: f64| {
             let from = [Twofold::of(-4000.0), Twofold::of(y)];
             first(from, [8000.0, 0.0], Twofold::of(50.0))

@@ -8,7 +8,7 @@
 //!
 //! ```
 //! use lpm::{Model, Move, Pose, Shape};
-//! 
+//!
 //! let mut model = Model::new();
 //! let block = Shape::Block { half: [10.0, 20.0, 15.0] };
 //! let jaw = model.insert("jaw", &block, &Pose::at([100.0, 0.0, 15.0]))?;
@@ -26,14 +26,14 @@
 //! # Map of the modules
 //! | modules | contents |
 //! |---|---|
-//! | `model`, `standing`, `name` | the stationary elements, their pieces and their names |
+//! | `model`, `stationary`, `name` | the stationary elements, their pieces and their names |
 //! | `question`, `answer`, `permission` | the questions, their answers, permissions of pairs |
 //! | `shape`, `pose`, `piece`, `prism`, `mover`, `interior` | bodies: as given, as convex pieces, as upright prisms, as a mover, as enclosed spaces |
 //! | `path`, `passage` | the path of a mover, alone and through a model |
 //! | `space`, `candidates` | broad phase: `layers` holds Omega and `{h1, h2}`, `grid` holds `V`, `silhouettes` holds `B` |
 //! | `rest`, `meeting`, `touch`, `grazing` | upright pieces in closed form: at rest, on a straight path, the contact itself, grazing contacts |
 //! | `straight`, `turning`, `distance` | any convex pieces: translations, turns, separating planes |
-//! | `contact`, `search`, `nearest` | searches for contacts (which compute no distance) and for the least distance |
+//! | `contact`, `search`, `nearest` | searches for a contact (the gate needs no distances) and for the least distance |
 //! | `solid`, `closed` | points inside closed meshes |
 //! | [`scene`], `outline` | scene and move files; silhouettes for drawings |
 //! | [`exact`] | the true answer in whole numbers, for tests and benchmarks |
@@ -59,7 +59,7 @@
 //!    rounding of the arithmetic (argument in `meeting`).
 //! 2. Any other pair of convex pieces is clear for a stretch of the path only by an evaluated plane. Its separation
 //!    is computed in f64 from the support functions of both pieces, and a forward error bound is subtracted
-//!    (`piece::NOISE` times the sum of all magnitudes that entered). The way in which the plane was found does not
+//!    (`piece::NOISE` times the sum of all magnitudes that entered). How the plane was found does not
 //!    matter.
 //! 3. Along a translation the separation by a fixed plane is linear; along a turn `turning` bounds it from below. A
 //!    stretch ends where the bound reaches the margin, and stretches follow each other without a hole.
@@ -86,10 +86,10 @@
 //! | `meeting::ROUND_MM` | 1e-3 mm | least distance from the end of a round corner at which `grazing` may refine |
 //! | `distance::RESOLUTION_MM` | 1e-9 mm | where a search for a plane stops |
 //! | `space::sweep::SLACK_MM` | 1e-5 mm | places along the path in the broad phase; costs candidates, changes no answer |
-//! | `space::cover::ULP` | 1.2e-7, relative | rounding outward to f32; likewise |
-//! | `mover::SINGLE`, `space::boxes::EARLIER` | 1e-6, relative | boxes of the mover and their times in f32; likewise |
+//! | `space::cover::ULP` | 1.2e-7, relative | rounding outward to f32; changes no answer |
+//! | `mover::SINGLE`, `space::boxes::EARLIER` | 1e-6, relative | boxes of the mover and their times in f32; changes no answer |
 //! | `pose::NEARLY_UNIT` | 1e-9 | deviation from 1 of the squared length of a quaternion whose yaw is taken without a division, for boxes only; within `mover::SINGLE` |
-//! | `space::sweep::SLOWEST_MM` | 1e-9 mm | displacement along an axis that counts as rest; likewise |
+//! | `space::sweep::SLOWEST_MM` | 1e-9 mm | displacement along an axis that counts as rest; changes no answer |
 //! | `closed::WELD_MM` | 1e-6 mm | corners that count as one when closed surfaces are sought |
 //! | `turning::band_mm` | 1e-7 to 5e-4 mm | distance beyond the margin that counts as contact on a turning move |
 //! | `turning::LEAST_RESOLUTION_MM` | 2e-4 mm | least distance of turning moves |
@@ -138,7 +138,7 @@ mod search;
 mod shape;
 mod solid;
 mod space;
-mod standing;
+mod stationary;
 mod straight;
 #[cfg(test)]
 mod tests;
@@ -149,7 +149,7 @@ mod vector;
 pub use answer::{Answer, Clearance, Contact, ElementKey, Move};
 pub use model::Model;
 pub use mover::{Mover, Moving};
-pub use outline::{Seen, outlines};
+pub use outline::{View, outlines};
 pub use permission::{Forbidden, Passing, Permission};
 pub use pose::Pose;
 pub use shape::{Flaw, LARGEST_COORDINATE_MM, Mesh, Shape};

@@ -7,7 +7,7 @@ use super::name::{Name, Names};
 use super::pose::{Frame, Pose};
 use super::shape::{Flaw, Shape};
 use super::space::{Filling, Space};
-use super::standing::{NONE, Pieces};
+use super::stationary::{NONE, Pieces};
 
 /// The stationary elements. Elements are inserted and removed one by one; nothing is rebuilt.
 #[derive(Debug, Clone, Default)]
@@ -57,7 +57,7 @@ impl Model {
             slot,
             generation: left.map_or(0, |left| left.generation),
         };
-        let first = self.pieces.stand(&mut self.space, shape, pose, key);
+        let first = self.pieces.insert(&mut self.space, shape, pose, key);
         let taken = self.taken(id, shape, pose, key, first);
         match self.slots.get_mut(slot as usize) {
             Some(left) => *left = taken,
@@ -86,7 +86,7 @@ impl Model {
                 slot: number as u32,
                 generation: 0,
             };
-            let first = model.pieces.stand(&mut filling, shape, pose, key);
+            let first = model.pieces.insert(&mut filling, shape, pose, key);
             let taken = model.taken(id, shape, pose, key, first);
             model.slots.push(taken);
         }
@@ -126,14 +126,14 @@ impl Model {
             return false;
         }
         slot.generation += 1;
-        self.names.leave(&slot.id);
+        self.names.release(&slot.id);
         let mut piece = std::mem::replace(&mut slot.first, NONE);
         if slot.interior.take().is_some() {
             self.hollow.retain(|known| *known != key.slot);
         }
         while piece != NONE {
             self.space.remove(piece);
-            piece = self.pieces.let_go(piece);
+            piece = self.pieces.remove(piece);
         }
         self.free.push(key.slot);
         if self.names.is_mostly_gaps() {
@@ -173,7 +173,7 @@ impl Model {
 
     /// Iterates over the elements in the order of their slots.
     pub fn keys(&self) -> impl Iterator<Item = ElementKey> + '_ {
-        self.standing_slots().map(|slot| self.key(slot))
+        self.taken_slots().map(|slot| self.key(slot))
     }
 
     /// Heap used by the model, bytes; closed meshes, stored separately, are not included.
@@ -186,9 +186,9 @@ impl Model {
             + self.space.heap_bytes()
     }
 
-    pub(crate) fn standing_slots(&self) -> impl Iterator<Item = u32> + '_ {
-        let standing = |slot: &u32| self.slots[*slot as usize].is_taken();
-        (0..self.slots.len() as u32).filter(standing)
+    pub(crate) fn taken_slots(&self) -> impl Iterator<Item = u32> + '_ {
+        let is_taken = |slot: &u32| self.slots[*slot as usize].is_taken();
+        (0..self.slots.len() as u32).filter(is_taken)
     }
 
     pub(crate) fn key(&self, slot: u32) -> ElementKey {
@@ -199,7 +199,7 @@ impl Model {
     }
 
     /// Returns the first piece of the element in a slot; [`NONE`] for a free slot.
-    pub(crate) fn a_piece(&self, slot: u32) -> u32 {
+    pub(crate) fn first_piece(&self, slot: u32) -> u32 {
         self.slots[slot as usize].first
     }
 

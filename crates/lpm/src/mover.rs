@@ -188,7 +188,7 @@ impl Group {
         boxes
     }
 
-    /// Returns the box around all pieces of the group, likewise rounded and widened.
+    /// Returns the box around all pieces of the group, rounded outward and widened by the margin.
     #[inline(always)]
     pub(crate) fn hull(&self, at: &Whereabouts) -> Cover {
         let (centre, half) = match at.orientation {
@@ -238,7 +238,7 @@ fn yawed(yaw: RoughYaw, [x, y, z]: [Four; 3], [a, b, c]: [Four; 3]) -> ([Four; 3
     (centres, [wide, a.times(sin).plus(b.times(cos)), c])
 }
 
-/// Rotates boxes by any frame, likewise.
+/// Rotates boxes by any frame: centres relative to the origin, and half extents, axis by axis.
 fn tilted(frame: &Frame, centres: [Four; 3], halves: [Four; 3]) -> ([Four; 3], [Four; 3]) {
     let images = [frame.x, frame.y, frame.z];
     let sum = |members: [Four; 3], of: fn(f32) -> f32| {
@@ -259,18 +259,18 @@ pub(crate) fn reach_of(piece: &Piece) -> f64 {
 pub trait Moving {
     /// Calls `ask` with the body split into pieces; returns `None` when the shape is flawed, which questions answer
     /// with blocked.
-    fn asked<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A>;
+    fn with_mover<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A>;
 }
 
 impl Moving for Mover {
     #[inline(always)]
-    fn asked<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
+    fn with_mover<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
         Some(ask(self))
     }
 }
 
 impl Moving for Shape {
-    fn asked<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
+    fn with_mover<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
         Mover::new(self).ok().map(|mover| ask(&mover))
     }
 }

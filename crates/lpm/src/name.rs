@@ -35,7 +35,7 @@ impl Names {
     }
 
     /// Releases a name.
-    pub(crate) fn leave(&mut self, name: &Name) {
+    pub(crate) fn release(&mut self, name: &Name) {
         self.gaps += name.length as usize;
         // The last name leaves no gap, so inserting and removing one element in turn costs nothing.
         if (name.start + name.length) as usize == self.text.len() {
@@ -77,10 +77,10 @@ mod tests {
         let first = names.keep("first");
         for _ in 0..3 {
             let last = names.keep("last");
-            names.leave(&last);
+            names.release(&last);
         }
         assert_eq!((names.text.as_str(), names.gaps), ("first", 0));
-        names.leave(&first);
+        names.release(&first);
         assert_eq!(names.gaps, 0);
     }
 }

@@ -12,7 +12,7 @@ pub(crate) struct Nearest {
     pub(crate) distance_mm: f64,
     /// Number of the stationary piece.
     pub(crate) element: u32,
-    /// Fraction of the way.
+    /// Fraction of the path.
     pub(crate) t: f64,
 }
 

@@ -7,7 +7,7 @@ use super::path::Path;
 use super::piece::Piece;
 use super::pose::Frame;
 use super::prism::Prism;
-use super::standing::Standing;
+use super::stationary::Stationary;
 
 /// A body, its path and the model.
 pub(crate) struct Passage<'a> {
@@ -50,7 +50,7 @@ impl<'a> Passage<'a> {
 
     /// Returns a stationary piece by its number.
     #[inline]
-    pub(crate) fn element(&self, number: u32) -> &'a Standing {
+    pub(crate) fn element(&self, number: u32) -> &'a Stationary {
         self.model.pieces.at(number)
     }
 
@@ -67,7 +67,7 @@ impl<'a> Passage<'a> {
 
     /// Whether the element of a piece is not ignored by the move.
     #[inline]
-    pub(crate) fn counts(&self, element: &Standing) -> bool {
+    pub(crate) fn counts(&self, element: &Stationary) -> bool {
         self.way.ignore.is_empty() || !self.way.ignore.contains(&element.owner)
     }
 

@@ -60,7 +60,7 @@ impl Path {
         }
     }
 
-    /// The sum of magnitudes of everything that enters a position on the way, mm.
+    /// Sum of the magnitudes of everything that enters a position on the path, mm.
     pub(crate) fn span(&self) -> f64 {
         reach(self.from) + reach(self.displacement)
     }

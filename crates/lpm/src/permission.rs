@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_forbidden_pair_stops_at_its_margin_and_one_that_may_touch_at_its_depth() {
+    fn forbidden_pairs_stop_at_margin_others_at_depth() {
         let near = |found: Option<f64>, wanted: f64| {
             let found = found.unwrap();
             assert!(found <= wanted && wanted - found < 1e-9, "{found} {wanted}");
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn of_several_permissions_the_one_that_is_broken_first_is_told() {
+    fn the_permission_violated_first_is_reported() {
         let mut model = Model::new();
         let mut stand = |x: f64| {
             model
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_touch_never_shrinks_to_nothing() {
+    fn a_body_that_may_touch_never_vanishes() {
         let foil = Shape::Block {
             half: [5.0, 5.0, 0.1],
         };

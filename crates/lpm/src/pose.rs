@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_ends_where_it_was_told_to() {
+    fn a_turn_ends_at_its_end_orientation() {
         let (from, to) = ([0.9, 0.1, -0.3, 0.2], [-0.2, 0.5, 0.4, 0.7]);
         let turn = Turn::between(from, to).unwrap();
         let (reached, wanted) = (turn.frame_at(1.0), Frame::of(to));
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rough_yaw_is_the_true_one_in_single_precision_however_long_the_quaternion() {
+    fn a_rough_yaw_is_accurate_to_single_precision() {
         for step in 0..4_000 {
             let (sin, cos) = (f64::from(step) * 0.001_571).sin_cos();
             for long in [1.0, 1.0 + 4.9e-10, 1.0 - 5.1e-10, 1e-3, 7.0] {

@@ -15,14 +15,14 @@ use super::vector::Vec3;
 impl Model {
     /// Returns when and where the mover first comes within the margin of an element.
     pub fn first_contact(&self, mover: &impl Moving, way: &Move) -> Answer {
-        let answer = mover.asked(|body| self.ask::<FirstContact>(body, way));
+        let answer = mover.with_mover(|body| self.ask::<FirstContact>(body, way));
         answer.unwrap_or(UNDECIDABLE)
     }
 
     /// Returns an element that the mover approaches within the margin during the move; `None` is proof that there
     /// is none.
     pub fn any_hit(&self, mover: &impl Moving, way: &Move) -> Option<ElementKey> {
-        let answer = mover.asked(|body| self.ask::<AnyHit>(body, way));
+        let answer = mover.with_mover(|body| self.ask::<AnyHit>(body, way));
         answer.unwrap_or(Some(ElementKey::UNDECIDABLE))
     }
 
@@ -38,7 +38,7 @@ impl Model {
         if !(range_mm >= 0.0 && range_mm.is_finite()) {
             return Some(nothing(ElementKey::UNDECIDABLE));
         }
-        let least = mover.asked(|body| self.least_on_the_way(body, way, range_mm));
+        let least = mover.with_mover(|body| self.least_on_the_way(body, way, range_mm));
         least
             .flatten()
             .unwrap_or(Some(nothing(ElementKey::UNDECIDABLE)))
@@ -84,17 +84,17 @@ impl Model {
     #[cold]
     fn holding(&self, body: &Mover, way: &Move) -> Option<(u32, Hit)> {
         let inside = body.interior_at(&way.from);
-        let asked: Vec<u32> = if body.is_hollow() {
-            self.standing_slots().collect()
+        let candidates: Vec<u32> = if body.is_hollow() {
+            self.taken_slots().collect()
         } else {
             self.hollow.clone()
         };
-        let counted = asked
+        let counted = candidates
             .into_iter()
             .filter(|slot| !way.ignore.contains(&self.key(*slot)));
         let shared = |slot: u32| {
             let point = self.shared_point(slot, &inside)?;
-            Some((self.a_piece(slot), Hit::inside(point)))
+            Some((self.first_piece(slot), Hit::inside(point)))
         };
         counted.filter_map(shared).next()
     }

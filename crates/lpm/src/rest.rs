@@ -14,7 +14,7 @@ use super::pose::{RoughYaw, Yaw};
 use super::prism::Prism;
 use super::shape::is_turn;
 use super::space::LANES;
-use super::standing::Stands;
+use super::stationary::Stored;
 use super::touch::lie_apart;
 use super::vector::{Vec3, add, reach, sub};
 
@@ -40,7 +40,7 @@ impl Model {
             way,
         };
         let is_plain = self.hollow.is_empty() & !body.is_hollow() & (way.margin_mm == 0.0);
-        if is_plain && way.goes_nowhere() && way.from.is_placed() {
+        if is_plain && way.is_at_rest() && way.from.is_placed() {
             match way.from.rotation {
                 [w, 0.0, 0.0, 0.0] if is_turn(w * w) => return rest.among::<Q>(None),
                 [w, 0.0, 0.0, z] if is_turn(w * w + z * z) => {
@@ -58,7 +58,7 @@ enum Judged<A> {
     Clear,
     Met(A),
     /// The piece is not upright: the shortcut cannot decide.
-    Unsaid,
+    NotUpright,
 }
 
 /// A body at the start of its path.
@@ -103,7 +103,7 @@ impl Rest<'_> {
                     }
                     match self.judged::<Q>(bundle.piece(lane), (group, places), yaw) {
                         Judged::Clear => {}
-                        Judged::Unsaid => is_said = false,
+                        Judged::NotUpright => is_said = false,
                         Judged::Met(answer) => return answer,
                     }
                 }
@@ -131,9 +131,9 @@ impl Rest<'_> {
         while places != 0 {
             let local = group.first + places.trailing_zeros() as usize;
             places &= places - 1;
-            let (Stands::Upright(standing), Some(own)) = (&element.form, &self.body.prisms[local])
+            let (Stored::Upright(fixed), Some(own)) = (&element.form, &self.body.prisms[local])
             else {
-                return Judged::Unsaid;
+                return Judged::NotUpright;
             };
             let turned;
             let own = match yaw {
@@ -143,8 +143,8 @@ impl Rest<'_> {
                     &turned
                 }
             };
-            if let Some(apart) = self.sharing(standing, own) {
-                return Judged::Met(Q::met(element.owner, standing, own, apart));
+            if let Some(apart) = self.sharing(fixed, own) {
+                return Judged::Met(Q::met(element.owner, fixed, own, apart));
             }
         }
         Judged::Clear

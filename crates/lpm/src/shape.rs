@@ -65,7 +65,7 @@ pub enum Flaw {
     },
     /// A quaternion is zero, not finite, or of extreme length.
     #[error(
-        "{path}: rotation {found:?} is no rotation, expected a finite non-zero quaternion [w, x, y, z], its squared length above 1e-200 and at most 1e200"
+        "{path}: rotation is {found:?}, expected a finite non-zero quaternion [w, x, y, z], its squared length above 1e-200 and at most 1e200"
     )]
     Rotation {
         /// Path of the member of the pose.

@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_out_along_the_normal_parts_the_bodies_and_the_point_lies_on_the_element() {
+    fn moving_by_the_depth_along_the_normal_separates_bodies() {
         let mut dice = Dice::new(21);
         let mut deep = 0;
         for _ in 0..2_000 {

@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_of_cp_has_the_quantiles_of_the_tables() {
+    fn the_interval_of_cp_matches_published_quantiles() {
         // chi-square with 49 degrees of freedom: 31.5549 and 70.2224.
         let found = of(Some(4.0), Some(13.0)).cp.unwrap().interval.unwrap();
         assert!((found.low - 1.5 * (31.5549_f64 / 49.0).sqrt()).abs() < 1e-5);
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn no_spread_leaves_nothing_to_say() {
+    fn no_spread_gives_no_index() {
         let limits = Limits {
             low: Some(0.0),
             high: Some(1.0),

@@ -117,7 +117,7 @@ pub fn shares(groups: &[(u64, u64)]) -> Option<Chart> {
             }
         })
         .collect();
-    let signals = rules::outside(&points);
+    let signals = rules::beyond_own_limits(&points);
     Some(Chart {
         kind: "share",
         points,
@@ -137,7 +137,7 @@ fn level(
     let points: Vec<Point> = values.iter().map(point).collect();
     let signals = match rules {
         Some(rules) => rules::signals(values, centre, (high - centre) / 3.0, rules),
-        None => rules::outside(&points),
+        None => rules::beyond_own_limits(&points),
     };
     Chart {
         kind,

@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_f64_swallows_comes_back() {
+    fn a_small_term_survives_a_large_sum() {
         let sum = Double::new(1e16)
             .plus(Double::new(0.125))
             .minus(Double::new(1e16));

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 /// Times and part counts of a period of production.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Seen {
+pub struct Observed {
     /// Time planned for production, s.
     pub planned_s: f64,
     /// Part of the planned time in which an alarm stopped the line, s.
@@ -47,16 +47,16 @@ pub struct Effectiveness {
 }
 
 /// Computes the effectiveness; `None` when no time ran or no part was tested.
-pub fn effectiveness(seen: Seen) -> Option<Effectiveness> {
-    let running = seen.planned_s - seen.stopped_s;
-    let net = seen.ideal_cycle_s * seen.parts as f64;
-    let valuable = seen.ideal_cycle_s * seen.good as f64;
+pub fn effectiveness(observed: Observed) -> Option<Effectiveness> {
+    let running = observed.planned_s - observed.stopped_s;
+    let net = observed.ideal_cycle_s * observed.parts as f64;
+    let valuable = observed.ideal_cycle_s * observed.good as f64;
     (running > 0.0 && net > 0.0).then(|| Effectiveness {
-        availability: running / seen.planned_s,
+        availability: running / observed.planned_s,
         performance: net / running,
         quality: valuable / net,
-        oee: valuable / seen.planned_s,
-        stopped_s: seen.stopped_s,
+        oee: valuable / observed.planned_s,
+        stopped_s: observed.stopped_s,
         slow_s: running - net,
         rejected_s: net - valuable,
     })
@@ -69,14 +69,14 @@ mod tests {
 
     #[test]
     fn every_second_is_valuable_or_in_one_loss() {
-        let seen = Seen {
+        let observed = Observed {
             planned_s: 28_800.0,
             stopped_s: 2_880.0,
             ideal_cycle_s: 1.2,
             parts: 18_000,
             good: 17_100,
         };
-        let it = effectiveness(seen).unwrap();
+        let it = effectiveness(observed).unwrap();
         assert!((it.availability - 0.9).abs() < 1e-12);
         assert!((it.performance - 21_600.0 / 25_920.0).abs() < 1e-12);
         assert!((it.quality - 0.95).abs() < 1e-12);
@@ -90,7 +90,7 @@ mod tests {
     /// 19,271 pieces, 423 rejected.
     #[test]
     fn a_published_shift_has_its_published_factors() {
-        let shift = Seen {
+        let shift = Observed {
             planned_s: 420.0 * 60.0,
             stopped_s: 47.0 * 60.0,
             ideal_cycle_s: 1.0,
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_tested_has_no_effectiveness() {
-        assert_eq!(effectiveness(Seen::default()), None);
+    fn no_tested_part_gives_no_effectiveness() {
+        assert_eq!(effectiveness(Observed::default()), None);
     }
 }

@@ -71,7 +71,7 @@ pub enum GaugeRrError {
     },
     /// The study is larger than the published factors of averages and ranges.
     #[error(
-        "found {parts} parts, {operators} operators, {trials} trials; averages and ranges have factors for up to 10, 3 and 3 (anova has no such end)"
+        "found {parts} parts, {operators} operators, {trials} trials; averages and ranges have factors for up to 10, 3 and 3 (use anova for more)"
     )]
     NoFactors {
         /// Parts found.
@@ -129,24 +129,24 @@ fn components(sizes: &Sizes, squares: &Squares) -> GaugeRr {
         operators,
         trials,
     } = *sizes;
-    let against = Against::of(sizes, squares);
-    let above = |mean_square: f64, each: f64| ((mean_square - against.main) / each).max(0.0);
+    let denominators = Denominators::of(sizes, squares);
+    let above = |mean_square: f64, each: f64| ((mean_square - denominators.main) / each).max(0.0);
     let reproducibility = if operators > 1.0 {
         above(squares.operators / (operators - 1.0), parts * trials)
     } else {
         0.0
     };
-    let interaction = ((against.main - against.error) / trials).max(0.0);
+    let interaction = ((denominators.main - denominators.error) / trials).max(0.0);
     let part = above(squares.parts / (parts - 1.0), operators * trials);
     deviations(
         "anova",
-        [against.error, reproducibility, interaction, part],
-        against.interaction_p,
+        [denominators.error, reproducibility, interaction, part],
+        denominators.interaction_p,
     )
 }
 
 /// Mean squares with which the sources of variation are compared.
-struct Against {
+struct Denominators {
     /// For parts and operators: the interaction, or the pooled residual.
     main: f64,
     /// For the interaction: the residual, or the pooled residual.
@@ -155,7 +155,7 @@ struct Against {
     interaction_p: Option<f64>,
 }
 
-impl Against {
+impl Denominators {
     fn of(sizes: &Sizes, squares: &Squares) -> Self {
         let crossed = (sizes.parts - 1.0) * (sizes.operators - 1.0);
         let repeats = sizes.parts * sizes.operators * (sizes.trials - 1.0);

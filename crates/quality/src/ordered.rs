@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_not_a_number_is_left_out() {
+    fn a_value_that_is_not_finite_is_ignored() {
         assert_eq!(Ordered::of(&[f64::NAN, 2.0]).len(), 1);
         assert!(Ordered::of(&[]).is_empty());
     }

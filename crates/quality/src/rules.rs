@@ -51,21 +51,21 @@ pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Sig
         .collect();
     let mut found = Vec::new();
     for at in 0..z.len() {
-        let speaking = speaking(&z[..=at], rules);
-        found.extend(speaking.into_iter().map(|rule| Signal { at, rule }));
+        let completed = completed(&z[..=at], rules);
+        found.extend(completed.into_iter().map(|rule| Signal { at, rule }));
     }
     found
 }
 
 /// Returns rule 1 for points outside their own limits, for charts whose limits differ from point to point.
-pub fn outside(points: &[Point]) -> Vec<Signal> {
+pub fn beyond_own_limits(points: &[Point]) -> Vec<Signal> {
     let beyond = |it: &Point| it.value > it.high || it.value < it.low;
     let places = points.iter().enumerate().filter(|(_, it)| beyond(it));
     places.map(|(at, _)| Signal { at, rule: 1 }).collect()
 }
 
 /// Returns the rules whose pattern the last point completes.
-fn speaking(z: &[f64], rules: Rules) -> Vec<u8> {
+fn completed(z: &[f64], rules: Rules) -> Vec<u8> {
     let side = match rules {
         Rules::Nelson => 9,
         Rules::WesternElectric => 8,
@@ -131,13 +131,13 @@ mod tests {
     use super::*;
 
     /// Returns the signals about a centre of 0 with a deviation of 1, as points and rules.
-    fn told(points: &[f64], rules: Rules) -> Vec<(usize, u8)> {
+    fn signals_of(points: &[f64], rules: Rules) -> Vec<(usize, u8)> {
         let found = signals(points, 0.0, 1.0, rules);
         found.into_iter().map(|it| (it.at, it.rule)).collect()
     }
 
     #[test]
-    fn every_rule_speaks_at_the_point_that_completes_its_pattern_and_not_before() {
+    fn every_rule_signals_when_its_pattern_is_complete() {
         let weave = |n: usize, high: f64| -> Vec<f64> {
             (0..n)
                 .map(|it| if it % 2 == 0 { high } else { -high })
@@ -158,29 +158,32 @@ mod tests {
             (8, vec![1.1, -1.2, -1.4, 1.2, 1.3, -1.1, -1.5, 1.2]),
         ];
         for (rule, points) in cases {
-            let before = told(&points[..points.len() - 1], Rules::Nelson);
+            let before = signals_of(&points[..points.len() - 1], Rules::Nelson);
             assert!(before.is_empty(), "rule {rule} before its end: {before:?}");
-            assert_eq!(told(&points, Rules::Nelson), [(points.len() - 1, rule)]);
+            assert_eq!(
+                signals_of(&points, Rules::Nelson),
+                [(points.len() - 1, rule)]
+            );
         }
     }
 
     #[test]
-    fn western_electric_is_content_with_eight_on_one_side_and_looks_at_no_trend() {
+    fn western_electric_needs_eight_on_one_side() {
         let side = [0.5, 0.4, 0.6, 0.3, 0.5, 0.4, 0.4, 0.6, 0.5];
-        assert_eq!(told(&side, Rules::WesternElectric), [(7, 2)]);
+        assert_eq!(signals_of(&side, Rules::WesternElectric), [(7, 2)]);
         let trend = [-0.9, -0.4, -0.1, 0.2, 0.6, 0.9];
-        assert_eq!(told(&trend, Rules::WesternElectric), []);
+        assert_eq!(signals_of(&trend, Rules::WesternElectric), []);
     }
 
     #[test]
-    fn a_pattern_that_goes_on_is_told_once() {
+    fn a_continuing_pattern_signals_once() {
         let long: Vec<f64> = (0..30).map(|n| 0.4 + f64::from(n % 2) * 0.1).collect();
-        let sides = told(&long, Rules::WesternElectric);
+        let sides = signals_of(&long, Rules::WesternElectric);
         assert_eq!(sides, [(7, 2)]);
     }
 
     #[test]
-    fn points_without_spread_say_nothing() {
+    fn points_without_spread_give_no_signal() {
         assert_eq!(signals(&[5.0; 14], 5.0, 0.0, Rules::Nelson), []);
     }
 }

@@ -132,7 +132,7 @@ fn shards_merge_to_the_figures_of_the_whole() {
 }
 
 #[test]
-fn few_or_equal_values_have_no_spread_to_speak_of() {
+fn few_or_equal_values_have_no_spread() {
     assert_eq!(
         (Spread::of(&[]).mean(), Spread::of(&[1.0]).sd()),
         (None, None)
@@ -152,7 +152,7 @@ fn the_median_is_exact() {
 }
 
 #[test]
-fn squares_beyond_the_range_of_f64_give_no_deviation_rather_than_none_at_all() {
+fn overflowing_squares_give_no_deviation() {
     let spread = Spread::of(&[1e308, -1e308, 0.0]);
     assert_eq!((spread.mean(), spread.sd()), (Some(0.0), None));
 }

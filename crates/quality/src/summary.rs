@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn cpk_follows_the_moving_range_and_ppk_the_whole_spread() {
+    fn cpk_uses_the_moving_range_ppk_the_spread() {
         let limits = Limits {
             low: Some(0.0),
             high: Some(5.0),

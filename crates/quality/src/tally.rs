@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tally_has_the_moments_of_the_whole_and_counts_every_value() {
+    fn a_tally_matches_the_moments_and_counts_every_value() {
         let values: Vec<f64> = (0..5_500)
             .map(|n| 7.0 + f64::from(n % 997) / 1000.0)
             .collect();

@@ -198,19 +198,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ohms_law_is_the_only_way_between_units() {
+    fn ohms_law_is_the_only_mixed_operation() {
         assert_eq!(Volt(5.0).over(Ampere(0.0125)), Ohm(400.0));
     }
 
     #[test]
-    fn a_unit_is_written_in_ascii_and_printed_with_its_sign() {
+    fn a_unit_has_an_ascii_and_a_printed_symbol() {
         assert_eq!(serde_json::json!(Unit::Milliohm), "mOhm");
         assert_eq!(Unit::Milliohm.sign(), "mΩ");
         assert_eq!(format!("[{:>3}]", Unit::Volt), "[  V]");
     }
 
     #[test]
-    fn a_span_never_runs_backwards() {
+    fn a_span_is_never_negative() {
         assert_eq!(RigTime(5).since(RigTime(9)), Span(0));
         assert_eq!(Span::seconds(f64::NAN), Span(0));
         assert_eq!(Span::seconds(0.0000014), Span(1));

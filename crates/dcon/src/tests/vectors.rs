@@ -51,7 +51,7 @@ fn said(vector: &Vector, reply: &[u8], checksum: bool) -> Vec<String> {
 }
 
 #[test]
-fn every_vector_means_what_its_manual_says() {
+fn every_vector_decodes_as_its_manual_states() {
     for vector in vectors() {
         for checksum in [false, true] {
             let said = said(&vector, &sealed(vector.reply, checksum), checksum);
@@ -68,7 +68,7 @@ fn every_vector_means_what_its_manual_says() {
 }
 
 #[test]
-fn no_vector_cut_off_anywhere_is_taken_for_a_value() {
+fn no_truncated_vector_decodes_to_a_value() {
     for vector in vectors() {
         let family = Family::of_name(vector.model).unwrap();
         for checksum in [false, true] {
@@ -95,7 +95,7 @@ fn no_vector_cut_off_anywhere_is_taken_for_a_value() {
 }
 
 #[test]
-fn no_vector_with_a_checksum_and_one_wrong_bit_is_taken_for_a_value() {
+fn no_vector_with_one_wrong_bit_passes_the_checksum() {
     for vector in vectors() {
         let whole = sealed(vector.reply, true);
         for command in readings(vector.request.as_bytes()) {
@@ -114,7 +114,7 @@ fn no_vector_with_a_checksum_and_one_wrong_bit_is_taken_for_a_value() {
 }
 
 #[test]
-fn without_a_checksum_the_range_of_the_module_still_refuses_what_it_cannot_say() {
+fn without_checksum_the_range_still_refuses_damaged_values() {
     use super::{A1, PERCENT, PT100, VOLTS, ch};
     use crate::{AnalogIn, Digital};
     let one = |form| {
@@ -140,7 +140,7 @@ fn without_a_checksum_the_range_of_the_module_still_refuses_what_it_cannot_say()
 }
 
 #[test]
-fn what_only_the_factory_may_do_is_known_by_its_characters() {
+fn factory_commands_are_recognised_by_their_characters() {
     use crate::factory;
     for request in [
         "$010",

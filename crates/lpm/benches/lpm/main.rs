@@ -16,7 +16,7 @@ use lpm::{Answer, Model, Move, Mover, Pose, Shape};
 use timing::{Rounds, Spread, TURNS, Timed, clock_ns, cold};
 use world::{KINDS, World, gripper, moves, world};
 
-/// Numbers of elements.
+/// Numbers of elements of the measured worlds.
 const SIZES: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
 /// Number of queries of each kind.
 const QUERIES: usize = 2_000;
@@ -65,12 +65,12 @@ struct Bench {
 fn built(world: &World) -> Model {
     let elements = world.elements.iter();
     let named = elements.map(|(shape, pose)| ("element", shape, pose));
-    Model::of(named).expect("the bodies of the scene")
+    Model::of(named).expect("valid bodies")
 }
 
 fn mover(parts: Vec<(Shape, Pose)>) -> Mover {
     let parts = parts.into_iter().map(|(shape, pose)| (pose, shape));
-    Mover::new(&Shape::Compound(parts.collect())).expect("a body of blocks and cylinders")
+    Mover::new(&Shape::Compound(parts.collect())).expect("valid blocks and cylinders")
 }
 
 fn stop(model: &Model, mover: &Mover, way: &Move) -> Option<f64> {
@@ -287,7 +287,7 @@ impl Bench {
             ours.turn(|index| {
                 let (shape, pose) = &world.elements[*index];
                 let key = model.insert("element", shape, pose);
-                model.remove(key.expect("a body of the scene"))
+                model.remove(key.expect("a valid body"))
             });
             double_edit.turn(&mut double);
             single_edit.turn(&mut single);

@@ -101,7 +101,7 @@ fn direction(dice: &mut Dice, a: &Piece, b: &Piece) -> Vec3 {
 }
 
 #[test]
-fn the_distance_of_any_two_pieces_is_proven_to_half_a_nanometre() {
+fn the_distance_is_proven_to_half_a_nanometre() {
     for seed in 0..60_000 {
         let mut dice = Dice::new(seed);
         let (shape_a, shape_b) = (dice.shape(), dice.shape());

@@ -24,7 +24,7 @@ pub use field::SceneError;
 pub use mesh_file::{MeshFault, MeshFiles};
 pub use moves::{MoveOrder, read_moves};
 pub use node::{At, Unreadable};
-pub use rig::Elsewhere;
+pub use rig::RigNames;
 
 use super::{Pose, Shape};
 use field::{Field, refuse};
@@ -77,10 +77,10 @@ impl Named {
 /// # Errors
 /// Returns the first [`SceneError`]: bodies in the order of the file, then the parts for the rig.
 pub fn read_scene(text: &str, format: Format, files: &mut MeshFiles) -> Result<Scene, SceneError> {
-    read_scene_of_rig(text, format, files, &Elsewhere::default())
+    read_scene_of_rig(text, format, files, &RigNames::default())
 }
 
-/// Reads a scene that may also name actuators and bodies of its rig, listed in `elsewhere`.
+/// Reads a scene that may also name actuators and bodies of its rig, listed in `rig_names`.
 ///
 /// # Errors
 /// Returns the same errors as [`read_scene`].
@@ -88,7 +88,7 @@ pub fn read_scene_of_rig(
     text: &str,
     format: Format,
     files: &mut MeshFiles,
-    elsewhere: &Elsewhere,
+    rig_names: &RigNames,
 ) -> Result<Scene, SceneError> {
     let text = without_mark(text);
     let read = match format {
@@ -118,7 +118,7 @@ pub fn read_scene_of_rig(
         .optional("movers")
         .map_or(Ok(Vec::new()), |list| named(&list, files))?;
     let scene = Scene { elements, movers };
-    rig::check(&table, &scene, elsewhere)?;
+    rig::check(&table, &scene, rig_names)?;
     Ok(scene)
 }
 

@@ -30,7 +30,7 @@ const PLACES: &[&str] = &["mouth", "pocket", "nest"];
 
 /// Names that a scene may use without describing them: those of its rig.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Elsewhere<'a> {
+pub struct RigNames<'a> {
     /// Names of actuators.
     pub actuators: &'a [&'a str],
     /// Names of bodies that are not elements, such as the part.
@@ -44,12 +44,12 @@ struct Names<'a> {
 }
 
 /// Refuses the first invalid entry in the parts of a scene for the rig.
-pub(super) fn check(root: &Table, scene: &Scene, elsewhere: &Elsewhere) -> Result<(), SceneError> {
+pub(super) fn check(root: &Table, scene: &Scene, rig_names: &RigNames) -> Result<(), SceneError> {
     let actuators = actuators(root)?;
     let bodies = scene.elements.iter().chain(&scene.movers);
     let names = Names {
-        actuators: joined(actuators.iter().map(|(id, _)| *id), elsewhere.actuators),
-        bodies: joined(bodies.map(|body| body.id.as_str()), elsewhere.bodies),
+        actuators: joined(actuators.iter().map(|(id, _)| *id), rig_names.actuators),
+        bodies: joined(bodies.map(|body| body.id.as_str()), rig_names.bodies),
     };
     for (list, bodies) in [("elements", &scene.elements), ("movers", &scene.movers)] {
         for (index, body) in bodies.iter().enumerate() {

@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_meets_a_box_is_shown_however_large_the_box_and_wherever_it_is() {
+    fn every_piece_that_meets_a_box_is_visited() {
         let mut dice = Dice::new(19);
         let mut large = 0;
         for round in 0..40 {
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn around_a_box_over_an_empty_space_is_nothing() {
+    fn an_empty_space_has_no_pieces_around_a_box() {
         let cover = Cover::of(([-1e3; 3], [1e3; 3]));
         assert!(shown(&Space::default(), &cover).is_empty());
         let mut plate_alone = Space::default();

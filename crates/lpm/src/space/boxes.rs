@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_shares_a_point_is_met_and_nobody_else() {
+    fn boxes_meet_exactly_when_they_share_a_point() {
         let mut dice = Dice::new(9);
         let mut met = 0;
         for _ in 0..2_000 {

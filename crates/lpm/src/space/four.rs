@@ -57,7 +57,7 @@ impl Four {
         Four(machine::smaller(self.0, other.0))
     }
 
-    /// The larger number of each pair, likewise.
+    /// The larger number of each pair; the one of `other` when they cannot be compared.
     #[inline(always)]
     pub(crate) fn larger(self, other: Four) -> Four {
         Four(machine::larger(self.0, other.0))
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn four_at_a_time_are_what_one_by_one_would_be() {
+    fn four_at_a_time_equals_one_by_one() {
         let mut dice = Dice::new(8);
         for _ in 0..4_000 {
             let (a, b) = (drawn(&mut dice), drawn(&mut dice));
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_rounded_is_the_nearest_whole_number() {
+    fn rounding_gives_the_nearest_whole_number() {
         let mut dice = Dice::new(12);
         for exponent in -30..22 {
             for _ in 0..100 {

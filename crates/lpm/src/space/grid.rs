@@ -110,7 +110,7 @@ impl Grid {
     /// Whether one of `steps` + 1 cells in a line may have a piece in one of these layers. Reads up to four cells
     /// without a branch between them; returns true for more.
     #[inline]
-    pub(crate) fn has_something(
+    pub(crate) fn may_have_piece(
         &self,
         first: usize,
         stride: usize,
@@ -139,7 +139,7 @@ impl Grid {
         self.pool.bundle(number)
     }
 
-    /// Returns the bundles of the open cell, likewise.
+    /// Returns the bundles of the open cell, if it has a piece in one of these layers.
     #[inline]
     pub(crate) fn open_in_layers(&self, layers: u64) -> Option<Chain<'_>> {
         (self.open_layers & layers != 0).then(|| self.pool.chain(self.open_head))

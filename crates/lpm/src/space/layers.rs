@@ -68,7 +68,7 @@ impl Reach {
 /// Counts and heights of all layers, and Omega.
 #[derive(Debug, Clone)]
 pub(crate) struct Layers {
-    /// Number of pieces that pass through each layer from below to above; likewise that begin, that end in it.
+    /// Number of pieces that pass through each layer from below to above; below, of those that begin or end in it.
     passing: [u32; LAYERS + SHORT],
     beginning: [u32; LAYERS],
     ending: [u32; LAYERS],
@@ -161,7 +161,7 @@ impl Layers {
     }
 
     /// Removes a piece. `h1` and `h2` of a layer stay (a superset is safe) until no piece begins or ends there.
-    pub(crate) fn leave(&mut self, reach: Reach) {
+    pub(crate) fn remove(&mut self, reach: Reach) {
         let (low, high) = (usize::from(reach.low), usize::from(reach.high));
         self.pass(reach, u32::MAX);
         self.beginning[low] -= 1;
@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn no_layer_that_reaches_into_the_asked_heights_is_left_out() {
+    fn every_layer_within_the_given_heights_is_returned() {
         let mut dice = Dice::new(3);
         let mut layers = Layers::default();
         let mut standing: Vec<(f32, f32, Reach)> = Vec::new();
@@ -229,7 +229,7 @@ mod tests {
             standing.push((bottom, top, joined(&mut layers, bottom, top)));
             if round % 3 > 0 {
                 let (.., gone) = standing.swap_remove(round % standing.len());
-                layers.leave(gone);
+                layers.remove(gone);
             }
             let low = (400.0 * dice.signed()) as f32;
             let high = low + (30.0 * dice.signed().abs()) as f32;
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn layers_of_many_pieces_at_once_are_those_of_one_after_the_other() {
+    fn layers_built_at_once_equal_layers_built_singly() {
         let mut dice = Dice::new(29);
         for count in [0, 1, 7, 400] {
             let covers: Vec<Cover> = (0..count)
@@ -273,15 +273,15 @@ mod tests {
         let plate = joined(&mut layers, -20.0, 0.0);
         let tower = joined(&mut layers, 0.0, 180.0);
         assert_eq!((layers.bottom, layers.top), (-20.0, 180.0));
-        layers.leave(tower);
+        layers.remove(tower);
         assert_eq!((layers.bottom, layers.top), (-20.0, 0.0));
         assert_eq!(layers.meeting(0.1, 300.0), 0);
-        layers.leave(plate);
+        layers.remove(plate);
         assert_eq!(layers.meeting(-1e6, 1e6), 0);
     }
 
     #[test]
-    fn what_passes_between_the_real_ends_of_a_layer_shares_none() {
+    fn a_box_between_actual_layer_ends_shares_none() {
         let mut layers = Layers::default();
         joined(&mut layers, -20.0, 2.0);
         joined(&mut layers, 5.0, 40.0);

@@ -54,7 +54,7 @@ impl Space {
     #[inline]
     pub(crate) fn remove(&mut self, piece: u32) {
         let seat = &self.seats[piece as usize];
-        self.layers.leave(seat.reach);
+        self.layers.remove(seat.reach);
         self.grid.take(piece, seat);
     }
 

@@ -195,7 +195,7 @@ mod tests {
     use crate::distance::tests::Dice;
 
     #[test]
-    fn a_bundle_reaches_from_the_lowest_to_the_highest_layer_of_all_that_stay() {
+    fn the_layer_word_spans_all_remaining_lanes() {
         let mut dice = Dice::new(17);
         for _ in 0..2_000 {
             let mut bundle = Bundle::before(NONE);

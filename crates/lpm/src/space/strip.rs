@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_a_box_passes_of_a_band_is_in_the_strip() {
+    fn the_strip_contains_every_passed_square() {
         let mut dice = Dice::new(23);
         let (mut passed, mut spared) = (0, 0);
         for _ in 0..400 {

@@ -120,7 +120,7 @@ impl<'a, V: Visit> Walk<'a, V> {
             let first = self.grid.place(area.low[0], row);
             if !self
                 .grid
-                .has_something(first, 1, area.high[0] - area.low[0], self.layers)
+                .may_have_piece(first, 1, area.high[0] - area.low[0], self.layers)
             {
                 continue;
             }
@@ -151,7 +151,7 @@ impl<'a, V: Visit> Walk<'a, V> {
                 self.grid.place(area.low[0] + from, band)
             };
             let steps = to - from;
-            if !self.grid.has_something(first, stride, steps, self.layers) {
+            if !self.grid.may_have_piece(first, stride, steps, self.layers) {
                 continue;
             }
             for square in 0..=steps as usize {

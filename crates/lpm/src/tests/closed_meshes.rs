@@ -97,7 +97,7 @@ fn is_inside(soup: &Soup, at: [f64; 3]) -> bool {
 const MIDDLE: [f64; 3] = [0.0; 3];
 
 #[test]
-fn what_is_in_one_of_two_surfaces_that_reach_into_each_other_is_inside() {
+fn the_inside_of_two_intersecting_surfaces_is_solid() {
     let both = Soup::cube(10.0).with(Soup::cuboid([0.0, -8.0, -8.0], [20.0, 8.0, 8.0]));
     for x in [-5.0, 5.0, 15.0] {
         assert!(is_inside(&both, [x, 0.3, 0.2]), "{x}");
@@ -107,7 +107,7 @@ fn what_is_in_one_of_two_surfaces_that_reach_into_each_other_is_inside() {
 }
 
 #[test]
-fn a_surface_that_comes_more_than_once_is_solid() {
+fn a_repeated_surface_is_solid() {
     let cube = Soup::cube(10.0);
     let (first, again) = (cube.triangles[0], cube.clone());
     assert!(is_inside(&again.and(first), MIDDLE));
@@ -132,7 +132,7 @@ fn a_surface_that_comes_more_than_once_is_solid() {
 }
 
 #[test]
-fn a_stray_triangle_opens_nothing() {
+fn a_stray_triangle_leaves_the_mesh_closed() {
     let stray = |low: f64| Soup {
         vertices: vec![[low; 3], [low + 1.0, low, low], [low, low + 1.0, low + 0.5]],
         triangles: vec![[0, 1, 2]],
@@ -152,7 +152,7 @@ fn a_stray_triangle_opens_nothing() {
 }
 
 #[test]
-fn rooms_behind_a_wall_are_inside() {
+fn spaces_behind_an_inner_wall_are_inside() {
     // A wall across the middle that shares its corners with the sides.
     let wall = Soup {
         vertices: vec![
@@ -174,7 +174,7 @@ fn rooms_behind_a_wall_are_inside() {
 }
 
 #[test]
-fn a_surface_is_closed_although_a_corner_is_not_where_its_neighbour_has_it() {
+fn a_surface_with_mismatched_corners_is_closed() {
     let mut cracked = Soup::cube(10.0).loose();
     cracked.vertices[0][0] += 1e-9;
     assert!(is_inside(&cracked, MIDDLE));
@@ -198,7 +198,7 @@ fn a_surface_is_closed_although_a_corner_is_not_where_its_neighbour_has_it() {
 }
 
 #[test]
-fn a_hole_is_a_surface_within_another_that_is_turned_the_other_way() {
+fn an_inner_surface_of_opposite_orientation_is_a_hole() {
     let hollow = Soup::cube(10.0).with(Soup::cube(5.0).turned_over());
     for soup in [hollow.clone(), hollow.clone().turned_over()] {
         assert!(!is_inside(&soup, MIDDLE));
@@ -212,7 +212,7 @@ fn a_hole_is_a_surface_within_another_that_is_turned_the_other_way() {
 }
 
 #[test]
-fn what_has_an_opening_is_its_triangles() {
+fn an_open_mesh_is_its_triangles() {
     for missing in 0..12 {
         let mut open = Soup::cube(10.0);
         open.triangles.remove(missing);

@@ -65,7 +65,7 @@ fn same(a: (Option<f64>, f64), b: (Option<f64>, f64), seed: u64) {
 }
 
 #[test]
-fn it_does_not_matter_which_of_both_moves() {
+fn exchanging_mover_and_element_changes_no_answer() {
     for seed in 0..500 {
         let it = drawn(&mut Dice::new(seed));
         let back = it.run.map(|member| -member);
@@ -78,7 +78,7 @@ fn it_does_not_matter_which_of_both_moves() {
 }
 
 #[test]
-fn a_common_shift_and_a_change_of_axes_change_nothing() {
+fn shifts_and_changes_of_axes_change_no_answer() {
     for seed in 1_000..1_400 {
         let it = drawn(&mut Dice::new(seed));
         let plain = answer(&it.element, it.at, &it.mover, it.from, it.run);
@@ -120,7 +120,7 @@ fn a_common_shift_and_a_change_of_axes_change_nothing() {
 }
 
 #[test]
-fn a_larger_margin_stops_no_later_and_a_longer_way_no_less() {
+fn larger_margins_and_longer_moves_stop_no_later() {
     for seed in 2_000..2_300 {
         let it = drawn(&mut Dice::new(seed));
         let model = standing(&it.element, it.at);
@@ -147,7 +147,7 @@ fn a_larger_margin_stops_no_later_and_a_longer_way_no_less() {
 }
 
 #[test]
-fn what_came_and_went_leaves_every_answer_as_it_was_bit_for_bit() {
+fn removed_elements_leave_every_answer_identical_in_bits() {
     for seed in 3_000..3_060 {
         let mut dice = Dice::new(seed);
         let it = drawn(&mut dice);
@@ -174,7 +174,7 @@ fn what_came_and_went_leaves_every_answer_as_it_was_bit_for_bit() {
 }
 
 #[test]
-fn the_stop_is_where_the_clearance_runs_out() {
+fn the_clearance_reaches_zero_at_the_stop() {
     // The path up to just before the stop is clear, and the stop itself is within the margin.
     for seed in 4_000..4_400 {
         let it = drawn(&mut Dice::new(seed));
@@ -196,7 +196,7 @@ fn the_stop_is_where_the_clearance_runs_out() {
 }
 
 #[test]
-fn a_body_at_rest_is_judged_like_the_beginning_of_its_way() {
+fn a_body_at_rest_is_checked_like_a_start() {
     let mut dice = Dice::new(41);
     let (mut met, mut clear) = (0, 0);
     for round in 0..60 {

@@ -60,7 +60,7 @@ fn is_grazing(element: &Body, mover: &Body, run: [i64; 3]) -> bool {
 }
 
 #[test]
-fn the_exact_truth_knows_a_triangle_of_three_four_five() {
+fn the_exact_truth_solves_a_3_4_5_triangle() {
     // Corner of a block at (10, 10); a disc of radius 5 whose centre passes (13, 14), or slightly beside it.
     let block = Body::block([0; 3], [10_000, 10_000, 5]);
     let disc = |x: i64, y: i64| Body::cylinder([x, y, 0], 5_000, 5);
@@ -82,7 +82,7 @@ fn the_exact_truth_knows_a_triangle_of_three_four_five() {
 }
 
 #[test]
-fn the_exact_truth_sees_what_dense_sampling_sees() {
+fn the_exact_truth_agrees_with_dense_sampling() {
     // A coarse world in which sampling at a thousand places cannot miss a contact of whole units.
     let mut dice = crate::distance::tests::Dice::new(5);
     let mut met = 0;

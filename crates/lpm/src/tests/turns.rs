@@ -85,7 +85,7 @@ impl Turned {
 }
 
 #[test]
-fn no_sample_of_a_cleared_turn_is_within_the_margin_and_no_stop_is_late() {
+fn dense_samples_confirm_every_clear_turn_and_stop() {
     let mut blocked = 0;
     for seed in 0..250 {
         let turned = Turned::drawn(seed);
@@ -135,7 +135,7 @@ fn no_sample_of_a_cleared_turn_is_within_the_margin_and_no_stop_is_late() {
 }
 
 #[test]
-fn the_clearance_of_a_turn_is_no_larger_than_any_sample_and_is_really_reached() {
+fn the_clearance_of_a_turn_matches_dense_samples() {
     for seed in 500..620 {
         let turned = Turned::drawn(seed);
         let found = turned
@@ -159,7 +159,7 @@ fn the_clearance_of_a_turn_is_no_larger_than_any_sample_and_is_really_reached() 
 }
 
 #[test]
-fn a_turn_with_two_valleys_of_nearly_the_same_depth_has_the_clearance_of_the_deeper_one() {
+fn the_clearance_of_a_turn_finds_the_deeper_valley() {
     // The samples find the other valley, 14.92486 mm. On the slope of the deeper one a distance is lower by just
     // the resolution, 2e-4 mm; a search that demands more than the resolution cannot advance there.
     let model = standing(&Shape::Block { half: [3.0; 3] }, Pose::IDENTITY);
@@ -192,7 +192,7 @@ fn a_turn_with_two_valleys_of_nearly_the_same_depth_has_the_clearance_of_the_dee
 }
 
 #[test]
-fn a_turn_there_and_back_has_one_verdict() {
+fn a_reversed_turn_has_the_same_verdict() {
     for seed in 900..1_050 {
         let turned = Turned::drawn(seed);
         let back = way(turned.to, turned.from);
@@ -212,7 +212,7 @@ fn a_turn_there_and_back_has_one_verdict() {
 }
 
 #[test]
-fn a_disc_that_turns_in_place_beside_a_wall_is_clear_beyond_the_bound_and_blocked_at_touch() {
+fn a_disc_turning_near_a_wall_stays_clear() {
     // The distance never changes, the hardest case for conservative advancement. Turned about its axis, and
     // tumbled.
     let wall = standing(&block(5.0, 100.0, 100.0), Pose::IDENTITY);
@@ -227,7 +227,7 @@ fn a_disc_that_turns_in_place_beside_a_wall_is_clear_beyond_the_bound_and_blocke
 }
 
 #[test]
-fn a_turn_by_next_to_nothing_is_the_straight_move() {
+fn a_tiny_turn_equals_the_straight_move() {
     let post = standing(&cylinder(4.0, 30.0), Pose::at([50.0, 0.0, 0.0]));
     let mover = block(3.0, 3.0, 3.0);
     let straight_stop = stop(&post, &mover, &straight([0.0; 3], [100.0, 0.0, 0.0])).unwrap();
@@ -244,7 +244,7 @@ fn a_turn_by_next_to_nothing_is_the_straight_move() {
 }
 
 #[test]
-fn an_arm_far_from_its_axis_is_swept_along_its_arc_and_not_its_chord() {
+fn a_long_arm_sweeps_its_arc_not_its_chord() {
     // The part lies 400 mm from the axis; a quarter turn bulges 117 mm out of the chord.
     let arm = Shape::Compound(vec![(Pose::at([400.0, 0.0, 0.0]), block(2.0, 2.0, 2.0))]);
     let quarter = way(

@@ -15,7 +15,7 @@ fn face(corners: &[[f64; 3]]) -> Vec<u8> {
 }
 
 #[test]
-fn a_convex_face_is_cut_into_a_fan_however_it_lies() {
+fn a_convex_face_of_any_orientation_becomes_a_fan() {
     for turn in [0.0_f64, 0.1, 0.7, 1.3] {
         for count in [4, 5, 6, 60, 400] {
             let corner = |index: usize| {
@@ -40,7 +40,7 @@ fn a_convex_face_is_cut_into_a_fan_however_it_lies() {
 }
 
 #[test]
-fn a_face_that_is_a_triangle_a_segment_or_a_point_is_legal() {
+fn a_degenerate_face_is_legal() {
     let (a, b, c, m) = ([0.0; 3], [8.0, 0.0, 6.0], [0.0, 5.0, 1.0], [4.0, 0.0, 3.0]);
     for corners in [
         &[a, a, b, c][..],
@@ -83,7 +83,7 @@ fn leaning(flat: &[[f64; 2]], height: f64) -> Vec<[f64; 3]> {
 }
 
 #[test]
-fn a_face_that_is_not_flat_and_convex_is_refused() {
+fn a_bent_or_concave_face_is_refused() {
     let square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
     let star = [0.0, 2.0, 4.0, 1.0, 3.0].map(|it| {
         let angle = it * std::f64::consts::TAU / 5.0;

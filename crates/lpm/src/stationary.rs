@@ -15,8 +15,8 @@ pub(crate) const NONE: u32 = u32::MAX;
 
 /// A placed stationary piece.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Standing {
-    pub(crate) form: Stands,
+pub(crate) struct Stationary {
+    pub(crate) form: Stored,
     /// The element to which the piece belongs.
     pub(crate) owner: ElementKey,
     /// Number of another piece of the same element, or [`NONE`].
@@ -25,7 +25,7 @@ pub(crate) struct Standing {
 
 /// Form in which a piece is stored.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Stands {
+pub(crate) enum Stored {
     /// Upright: closed forms apply.
     Upright(Prism),
     /// Tilted or a triangle: index of the whole piece.
@@ -35,7 +35,7 @@ pub(crate) enum Stands {
 /// All stationary pieces by the numbers that the space uses.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Pieces {
-    standing: Vec<Standing>,
+    pieces: Vec<Stationary>,
     free: Vec<u32>,
     askew: Vec<Piece>,
     free_askew: Vec<u32>,
@@ -45,7 +45,7 @@ impl Pieces {
     /// Adds the pieces of a checked shape, enters their boxes into `space` and returns the number of the first
     /// piece in the chain of siblings.
     #[inline]
-    pub(crate) fn stand(
+    pub(crate) fn insert(
         &mut self,
         space: &mut impl Entering,
         shape: &Shape,
@@ -55,16 +55,16 @@ impl Pieces {
         // Nearly all elements are one upright block or cylinder and skip the general piece.
         if let Some(prism) = Prism::standing(shape, pose) {
             let cover = Cover::of(prism.bounds());
-            return self.enter(space, Stands::Upright(prism), &cover, owner, NONE);
+            return self.enter(space, Stored::Upright(prism), &cover, owner, NONE);
         }
         let frame = Frame::of(pose.rotation);
         let mut first = NONE;
         each_piece(shape, |piece| {
             let piece = piece.placed(&frame, pose.position);
             let form = if piece.upright {
-                Stands::Upright(Prism::of(&piece))
+                Stored::Upright(Prism::of(&piece))
             } else {
-                Stands::Askew(kept(&mut self.askew, &mut self.free_askew, piece))
+                Stored::Askew(kept(&mut self.askew, &mut self.free_askew, piece))
             };
             let cover = Cover::of(piece.bounds());
             first = self.enter(space, form, &cover, owner, first);
@@ -76,25 +76,25 @@ impl Pieces {
     fn enter(
         &mut self,
         space: &mut impl Entering,
-        form: Stands,
+        form: Stored,
         cover: &Cover,
         owner: ElementKey,
         sibling: u32,
     ) -> u32 {
-        let standing = Standing {
+        let stationary = Stationary {
             form,
             owner,
             sibling,
         };
-        let number = kept(&mut self.standing, &mut self.free, standing);
+        let number = kept(&mut self.pieces, &mut self.free, stationary);
         space.enter(number, cover);
         number
     }
 
     /// Removes a piece and returns the number of the next piece of its element.
     #[inline]
-    pub(crate) fn let_go(&mut self, number: u32) -> u32 {
-        if let Stands::Askew(whole) = self.at(number).form {
+    pub(crate) fn remove(&mut self, number: u32) -> u32 {
+        if let Stored::Askew(whole) = self.at(number).form {
             self.free_askew.push(whole);
         }
         self.free.push(number);
@@ -102,26 +102,26 @@ impl Pieces {
     }
 
     #[inline]
-    pub(crate) fn at(&self, number: u32) -> &Standing {
-        &self.standing[number as usize]
+    pub(crate) fn at(&self, number: u32) -> &Stationary {
+        &self.pieces[number as usize]
     }
 
     /// Returns the whole piece, for searches.
     pub(crate) fn piece(&self, number: u32) -> Piece {
         match &self.at(number).form {
-            Stands::Upright(prism) => prism.piece(),
-            Stands::Askew(whole) => self.askew[*whole as usize],
+            Stored::Upright(prism) => prism.piece(),
+            Stored::Askew(whole) => self.askew[*whole as usize],
         }
     }
 
     /// Reserves room for `count` more pieces.
     pub(crate) fn reserve(&mut self, count: usize) {
-        self.standing.reserve(count);
+        self.pieces.reserve(count);
     }
 
     /// Heap in use, bytes.
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.standing.capacity() * size_of::<Standing>()
+        self.pieces.capacity() * size_of::<Stationary>()
             + self.askew.capacity() * size_of::<Piece>()
             + (self.free.capacity() + self.free_askew.capacity()) * size_of::<u32>()
     }

@@ -28,9 +28,9 @@ impl Command {
     }
 
     /// Whether `found`, the reply to [`Command::setting`], shows that writing would change nothing.
-    pub fn stands(&self, found: &Reply) -> bool {
+    pub fn is_in_effect(&self, found: &Reply) -> bool {
         match (*self, *found) {
-            (Self::Common(_, ask), found) => common_stands(ask, found),
+            (Self::Common(_, ask), found) => is_common_in_effect(ask, found),
             (Self::AnalogIn(_, AnalogIn::WriteMask(mask)), Reply::Byte(found)) => mask == found,
             (
                 Self::AnalogIn(_, AnalogIn::WriteChannelRange { range, .. }),
@@ -43,7 +43,7 @@ impl Command {
                     slew: found_slew,
                 },
             ) => found.0 & 0xF == range.get() && found_slew == slew,
-            (Self::Counter(_, ask), found) => counter_stands(ask, found),
+            (Self::Counter(_, ask), found) => is_counter_in_effect(ask, found),
             (_, _) => false,
         }
     }
@@ -71,7 +71,7 @@ fn common(ask: Common) -> Option<Common> {
     }
 }
 
-fn common_stands(ask: Common, found: Reply) -> bool {
+fn is_common_in_effect(ask: Common, found: Reply) -> bool {
     match (ask, found) {
         (
             Common::WriteConfig { address, config },
@@ -79,7 +79,7 @@ fn common_stands(ask: Common, found: Reply) -> bool {
                 address: found,
                 config: set,
             },
-        ) => address == found && meant(config) == meant(set),
+        ) => address == found && settings_of(config) == settings_of(set),
         (Common::WriteName(name), Reply::Text(found)) => {
             name.as_bytes() == found.as_str().as_bytes()
         }
@@ -101,7 +101,7 @@ fn common_stands(ask: Common, found: Reply) -> bool {
 }
 
 /// Returns the settings in a configuration word, without its model code.
-fn meant(config: Config) -> Config {
+fn settings_of(config: Config) -> Config {
     let FormatByte(format) = config.format;
     let format = match config.type_code {
         TypeCode::DIGITAL => format & !MODEL_BITS,
@@ -180,7 +180,7 @@ fn counter(ask: Counter) -> Option<Counter> {
     }
 }
 
-fn counter_stands(ask: Counter, found: Reply) -> bool {
+fn is_counter_in_effect(ask: Counter, found: Reply) -> bool {
     match (ask, found) {
         (
             Counter::WritePreset(_, value)
