@@ -2,9 +2,8 @@
 //! damaged.
 //!
 //! An eight-bit checksum lets one damaged reply in 256 pass. Damage rarely repeats identically, so two consecutive
-//! equal answers are both believed. Moving or noisy quantities differ between answers; they are read a third time
-//! and the answer between the other two is believed: one damaged answer of three cannot push it beyond the two
-//! intact ones.
+//! equal answers are both taken as true. Moving or noisy quantities differ between answers; they are read a third time and
+//! the answer between the other two is believed: one damaged answer of three cannot push it beyond the two intact ones.
 //!
 //! | three answers, no two consecutive ones equal | believed |
 //! |---|---|

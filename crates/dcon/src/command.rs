@@ -94,8 +94,7 @@ impl Command {
         self.nature() == Nature::Read
     }
 
-    /// Whether the module writes, or may write, its EEPROM. Such a command must not be sent cyclically or during a
-    /// lot.
+    /// Whether the module writes, or may write, its EEPROM. Such a command must not be sent cyclically or during a lot.
     pub fn writes_eeprom(&self) -> bool {
         self.nature() == Nature::Store
     }

@@ -65,8 +65,7 @@ pub struct AlarmState {
     pub outputs: u8,
 }
 
-/// Commands of the 7080. A reply with a count carries no address, so only lead, length and hex digits can be
-/// checked.
+/// Commands of the 7080. A reply with a count carries no address, so only lead, length and hex digits can be checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Counter {
     /// `#AAN` for type code 50: the count.
@@ -111,8 +110,7 @@ pub enum Counter {
     WriteThreshold(Edge, UpTo<50>),
     /// `@AADI`: alarm state and outputs.
     ReadAlarm,
-    /// `~AAAS`: sets the alarm mode; true = both limits on counter 0 (mode 1), false = one limit per counter (mode
-    /// 0).
+    /// `~AAAS`: sets the alarm mode; true = both limits on counter 0 (mode 1), false = one limit per counter (mode 0).
     WriteAlarmMode(bool),
     /// `@AAEAT`, mode 1: enables the alarm.
     EnableAlarm(AlarmKind),

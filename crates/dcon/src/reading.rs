@@ -1,9 +1,8 @@
 //! Readings of analog inputs: the characters as sent, and their meaning.
 //!
 //! A reading is a number or one of three states that must never become a number: over range, under range, blank
-//! (channel disabled). The end values of the hex notation (7FFF, 8000) count as over and under range, because the
-//! true value may lie anywhere beyond.
-//! terminal may be anywhere beyond.
+//! (channel disabled). The end values of the hex notation (7FFF, 8000) count as over and under range, because the true
+//! value may lie anywhere beyond.
 
 use super::fields::Fields;
 use super::frame::hex_digit;
@@ -194,8 +193,7 @@ enum Decimal {
     },
 }
 
-/// Parses a sign and five digits with one point among them. The sign may be missing only from an over-range
-/// reading.
+/// Parses a sign and five digits with one point among them. The sign may be missing only from an over-range reading.
 fn decimal(field: &[u8]) -> Option<Decimal> {
     let (negative, digits) = match field {
         [b'+', rest @ ..] => (false, rest),

@@ -10,7 +10,7 @@ pub struct ElementKey {
 }
 
 impl ElementKey {
-    /// Stands for the blocker where no element is to blame: the move or the mover itself is not valid.
+    /// Reported as blocker when the move or the mover itself is invalid, so that no element is to blame.
     /// [`Model::id`](super::Model::id) returns `"(undecidable)"` for it.
     pub const UNDECIDABLE: ElementKey = ElementKey {
         slot: u32::MAX,

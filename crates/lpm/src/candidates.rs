@@ -3,8 +3,7 @@
 
 use super::space::LANES;
 
-/// Most candidates kept at a time. With more, some are checked out of order, which costs time but changes no
-/// answer.
+/// Most candidates kept at a time. With more, some are checked out of order, which costs time but changes no answer.
 const MOST: usize = 32;
 
 /// The candidates found so far, at most [`MOST`].

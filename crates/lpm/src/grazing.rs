@@ -4,8 +4,7 @@
 //! 1e-12 mm moves the contact by 1e-5 mm. Where the places themselves were reached without rounding, twice the
 //! digits decide whether the discs touch at all, and where.
 
-/// A number as the unevaluated sum of two f64, the second below the last place of the first (after Dekker and
-/// Knuth).
+/// A number as the unevaluated sum of two f64, the second below the last place of the first (after Dekker and Knuth).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Twofold(f64, f64);
 

@@ -39,12 +39,11 @@
 //! | [`exact`] | the true answer in whole numbers, for tests and benchmarks |
 //!
 //! # The layer-based projection model
-//! After Peng and others (2010), sections 3 and 4. A checking space Omega over the baseplate follows the height of
-//! its elements and is cut into layers `{h1, h2, V, B}`; elements are inserted and removed one by one. The broad
-//! phase tests layer, silhouette and oriented box in this order and stops at the first miss. The layout of `V`, the
-//! choice of layers and everything behind the broad phase are this library's own. The oriented box is not a
-//! separate step here: the piece itself is tested instead, in closed form (`meeting`, `touch`) or by a separating
-//! plane (`distance`).
+//! After Peng and others (2010), sections 3 and 4. A checking space Omega over the baseplate follows the height of its
+//! elements and is cut into layers `{h1, h2, V, B}`; elements are inserted and removed one by one. The broad phase
+//! tests layer, silhouette and oriented box in this order and stops at the first miss. The layout of `V`, the choice of
+//! layers and everything behind the broad phase are this library's own. The oriented box is not a separate step here:
+//! the piece itself is tested instead, in closed form (`meeting`, `touch`) or by a separating plane (`distance`).
 //!
 //! # Continuous and exact checks
 //! The paper checks poses (`rest`); this library also checks paths. Upright blocks and cylinders on a straight path

@@ -1,5 +1,4 @@
-//! The model of the stationary elements: insertion, removal, names. The questions are in
-//! [`question`](super::question).
+//! The model of the stationary elements: insertion, removal, names. The questions are in [`question`](super::question).
 
 use super::answer::ElementKey;
 use super::interior::Interior;

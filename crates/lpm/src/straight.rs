@@ -91,8 +91,7 @@ pub(crate) fn first_within(
     Some(Hit { t, gap })
 }
 
-/// Returns the least distance over the move as `(t, distance)`, or `None` when it is proven to be above `cutoff`
-/// (mm).
+/// Returns the least distance over the move as `(t, distance)`, or `None` when it is proven to be above `cutoff` (mm).
 pub(crate) fn least(
     element: &Piece,
     mover: &Piece,

@@ -165,8 +165,7 @@ impl Askew {
         }
     }
 
-    /// A corner of the mover touches a side of the element. Returns depth, normal and point in the axes of the
-    /// element.
+    /// A corner of the mover touches a side of the element. Returns depth, normal and point in the axes of the element.
     #[inline(always)]
     fn on_a_side(&self, element: &Prism, mover: &Prism) -> (f64, [f64; 2], [f64; 2]) {
         let [a, b, _] = element.half;

@@ -55,8 +55,7 @@ pub(crate) fn reach(a: Vec3) -> f64 {
 
 /// Unit vector along `a`; `None` when `a` is too short to have a direction, or not finite.
 ///
-/// Scales by the largest member first, so that vectors as short as 1e-150 mm keep all the digits of their
-/// direction.
+/// Scales by the largest member first, so that vectors as short as 1e-150 mm keep all the digits of their direction.
 #[inline]
 pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
     let largest = a[0].abs().max(a[1].abs()).max(a[2].abs());

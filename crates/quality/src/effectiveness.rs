@@ -1,7 +1,6 @@
 //! Overall equipment effectiveness (OEE), with the losses of time.
 //!
-//! OEE = availability x performance x quality, where each factor is the share of one of these times in the one
-//! before:
+//! OEE = availability x performance x quality, where each factor is the share of one of these times in the one before:
 //!
 //! 1. planned: from the start of a run to its end;
 //! 2. running: planned less the time in alarm;

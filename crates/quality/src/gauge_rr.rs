@@ -1,9 +1,8 @@
 //! Gauge repeatability and reproducibility by analysis of variance with interaction.
 //!
-//! In a crossed study every operator measures every part the same number of times, at least twice. The sum of
-//! squares is split into parts, operators, their interaction and the residual; the interaction is pooled with the
-//! residual when its F test gives p > 0.25. Negative components of variance count as zero. All results are standard
-//! deviations.
+//! In a crossed study every operator measures every part the same number of times, at least twice. The sum of squares
+//! is split into parts, operators, their interaction and the residual; the interaction is pooled with the residual when
+//! its F test gives p > 0.25. Negative components of variance count as zero. All results are standard deviations.
 
 use super::crossing;
 use super::squares::{Sizes, Squares};

@@ -52,8 +52,7 @@ impl Ordered {
         Some(low + (place - below) * (high - low))
     }
 
-    /// Returns about `classes` classes over all values, with edges on round numbers; `None` when all values are
-    /// equal.
+    /// Returns about `classes` classes over all values, with edges on round numbers; `None` when all values are equal.
     pub fn histogram(&self, classes: usize) -> Option<Histogram> {
         let (&low, &high) = (self.0.first()?, self.0.last()?);
         let width = round_step((high - low) / classes.max(1) as f64)?;

@@ -35,8 +35,7 @@ pub struct Signal {
     pub rule: u8,
 }
 
-/// Returns the signals of a set of rules, in the order of the points. `sigma` is the standard deviation of one
-/// point.
+/// Returns the signals of a set of rules, in the order of the points. `sigma` is the standard deviation of one point.
 pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Signal> {
     // Deviations from the centre in units of `sigma`; with `sigma` zero, points off the centre are infinitely far.
     let z: Vec<f64> = points

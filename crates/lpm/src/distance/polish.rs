@@ -1,10 +1,9 @@
 //! Finds the last digits of a plane by cutting planes in the space of directions.
 //!
 //! The walk over simplices loses digits when the nearest vector is tiny compared with the pieces (a micrometre to a
-//! metre). Directions keep theirs: every support point `w` of `b - a` bounds the separation along any direction `m`
-//! by `m·w`, a number without cancellation. In the tangent plane of the current direction the separation is the
-//! minimum of such linear functions; the maximum of this minimum over the support points seen so far is the next
-//! direction to try.
+//! metre). Directions keep theirs: every support point `w` of `b - a` bounds the separation along any direction `m` by
+//! `m·w`, a number without cancellation. In the tangent plane of the current direction the separation is the minimum of
+//! such linear functions; the maximum of this minimum over the support points seen so far is the next direction to try.
 
 use super::simplex::support;
 use crate::piece::Piece;
@@ -103,8 +102,7 @@ fn tangents(n: Vec3) -> [Vec3; 2] {
     [u, cross(n, u)]
 }
 
-/// Returns the place within the square of half side `reach` where the minimum of the cuts is highest, and that
-/// value.
+/// Returns the place within the square of half side `reach` where the minimum of the cuts is highest, and that value.
 fn highest(cuts: &[Cut], reach: f64) -> ([f64; 2], f64) {
     let value = |place: [f64; 2]| {
         cuts.iter()

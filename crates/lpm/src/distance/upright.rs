@@ -47,8 +47,7 @@ fn footprint(piece: &Piece) -> (Footprint, f64) {
             )
         }
         Form::Cylinder { radius, half } => (Footprint::Disc(radius), half),
-        // Triangles are never upright. A point in their place would yield a poor plane at worst, never a false
-        // proof.
+        // Triangles are never upright. A point in their place would yield a poor plane at worst, never a false proof.
         Form::Triangle(_) => (Footprint::Disc(0.0), 0.0),
     }
 }
@@ -121,8 +120,7 @@ fn towards(flat: Flat, fraction: f64) -> Vec2 {
     ]
 }
 
-/// Returns the nearest points from a rectangle (half extents, first axis `x`, centred at the origin) to the point
-/// `p`.
+/// Returns the nearest points from a rectangle (half extents, first axis `x`, centred at the origin) to the point `p`.
 fn point_from_rectangle(half: Vec2, x: Vec2, p: Vec2) -> Flat {
     let local = [p[0] * x[0] + p[1] * x[1], p[1] * x[0] - p[0] * x[1]];
     let near = [

@@ -1,10 +1,9 @@
 //! Reads triangles from STL (binary or text) and OBJ; the extension selects the format.
 //!
 //! Damaged or ambiguous files are refused: a mesh that lost a triangle may be open, and an open mesh gives a false
-//! *clear* for a body inside it. Every error names the line, the value found and the value expected. The readers
-//! are part of this crate for two reasons: stl_io returns f32, which puts a text STL of more digits off by 4e-6 mm
-//! at 100 mm where 1e-6 mm is promised; and the check of which OBJ faces may be cut into a fan is needed here
-//! anyway.
+//! *clear* for a body inside it. Every error names the line, the value found and the value expected. The readers are
+//! part of this crate for two reasons: stl_io returns f32, which puts a text STL of more digits off by 4e-6 mm at 100
+//! mm where 1e-6 mm is promised; and the check of which OBJ faces may be cut into a fan is needed here anyway.
 
 use super::field::{Field, SceneError};
 use super::{obj, stl};

@@ -5,8 +5,7 @@
 //! files preceded by the line number), the value found and the value expected. This module opens no file: a
 //! callback supplies mesh files.
 //!
-//! Parts for the rig alone (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`, `[guard]`) are checked but not
-//! applied.
+//! Parts for the rig alone (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`, `[guard]`) are checked but not applied.
 
 mod body;
 mod face;
@@ -55,7 +54,7 @@ pub struct Named {
 /// Stationary bodies and movers.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scene {
-    /// Standing bodies in the order of the file.
+    /// Stationary bodies in the order of the file.
     pub elements: Vec<Named>,
     /// Bodies that moves may name.
     pub movers: Vec<Named>,

@@ -68,7 +68,7 @@ impl Reach {
 /// Counts and heights of all layers, and Omega.
 #[derive(Debug, Clone)]
 pub(crate) struct Layers {
-    /// Number of pieces that pass through each layer from below to above; below, of those that begin or end in it.
+    /// Number of pieces that pass through each layer; `beginning` and `ending` count those that begin and end in it.
     passing: [u32; LAYERS + SHORT],
     beginning: [u32; LAYERS],
     ending: [u32; LAYERS],
@@ -138,16 +138,14 @@ impl Layers {
         self.h2[high] = larger(self.h2[high], top_mm);
     }
 
-    /// Adds `more` to the counts of the layers between the lowest and the highest of a piece; `u32::MAX` subtracts
-    /// 1.
+    /// Adds `more` to the counts of the layers between the lowest and the highest of a piece; `u32::MAX` subtracts 1.
     #[inline]
     fn pass(&mut self, reach: Reach, more: u32) {
         let first = usize::from(reach.low) + 1;
         let between = usize::from(reach.high).saturating_sub(first);
         let passed = &mut self.passing[first..];
         match passed.first_chunk_mut::<SHORT>() {
-            // The number of layers is unpredictable, so the loop always writes `SHORT` counts, most of them
-            // unchanged.
+            // The number of layers is unpredictable, so the loop always writes `SHORT` counts, most of them unchanged.
             Some(few) if between <= SHORT => {
                 for (at, count) in few.iter_mut().enumerate() {
                     *count = count.wrapping_add(if at < between { more } else { 0 });

@@ -109,7 +109,7 @@ impl Seat {
     }
 }
 
-/// A collection that pieces are entered into by their covers.
+/// A collection into which pieces are entered by their covers.
 pub(crate) trait Entering {
     /// Enters the piece of this number: the number of a removed piece, or the next new one.
     fn enter(&mut self, piece: u32, cover: &Cover);

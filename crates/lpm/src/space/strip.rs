@@ -14,7 +14,7 @@ const UNIT_BITS: u32 = 32;
 /// Bound in squares, farther than any grid or any line within it reaches.
 const BEYOND: f64 = (1 << 28) as f64;
 
-/// The bands of an area in the direction of the path, which is longer along the bands' sequence than across.
+/// The bands of an area in the order of the path, which moves farther across the bands than along them.
 pub(super) struct Strip {
     /// Number of the next band, counted from 0.
     pub(super) step: i32,

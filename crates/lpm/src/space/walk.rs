@@ -13,9 +13,8 @@ pub(crate) trait Visit {
     /// Whether the visitor needs the pieces in the order in which they are met.
     fn in_order(&self) -> bool;
 
-    /// Receives a bundle by its number: the box may meet lane k if bit k of `lanes` is set, and not before the
-    /// fraction `entry[k]` of the path if `in_order`. A piece may come more than once. Returns true to end the
-    /// walk.
+    /// Receives a bundle by its number: the box may meet lane k if bit k of `lanes` is set, and not before the fraction
+    /// `entry[k]` of the path if `in_order`. A piece may come more than once. Returns true to end the walk.
     fn bundle(&mut self, shown: (u32, &Bundle), lanes: u32, entry: &[f32; LANES]) -> bool;
 
     /// Called when all pieces still to come are met no earlier than those since the last pause. Returns the

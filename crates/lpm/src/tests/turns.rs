@@ -213,8 +213,7 @@ fn a_reversed_turn_has_the_same_verdict() {
 
 #[test]
 fn a_disc_turning_near_a_wall_stays_clear() {
-    // The distance never changes, the hardest case for conservative advancement. Turned about its axis, and
-    // tumbled.
+    // The distance never changes, the hardest case for conservative advancement. Turned about its axis, and tumbled.
     let wall = standing(&block(5.0, 100.0, 100.0), Pose::IDENTITY);
     let disc = cylinder(30.0, 8.0);
     for (gap, is_blocked) in [(-1e-3, true), (0.0, true), (1e-3, false), (0.1, false)] {
