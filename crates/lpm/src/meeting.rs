@@ -40,7 +40,7 @@ pub(crate) struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    /// Takes the displacement of a straight path.
+    /// Computes the reciprocals for a straight path.
     #[inline]
     pub(crate) fn of(path: &'a Path) -> Run<'a> {
         let way = path.displacement;

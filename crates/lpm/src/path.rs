@@ -21,7 +21,7 @@ pub(crate) struct Path {
 }
 
 impl Path {
-    /// Takes a move. Returns `None` when a number is not finite or the margin is invalid: such a move cannot be
+    /// Converts a move. Returns `None` when a number is not finite or the margin is invalid: such a move cannot be
     /// decided.
     pub(crate) fn of(way: &Move) -> Option<Path> {
         if !(way.margin_mm >= 0.0 && way.margin_mm <= f64::MAX) {

@@ -63,7 +63,7 @@ impl Frame {
         z: [0.0, 0.0, 1.0],
     };
 
-    /// Takes a quaternion of any length but zero.
+    /// Converts a quaternion of any length but zero.
     ///
     /// Dividing by the squared length instead of normalising first keeps quarter turns exact: `[0.7071067811865476,
     /// 0, 0, 0.7071067811865475]` must not tilt or stretch a block.
@@ -135,7 +135,7 @@ pub(crate) struct Yaw {
 }
 
 impl Yaw {
-    /// Takes the quaternion `[w, 0, 0, z]`.
+    /// Converts the quaternion `[w, 0, 0, z]`.
     #[inline]
     pub(crate) fn of(w: f64, z: f64) -> Yaw {
         if z == 0.0 {
@@ -185,7 +185,7 @@ pub(crate) struct RoughYaw {
 const NEARLY_UNIT: f64 = 1e-9;
 
 impl RoughYaw {
-    /// Takes the quaternion `[w, 0, 0, z]`. Nearly all have length 1, which saves the time of a division.
+    /// Converts the quaternion `[w, 0, 0, z]`. Nearly all have length 1, which saves the time of a division.
     #[inline(always)]
     pub(crate) fn of(w: f64, z: f64) -> RoughYaw {
         let (ww, zz) = (w * w, z * z);

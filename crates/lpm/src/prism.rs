@@ -21,7 +21,7 @@ pub(crate) struct Prism {
 }
 
 impl Prism {
-    /// Takes a piece that is upright.
+    /// Converts an upright piece.
     #[inline]
     pub(crate) fn of(piece: &Piece) -> Prism {
         let (half, radius, axis) = footprint(piece.form, [piece.frame.x[0], piece.frame.x[1]]);
@@ -34,7 +34,7 @@ impl Prism {
         }
     }
 
-    /// Takes a single block or cylinder, when it is upright at `pose`.
+    /// Converts a single block or cylinder; `None` unless it is upright at `pose`.
     #[inline]
     pub(crate) fn standing(shape: &Shape, pose: &Pose) -> Option<Prism> {
         let (half, radius, span) = match shape {

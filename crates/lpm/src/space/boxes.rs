@@ -175,7 +175,7 @@ mod tests {
                 let (low, high) = (moved(mover.low), moved(mover.high));
                 element.distance(&Cover { low, high }) == 0.0
             };
-            // Eighths contain the first contact of whole numbers with runs of 1, 2 and 4.
+            // Boxes and runs in whole numbers touch first at an eighth of the path.
             let first = (0..=8)
                 .map(|eighth| f64::from(eighth) / 8.0)
                 .find(|t| at(*t));

@@ -40,7 +40,7 @@ impl Reach {
         high: 0,
     };
 
-    /// Takes the heights of bottom and top, mm.
+    /// Computes the layers between the heights of bottom and top, mm.
     #[inline(always)]
     pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {
         let heights = Four::of(&[bottom_mm, top_mm, 0.0, 0.0]);

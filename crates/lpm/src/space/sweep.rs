@@ -16,7 +16,7 @@ pub(crate) const SLOWEST_MM: f64 = 1e-9;
 pub(crate) struct Pace(pub(crate) [f32; 3]);
 
 impl Pace {
-    /// Takes the displacement of the box, mm.
+    /// Computes the pace of a box that moves by `run`, mm.
     #[inline]
     pub(crate) fn of(run: Vec3) -> Pace {
         let of = |way: f64| {
