@@ -1,10 +1,11 @@
 //! Turning moves: conservative advancement with a second-order bound.
 //!
-//! Let a mover turn by `theta` about the unit axis `u` during the whole move. Relative to the origin of the mover, its
-//! point `y` obeys after a further fraction `h` `n·y(t+h) >= n·y + h theta (n x u)·y - h^2 theta^2 rho / 2`, where
-//! `rho` is its distance from the axis. The least value of the first two terms over the whole piece is again a support
-//! value, in the direction `n + h theta (n x u)`. So one plane clears a whole stretch of the move, and a grazing pass
-//! takes steps of the square root of its gap instead of the gap itself.
+//! Let a mover turn by `theta` about the unit axis `u` during the whole move. Relative to the origin of the mover,
+//! its point `y` obeys after a further fraction `h`
+//! `n·y(t+h) >= n·y + h theta (n x u)·y - h^2 theta^2 rho / 2`, where `rho` is its distance from the axis.
+//! The least value of the first two terms over the whole piece is again a support value, in the direction
+//! `n + h theta (n x u)`. So one plane clears a whole stretch of the move, and a grazing pass takes steps of the square
+//! root of its gap instead of the gap itself.
 //!
 //! A distance within [`band_mm`] of the margin, which lies between 1e-7 and 5e-4 mm, counts as contact; so does
 //! running out of steps.

@@ -5,8 +5,8 @@
 //! - Interval of Cp and Pp: `c sqrt(chi2(q; n-1) / (n-1))` for q = 0.025 and 0.975, exact for normal values.
 //! - Interval of Cpk and Ppk: Bissell (1990), `c -+ z sqrt(1 / (9 n) + c^2 / (2 (n - 1)))`.
 //! - One limit gives Cpk and Ppk only; Cp and Pp need two.
-//! - Skewed values (contact resistance, bounce) use the three percentiles of ISO 22514-2 instead: `(high - x50) /
-//!   (x99.865 - x50)` and `(x50 - low) / (x50 - x0.135)`, see [`by_percentiles`].
+//! - Skewed values (contact resistance, bounce) use the three percentiles of ISO 22514-2 instead:
+//!   `(high - x50) / (x99.865 - x50)` and `(x50 - low) / (x50 - x0.135)`, see [`by_percentiles`].
 
 use super::ordered::Ordered;
 use serde::Serialize;

@@ -1,7 +1,7 @@
 //! Mean, variance and lag-1 autocorrelation in two passes, in double-double precision.
 //!
 //! The sum of squares minus the square of the sum loses all digits when the spread is small relative to the mean.
-//! Here the first pass finds the mean and the second sums deviations from it, both as [`Double`]; the remaining
+//! Here the first pass finds the mean and the second sums deviations from it, both as `Double`; the remaining
 //! error comes from storing decimal data in binary.
 //!
 //! Merging shards: `M2 = M2a + M2b + d^2 na nb / (na + nb)` with `d` the difference of means (Chan,

@@ -1,6 +1,6 @@
 //! Moments and a histogram of values that arrive one at a time, in constant memory.
 //!
-//! Values are collected in shards of [`SHARD`], whose moments are merged without loss. The first shard fixes the
+//! Values are collected in shards of 1,000, whose moments are merged without loss. The first shard fixes the
 //! classes: about twelve over its range, and twelve more beyond each end. Values farther out count in the outermost
 //! classes.
 

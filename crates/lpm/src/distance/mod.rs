@@ -1,10 +1,10 @@
 //! Distance between two convex pieces, with proof.
 //!
-//! **Proof.** For a direction `n` (any non-zero vector) the plane normal to `n` separates the pieces by at least `(n·c
-//! - extent_a(n) - extent_b(-n)) / |n|`, where `c` is the vector between their centres. [`separation`] evaluates
-//! exactly this and subtracts a forward error bound ([`NOISE`](super::piece::NOISE)). Every *clear* of this module
-//! rests on such evaluated planes alone, not on iteration counts, convergence or a simplex. The searches below only
-//! propose planes; a search that fails proposes a poor plane with a low bound, and that means blocked.
+//! **Proof.** For a direction `n` (any non-zero vector) the plane normal to `n` separates the pieces by at least
+//! `(n·c - extent_a(n) - extent_b(-n)) / |n|`, where `c` is the vector between their centres. [`separation`] evaluates
+//! exactly this and subtracts a forward error bound ([`NOISE`](super::piece::NOISE)). Every *clear* of this module rests
+//! on such evaluated planes alone, not on iteration counts, convergence or a simplex. The searches below only propose
+//! planes; a search that fails proposes a poor plane with a low bound, and that means blocked.
 //!
 //! **Search.** [`upright`] proposes the best plane of two upright pieces in closed form; [`simplex`] walks to the
 //! best plane of any two convex pieces; [`polish`] finds its last digits.
