@@ -4,7 +4,7 @@
 
 use anyhow::{Context, anyhow, bail};
 use app::exit::Exit;
-use lpm::scene::{Elsewhere, Format, MeshFault, MoveOrder, Scene, read_moves, read_scene_of_rig};
+use lpm::scene::{Format, MeshFault, MoveOrder, RigNames, Scene, read_moves, read_scene_of_rig};
 use lpm::{Answer, ElementKey, Model, Move, Mover};
 use machine::guard::{Actuator, part_names};
 use serde::Serialize;
@@ -110,7 +110,7 @@ fn load_scene(path: &Path) -> anyhow::Result<Scene> {
         std::fs::read(folder.join(name)).map_err(|error| MeshFault::File(error.to_string()))
     };
     let actuators = [Actuator::names().as_slice(), &Actuator::OTHER_NAMES].concat();
-    let elsewhere = Elsewhere {
+    let elsewhere = RigNames {
         actuators: &actuators,
         bodies: &part_names(),
     };

@@ -110,7 +110,7 @@ impl<O: Ports> Line<O> {
             })
             .await;
         let outcome = match found.outcome {
-            Ok(reply) if asked.command.stands(&reply) => Ok(Reply::Accepted),
+            Ok(reply) if asked.command.is_in_effect(&reply) => Ok(Reply::Accepted),
             Ok(_) => return self.asked(asked).await,
             Err(LineError::Reply { reason, .. }) if reason.is_answer() => {
                 return self.asked(asked).await;

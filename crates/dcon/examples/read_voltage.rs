@@ -1,8 +1,8 @@
-//! Writes a question to an I-7017 and reads the answer: `cargo run -p dcon --example read_voltage`.
+//! Encodes a request to an I-7017 and decodes the reply: `cargo run -p dcon --example read_voltage`.
 
 use dcon::{Address, AnalogIn, Command, DataFormat, InputForm, Reply, TypeCode};
 
-/// -10 to 10 V.
+/// Type code of the range -10 to 10 V.
 const TEN_VOLTS: TypeCode = TypeCode(0x08);
 
 fn main() {

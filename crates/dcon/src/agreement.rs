@@ -1,30 +1,30 @@
-//! Several answers to the same question, some milliseconds apart: which of them can be believed, if one may be damaged?
+//! Chooses the answer to believe among several answers to one request, some milliseconds apart, of which one may be
+//! damaged.
 //!
-//! A checksum of eight bits lets one damaged reply in 256 pass. Damage hardly ever comes twice alike, so two answers in
-//! a row that say the same are both true. What moves, or is measured by a noisy converter, does not say the same; it is
-//! asked a third time, and the answer between the other two is believed: one damaged answer of three cannot put it
-//! farther off than the two that are whole.
+//! An eight-bit checksum lets one damaged reply in 256 pass. Damage rarely repeats identically, so two consecutive
+//! equal answers are both taken as true. Moving or noisy quantities differ between answers; they are read a third time and
+//! the answer between the other two is believed: one damaged answer of three cannot push it beyond the two intact ones.
 //!
-//! | three answers, no two in a row alike | believed |
+//! | three answers, no two consecutive ones equal | believed |
 //! |---|---|
-//! | analog reading, level, frequency | the middle value, whenever it was said |
-//! | all analog inputs at once | the second, if each input lies between before and after, or beyond by 1/1024 of its range: noise of the coarsest converter, twelve bits |
-//! | count | the second, if all go upwards, by 100 kHz at most: more than any input of a 7080 takes |
-//! | event counter | the same, by 100 Hz |
+//! | analog reading, level, frequency | the middle value |
+//! | all analog inputs at once | the second, if each input lies between its first and third reading, or beyond by 1/1024 of its range: noise of the coarsest converter, twelve bits |
+//! | count | the second, if the counts rise by at most 100 kHz, more than any input of a 7080 accepts |
+//! | event counter | the second, if the counts rise by at most 100 Hz |
 //! | everything else | none |
 
 use super::{Command, Reading, Reply, TypeCode};
 
-/// Share of the range by which one of many inputs may lie beyond its neighbours in time.
+/// How far one of many inputs may lie beyond its first and third reading, as a fraction of the range.
 const NOISE_SHARE: f64 = 1.0 / 1024.0;
-/// Counts in a millisecond at most.
+/// Most counts per millisecond.
 const COUNTS_PER_MS: u64 = 100;
-/// A digital input counts one event in so many milliseconds at most.
+/// Least time between two events on a digital input, milliseconds.
 const MS_PER_EVENT: u64 = 10;
 
 impl Command {
-    /// The place of the one to believe among two or three answers, the last asked `apart_ms` (rounded up) after the
-    /// first. None if one more must be asked, or three were not enough.
+    /// Returns the index of the answer to believe among two or three. `apart_ms` is the time between first and last
+    /// request, rounded up. Returns `None` when another answer is needed, or when three do not suffice.
     pub fn believed(&self, answers: &[Reply], apart_ms: u64) -> Option<usize> {
         let alike = answers.windows(2).position(|pair| pair[0] == pair[1]);
         let [first, second, third] = answers else {
@@ -50,7 +50,7 @@ impl Command {
                 a.iter()
                     .zip(b.iter())
                     .zip(c.iter())
-                    .all(|((before, it), after)| self.on_the_way(before, it, after)),
+                    .all(|((before, it), after)| self.lies_between(before, it, after)),
             ),
             [a, b, c] => {
                 let values = [self.size(a)?, self.size(b)?, self.size(c)?];
@@ -61,7 +61,7 @@ impl Command {
         }
     }
 
-    /// What single quantities are compared by; none of what has no order.
+    /// Value by which single quantities are compared; `None` for quantities without order.
     fn size(&self, answer: &Reply) -> Option<f64> {
         match answer {
             Reply::Reading(reading) => reading.value.in_units(self.range()?),
@@ -71,8 +71,9 @@ impl Command {
         }
     }
 
-    /// Between its neighbours, but for noise; what is no number says the same all the time.
-    fn on_the_way(&self, before: &Reading, it: &Reading, after: &Reading) -> bool {
+    /// Whether a reading lies between its neighbours in time, allowing for noise; a state that is not a number must
+    /// stay the same.
+    fn lies_between(&self, before: &Reading, it: &Reading, after: &Reading) -> bool {
         let scale = self.range().and_then(TypeCode::full_scale);
         let noise = scale.map_or(0.0, |scale| (scale.high - scale.low) * NOISE_SHARE);
         let value = |reading: &Reading| reading.value.in_units(self.range()?);
@@ -85,7 +86,7 @@ impl Command {
         }
     }
 
-    /// Of the analog inputs that are asked.
+    /// Range of the analog inputs that the command reads.
     fn range(&self) -> Option<TypeCode> {
         match self {
             Self::AnalogIn(_, ask) => ask.range(),
@@ -107,7 +108,7 @@ mod tests {
         UpTo,
     };
 
-    /// The place of the answer that is believed, all of them 3 ms apart.
+    /// Returns the index of the believed answer, with 3 ms between first and last.
     fn believed(command: Command, said: &[&str]) -> Option<usize> {
         let answers: Vec<_> = said
             .iter()
@@ -127,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_said_twice_alike_is_believed_and_what_is_not_is_asked_again() {
+    fn two_equal_answers_are_believed() {
         let port = Digital::ReadPort.to(Address(3));
         assert_eq!(believed(port, &[">BEDE\r", ">BEDE\r"]), Some(0));
         assert_eq!(believed(port, &[">BEDE\r", ">BEDC\r"]), None);
@@ -138,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn of_three_readings_the_middle_one_is_believed_whichever_is_damaged() {
+    fn the_middle_of_three_readings_is_believed() {
         let middle = |said: [&str; 3]| believed(volts(), &said);
         assert_eq!(middle([">+05.019\r", ">+05.001\r", ">+05.000\r"]), Some(1));
         assert_eq!(middle([">+05.001\r", ">+05.019\r", ">+05.000\r"]), Some(0));
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frequency_is_no_count_that_went_on() {
+    fn frequencies_may_fall_unlike_counts() {
         let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
         let said = [">00000032\r", ">00000009\r", ">00000031\r"];
         assert_eq!(believed(frequency, &said), Some(2));
@@ -157,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn all_inputs_lie_between_before_and_after_or_within_the_noise_of_twelve_bits() {
+    fn inputs_lie_between_neighbours_allowing_twelve_bit_noise() {
         let hex = AnalogIn::ReadAll(form(DataFormat::Hex)).to(Address(1));
         let all = |last: &str| format!(">{}{last}\r", "4000".repeat(7));
         let second = |last: [&str; 3]| {
@@ -172,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_count_goes_up_and_no_faster_than_its_input_can() {
+    fn a_count_rises_no_faster_than_its_input_allows() {
         let count = Counter::Read(UpTo::new(0).unwrap()).to(Address(3));
         let second = |said: [&str; 3]| believed(count, &said);
         assert_eq!(

@@ -6,18 +6,19 @@ use super::shape::Shape;
 use super::{Address, Channel, DataFormat, TypeCode};
 use std::fmt;
 
-/// How a module prints its readings: needed to read them, and verified once against its configuration word.
+/// Notation, range and channel count of an input module, which decoding its readings needs; to be verified once
+/// against its configuration word.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct InputForm {
     channels: u8,
-    /// The notation, from the configuration word.
+    /// Notation, from the configuration word.
     pub format: DataFormat,
-    /// The range, from the configuration word.
+    /// Range, from the configuration word.
     pub range: TypeCode,
 }
 
 impl InputForm {
-    /// A module with `channels` inputs; no module of these families has more than eight.
+    /// Form of a module with `channels` inputs; `None` outside 1 to 8, the most in these families.
     pub const fn new(channels: u8, format: DataFormat, range: TypeCode) -> Option<Self> {
         if channels >= 1 && channels <= 8 {
             Some(Self {
@@ -30,7 +31,7 @@ impl InputForm {
         }
     }
 
-    /// 7017, 7017F, 7017R, 7018: eight inputs.
+    /// Form of a 7017, 7017F, 7017R or 7018: eight inputs.
     pub const fn eight(format: DataFormat, range: TypeCode) -> Self {
         Self {
             channels: 8,
@@ -39,7 +40,7 @@ impl InputForm {
         }
     }
 
-    /// 7033: three inputs.
+    /// Form of a 7033: three inputs.
     pub const fn three(format: DataFormat, range: TypeCode) -> Self {
         Self {
             channels: 3,
@@ -63,35 +64,35 @@ impl fmt::Debug for InputForm {
 /// Commands of analog input modules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnalogIn {
-    /// `#AA`: all channels; disabled ones are blank.
+    /// `#AA`: reads all channels; disabled ones are blank.
     ReadAll(InputForm),
-    /// `#AAN`.
+    /// `#AAN`: reads one channel.
     ReadOne {
-        /// Which input.
+        /// Number of the input.
         channel: Channel,
-        /// How it is printed.
+        /// Form in which the module sends the reading.
         form: InputForm,
     },
-    /// `$AAA`: all channels as hex, whatever the configured notation.
+    /// `$AAA`: reads all channels in hex, whatever the configured notation.
     ReadAllHex(InputForm),
-    /// `$AA6`: the enabled channels, bit n = channel n.
+    /// `$AA6`: reads the enabled channels, bit n = channel n.
     ReadMask,
-    /// `$AA5VV`. Differs from the reset status by length only.
+    /// `$AA5VV`: enables channels, bit n = channel n. Only its length distinguishes it from the reset status.
     WriteMask(u8),
-    /// `$AA3` of thermocouple modules: cold junction in degrees Celsius.
+    /// `$AA3` of thermocouple modules: reads the cold junction, degrees Celsius.
     ReadColdJunction,
-    /// `$AAB`, newer modules: channels with an open wire or over range, bit n = channel n.
+    /// `$AAB`, newer modules: reads the channels with an open wire or over range, bit n = channel n.
     ReadDiagnosis,
-    /// `$AA8Ci`, newer modules.
+    /// `$AA8Ci`, newer modules: reads the range of a channel.
     ReadChannelRange {
-        /// Which input.
+        /// Number of the input.
         channel: Channel,
     },
-    /// `$AA7CiRrr`, newer modules.
+    /// `$AA7CiRrr`, newer modules: sets the range of a channel.
     WriteChannelRange {
-        /// Which input.
+        /// Number of the input.
         channel: Channel,
-        /// Its range from now on.
+        /// New range of the channel.
         range: TypeCode,
     },
 }
@@ -141,7 +142,7 @@ impl AnalogIn {
         }
     }
 
-    /// Of the terminals, where readings are asked for.
+    /// Range of the terminals, for commands that return readings.
     pub(super) fn range(&self) -> Option<TypeCode> {
         let (_, shape) = self.table();
         let (Shape::Reading(form) | Shape::Readings(form)) = shape else {

@@ -5,62 +5,63 @@ use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, Level, OutputForm, SlewCode, TypeCode, UpTo};
 
-/// Commands of analog output modules. `channel` is none for the one-channel 7021 and 7021P.
+/// Commands of analog output modules. `channel` is `None` for the one-channel 7021 and 7021P.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AnalogOut {
-    /// `#AA[N](data)`: go there, at the configured slew rate. Out of range is refused, and goes to the nearest limit.
+    /// `#AA[N](data)`: drives the output to a level at the configured slew rate. The module refuses a level out of
+    /// range, but drives to the nearest limit.
     Write {
-        /// Which output.
+        /// Number of the output.
         channel: Option<Channel>,
-        /// Where to.
+        /// Level to reach.
         level: Level,
     },
-    /// `$AA6[N]`: the value last commanded; the power-on value if none was.
+    /// `$AA6[N]`: reads the last commanded level, or the power-on level if there was no command.
     ReadLast {
-        /// Which output.
+        /// Number of the output.
         channel: Option<Channel>,
-        /// How it is printed.
+        /// Notation of the module.
         form: OutputForm,
     },
-    /// `$AA8[N]`: where the output is now, in the middle of a ramp too.
+    /// `$AA8[N]`: reads the present level, also during a ramp.
     ReadPresent {
-        /// Which output.
+        /// Number of the output.
         channel: Option<Channel>,
-        /// How it is printed.
+        /// Notation of the module.
         form: OutputForm,
     },
-    /// `$AA4[N]`: the present output becomes the power-on value.
+    /// `$AA4[N]`: stores the present level as power-on level.
     StorePowerOn {
-        /// Which output.
+        /// Number of the output.
         channel: Option<Channel>,
     },
-    /// `$AA7[N]`.
+    /// `$AA7[N]`: reads the power-on level.
     ReadPowerOn {
-        /// Which output.
+        /// Number of the output.
         channel: Option<Channel>,
-        /// How it is printed.
+        /// Notation of the module.
         form: OutputForm,
     },
-    /// `~AA5[N]`: the present output becomes the safe value.
+    /// `~AA5[N]`: stores the present level as safe level.
     StoreSafe {
-        /// Which output.
+        /// Number of the output.
         channel: Option<Channel>,
     },
-    /// `~AA4[N]`.
+    /// `~AA4[N]`: reads the safe level.
     ReadSafe {
-        /// Which output.
+        /// Number of the output.
         channel: Option<Channel>,
-        /// How it is printed.
+        /// Notation of the module.
         form: OutputForm,
     },
-    /// `$AA9N` of the 7022.
+    /// `$AA9N` of the 7022: reads range and slew rate of a channel.
     ReadChannelConfig {
-        /// Which output.
+        /// Number of the output.
         channel: Channel,
     },
-    /// `$AA9NTS` of the 7022.
+    /// `$AA9NTS` of the 7022: sets range and slew rate of a channel.
     WriteChannelConfig {
-        /// Which output.
+        /// Number of the output.
         channel: Channel,
         /// Last digit of the type code `3T`.
         range: UpTo<2>,
@@ -111,7 +112,7 @@ impl AnalogOut {
     }
 }
 
-/// The range of a 7022 channel from its one digit.
+/// Returns the range of a 7022 channel from the last digit of its type code.
 pub(super) fn output_range(digit: u8) -> TypeCode {
     TypeCode(0x30 | digit)
 }

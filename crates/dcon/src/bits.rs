@@ -1,8 +1,8 @@
-//! Bits of digital modules: as read back, and as written.
+//! Bits of digital modules, as read and as written.
 
 use super::request::Request;
 
-/// Two bytes as a digital module prints them. Which is which depends on the module.
+/// Two bytes as a digital module sends them; their meaning depends on the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits {
     /// Outputs of a module that has both; the high byte (8..15) of a 16-bit module.
@@ -12,20 +12,21 @@ pub struct Bits {
 }
 
 impl Bits {
-    /// Channel 0 in bit 0, for modules with up to 16 inputs or 16 outputs: 7041, 7043, 7045, 7051.
+    /// Combines both bytes with channel 0 in bit 0, for modules with up to 16 inputs or 16 outputs: 7041, 7043,
+    /// 7045, 7051.
     pub fn word(self) -> u16 {
         u16::from(self.first) << 8 | u16::from(self.second)
     }
 }
 
-/// Hex digits of the data in `@AA(data)`: a module accepts one width only.
+/// Number of hex digits of the data in `@AA(data)`; a module accepts one width only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Width {
-    /// 7060, 7063: up to four outputs.
+    /// 7060, 7063: up to four outputs, one digit.
     One,
-    /// 7050, 7065, 7067: up to eight.
+    /// 7050, 7065, 7067: up to eight outputs, two digits.
     Two,
-    /// 7043, 7045: sixteen.
+    /// 7043, 7045: sixteen outputs, four digits.
     Four,
 }
 
@@ -47,7 +48,7 @@ pub struct OutputWord {
 }
 
 impl OutputWord {
-    /// None when a bit lies beyond the width.
+    /// Returns `None` when a bit lies beyond the width.
     pub const fn new(width: Width, bits: u16) -> Option<Self> {
         if (bits as u32) >> (4 * width.digits()) == 0 {
             Some(Self { width, bits })
@@ -56,7 +57,7 @@ impl OutputWord {
         }
     }
 
-    /// For the 16 outputs of a 7043 or 7045, where any word is good.
+    /// Makes a word for the 16 outputs of a 7043 or 7045, where every word is valid.
     pub const fn sixteen(bits: u16) -> Self {
         Self {
             width: Width::Four,
@@ -64,7 +65,7 @@ impl OutputWord {
         }
     }
 
-    /// Bit n = output n.
+    /// Returns the bits; bit n = output n.
     pub const fn bits(self) -> u16 {
         self.bits
     }

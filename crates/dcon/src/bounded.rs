@@ -1,8 +1,8 @@
-//! Numbers with a limit built in: addresses, channels and the small settings that a command carries.
+//! Bounded numbers: addresses, channels and the small settings in a command.
 
 use std::fmt;
 
-/// A module's address on its line, `00` to `FF`. Factory modules come as `01`; in INIT* mode a module answers at `00`.
+/// Address of a module on its line, `00` to `FF`. Factory setting is `01`; in INIT* mode a module answers at `00`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Address(pub u8);
 
@@ -12,12 +12,12 @@ impl fmt::Display for Address {
     }
 }
 
-/// A number from 0 to `MAX`, both included; larger ones cannot be made.
+/// A number from 0 to `MAX`, both included.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct UpTo<const MAX: u8>(u8);
 
 impl<const MAX: u8> UpTo<MAX> {
-    /// None above `MAX`.
+    /// Returns `None` above `MAX`.
     pub const fn new(value: u8) -> Option<Self> {
         if value <= MAX {
             Some(Self(value))
@@ -26,7 +26,7 @@ impl<const MAX: u8> UpTo<MAX> {
         }
     }
 
-    /// The number itself.
+    /// Returns the number.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -44,5 +44,5 @@ impl<const MAX: u8> fmt::Display for UpTo<MAX> {
     }
 }
 
-/// A channel within a module: one hex digit on the wire. Which channels exist is the module's business; it refuses others.
+/// Channel of a module: one hex digit on the wire. The module refuses a channel that it does not have.
 pub type Channel = UpTo<15>;

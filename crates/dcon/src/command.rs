@@ -1,4 +1,4 @@
-//! The closed set of requests, and the reply each of them may have.
+//! The closed set of requests, and the decoding of their replies.
 
 use super::request::Request;
 use super::shape::Shape;
@@ -6,44 +6,44 @@ use super::{
     Address, AnalogIn, AnalogOut, Common, Counter, Digital, Reply, ReplyError, frame, shape,
 };
 
-/// A request that can be put on a line. Made most shortly as `Common::ReadConfig.to(Address(1))`.
+/// A request on a line. Shortest way to build one: `Common::ReadConfig.to(Address(1))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Command {
-    /// `~**` to all: the host is alive; restarts the host watchdog of every module. Not answered.
+    /// `~**` to all modules: the host is alive. Restarts the host watchdog of every module; has no reply.
     HostOk,
-    /// `#**` to all: sample the inputs now, for [`Digital::ReadSampled`]. Not answered.
+    /// `#**` to all modules: sample the inputs now, for [`Digital::ReadSampled`]. Has no reply.
     SampleAll,
-    /// What every module understands.
+    /// A command of every module type.
     Common(Address, Common),
-    /// To an analog input module.
+    /// A command of an analog input module.
     AnalogIn(Address, AnalogIn),
-    /// To an analog output module.
+    /// A command of an analog output module.
     AnalogOut(Address, AnalogOut),
-    /// To a digital module.
+    /// A command of a digital module.
     Digital(Address, Digital),
-    /// To a counter.
+    /// A command of a counter module.
     Counter(Address, Counter),
 }
 
-/// What a command does to the module.
+/// Effect of a command on the module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Nature {
-    /// Changes nothing: may be asked again.
+    /// Changes nothing; may be repeated.
     Read,
-    /// Reading consumes something (a flag that falls): a repeat would give another answer.
+    /// Reading clears something (such as a flag), so a repeat gives another answer.
     ReadOnce,
-    /// Drives outputs. A module whose host watchdog has tripped ignores it.
+    /// Drives outputs. A module with a tripped host watchdog ignores it.
     Output,
-    /// Changes a state that is lost with the supply.
+    /// Changes a state that a power cycle loses.
     Act,
-    /// Writes, or may write, to the module's EEPROM: a limited number of times in its life.
+    /// Writes, or may write, the module's EEPROM, which endures a limited number of writes.
     Store,
 }
 
 macro_rules! family {
     ($($name:ident),*) => {$(
         impl $name {
-            /// This, sent to `address`.
+            /// Addresses the command to one module.
             pub const fn to(self, address: Address) -> Command {
                 Command::$name(address, self)
             }
@@ -53,7 +53,7 @@ macro_rules! family {
 family!(Common, AnalogIn, AnalogOut, Digital, Counter);
 
 impl Command {
-    /// Appends the request to `out`, checksum (if the line has one) and CR included. At most 21 characters.
+    /// Appends the request to `out`, with checksum (if the line has one) and CR; at most 21 characters.
     pub fn encode(&self, checksum: bool, out: &mut Vec<u8>) {
         let mut request = Request::new(out);
         match *self {
@@ -72,10 +72,11 @@ impl Command {
         request.end(checksum);
     }
 
-    /// The meaning of `frame` as the reply to this very command.
+    /// Decodes `frame` as the reply to this command.
     ///
-    /// The CR may be left off, except where only the CR tells that nothing is missing: replies of open length on
-    /// a line without checksum. Everything unexpected is an error; `Refused` and `Ignored` are what the module said.
+    /// The CR may be missing, except where only the CR proves that the reply is complete: replies of variable
+    /// length on a line without checksum. Returns a [`ReplyError`] for everything unexpected; its variants
+    /// `Refused` and `Ignored` are answers of the module.
     pub fn decode(&self, frame: &[u8], checksum: bool) -> Result<Reply, ReplyError> {
         let (Some(address), Some((nature, shape))) = (self.address(), self.table()) else {
             return Err(ReplyError::NotAsked);
@@ -88,17 +89,17 @@ impl Command {
         shape.decode(text, address)
     }
 
-    /// True when a repeat after a lost reply is harmless and gives the same information.
+    /// Whether repeating the command after a lost reply is harmless and gives the same information.
     pub fn repeatable(&self) -> bool {
         self.nature() == Nature::Read
     }
 
-    /// True when the module writes, or may write, its EEPROM. Never to be sent cyclically or during a lot.
+    /// Whether the module writes, or may write, its EEPROM. Such a command must not be sent cyclically or during a lot.
     pub fn writes_eeprom(&self) -> bool {
         self.nature() == Nature::Store
     }
 
-    /// Characters of the longest reply from lead to CR. A checksum adds two. Zero for broadcasts.
+    /// Length of the longest reply from lead to CR, characters; a checksum adds two. Zero for broadcasts.
     pub fn longest_reply(&self) -> usize {
         /// `?AA` and CR: any command may be refused.
         const REFUSAL: usize = 4;
@@ -106,12 +107,12 @@ impl Command {
             .map_or(0, |(_, shape)| REFUSAL.max(shape.longest() + 1))
     }
 
-    /// False for broadcasts.
+    /// Whether the command has a reply; false for broadcasts.
     pub fn answered(&self) -> bool {
         self.address().is_some()
     }
 
-    /// The module asked; none for broadcasts.
+    /// Address of the module; `None` for broadcasts.
     pub fn address(&self) -> Option<Address> {
         match *self {
             Self::HostOk | Self::SampleAll => None,
@@ -123,12 +124,13 @@ impl Command {
         }
     }
 
-    /// True where the module may be busy converting: its reply is given the longer allowance.
+    /// Whether the module may be busy converting, so that its reply gets the longer timeout.
     pub fn is_analog_input(&self) -> bool {
         matches!(self, Self::AnalogIn(..))
     }
 
-    /// What the command does to the module. Broadcasts act: they reset watchdogs and take samples.
+    /// Effect of the command on the module. Broadcasts count as [`Nature::Act`]: they restart watchdogs and take
+    /// samples.
     pub fn nature(&self) -> Nature {
         self.table().map_or(Nature::Act, |(nature, _)| nature)
     }

@@ -1,21 +1,22 @@
 //! The configuration word `TT CC FF` that every module keeps in its EEPROM, and the module's name.
 //!
-//! Compare what `$AA2` says with what is wanted, and write only a difference: each write wears the EEPROM.
+//! A host should compare the reply to `$AA2` with the wanted configuration and write only a difference, because
+//! each write wears the EEPROM.
 
 use super::{TypeCode, UpTo};
 
 /// Type, baud and format of a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Config {
-    /// TT.
+    /// Field TT.
     pub type_code: TypeCode,
-    /// CC.
+    /// Field CC.
     pub baud: BaudCode,
-    /// FF.
+    /// Field FF.
     pub format: FormatByte,
 }
 
-/// CC: bits 5..0 the rate; newer firmware keeps parity and stop bits in 7..6.
+/// Baud code CC: bits 5..0 the rate; newer firmware has parity and stop bits in bits 7..6.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BaudCode(pub u8);
 
@@ -31,7 +32,7 @@ impl BaudCode {
         (0x0A, 115_200),
     ];
 
-    /// The code of a rate with 8N1; none for a rate that no module has.
+    /// Returns the code of a rate (bit/s) with 8N1; `None` for a rate that no module has.
     pub fn of(baud: u32) -> Option<Self> {
         Self::RATES
             .iter()
@@ -39,7 +40,7 @@ impl BaudCode {
             .map(|(code, _)| Self(*code))
     }
 
-    /// Bits per second; none for an unknown code.
+    /// Returns the rate, bit/s; `None` for an unknown code.
     pub fn rate(self) -> Option<u32> {
         Self::RATES
             .iter()
@@ -51,7 +52,7 @@ impl BaudCode {
 /// Notation of analog values (FF bits 1..0).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum DataFormat {
-    /// In the range's own unit: `+05.123`.
+    /// Unit of the range: `+05.123`.
     Engineering,
     /// Per cent of full scale: `+051.23`.
     Percent,
@@ -59,17 +60,17 @@ pub enum DataFormat {
     Hex,
 }
 
-/// FF. The same bits mean different things in different families.
+/// Format byte FF. Its bits have a different meaning in each family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FormatByte(pub u8);
 
 impl FormatByte {
-    /// Bit 6: frames carry a checksum. Takes effect after a power cycle.
+    /// Bit 6: whether frames carry a checksum. Takes effect after a power cycle.
     pub fn checksum(self) -> bool {
         self.0 & 0x40 != 0
     }
 
-    /// Notation of an analog module; none for the code that no module has.
+    /// Notation of an analog module; `None` for the code that no module has.
     pub fn data_format(self) -> Option<DataFormat> {
         match self.0 & 0x03 {
             0 => Some(DataFormat::Engineering),
@@ -79,28 +80,28 @@ impl FormatByte {
         }
     }
 
-    /// Analog input, bit 5: fewer bits, more conversions.
+    /// Analog input, bit 5: whether the module converts faster with fewer bits.
     pub fn fast(self) -> bool {
         self.0 & 0x20 != 0
     }
 
-    /// Analog input, bit 7: the filter rejects 50 Hz instead of 60 Hz.
+    /// Analog input, bit 7: whether the filter rejects 50 Hz instead of 60 Hz.
     pub fn rejects_50_hz(self) -> bool {
         self.0 & 0x80 != 0
     }
 
-    /// Analog output, bits 5..2.
+    /// Analog output, bits 5..2: slew rate.
     pub fn slew(self) -> SlewCode {
         SlewCode(UpTo::new(self.0 >> 2 & 0x0F).unwrap_or(SlewCode::IMMEDIATE.0))
     }
 
-    /// Counter, bit 2: frequency is gated for 1.0 s instead of 0.1 s.
+    /// Counter, bit 2: whether the frequency gate is 1.0 s instead of 0.1 s.
     pub fn long_gate(self) -> bool {
         self.0 & 0x04 != 0
     }
 }
 
-/// How fast an analog output moves.
+/// Code of the slew rate of an analog output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SlewCode(pub UpTo<15>);
 
@@ -111,7 +112,8 @@ impl SlewCode {
         None => unreachable!(),
     };
 
-    /// None when immediate. Code 1 is 1/16 V/s, each further code doubles. Current outputs: twice the figure in mA/s.
+    /// Returns the slew rate in V/s; `None` when immediate. Code 1 is 1/16 V/s, and each further code doubles it.
+    /// For current outputs the rate in mA/s is twice the figure.
     pub fn volt_per_second(self) -> Option<f64> {
         match self.0.get() {
             0 => None,
@@ -120,7 +122,7 @@ impl SlewCode {
     }
 }
 
-/// A module's name: one to six printable characters.
+/// Name of a module: one to six printable characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModuleName {
     bytes: [u8; 6],
@@ -128,7 +130,7 @@ pub struct ModuleName {
 }
 
 impl ModuleName {
-    /// None when empty, longer than six, or with characters the line cannot carry.
+    /// Returns `None` for a name that is empty, longer than six characters, or has characters that cannot be sent.
     pub fn new(name: &str) -> Option<Self> {
         let fits =
             (1..=6).contains(&name.len()) && name.bytes().all(|byte| byte.is_ascii_graphic());

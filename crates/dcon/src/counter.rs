@@ -5,23 +5,23 @@ use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, UpTo};
 
-/// When the counters count. One setting for both channels.
+/// Gate level at which the counters count; one setting for both channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GateMode {
-    /// While the gate is low.
+    /// Count while the gate is low.
     Low,
-    /// While the gate is high.
+    /// Count while the gate is high.
     High,
-    /// Always.
+    /// Count always.
     None,
 }
 
-/// Which inputs the two counters listen to.
+/// Input types of the two counters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InputMode {
-    /// Both TTL, not isolated.
+    /// Both counters TTL, not isolated.
     BothTtl,
-    /// Both through opto-couplers.
+    /// Both counters through opto-couplers.
     BothIsolated,
     /// Counter 0 TTL, counter 1 isolated.
     Isolated1,
@@ -29,7 +29,7 @@ pub enum InputMode {
     Isolated0,
 }
 
-/// High or low side of the digital filter or the TTL threshold.
+/// High or low side of the digital filter or of the TTL threshold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Edge {
     /// `H`.
@@ -47,92 +47,92 @@ impl Edge {
     }
 }
 
-/// How an alarm on both limits behaves (alarm mode 1).
+/// Behaviour of an alarm on both limits (alarm mode 1).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum AlarmKind {
     /// `L`: stays until cleared.
     Latched,
-    /// `M`: goes with its cause.
+    /// `M`: ends with its cause.
     Momentary,
 }
 
 /// Reply to `@AADI`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AlarmState {
-    /// 0 = alarms off; 1, 2 = on, momentary or latched.
+    /// 0 = alarms off; 1, 2 = on (momentary, latched).
     pub state: u8,
-    /// The two open-collector outputs.
+    /// States of the two open-collector outputs.
     pub outputs: u8,
 }
 
-/// Commands of the 7080. Counts are read without address: lead, length and hex digits are all there is to check.
+/// Commands of the 7080. A reply with a count carries no address, so only lead, length and hex digits can be checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Counter {
-    /// `#AAN` of a module of type 50: the count.
+    /// `#AAN` for type code 50: the count.
     Read(UpTo<1>),
-    /// `#AAN` of a module of type 51, Hz: new once per gate time, 0.1 or 1 s.
+    /// `#AAN` for type code 51: frequency in Hz, updated once per gate time of 0.1 or 1 s.
     ReadFrequency(UpTo<1>),
-    /// `$AA6N`: back to the preset, overflow cleared.
+    /// `$AA6N`: returns the count to the preset and clears the overflow.
     Reset(UpTo<1>),
-    /// `$AA7N`: true when the counter has passed its maximum.
+    /// `$AA7N`: whether the counter has passed its maximum.
     ReadOverflow(UpTo<1>),
-    /// `$AA5N`: true while running.
+    /// `$AA5N`: whether the counter is running.
     ReadRunning(UpTo<1>),
-    /// `$AA5NS`.
+    /// `$AA5NS`: starts (true) or stops a counter.
     Run(UpTo<1>, bool),
-    /// `@AAGN`.
+    /// `@AAGN`: preset of a counter.
     ReadPreset(UpTo<1>),
-    /// `@AAPN(data)`.
+    /// `@AAPN(data)`: sets the preset of a counter.
     WritePreset(UpTo<1>, u32),
-    /// `$AA3N`.
+    /// `$AA3N`: maximum of a counter.
     ReadMaximum(UpTo<1>),
-    /// `$AA3N(data)`.
+    /// `$AA3N(data)`: sets the maximum of a counter.
     WriteMaximum(UpTo<1>, u32),
-    /// `$AAA`.
+    /// `$AAA`: gate mode.
     ReadGate,
-    /// `$AAAG`.
+    /// `$AAAG`: sets the gate mode.
     WriteGate(GateMode),
-    /// `$AAB`.
+    /// `$AAB`: input mode.
     ReadInputs,
-    /// `$AABS`.
+    /// `$AABS`: sets the input mode.
     WriteInputs(InputMode),
-    /// `$AA4`: true with the digital filter on.
+    /// `$AA4`: whether the digital filter is on.
     ReadFilter,
-    /// `$AA4S`.
+    /// `$AA4S`: switches the digital filter.
     WriteFilter(bool),
-    /// `$AA0H`, `$AA0L`: least width of a pulse, microseconds.
+    /// `$AA0H`, `$AA0L`: least pulse width that passes the filter, microseconds.
     ReadFilterWidth(Edge),
-    /// `$AA0H(data)`: 2 to 65535 microseconds.
+    /// `$AA0H(data)`, `$AA0L(data)`: sets the least pulse width, 2 to 65535 microseconds.
     WriteFilterWidth(Edge, u16),
     /// `$AA1H`, `$AA1L`: TTL threshold, tenths of a volt.
     ReadThreshold(Edge),
-    /// `$AA1H(data)`: tenths of a volt; high must stay above low.
+    /// `$AA1H(data)`, `$AA1L(data)`: sets the TTL threshold, tenths of a volt; high must stay above low.
     WriteThreshold(Edge, UpTo<50>),
-    /// `@AADI`.
+    /// `@AADI`: alarm state and outputs.
     ReadAlarm,
-    /// `~AAAS`: true = both limits on counter 0 (mode 1), false = one limit per counter (mode 0).
+    /// `~AAAS`: sets the alarm mode; true = both limits on counter 0 (mode 1), false = one limit per counter (mode 0).
     WriteAlarmMode(bool),
-    /// `@AAEAT`, mode 1.
+    /// `@AAEAT`, mode 1: enables the alarm.
     EnableAlarm(AlarmKind),
-    /// `@AADA`, mode 1.
+    /// `@AADA`, mode 1: disables the alarm.
     DisableAlarm,
-    /// `@AACA`: ends a latched alarm, mode 1.
+    /// `@AACA`, mode 1: clears a latched alarm.
     ClearAlarm,
-    /// `@AAEAN`, mode 0.
+    /// `@AAEAN`, mode 0: enables the alarm of one counter.
     EnableAlarmOf(UpTo<1>),
-    /// `@AADAN`, mode 0.
+    /// `@AADAN`, mode 0: disables the alarm of one counter.
     DisableAlarmOf(UpTo<1>),
-    /// `@AARP`, `@AARA`: the limit of counter 0 and 1; in mode 1 the high and the high-high limit of counter 0.
+    /// `@AARP`, `@AARA`: alarm limit of counter 0 and 1; in mode 1 the high and the high-high limit of counter 0.
     ReadLimit(UpTo<1>),
-    /// `@AAPA(data)`, `@AASA(data)`.
+    /// `@AAPA(data)`, `@AASA(data)`: sets an alarm limit, numbered as in [`Counter::ReadLimit`].
     WriteLimit(UpTo<1>, u32),
-    /// `@AADO0D`: the two outputs; refused while an alarm owns them.
+    /// `@AADO0D`: sets the two outputs; refused while an alarm controls them.
     WriteOutputs(UpTo<3>),
-    /// `$AA8` of the 7080D: what the display shows.
+    /// `$AA8` of the 7080D: source of the displayed number.
     ReadDisplay,
-    /// `$AA8V` of the 7080D: 0 or 1 a counter, 2 the host's number.
+    /// `$AA8V` of the 7080D: selects the source of the display; 0 or 1 a counter, 2 the host's number.
     WriteDisplay(Channel),
-    /// `$AA9(data)` of the 7080D: the host's number, five digits.
+    /// `$AA9(data)` of the 7080D: sets the host's number, five digits.
     WriteDisplayed(u16),
 }
 

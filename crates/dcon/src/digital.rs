@@ -5,12 +5,12 @@ use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Channel, OutputWord, UpTo};
 
-/// Which of the two stored output patterns.
+/// One of the two stored output patterns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stored {
-    /// Taken at power-on.
+    /// Pattern applied at power-on.
     PowerOn,
-    /// Taken when the host watchdog trips.
+    /// Pattern applied when the host watchdog trips.
     Safe,
 }
 
@@ -23,7 +23,7 @@ impl Stored {
     }
 }
 
-/// `#AABBDD`: some of the outputs.
+/// Data of `#AABBDD`, which sets some of the outputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GroupWrite {
     /// BB = 00: outputs 0..7, bit n = output n.
@@ -32,16 +32,16 @@ pub enum GroupWrite {
     GroupB(u8),
     /// BB = 1c: one output of the first group.
     OneOfA {
-        /// 0..7.
+        /// Number of the output, 0 to 7.
         output: UpTo<7>,
-        /// Its state.
+        /// New state of the output.
         on: bool,
     },
     /// BB = Bc: one output of the second group.
     OneOfB {
-        /// 0..7 within the group.
+        /// Number of the output within the group, 0 to 7.
         output: UpTo<7>,
-        /// Its state.
+        /// New state of the output.
         on: bool,
     },
 }
@@ -49,36 +49,37 @@ pub enum GroupWrite {
 /// Commands of digital modules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Digital {
-    /// `$AA6`: everything, outputs first.
+    /// `$AA6`: reads inputs and outputs, outputs first.
     ReadAll,
-    /// `@AA`: the same in the `>` form.
+    /// `@AA`: reads the same, with a `>` reply.
     ReadPort,
-    /// `@AA(data)`: all outputs.
+    /// `@AA(data)`: sets all outputs.
     Write(OutputWord),
-    /// `#AABBDD`: some outputs.
+    /// `#AABBDD`: sets some outputs.
     WriteGroup(GroupWrite),
-    /// `#AAN`: events on an input since the last clear, modulo 65536. For pulses of 5 ms and longer.
+    /// `#AAN`: reads the number of events on an input since the last clear, modulo 65536. Counts pulses of 5 ms and
+    /// longer.
     ReadEvents {
-        /// Which input.
+        /// Number of the input.
         channel: Channel,
     },
-    /// `$AACN`.
+    /// `$AACN`: clears the event count of an input.
     ClearEvents {
-        /// Which input.
+        /// Number of the input.
         channel: Channel,
     },
-    /// `$AALS`: inputs that have been high (or low) since the last clear.
+    /// `$AALS`: reads the inputs that have been high (or low) since the last clear.
     ReadLatched {
-        /// True for latched high.
+        /// True for latched high, false for latched low.
         high: bool,
     },
     /// `$AAC`: clears all latches.
     ClearLatched,
-    /// `$AA4`: what [`super::Command::SampleAll`] took. Refused when nothing was ever sampled.
+    /// `$AA4`: reads the sample of [`super::Command::SampleAll`]. Refused when there is none.
     ReadSampled,
-    /// `~AA4V`.
+    /// `~AA4V`: reads a stored pattern.
     ReadStored(Stored),
-    /// `~AA5V`: the present outputs become the stored pattern.
+    /// `~AA5V`: stores the present outputs as a pattern.
     Store(Stored),
 }
 

@@ -1,98 +1,99 @@
-//! Why a reply was not taken for a value.
+//! Reasons for refusing a reply.
 
 use super::Address;
 use thiserror::Error;
 
-/// The reason. [`ReplyError::is_answer`] tells a module that said no from a line that garbled its words.
+/// Reason for refusing a reply. [`ReplyError::is_answer`] separates a module that declined from a damaged reply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum ReplyError {
-    /// `?AA`: understood but refused (no such channel, out of range, needs INIT*, an alarm owns the output).
+    /// `?AA`: the module understood the command but refused it (no such channel, out of range, needs INIT*, an
+    /// alarm controls the output).
     #[error("the module refused the command")]
     Refused,
-    /// Bare `!`: the host watchdog has tripped, outputs stay at their safe values until the status is cleared.
+    /// Bare `!`: the host watchdog has tripped; outputs keep their safe values until the status is cleared.
     #[error("the module ignored the output: its host watchdog has tripped")]
     Ignored,
-    /// The command is a broadcast; whatever was heard is no reply to it.
+    /// The command is a broadcast, which has no reply.
     #[error("a broadcast has no reply")]
     NotAsked,
-    /// Nothing between the ends of the frame.
+    /// The frame has no characters before its end.
     #[error("empty reply")]
     Empty,
-    /// The frame does not end in CR although only the CR can tell that it is whole.
+    /// The frame does not end in CR although only the CR can prove it complete.
     #[error("the reply does not end in CR")]
     NotEnded,
-    /// Longer than any reply of the protocol.
+    /// The frame is longer than any reply of the protocol.
     #[error("{length} characters, more than any reply has")]
     TooLong {
-        /// Characters heard.
+        /// Number of characters received.
         length: usize,
     },
-    /// A byte that is no printable ASCII.
-    #[error("byte {byte:#04x} at position {at} is no character of the protocol")]
+    /// A byte is not printable ASCII.
+    #[error("byte {byte:#04x} at position {at} is not a printable ASCII character")]
     NotText {
         /// Position from the lead.
         at: usize,
         /// The byte.
         byte: u8,
     },
-    /// Too short to hold a checksum, or no two upper-case hex digits where it belongs.
+    /// The frame is too short for a checksum, or does not end in two upper-case hex digits.
     #[error("no checksum at the end of the reply")]
     ChecksumMissing,
-    /// The characters do not add up.
-    #[error("checksum {found:02X} where the characters add up to {expected:02X}")]
+    /// The checksum does not match the characters.
+    #[error("checksum {found:02X} received, {expected:02X} computed")]
     ChecksumWrong {
-        /// As sent.
+        /// Checksum received.
         found: u8,
-        /// As computed.
+        /// Checksum computed.
         expected: u8,
     },
-    /// Another kind of reply than this command has.
-    #[error("lead `{}` where `{}` was expected", *found as char, *expected as char)]
+    /// The lead is that of another kind of reply.
+    #[error("lead `{}` received, `{}` expected", *found as char, *expected as char)]
     WrongLead {
-        /// As sent.
+        /// Lead received.
         found: u8,
-        /// Of a good reply.
+        /// Lead of a valid reply.
         expected: u8,
     },
-    /// Another module's answer.
+    /// Another module answered.
     #[error("address {found} answered, {asked} was asked")]
     WrongAddress {
-        /// In the reply.
+        /// Address in the reply.
         found: Address,
-        /// In the request.
+        /// Address in the request.
         asked: Address,
     },
-    /// More or fewer characters than the reply to this command has.
-    #[error("{found} characters before the checksum, which is no length of this reply")]
+    /// The reply has more or fewer characters than this command allows.
+    #[error("{found} characters before the checksum, not a valid length of this reply")]
     WrongLength {
-        /// Characters from the lead, checksum and CR left out.
+        /// Number of characters from the lead, without checksum and CR.
         found: usize,
     },
-    /// A field that does not follow its grammar.
+    /// A field violates its grammar.
     #[error("no {expected} at position {at}")]
     BadField {
         /// Position from the lead.
         at: usize,
-        /// What should have been there.
+        /// Field expected.
         expected: &'static str,
     },
-    /// Well formed, but beyond what the module can say.
+    /// A field is well formed, but beyond what the module can send.
     #[error("{what} out of range at position {at}")]
     OutOfRange {
         /// Position from the lead.
         at: usize,
-        /// The quantity.
+        /// Quantity in the field.
         what: &'static str,
     },
 }
 
 impl ReplyError {
-    /// True when the module understood and declined: the line is in order and asking again changes nothing.
+    /// Whether the module understood and declined: the line works and repeating the command changes nothing.
     pub fn is_answer(self) -> bool {
         matches!(self, Self::Refused | Self::Ignored)
     }
 
-    /// True when the characters themselves were damaged.
+    /// Whether the characters themselves were damaged.
     pub fn is_checksum(self) -> bool {
         matches!(self, Self::ChecksumMissing | Self::ChecksumWrong { .. })
     }

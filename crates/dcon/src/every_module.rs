@@ -1,65 +1,66 @@
-//! What (almost) every module understands: configuration, identity, host watchdog, INIT*.
+//! Commands of (almost) every module type: configuration, identity, host watchdog, INIT*.
 
 use super::command::Nature::{self, Act, Read, ReadOnce, Store};
 use super::request::Request;
 use super::shape::Shape;
 use super::{Address, Config, ModuleName, UpTo};
 
-/// Commands common to the families.
+/// Commands common to all families.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Common {
-    /// `$AA2`. A module in INIT* mode (asked at 00) answers with its stored address.
+    /// `$AA2`. A module in INIT* mode (addressed as 00) answers with its stored address.
     ReadConfig,
-    /// `%AANNTTCCFF`. The reply comes from the new address. Baud and checksum are refused outside INIT*.
+    /// `%AANNTTCCFF`. The reply comes from the new address. Outside INIT* the module refuses to change baud and
+    /// checksum.
     WriteConfig {
-        /// Where the module will answer from now on.
+        /// New address of the module.
         address: Address,
-        /// Type, baud and format from now on.
+        /// New type, baud and format.
         config: Config,
     },
-    /// `$AA5`: true on the first read after a reset, then false. Counters have no such command.
+    /// `$AA5`: true on the first read after a reset, then false. Counters lack this command.
     ReadResetStatus,
-    /// `$AAF`.
+    /// `$AAF`: firmware version.
     ReadFirmware,
-    /// `$AAM`. The name can be rewritten: a hint, no proof of the type.
+    /// `$AAM`: module name. The name can be rewritten, so it does not prove the type.
     ReadName,
-    /// `~AAO(name)`.
+    /// `~AAO(name)`: sets the module name.
     WriteName(ModuleName),
-    /// `$AAI`: 0 when the INIT* terminal is grounded.
+    /// `$AAI`: state of the INIT* terminal, 0 when grounded.
     ReadInitPin,
-    /// `~AA0`: bit 2 set = the host watchdog has tripped; newer firmware sets bit 7 while it is enabled.
+    /// `~AA0`: bit 2 set = the host watchdog has tripped. Newer firmware sets bit 7 while it is enabled.
     ReadWatchdogStatus,
-    /// `~AA1`: outputs obey again. The flag lives in EEPROM.
+    /// `~AA1`: clears the tripped watchdog, so that outputs obey again. The flag is in EEPROM.
     ClearWatchdogStatus,
-    /// `~AA2`.
+    /// `~AA2`: host watchdog settings.
     ReadWatchdog,
-    /// `~AA3EVV`.
+    /// `~AA3EVV`: sets the host watchdog.
     WriteWatchdog {
-        /// Whether a silent host trips it.
+        /// Whether the watchdog is active.
         enabled: bool,
-        /// Silence that trips it, in tenths of a second, from 1.
+        /// Time without a host message until the watchdog trips, tenths of a second, from 1.
         timeout_tenths: u8,
     },
-    /// `~AARD`, newer firmware: deliberate delay before a reply, ms.
+    /// `~AARD`, newer firmware: configured delay before a reply, ms.
     ReadResponseDelay,
-    /// `~AARDVV`, newer firmware.
+    /// `~AARDVV`, newer firmware: sets the delay before a reply.
     WriteResponseDelay {
-        /// Delay in ms.
+        /// Delay, ms.
         delay_ms: UpTo<30>,
     },
     /// `$AAP`, newer firmware: 0 DCON, 1 Modbus RTU.
     ReadProtocol,
-    /// `$AAPN`, newer firmware, within INIT*: Modbus RTU instead of DCON after the next power-on. Whoever sends it
-    /// does not reach the module with DCON any more.
+    /// `$AAPN`, newer firmware, within INIT*: selects the protocol after the next power-on. A module set to Modbus
+    /// RTU no longer answers to DCON.
     WriteProtocol {
-        /// False: DCON.
+        /// True for Modbus RTU, false for DCON.
         modbus: bool,
     },
-    /// `~AAI`: soft INIT, within the window.
+    /// `~AAI`: enters soft INIT; valid only within the window that [`Common::OpenSoftInit`] opens.
     EnterSoftInit,
-    /// `~AATnn`: opens the window of soft INIT.
+    /// `~AATnn`: opens the window for soft INIT.
     OpenSoftInit {
-        /// Length of the window.
+        /// Length of the window, seconds.
         seconds: UpTo<60>,
     },
 }

@@ -1,10 +1,11 @@
-//! Reading the fields of a reply by width. Every step either takes exactly what the grammar says or names what was missing.
+//! Reads the fields of a reply by width. Each step consumes exactly what the grammar demands, or returns an error
+//! that names the missing field.
 
 use super::frame::hex_digit;
 use super::{Address, ReplyError};
 use std::ops::RangeInclusive;
 
-/// The characters of a reply and how far they have been read.
+/// The characters of a reply and the position of the next one.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fields<'a> {
     text: &'a [u8],
@@ -30,12 +31,12 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// The first character, not consumed.
+    /// Returns the first character without consuming it.
     pub(super) fn lead(&self) -> Option<u8> {
         self.text.first().copied()
     }
 
-    /// Consumes the lead, and checks the whole length as well: both before any field is looked at.
+    /// Consumes the lead and checks the length of the whole reply, before any field is read.
     pub(super) fn start(
         &mut self,
         expected: u8,
@@ -53,7 +54,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// The next `width` characters.
+    /// Consumes the next `width` characters.
     pub(super) fn take(&mut self, width: usize) -> Result<&'a [u8], ReplyError> {
         let field = self
             .text
@@ -63,7 +64,7 @@ impl<'a> Fields<'a> {
         Ok(field)
     }
 
-    /// Nothing may be left.
+    /// Fails when characters are left.
     pub(super) fn end(&self) -> Result<(), ReplyError> {
         if self.at == self.text.len() {
             Ok(())
@@ -72,7 +73,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// All that is left.
+    /// Consumes all remaining characters.
     pub(super) fn rest(&mut self) -> &'a [u8] {
         let rest = self.text.get(self.at..).unwrap_or_default();
         self.at = self.text.len();
@@ -96,7 +97,7 @@ impl<'a> Fields<'a> {
         Ok(self.hex(2)? as u8)
     }
 
-    /// Decimal digits with a value up to `max`.
+    /// Reads decimal digits with a value up to `max`.
     pub(super) fn decimal(&mut self, width: usize, max: u32) -> Result<u32, ReplyError> {
         let at = self.at;
         let value = self
@@ -119,7 +120,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// `0` or `1`.
+    /// Reads `0` or `1`.
     pub(super) fn flag(&mut self) -> Result<bool, ReplyError> {
         let at = self.at;
         match self.take(1)? {
@@ -132,7 +133,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// Characters that say nothing but must be there.
+    /// Consumes fixed characters that carry no information.
     pub(super) fn filler(
         &mut self,
         filler: &[u8],
@@ -150,7 +151,7 @@ impl<'a> Fields<'a> {
         self.byte().map(Address)
     }
 
-    /// The address of the module that was asked, and no other.
+    /// Reads an address; fails unless it is that of the addressed module.
     pub(super) fn address_is(&mut self, asked: Address) -> Result<(), ReplyError> {
         let found = self.address()?;
         if found == asked {

@@ -1,8 +1,8 @@
-//! The envelope of a frame: printable characters, checksum, CR.
+//! Framing: printable characters, checksum, CR.
 
 use super::ReplyError;
 
-/// Longest frame a parser need hold, CR included. The longest reply of the protocol has 60 characters.
+/// Longest frame that a parser must hold, CR included. The longest reply of the protocol has 60 characters.
 pub const FRAME_LIMIT: usize = 64;
 
 /// Carriage return: the only end of a frame.
@@ -13,7 +13,8 @@ pub fn checksum(text: &[u8]) -> u8 {
     text.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
 }
 
-/// Takes the envelope off: the characters from the lead to the last before the checksum, and whether a CR was seen.
+/// Removes the framing. Returns the characters from the lead to the last before the checksum, and whether the frame
+/// is proven complete.
 pub(super) fn open(frame: &[u8], with_checksum: bool) -> Result<(&[u8], bool), ReplyError> {
     if frame.len() > FRAME_LIMIT {
         return Err(ReplyError::TooLong {
@@ -32,7 +33,7 @@ pub(super) fn open(frame: &[u8], with_checksum: bool) -> Result<(&[u8], bool), R
     if text.is_empty() {
         return Err(ReplyError::Empty);
     }
-    // A right checksum is as good an end as a CR.
+    // A correct checksum proves the end as well as a CR does.
     Ok((text, ended || with_checksum))
 }
 
@@ -51,7 +52,7 @@ fn verified(text: &[u8]) -> Result<&[u8], ReplyError> {
     }
 }
 
-/// Value of an upper-case hex digit; the protocol knows no lower case.
+/// Value of an upper-case hex digit; `None` for any other byte, lower case included.
 pub(super) fn hex_digit(byte: u8) -> Option<u8> {
     match byte {
         b'0'..=b'9' => Some(byte - b'0'),

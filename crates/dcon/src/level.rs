@@ -1,11 +1,11 @@
-//! Values for analog outputs: whole steps of the notation the module is configured for.
+//! Values for analog outputs, in whole steps of the configured notation.
 
 use super::fields::Fields;
 use super::request::Request;
 use super::{ReplyError, TypeCode};
 use thiserror::Error;
 
-/// How a module writes the levels of its outputs. Fixed by model and configuration word.
+/// Notation of the output levels of a module, determined by model and configuration word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OutputForm {
     /// 7021, 7021P, 7022: `05.000`, steps of 0.001 V or mA, no sign.
@@ -20,25 +20,25 @@ pub enum OutputForm {
     Hex16,
 }
 
-/// Why there is no such level.
+/// Reason why a value has no level.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum LevelError {
     /// The range has no scale, or the value is NaN.
     #[error("{value} cannot be scaled to type code {range:02X}")]
     NoScale {
-        /// As asked for, in the unit of the range.
+        /// Value requested, in the unit of the range.
         value: f64,
-        /// TT.
+        /// Type code of the range.
         range: u8,
     },
-    /// The module could not go there; it would stop at the limit.
+    /// The value is out of range; the module would stop at the limit.
     #[error("level {value} is outside {low} to {high}")]
     OutOfRange {
-        /// As asked for, in the unit of the range.
+        /// Value requested, in the unit of the range.
         value: f64,
-        /// Lower end.
+        /// Lower limit, in the same unit.
         low: f64,
-        /// Upper end.
+        /// Upper limit, in the same unit.
         high: f64,
     },
 }
@@ -51,7 +51,7 @@ pub struct Level {
 }
 
 impl OutputForm {
-    /// Least and greatest number of steps that can be written.
+    /// Least and greatest number of steps that the notation can write.
     fn limits(self) -> (i32, i32) {
         match self {
             Self::Engineering => (0, 99_999),
@@ -62,7 +62,7 @@ impl OutputForm {
         }
     }
 
-    /// Characters of a value.
+    /// Length of a value, characters.
     pub(super) fn width(self) -> usize {
         match self {
             Self::Engineering => 6,
@@ -74,7 +74,7 @@ impl OutputForm {
 }
 
 impl Level {
-    /// From steps; none beyond what the notation can write.
+    /// Makes a level from steps; `None` beyond what the notation can write.
     pub fn from_steps(form: OutputForm, steps: i32) -> Option<Self> {
         let (least, greatest) = form.limits();
         (least..=greatest)
@@ -82,7 +82,7 @@ impl Level {
             .then_some(Self { form, steps })
     }
 
-    /// The step nearest to `value`, given in the unit of `range`. The ends of the range are included.
+    /// Returns the level nearest to `value`, given in the unit of `range`. The range includes its ends.
     pub fn nearest(form: OutputForm, range: TypeCode, value: f64) -> Result<Self, LevelError> {
         let scale = range.full_scale().filter(|_| value.is_finite());
         let scale = scale.ok_or(LevelError::NoScale {
@@ -103,17 +103,17 @@ impl Level {
         Self::from_steps(form, steps.round() as i32).ok_or(outside)
     }
 
-    /// The notation.
+    /// Returns the notation.
     pub fn form(self) -> OutputForm {
         self.form
     }
 
-    /// Steps of 0.001 unit, 0.01 %, or one bit.
+    /// Returns the number of steps of 0.001 unit, 0.01 %, or one bit.
     pub fn steps(self) -> i32 {
         self.steps
     }
 
-    /// In the unit of `range`; none when it has no scale.
+    /// Converts to the unit of `range`; `None` when it has no scale.
     pub fn in_units(self, range: TypeCode) -> Option<f64> {
         let scale = range.full_scale()?;
         let (low, span) = (scale.low, scale.high - scale.low);
@@ -138,7 +138,7 @@ impl Level {
         };
     }
 
-    /// A level as it is written in a request; none unless the whole of `text` is one.
+    /// Reads a level from a request; `None` unless all of `text` is one level.
     pub(super) fn read(form: OutputForm, text: &[u8]) -> Option<Self> {
         let mut fields = Fields::new(text);
         let level = Self::decode(form, &mut fields).ok()?;

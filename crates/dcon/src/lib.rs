@@ -1,12 +1,25 @@
-//! The DCON protocol of I-7000 modules, as seen by the one master of a line. Pure: bytes in, values out.
+//! The DCON protocol of I-7000 modules, for the one master of a line. Pure: bytes in, values out.
 //!
-//! A request is `LEAD address command [checksum] CR`, a reply `LEAD [address] data [checksum] CR`, upper-case
-//! ASCII throughout. What a reply means depends on the command that asked: `>` replies carry no address, and
-//! `$AA6` is a channel mask, a level or sixteen bits, depending on the module. So the *command* decodes the reply
-//! ([`Command::decode`]): by lead, exact length, grammar and range; whatever does not fit is a [`ReplyError`]
+//! A request is `LEAD address command [checksum] CR`, a reply `LEAD [address] data [checksum] CR`, upper-case ASCII
+//! throughout. The meaning of a reply depends on its command: `>` replies carry no address, and the reply to `$AA6`
+//! is a channel mask, a level or sixteen bits, depending on the module. So the *command* decodes the reply
+//! ([`Command::decode`]) by lead, exact length, grammar and range. Anything that does not fit is a [`ReplyError`]
 //! with its reason, never a value.
 //!
-//! Commands are grouped by module family, because the same letters mean different things in each:
+//! ```
+//! use dcon::{Address, Command, Common, Reply, ReplyError};
+//!
+//! let command: Command = Common::ReadResetStatus.to(Address(1));
+//! let mut request = Vec::new();
+//! command.encode(false, &mut request);
+//! assert_eq!(request, b"$015\r");
+//! assert_eq!(command.decode(b"!011\r", false), Ok(Reply::Flag(true)));
+//! assert_eq!(command.decode(b"?01\r", false), Err(ReplyError::Refused));
+//! ```
+//!
+//! # Map of the modules
+//! Commands are grouped by module family, because the same letters mean different things in each. Each family has
+//! one table: the effect of a command on the module ([`Nature`]) and the form of its reply.
 //!
 //! | family | modules | file |
 //! |---|---|---|
@@ -16,12 +29,18 @@
 //! | [`Digital`] | 7041, 7043, 7045, 7050, 7051, 7060, 7063, 7065, 7067 | `digital.rs` |
 //! | [`Counter`] | 7080 | `counter.rs` |
 //!
-//! Each family has one table: what a command does to the module ([`Nature`]) and what its reply looks like.
+//! | file | contents |
+//! |---|---|
+//! | `command.rs`, `request.rs`, `frame.rs` | requests: the closed set, their fields, checksum and CR |
+//! | `reply.rs`, `shape.rs`, `fields.rs`, `error.rs` | replies: meanings, forms, fields, reasons for refusal |
+//! | `reading.rs`, `level.rs`, `bits.rs`, `bounded.rs`, `type_code.rs`, `config.rs` | values, ranges and configuration words |
+//! | `setting.rs` | whether a setting is already in effect, since writing wears the EEPROM |
+//! | `agreement.rs` | which of several answers to one request to believe |
+//! | `written.rs`, `understand.rs`, `words.rs` | requests back into commands, their meaning with a reply, both in words |
 //!
-//! Writing wears an EEPROM: whether a setting stands already is told by `standing.rs`.
-//!
-//! Absent by design: factory calibration and trim (`$AA0`, `$AA1`, `$AA3` of outputs, `~AAE`) cannot be written
-//! down with these types, so no slip of the rig can spoil a module.
+//! # Absent by design
+//! Factory calibration and trim (`$AA0`, `$AA1`, `$AA3` of outputs, `~AAE`) have no representation in these types,
+//! so no mistake in the caller can decalibrate a module.
 
 mod agreement;
 mod analog_in;
@@ -40,8 +59,8 @@ mod level;
 mod reading;
 mod reply;
 mod request;
+mod setting;
 mod shape;
-mod standing;
 mod type_code;
 mod understand;
 mod words;

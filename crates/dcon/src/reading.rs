@@ -1,34 +1,34 @@
-//! Readings of analog inputs: the characters as sent, and what they say.
+//! Readings of analog inputs: the characters as sent, and their meaning.
 //!
-//! A reading is a number, or one of three things that must never become one: over range, under range, blank
-//! (channel disabled). The rails of the hex notation (7FFF, 8000) count as over and under range: at the rail the
-//! terminal may be anywhere beyond.
+//! A reading is a number or one of three states that must never become a number: over range, under range, blank
+//! (channel disabled). The end values of the hex notation (7FFF, 8000) count as over and under range, because the true
+//! value may lie anywhere beyond.
 
 use super::fields::Fields;
 use super::frame::hex_digit;
 use super::{DataFormat, InputForm, ReplyError, TypeCode};
 
-/// What a channel said, in the terms of its notation.
+/// Value of a channel in its notation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Value {
-    /// In the unit of the range.
+    /// Value in the unit of the range.
     Engineering(f64),
-    /// Per cent of full scale.
+    /// Value in per cent of full scale.
     Percent(f64),
-    /// Two's complement, 32768 = full scale.
+    /// Value in two's complement, 32768 = full scale.
     Hex(i16),
-    /// One-sided range: 0 = lower end, 65535 = upper end.
+    /// Value of a one-sided range: 0 = lower end, 65535 = upper end.
     HexUnipolar(u16),
-    /// At or above the upper rail.
+    /// At or above the upper end of the notation.
     OverRange,
-    /// At or below the lower rail.
+    /// At or below the lower end of the notation.
     UnderRange,
     /// The channel is disabled.
     Blank,
 }
 
 impl Value {
-    /// In the unit of `range`; none unless it is a number and the range has a scale.
+    /// Converts to the unit of `range`; `None` for a state that is not a number and for a range without scale.
     pub fn in_units(self, range: TypeCode) -> Option<f64> {
         let scale = range.full_scale()?;
         let span = scale.high - scale.low;
@@ -45,22 +45,22 @@ impl Value {
     }
 }
 
-/// One channel's answer.
+/// Reading of one channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reading {
-    /// What it says.
+    /// The decoded value.
     pub value: Value,
     text: [u8; 7],
     length: u8,
 }
 
 impl Reading {
-    /// The characters as sent.
+    /// Returns the characters as sent.
     pub fn text(&self) -> &str {
         std::str::from_utf8(&self.text[..usize::from(self.length)]).unwrap_or_default()
     }
 
-    /// Reads the next `width` characters.
+    /// Decodes the next `width` characters.
     pub(super) fn decode(
         form: InputForm,
         width: usize,
@@ -90,7 +90,7 @@ impl Reading {
     }
 }
 
-/// Characters of a reading.
+/// Length of one reading, characters.
 pub(super) fn width(format: DataFormat) -> usize {
     match format {
         DataFormat::Engineering | DataFormat::Percent => 7,
@@ -98,7 +98,7 @@ pub(super) fn width(format: DataFormat) -> usize {
     }
 }
 
-/// All channels of a module, channel 0 first.
+/// Readings of all channels of a module, channel 0 first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Readings {
     list: [Option<Reading>; 8],
@@ -113,12 +113,12 @@ impl Readings {
         Ok(Self { list })
     }
 
-    /// None when the module has no such channel.
+    /// Returns one reading; `None` when the module has no such channel.
     pub fn get(&self, channel: usize) -> Option<Reading> {
         self.list.get(channel).copied().flatten()
     }
 
-    /// In order of channels.
+    /// Iterates in the order of the channels.
     pub fn iter(&self) -> impl Iterator<Item = &Reading> {
         self.list.iter().flatten()
     }
@@ -147,7 +147,7 @@ fn engineering(field: &[u8], range: TypeCode, at: usize) -> Result<Value, ReplyE
             });
         }
     };
-    // Inputs saturate a little above full scale; a quarter of the span is more than any of them does.
+    // Inputs saturate slightly above full scale, by less than the quarter of the span allowed here.
     let plausible = range.full_scale().is_none_or(|scale| {
         let slack = (scale.high - scale.low) / 4.0;
         (scale.low - slack..=scale.high + slack).contains(&number)
@@ -187,13 +187,13 @@ fn beyond(negative: bool) -> Value {
 
 enum Decimal {
     Number(f64),
-    /// Only nines: the module's way to say that it cannot say.
+    /// Only nines: the module's code for over or under range.
     Nines {
         negative: bool,
     },
 }
 
-/// Sign, five digits and one point among them. Six characters without sign are known of over range only.
+/// Parses a sign and five digits with one point among them. The sign may be missing only from an over-range reading.
 fn decimal(field: &[u8]) -> Option<Decimal> {
     let (negative, digits) = match field {
         [b'+', rest @ ..] => (false, rest),

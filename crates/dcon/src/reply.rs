@@ -1,4 +1,4 @@
-//! What a module said, typed by what was asked.
+//! Replies, decoded according to their command.
 
 use super::{
     Address, AlarmState, Bits, Channel, Config, GateMode, InputMode, Level, Reading, Readings,
@@ -6,63 +6,63 @@ use super::{
 };
 use std::fmt;
 
-/// The meaning of a good reply.
+/// Meaning of a valid reply.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reply {
-    /// A broadcast is on its way; nobody confirms it.
+    /// A broadcast was sent; no module confirms it.
     Sent,
-    /// `!AA` or `>`: done.
+    /// `!AA` or `>`: the module did as commanded.
     Accepted,
     /// `!AATTCCFF`.
     Config {
-        /// As stored: not the address asked when the module is in INIT* mode.
+        /// Stored address; differs from the address of the request when the module is in INIT* mode.
         address: Address,
-        /// As stored.
+        /// Stored configuration.
         config: Config,
     },
-    /// Firmware or name.
+    /// Firmware version or module name.
     Text(Text),
-    /// Yes or no, as the command says.
+    /// Yes or no; the command defines the question.
     Flag(bool),
     /// A mask or status.
     Byte(u8),
-    /// A setting in decimals.
+    /// A setting in decimal digits.
     Decimal(u32),
-    /// `!AAEVV`.
+    /// `!AAEVV`: host watchdog settings.
     Watchdog {
-        /// None from firmware that leaves it out.
+        /// Whether the watchdog is active; `None` from firmware that omits it.
         enabled: Option<bool>,
-        /// Silence that trips it, tenths of a second.
+        /// Time without a host message until the watchdog trips, tenths of a second.
         timeout_tenths: u8,
     },
-    /// Inputs and outputs.
+    /// States of inputs and outputs.
     Bits(Bits),
-    /// What a synchronised sample took.
+    /// The synchronised sample.
     Sampled {
-        /// True the first time it is read.
+        /// True the first time the sample is read.
         first_read: bool,
-        /// The sample.
+        /// States at the sample.
         bits: Bits,
     },
-    /// Events on a digital input, modulo 65536.
+    /// Number of events on a digital input, modulo 65536.
     Events(u16),
     /// A 32-bit count, preset or maximum.
     Count(u32),
-    /// Hz.
+    /// Frequency, Hz.
     Frequency(u32),
-    /// Gate of the counters.
+    /// Gate mode of the counters.
     Gate(GateMode),
-    /// Inputs of the counters.
+    /// Input mode of the counters.
     Inputs(InputMode),
-    /// Alarm and outputs of a counter.
+    /// Alarm state and outputs of a counter module.
     Alarm(AlarmState),
-    /// One analog input.
+    /// Reading of one analog input.
     Reading(Reading),
-    /// All analog inputs.
+    /// Readings of all analog inputs.
     Readings(Readings),
-    /// One analog output.
+    /// Level of one analog output.
     Level(Level),
-    /// Range and slew of a 7022 channel.
+    /// Range and slew rate of a 7022 channel.
     OutputChannel {
         /// Range.
         range: TypeCode,
@@ -71,14 +71,14 @@ pub enum Reply {
     },
     /// Range of an input channel.
     ChannelRange {
-        /// Which input.
+        /// Number of the input.
         channel: Channel,
         /// Range.
         range: TypeCode,
     },
 }
 
-/// A short text of a module, without allocation.
+/// A short text from a module, stored without allocation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Text {
     bytes: [u8; Text::LONGEST],
@@ -86,10 +86,10 @@ pub struct Text {
 }
 
 impl Text {
-    /// Names have up to six characters, versions are shorter; the rest is grace.
+    /// Greatest length, characters. Names have up to six, versions fewer; the rest is reserve.
     pub const LONGEST: usize = 16;
 
-    /// None when empty or too long.
+    /// Returns `None` when the text is empty or too long.
     pub(super) fn new(text: &[u8]) -> Option<Self> {
         let mut bytes = [0; Self::LONGEST];
         bytes.get_mut(..text.len())?.copy_from_slice(text);
@@ -99,7 +99,7 @@ impl Text {
         })
     }
 
-    /// As sent.
+    /// Returns the text as sent.
     pub fn as_str(&self) -> &str {
         std::str::from_utf8(&self.bytes[..usize::from(self.length)]).unwrap_or_default()
     }

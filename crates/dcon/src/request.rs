@@ -1,4 +1,4 @@
-//! Writing a request, character by character, into a buffer that is used again and again.
+//! Writes a request, character by character, into a reusable buffer.
 
 use super::frame::{CR, checksum};
 use super::{Address, UpTo};
@@ -15,7 +15,7 @@ impl<'a> Request<'a> {
         Self { out, start }
     }
 
-    /// Lead and address.
+    /// Writes lead and address.
     pub(super) fn to(&mut self, lead: u8, address: Address) -> &mut Self {
         self.out.push(lead);
         self.hex(u32::from(address.0), 2)
@@ -26,7 +26,7 @@ impl<'a> Request<'a> {
         self
     }
 
-    /// `digits` upper-case hex digits, most significant first.
+    /// Writes `digits` upper-case hex digits, most significant first.
     pub(super) fn hex(&mut self, value: u32, digits: u32) -> &mut Self {
         for place in (0..digits).rev() {
             self.out
@@ -35,7 +35,7 @@ impl<'a> Request<'a> {
         self
     }
 
-    /// `digits` decimal digits, most significant first.
+    /// Writes `digits` decimal digits, most significant first.
     pub(super) fn decimal(&mut self, value: u32, digits: u32) -> &mut Self {
         for place in (0..digits).rev() {
             self.out.push(b'0' + (value / 10u32.pow(place) % 10) as u8);
@@ -43,7 +43,7 @@ impl<'a> Request<'a> {
         self
     }
 
-    /// One hex digit; a missing one is left out (single-channel modules name no channel).
+    /// Writes one hex digit, or none for `None`: requests to single-channel modules name no channel.
     pub(super) fn digit<const MAX: u8>(
         &mut self,
         value: impl Into<Option<UpTo<MAX>>>,
@@ -54,12 +54,12 @@ impl<'a> Request<'a> {
         self
     }
 
-    /// `1` or `0`.
+    /// Writes `1` or `0`.
     pub(super) fn flag(&mut self, value: bool) -> &mut Self {
         self.text(if value { b"1" } else { b"0" })
     }
 
-    /// Checksum if the line has one, and CR.
+    /// Writes the checksum, if the line has one, and CR.
     pub(super) fn end(&mut self, with_checksum: bool) {
         if with_checksum {
             let sum = checksum(&self.out[self.start..]);

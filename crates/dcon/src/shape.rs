@@ -1,4 +1,4 @@
-//! The shapes of replies: lead, lengths, fields. One entry per kind; the families' tables point here.
+//! Forms of replies: lead, lengths, fields. The families' tables refer to these.
 
 use super::analog_out::output_range;
 use super::command::Nature;
@@ -10,7 +10,7 @@ use super::{
     UpTo,
 };
 
-/// What a good reply looks like. In the remarks AA is the address asked.
+/// Form of a valid reply. In the remarks AA is the address of the request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     /// `!AA`
@@ -67,7 +67,7 @@ pub(super) enum Shape {
     ChannelRange(Channel),
 }
 
-/// `?` and the lone `!`: the module heard and declined. Any other beginning is left to the shape.
+/// Detects `?AA` and the bare `!`, by which a module declines. Other leads are left to the form.
 pub(super) fn declined(text: &[u8], asked: Address, nature: Nature) -> Result<(), ReplyError> {
     let output = nature == Nature::Output;
     let mut fields = Fields::new(text);
@@ -115,7 +115,7 @@ impl Shape {
         }
     }
 
-    /// Characters from the lead on, the longest form.
+    /// Length of the longest variant from the lead on, characters.
     pub(super) fn longest(self) -> usize {
         match self {
             Self::Output => 1,
@@ -135,24 +135,24 @@ impl Shape {
         }
     }
 
-    /// Characters from the lead on, the shortest form.
+    /// Length of the shortest variant from the lead on, characters.
     fn shortest(self) -> usize {
         match self {
             Self::Text => 4,
             Self::Watchdog => 5,
             Self::Latched => 7,
-            // Over range is also seen without its sign.
+            // An over-range reading may lack its sign.
             Self::Reading(form) if width(form.format) == 7 => 7,
             fixed => fixed.longest(),
         }
     }
 
-    /// True where a shorter reply may be whole as well, so that only an end mark tells.
+    /// Whether a shorter reply may be complete as well, so that only an end mark decides.
     pub(super) fn is_open(self) -> bool {
         self.shortest() < self.longest()
     }
 
-    /// Reads the fields of `text`, lead to last character before checksum and CR.
+    /// Decodes `text`, from lead to last character before checksum and CR.
     pub(super) fn decode(self, text: &[u8], asked: Address) -> Result<Reply, ReplyError> {
         let mut fields = Fields::new(text);
         fields.start(self.lead(), self.shortest()..=self.longest())?;
@@ -191,7 +191,7 @@ impl Shape {
         }
     }
 
-    /// Replies that begin with `!AA`, from behind the address.
+    /// Decodes replies that begin with `!AA`, starting after the address.
     fn addressed(self, fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
         match self {
             Self::Flag => fields.flag().map(Reply::Flag),
@@ -227,7 +227,7 @@ impl Shape {
         }
     }
 
-    /// The replies of digital modules that carry no address, and the latches, which sometimes do.
+    /// Decodes the replies of digital modules without address, and the latches, which have one in some firmware.
     fn bits(self, fields: &mut Fields<'_>, asked: Address) -> Result<Reply, ReplyError> {
         if self == Self::Latched && fields.length() > self.shortest() {
             fields.address_is(asked)?;
@@ -256,14 +256,14 @@ fn two_bytes(fields: &mut Fields<'_>) -> Result<Bits, ReplyError> {
     })
 }
 
-/// Eight-output modules fill up with 00, so that their pattern is the first byte.
+/// The pattern is the first byte: eight-output modules append 00.
 fn stored_bits(fields: &mut Fields<'_>) -> Result<Reply, ReplyError> {
     two_bytes(fields).map(Reply::Bits)
 }
 
 fn config(fields: &mut Fields<'_>, asked: Address) -> Result<Reply, ReplyError> {
     let found = fields.address()?;
-    // A module in INIT* mode listens at 00 and tells the address it will have without.
+    // A module in INIT* mode listens at 00 and reports its stored address.
     if found != asked && asked != Address(0) {
         return Err(ReplyError::WrongAddress { found, asked });
     }

@@ -1,4 +1,4 @@
-//! The protocol as tables: what a command puts on the wire, what its reply means, and what is refused.
+//! The protocol as tables: the bytes of each command, the meaning of its reply, and replies that must be refused.
 
 #![allow(clippy::unwrap_used)]
 
@@ -41,7 +41,7 @@ fn word(width: Width, bits: u16) -> Digital {
     Digital::Write(OutputWord::new(width, bits).unwrap())
 }
 
-/// Commands whose readings are looked at below; here for the damage tests.
+/// Commands that return readings, with replies; the tests below damage these.
 const READINGS: [(Command, &str); 7] = [
     (
         Command::AnalogIn(A1, AnalogIn::ReadAll(VOLTS)),
@@ -106,7 +106,7 @@ fn read_one(form: InputForm, text: &str) -> Result<Value, ReplyError> {
 }
 
 #[test]
-fn every_command_goes_out_and_comes_back_as_the_table_says() {
+fn every_command_and_reply_matches_the_table() {
     for (command, request, reply, meaning) in table() {
         for with_checksum in [false, true] {
             let mut out = Vec::new();
@@ -124,7 +124,7 @@ fn every_command_goes_out_and_comes_back_as_the_table_says() {
 }
 
 #[test]
-fn the_checksum_is_the_sum_of_all_characters_from_the_lead() {
+fn the_checksum_sums_all_characters_from_the_lead() {
     for (text, sum) in [
         ("$012", 0xB7),
         ("!01200600", 0xAA),
@@ -138,11 +138,11 @@ fn the_checksum_is_the_sum_of_all_characters_from_the_lead() {
 }
 
 #[test]
-fn a_reply_cut_off_anywhere_is_no_reply() {
+fn a_truncated_reply_is_refused() {
     for (command, reply) in all_frames() {
         for with_checksum in [false, true] {
             let whole = sealed(reply, with_checksum);
-            // The CR alone may be missing where the length or the checksum proves the rest.
+            // A CR may only be missing where the length or the checksum proves the reply complete.
             for length in 0..whole.len() - 1 {
                 let outcome = command.decode(&whole[..length], with_checksum);
                 assert!(
@@ -155,7 +155,7 @@ fn a_reply_cut_off_anywhere_is_no_reply() {
 }
 
 #[test]
-fn with_a_checksum_no_flipped_bit_passes_for_a_value() {
+fn the_checksum_catches_every_flipped_bit() {
     for (command, reply) in all_frames() {
         let whole = sealed(reply, true);
         for (at, bit) in (0..whole.len()).flat_map(|at| (0..8).map(move |bit| (at, bit))) {
@@ -171,7 +171,7 @@ fn with_a_checksum_no_flipped_bit_passes_for_a_value() {
 }
 
 #[test]
-fn a_refusal_counts_only_from_the_module_that_was_asked() {
+fn a_refusal_counts_only_from_the_addressed_module() {
     let read = AnalogIn::ReadOne {
         channel: ch(9),
         form: VOLTS,
@@ -190,7 +190,7 @@ fn a_refusal_counts_only_from_the_module_that_was_asked() {
 }
 
 #[test]
-fn output_commands_know_the_bare_refusal_and_the_tripped_watchdog() {
+fn output_commands_accept_bare_refusal_and_tripped_watchdog() {
     let write = word(Width::One, 3).to(A1);
     assert_eq!(write.decode(b"?\r", false), Err(ReplyError::Refused));
     assert_eq!(write.decode(b"?01A0\r", true), Err(ReplyError::Refused));
@@ -202,7 +202,7 @@ fn output_commands_know_the_bare_refusal_and_the_tripped_watchdog() {
 }
 
 #[test]
-fn a_neighbours_answer_of_another_kind_is_refused_by_lead_length_or_address() {
+fn replies_of_another_kind_or_module_are_refused() {
     let count = Counter::Read(n(0)).to(A1);
     assert_eq!(
         count.decode(b">0F00\r", false),
@@ -246,7 +246,7 @@ fn broadcasts_are_sent_and_never_answered() {
 }
 
 #[test]
-fn only_what_changes_nothing_may_be_repeated() {
+fn only_commands_without_effect_may_be_repeated() {
     for command in [
         Digital::ReadAll.to(A1),
         AnalogIn::ReadAll(HEX).to(A1),
@@ -296,7 +296,7 @@ proptest! {
     }
 
     #[test]
-    fn a_value_taken_has_the_very_characters_of_the_protocol(frame in "[!>?][0-9A-F +.-]{0,12}\r") {
+    fn every_accepted_value_has_valid_characters(frame in "[!>?][0-9A-F +.-]{0,12}\r") {
         for (command, _, reply, _) in table() {
             if command.decode(frame.as_bytes(), false).is_ok() {
                 prop_assert_eq!(frame.as_bytes()[0], reply.as_bytes()[0]);

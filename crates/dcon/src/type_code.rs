@@ -1,17 +1,17 @@
-//! Type codes (TT): what range a module measures or drives, and how a number in it is scaled.
+//! Type codes (TT): the range that a module measures or drives, and its scaling.
 
-/// TT of the configuration word.
+/// Type code, the field TT of the configuration word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TypeCode(pub u8);
 
 /// Unit of a range.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unit {
-    /// V.
+    /// Volt, V.
     Volt,
-    /// mV.
+    /// Millivolt, mV.
     Millivolt,
-    /// mA.
+    /// Milliampere, mA.
     Milliampere,
     /// Degrees Celsius.
     Celsius,
@@ -22,9 +22,9 @@ pub enum Unit {
 pub struct FullScale {
     /// Lower end.
     pub low: f64,
-    /// Upper end: what 100 % and 7FFF stand for.
+    /// Upper end, which corresponds to 100 % and 7FFF.
     pub high: f64,
-    /// Unit of both.
+    /// Unit of both ends.
     pub unit: Unit,
 }
 
@@ -39,16 +39,16 @@ impl FullScale {
 }
 
 impl TypeCode {
-    /// Digital modules.
+    /// Type code of digital modules.
     pub const DIGITAL: Self = Self(0x40);
-    /// 7080 as counter.
+    /// Type code of a 7080 as counter.
     pub const COUNTER: Self = Self(0x50);
-    /// 7080 as frequency meter.
+    /// Type code of a 7080 as frequency meter.
     pub const FREQUENCY: Self = Self(0x51);
-    /// The cold junction is printed like a type J thermocouple.
+    /// Type code whose notation also applies to the cold junction: type J thermocouple.
     pub(super) const COLD_JUNCTION: Self = Self(0x0E);
 
-    /// The range; none for codes without one (digital, counter) and unknown ones.
+    /// Returns the range; `None` for codes without one (digital, counter) and unknown codes.
     pub fn full_scale(self) -> Option<FullScale> {
         use Unit::{Milliampere, Millivolt, Volt};
         Some(match self.0 {
@@ -72,7 +72,8 @@ impl TypeCode {
         })
     }
 
-    /// Thermocouples J K T E R S B N C L M L-DIN (0E to 19) and Pt100 (20 to 23 with 0.00385/K, 24 to 27 with 0.003916/K).
+    /// Returns the ranges of thermocouples J K T E R S B N C L M L-DIN (0E to 19) and Pt100 (20 to 23 with
+    /// 0.00385/K, 24 to 27 with 0.003916/K).
     fn temperature(self) -> Option<FullScale> {
         let (low, high) = match self.0 {
             0x0E => (-210.0, 760.0),
@@ -95,7 +96,8 @@ impl TypeCode {
         Some(FullScale::new(low, high, Unit::Celsius))
     }
 
-    /// Inputs whose hex notation runs from 0000 at the lower to FFFF at the upper end, instead of two's complement.
+    /// Whether the hex notation of this input runs from 0000 at the lower end to FFFF at the upper end, instead of
+    /// two's complement.
     pub fn unipolar_input(self) -> bool {
         matches!(self.0, 0x07 | 0x1A)
     }

@@ -1,27 +1,27 @@
-//! What was said on a line, for traces and for commands typed by hand: which module may be asked what, what is never
-//! sent, and what a request and its reply mean together.
+//! Interprets line traffic, for traces and commands typed by hand: which commands a module family has, which
+//! requests must never be sent, and what a request and its reply mean together.
 //!
-//! A request may have several readings ([`readings`]). Which of them was meant shows in the reply: [`understand`] gives
+//! A request may have several readings ([`readings`]). The reply shows which one was meant: [`understand`] returns
 //! those that the reply fits.
 
 use super::frame::{self, hex_digit};
 use super::{Command, Reply, ReplyError, readings};
 
-/// What a module can be, as far as its commands go.
+/// Family of a module, which determines its commands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
     /// 7017, 7018, 7033.
     AnalogIn,
     /// 7021, 7022, 7024.
     AnalogOut,
-    /// 7041 to 7067 but for the analog ones.
+    /// 7041 to 7067, except the analog models.
     Digital,
     /// 7080.
     Counter,
 }
 
 impl Family {
-    /// From a model or a module's own name: `7017F`, `I-7043`. None for a name that tells nothing.
+    /// Derives the family from a model or a module's own name (`7017F`, `I-7043`); `None` for an unknown name.
     pub fn of_name(name: &str) -> Option<Self> {
         let digits = &name[name.find('7')?..];
         match digits.get(..4)? {
@@ -35,7 +35,7 @@ impl Family {
         }
     }
 
-    /// Whether a module of this family could be asked this.
+    /// Whether modules of this family have this command.
     pub fn knows(self, command: &Command) -> bool {
         match command {
             Command::HostOk | Command::SampleAll | Command::Common(..) => true,
@@ -47,8 +47,8 @@ impl Family {
     }
 }
 
-/// Why a request is never sent: factory calibration and trim need instruments that a rig has not, and spoil a module
-/// for good.
+/// Returns the reason why a request must never be sent; `None` when it may be. Factory calibration and trim need
+/// instruments that a rig does not have, and can spoil a module for good.
 pub fn factory(request: &[u8]) -> Option<&'static str> {
     let [lead, _, _, rest @ ..] = request else {
         return None;
@@ -71,8 +71,8 @@ pub fn factory(request: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// What `request` and its `reply`, both as on the wire, say together: the readings of the request that the reply fits;
-/// if it fits none, each with its reason.
+/// Returns the readings of `request` that `reply` fits, both as on the wire; if it fits none, returns each reading
+/// with its error.
 pub fn understand(
     request: &[u8],
     reply: &[u8],

@@ -1,5 +1,5 @@
-//! Commands and replies in words, for traces and the bus tools. The one table of the protocol is in the families;
-//! these words only print what the types already say.
+//! Prints commands and replies in words, for traces and the bus tools. The meaning comes from the types; the
+//! protocol tables are in the family modules.
 
 use super::{Command, Reply, Value};
 use std::fmt;

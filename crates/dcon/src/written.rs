@@ -1,8 +1,8 @@
-//! A request as it went over the wire, lead to last character, back into commands.
+//! Parses a request as it appeared on the wire, from lead to last character, back into commands.
 //!
-//! The same characters mean different things to different modules (`$016` is a channel mask, a level or sixteen bits),
-//! so that a text may have several readings: a list per family. Ranges are not on the wire; numbers come back in the
-//! terms of their notation.
+//! The same characters mean different things to different modules (`$016` is a channel mask, a level or sixteen
+//! bits), so a text may have several readings; each family has its own list. Ranges are not on the wire, so numbers
+//! stay in their notation.
 
 use super::frame::hex_digit;
 use super::{
@@ -11,10 +11,10 @@ use super::{
     ModuleName, OutputForm, OutputWord, SlewCode, Stored, TypeCode, UpTo, Width,
 };
 
-/// A type code that no module has: no range to hold a reading against.
+/// A type code that no module has: it imposes no range on a reading.
 const UNKNOWN: TypeCode = TypeCode(0xFF);
 
-/// How the readings of an unknown input module may be printed.
+/// Notations and channel counts that an unknown input module may have.
 const INPUT_FORMS: [InputForm; 6] = [
     InputForm::eight(DataFormat::Engineering, UNKNOWN),
     InputForm::eight(DataFormat::Percent, UNKNOWN),
@@ -32,7 +32,7 @@ const OUTPUT_FORMS: [OutputForm; 5] = [
     OutputForm::Hex16,
 ];
 
-/// Every command that is written as `request`, lead to last character, checksum and CR left off.
+/// Returns every command that is written as `request`, from lead to last character without checksum and CR.
 pub fn readings(request: &[u8]) -> Vec<Command> {
     let usual = usual(request);
     let request = usual.as_deref().unwrap_or(request);
@@ -52,7 +52,7 @@ pub fn readings(request: &[u8]) -> Vec<Command> {
     found.extend(analog_out(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(digital(rest).into_iter().map(|ask| ask.to(to)));
     found.extend(counter(rest).into_iter().map(|ask| ask.to(to)));
-    // The lead, and whatever the lists above were generous about, is settled by writing the command out again.
+    // Encoding each candidate again checks the lead and everything that the lists above accept too freely.
     let mut written = Vec::with_capacity(24);
     found.retain(|command| {
         written.clear();
@@ -62,7 +62,7 @@ pub fn readings(request: &[u8]) -> Vec<Command> {
     found
 }
 
-/// `#AABBDD` has two spellings: 0A for the first group is 00, Ac for one of its outputs is 1c.
+/// Rewrites `#AABBDD` in its usual spelling: 0A (first group) as 00, Ac (one output of it) as 1c.
 fn usual(request: &[u8]) -> Option<Vec<u8>> {
     let (place, digit) = match request {
         [b'#', _, _, b'0', b'A', _, _] => (4, b'0'),

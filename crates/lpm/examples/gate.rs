@@ -1,4 +1,4 @@
-//! Asks whether a gripper may travel over a fixture: `cargo run -p lpm --example gate`.
+//! Checks whether a gripper can travel over a fixture: `cargo run -p lpm --example gate`.
 
 use lpm::{Answer, Flaw, Model, Move, Mover, Pose, Shape};
 
@@ -21,9 +21,9 @@ fn main() -> Result<(), Flaw> {
             ignore: &[],
         };
         match fixture.first_contact(&gripper, &way) {
-            Answer::Clear => println!("z {height_mm} mm: clear, 2 mm are kept all the way"),
+            Answer::Clear => println!("z {height_mm} mm: clear by more than 2 mm"),
             Answer::Blocked(contact) => println!(
-                "z {height_mm} mm: blocked by {} after {:.1} % of the way, {:.3} mm apart",
+                "z {height_mm} mm: blocked by {} after {:.1} % of the move, {:.3} mm apart",
                 fixture.id(contact.blocker),
                 100.0 * contact.t_stop,
                 contact.distance_mm

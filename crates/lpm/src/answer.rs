@@ -1,8 +1,8 @@
-//! What is asked of the model and what it answers.
+//! Moves that the model checks, and its answers.
 
 use super::pose::Pose;
 
-/// Name of an element inside one [`Model`](super::Model); never reused.
+/// Key of an element inside one [`Model`](super::Model); never reused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ElementKey {
     pub(crate) slot: u32,
@@ -10,32 +10,32 @@ pub struct ElementKey {
 }
 
 impl ElementKey {
-    /// Blocker of an answer that blames no element: the move or the mover itself is not valid.
-    /// [`Model::id`](super::Model::id) calls it `"(undecidable)"`.
+    /// Reported as blocker when the move or the mover itself is invalid, so that no element is to blame.
+    /// [`Model::id`](super::Model::id) returns `"(undecidable)"` for it.
     pub const UNDECIDABLE: ElementKey = ElementKey {
         slot: u32::MAX,
         generation: u32::MAX,
     };
 }
 
-/// A move of one mover: straight when both rotations agree, else position linear and rotation the
-/// shortest turn.
+/// A move of one mover: a straight translation when both rotations agree, else the position changes linearly and
+/// the rotation along the shortest turn.
 #[derive(Debug, Clone, Copy)]
 pub struct Move<'a> {
-    /// Where the mover stands.
+    /// Pose of the mover at the start.
     pub from: Pose,
-    /// Where it should go.
+    /// Pose of the mover at the end.
     pub to: Pose,
-    /// Distance that must be exceeded during the whole move, mm, >= 0.
+    /// Distance that the mover must exceed during the whole move, mm, >= 0.
     pub margin_mm: f64,
-    /// Elements that do not count.
+    /// Elements that the check leaves out.
     pub ignore: &'a [ElementKey],
 }
 
 impl Move<'_> {
-    /// Whether it ends where it begins, bit by bit. (A way of no length is judged as well where this says no.)
+    /// Whether start and end agree bit by bit. (0 and -0 differ; such a move is checked as a path of length zero.)
     #[inline]
-    pub(crate) fn goes_nowhere(&self) -> bool {
+    pub(crate) fn is_at_rest(&self) -> bool {
         let (from, to) = (&self.from, &self.to);
         let places = from.position.iter().zip(&to.position);
         let turns = from.rotation.iter().zip(&to.rotation);
@@ -53,16 +53,16 @@ impl Move<'_> {
 pub enum Answer {
     /// Proven: the distance stays above the margin during the whole move.
     Clear,
-    /// The margin is reached, or nothing could be proven.
+    /// The mover reaches the margin, or no proof of the opposite was found.
     Blocked(Contact),
 }
 
 /// Where a move first reaches its margin.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// Fraction of the move, 0 to 1, never later than the true one.
+    /// Fraction of the move, 0 to 1, never later than the true contact.
     pub t_stop: f64,
-    /// The element that is reached first.
+    /// The element that the mover reaches first.
     pub blocker: ElementKey,
     /// Nearest point of the blocker at `t_stop`, mm.
     pub at: [f64; 3],
@@ -78,8 +78,8 @@ pub struct Clearance {
     /// Least distance, mm; 0 when the bodies meet. Above the true one by at most 1e-9 mm for straight
     /// moves and 5e-4 mm for turning ones.
     pub distance_mm: f64,
-    /// The element that is nearest.
+    /// The nearest element.
     pub nearest: ElementKey,
-    /// Fraction of the move at which it is nearest (one of them, if it is so for longer).
+    /// Fraction of the move at which the element is nearest; one such fraction when there are several.
     pub t: f64,
 }

@@ -1,21 +1,21 @@
-//! Standing pieces whose boxes the mover meets, the earliest first. A piece of several cells comes for each.
+//! Stationary pieces whose boxes the mover meets, the earliest first. A piece that is entered in several cells
+//! comes once per cell.
 
 use super::space::LANES;
 
-/// Pieces that are kept at a time; with more, some are judged out of turn, which costs time and
-/// nothing else.
+/// Most candidates kept at a time. With more, some are checked out of order, which costs time but changes no answer.
 const MOST: usize = 32;
 
-/// A few candidates.
+/// The candidates found so far, at most [`MOST`].
 #[derive(Debug, Clone)]
 pub(crate) struct Candidates {
-    /// Fraction of the way before which it is not met, whose bits are in order because it is not
-    /// below zero, and then its [`Place`].
+    /// High half: the fraction of the path before which the mover does not meet the piece, as bits of an f32 (never
+    /// negative, so they sort like numbers). Low half: its [`Place`].
     keys: [u64; MOST],
     count: usize,
 }
 
-/// Where a candidate is found: a lane of a bundle.
+/// Place of a candidate: number of its bundle and lane within it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place(u32);
 
@@ -35,13 +35,13 @@ impl Candidates {
         count: 0,
     };
 
-    /// Whether there is no room for a whole bundle.
+    /// Whether the free room is smaller than one bundle.
     #[inline]
     pub(crate) fn is_full(&self) -> bool {
         self.count > MOST - LANES
     }
 
-    /// Adds the lanes of a bundle whose bits are set, where there is room. (Mostly one or two.)
+    /// Adds the lanes of a bundle whose bits are set, as far as there is room. Mostly there are one or two.
     #[inline]
     pub(crate) fn push(&mut self, bundle: u32, lanes: u32, entry: &[f32; LANES]) {
         let place = u64::from(bundle * LANES as u32);
@@ -55,7 +55,7 @@ impl Candidates {
         }
     }
 
-    /// Takes the earliest one out; of those after `until` none is left.
+    /// Removes and returns the earliest candidate; drops all of them when the earliest comes after `until`.
     #[inline]
     pub(crate) fn earliest(&mut self, until: f64) -> Option<Place> {
         let known = &mut self.keys[..self.count.min(MOST)];
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn candidates_come_in_the_order_of_their_entries_as_long_as_they_matter() {
+    fn candidates_come_in_order_of_entry_up_to_until() {
         let mut candidates = Candidates::NONE;
         candidates.push(
             3,

@@ -1,48 +1,49 @@
-//! Which triangles of a mesh close a space.
+//! Finds the triangles of a mesh that enclose a space.
 //!
-//! Files are not tidy: surfaces come twice, lie within each other, have a stray triangle beside them, a wall in the
-//! middle, a corner that is not written down by the neighbour on the other side of an edge. A body inside such a mesh
-//! touches nothing, so whatever is closed has to be found in spite of all that:
-//! 1. Corners nearer than [`WELD_MM`] are one. What is shrunk to a segment or a point closes nothing.
-//! 2. A triangle that comes again is one. Of what hangs together one that comes again turned over is a wall between two
-//!    spaces and is left out, unless everything comes twice.
-//! 3. An edge that is free although corners of other free edges lie on it is cut there.
-//! 4. Triangles with a free edge are taken away until there are none: what is left is closed.
-//! 5. What hangs together by edges is a surface of its own.
+//! Mesh files are untidy: surfaces occur twice or inside each other, have stray triangles beside them or walls
+//! within, and leave out corners that the neighbour across an edge has. A body inside such a mesh touches no
+//! triangle, so the enclosed spaces must be found nevertheless:
+//! 1. Corners nearer than [`WELD_MM`] are merged. Triangles shrunk to a segment or a point enclose nothing.
+//! 2. Repeated triangles count once. A triangle that occurs in both orientations within a connected part is a wall
+//!    between two spaces and is left out, unless every triangle of the part occurs in both.
+//! 3. A free edge (an edge of one triangle only) is cut at the corners of other free edges that lie on it.
+//! 4. Triangles with a free edge are removed until none has one; the rest is closed.
+//! 5. Triangles connected by edges form a surface of their own.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use super::shape::Mesh;
 use super::vector::{Vec3, add, dot, length, scale, sub};
 
-/// Corners nearer to each other than this are one when it is asked what is closed, mm: what may be blocked, and more
-/// than programs lose that write one corner twice.
+/// Corners nearer to each other than this are merged, mm: as much as a move may be blocked early, and more than the
+/// rounding of programs that write one corner twice.
 const WELD_MM: f64 = 1e-6;
-/// Rounds of cutting free edges: each cuts every free edge once.
+/// Most rounds of cutting; each round cuts every free edge once.
 const MOST_CUTS: usize = 16;
-/// With more free edges than this a mesh is meant to be open.
+/// A mesh with more free edges than this is taken to be open on purpose.
 const MOST_FREE: usize = 2_000;
 
-/// Numbers of three vertices.
+/// Indices of the three vertices of a triangle.
 pub(crate) type Corners = [usize; 3];
 
-/// What closes a space.
+/// A surface that encloses a space.
 pub(crate) struct Surface {
     pub(crate) triangles: Vec<Corners>,
-    /// Each edge is shared by an even number of triangles: who crosses the surface once has changed sides.
+    /// Each edge is shared by an even number of triangles, so crossing the surface once changes sides.
     pub(crate) is_even: bool,
-    /// Along each edge as many triangles run one way as the other: it has an inside and an outside.
+    /// Along each edge equally many triangles run in both directions, so the surface has an inside and an outside.
     pub(crate) is_oriented: bool,
 }
 
-/// What hangs together by corners, each part by its triangles; corners that are one have the same number.
+/// Returns the parts of a mesh that are connected by corners, each as its triangles; merged corners have the same
+/// index.
 pub(crate) fn parts(mesh: &Mesh) -> Vec<BTreeSet<Corners>> {
     let welded = weld(&mesh.vertices);
-    let named = |corners: &Corners| turned(corners.map(|vertex| welded[vertex]));
-    touching(&mesh.triangles.iter().map(named).collect())
+    let named = |corners: &Corners| lowest_first(corners.map(|vertex| welded[vertex]));
+    connected_by_corners(&mesh.triangles.iter().map(named).collect())
 }
 
-/// The closed surfaces of a part.
+/// Returns the closed surfaces of a part.
 pub(crate) fn closed_surfaces(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Surface> {
     let proper = part
         .iter()
@@ -52,22 +53,25 @@ pub(crate) fn closed_surfaces(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Ve
     surfaces(&closed(vertices, &proper))
 }
 
-/// What is left of a part without all that is open. Walls are left out where what they divide is closed without them;
-/// not, where they close a space of their own.
+/// Removes every open triangle of a part. Leaves walls out where the rest is closed without them and the walls
+/// enclose no space of their own.
 fn closed(vertices: &[Vec3], part: &BTreeSet<Corners>) -> Vec<Corners> {
-    let has_twin = |corners: &Corners| part.contains(&twin(*corners));
-    let (twins, alone): (Vec<Corners>, Vec<Corners>) = part.iter().partition(|it| has_twin(it));
-    let walls: Vec<Corners> = twins.into_iter().filter(|it| *it < twin(*it)).collect();
-    if !walls.is_empty() && peeled(walls.clone()).is_empty() {
-        let around = joined(vertices, alone.clone());
+    let has_reverse = |corners: &Corners| part.contains(&reversed(*corners));
+    let (paired, alone): (Vec<Corners>, Vec<Corners>) = part.iter().partition(|it| has_reverse(it));
+    let walls: Vec<Corners> = paired
+        .into_iter()
+        .filter(|it| *it < reversed(*it))
+        .collect();
+    if !walls.is_empty() && without_free_triangles(walls.clone()).is_empty() {
+        let around = cut_free_edges(vertices, alone.clone());
         if !around.is_empty() && free_edges(&around).is_empty() {
             return around;
         }
     }
-    peeled(joined(vertices, [alone, walls].concat()))
+    without_free_triangles(cut_free_edges(vertices, [alone, walls].concat()))
 }
 
-/// For each vertex the first one that is nearer to it than [`WELD_MM`].
+/// Returns for each vertex the index of the first vertex nearer to it than [`WELD_MM`].
 fn weld(vertices: &[Vec3]) -> Vec<usize> {
     let mut exact = HashMap::new();
     let mut near: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
@@ -91,8 +95,8 @@ fn weld(vertices: &[Vec3]) -> Vec<usize> {
     welded
 }
 
-/// The triangle from its lowest corner on: the same for all that look the same from the same side.
-fn turned([a, b, c]: Corners) -> Corners {
+/// Rotates the indices so that the lowest comes first: equal for triangles with the same corners and orientation.
+fn lowest_first([a, b, c]: Corners) -> Corners {
     if a < b && a < c {
         [a, b, c]
     } else if b < c {
@@ -102,7 +106,7 @@ fn turned([a, b, c]: Corners) -> Corners {
     }
 }
 
-fn touching(triangles: &BTreeSet<Corners>) -> Vec<BTreeSet<Corners>> {
+fn connected_by_corners(triangles: &BTreeSet<Corners>) -> Vec<BTreeSet<Corners>> {
     let mut around: BTreeMap<usize, Vec<Corners>> = BTreeMap::new();
     for corners in triangles {
         for vertex in corners {
@@ -123,17 +127,17 @@ fn touching(triangles: &BTreeSet<Corners>) -> Vec<BTreeSet<Corners>> {
     parts
 }
 
-/// The same seen from the other side.
-fn twin([a, b, c]: Corners) -> Corners {
-    turned([a, c, b])
+/// The same triangle with the opposite orientation.
+fn reversed([a, b, c]: Corners) -> Corners {
+    lowest_first([a, c, b])
 }
 
-/// The way round a triangle.
+/// The directed edges in order around the triangle.
 fn sides([a, b, c]: Corners) -> [(usize, usize); 3] {
     [(a, b), (b, c), (c, a)]
 }
 
-/// The edges of a triangle, each from its lower corner.
+/// The undirected edges of a triangle, each starting at its lower index.
 fn edges(corners: Corners) -> [(usize, usize); 3] {
     sides(corners).map(|(p, q)| (p.min(q), p.max(q)))
 }
@@ -151,8 +155,8 @@ fn free_edges(triangles: &[Corners]) -> BTreeSet<(usize, usize)> {
     free.map(|(edge, _)| edge).collect()
 }
 
-/// Cuts triangles whose free edge has corners of other free edges on it.
-fn joined(vertices: &[Vec3], mut triangles: Vec<Corners>) -> Vec<Corners> {
+/// Cuts triangles at the corners of other free edges that lie on their free edge.
+fn cut_free_edges(vertices: &[Vec3], mut triangles: Vec<Corners>) -> Vec<Corners> {
     for _ in 0..MOST_CUTS {
         let free = free_edges(&triangles);
         if free.is_empty() || free.len() > MOST_FREE {
@@ -182,7 +186,7 @@ fn joined(vertices: &[Vec3], mut triangles: Vec<Corners>) -> Vec<Corners> {
     triangles
 }
 
-/// Whether a vertex lies between two others, and is neither.
+/// Whether a vertex lies strictly between two others.
 fn lies_on(vertices: &[Vec3], vertex: usize, (p, q): (usize, usize)) -> bool {
     if vertex == p || vertex == q {
         return false;
@@ -194,8 +198,8 @@ fn lies_on(vertices: &[Vec3], vertex: usize, (p, q): (usize, usize)) -> bool {
     part > 0.0 && part < 1.0 && length(sub(at, foot)) < WELD_MM
 }
 
-/// Without those that have a free edge, until nobody has.
-fn peeled(mut triangles: Vec<Corners>) -> Vec<Corners> {
+/// Removes triangles with a free edge until none has one.
+fn without_free_triangles(mut triangles: Vec<Corners>) -> Vec<Corners> {
     let mut uses = uses(&triangles);
     loop {
         let before = triangles.len();
@@ -214,7 +218,7 @@ fn peeled(mut triangles: Vec<Corners>) -> Vec<Corners> {
     }
 }
 
-/// What hangs together by edges.
+/// Splits triangles into surfaces that are connected by edges.
 fn surfaces(triangles: &[Corners]) -> Vec<Surface> {
     let mut beside: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     let mut forward: BTreeMap<(usize, usize), usize> = BTreeMap::new();

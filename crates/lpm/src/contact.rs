@@ -1,10 +1,9 @@
-//! Contacts on a way: closed forms at once, searches later.
+//! Searches for contacts on a path: closed forms at once, iterative searches later.
 //!
-//! Upright pairs on a straight way are judged as soon as the broad phase shows them
-//! ([`meeting`](super::meeting)). Whatever needs a search (tilted pieces, triangles, turns) is put on a
-//! list, each pair once, and searched in the order in which the boxes meet. A contact shortens the
-//! way for all that comes after it, so for the first contact the pair whose boxes meet first is judged
-//! first.
+//! Upright pairs on a straight path are decided as soon as the broad phase reports them
+//! ([`meeting`](super::meeting)). Pairs that need a search (tilted pieces, triangles, turns) go onto a list, each
+//! pair once, and are searched in the order in which their boxes meet. A contact shortens the path for all later
+//! pairs, so when the first contact is wanted the pair whose boxes meet first is decided first.
 
 use super::candidates::Candidates;
 use super::distance::Gap;
@@ -13,17 +12,17 @@ use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending};
 use super::prism::Prism;
 use super::space::{Boxes, Bundle, Cover, LANES, Sweep, Visit, above};
-use super::standing::Stands;
+use super::stationary::Stored;
 use super::straight::{self, Hit};
 use super::touch::touch;
 use super::vector::sub;
 
-/// What a contact is wanted for.
+/// Which contact a question asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
-    /// Whether there is one: the gate.
+    /// Any contact: the gate only needs to know whether there is one.
     Any,
-    /// The first one.
+    /// The first contact on the path.
     First,
 }
 
@@ -31,17 +30,17 @@ pub(crate) enum Wanted {
 #[derive(Debug, Clone)]
 pub(crate) struct Found {
     t: f64,
-    /// Number of the standing piece.
+    /// Number of the stationary piece.
     pub(crate) element: u32,
-    how: How,
+    evidence: Evidence,
 }
 
-/// What is known of a contact.
+/// How a contact was found, and what is needed to complete it.
 #[derive(Debug, Clone)]
-enum How {
-    /// Index of the piece of the mover, both upright: the rest follows in closed form.
+enum Evidence {
+    /// Index of the piece of the mover; both pieces are upright and a closed form gives place and normal.
     Closed(u32),
-    /// A search has found it. (Apart, so that closed forms carry no load.)
+    /// Result of a search. Boxed so that the more frequent closed forms stay small.
     Searched(Box<Gap>),
 }
 
@@ -50,30 +49,30 @@ impl Found {
         Found {
             t: hit.t,
             element,
-            how: How::Searched(Box::new(hit.gap)),
+            evidence: Evidence::Searched(Box::new(hit.gap)),
         }
     }
 
-    /// Where and when.
+    /// Fraction of the path, place and normal of the contact.
     #[inline]
     pub(crate) fn hit(&self, passage: &Passage) -> Hit {
-        let gap = match (&self.how, &passage.element(self.element).form) {
-            (How::Closed(local), Stands::Upright(element)) => {
+        let gap = match (&self.evidence, &passage.element(self.element).form) {
+            (Evidence::Closed(local), Stored::Upright(element)) => {
                 let mover = passage.prism_at(*local, self.t);
                 mover.map(|mover| touch(element, &mover, sub(mover.centre, element.centre)))
             }
-            (How::Closed(_), Stands::Askew(_)) => None,
-            (How::Searched(gap), _) => Some(**gap),
+            (Evidence::Closed(_), Stored::Askew(_)) => None,
+            (Evidence::Searched(gap), _) => Some(**gap),
         };
         Hit {
             t: self.t,
-            gap: gap.expect("closed forms are of upright pieces"),
+            gap: gap.expect("closed forms apply to upright pieces only"),
         }
     }
 }
 
 impl Passage<'_> {
-    /// Looks for a contact within the margin; when there is none in the end, that is proof.
+    /// Searches for a contact within the margin. When `found` holds none afterwards, that is proof.
     pub(crate) fn contact<'a>(&'a self, found: &mut Findings<'a>) {
         for group in &self.body.groups {
             let hull = group.hull(&self.whereabouts(self.way.margin_mm));
@@ -89,17 +88,17 @@ impl Passage<'_> {
     }
 }
 
-/// What is found so far.
+/// The contact found so far, and the pairs that still need a search.
 pub(crate) struct Findings<'a> {
     wanted: Wanted,
     pub(crate) best: Option<Found>,
     pub(crate) pending: Vec<Pending>,
-    /// When it was wanted before.
+    /// The straight path with its reciprocals, computed on first use.
     run: Option<Run<'a>>,
 }
 
 impl Findings<'_> {
-    /// Nothing yet.
+    /// Starts a search without any contact.
     #[inline]
     pub(crate) fn wanted(wanted: Wanted) -> Self {
         Findings {
@@ -110,7 +109,7 @@ impl Findings<'_> {
         }
     }
 
-    /// The part of the way that still matters; below 0: nothing does.
+    /// Fraction of the path up to which a contact still matters; below 0 when none does.
     #[inline]
     pub(crate) fn until(&self) -> f64 {
         match (&self.best, self.wanted) {
@@ -131,21 +130,21 @@ impl Findings<'_> {
     }
 }
 
-/// One group of pieces on its way.
+/// One group of pieces on its path.
 struct Search<'a, 'b> {
     passage: &'a Passage<'a>,
     group: &'a Group,
     found: &'b mut Findings<'a>,
     sweep: &'b Sweep,
-    /// The boxes of the pieces, when they were wanted before.
+    /// The boxes of the pieces, computed on first use.
     boxes: Option<Boxes<MOST_OF_A_GROUP>>,
-    /// The pieces where the way begins, as far as they were looked at.
+    /// The pieces at the start of the path, each computed on first use.
     prisms: [Option<Prism>; MOST_OF_A_GROUP],
     candidates: Candidates,
 }
 
 impl Visit for Search<'_, '_> {
-    /// For any contact every one is as good, so pieces are judged at once; for the first one they wait.
+    /// When any contact will do, pieces are checked at once; for the first contact they wait as candidates.
     #[inline]
     fn in_order(&self) -> bool {
         self.found.wanted == Wanted::First
@@ -183,7 +182,7 @@ impl Visit for Search<'_, '_> {
         while let Some(place) = self.candidates.earliest(self.found.until()) {
             let bundle = self.passage.model.space.bundle(place.bundle());
             let piece = bundle.piece(place.lane());
-            // Equally early, so next to each other: the same for another cell.
+            // Entries of one piece in several cells are equally early and therefore adjacent.
             if last != Some(piece) {
                 last = Some(piece);
                 self.piece(piece, &bundle.cover(place.lane()));
@@ -212,7 +211,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// A standing piece that the group may meet: which of its pieces do?
+    /// Checks which pieces of the group may meet this stationary piece.
     #[inline]
     fn piece(&mut self, element: u32, cover: &Cover) {
         let until = self.found.until();
@@ -241,18 +240,18 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         let local = self.group.first + place;
         match (&element.form, &passage.body.prisms[local]) {
-            (Stands::Upright(standing), Some(own)) if passage.level => {
+            (Stored::Upright(fixed), Some(own)) if passage.level => {
                 let path = passage.path;
                 let mover =
                     self.prisms[place].get_or_insert_with(|| own.carried(path.turned(), path.from));
                 let until = self.found.until();
                 let run = self.found.run.get_or_insert_with(|| Run::of(path));
-                let found = passage.met(run, standing, mover, until);
+                let found = passage.met(run, fixed, mover, until);
                 self.found.offer(found.map(|(t, gap)| Found {
                     t,
                     element: number,
-                    how: gap.map_or(How::Closed(local as u32), |gap| {
-                        How::Searched(Box::new(gap))
+                    evidence: gap.map_or(Evidence::Closed(local as u32), |gap| {
+                        Evidence::Searched(Box::new(gap))
                     }),
                 }));
             }
@@ -266,7 +265,7 @@ impl<'a, 'b> Search<'a, 'b> {
 }
 
 impl Passage<'_> {
-    /// Two upright pieces on a level way; with a margin the place of the contact has been searched, too.
+    /// Contact of two upright pieces on a level path; with a margin, the place of the contact is searched as well.
     #[inline]
     fn met(
         &self,
@@ -280,7 +279,7 @@ impl Passage<'_> {
         if margin == 0.0 {
             return Some((t, None));
         }
-        // Within the margin in height and in the plane: over an edge the distance is larger.
+        // Height and footprint are each within the margin, but diagonally over an edge the distance can exceed it.
         let (element, mover) = (element.piece(), mover.piece());
         let hit = straight::first_within(&element, &mover, run.way, margin, t, until)?;
         Some((hit.t, Some(hit.gap)))

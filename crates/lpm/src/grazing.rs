@@ -1,19 +1,18 @@
-//! The first contact of two discs that graze each other, in twice the digits.
+//! First contact of two grazing discs, in double-double precision.
 //!
-//! On a grazing pass the fraction of the way depends on the root of what is left of the radius: a
-//! rounding of 1e-12 mm moves the contact by 1e-5 mm. Where nothing was rounded on the way to the
-//! places, twice the digits decide whether the discs touch at all, and where.
+//! On a grazing pass the fraction of the path depends on the root of a small difference of radii: a rounding of
+//! 1e-12 mm moves the contact by 1e-5 mm. Where the places themselves were reached without rounding, twice the
+//! digits decide whether the discs touch at all, and where.
 
-/// A number as the unevaluated sum of two, the second below the last place of the first (after Dekker
-/// and Knuth).
+/// A number as the unevaluated sum of two f64, the second below the last place of the first (after Dekker and Knuth).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Twofold(f64, f64);
 
-/// Relative error allowed for a dozen operations with 2^-104 each, many times over.
+/// Relative error bound: a dozen operations with 2^-104 each, with a wide reserve.
 const ROUNDING: f64 = f64::EPSILON * f64::EPSILON * 1024.0;
 
 impl Twofold {
-    /// An exact number.
+    /// Converts an exact number.
     pub(crate) fn of(exact: f64) -> Twofold {
         Twofold(exact, 0.0)
     }
@@ -47,8 +46,8 @@ impl Twofold {
     }
 }
 
-/// First fraction of the way `run` (exact) at which a point that starts at `from` is in the disc of
-/// `radius` about the origin, rounded down; `None` is proof that it never is. It starts outside.
+/// Returns the first fraction of the path `run` (exact) at which a point that starts at `from`, outside, enters the
+/// disc of `radius` about the origin, rounded down; `None` is proof that it never does.
 pub(crate) fn first(from: [Twofold; 2], run: [f64; 2], radius: Twofold) -> Option<f64> {
     let [x, y] = from;
     let [u, v] = run.map(Twofold::of);
@@ -74,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn twice_the_digits_keep_what_one_number_drops() {
+    fn double_double_sums_keep_digits_that_f64_drops() {
         let large = Twofold::of(1e16).plus(Twofold::of(1.0));
         assert_eq!(large.minus(Twofold::of(1e16)).value(), 1.0);
         let near = Twofold::of(1.0).plus(Twofold::of(1e-20));
@@ -83,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tangent_touches_in_the_middle_of_its_chord_and_a_hair_farther_not_at_all() {
+    fn a_tangent_touches_midway_and_misses_slightly_farther_out() {
         let at = |y: f64| {
             let from = [Twofold::of(-4000.0), Twofold::of(y)];
             first(from, [8000.0, 0.0], Twofold::of(50.0))

@@ -1,18 +1,17 @@
-//! Upright pieces on a straight way, in closed form: the swept extrusion made exact.
+//! Contact of upright pieces on a straight path in closed form: the swept extrusion, exactly.
 //!
-//! Seen from the element, the mover is a point that runs along a line, and the element is grown by
-//! the mover: an interval in z times a figure in the plane. Two rectangles with common axes grow to
-//! a rectangle, a rectangle and a disc to a rectangle with round corners, two discs to a disc, two
-//! rectangles askew to an octagon. Each is an intersection of slabs, with discs for the round
-//! corners, and a line crosses all of those in closed form.
+//! In the frame of the element the mover becomes a point that runs along a line, and the element grows by the mover
+//! (Minkowski sum): an interval in z times a figure in the plane. Two rectangles with common axes give a rectangle,
+//! a rectangle and a disc a rectangle with round corners, two discs a disc, two rectangles turned against each
+//! other an octagon. Each figure is an intersection of slabs, with discs for round corners, and the crossing of a
+//! line with all of these has a closed form.
 //!
 //! # Never a false clear
-//! Every slab and disc is grown by [`Meeting::slack`]: [`NOISE`] for how the pieces came to their
-//! places, [`ROUNDING`] for what is computed here. A line that meets the true figure meets the
-//! grown one, earlier by at least that slack divided by its speed; so the fraction that is
-//! returned is never late, and `None` is proof. Where a corner is grazed and nothing had been rounded
-//! before, [`grazing`] may move the fraction later, to the true one rounded down. In reverse, whoever
-//! is reported has come within three slacks: below 1e-7 mm for coordinates of 1e6 mm.
+//! Every slab and disc is grown by [`Meeting::slack`]: [`NOISE`] for how the pieces came to their places,
+//! [`ROUNDING`] for what is computed here. A line that meets the true figure meets the grown one, earlier by at
+//! least that slack divided by its speed; so the returned fraction is never late, and `None` is proof. Where a
+//! corner is grazed and nothing was rounded before, [`grazing`] may move the fraction later, to the true one
+//! rounded down. Conversely, a reported pair has come within three slacks: below 1e-7 mm for coordinates of 1e6 mm.
 
 use super::grazing::{self, Twofold};
 use super::path::Path;
@@ -20,29 +19,28 @@ use super::piece::NOISE;
 use super::prism::Prism;
 use super::vector::{Vec3, reach, sub};
 
-/// Relative error allowed for what is computed here from the difference of two places and the run:
-/// fewer than 16 roundings of 2^-53 each lie between them and a fraction of the way, twice that is paid.
+/// Relative error bound of the computations here, from the difference of two places and the run: fewer than 16
+/// roundings of 2^-53 each lead from them to a fraction of the path, and the bound allows twice that.
 const ROUNDING: f64 = 32.0 * (f64::EPSILON / 2.0);
 
-/// By how much a grazing contact may come early before more digits are wanted, mm: a tenth of what is
-/// promised.
+/// How early a grazing contact may come before it is refined with more digits, mm: a tenth of the promised 1e-6 mm.
 const GRAZED_MM: f64 = 1e-7;
 
-/// Contacts that are nearer than this to where a round corner ends are left as they are, mm: beyond it
-/// a side may come first, by more than all rounding.
+/// Contacts nearer than this to the end of a round corner are not refined, mm: past that end a side may come first.
+/// The distance exceeds all rounding.
 const ROUND_MM: f64 = 1e-3;
 
-/// A straight way, and how long it takes for a millimetre.
+/// A straight path and the reciprocals of its displacement.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Run<'a> {
     pub(crate) way: Vec3,
-    /// Reciprocals; 0 of an axis on which nothing moves.
+    /// Fraction of the path per millimetre along each axis; 0 for an axis without motion.
     pace: Vec3,
     path: &'a Path,
 }
 
 impl<'a> Run<'a> {
-    /// Of a straight path.
+    /// Computes the reciprocals for a straight path.
     #[inline]
     pub(crate) fn of(path: &'a Path) -> Run<'a> {
         let way = path.displacement;
@@ -54,25 +52,25 @@ impl<'a> Run<'a> {
     }
 }
 
-/// The reciprocal of a rate; 0 of one that is too slow for a quotient.
+/// Reciprocal of a rate; 0 for a rate too small to divide by.
 #[inline]
 fn pace(rate: f64) -> f64 {
     if rate.abs() < 1e-290 { 0.0 } else { 1.0 / rate }
 }
 
-/// An element and a mover that runs past it, both upright.
+/// An element and a mover on a straight path past it, both upright.
 pub(crate) struct Meeting<'a> {
     element: &'a Prism,
     mover: &'a Prism,
-    /// From the element to the mover at the start.
+    /// Vector from the element to the mover at the start.
     apart: Vec3,
     run: &'a Run<'a>,
-    /// Growth of every figure, mm: margin and slack.
+    /// Growth of every figure, mm: margin plus slack.
     grown: f64,
     slack: f64,
 }
 
-/// A part of the move.
+/// An interval of fractions of the move.
 type Window = (f64, f64);
 
 impl<'a> Meeting<'a> {
@@ -95,8 +93,8 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// First fraction, up to `until`, at which both heights and both footprints are within the
-    /// margin. `None` is proof that there is none; NaN comes out as a meeting.
+    /// Returns the first fraction, up to `until`, at which heights and footprints are both within the margin.
+    /// `None` is proof that there is none; NaN counts as contact.
     #[inline]
     pub(crate) fn first(&self, until: f64) -> Option<f64> {
         let heights = self.element.half[2] + self.mover.half[2];
@@ -113,7 +111,7 @@ impl<'a> Meeting<'a> {
         }
     }
 
-    /// `framed` gives the axes; at most one of both is a rectangle askew to them.
+    /// Footprints with common axes, which `framed` supplies; at most one of the two is a rectangle askew to them.
     #[inline]
     fn rounded(&self, window: Window, framed: &Prism) -> Option<f64> {
         let radius = self.element.radius + self.mover.radius;
@@ -131,8 +129,8 @@ impl<'a> Meeting<'a> {
         Some(self.grazed(framed, t).unwrap_or(t))
     }
 
-    /// The fraction in twice the digits, where a round corner is grazed and nothing was rounded on
-    /// the way to the places; not before `t`, where the grown figures meet.
+    /// Returns the fraction in double-double precision where a round corner is grazed and nothing was rounded on
+    /// the way to the places; never before `t`, where the grown figures meet.
     fn grazed(&self, framed: &Prism, t: f64) -> Option<f64> {
         let at = [0, 1].map(|axis: usize| self.apart[axis] + t * self.run.way[axis]);
         let half = self.halves();
@@ -143,12 +141,12 @@ impl<'a> Meeting<'a> {
             (u * u + v * v).sqrt(),
         );
         let closing = (w[0] * u + w[1] * v).abs();
-        // The contact moves by the slack divided by the sine of the angle of the graze; at rest by nothing.
+        // The contact moves by the slack divided by the sine of the grazing angle; at rest it does not move.
         let is_graze = closing * GRAZED_MM < self.slack * radius * speed;
         if !is_graze {
             return None;
         }
-        // On a way along an axis no side comes before the end of its corner.
+        // On a path along an axis no side comes before the end of its corner.
         let on_corner = |axis: usize| {
             let beyond = at[axis].abs() - half[axis];
             half[axis] == 0.0 || self.run.way[1 - axis] == 0.0 || beyond > ROUND_MM
@@ -172,14 +170,14 @@ impl<'a> Meeting<'a> {
         Some(grazing::first(from, [u, v], radius)?.max(t))
     }
 
-    /// Half extents of both footprints together, which have common axes.
+    /// Sums of the half extents of two footprints with common axes.
     #[inline]
     fn halves(&self) -> [f64; 2] {
         let half = |axis: usize| self.element.half[axis] + self.mover.half[axis];
         [half(0), half(1)]
     }
 
-    /// The run along the axes of a footprint, with the reciprocals.
+    /// The displacement along the axes of a footprint, with its reciprocals.
     #[inline]
     fn rates(&self, framed: &Prism) -> [(f64, f64); 2] {
         let (way, pace_of) = (&self.run.way, &self.run.pace);
@@ -196,7 +194,7 @@ impl<'a> Meeting<'a> {
             .map(|window| window.0)
     }
 
-    /// The slabs of one rectangle, grown by the other one.
+    /// Intersects the window with the slabs of one rectangle, grown by the other.
     fn askew(&self, window: Window, framed: &Prism, other: &Prism) -> Option<Window> {
         let [cos, sin] = framed
             .along([other.axis[0], other.axis[1], 0.0])
@@ -219,18 +217,18 @@ impl<'a> Meeting<'a> {
     }
 }
 
-/// What rounding may have done to two pieces whose centres lie `apart`, and does to what is computed from
-/// it at rest, mm.
+/// Rounding bound, mm: what rounding may have done to two pieces whose centres lie `apart`, plus the rounding of
+/// computing from `apart` at rest.
 #[inline]
 pub(crate) fn slack(element: &Prism, mover: &Prism, apart: Vec3) -> f64 {
     NOISE * (element.span + mover.span) + ROUNDING * reach(apart)
 }
 
-/// The part of `window` in which `|start + t rate| <= half`; of the rate, its reciprocal, too.
+/// Returns the part of `window` in which `|start + t rate| <= half`. The rate comes with its reciprocal.
 #[inline]
 fn slab((low, high): Window, start: f64, (rate, pace): (f64, f64), half: f64) -> Option<Window> {
     if pace == 0.0 {
-        // What it covers at all is added to the slab.
+        // Without a usable reciprocal, the slab is widened by the whole displacement along it.
         if start.abs() > half + rate.abs() {
             return None;
         }
@@ -243,8 +241,8 @@ fn slab((low, high): Window, start: f64, (rate, pace): (f64, f64), half: f64) ->
     if low > high { None } else { Some((low, high)) }
 }
 
-/// First fraction of `window` at which `p + t v`, which is then within the bounding rectangle, is
-/// inside the rectangle of `half` with corners of `radius`.
+/// Returns the first fraction of `window` at which `p + t v`, already within the bounding rectangle, is inside the
+/// rectangle of `half` with corners of `radius`.
 #[inline]
 fn corner(
     (low, high): Window,
@@ -258,7 +256,7 @@ fn corner(
     if !(over(0) * over(0) + over(1) * over(1) > radius * radius) {
         return Some(low);
     }
-    // Outside, so before the disc of a corner: the way in leads through it.
+    // The point is outside, thus before the disc of a corner: it can enter only through that disc.
     let w = |axis: usize| at[axis] - half[axis].copysign(at[axis]);
     let w = [w(0), w(1)];
     let speed = v[0] * v[0] + v[1] * v[1];

@@ -1,4 +1,4 @@
-//! The model of the standing elements: who stands where. What is asked of it: [`question`](super::question).
+//! The model of the stationary elements: insertion, removal, names. The questions are in [`question`](super::question).
 
 use super::answer::ElementKey;
 use super::interior::Interior;
@@ -6,9 +6,9 @@ use super::name::{Name, Names};
 use super::pose::{Frame, Pose};
 use super::shape::{Flaw, Shape};
 use super::space::{Filling, Space};
-use super::standing::{NONE, Pieces};
+use super::stationary::{NONE, Pieces};
 
-/// The standing elements. Elements are put in and taken out one by one; nothing is rebuilt.
+/// The stationary elements. Elements are inserted and removed one by one; nothing is rebuilt.
 #[derive(Debug, Clone, Default)]
 pub struct Model {
     slots: Vec<Slot>,
@@ -16,18 +16,18 @@ pub struct Model {
     names: Names,
     pub(crate) space: Space,
     pub(crate) pieces: Pieces,
-    /// Slots of elements with a closed mesh: those can hold a body without touching it.
+    /// Slots of elements with a closed mesh: these can enclose a body without touching it.
     pub(crate) hollow: Vec<u32>,
 }
 
-/// Where an element stands, or has stood.
+/// The slot of a present or removed element.
 #[derive(Debug, Clone)]
 struct Slot {
     generation: u32,
-    /// First of its pieces, [`NONE`] where nobody stands.
+    /// First of its pieces; [`NONE`] for a free slot.
     first: u32,
     id: Name,
-    /// Of elements with a mesh.
+    /// Enclosed spaces of an element with a mesh.
     interior: Option<Box<Interior>>,
 }
 
@@ -38,15 +38,15 @@ impl Slot {
 }
 
 impl Model {
-    /// An empty checking space.
+    /// Returns a model without elements.
     pub fn new() -> Model {
         Model::default()
     }
 
-    /// Adds one element; `id` is for people and need not be unique.
+    /// Adds one element. `id` serves messages and need not be unique.
     ///
     /// # Errors
-    /// [`Flaw`] of the shape or the pose; the model stays as it was.
+    /// Returns the [`Flaw`] of the shape or the pose; the model stays unchanged.
     pub fn insert(&mut self, id: &str, shape: &Shape, pose: &Pose) -> Result<ElementKey, Flaw> {
         shape.check()?;
         pose.check()?;
@@ -56,7 +56,7 @@ impl Model {
             slot,
             generation: left.map_or(0, |left| left.generation),
         };
-        let first = self.pieces.stand(&mut self.space, shape, pose, key);
+        let first = self.pieces.insert(&mut self.space, shape, pose, key);
         let taken = self.taken(id, shape, pose, key, first);
         match self.slots.get_mut(slot as usize) {
             Some(left) => *left = taken,
@@ -65,11 +65,11 @@ impl Model {
         Ok(key)
     }
 
-    /// A model of many elements at once: the same as one [`Model::insert`] after the other, sooner.
-    /// [`Model::keys`] are in the order of the elements.
+    /// Builds a model of many elements at once, faster than one [`Model::insert`] per element and with the same
+    /// result. [`Model::keys`] are in the order of the elements.
     ///
     /// # Errors
-    /// The number of the first element that has a [`Flaw`].
+    /// Returns the index and the [`Flaw`] of the first flawed element.
     pub fn of<'a>(
         elements: impl Iterator<Item = (&'a str, &'a Shape, &'a Pose)>,
     ) -> Result<Model, (usize, Flaw)> {
@@ -85,7 +85,7 @@ impl Model {
                 slot: number as u32,
                 generation: 0,
             };
-            let first = model.pieces.stand(&mut filling, shape, pose, key);
+            let first = model.pieces.insert(&mut filling, shape, pose, key);
             let taken = model.taken(id, shape, pose, key, first);
             model.slots.push(taken);
         }
@@ -93,7 +93,7 @@ impl Model {
         Ok(model)
     }
 
-    /// The slot of an element that stands by its pieces: keeps its name and what it encloses.
+    /// Makes the slot of an element whose pieces are entered: keeps its name and its enclosed spaces.
     #[inline]
     fn taken(&mut self, id: &str, shape: &Shape, pose: &Pose, key: ElementKey, first: u32) -> Slot {
         let interior = match shape {
@@ -116,7 +116,7 @@ impl Model {
         Some(Box::new(interior))
     }
 
-    /// Takes an element out; false when it is not there (any more).
+    /// Removes an element; returns false when it is absent.
     pub fn remove(&mut self, key: ElementKey) -> bool {
         let Some(slot) = self.slots.get_mut(key.slot as usize) else {
             return false;
@@ -125,14 +125,14 @@ impl Model {
             return false;
         }
         slot.generation += 1;
-        self.names.leave(&slot.id);
+        self.names.release(&slot.id);
         let mut piece = std::mem::replace(&mut slot.first, NONE);
         if slot.interior.take().is_some() {
             self.hollow.retain(|known| *known != key.slot);
         }
         while piece != NONE {
             self.space.remove(piece);
-            piece = self.pieces.let_go(piece);
+            piece = self.pieces.remove(piece);
         }
         self.free.push(key.slot);
         if self.names.is_mostly_gaps() {
@@ -149,7 +149,8 @@ impl Model {
         self.names = fresh;
     }
 
-    /// Name of an element; `"(undecidable)"` for [`ElementKey::UNDECIDABLE`], `"(removed)"` for one that is gone.
+    /// Returns the name of an element; `"(undecidable)"` for [`ElementKey::UNDECIDABLE`], `"(removed)"` for a
+    /// removed element.
     pub fn id(&self, key: ElementKey) -> &str {
         if key == ElementKey::UNDECIDABLE {
             return "(undecidable)";
@@ -164,17 +165,17 @@ impl Model {
         self.slots.len() - self.free.len()
     }
 
-    /// True without elements.
+    /// Whether the model has no elements.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Every element in the order of its slot.
+    /// Iterates over the elements in the order of their slots.
     pub fn keys(&self) -> impl Iterator<Item = ElementKey> + '_ {
-        self.standing_slots().map(|slot| self.key(slot))
+        self.taken_slots().map(|slot| self.key(slot))
     }
 
-    /// Heap that the model occupies, bytes; closed meshes, which are kept apart, not counted.
+    /// Heap used by the model, bytes; closed meshes, stored separately, are not included.
     pub fn heap_bytes(&self) -> usize {
         let numbers = self.free.capacity() + self.hollow.capacity();
         self.slots.capacity() * size_of::<Slot>()
@@ -184,9 +185,9 @@ impl Model {
             + self.space.heap_bytes()
     }
 
-    pub(crate) fn standing_slots(&self) -> impl Iterator<Item = u32> + '_ {
-        let standing = |slot: &u32| self.slots[*slot as usize].is_taken();
-        (0..self.slots.len() as u32).filter(standing)
+    pub(crate) fn taken_slots(&self) -> impl Iterator<Item = u32> + '_ {
+        let is_taken = |slot: &u32| self.slots[*slot as usize].is_taken();
+        (0..self.slots.len() as u32).filter(is_taken)
     }
 
     pub(crate) fn key(&self, slot: u32) -> ElementKey {
@@ -196,13 +197,13 @@ impl Model {
         }
     }
 
-    /// One of the pieces of the element in a slot, where one stands.
-    pub(crate) fn a_piece(&self, slot: u32) -> u32 {
+    /// Returns the first piece of the element in a slot; [`NONE`] for a free slot.
+    pub(crate) fn first_piece(&self, slot: u32) -> u32 {
         self.slots[slot as usize].first
     }
 
-    /// A point of the element in a slot, or of `other`, that lies inside the other one although no
-    /// surfaces need to meet.
+    /// Returns a point of the element in a slot, or of `other`, that lies inside the other body although their
+    /// surfaces may not meet.
     pub(crate) fn shared_point(&self, slot: u32, other: &Interior) -> Option<[f64; 3]> {
         let slot = &self.slots[slot as usize];
         match &slot.interior {

@@ -1,4 +1,4 @@
-//! Bodies that move: taken apart once, asked about often.
+//! Moving bodies: split into pieces once, checked against the model many times.
 
 use super::interior::Interior;
 use super::piece::{Piece, pieces_of};
@@ -8,68 +8,68 @@ use super::shape::{Flaw, Shape};
 use super::space::{Boxes, Cover, Four, SLOWEST_MM};
 use super::vector::{Vec3, add, length, reach};
 
-/// Pieces of a group: as many as are placed at once without asking for memory.
+/// Most pieces of a group: these are placed at once without heap allocation.
 pub(crate) const MOST_OF_A_GROUP: usize = 4;
 
-/// A checked body in its own frame, ready for many questions.
+/// A checked body in its own frame, split into pieces and ready for many questions.
 #[derive(Debug, Clone)]
 pub struct Mover {
     pub(crate) pieces: Vec<Piece>,
-    /// Of those pieces that are upright in the frame of the body.
+    /// The prism of each piece that is upright in the frame of the body.
     pub(crate) prisms: Vec<Option<Prism>>,
     pub(crate) groups: Vec<Group>,
     interior: Option<Interior>,
 }
 
-/// A few pieces that are asked about at once, by the boxes around them in the frame of the body.
+/// Up to [`MOST_OF_A_GROUP`] pieces that are tested together, by their boxes in the frame of the body.
 #[derive(Debug, Clone)]
 pub(crate) struct Group {
-    /// Of the first piece.
+    /// Index of the first piece of the group.
     pub(crate) first: usize,
     pub(crate) count: usize,
-    /// Centres and half extents, member by member, mm; unused places repeat the first piece.
+    /// Centres and half extents, axis by axis, mm; unused places repeat the first piece.
     centres: [[f32; MOST_OF_A_GROUP]; 3],
     halves: [[f32; MOST_OF_A_GROUP]; 3],
-    /// The box around all of them, likewise; the fourth members are 0.
+    /// Centre and half extents of the box around the group, mm; the fourth members are 0.
     centre: [f32; 4],
     half: [f32; 4],
     /// Largest distance of a point from the origin of the body, rounded outward, mm.
     ball: f64,
-    /// How far the boxes of the group are widened wherever it stands, mm.
+    /// Widening of the boxes of the group at any place, mm.
     wider: f64,
 }
 
-/// Where a group is when its boxes are asked for.
+/// Place and path for which the boxes of a group are computed.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Whereabouts<'a> {
-    /// Origin of its body where that stands, or its way begins, mm.
+    /// Origin of the body at rest or at the start of its path, mm.
     pub(crate) origin: Vec3,
     pub(crate) orientation: Orientation<'a>,
-    /// The way of its body, mm.
+    /// Displacement of the body, mm.
     pub(crate) run: Vec3,
-    /// How far the boxes are widened, mm.
+    /// Margin by which the boxes are widened, mm.
     pub(crate) margin_mm: f64,
 }
 
-/// How a body is turned.
+/// Orientation of a body on its path.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Orientation<'a> {
     Unturned,
     Yawed(RoughYaw),
     Tilted(&'a Frame),
-    /// Another one from instant to instant.
+    /// The orientation changes along the path.
     Turning,
 }
 
-/// Relative error allowed for the boxes of a group at their place: fewer than ten roundings to single precision, of
-/// magnitudes that sum up to those of group and way along the axis, and what a [`RoughYaw`] is off.
+/// Relative error bound of the boxes of a placed group: fewer than ten roundings to single precision, of magnitudes
+/// that sum up to those of group and path along the axis, plus the error of a [`RoughYaw`].
 const SINGLE: f64 = 1e-6;
 
 impl Mover {
-    /// Takes a shape apart.
+    /// Splits a shape into pieces.
     ///
     /// # Errors
-    /// [`Flaw`] of the shape.
+    /// Returns the [`Flaw`] of the shape.
     pub fn new(shape: &Shape) -> Result<Mover, Flaw> {
         shape.check()?;
         let pieces = pieces_of(shape);
@@ -86,14 +86,14 @@ impl Mover {
         })
     }
 
-    /// True when the body holds space that others can be inside of without touching its triangles.
+    /// Whether the body encloses a space in which others can lie without touching its triangles.
     pub(crate) fn is_hollow(&self) -> bool {
         self.interior
             .as_ref()
             .is_some_and(|interior| !interior.solids.is_empty())
     }
 
-    /// The inside of the body where it stands at `pose`.
+    /// The enclosed spaces of the body at `pose`.
     pub(crate) fn interior_at(&self, pose: &Pose) -> Interior {
         let (frame, position) = (&Frame::of(pose.rotation), pose.position);
         match &self.interior {
@@ -144,14 +144,14 @@ impl Group {
         group
     }
 
-    /// Bits of the places that are in use.
+    /// Bits of the places in use.
     #[inline]
     pub(crate) fn used(&self) -> u32 {
         (1 << self.count) - 1
     }
 
-    /// How far beyond its size a box is widened along each axis for the margin and all rounding to single
-    /// precision, mm. What is rounded along an axis is of the magnitude of places along it, and of the group.
+    /// Widening of a box along each axis for the margin and all rounding to single precision, mm. Rounding along an
+    /// axis scales with the places along it and with the size of the group.
     #[inline(always)]
     fn wider(&self, at: &Whereabouts) -> Four {
         let always = (self.wider + at.margin_mm * (1.0 + SINGLE)) as f32;
@@ -161,9 +161,9 @@ impl Group {
         Four::all(always).plus(Four::all(SINGLE as f32).times(way))
     }
 
-    /// The boxes of the pieces where the way begins, rounded outward and widened by the margin.
+    /// Returns the boxes of the pieces at the start of the path, rounded outward and widened by the margin.
     ///
-    /// Of a turning group: the box of the ball it stays in, whatever the turn.
+    /// For a turning group, returns the box of the ball in which the group stays during any turn.
     #[inline(always)]
     pub(crate) fn boxes(&self, at: &Whereabouts) -> Boxes<MOST_OF_A_GROUP> {
         let centres = self.centres.each_ref().map(Four::of);
@@ -188,7 +188,7 @@ impl Group {
         boxes
     }
 
-    /// The box around all of them, likewise.
+    /// Returns the box around all pieces of the group, rounded outward and widened by the margin.
     #[inline(always)]
     pub(crate) fn hull(&self, at: &Whereabouts) -> Cover {
         let (centre, half) = match at.orientation {
@@ -226,7 +226,8 @@ impl Group {
     }
 }
 
-/// Centres, as seen from the origin, and half extents along the axes of the parent frame, member by member.
+/// Rotates boxes about z: centres relative to the origin, and half extents along the axes of the parent frame, axis
+/// by axis.
 #[inline(always)]
 fn yawed(yaw: RoughYaw, [x, y, z]: [Four; 3], [a, b, c]: [Four; 3]) -> ([Four; 3], [Four; 3]) {
     let (cos, sin) = (Four::all(yaw.cos), Four::all(yaw.sin));
@@ -237,7 +238,7 @@ fn yawed(yaw: RoughYaw, [x, y, z]: [Four; 3], [a, b, c]: [Four; 3]) -> ([Four; 3
     (centres, [wide, a.times(sin).plus(b.times(cos)), c])
 }
 
-/// The same in any frame.
+/// Rotates boxes by any frame: centres relative to the origin, and half extents, axis by axis.
 fn tilted(frame: &Frame, centres: [Four; 3], halves: [Four; 3]) -> ([Four; 3], [Four; 3]) {
     let images = [frame.x, frame.y, frame.z];
     let sum = |members: [Four; 3], of: fn(f32) -> f32| {
@@ -254,21 +255,22 @@ pub(crate) fn reach_of(piece: &Piece) -> f64 {
     (length(piece.centre) + piece.radius()) * (1.0 + 8.0 * f64::EPSILON)
 }
 
-/// What the model can be asked about: a [`Mover`], or a [`Shape`] that is taken apart for this one question.
+/// A body that a question accepts: a [`Mover`], or a [`Shape`] that is split into pieces for one question.
 pub trait Moving {
-    /// Asks about the body taken apart; `None` when the shape is flawed, which is answered with blocked.
-    fn asked<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A>;
+    /// Calls `ask` with the body split into pieces; returns `None` when the shape is flawed, which questions answer
+    /// with blocked.
+    fn with_mover<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A>;
 }
 
 impl Moving for Mover {
     #[inline(always)]
-    fn asked<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
+    fn with_mover<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
         Some(ask(self))
     }
 }
 
 impl Moving for Shape {
-    fn asked<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
+    fn with_mover<A>(&self, ask: impl FnOnce(&Mover) -> A) -> Option<A> {
         Mover::new(self).ok().map(|mover| ask(&mover))
     }
 }

@@ -1,25 +1,25 @@
-//! Names of elements, one behind the other in one text: no allocation for each.
+//! Names of elements, stored one after another in one string without an allocation per name.
 
-/// Where the name of an element stands in [`Names`].
+/// Place of the name of an element in [`Names`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Name {
     start: u32,
     length: u32,
 }
 
-/// The names of all elements. A name that is no longer wanted leaves a gap; its owners are asked for
-/// theirs again when the gaps outweigh the rest ([`Names::is_mostly_gaps`]).
+/// The names of all elements. A released name leaves a gap; when the gaps outweigh the rest
+/// ([`Names::is_mostly_gaps`]) the model writes all names anew.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Names {
     text: String,
     gaps: usize,
 }
 
-/// Gaps below this are not worth the trouble, bytes.
+/// Total length of the gaps below which rewriting does not pay, bytes.
 const SMALL: usize = 4096;
 
 impl Names {
-    /// Writes a name down.
+    /// Appends a name.
     #[inline]
     pub(crate) fn keep(&mut self, text: &str) -> Name {
         let start = self.text.len() as u32;
@@ -34,17 +34,17 @@ impl Names {
         &self.text[name.start as usize..][..name.length as usize]
     }
 
-    /// The name is not wanted any more.
-    pub(crate) fn leave(&mut self, name: &Name) {
+    /// Releases a name.
+    pub(crate) fn release(&mut self, name: &Name) {
         self.gaps += name.length as usize;
-        // The last one leaves no gap: what is put in and taken out again costs nothing.
+        // The last name leaves no gap, so inserting and removing one element in turn costs nothing.
         if (name.start + name.length) as usize == self.text.len() {
             self.text.truncate(name.start as usize);
             self.gaps -= name.length as usize;
         }
     }
 
-    /// Whether it is time to write the wanted names into a fresh text.
+    /// Whether the names should be rewritten into a fresh string.
     pub(crate) fn is_mostly_gaps(&self) -> bool {
         self.gaps > SMALL && 2 * self.gaps > self.text.len()
     }
@@ -77,10 +77,10 @@ mod tests {
         let first = names.keep("first");
         for _ in 0..3 {
             let last = names.keep("last");
-            names.leave(&last);
+            names.release(&last);
         }
         assert_eq!((names.text.as_str(), names.gaps), ("first", 0));
-        names.leave(&first);
+        names.release(&first);
         assert_eq!(names.gaps, 0);
     }
 }

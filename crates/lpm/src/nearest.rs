@@ -1,4 +1,4 @@
-//! The least distance over a way: every pair whose boxes come near enough, the nearest boxes first.
+//! Least distance over a path: examines every pair whose boxes come near enough, the nearest boxes first.
 
 use super::mover::{Group, MOST_OF_A_GROUP};
 use super::passage::{Passage, Pending, once_in_order};
@@ -6,21 +6,21 @@ use super::space::{Bundle, Cover, LANES, Sweep, Visit};
 use super::straight;
 use super::turning::Turning;
 
-/// The least distance, mm, from which piece, and when.
+/// The least distance, mm, with its piece and its fraction of the path.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Nearest {
     pub(crate) distance_mm: f64,
-    /// Number of the standing piece.
+    /// Number of the stationary piece.
     pub(crate) element: u32,
-    /// Fraction of the way.
+    /// Fraction of the path.
     pub(crate) t: f64,
 }
 
-/// Collects pairs that come near enough.
+/// Collects the pairs of boxes within range.
 struct Near<'a> {
     passage: &'a Passage<'a>,
     group: &'a Group,
-    /// Of the pieces of the group on their whole way.
+    /// Boxes around the pieces of the group over their whole path.
     covers: [Cover; MOST_OF_A_GROUP],
     range_mm: f64,
     pending: &'a mut Vec<Pending>,
@@ -57,7 +57,7 @@ impl Visit for Near<'_> {
 }
 
 impl Passage<'_> {
-    /// Least distance up to `range_mm` over the way; `None` when it is larger.
+    /// Returns the least distance over the path up to `range_mm`; `None` when it is larger.
     pub(crate) fn least(&self, range_mm: f64) -> Option<Nearest> {
         let mut pending = self.within(range_mm);
         once_in_order(&mut pending);
@@ -81,7 +81,7 @@ impl Passage<'_> {
         least
     }
 
-    /// Pairs whose boxes come within `range_mm` of each other, with the distance of the boxes.
+    /// Returns the pairs whose boxes come within `range_mm` of each other, with the distance of the boxes.
     fn within(&self, range_mm: f64) -> Vec<Pending> {
         let mut pending = Vec::new();
         let run = self.path.displacement;

@@ -1,8 +1,7 @@
-//! Silhouettes for a drawing: what a body covers when seen from above or from the front.
+//! Silhouettes for a drawing: the outline of a body seen from above or from the front.
 //!
-//! Every convex piece gives one convex polygon, counter-clockwise; a cylinder's rim is drawn with
-//! [`RIM`] corners, which miss the true outline by less than 1 % of its radius. For pictures only: no
-//! answer of this module rests on them.
+//! Every convex piece gives one convex polygon, counter-clockwise. The rim of a cylinder is drawn with [`RIM`]
+//! corners, less than 1 % of its radius off the true outline. For pictures only: no collision answer uses them.
 
 use super::pose::{Frame, Pose};
 use super::shape::Shape;
@@ -12,35 +11,35 @@ use std::f64::consts::TAU;
 /// Corners of a drawn rim.
 const RIM: usize = 24;
 
-/// From where a body is seen.
+/// Direction from which a drawing shows a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Seen {
+pub enum View {
     /// From above: x to the right, y up.
-    FromAbove,
+    Above,
     /// From the front, along +y: x to the right, z up.
-    FromFront,
+    Front,
 }
 
-/// The silhouettes of the pieces of `shape` at `pose`, mm.
-pub fn outlines(shape: &Shape, pose: Pose, seen: Seen) -> Vec<Vec<[f64; 2]>> {
+/// Returns the silhouettes of the pieces of `shape` at `pose`, mm.
+pub fn outlines(shape: &Shape, pose: Pose, view: View) -> Vec<Vec<[f64; 2]>> {
     let mut pieces = Vec::new();
     collect(
         shape,
         &Frame::of(pose.rotation),
         pose.position,
-        &mut |corners| pieces.push(hull(corners.iter().map(|it| flat(*it, seen)).collect())),
+        &mut |corners| pieces.push(hull(corners.iter().map(|it| flat(*it, view)).collect())),
     );
     pieces
 }
 
-fn flat(corner: Vec3, seen: Seen) -> [f64; 2] {
-    match seen {
-        Seen::FromAbove => [corner[0], corner[1]],
-        Seen::FromFront => [corner[0], corner[2]],
+fn flat(corner: Vec3, view: View) -> [f64; 2] {
+    match view {
+        View::Above => [corner[0], corner[1]],
+        View::Front => [corner[0], corner[2]],
     }
 }
 
-/// Gives the corners of every convex piece, placed.
+/// Passes the corners of every convex piece, placed, to `give`.
 fn collect(shape: &Shape, frame: &Frame, position: Vec3, give: &mut impl FnMut(Vec<Vec3>)) {
     let place = |corner: Vec3| add(frame.apply(corner), position);
     match shape {
@@ -119,18 +118,18 @@ mod tests {
     }
 
     #[test]
-    fn a_block_is_a_rectangle_from_above_and_from_the_front() {
+    fn a_block_is_a_rectangle_in_both_views() {
         let block = Shape::Block {
             half: [1.0, 2.0, 3.0],
         };
         let pose = Pose::at([10.0, 20.0, 30.0]);
-        let above = &outlines(&block, pose, Seen::FromAbove)[0];
+        let above = &outlines(&block, pose, View::Above)[0];
         assert_eq!(above.len(), 4);
         assert_eq!(
             (extent(above, 0), extent(above, 1)),
             ((9.0, 11.0), (18.0, 22.0))
         );
-        let front = &outlines(&block, pose, Seen::FromFront)[0];
+        let front = &outlines(&block, pose, View::Front)[0];
         assert_eq!(
             (extent(front, 0), extent(front, 1)),
             ((9.0, 11.0), (27.0, 33.0))
@@ -138,30 +137,30 @@ mod tests {
     }
 
     #[test]
-    fn a_cylinder_is_round_from_above_and_a_rectangle_from_the_front() {
+    fn a_cylinder_is_round_only_from_above() {
         let pin = Shape::Cylinder {
             radius: 4.0,
             height: 30.0,
         };
-        let above = &outlines(&pin, Pose::IDENTITY, Seen::FromAbove)[0];
+        let above = &outlines(&pin, Pose::IDENTITY, View::Above)[0];
         assert_eq!(above.len(), RIM);
         assert!(
             above
                 .iter()
                 .all(|it| (it[0].hypot(it[1]) - 4.0).abs() < 1e-9)
         );
-        assert_eq!(outlines(&pin, Pose::IDENTITY, Seen::FromFront)[0].len(), 4);
+        assert_eq!(outlines(&pin, Pose::IDENTITY, View::Front)[0].len(), 4);
     }
 
     #[test]
-    fn a_compound_gives_a_polygon_a_piece_each_in_its_place() {
+    fn a_compound_gives_one_placed_polygon_per_piece() {
         let block = Shape::Block { half: [1.0; 3] };
         let pair = Shape::Compound(vec![
             (Pose::at([5.0, 0.0, 0.0]), block.clone()),
             (Pose::at([-5.0, 0.0, 0.0]), block),
         ]);
         let turned = Pose::yawed([0.0; 3], std::f64::consts::FRAC_PI_2);
-        let above = outlines(&pair, turned, Seen::FromAbove);
+        let above = outlines(&pair, turned, View::Above);
         let (low, high) = extent(&above[0], 1);
         assert!((low - 4.0).abs() < 1e-9 && (high - 6.0).abs() < 1e-9);
         assert_eq!(above.len(), 2);

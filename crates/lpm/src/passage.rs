@@ -1,4 +1,4 @@
-//! One body on one way through the model.
+//! One body on one path through the model.
 
 use super::answer::Move;
 use super::model::Model;
@@ -7,23 +7,23 @@ use super::path::Path;
 use super::piece::Piece;
 use super::pose::Frame;
 use super::prism::Prism;
-use super::standing::Standing;
+use super::stationary::Stationary;
 
-/// A body, its way and the model.
+/// A body, its path and the model.
 pub(crate) struct Passage<'a> {
     pub(crate) model: &'a Model,
     pub(crate) body: &'a Mover,
     pub(crate) path: &'a Path,
     pub(crate) way: &'a Move<'a>,
-    /// A straight way on which upright pieces stay upright: closed forms apply.
+    /// Whether the path is straight and upright pieces stay upright, so that closed forms apply.
     pub(crate) level: bool,
     orientation: Orientation<'a>,
 }
 
-/// Pieces of an element and of the mover that a search has to look at.
+/// A piece of an element and a piece of the mover that await a search.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pending {
-    /// What to begin with: the least is searched first.
+    /// Sort key: the pair with the least is searched first.
     pub(crate) order: f64,
     pub(crate) element: u32,
     pub(crate) local: u32,
@@ -48,37 +48,37 @@ impl<'a> Passage<'a> {
         }
     }
 
-    /// A piece that stands, by its number.
+    /// Returns a stationary piece by its number.
     #[inline]
-    pub(crate) fn element(&self, number: u32) -> &'a Standing {
+    pub(crate) fn element(&self, number: u32) -> &'a Stationary {
         self.model.pieces.at(number)
     }
 
-    /// The same as a whole, for searches.
+    /// Returns a stationary piece in the general form that searches need.
     pub(crate) fn piece(&self, number: u32) -> Piece {
         self.model.pieces.piece(number)
     }
 
-    /// A piece of the mover, by its index.
+    /// Returns a piece of the mover by its index.
     #[inline]
     pub(crate) fn local(&self, index: u32) -> &'a Piece {
         &self.body.pieces[index as usize]
     }
 
-    /// Whether a piece belongs to an element that is not to be ignored.
+    /// Whether the element of a piece is not ignored by the move.
     #[inline]
-    pub(crate) fn counts(&self, element: &Standing) -> bool {
+    pub(crate) fn counts(&self, element: &Stationary) -> bool {
         self.way.ignore.is_empty() || !self.way.ignore.contains(&element.owner)
     }
 
-    /// A piece of the mover at `t` of a level way, if it is upright.
+    /// Returns a piece of the mover at `t` of a level path, if the piece is upright.
     #[inline]
     pub(crate) fn prism_at(&self, index: u32, t: f64) -> Option<Prism> {
         let own = self.body.prisms[index as usize].as_ref()?;
         Some(own.carried(self.path.turned(), self.path.origin(t)))
     }
 
-    /// Where the body is when its boxes are asked for, to be widened by `margin_mm`.
+    /// Returns place and path of the body for computing its boxes, to be widened by `margin_mm`.
     #[inline(always)]
     pub(crate) fn whereabouts(&self, margin_mm: f64) -> Whereabouts<'a> {
         Whereabouts {
@@ -90,7 +90,7 @@ impl<'a> Passage<'a> {
     }
 }
 
-/// Sorts by order and leaves every pair once. (The order is a function of the pair.)
+/// Sorts by order and removes repeated pairs, which have equal order.
 pub(crate) fn once_in_order(pending: &mut Vec<Pending>) {
     pending.sort_unstable_by(|a, b| {
         let pair = |pair: &Pending| (pair.element, pair.local);

@@ -1,4 +1,4 @@
-//! The way of a mover: a straight translation, or position linear and rotation the shortest turn.
+//! The path of a mover: a straight translation, or linear position with the shortest turn.
 
 use super::answer::Move;
 use super::mover::Orientation;
@@ -6,22 +6,23 @@ use super::piece::{Piece, is_exact_sum};
 use super::pose::{Frame, Turn};
 use super::vector::{Vec3, along, negate, reach, sub};
 
-/// A move between two checked poses; `t` runs from 0 to 1.
+/// A path between two checked poses; the fraction `t` runs from 0 to 1.
 #[derive(Debug, Clone)]
 pub(crate) struct Path {
-    /// Origin where the way begins, mm.
+    /// Origin of the mover at the start, mm.
     pub(crate) from: Vec3,
     to: Vec3,
-    /// Whole displacement of the origin, mm.
+    /// Total displacement of the origin, mm.
     pub(crate) displacement: Vec3,
-    /// Orientation at the start; `None`: the common one.
+    /// Orientation at the start; `None` for the identity.
     turned: Option<Frame>,
-    /// `None`: the move is a translation. (Apart: most are.)
+    /// The turn; `None` for a translation. Boxed because most moves are translations.
     pub(crate) turn: Option<Box<Turn>>,
 }
 
 impl Path {
-    /// `None` when a number is not finite, or the margin is none: nothing can be said about such a move.
+    /// Converts a move. Returns `None` when a number is not finite or the margin is invalid: such a move cannot be
+    /// decided.
     pub(crate) fn of(way: &Move) -> Option<Path> {
         if !(way.margin_mm >= 0.0 && way.margin_mm <= f64::MAX) {
             return None;
@@ -45,13 +46,13 @@ impl Path {
         })
     }
 
-    /// Origin of the mover at `t`.
+    /// Origin of the mover at `t`, mm.
     #[inline]
     pub(crate) fn origin(&self, t: f64) -> Vec3 {
         along(self.from, t, self.displacement)
     }
 
-    /// A piece of the mover where it stands at `t`.
+    /// A piece of the mover at its place at `t`.
     pub(crate) fn piece_at(&self, local: &Piece, t: f64) -> Piece {
         match &self.turn {
             None => local.placed(self.start(), self.origin(t)),
@@ -59,24 +60,24 @@ impl Path {
         }
     }
 
-    /// The sum of magnitudes of everything that enters a position on the way, mm.
+    /// Sum of the magnitudes of everything that enters a position on the path, mm.
     pub(crate) fn span(&self) -> f64 {
         reach(self.from) + reach(self.displacement)
     }
 
-    /// Whether nothing was rounded between both ends and the displacement.
+    /// Whether the displacement was computed from both ends without rounding.
     #[inline]
     pub(crate) fn is_exact(&self) -> bool {
         is_exact_sum(self.to, negate(self.from))
     }
 
-    /// Orientation of the mover at the start, when it is not the common one.
+    /// Orientation of the mover at the start; `None` for the identity.
     #[inline]
     pub(crate) fn turned(&self) -> Option<&Frame> {
         self.turned.as_ref()
     }
 
-    /// How the mover is turned on the way.
+    /// Orientation of the mover along the path.
     pub(crate) fn orientation(&self) -> Orientation<'_> {
         match (&self.turn, &self.turned) {
             (Some(_), _) => Orientation::Turning,
@@ -87,7 +88,7 @@ impl Path {
         }
     }
 
-    /// Orientation of the mover at the start, whatever it is.
+    /// Orientation of the mover at the start, the identity included.
     pub(crate) fn start(&self) -> &Frame {
         self.turned.as_ref().unwrap_or(&Frame::IDENTITY)
     }

@@ -1,9 +1,9 @@
-//! Permissions of pairs: what a mover may do to each element, and where its way is first forbidden.
+//! Permissions of pairs: what a mover may do to each element, and where a move first violates one.
 //!
-//! A pair is forbidden within a margin, may touch, or is ignored. A question knows one margin for all, so
-//! elements are asked about in groups of equal permission and the earliest answer counts. Bodies that may
-//! touch are pressed into each other by no more than a depth: the mover is asked about with that depth taken
-//! off its faces, so contact in its ends is found wherever it goes in deeper, and nowhere else.
+//! A pair is forbidden within a margin, may touch, or is ignored. A question takes one margin for all elements, so
+//! elements are checked in groups of equal permission and the earliest violation counts. Bodies that may touch may
+//! also press into each other by up to a depth: the check takes that depth off the faces of the mover, so it
+//! reports exactly the contacts that go deeper.
 
 use std::borrow::Cow;
 
@@ -13,23 +13,23 @@ use super::mover::Mover;
 use super::pose::Pose;
 use super::shape::{Flaw, Shape};
 
-/// What is left of a piece that is thinner than the depth taken off it, mm: a core, never nothing.
+/// Half extent left of a piece that is thinner than the depth taken off it, mm, so that no piece vanishes.
 const CORE_MM: f64 = 1e-3;
 
-/// How far beyond its margin a forbidden pair is still measured, mm.
+/// Distance beyond its margin up to which a forbidden pair is measured, mm.
 const MEASURED_BEYOND_MM: f64 = 1.0;
 
 /// What a mover may do to an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Permission {
-    /// It may not come as near as this, mm, >= 0.
+    /// The mover must stay farther away than a margin.
     Forbidden {
         /// Distance that must be exceeded, mm.
         margin_mm: f64,
     },
-    /// It may touch, and press in by less than this, mm, >= 0.
+    /// The mover may touch and press in by less than a depth.
     MayTouch {
-        /// Depth that is taken off every face of the mover, mm.
+        /// Depth taken off every face of the mover, mm, >= 0.
         depth_mm: f64,
     },
     /// The pair is not tested.
@@ -37,7 +37,7 @@ pub enum Permission {
 }
 
 impl Permission {
-    /// Margin and depth, mm; `None` when there is nothing to ask.
+    /// Margin and depth, mm; `None` for an ignored pair.
     fn asked_mm(self) -> Option<(f64, f64)> {
         match self {
             Permission::Forbidden { margin_mm } => Some((margin_mm, 0.0)),
@@ -47,36 +47,36 @@ impl Permission {
     }
 }
 
-/// A mover on its way.
+/// A mover and its move.
 #[derive(Debug, Clone)]
 pub struct Passing<'a> {
-    /// The body, its depth taken off.
+    /// The body, with the depth taken off its faces.
     pub mover: Cow<'a, Mover>,
-    /// Where it stands.
+    /// Pose at the start.
     pub from: Pose,
-    /// Where it should go.
+    /// Pose at the end.
     pub to: Pose,
 }
 
-/// Where a way first does what a permission does not allow.
+/// The first violation of a permission on a move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forbidden {
-    /// With the element of that pair.
+    /// The contact with the element of that pair.
     pub contact: Contact,
-    /// Least distance of the pair over the whole way, mm; never more than 1 mm beyond the margin.
+    /// Least distance of the pair over the whole move, mm; at most 1 mm above the margin.
     pub distance_mm: f64,
     /// Margin of the pair, mm; 0 where it may touch.
     pub margin_mm: f64,
 }
 
 impl Model {
-    /// Where a way is first forbidden by the permissions of its pairs; `None` is proof that it is allowed.
+    /// Returns the first violation of a permission on a move; `None` is proof that the move is allowed.
     ///
-    /// An element that `permissions` do not name may not be touched. `passing` gives the mover with so many
-    /// millimetres taken off its faces ([`Shape::less`]); it is asked once for each different permission.
+    /// The mover must not touch an element that `permissions` omits. The model calls `passing` once for each
+    /// different permission, with the depth (mm) to take off the faces of the mover ([`Shape::less`]).
     ///
     /// # Errors
-    /// Those of `passing`.
+    /// Returns the errors of `passing`.
     pub fn first_forbidden<'a>(
         &self,
         permissions: &[(ElementKey, Permission)],
@@ -102,7 +102,7 @@ impl Model {
         Ok(first)
     }
 
-    /// The permissions, and those of elements that nobody has named.
+    /// Adds to the permissions the default for every element that they omit.
     fn all_pairs(&self, permissions: &[(ElementKey, Permission)]) -> Vec<(ElementKey, Permission)> {
         let mut pairs = permissions.to_vec();
         pairs.sort_by_key(|pair| pair.0);
@@ -171,7 +171,7 @@ mod tests {
 
     const CUBE: Shape = Shape::Block { half: [1.0; 3] };
 
-    /// A cube goes from x = 0 to 10 towards a wall whose face stands at x = 5: they meet after 0.4 of the way.
+    /// A cube goes from x = 0 to 10 towards a wall with its face at x = 5: they meet after 0.4 of the move.
     fn asked(permission: Option<Permission>) -> Option<Forbidden> {
         let mut model = Model::new();
         let wall = Shape::Block {
@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_forbidden_pair_stops_at_its_margin_and_one_that_may_touch_at_its_depth() {
+    fn forbidden_pairs_stop_at_margin_others_at_depth() {
         let near = |found: Option<f64>, wanted: f64| {
             let found = found.unwrap();
             assert!(found <= wanted && wanted - found < 1e-9, "{found} {wanted}");
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn of_several_permissions_the_one_that_is_broken_first_is_told() {
+    fn the_permission_violated_first_is_reported() {
         let mut model = Model::new();
         let mut stand = |x: f64| {
             model
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn what_may_touch_never_shrinks_to_nothing() {
+    fn a_body_that_may_touch_never_vanishes() {
         let foil = Shape::Block {
             half: [5.0, 5.0, 0.1],
         };

@@ -1,48 +1,48 @@
-//! Convex pieces: what every body is made of once it stands somewhere.
+//! Convex pieces, of which every placed body consists.
 //!
-//! A block and a cylinder are one piece each, a compound the pieces of its parts, a mesh one piece
-//! per triangle. Everything the distance functions need of a piece is its support: how far it
-//! reaches along a direction, and a point where it does.
+//! A block and a cylinder are one piece each, a compound has the pieces of its parts, a mesh one piece per
+//! triangle. The distance functions need only the support of a piece: how far it reaches along a direction, and a
+//! point where it does.
 
 use super::pose::{Frame, Pose};
 use super::prism::Prism;
 use super::shape::Shape;
 use super::vector::{Vec3, add, along, cross, dot, length, negate, reach, scale, sub};
 
-/// Relative error allowed for everything that is computed between the numbers of a scene and one
-/// evaluated plane, in units of the sum of all magnitudes that entered.
+/// Relative error bound of everything computed between the numbers of a scene and one evaluated plane, in units of
+/// the sum of all magnitudes that entered.
 ///
-/// Counted generously: a rotation matrix from a quaternion is good to 8 roundings, two nested
-/// compounds, a turn and a support sum to fewer than 40 more. 96 roundings of 2^-53 each leave a
-/// factor of two. At 1e6 mm this is below 1e-7 mm, well inside the 1e-6 mm that may be blocked.
+/// Counted generously: a rotation matrix from a quaternion is good to 8 roundings; two nested compounds, a turn and
+/// a support sum to fewer than 40 more. 96 roundings of 2^-53 each leave a factor of two. At 1e6 mm this is below
+/// 1e-7 mm, well inside the 1e-6 mm by which a move may be blocked early.
 pub(crate) const NOISE: f64 = 96.0 * (f64::EPSILON / 2.0);
 
-/// Form of a piece around its centre.
+/// Form of a piece about its centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Form {
-    /// Half extents along the frame.
+    /// Half extents along the axes of the frame, mm.
     Block(Vec3),
-    /// Radius and half height; axis is z of the frame.
+    /// A cylinder about the z axis of the frame.
     Cylinder {
         /// Radius, mm.
         radius: f64,
         /// Half of the height, mm.
         half: f64,
     },
-    /// Corners relative to the centre, not in the frame.
+    /// Corners relative to the centre, in parent coordinates rather than the frame, mm.
     Triangle([Vec3; 3]),
 }
 
-/// A convex closed set at a place.
+/// A placed convex closed set.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Piece {
     pub(crate) centre: Vec3,
     pub(crate) frame: Frame,
     pub(crate) form: Form,
-    /// Sum of the magnitudes that were rounded on the way to centre and extents, mm: the scale of
-    /// rounding errors. A place that was reached by exact sums adds nothing.
+    /// Sum of the magnitudes that were rounded in computing centre and extents, mm: the scale of rounding errors. A
+    /// place that was reached by exact sums adds nothing.
     pub(crate) span: f64,
-    /// Block or cylinder whose own z is exactly vertical: closed forms apply.
+    /// A block or cylinder whose own z axis is exactly vertical, so that closed forms apply.
     pub(crate) upright: bool,
 }
 
@@ -62,7 +62,7 @@ impl Piece {
         }
     }
 
-    /// The piece carried along by its parent frame, which stands turned by `frame` at `position`.
+    /// The piece moved with its parent frame, which is turned by `frame` and placed at `position`.
     pub(crate) fn placed(&self, frame: &Frame, position: Vec3) -> Piece {
         let form = match self.form {
             Form::Block(_) | Form::Cylinder { .. } => self.form,
@@ -72,7 +72,7 @@ impl Piece {
         Piece::new(centre, frame.then(&self.frame), form, span)
     }
 
-    /// Centre and span of the piece carried along by its parent frame.
+    /// Centre and span of the piece moved with its parent frame.
     #[inline]
     pub(crate) fn place(&self, frame: &Frame, position: Vec3) -> (Vec3, f64) {
         let turned = if frame.is_identity() {
@@ -166,7 +166,7 @@ impl Piece {
     }
 }
 
-/// Whether `a + b` lost nothing to rounding (the error term of an exact sum, after Knuth).
+/// Whether `a + b` was computed without rounding (error term of the sum after Knuth).
 #[inline]
 pub(crate) fn is_exact_sum(a: Vec3, b: Vec3) -> bool {
     (0..3).all(|axis| {
@@ -176,19 +176,19 @@ pub(crate) fn is_exact_sum(a: Vec3, b: Vec3) -> bool {
     })
 }
 
-/// All pieces of a checked shape, in its own frame.
+/// Returns all pieces of a checked shape, in its own frame.
 pub(crate) fn pieces_of(shape: &Shape) -> Vec<Piece> {
     let mut pieces = Vec::new();
     each_piece(shape, |piece| pieces.push(piece));
     pieces
 }
 
-/// Shows all pieces of a checked shape, in its own frame.
+/// Passes all pieces of a checked shape, in its own frame, to `show`.
 pub(crate) fn each_piece(shape: &Shape, mut show: impl FnMut(Piece)) {
     descend(shape, &Frame::IDENTITY, [0.0; 3], 0.0, &mut show);
 }
 
-/// `span` is what the parents' positions add to the scale of rounding.
+/// Visits a shape and its parts. `span` is what the positions of the parents add to the scale of rounding.
 fn descend(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, show: &mut impl FnMut(Piece)) {
     match shape {
         Shape::Block { half } => {
@@ -232,7 +232,7 @@ fn descend(shape: &Shape, frame: &Frame, centre: Vec3, span: f64, show: &mut imp
     }
 }
 
-/// Places a triangle; its centre is the middle of its bounding box, so that the offsets are small.
+/// Places a triangle; its centre is the middle of its bounding box, which keeps the offsets small.
 fn triangle_piece(corners: [Vec3; 3], frame: &Frame, origin: Vec3, span: f64) -> Piece {
     let placed = corners.map(|corner| add(frame.apply(corner), origin));
     let mut middle = [0.0; 3];

@@ -1,4 +1,4 @@
-//! Where a body stands: position in millimetres and a unit quaternion, right-handed, z up.
+//! Pose of a body: position in millimetres and a unit quaternion, right-handed, z up.
 
 use super::vector::{Vec3, add, cross, dot, length, scale};
 
@@ -7,7 +7,7 @@ use super::vector::{Vec3, add, cross, dot, length, scale};
 pub struct Pose {
     /// Origin of the body, mm.
     pub position: [f64; 3],
-    /// Unit quaternion `[w, x, y, z]`; it is normalised wherever it is used, zero is a [`Flaw`](super::Flaw).
+    /// Quaternion `[w, x, y, z]`, normalised wherever it is used; zero is a [`Flaw`](super::Flaw).
     pub rotation: [f64; 4],
 }
 
@@ -18,7 +18,7 @@ impl Pose {
         rotation: [1.0, 0.0, 0.0, 0.0],
     };
 
-    /// Upright at `position` (mm).
+    /// An upright pose at `position` (mm).
     pub fn at(position: [f64; 3]) -> Pose {
         Pose {
             position,
@@ -26,7 +26,7 @@ impl Pose {
         }
     }
 
-    /// Turned by `yaw_rad` about z, standing at `position` (mm).
+    /// A pose turned by `yaw_rad` about z at `position` (mm).
     pub fn yawed(position: [f64; 3], yaw_rad: f64) -> Pose {
         let (sin, cos) = (yaw_rad / 2.0).sin_cos();
         Pose {
@@ -35,14 +35,14 @@ impl Pose {
         }
     }
 
-    /// Whether it turns nothing.
+    /// Whether the rotation is the identity.
     #[inline(always)]
     pub(crate) fn is_unturned(&self) -> bool {
         let [_, x, y, z] = self.rotation;
         (x == 0.0) & (y == 0.0) & (z == 0.0)
     }
 
-    /// The same turn at another position (mm).
+    /// The same rotation at another position (mm).
     pub fn moved_to(self, position: [f64; 3]) -> Pose {
         Pose { position, ..self }
     }
@@ -63,10 +63,10 @@ impl Frame {
         z: [0.0, 0.0, 1.0],
     };
 
-    /// Of a quaternion of any length but zero.
+    /// Converts a quaternion of any length but zero.
     ///
-    /// Dividing by the squared length instead of normalising first keeps quarter turns exact:
-    /// `[0.7071067811865476, 0, 0, 0.7071067811865475]` must not tilt or stretch a block.
+    /// Dividing by the squared length instead of normalising first keeps quarter turns exact: `[0.7071067811865476,
+    /// 0, 0, 0.7071067811865475]` must not tilt or stretch a block.
     #[inline]
     pub(crate) fn of(rotation: [f64; 4]) -> Frame {
         let [w, x, y, z] = rotation;
@@ -84,19 +84,19 @@ impl Frame {
         }
     }
 
-    /// Whether z stays z (or turns upside down), exactly.
+    /// Whether z is mapped exactly onto z or -z.
     #[inline]
     pub(crate) fn is_vertical(&self) -> bool {
         self.z[0] == 0.0 && self.z[1] == 0.0 && self.z[2].abs() == 1.0
     }
 
-    /// Whether only a turn about z is left, exactly: upright bodies stay upright.
+    /// Whether the rotation is exactly one about z, so that upright bodies stay upright.
     #[inline]
     pub(crate) fn is_upright(&self) -> bool {
         self.is_vertical() && self.x[2] == 0.0 && self.y[2] == 0.0
     }
 
-    /// The same as a turn about z, if it is one.
+    /// Returns the rotation as a turn about z, if it is one.
     #[inline]
     pub(crate) fn yaw(&self) -> Option<Yaw> {
         let [cos, sin, rise] = self.x;
@@ -104,7 +104,7 @@ impl Frame {
         is_yaw.then_some(Yaw { cos, sin })
     }
 
-    /// Whether nothing is turned. (Of frames made by [`Frame::of`], only the identity has this x and z.)
+    /// Whether the rotation is the identity. Comparing x and z suffices for frames made by [`Frame::of`].
     #[inline]
     pub(crate) fn is_identity(&self) -> bool {
         self.x == Frame::IDENTITY.x && self.z == Frame::IDENTITY.z
@@ -135,7 +135,7 @@ pub(crate) struct Yaw {
 }
 
 impl Yaw {
-    /// Of the quaternion `[w, 0, 0, z]`.
+    /// Converts the quaternion `[w, 0, 0, z]`.
     #[inline]
     pub(crate) fn of(w: f64, z: f64) -> Yaw {
         if z == 0.0 {
@@ -148,7 +148,7 @@ impl Yaw {
         }
     }
 
-    /// For boxes.
+    /// Rounds to single precision, for boxes.
     #[inline(always)]
     pub(crate) fn rough(self) -> RoughYaw {
         RoughYaw {
@@ -157,7 +157,7 @@ impl Yaw {
         }
     }
 
-    /// What a vector in the plane becomes.
+    /// Rotates a vector in the plane.
     #[inline(always)]
     pub(crate) fn apply(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [x * self.cos - y * self.sin, x * self.sin + y * self.cos]
@@ -173,19 +173,19 @@ impl Yaw {
     }
 }
 
-/// A turn about z in single precision: good enough for boxes, and for nothing else.
+/// A turn about z in single precision: accurate enough for boxes only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct RoughYaw {
     pub(crate) cos: f32,
     pub(crate) sin: f32,
 }
 
-/// By how much the squared length of a quaternion may differ from 1 for a [`RoughYaw`] that divides by nothing: a
-/// sixtieth of what single precision loses.
+/// How far the squared length of a quaternion may be from 1 for [`RoughYaw`] to skip the division: a sixtieth of
+/// what single precision loses.
 const NEARLY_UNIT: f64 = 1e-9;
 
 impl RoughYaw {
-    /// Of the quaternion `[w, 0, 0, z]`. Nearly all have a length of 1, so that nobody has to wait for a quotient.
+    /// Converts the quaternion `[w, 0, 0, z]`. Nearly all have length 1, which saves the time of a division.
     #[inline(always)]
     pub(crate) fn of(w: f64, z: f64) -> RoughYaw {
         let (ww, zz) = (w * w, z * z);
@@ -204,16 +204,16 @@ impl RoughYaw {
 pub(crate) struct Turn {
     /// Unit axis in the parent frame.
     pub(crate) axis: Vec3,
-    /// Whole angle in radians, 0 to pi.
+    /// Whole angle, radians, 0 to pi.
     pub(crate) angle: f64,
     start: Frame,
 }
 
 impl Turn {
-    /// `None` when both orientations agree (also as `q` and `-q`): the move is a translation.
+    /// Returns the turn; `None` when both orientations agree (also as `q` and `-q`) and the move is a translation.
     ///
-    /// Orientations agree when the turn between them is below 1e-15 rad for every part of the
-    /// machine, that is when the quaternions are proportional to rounding.
+    /// Orientations agree when the angle between them is below 1e-15 rad, that is when the quaternions are
+    /// proportional up to rounding.
     pub(crate) fn between(from: [f64; 4], to: [f64; 4]) -> Option<Turn> {
         let (a, b) = (normalised(from), normalised(to));
         let (va, vb) = ([a[1], a[2], a[3]], [b[1], b[2], b[3]]);
@@ -224,7 +224,7 @@ impl Turn {
         );
         let v = if w < 0.0 { scale(v, -1.0) } else { v };
         let sin = length(v);
-        // Two units in the last place of a normalised quaternion.
+        // The bound is two units in the last place of a normalised quaternion.
         if sin <= 4.0 * f64::EPSILON {
             return None;
         }
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_keeps_a_block_upright() {
-        // As files have it: the two members differ in the last place.
+        // As in typical files: the two members differ in the last place.
         let w = std::f64::consts::FRAC_1_SQRT_2;
         let frame = Frame::of([w, 0.0, 0.0, w.next_down()]);
         assert_eq!(frame.z, [0.0, 0.0, 1.0]);
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_ends_where_it_was_told_to() {
+    fn a_turn_ends_at_its_end_orientation() {
         let (from, to) = ([0.9, 0.1, -0.3, 0.2], [-0.2, 0.5, 0.4, 0.7]);
         let turn = Turn::between(from, to).unwrap();
         let (reached, wanted) = (turn.frame_at(1.0), Frame::of(to));
@@ -286,13 +286,13 @@ mod tests {
     }
 
     #[test]
-    fn a_rough_yaw_is_the_true_one_in_single_precision_however_long_the_quaternion() {
+    fn a_rough_yaw_is_accurate_to_single_precision() {
         for step in 0..4_000 {
             let (sin, cos) = (f64::from(step) * 0.001_571).sin_cos();
             for long in [1.0, 1.0 + 4.9e-10, 1.0 - 5.1e-10, 1e-3, 7.0] {
                 let (w, z) = (long * cos, long * sin);
                 let (rough, yaw) = (RoughYaw::of(w, z), Yaw::of(w, z));
-                // Half a step of single precision and what the length is off.
+                // Half a unit of single precision plus the deviation of the length.
                 assert!((f64::from(rough.cos) - yaw.cos).abs() < 3.1e-8, "{w} {z}");
                 assert!((f64::from(rough.sin) - yaw.sin).abs() < 3.1e-8, "{w} {z}");
             }

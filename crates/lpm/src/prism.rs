@@ -1,18 +1,18 @@
-//! Upright blocks and cylinders: an interval in z times a rectangle or a disc. How two of them meet on
-//! a way: [`meeting`](super::meeting), where they touch: [`touch`](super::touch).
+//! Upright blocks and cylinders: an interval in z times a rectangle or a disc. [`meeting`](super::meeting) computes
+//! when two of them meet on a path, [`touch`](super::touch) where they touch.
 
 use super::piece::{Form, NOISE, Piece, is_exact_sum};
 use super::pose::{Frame, Pose, Yaw};
 use super::shape::Shape;
 use super::vector::{Vec3, add, reach};
 
-/// An upright block or cylinder, as far as its own straight ways are concerned.
+/// An upright block or cylinder, reduced to what straight paths need.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Prism {
     pub(crate) centre: Vec3,
-    /// Half extents of the footprint along `axis` and across (0 of a disc), and of the height, mm.
+    /// Half extents of the footprint along `axis` and across it (0 for a disc), and of the height, mm.
     pub(crate) half: Vec3,
-    /// Radius of a disc, 0 of a rectangle, mm.
+    /// Radius of a disc, mm; 0 for a rectangle.
     pub(crate) radius: f64,
     /// First axis of the footprint, within 45 degrees of x.
     pub(crate) axis: [f64; 2],
@@ -21,7 +21,7 @@ pub(crate) struct Prism {
 }
 
 impl Prism {
-    /// Of a piece that is upright.
+    /// Converts an upright piece.
     #[inline]
     pub(crate) fn of(piece: &Piece) -> Prism {
         let (half, radius, axis) = footprint(piece.form, [piece.frame.x[0], piece.frame.x[1]]);
@@ -34,7 +34,7 @@ impl Prism {
         }
     }
 
-    /// Of a block or a cylinder alone, when it stands upright at `pose`.
+    /// Converts a single block or cylinder; `None` unless it is upright at `pose`.
     #[inline]
     pub(crate) fn standing(shape: &Shape, pose: &Pose) -> Option<Prism> {
         let (half, radius, span) = match shape {
@@ -63,7 +63,7 @@ impl Prism {
         })
     }
 
-    /// The same carried along by its parent, which stands at `position`, perhaps turned by an upright frame.
+    /// The prism moved with its parent, which is placed at `position` and perhaps turned by an upright frame.
     #[inline(always)]
     pub(crate) fn carried(&self, frame: Option<&Frame>, position: Vec3) -> Prism {
         let mut placed = frame.map_or(*self, |frame| self.turned(frame));
@@ -74,7 +74,7 @@ impl Prism {
         placed
     }
 
-    /// The same in a parent turned by an upright frame.
+    /// The prism in a parent turned by an upright frame.
     #[inline(always)]
     pub(crate) fn turned(&self, frame: &Frame) -> Prism {
         let mut turned = *self;
@@ -88,7 +88,7 @@ impl Prism {
         turned
     }
 
-    /// The same in a parent turned about z, its axis wherever it comes to lie.
+    /// The prism in a parent turned about z; the first axis is not brought back near x.
     #[inline(always)]
     pub(crate) fn yawed(&self, yaw: Yaw) -> Prism {
         let [x, y, z] = self.centre;
@@ -101,7 +101,7 @@ impl Prism {
         }
     }
 
-    /// The whole piece again, its footprint perhaps turned by quarters.
+    /// Returns the general piece of this prism; its footprint may be relabelled by quarter turns.
     pub(crate) fn piece(&self) -> Piece {
         let [x, y] = self.axis;
         let frame = Frame {
@@ -126,7 +126,7 @@ impl Prism {
         }
     }
 
-    /// Whether it stands exactly where the numbers of the scene put it.
+    /// Whether its place is exactly the one given by the numbers of the scene.
     pub(crate) fn is_exact(&self) -> bool {
         let [a, b, c] = self.half;
         let own = if self.radius > 0.0 {
@@ -137,13 +137,13 @@ impl Prism {
         self.span == own && self.is_straight()
     }
 
-    /// Whether the footprint lies along x and y.
+    /// Whether the footprint is aligned with x and y.
     #[inline]
     pub(crate) fn is_straight(&self) -> bool {
         self.axis == [1.0, 0.0]
     }
 
-    /// In the axes of the footprint.
+    /// Components of a vector along the axes of the footprint.
     #[inline]
     pub(crate) fn along(&self, v: Vec3) -> [f64; 2] {
         if self.is_straight() {
@@ -168,7 +168,7 @@ impl Prism {
     }
 }
 
-/// Half extents, radius and first axis.
+/// Half extents, radius and first axis of a footprint.
 #[inline]
 fn footprint(form: Form, x: [f64; 2]) -> (Vec3, f64, [f64; 2]) {
     match form {
@@ -182,7 +182,7 @@ fn footprint(form: Form, x: [f64; 2]) -> (Vec3, f64, [f64; 2]) {
     }
 }
 
-/// A rectangle by half extents and first axis, turned by quarters until that lies next to x.
+/// Relabels the axes of a rectangle by quarter turns so that the first one lies nearest to x.
 #[inline]
 fn beside_x([a, b, c]: Vec3, x: [f64; 2]) -> (Vec3, [f64; 2]) {
     let (half, x) = if x[0].abs() >= x[1].abs() {

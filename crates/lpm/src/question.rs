@@ -1,4 +1,4 @@
-//! The three questions asked of the model: any hit (the gate), first contact, clearance.
+//! The three questions to the model: any hit (the gate), first contact, clearance.
 
 use super::answer::{Answer, Clearance, Contact, ElementKey, Move};
 use super::contact::{Findings, Wanted};
@@ -13,21 +13,22 @@ use super::touch::touch;
 use super::vector::Vec3;
 
 impl Model {
-    /// When and where the mover first comes within the margin of an element.
+    /// Returns when and where the mover first comes within the margin of an element.
     pub fn first_contact(&self, mover: &impl Moving, way: &Move) -> Answer {
-        let answer = mover.asked(|body| self.ask::<FirstContact>(body, way));
+        let answer = mover.with_mover(|body| self.ask::<FirstContact>(body, way));
         answer.unwrap_or(UNDECIDABLE)
     }
 
-    /// Some element within the margin at some time of the move; `None` is proof that there is none.
+    /// Returns an element that the mover approaches within the margin during the move; `None` is proof that there
+    /// is none.
     pub fn any_hit(&self, mover: &impl Moving, way: &Move) -> Option<ElementKey> {
-        let answer = mover.asked(|body| self.ask::<AnyHit>(body, way));
+        let answer = mover.with_mover(|body| self.ask::<AnyHit>(body, way));
         answer.unwrap_or(Some(ElementKey::UNDECIDABLE))
     }
 
-    /// Least distance over the move up to `range_mm`; `None` when it is larger.
+    /// Returns the least distance over the move up to `range_mm`; `None` when it is larger.
     ///
-    /// A move or a range that cannot be judged has distance 0 from [`ElementKey::UNDECIDABLE`].
+    /// A move or a range that cannot be decided has distance 0 to [`ElementKey::UNDECIDABLE`].
     pub fn clearance(&self, mover: &impl Moving, way: &Move, range_mm: f64) -> Option<Clearance> {
         let nothing = |nearest| Clearance {
             distance_mm: 0.0,
@@ -37,7 +38,7 @@ impl Model {
         if !(range_mm >= 0.0 && range_mm.is_finite()) {
             return Some(nothing(ElementKey::UNDECIDABLE));
         }
-        let least = mover.asked(|body| self.least_on_the_way(body, way, range_mm));
+        let least = mover.with_mover(|body| self.least_on_the_way(body, way, range_mm));
         least
             .flatten()
             .unwrap_or(Some(nothing(ElementKey::UNDECIDABLE)))
@@ -65,13 +66,13 @@ impl Model {
         }))
     }
 
-    /// The element of a piece.
+    /// The element to which a piece belongs.
     #[inline]
     fn owner(&self, piece: u32) -> ElementKey {
         self.pieces.at(piece).owner
     }
 
-    /// A piece of an element that holds the mover, or is held by it, without touching.
+    /// Returns a piece of an element that encloses the mover, or is enclosed by it, without touching.
     #[inline]
     fn enclosed(&self, body: &Mover, way: &Move) -> Option<(u32, Hit)> {
         if self.hollow.is_empty() && !body.is_hollow() {
@@ -83,23 +84,23 @@ impl Model {
     #[cold]
     fn holding(&self, body: &Mover, way: &Move) -> Option<(u32, Hit)> {
         let inside = body.interior_at(&way.from);
-        let asked: Vec<u32> = if body.is_hollow() {
-            self.standing_slots().collect()
+        let candidates: Vec<u32> = if body.is_hollow() {
+            self.taken_slots().collect()
         } else {
             self.hollow.clone()
         };
-        let counted = asked
+        let counted = candidates
             .into_iter()
             .filter(|slot| !way.ignore.contains(&self.key(*slot)));
         let shared = |slot: u32| {
             let point = self.shared_point(slot, &inside)?;
-            Some((self.a_piece(slot), Hit::inside(point)))
+            Some((self.first_piece(slot), Hit::inside(point)))
         };
         counted.filter_map(shared).next()
     }
 }
 
-/// Is anything met, and by whom?
+/// The question of the gate: is there any contact, and with which element?
 struct AnyHit;
 
 impl Question for AnyHit {
@@ -130,7 +131,7 @@ impl Question for AnyHit {
     }
 }
 
-/// What is met first, when and where?
+/// The question for the first contact: with which element, when and where?
 struct FirstContact;
 
 impl Question for FirstContact {
@@ -162,7 +163,7 @@ impl Question for FirstContact {
     }
 }
 
-/// The answer about what cannot be judged.
+/// The answer to a move that cannot be decided.
 const UNDECIDABLE: Answer = Answer::Blocked(Contact {
     t_stop: 0.0,
     blocker: ElementKey::UNDECIDABLE,

@@ -1,9 +1,9 @@
-//! A body at rest: the question of the paper, which checks poses.
+//! A body at rest: the check of poses, as in the paper.
 //!
-//! Nothing moves, so there is neither a way nor an order: the boxes of pieces are compared, then
-//! heights and footprints. Two upright pieces are clear when a height or a footprint lies apart by more than
-//! the slack of [`meeting`](super::meeting), for the reason that stands there. Where something is tilted, holds
-//! space or has to keep a margin nothing is said here: those are questions about a way, of no length.
+//! Nothing moves, so there is no path and no order: boxes of pieces are compared first, then heights and
+//! footprints. Two upright pieces are clear when their heights or footprints lie apart by more than the slack of
+//! [`meeting`](super::meeting), by the argument given there. Tilted bodies, bodies that enclose a space and margins
+//! are left to the check of a path of length zero.
 
 use super::answer::{ElementKey, Move};
 use super::meeting::slack;
@@ -14,24 +14,24 @@ use super::pose::{RoughYaw, Yaw};
 use super::prism::Prism;
 use super::shape::is_turn;
 use super::space::LANES;
-use super::standing::Stands;
+use super::stationary::Stored;
 use super::touch::lie_apart;
 use super::vector::{Vec3, add, reach, sub};
 
-/// A question that has a short answer for a body at rest. (Answers are returned as they are made: one that is
-/// taken out of another is copied, and a copy waits until it has been written.)
+/// A question with a shortcut for a body at rest. Each answer is built directly as a return value: extracting it
+/// from another value costs a copy that waits for the first write.
 pub(crate) trait Question {
     type Answer;
-    /// Nothing is met.
+    /// The answer when nothing is met.
     const CLEAR: Self::Answer;
-    /// An element may be met, in a piece from which the centre of a piece of the mover lies `apart`.
+    /// The answer when an element may be met; `apart` runs from the centre of its piece to that of the mover.
     fn met(owner: ElementKey, element: &Prism, mover: &Prism, apart: Vec3) -> Self::Answer;
-    /// The answer for any body and any way.
+    /// The general answer, for any body and any path.
     fn on_the_way(model: &Model, body: &Mover, way: &Move) -> Self::Answer;
 }
 
 impl Model {
-    /// Answers at once where a body stays where it is and closed forms say enough.
+    /// Answers at once where the body stays in place and closed forms suffice; else checks the path.
     #[inline(always)]
     pub(crate) fn ask<Q: Question>(&self, body: &Mover, way: &Move) -> Q::Answer {
         let rest = Rest {
@@ -40,7 +40,7 @@ impl Model {
             way,
         };
         let is_plain = self.hollow.is_empty() & !body.is_hollow() & (way.margin_mm == 0.0);
-        if is_plain && way.goes_nowhere() && way.from.is_placed() {
+        if is_plain && way.is_at_rest() && way.from.is_placed() {
             match way.from.rotation {
                 [w, 0.0, 0.0, 0.0] if is_turn(w * w) => return rest.among::<Q>(None),
                 [w, 0.0, 0.0, z] if is_turn(w * w + z * z) => {
@@ -53,15 +53,15 @@ impl Model {
     }
 }
 
-/// What is known of a standing piece.
+/// Result for one stationary piece.
 enum Judged<A> {
     Clear,
     Met(A),
-    /// Not upright: nothing that is known here.
-    Unsaid,
+    /// The piece is not upright: the shortcut cannot decide.
+    NotUpright,
 }
 
-/// A body where its way begins.
+/// A body at the start of its path.
 struct Rest<'a> {
     model: &'a Model,
     body: &'a Mover,
@@ -69,8 +69,8 @@ struct Rest<'a> {
 }
 
 impl Rest<'_> {
-    /// The answer for a body turned by the quaternion `[w, 0, 0, z]`, or not at all. (Compiled once for turned bodies
-    /// and once for others, which carry no yaw.)
+    /// Answers for a body turned by the quaternion `[w, 0, 0, z]`, or unturned for `None`. Compiled separately for
+    /// both cases, so that unturned bodies carry no yaw.
     #[inline(always)]
     fn among<Q: Question>(&self, turn: Option<(f64, f64)>) -> Q::Answer {
         let yaw = turn.map(|(w, z)| Yaw::of(w, z));
@@ -103,7 +103,7 @@ impl Rest<'_> {
                     }
                     match self.judged::<Q>(bundle.piece(lane), (group, places), yaw) {
                         Judged::Clear => {}
-                        Judged::Unsaid => is_said = false,
+                        Judged::NotUpright => is_said = false,
                         Judged::Met(answer) => return answer,
                     }
                 }
@@ -116,7 +116,7 @@ impl Rest<'_> {
         }
     }
 
-    /// Some pieces of a group and a standing piece whose boxes they meet.
+    /// Compares pieces of a group with a stationary piece whose box their boxes meet.
     #[inline(always)]
     fn judged<Q: Question>(
         &self,
@@ -131,9 +131,9 @@ impl Rest<'_> {
         while places != 0 {
             let local = group.first + places.trailing_zeros() as usize;
             places &= places - 1;
-            let (Stands::Upright(standing), Some(own)) = (&element.form, &self.body.prisms[local])
+            let (Stored::Upright(fixed), Some(own)) = (&element.form, &self.body.prisms[local])
             else {
-                return Judged::Unsaid;
+                return Judged::NotUpright;
             };
             let turned;
             let own = match yaw {
@@ -143,15 +143,15 @@ impl Rest<'_> {
                     &turned
                 }
             };
-            if let Some(apart) = self.sharing(standing, own) {
-                return Judged::Met(Q::met(element.owner, standing, own, apart));
+            if let Some(apart) = self.sharing(fixed, own) {
+                return Judged::Met(Q::met(element.owner, fixed, own, apart));
             }
         }
         Judged::Clear
     }
 
-    /// From the centre of one upright piece to that of the other, when they may share a point: `None` is
-    /// proof that they do not. That of the mover is turned, but not at its place yet.
+    /// Returns the vector between the centres of two upright pieces when they may share a point; `None` is proof
+    /// that they do not. `mover` is already turned but not yet placed.
     #[inline(always)]
     fn sharing(&self, element: &Prism, mover: &Prism) -> Option<Vec3> {
         let origin = self.way.from.position;

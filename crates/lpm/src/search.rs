@@ -1,4 +1,4 @@
-//! Pairs that no closed form judges: searched in the order in which their boxes meet, each once.
+//! Pairs without a closed form: searches each once, in the order in which their boxes meet.
 
 use super::contact::{Findings, Found};
 use super::passage::{Passage, Pending, once_in_order};
@@ -6,7 +6,7 @@ use super::straight;
 use super::turning::Turning;
 
 impl Passage<'_> {
-    /// What waits on the list.
+    /// Searches the pairs on the waiting list.
     pub(crate) fn searches(&self, found: &mut Findings) {
         if found.pending.is_empty() {
             return;

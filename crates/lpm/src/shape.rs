@@ -1,13 +1,13 @@
-//! The bodies of the machine: block, cylinder, compound (block-cylinder elements) and mesh.
+//! Bodies: block, cylinder, compound (block-cylinder elements) and mesh.
 //!
 //! Bodies are closed sets: their surface belongs to them, so touching is contact.
 
 use super::pose::Pose;
 
-/// Largest coordinate or size the arithmetic is proven for, mm.
+/// Largest coordinate or size that the error bounds cover, mm.
 pub const LARGEST_COORDINATE_MM: f64 = 1e6;
 
-/// Compounds may hold compounds this deep; deeper ones are refused.
+/// Greatest nesting depth of compounds; [`Shape::check`] refuses deeper ones.
 const DEEPEST_COMPOUND: usize = 16;
 
 /// A solid body in its own frame.
@@ -30,12 +30,12 @@ pub enum Shape {
         /// Parts with their place in the frame of the compound.
         Vec<(Pose, Shape)>,
     ),
-    /// Triangles.
+    /// A body of triangles.
     Mesh(Mesh),
 }
 
-/// Triangles over shared vertices. A closed surface is solid, an open one is its triangles only.
-/// Slivers and triangles shrunk to a segment or a point are legal.
+/// Triangles over shared vertices. A closed surface is solid; an open one consists of its triangles only. Slivers
+/// and triangles shrunk to a segment or a point are legal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
     /// Corners, mm.
@@ -44,66 +44,66 @@ pub struct Mesh {
     pub triangles: Vec<[usize; 3]>,
 }
 
-/// Why a body or a pose is not accepted; the path inside the body is part of the message.
+/// Reason for refusing a body or a pose; the message contains the path inside the body.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Flaw {
-    /// A size is not a finite number above zero (or beyond what the arithmetic covers).
+    /// A size is not a finite number above 0 and at most 1e6 mm.
     #[error("{path}: size is {found}, expected above 0 and at most 1e6 mm")]
     Size {
-        /// Member of the shape.
+        /// Path of the member of the shape.
         path: String,
-        /// What it holds.
+        /// Value found.
         found: f64,
     },
     /// A coordinate is NaN, infinite or beyond 1e6 mm.
     #[error("{path}: coordinate is {found}, expected a finite number within +-1e6 mm")]
     Coordinate {
-        /// Member of the pose or vertex.
+        /// Path of the member of the pose or of the vertex.
         path: String,
-        /// What it holds.
+        /// Value found.
         found: f64,
     },
-    /// A quaternion has no direction.
+    /// A quaternion is zero, not finite, or of extreme length.
     #[error(
-        "{path}: rotation {found:?} is no rotation, expected a finite non-zero quaternion [w, x, y, z], its squared length above 1e-200 and at most 1e200"
+        "{path}: rotation is {found:?}, expected a finite non-zero quaternion [w, x, y, z], its squared length above 1e-200 and at most 1e200"
     )]
     Rotation {
-        /// Member of the pose.
+        /// Path of the member of the pose.
         path: String,
-        /// What it holds.
+        /// Value found.
         found: [f64; 4],
     },
     /// A triangle names a vertex that does not exist.
     #[error("{path}: vertex {found} does not exist, expected below {vertices}")]
     Index {
-        /// Member of the mesh.
+        /// Path of the member of the mesh.
         path: String,
         /// The index.
         found: usize,
         /// Number of vertices.
         vertices: usize,
     },
-    /// A compound without parts, a mesh without triangles, or nesting without end.
+    /// A compound has no parts, a mesh has no triangles, or compounds are nested too deep.
     #[error("{path}: {found}, expected {expected}")]
     Structure {
-        /// Member of the shape.
+        /// Path of the member of the shape.
         path: String,
-        /// What is wrong.
+        /// Fault found.
         found: &'static str,
-        /// What is right.
+        /// Structure expected.
         expected: &'static str,
     },
 }
 
 impl Shape {
-    /// Accepts exactly the bodies the arithmetic is proven for.
+    /// Accepts exactly the bodies that the error bounds cover.
     ///
     /// # Errors
-    /// The first [`Flaw`] with its path inside the shape (`half[1]`, `parts[2].radius`).
+    /// Returns the first [`Flaw`] with its path inside the shape (`half[1]`, `parts[2].radius`).
     #[inline]
     pub fn check(&self) -> Result<(), Flaw> {
         match self {
-            // Words are made only where there is something to complain of.
+            // The fast path builds no path strings.
             Shape::Block { half: [a, b, c] } if is_size(a) & is_size(b) & is_size(c) => Ok(()),
             Shape::Cylinder { radius, height } if is_size(radius) & is_size(height) => Ok(()),
             _ => check_shape(self, "", 0),
@@ -112,11 +112,11 @@ impl Shape {
 }
 
 impl Pose {
-    /// Accepts positions within 1e6 mm and quaternions with a squared length above 1e-200 and at most 1e200:
-    /// [`Pose::rescaled`] brings any other that is finite and not zero there.
+    /// Accepts positions within 1e6 mm and quaternions with a squared length above 1e-200 and at most 1e200.
+    /// [`Pose::rescaled`] brings any other finite non-zero quaternion into this range.
     ///
     /// # Errors
-    /// [`Flaw::Coordinate`] or [`Flaw::Rotation`].
+    /// Returns [`Flaw::Coordinate`] or [`Flaw::Rotation`].
     #[inline]
     pub fn check(&self) -> Result<(), Flaw> {
         if self.is_sound() {
@@ -126,8 +126,8 @@ impl Pose {
         }
     }
 
-    /// The same pose; a quaternion that is too long or too short for [`Pose::check`] is scaled, by a power of two: it
-    /// turns everything exactly as before. Zero and what is not finite stay what they are.
+    /// Scales a quaternion that is too long or too short for [`Pose::check`] by a power of two, so that it
+    /// describes exactly the same rotation. Zero and non-finite quaternions stay unchanged.
     #[must_use]
     pub fn rescaled(self) -> Pose {
         let [w, x, y, z] = self.rotation;
@@ -135,7 +135,8 @@ impl Pose {
             return self;
         }
         let largest = self.rotation.map(f64::abs).into_iter().fold(0.0, f64::max);
-        // Exponents are counted from 1023 on: this one makes the largest member 1 to 4 (a subnormal one at least 2^-51).
+        // The IEEE 754 exponent has a bias of 1023: this factor brings the largest member to 1 to 4 (a subnormal
+        // one to at least 2^-51).
         let exponent = (2046 - (largest.to_bits() >> 52).min(2046)).max(1);
         let scale = f64::from_bits(exponent << 52);
         Pose {
@@ -144,14 +145,14 @@ impl Pose {
         }
     }
 
-    /// What [`Pose::check`] accepts.
+    /// Whether [`Pose::check`] accepts the pose.
     #[inline]
     pub(crate) fn is_sound(&self) -> bool {
         let [w, x, y, z] = self.rotation;
         self.is_placed() & is_turn(w * w + x * x + y * y + z * z)
     }
 
-    /// The same of the position alone.
+    /// Whether [`Pose::check`] accepts the position.
     #[inline]
     pub(crate) fn is_placed(&self) -> bool {
         let [x, y, z] = self.position.map(f64::abs);
@@ -220,8 +221,8 @@ fn check_mesh(mesh: &Mesh, path: &str) -> Result<(), Flaw> {
     Ok(())
 }
 
-/// Whether a quaternion of this squared length is a turn: outside this range it has lost its digits to under- or
-/// overflow; what is not finite is outside, too.
+/// Whether a quaternion of this squared length is a usable rotation. Outside the range it has lost digits to under-
+/// or overflow; NaN and infinity are outside as well.
 #[inline(always)]
 pub(crate) fn is_turn(squared: f64) -> bool {
     is_between(squared, [1e-200, 1e200])
@@ -232,8 +233,9 @@ fn is_size(found: &f64) -> bool {
     is_between(*found, [0.0, LARGEST_COORDINATE_MM])
 }
 
-/// Above the first number, which is not negative, and at most the second, by one comparison: bits of numbers are in the
-/// order of the numbers, and those of negative ones and of what is no number come after all others.
+/// Whether a number lies above the first bound, which is not negative, and at most at the second, by one
+/// comparison: the bit patterns of non-negative numbers sort like the numbers, and those of negative numbers and
+/// NaN come after all others.
 #[inline(always)]
 fn is_between(found: f64, [above, most]: [f64; 2]) -> bool {
     let first = above.to_bits() + 1;

@@ -1,13 +1,14 @@
-//! Closed meshes are solid: is a point inside?
+//! Closed meshes are solid: tests whether a point lies inside.
 //!
-//! Surfaces are compared by their triangles. Only a body that lies wholly inside a closed mesh
-//! (or around it) escapes those, and then it stays there as long as no surfaces meet; so one point
-//! of each connected piece, asked once at the start of a move, is enough.
+//! Triangles reveal surfaces that meet. Only a body wholly inside a closed mesh (or around it) escapes them, and it
+//! stays there as long as no surfaces meet; so testing one point of each connected piece at the start of a move is
+//! enough.
 //!
-//! The answer counts how often a ray crosses each closed surface of the mesh ([`closed_surfaces`]). What is inside of
-//! one is inside the mesh, but for holes: a surface that lies within another and is turned the other way. Of a surface
-//! with walls in it crossings tell nothing; there only what a ray escapes from is outside. A ray that passes an edge or
-//! a corner within rounding is thrown away for another direction; when every direction fails the point counts as inside.
+//! The test counts how often a ray crosses each closed surface of the mesh ([`closed_surfaces`]). A point inside a
+//! surface is inside the mesh, except in holes: surfaces within another one and of opposite orientation. For a
+//! surface with walls inside it, crossings decide nothing; there a point is outside only if some ray crosses
+//! nothing. A ray that passes an edge or a corner within rounding is replaced by another direction; when every
+//! direction fails, the point counts as inside.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +16,7 @@ use super::closed::{Corners, Surface, closed_surfaces};
 use super::pose::Frame;
 use super::vector::{Vec3, add, cross, dot, reach, sub};
 
-/// Directions of rays, chosen without any symmetry a machine part might share.
+/// Directions of rays, chosen without any symmetry that a machine part might share.
 const RAYS: [Vec3; 6] = [
     [0.842_713, 0.311_907, 0.438_851],
     [-0.237_119, 0.915_203, 0.325_741],
@@ -34,20 +35,20 @@ pub(crate) struct Solid {
     shells: Vec<Shell>,
 }
 
-/// One of them.
+/// One closed surface.
 #[derive(Debug, Clone)]
 struct Shell {
     triangles: Vec<[Vec3; 3]>,
     low: Vec3,
     high: Vec3,
-    /// As in [`Surface`].
+    /// See [`Surface::is_even`].
     is_even: bool,
     is_oriented: bool,
     is_hole: bool,
 }
 
 impl Solid {
-    /// None, if nothing is closed.
+    /// Builds the solid; `None` when no surface is closed.
     pub(crate) fn of(vertices: &[Vec3], parts: &[BTreeSet<Corners>]) -> Option<Solid> {
         let corner = |vertex: usize| vertices[vertex];
         let shell = |surface: Surface| Shell {
@@ -66,7 +67,7 @@ impl Solid {
             .flat_map(|part| closed_surfaces(vertices, part));
         let shells = surfaces.map(shell);
         let mut sized: Vec<(f64, Shell)> = shells.map(|shell| (shell.volume(), shell)).collect();
-        // The larger ones first: what surrounds a shell comes before it.
+        // Larger shells come first, so a shell comes after those that surround it.
         sized.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
         for inner in 1..sized.len() {
             let (larger, rest) = sized.split_at_mut(inner);
@@ -99,7 +100,7 @@ impl Solid {
         }
     }
 
-    /// Whether the solid holds `point`; points nearer to the surface than rounding count as inside.
+    /// Whether the solid contains `point`; points nearer to the surface than rounding count as inside.
     pub(crate) fn holds(&self, point: Vec3) -> bool {
         let (mut around, mut holes) = (0, 0);
         for shell in &self.shells {
@@ -133,7 +134,7 @@ impl Shell {
         }
     }
 
-    /// Six times the volume; below 0 where triangles are turned inside.
+    /// Six times the volume; negative when the triangles face inward.
     fn volume(&self) -> f64 {
         let origin = self.low;
         let cone = |corners: &[Vec3; 3]| {
@@ -143,7 +144,7 @@ impl Shell {
         self.triangles.iter().map(cone).sum()
     }
 
-    /// Whether all of another shell lies inside.
+    /// Whether the other shell lies entirely inside.
     fn surrounds(&self, other: &Shell) -> bool {
         let mut corners = other.triangles.iter().flatten();
         corners.all(|corner| self.surely_holds(*corner))
@@ -161,7 +162,7 @@ impl Shell {
         (0..3).all(|axis| point[axis] >= self.low[axis] && point[axis] <= self.high[axis])
     }
 
-    /// None, if no ray says anything.
+    /// Returns `None` when no ray decides.
     fn is_inside(&self, point: Vec3) -> Option<bool> {
         let mut crossings = RAYS.iter().filter_map(|ray| self.crossings(point, *ray));
         let first = crossings.next()?;
@@ -180,7 +181,7 @@ impl Shell {
     }
 }
 
-/// Whether the ray from the origin crosses the triangle; `None` within rounding of its rim.
+/// Whether the ray from the origin crosses the triangle; `None` within rounding of its edges.
 fn crosses([a, b, c]: [Vec3; 3], ray: Vec3) -> Option<bool> {
     let size = reach(a).max(reach(b)).max(reach(c));
     let noise = VOLUME_NOISE * size * size;
@@ -197,7 +198,7 @@ fn crosses([a, b, c]: [Vec3; 3], ray: Vec3) -> Option<bool> {
     if sides.iter().any(|side| side.abs() <= noise) {
         return None;
     }
-    // All on one side: the line crosses; ahead when the triangle's plane lies ahead.
+    // With equal signs the line crosses the triangle; the ray does when the triangle's plane lies ahead.
     let volume = dot(cross(a, b), c);
     let ahead = volume * (sides[0] + sides[1] + sides[2]);
     if volume.abs() <= noise * size {

@@ -1,20 +1,19 @@
 //! Straight moves: first contact and least distance of two convex pieces, exact and continuous.
 //!
-//! While a convex piece is translated past another one, their distance is a convex function of the
-//! way, and each separating plane found on the way is a tangent below it: along the move the
-//! separation by a fixed plane is linear. So Newton's method from the left never oversteps the
-//! first contact ([`first_within`]), and the crossing of a falling and a rising tangent is a proven
-//! lower bound of the least distance ([`least`]). Nothing is stepped; a ten metre move over a foil
-//! costs the same as a short one.
+//! While one convex piece is translated past another, their distance is a convex function of the path, and each
+//! separating plane found on the way gives a tangent below it: along the move the separation by a fixed plane is
+//! linear. So Newton's method from the left never oversteps the first contact ([`first_within`]), and the crossing
+//! of a falling and a rising tangent is a proven lower bound of the least distance ([`least`]). There are no steps
+//! of fixed size: a ten metre move over a foil costs the same as a short one.
 
 use super::distance::{Gap, RESOLUTION_MM, gap};
 use super::piece::{NOISE, Piece};
 use super::vector::{Vec3, dot, reach, scale};
 
-/// Tangents per query. Newton needs 3 to 8, a grazing pass (double root) up to 30.
+/// Most tangents per pair. Newton needs 3 to 8, a grazing pass (double root) up to 30.
 const MOST_TANGENTS: usize = 128;
 
-/// When a pair first comes within the margin.
+/// First contact of a pair within the margin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Hit {
     /// Fraction of the move, never later than the true one.
@@ -23,7 +22,7 @@ pub(crate) struct Hit {
 }
 
 impl Hit {
-    /// At the start, one body around the other.
+    /// A contact at the start of the move, with one body inside the other.
     pub(crate) fn inside(point: Vec3) -> Hit {
         let gap = Gap {
             lower: 0.0,
@@ -34,10 +33,10 @@ impl Hit {
     }
 }
 
-/// Numbers of one translated pair that stay the same along the move.
+/// Constants of one translated pair along its move.
 struct Slope {
     displacement: Vec3,
-    /// Rounding of a shifted plane, mm.
+    /// Rounding bound of a shifted plane, mm.
     slack: f64,
 }
 
@@ -49,14 +48,14 @@ impl Slope {
         }
     }
 
-    /// Distance lost along the whole move by this plane, mm.
+    /// Distance lost to this plane along the whole move, mm.
     fn closing(&self, gap: &Gap) -> f64 {
         -dot(gap.normal, self.displacement)
     }
 }
 
-/// First `t` up to `until` where the distance is within `margin` (mm); `None` is proof that there
-/// is none. Whatever cannot be decided is a hit. Before `start` there is none, as the caller has proven.
+/// Returns the first `t` up to `until` where the distance is within `margin` (mm); `None` is proof that there is
+/// none. Undecidable cases count as a hit. The caller has proven that there is none before `start`.
 pub(crate) fn first_within(
     element: &Piece,
     mover: &Piece,
@@ -71,12 +70,13 @@ pub(crate) fn first_within(
     for _ in 0..MOST_TANGENTS {
         let gap = gap(element, mover, scale(displacement, t), hint);
         let excess = gap.lower - margin - slope.slack;
-        // NaN is a hit, too.
+        // NaN counts as a hit.
         if !(excess > 0.0) {
             return Some(Hit { t, gap });
         }
         let closing = slope.closing(&gap) + slope.slack;
-        // A plane that the mover leaves, or does not reach in time, keeps it away for good.
+        // When the separation grows, or shrinks too slowly to reach the margin in time, this plane keeps the mover
+        // clear to the end.
         let next = t + excess / closing * (1.0 - 4.0 * f64::EPSILON);
         if closing <= 0.0 || next > until {
             return None;
@@ -91,7 +91,7 @@ pub(crate) fn first_within(
     Some(Hit { t, gap })
 }
 
-/// Least distance over the move as `(t, distance)`, or `None` when it is proven to be above `cutoff` (mm).
+/// Returns the least distance over the move as `(t, distance)`, or `None` when it is proven to be above `cutoff` (mm).
 pub(crate) fn least(
     element: &Piece,
     mover: &Piece,
@@ -161,7 +161,7 @@ impl Tangent {
         (self.t, self.value.max(0.0))
     }
 
-    /// Where the falling tangent meets the rising one, and how high.
+    /// Fraction and height at which the falling tangent crosses the rising one.
     fn crossing(&self, right: &Tangent) -> (f64, f64) {
         let width = right.t - self.t;
         let drop = self.fall - right.fall;

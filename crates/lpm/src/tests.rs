@@ -1,4 +1,4 @@
-//! Facts about the collision core: the hard cases by name.
+//! Tests of the collision core.
 #![allow(clippy::unwrap_used)]
 use super::*;
 
@@ -41,7 +41,7 @@ fn straight(from: [f64; 3], to: [f64; 3]) -> Move<'static> {
     way(Pose::at(from), Pose::at(to))
 }
 
-/// `None` when clear; the three questions must agree.
+/// Returns the fraction of the first contact, `None` when clear; asserts that the three questions agree.
 fn stop(model: &Model, mover: &Shape, way: &Move) -> Option<f64> {
     let stop = match model.first_contact(mover, way) {
         Answer::Clear => None,
@@ -60,7 +60,7 @@ fn least(model: &Model, mover: &Shape, way: &Move) -> f64 {
 }
 
 #[test]
-fn what_is_not_a_number_is_blocked_by_nothing_in_particular() {
+fn invalid_numbers_block_without_naming_an_element() {
     let model = Model::new();
     let nan = straight([0.0; 3], [f64::NAN, 0.0, 0.0]);
     let Answer::Blocked(contact) = model.first_contact(&block(1.0, 1.0, 1.0), &nan) else {
@@ -92,7 +92,7 @@ fn what_is_not_a_number_is_blocked_by_nothing_in_particular() {
 }
 
 #[test]
-fn an_element_that_was_taken_out_blocks_no_more_and_its_name_is_not_reused() {
+fn a_removed_element_stops_blocking_and_keeps_its_key() {
     let mut model = Model::new();
     let plate = model
         .insert("plate", &block(500.0, 500.0, 5.0), &Pose::IDENTITY)
@@ -127,7 +127,7 @@ fn an_element_that_was_taken_out_blocks_no_more_and_its_name_is_not_reused() {
 }
 
 #[test]
-fn a_margin_must_be_exceeded_and_not_only_kept() {
+fn a_distance_equal_to_the_margin_is_blocked() {
     let model = standing(&block(10.0, 10.0, 10.0), Pose::IDENTITY);
     let pass = |margin_mm| Move {
         margin_mm,

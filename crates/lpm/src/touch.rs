@@ -1,27 +1,27 @@
-//! Where two upright pieces come to touch, and along which normal: in closed form.
+//! Place and normal of the contact of two upright pieces, in closed form.
 //!
-//! At the first contact one of the figures of [`meeting`](super::meeting) has just been reached: a slab of
-//! the height, a side, a round corner. It is the one that the mover is least deep in. Of bodies that
-//! overlap from the start it is the shortest way out.
+//! At the first contact the mover has just reached one of the figures of [`meeting`](super::meeting): a slab of the
+//! height, a side or a round corner. The contact is with the figure in which the mover is least deep; for bodies
+//! that overlap from the start this gives the shortest separation.
 
 use super::distance::Gap;
 use super::prism::Prism;
 use super::vector::{Vec3, add};
 
-/// What the mover is least deep in, in the plane.
+/// The side or corner of the footprints in which the mover is least deep.
 #[derive(Debug, Clone, Copy)]
 struct Side {
-    /// Depth below zero, distance above it, mm.
+    /// Signed distance beyond the side, mm; negative for a depth.
     beyond: f64,
     /// Unit vector from the element to the mover.
     normal: [f64; 2],
-    /// Point of the element, from its centre.
+    /// Point of the element, relative to its centre.
     at: [f64; 2],
 }
 
-/// True is proof that the footprints of two pieces, whose centres lie `apart`, are farther from each other
-/// than `by` (mm, above 0, rounding included). Squares are compared and axes multiplied where they could be
-/// asked for: a branch that nobody can guess costs more.
+/// Returns true only as proof that the footprints of two pieces, whose centres lie `apart`, are farther from each
+/// other than `by` (mm, above 0, rounding included). Compares squares and combines conditions without branches: a
+/// mispredicted branch costs more.
 #[inline(always)]
 pub(crate) fn lie_apart(element: &Prism, mover: &Prism, apart: Vec3, by: f64) -> bool {
     if are_askew(element, mover) {
@@ -39,15 +39,15 @@ pub(crate) fn lie_apart(element: &Prism, mover: &Prism, apart: Vec3, by: f64) ->
     over(0) * over(0) + over(1) * over(1) > within * within
 }
 
-/// Whether both are rectangles without a common axis.
+/// Whether both pieces are rectangles without a common axis.
 #[inline(always)]
 fn are_askew(element: &Prism, mover: &Prism) -> bool {
     let differ = (element.axis[0] != mover.axis[0]) | (element.axis[1] != mover.axis[1]);
     (element.radius + mover.radius == 0.0) & differ
 }
 
-/// The contact of two pieces whose centres lie `apart`, from the element to the mover. (What is chosen here
-/// is chosen by arithmetic: which side it will be cannot be guessed.)
+/// Returns the contact of two pieces whose centres lie `apart`, from the element to the mover. Selects the side by
+/// arithmetic because branches here are unpredictable.
 #[inline(always)]
 pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
     let side = side(element, mover, apart);
@@ -64,7 +64,7 @@ pub(crate) fn touch(element: &Prism, mover: &Prism, apart: Vec3) -> Gap {
     }
 }
 
-/// The first if it is so, else the second, without a branch.
+/// Returns `a` if `is_so`, else `b`, without a branch.
 #[inline(always)]
 fn either(is_so: bool, a: f64, b: f64) -> f64 {
     let mask = u64::from(is_so).wrapping_neg();
@@ -80,7 +80,7 @@ fn side(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     rounded(element, mover, framed, apart)
 }
 
-/// Rectangles with common axes, discs, or one of each; `framed` gives the axes.
+/// Rectangles with common axes, discs, or one of each; `framed` supplies the axes.
 #[inline(always)]
 fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side {
     let p = into(framed, [apart[0], apart[1]]);
@@ -110,7 +110,7 @@ fn rounded(element: &Prism, mover: &Prism, framed: &Prism, apart: Vec3) -> Side 
     }
 }
 
-/// Two rectangles that are turned against each other: four sides may be the last.
+/// Two rectangles turned against each other: any of four sides may be the one touched.
 #[inline(always)]
 fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     let seen = Askew::of(element, mover, apart);
@@ -128,15 +128,15 @@ fn askew(element: &Prism, mover: &Prism, apart: Vec3) -> Side {
     }
 }
 
-/// A rectangle and one that is turned against it.
+/// Two rectangles turned against each other, in the axes of both.
 struct Askew {
-    /// From the element to the mover, in the axes of the element, and of the mover, mm.
+    /// Vector from the element to the mover, in the axes of the element and in those of the mover, mm.
     in_element: [f64; 2],
     in_mover: [f64; 2],
-    /// First axis of the mover in those of the element.
+    /// First axis of the mover in the axes of the element.
     cos: f64,
     sin: f64,
-    /// How far beyond the sides of the element the mover lies, and the other way round, mm.
+    /// How far the mover lies beyond the sides of the element, and the element beyond those of the mover, mm.
     over_element: [f64; 2],
     over_mover: [f64; 2],
 }
@@ -165,12 +165,12 @@ impl Askew {
         }
     }
 
-    /// A corner of the mover touches a side of the element: depth, normal and point in the axes of the element.
+    /// A corner of the mover touches a side of the element. Returns depth, normal and point in the axes of the element.
     #[inline(always)]
     fn on_a_side(&self, element: &Prism, mover: &Prism) -> (f64, [f64; 2], [f64; 2]) {
         let [a, b, _] = element.half;
         let [first, second] = self.over_element;
-        // How far the corner that comes first lies from the centre of the mover along the side.
+        // Offset of the touching corner from the centre of the mover along the side.
         let corner = |sign: f64, towards: [f64; 2], along: [f64; 2]| {
             let of = |axis: usize| along[axis] * mover.half[axis].copysign(sign * towards[axis]);
             -(of(0) + of(1))
@@ -188,7 +188,7 @@ impl Askew {
         }
     }
 
-    /// A corner of the element touches a side of the mover, likewise.
+    /// A corner of the element touches a side of the mover. Returns the same values.
     #[inline(always)]
     fn on_a_corner(&self, element: &Prism) -> (f64, [f64; 2], [f64; 2]) {
         let [first, second] = self.over_mover;
@@ -204,8 +204,8 @@ impl Askew {
     }
 }
 
-/// The middle of what two intervals about 0 and about `apart` share, or the end of the first next to
-/// the second.
+/// Returns the middle of the overlap of two intervals about 0 and about `apart`, or, without overlap, the end of
+/// the first nearest to the second.
 #[inline(always)]
 fn shared(half: f64, other: f64, apart: f64) -> f64 {
     let low = larger(-half, apart - other);
@@ -213,7 +213,7 @@ fn shared(half: f64, other: f64, apart: f64) -> f64 {
     within((low + high) / 2.0, half)
 }
 
-/// Not farther from 0 than `half`.
+/// Clamps to at most `half` from 0.
 #[inline(always)]
 fn within(x: f64, half: f64) -> f64 {
     smaller(larger(x, -half), half)
@@ -229,10 +229,10 @@ fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// Into the axes of a footprint.
+/// Converts a vector into the axes of a footprint.
 #[inline(always)]
 fn into(framed: &Prism, v: [f64; 2]) -> [f64; 2] {
-    // Most are, and that can be guessed.
+    // Most footprints are aligned, so this branch predicts well.
     if framed.is_straight() {
         return v;
     }
@@ -240,7 +240,7 @@ fn into(framed: &Prism, v: [f64; 2]) -> [f64; 2] {
     [v[0] * x + v[1] * y, v[1] * x - v[0] * y]
 }
 
-/// From the axes of a footprint into the common frame.
+/// Converts a vector from the axes of a footprint into the common frame.
 #[inline(always)]
 fn out_of(framed: &Prism, local: [f64; 2]) -> [f64; 2] {
     if framed.is_straight() {
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_out_along_the_normal_parts_the_bodies_and_the_point_lies_on_the_element() {
+    fn moving_by_the_depth_along_the_normal_separates_bodies() {
         let mut dice = Dice::new(21);
         let mut deep = 0;
         for _ in 0..2_000 {

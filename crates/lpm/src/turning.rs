@@ -1,14 +1,14 @@
 //! Turning moves: conservative advancement with a second-order bound.
 //!
-//! A point `y` of the mover, seen from its origin, obeys for a turn by `theta` about the unit axis
-//! `u` during the whole move, after a further fraction `h`,
-//! `n·y(t+h) >= n·y + h theta (n x u)·y - h^2 theta^2 rho / 2`, `rho` being its distance from the axis.
-//! The least value of the first two terms over the whole piece is again a support value, in the
-//! direction `n + h theta (n x u)`. So one plane clears a whole stretch of the move, and a grazing
-//! pass is taken in steps of the square root of its gap instead of the gap itself.
+//! Let a mover turn by `theta` about the unit axis `u` during the whole move. Relative to the origin of the mover,
+//! its point `y` obeys after a further fraction `h`
+//! `n·y(t+h) >= n·y + h theta (n x u)·y - h^2 theta^2 rho / 2`, where `rho` is its distance from the axis.
+//! The least value of the first two terms over the whole piece is again a support value, in the direction
+//! `n + h theta (n x u)`. So one plane clears a whole stretch of the move, and a grazing pass takes steps of the square
+//! root of its gap instead of the gap itself.
 //!
-//! Contact is reported when the distance comes within [`band_mm`] of the margin, which lies between
-//! 1e-7 and 5e-4 mm; running out of steps is contact, too.
+//! A distance within [`band_mm`] of the margin, which lies between 1e-7 and 5e-4 mm, counts as contact; so does
+//! running out of steps.
 
 use super::distance::{Gap, gap, noise};
 use super::path::Path;
@@ -17,28 +17,28 @@ use super::pose::Turn;
 use super::straight::Hit;
 use super::vector::{Vec3, along, cross, dot, length, negate, scale, sub};
 
-/// Planes per pair. The band below makes 20,000 enough for any turn.
+/// Most planes per pair. With [`band_mm`] 20,000 are enough for any turn.
 const MOST_PLANES: usize = 40_000;
-/// Rounds of chord and bisection per stretch; each keeps its lower end proven.
+/// Rounds of chord and bisection per stretch; after each, the lower end is still proven.
 const STRETCH_ROUNDS: usize = 8;
-/// Least distances of turning moves are found to this, mm.
+/// Resolution of the least distance of turning moves, mm.
 const LEAST_RESOLUTION_MM: f64 = 2e-4;
 
 /// Spacing of the first samples for a least distance, as a fraction of the move.
 const SAMPLE: f64 = 1.0 / 32.0;
-/// Each takes a third off a valley of two samples: 1e-8 of the move in the end.
+/// Rounds of ternary search; each takes a third off a valley of two samples, 1e-8 of the move in the end.
 const VALLEY_ROUNDS: usize = 40;
 
-/// How near to the margin counts as contact, mm: chosen so that the steps of a grazing pass are
-/// never shorter than a ten-thousandth of the move.
+/// Distance beyond the margin that counts as contact, mm: chosen so that the steps of a grazing pass are never
+/// shorter than a ten-thousandth of the move.
 fn band_mm(turn: &Turn, rho: f64) -> f64 {
     (0.5e-8 * turn.angle * turn.angle * rho).clamp(1e-7, 5e-4)
 }
 
-/// A turning pair.
+/// A pair of pieces of which the mover turns.
 pub(crate) struct Turning<'a> {
     pub(crate) element: &'a Piece,
-    /// In the frame of the mover.
+    /// Piece in the frame of the mover.
     pub(crate) local: &'a Piece,
     pub(crate) path: &'a Path,
     pub(crate) turn: &'a Turn,
@@ -52,7 +52,7 @@ impl Turning<'_> {
         (length(cross(self.turn.axis, arm)) + self.local.radius()) * (1.0 + 16.0 * f64::EPSILON)
     }
 
-    /// First `t` up to `until` within `margin` (mm) plus the band; `None` is proof of none.
+    /// Returns the first `t` up to `until` within `margin` (mm) plus the band; `None` is proof that there is none.
     pub(crate) fn first_within(&self, margin: f64, until: f64) -> Option<Hit> {
         let rho = self.rho();
         let band = band_mm(self.turn, rho);
@@ -77,11 +77,12 @@ impl Turning<'_> {
         Some(Hit { t, gap })
     }
 
-    /// Least distance over the move as `(t, distance)` to within 2e-4 mm, `None` above `cutoff`.
+    /// Returns the least distance over the move as `(t, distance)`, to within [`LEAST_RESOLUTION_MM`] or the band,
+    /// whichever is larger; `None` above `cutoff`.
     ///
-    /// A good guess first, then one sweep that proves that nothing is lower than that by the resolution. Whatever comes
-    /// half as near as that to being lower is taken for the guess from then on: so every plane has the other half to
-    /// go on with.
+    /// Starts from a good guess and proves in one sweep that no distance is lower than the guess by the resolution.
+    /// A distance that is lower by more than half the resolution becomes the new guess; so every plane has the
+    /// other half in hand to advance.
     pub(crate) fn least(&self, cutoff: f64) -> Option<(f64, f64)> {
         let rho = self.rho();
         let resolution = LEAST_RESOLUTION_MM.max(band_mm(self.turn, rho));
@@ -110,7 +111,7 @@ impl Turning<'_> {
             t += stretch;
             hint = Some(gap.normal);
         }
-        // Out of steps: the truth may lie anywhere below what was seen.
+        // Out of planes: the true least distance may be anywhere below the values seen.
         Some((t, 0.0))
     }
 
@@ -118,7 +119,7 @@ impl Turning<'_> {
         (t, self.gap_at(t, None).1.lower.max(0.0))
     }
 
-    /// The lowest of evenly spread samples, taken down into its valley.
+    /// Returns the lowest of evenly spaced samples, descended into its valley.
     fn guess(&self) -> (f64, f64) {
         let steps = (1.0 / SAMPLE) as usize;
         let samples = (0..=steps).map(|step| self.lower_at(step as f64 * SAMPLE));
@@ -128,7 +129,7 @@ impl Turning<'_> {
         self.descended(best.0 - SAMPLE, best.0 + SAMPLE, best)
     }
 
-    /// Thirds, not derivatives: the valley may have a sharp bottom.
+    /// Uses ternary search, not derivatives: the valley may have a sharp bottom.
     fn descended(&self, from: f64, to: f64, start: (f64, f64)) -> (f64, f64) {
         let (mut from, mut to, mut best) = (from.max(0.0), to.min(1.0), start);
         for _ in 0..VALLEY_ROUNDS {
@@ -154,7 +155,7 @@ impl Turning<'_> {
         (mover, gap)
     }
 
-    /// How far the move may go on while the plane of `gap` proves more than `margin`.
+    /// How far the move can continue while the plane of `gap` proves more than `margin`, as a fraction.
     fn stretch(&self, mover: &Piece, gap: &Gap, rho: f64, t: f64, margin: f64) -> f64 {
         let plane = Plane::new(self, mover, gap, rho, t);
         let mut low = (0.0, plane.proves(0.0) - margin);
@@ -163,7 +164,7 @@ impl Turning<'_> {
             return high.0;
         }
         for _ in 0..STRETCH_ROUNDS {
-            // The bound is concave in h: it lies above every chord.
+            // The bound is concave in h, so it lies above every chord.
             let chord = low.0 + (high.0 - low.0) * low.1 / (low.1 - high.1);
             for h in [chord, (low.0 + high.0) / 2.0] {
                 let left = plane.proves(h) - margin;
@@ -178,14 +179,14 @@ impl Turning<'_> {
     }
 }
 
-/// One plane and how the pair moves against it.
+/// One plane and the motion of the pair relative to it.
 struct Plane<'a> {
     mover: &'a Piece,
     normal: Vec3,
-    /// Separation at `h = 0` of the plane from the mover's origin, noise taken off, mm.
+    /// Separation at `h = 0` of the plane from the mover's origin, rounding bound subtracted, mm.
     base: f64,
     arm: Vec3,
-    /// Change per unit `h` of the origin, and of the direction of support.
+    /// Change per unit `h` of the origin and of the support direction.
     rate: f64,
     swing: Vec3,
     bend: f64,

@@ -47,16 +47,15 @@ pub(crate) fn length(a: Vec3) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Largest sum of magnitudes: an easy upper bound of the length.
+/// Sum of the magnitudes of the members: a cheap upper bound of the length.
 #[inline]
 pub(crate) fn reach(a: Vec3) -> f64 {
     a[0].abs() + a[1].abs() + a[2].abs()
 }
 
-/// Unit vector along `a`; `None` when `a` is so short (or not finite) that it has no direction.
+/// Unit vector along `a`; `None` when `a` is too short to have a direction, or not finite.
 ///
-/// The vector is first scaled by its largest member, so that directions of vectors as short as
-/// 1e-150 mm keep all their digits.
+/// Scales by the largest member first, so that vectors as short as 1e-150 mm keep all the digits of their direction.
 #[inline]
 pub(crate) fn unit(a: Vec3) -> Option<Vec3> {
     let largest = a[0].abs().max(a[1].abs()).max(a[2].abs());

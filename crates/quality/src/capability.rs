@@ -1,11 +1,11 @@
-//! Can the process keep the limits: Cp, Cpk, Pp, Ppk, each with its 95 % interval.
+//! Capability of a process to keep its limits: Cp, Cpk, Pp, Ppk, each with its 95 % interval.
 //!
-//! - Cp and Cpk use the short-term deviation, mean moving range / d2 with d2 = 1.128 for pairs; Pp and
-//!   Ppk use the deviation of all values.
-//! - Cp and Pp: `c sqrt(chi2(0.025; n-1) / (n-1))` up to the same with 0.975, exact for normal values.
-//! - Cpk and Ppk: Bissell (1990), `c -+ z sqrt(1 / (9 n) + c^2 / (2 (n - 1)))`.
-//! - One limit gives Cpk and Ppk only: a width needs two.
-//! - Skewed values (contact resistance, bounce) lie by the three percentiles of ISO 22514-2 instead:
+//! - Cp and Cpk use the short-term deviation: mean moving range / d2, with d2 = 1.128 for pairs. Pp and Ppk use the
+//!   deviation of all values.
+//! - Interval of Cp and Pp: `c sqrt(chi2(q; n-1) / (n-1))` for q = 0.025 and 0.975, exact for normal values.
+//! - Interval of Cpk and Ppk: Bissell (1990), `c -+ z sqrt(1 / (9 n) + c^2 / (2 (n - 1)))`.
+//! - One limit gives Cpk and Ppk only; Cp and Pp need two.
+//! - Skewed values (contact resistance, bounce) use the three percentiles of ISO 22514-2 instead:
 //!   `(high - x50) / (x99.865 - x50)` and `(x50 - low) / (x50 - x0.135)`, see [`by_percentiles`].
 
 use super::ordered::Ordered;
@@ -18,13 +18,13 @@ pub const D2_PAIR: f64 = 1.128;
 /// Quantile of the normal distribution for a two-sided 95 % interval.
 const Z_95: f64 = 1.959_963_984_540_054;
 
-/// Share of a normal distribution below three deviations under its mean.
+/// Probability of a normal value more than three deviations below the mean.
 const TAIL: f64 = 0.001_349_898_031_630_095;
 
-/// Fewer values than this have no percentile at [`TAIL`] that is not extrapolated: 1 / 0.00135.
+/// Least number of values whose percentile at [`TAIL`] needs no extrapolation: 1 / 0.00135.
 const ENOUGH_FOR_TAILS: usize = 741;
 
-/// Limits, each of which may be missing.
+/// Limits of a value, in its unit; either may be missing.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Limits {
     /// Lower limit.
@@ -47,25 +47,25 @@ pub struct Interval {
 pub struct Index {
     /// Estimate.
     pub value: f64,
-    /// None below two values.
+    /// 95 % interval; `None` below two values.
     pub interval: Option<Interval>,
 }
 
-/// None where no limit, too few values or no spread leave nothing to say.
+/// Capability indices; `None` for an index that lacks a limit, values or spread.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Capability {
-    /// Short-term width; needs both limits.
+    /// Short-term index of the width; needs both limits.
     pub cp: Option<Index>,
-    /// Short-term, towards the nearer limit.
+    /// Short-term index towards the nearer limit.
     pub cpk: Option<Index>,
-    /// Width from the deviation of all values; needs both limits.
+    /// Index of the width from the deviation of all values; needs both limits.
     pub pp: Option<Index>,
-    /// As `cpk`, from the deviation of all values.
+    /// Index towards the nearer limit from the deviation of all values.
     pub ppk: Option<Index>,
 }
 
 impl Capability {
-    /// `within`: short-term deviation; `overall`: of all `n` values.
+    /// Computes the indices. `within` is the short-term deviation, `overall` the deviation of all `n` values.
     pub fn of(
         limits: Limits,
         n: u64,
@@ -92,8 +92,8 @@ impl Capability {
     }
 }
 
-/// Index of values of any shape towards the nearer limit, from their own percentiles. None without a
-/// limit or below 741 values, where the outer percentiles would be extrapolated.
+/// Returns the index towards the nearer limit for values of any distribution, from their percentiles. Returns
+/// `None` without a limit or below 741 values, where the outer percentiles would be extrapolated.
 pub fn by_percentiles(limits: Limits, values: &Ordered) -> Option<f64> {
     if values.len() < ENOUGH_FOR_TAILS {
         return None;
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn the_interval_of_cp_has_the_quantiles_of_the_tables() {
+    fn the_interval_of_cp_matches_published_quantiles() {
         // chi-square with 49 degrees of freedom: 31.5549 and 70.2224.
         let found = of(Some(4.0), Some(13.0)).cp.unwrap().interval.unwrap();
         assert!((found.low - 1.5 * (31.5549_f64 / 49.0).sqrt()).abs() < 1e-5);
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn no_spread_leaves_nothing_to_say() {
+    fn no_spread_gives_no_index() {
         let limits = Limits {
             low: Some(0.0),
             high: Some(1.0),
@@ -206,7 +206,7 @@ mod tests {
 
     #[test]
     fn a_skewed_process_is_judged_by_its_own_percentiles() {
-        // Exponential by its inverse: percentiles are known exactly, ln 2 in the middle.
+        // Exponential values by inversion, with exactly known percentiles; the median is ln 2.
         let n = 100_000;
         let at = |k: u32| -(1.0 - (f64::from(k) + 0.5) / f64::from(n)).ln();
         let values = Ordered::of(&(0..n).map(at).collect::<Vec<f64>>());

@@ -1,15 +1,15 @@
-//! Control charts: individuals and moving range, means and ranges of subgroups, shares of defectives.
+//! Control charts: individuals and moving range, means and ranges of subgroups, fractions of defectives.
 //!
-//! Limits are three deviations from the centre, the deviation always from short-term variation: the
-//! mean moving range of neighbours, the mean range of subgroups, or the binomial law. A limit of a range
-//! or share that would be negative is zero. Rules of runs are in [`super::rules`].
+//! Limits lie three deviations from the centre. The deviation always comes from short-term variation: the mean
+//! moving range of neighbours, the mean range of subgroups, or the binomial distribution. A negative limit of a
+//! range or fraction becomes zero. [`super::rules`] has the run rules.
 
 use super::capability::D2_PAIR;
 use super::rules::{self, Rules, Signal};
 use super::spread::{self, Spread};
 use serde::Serialize;
 
-/// Factors of a subgroup of n: (n, A2, D3, D4, d2), ASTM manual of control charts.
+/// Factors of a subgroup of n: (n, A2, D3, D4, d2), from the ASTM manual of control charts.
 const FACTORS: [(usize, f64, f64, f64, f64); 9] = [
     (2, 1.880, 0.0, 3.267, 1.128),
     (3, 1.023, 0.0, 2.575, 1.693),
@@ -22,23 +22,23 @@ const FACTORS: [(usize, f64, f64, f64, f64); 9] = [
     (10, 0.308, 0.223, 1.777, 3.078),
 ];
 
-/// One chart. Limits of a p chart differ from point to point, so every point carries its own.
+/// One control chart. Every point carries its own limits, because those of a p chart differ from point to point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Chart {
-    /// `individuals`, `moving range`, `means`, `ranges`, `share`.
+    /// Kind of chart: `individuals`, `moving range`, `means`, `ranges`, `share`.
     pub kind: &'static str,
-    /// In order of time.
+    /// Points in order of time.
     pub points: Vec<Point>,
-    /// The line that points scatter about.
+    /// Centre line.
     pub centre: f64,
-    /// What the rules object to.
+    /// Violations of the run rules.
     pub signals: Vec<Signal>,
 }
 
 /// A point with its limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Point {
-    /// What was found.
+    /// Plotted value.
     pub value: f64,
     /// Lower control limit.
     pub low: f64,
@@ -46,7 +46,7 @@ pub struct Point {
     pub high: f64,
 }
 
-/// Individuals and moving ranges; none below two values.
+/// Returns charts of individuals and moving ranges; `None` below two values.
 pub fn individuals(values: &[f64], rules: Rules) -> Option<[Chart; 2]> {
     let centre = Spread::of(values).mean()?;
     let range = spread::mean_moving_range(values)?;
@@ -67,8 +67,8 @@ pub fn individuals(values: &[f64], rules: Rules) -> Option<[Chart; 2]> {
     ])
 }
 
-/// Means and ranges of subgroups of `size` neighbours, 2 to 10; what is left over at the end is not
-/// shown. None for another size or below two subgroups.
+/// Returns charts of means and ranges of subgroups of `size` consecutive values, 2 to 10; an incomplete last
+/// subgroup is left out. Returns `None` for another size or below two subgroups.
 pub fn subgroups(values: &[f64], size: usize, rules: Rules) -> Option<[Chart; 2]> {
     let &(_, a2, d3, d4, _) = FACTORS.iter().find(|(n, ..)| *n == size)?;
     let groups: Vec<Spread> = values.chunks_exact(size).map(Spread::of).collect();
@@ -89,15 +89,15 @@ pub fn subgroups(values: &[f64], size: usize, rules: Rules) -> Option<[Chart; 2]
     ])
 }
 
-/// Short-term deviation from subgroups: mean range / d2.
+/// Returns the short-term deviation from subgroups: mean range / d2.
 pub fn deviation_of_subgroups(values: &[f64], size: usize) -> Option<f64> {
     let &(.., d2) = FACTORS.iter().find(|(n, ..)| *n == size)?;
     let [_, ranges] = subgroups(values, size, Rules::Nelson)?;
     Some(ranges.centre / d2)
 }
 
-/// Share of defectives: `(number tested, number defective)` per lot or hour; groups of none are left
-/// out. None without any.
+/// Returns the chart of the fraction of defectives from `(number tested, number defective)` per lot or hour,
+/// without groups of no tested part. Returns `None` when no group is left.
 pub fn shares(groups: &[(u64, u64)]) -> Option<Chart> {
     let all: u64 = groups.iter().map(|(n, _)| n).sum();
     if all == 0 {
@@ -117,7 +117,7 @@ pub fn shares(groups: &[(u64, u64)]) -> Option<Chart> {
             }
         })
         .collect();
-    let signals = rules::outside(&points);
+    let signals = rules::beyond_own_limits(&points);
     Some(Chart {
         kind: "share",
         points,
@@ -137,7 +137,7 @@ fn level(
     let points: Vec<Point> = values.iter().map(point).collect();
     let signals = match rules {
         Some(rules) => rules::signals(values, centre, (high - centre) / 3.0, rules),
-        None => rules::outside(&points),
+        None => rules::beyond_own_limits(&points),
     };
     Chart {
         kind,

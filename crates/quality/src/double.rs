@@ -1,16 +1,16 @@
-//! Sums and products in twice the digits of `f64`, as an unevaluated pair `high + low`.
+//! Double-double arithmetic: sums and products in twice the digits of `f64`, as an unevaluated pair `high + low`.
 //!
-//! Only what the statistics need: error-free addition and multiplication of two `f64`, and the
-//! operations on pairs built from them. About 31 decimal digits.
+//! Limited to the needs of the statistics: error-free addition and multiplication of two `f64`, and the operations
+//! on pairs built from them. About 31 decimal digits.
 
-/// `high + low`, with `low` at most half a unit in the last place of `high`.
+/// The number `high + low`, with `low` at most half a unit in the last place of `high`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Double {
     high: f64,
     low: f64,
 }
 
-/// Sum and its exact rounding error (two-sum, any order of magnitude).
+/// Returns the sum and its exact rounding error (two-sum, for any magnitudes).
 fn two_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let b_seen = high - a;
@@ -20,7 +20,7 @@ fn two_sum(a: f64, b: f64) -> Double {
     }
 }
 
-/// As [`two_sum`], for `|a| >= |b|`.
+/// Like [`two_sum`], for `|a| >= |b|` only.
 fn quick(a: f64, b: f64) -> Double {
     let high = a + b;
     Double {
@@ -59,7 +59,7 @@ impl Double {
             error + (self.high * other.low + self.low * other.high),
         )
     }
-    /// By an ordinary number; two corrections of the quotient.
+    /// Divides by an `f64`, with two corrections of the quotient.
     pub fn over(self, divisor: f64) -> Self {
         let by = Self::new(divisor);
         let first = self.high / divisor;
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_f64_swallows_comes_back() {
+    fn a_small_term_survives_a_large_sum() {
         let sum = Double::new(1e16)
             .plus(Double::new(0.125))
             .minus(Double::new(1e16));

@@ -1,61 +1,61 @@
-//! Overall equipment effectiveness and where the rest of the time went.
+//! Overall equipment effectiveness (OEE), with the losses of time.
 //!
-//! OEE = availability x performance x quality, each the share of the time before it:
+//! OEE = availability x performance x quality, where each factor is the share of one of these times in the one before:
 //!
-//! 1. planned: from the opening of a run to its end;
-//! 2. running: planned less the time that alarms stood;
-//! 3. net: what the tested parts would have taken at the ideal cycle;
-//! 4. valuable: what the good ones would have taken.
+//! 1. planned: from the start of a run to its end;
+//! 2. running: planned less the time in alarm;
+//! 3. net: the time for the tested parts at the ideal cycle;
+//! 4. valuable: the time for the good parts at the ideal cycle.
 //!
-//! So every second is either valuable or in exactly one of the three losses.
+//! So every second is either valuable or belongs to exactly one of the three losses.
 
 use serde::Serialize;
 
-/// What was seen of a span of time.
+/// Times and part counts of a period of production.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Seen {
-    /// Time that was meant for production, s.
+pub struct Observed {
+    /// Time planned for production, s.
     pub planned_s: f64,
-    /// Of it, the time the line stood with an alarm, s.
+    /// Part of the planned time in which an alarm stopped the line, s.
     pub stopped_s: f64,
-    /// The shortest cycle the line can keep, s.
+    /// Shortest cycle that the line can achieve, s.
     pub ideal_cycle_s: f64,
-    /// Parts tested.
+    /// Number of parts tested.
     pub parts: u64,
-    /// Parts that passed.
+    /// Number of parts that passed.
     pub good: u64,
 }
 
-/// The three factors, their product, and the losses.
+/// The three factors, their product, and the losses of time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Effectiveness {
     /// Running / planned.
     pub availability: f64,
-    /// Net / running; above 1 when the ideal cycle was set too long.
+    /// Net / running; above 1 when the ideal cycle is set too long.
     pub performance: f64,
     /// Valuable / net.
     pub quality: f64,
     /// Product of the three.
     pub oee: f64,
-    /// Time lost to alarms, s.
+    /// Loss by alarms, s.
     pub stopped_s: f64,
-    /// Time lost to waiting and slow cycles, s.
+    /// Loss by waiting and slow cycles, s.
     pub slow_s: f64,
-    /// Time spent on parts that did not pass, s.
+    /// Loss by parts that did not pass, s.
     pub rejected_s: f64,
 }
 
-/// None when no time ran or no part was tested.
-pub fn effectiveness(seen: Seen) -> Option<Effectiveness> {
-    let running = seen.planned_s - seen.stopped_s;
-    let net = seen.ideal_cycle_s * seen.parts as f64;
-    let valuable = seen.ideal_cycle_s * seen.good as f64;
+/// Computes the effectiveness; `None` when no time ran or no part was tested.
+pub fn effectiveness(observed: Observed) -> Option<Effectiveness> {
+    let running = observed.planned_s - observed.stopped_s;
+    let net = observed.ideal_cycle_s * observed.parts as f64;
+    let valuable = observed.ideal_cycle_s * observed.good as f64;
     (running > 0.0 && net > 0.0).then(|| Effectiveness {
-        availability: running / seen.planned_s,
+        availability: running / observed.planned_s,
         performance: net / running,
         quality: valuable / net,
-        oee: valuable / seen.planned_s,
-        stopped_s: seen.stopped_s,
+        oee: valuable / observed.planned_s,
+        stopped_s: observed.stopped_s,
         slow_s: running - net,
         rejected_s: net - valuable,
     })
@@ -68,14 +68,14 @@ mod tests {
 
     #[test]
     fn every_second_is_valuable_or_in_one_loss() {
-        let seen = Seen {
+        let observed = Observed {
             planned_s: 28_800.0,
             stopped_s: 2_880.0,
             ideal_cycle_s: 1.2,
             parts: 18_000,
             good: 17_100,
         };
-        let it = effectiveness(seen).unwrap();
+        let it = effectiveness(observed).unwrap();
         assert!((it.availability - 0.9).abs() < 1e-12);
         assert!((it.performance - 21_600.0 / 25_920.0).abs() < 1e-12);
         assert!((it.quality - 0.95).abs() < 1e-12);
@@ -89,7 +89,7 @@ mod tests {
     /// 19,271 pieces, 423 rejected.
     #[test]
     fn a_published_shift_has_its_published_factors() {
-        let shift = Seen {
+        let shift = Observed {
             planned_s: 420.0 * 60.0,
             stopped_s: 47.0 * 60.0,
             ideal_cycle_s: 1.0,
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_tested_has_no_effectiveness() {
-        assert_eq!(effectiveness(Seen::default()), None);
+    fn no_tested_part_gives_no_effectiveness() {
+        assert_eq!(effectiveness(Observed::default()), None);
     }
 }

@@ -1,31 +1,30 @@
 //! Gauge repeatability and reproducibility by analysis of variance with interaction.
 //!
-//! A crossed study: every operator measures every part the same number of times, at least twice. Sums
-//! of squares go to parts, operators, their interaction and what is left; the interaction is pooled
-//! with the rest when its F test gives p > 0.25. Negative components of variance count as zero. All
-//! results are standard deviations.
+//! In a crossed study every operator measures every part the same number of times, at least twice. The sum of squares
+//! is split into parts, operators, their interaction and the residual; the interaction is pooled with the residual when
+//! its F test gives p > 0.25. Negative components of variance count as zero. All results are standard deviations.
 
 use super::crossing;
 use super::squares::{Sizes, Squares};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-/// Above this p the interaction is taken for chance (AIAG MSA, 4th edition, appendix on ANOVA).
+/// Value of p above which the interaction counts as chance (AIAG MSA, 4th edition, appendix on ANOVA).
 const POOL_ABOVE: f64 = 0.25;
 
-/// Ratio between categories a gauge can tell apart and the ratio of deviations (AIAG: 1.41).
+/// Factor from the ratio of deviations to the number of distinct categories (AIAG: 1.41).
 const CATEGORIES: f64 = 1.41;
 
 /// One reading of the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Which part.
+    /// Identifier of the part.
     pub part: String,
-    /// Who, or which rig, measured.
+    /// Operator, or rig, that measured.
     pub operator: String,
-    /// Which time.
+    /// Identifier of the repetition.
     pub trial: String,
-    /// What was read; finite.
+    /// Measured value; must be finite.
     pub value: f64,
 }
 
@@ -34,30 +33,30 @@ pub struct Reading {
 pub struct GaugeRr {
     /// `anova`, or `average and range`.
     pub method: &'static str,
-    /// Same part, same operator.
+    /// Variation of repeated readings by the same operator on the same part.
     pub repeatability: f64,
-    /// Between operators.
+    /// Variation between operators.
     pub reproducibility: f64,
-    /// Between operators, other on other parts; 0 when pooled.
+    /// Variation between operators that depends on the part; 0 when pooled.
     pub interaction: f64,
-    /// The three together.
+    /// Repeatability, reproducibility and interaction combined.
     pub grr: f64,
-    /// Between parts.
+    /// Variation between parts.
     pub part: f64,
-    /// All together.
+    /// Gauge and part variation combined.
     pub total: f64,
-    /// `grr` in percent of `total`; none when nothing varies.
+    /// `grr` in per cent of `total`; `None` when nothing varies.
     pub pct_grr: Option<f64>,
-    /// Categories the gauge can tell apart, at least 1; none without gauge variation.
+    /// Number of distinct categories, at least 1; `None` without gauge variation.
     pub ndc: Option<u64>,
-    /// p of the F test of the interaction; none with one operator.
+    /// p of the F test of the interaction; `None` with one operator.
     pub interaction_p: Option<f64>,
 }
 
-/// Why a study cannot be evaluated.
+/// Reason why a study cannot be evaluated.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum GaugeRrError {
-    /// Fewer than two parts or two trials, or no operator.
+    /// The study has fewer than two parts or two trials, or no operator.
     #[error(
         "found {parts} parts, {operators} operators, {trials} trials; expected 2 parts, 1 operator and 2 trials at least"
     )]
@@ -69,9 +68,9 @@ pub enum GaugeRrError {
         /// Trials found.
         trials: usize,
     },
-    /// Larger than the published factors of averages and ranges.
+    /// The study is larger than the published factors of averages and ranges.
     #[error(
-        "found {parts} parts, {operators} operators, {trials} trials; averages and ranges have factors for up to 10, 3 and 3 (anova has no such end)"
+        "found {parts} parts, {operators} operators, {trials} trials; averages and ranges have factors for up to 10, 3 and 3 (use anova for more)"
     )]
     NoFactors {
         /// Parts found.
@@ -81,36 +80,36 @@ pub enum GaugeRrError {
         /// Trials found.
         trials: usize,
     },
-    /// A combination without its reading.
+    /// A combination of part, operator and trial has no reading.
     #[error(
         "part {part:?}, operator {operator:?} has no trial {trial:?}: the study must be complete"
     )]
     Missing {
-        /// Which part.
+        /// Identifier of the part.
         part: String,
-        /// Which operator.
+        /// Identifier of the operator.
         operator: String,
-        /// Which trial.
+        /// Identifier of the trial.
         trial: String,
     },
-    /// A combination with two readings.
+    /// A combination of part, operator and trial has two readings.
     #[error("part {part:?}, operator {operator:?} has trial {trial:?} twice")]
     Twice {
-        /// Which part.
+        /// Identifier of the part.
         part: String,
-        /// Which operator.
+        /// Identifier of the operator.
         operator: String,
-        /// Which trial.
+        /// Identifier of the trial.
         trial: String,
     },
-    /// A reading that is no number, or one whose square is none.
+    /// A reading is not finite, or too large for its square to be.
     #[error("part {part:?}, operator {operator:?}, trial {trial:?}: expected a number below 1e150")]
     TooLarge {
-        /// Which part.
+        /// Identifier of the part.
         part: String,
-        /// Which operator.
+        /// Identifier of the operator.
         operator: String,
-        /// Which trial.
+        /// Identifier of the trial.
         trial: String,
     },
 }
@@ -129,33 +128,33 @@ fn components(sizes: &Sizes, squares: &Squares) -> GaugeRr {
         operators,
         trials,
     } = *sizes;
-    let against = Against::of(sizes, squares);
-    let above = |mean_square: f64, each: f64| ((mean_square - against.main) / each).max(0.0);
+    let denominators = Denominators::of(sizes, squares);
+    let above = |mean_square: f64, each: f64| ((mean_square - denominators.main) / each).max(0.0);
     let reproducibility = if operators > 1.0 {
         above(squares.operators / (operators - 1.0), parts * trials)
     } else {
         0.0
     };
-    let interaction = ((against.main - against.error) / trials).max(0.0);
+    let interaction = ((denominators.main - denominators.error) / trials).max(0.0);
     let part = above(squares.parts / (parts - 1.0), operators * trials);
     deviations(
         "anova",
-        [against.error, reproducibility, interaction, part],
-        against.interaction_p,
+        [denominators.error, reproducibility, interaction, part],
+        denominators.interaction_p,
     )
 }
 
-/// What the mean squares are compared with.
-struct Against {
-    /// For parts and operators: the interaction, or the pooled rest.
+/// Mean squares with which the sources of variation are compared.
+struct Denominators {
+    /// For parts and operators: the interaction, or the pooled residual.
     main: f64,
-    /// For the interaction: the repeats, or the pooled rest.
+    /// For the interaction: the residual, or the pooled residual.
     error: f64,
-    /// None with one operator.
+    /// p of the interaction; `None` with one operator.
     interaction_p: Option<f64>,
 }
 
-impl Against {
+impl Denominators {
     fn of(sizes: &Sizes, squares: &Squares) -> Self {
         let crossed = (sizes.parts - 1.0) * (sizes.operators - 1.0);
         let repeats = sizes.parts * sizes.operators * (sizes.trials - 1.0);
@@ -180,7 +179,7 @@ impl Against {
     }
 }
 
-/// Probability that F with these degrees of freedom exceeds `f`; 0 when repeats do not differ at all.
+/// Returns the probability that F with these degrees of freedom exceeds `f`; 0 when all repeats agree.
 fn upper_tail(f: f64, above: f64, below: f64) -> f64 {
     if f.is_infinite() {
         return 0.0;
@@ -188,7 +187,7 @@ fn upper_tail(f: f64, above: f64, below: f64) -> f64 {
     FisherSnedecor::new(above, below).map_or(1.0, |law| law.sf(f))
 }
 
-/// From variances.
+/// Converts variances into the standard deviations of the result.
 pub(super) fn deviations(
     method: &'static str,
     [repeatability, reproducibility, interaction, part]: [f64; 4],

@@ -118,7 +118,7 @@ fn aiags_worked_example_gives_its_published_averages_and_ranges() {
 }
 
 #[test]
-fn averages_and_ranges_end_where_their_factors_end() {
+fn averages_and_ranges_refuse_studies_beyond_their_factors() {
     let more: Vec<Reading> = study()
         .into_iter()
         .map(|it| Reading {
@@ -178,7 +178,7 @@ fn an_incomplete_study_names_what_is_missing() {
 }
 
 #[test]
-fn a_reading_whose_square_no_f64_holds_is_refused_and_not_taken_for_no_variation() {
+fn a_reading_whose_square_overflows_is_refused() {
     for value in [1e200, -1e150, f64::NAN, f64::INFINITY] {
         let mut readings = study();
         readings[0].value = value;

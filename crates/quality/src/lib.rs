@@ -1,13 +1,13 @@
-//! Quality: figures about many values. Pure arithmetic, no clock, no file.
+//! Statistics of quality: pure arithmetic without clock or files.
 //!
-//! - [`spread`]: mean, standard deviation, lag-1 autocorrelation, right to the digits that the data
-//!   allow even when the values differ in their last places only. [`ordered`]: quantiles, histogram.
-//! - [`capability`]: is the process able to keep the limits, and how sure is that.
-//! - [`chart`]: control charts; [`rules`]: when their points are no longer chance.
-//! - [`effectiveness`]: how much of the time made good parts, and where the rest went.
-//! - [`summary`]: moments and capability of one parameter, as `history stats` shows them.
-//! - [`tally`]: moments and histogram of values that come one at a time.
-//! - [`gauge_rr`], [`average_range`]: how much of what is seen comes from the gauge, not from the parts.
+//! - [`spread`]: mean, standard deviation, lag-1 autocorrelation, accurate even when the values differ only in
+//!   their last digits. [`ordered`]: quantiles, histogram.
+//! - [`capability`]: capability indices of a process, with confidence intervals.
+//! - [`chart`]: control charts. [`rules`]: patterns of their points that are unlikely by chance.
+//! - [`effectiveness`]: overall equipment effectiveness and losses of time.
+//! - [`summary`]: moments and capability of one parameter, as `history stats` prints them.
+//! - [`tally`]: moments and histogram of values that arrive one at a time.
+//! - [`gauge_rr`], [`average_range`]: share of the gauge in the observed variation.
 
 pub mod average_range;
 pub mod capability;

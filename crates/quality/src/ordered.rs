@@ -1,44 +1,45 @@
 //! Values in ascending order: exact quantiles and the histogram.
 //!
-//! Quantiles interpolate between neighbouring order statistics at `(n - 1) p` (type 7 of Hyndman and
-//! Fan, what spreadsheets call inclusive), so that 0, 1/2 and 1 are minimum, median and maximum.
+//! Quantiles interpolate between neighbouring order statistics at `(n - 1) p` (type 7 of Hyndman and Fan,
+//! "inclusive" in spreadsheets), so that p = 0, 1/2 and 1 give minimum, median and maximum.
 
 use serde::Serialize;
 
-/// Finite values, ascending. Values that are not finite are left out.
+/// Finite values in ascending order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Ordered(Vec<f64>);
 
-/// Counts of values in classes of equal width.
+/// Number of values in classes of equal width.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Histogram {
     /// Lower edge of the first class.
     pub from: f64,
     /// Width of every class: 1, 2 or 5 times a power of ten.
     pub width: f64,
-    /// Values per class; a value on an edge belongs to the class above it.
+    /// Number of values per class; a value on an edge belongs to the class above it.
     pub counts: Vec<u64>,
 }
 
 impl Ordered {
-    /// Sorts a copy.
+    /// Sorts a copy of the finite values and leaves out the others.
     pub fn of(values: &[f64]) -> Self {
         let mut values: Vec<f64> = values.iter().copied().filter(|it| it.is_finite()).collect();
         values.sort_unstable_by(f64::total_cmp);
         Self(values)
     }
 
-    /// How many values.
+    /// Number of values.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no values.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The value that the share `p` lies below, 0 to 1; none without values or outside.
+    /// Returns the value below which the fraction `p` (0 to 1) of the values lies; `None` without values or for
+    /// another `p`.
     pub fn quantile(&self, p: f64) -> Option<f64> {
         let last = self.0.len().checked_sub(1)?;
         if !(0.0..=1.0).contains(&p) {
@@ -51,7 +52,7 @@ impl Ordered {
         Some(low + (place - below) * (high - low))
     }
 
-    /// About `classes` classes over all values, edges on round numbers; none without spread.
+    /// Returns about `classes` classes over all values, with edges on round numbers; `None` when all values are equal.
     pub fn histogram(&self, classes: usize) -> Option<Histogram> {
         let (&low, &high) = (self.0.first()?, self.0.last()?);
         let width = round_step((high - low) / classes.max(1) as f64)?;
@@ -70,7 +71,7 @@ impl Ordered {
     }
 }
 
-/// The least of 1, 2, 5 times a power of ten that is at least `step`; none for a step of nothing.
+/// Returns the least of 1, 2, 5 times a power of ten that is at least `step`; `None` unless `step` is above zero.
 pub fn round_step(step: f64) -> Option<f64> {
     if !(step.is_finite() && step > 0.0) {
         return None;
@@ -109,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_that_is_not_a_number_is_left_out() {
+    fn a_value_that_is_not_finite_is_ignored() {
         assert_eq!(Ordered::of(&[f64::NAN, 2.0]).len(), 1);
         assert!(Ordered::of(&[]).is_empty());
     }

@@ -1,4 +1,4 @@
-//! Rules of runs: when points of a control chart are no longer chance.
+//! Run rules: patterns of points on a control chart that are unlikely by chance.
 //!
 //! | rule | Nelson | Western Electric |
 //! |---|---|---|
@@ -11,12 +11,12 @@
 //! | 7: all within one deviation | 15 | |
 //! | 8: none within one deviation, both sides | 8 | |
 //!
-//! A rule speaks at the point that completes its pattern, and is told there once.
+//! A rule signals once, at the point that completes its pattern.
 
 use super::chart::Point;
 use serde::{Deserialize, Serialize};
 
-/// Which set of rules.
+/// A published set of rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Rules {
@@ -26,18 +26,18 @@ pub enum Rules {
     WesternElectric,
 }
 
-/// A rule that speaks.
+/// The completion of a rule's pattern.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Signal {
-    /// Which point completes the pattern, from 0.
+    /// Index of the point that completes the pattern, from 0.
     pub at: usize,
     /// Number of the rule, 1 to 8.
     pub rule: u8,
 }
 
-/// Everything that the set objects to, in order of points. `sigma` is one deviation of a point.
+/// Returns the signals of a set of rules, in the order of the points. `sigma` is the standard deviation of one point.
 pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Signal> {
-    // In deviations from the centre; without spread every other point is infinitely far.
+    // Deviations from the centre in units of `sigma`; with `sigma` zero, points off the centre are infinitely far.
     let z: Vec<f64> = points
         .iter()
         .map(|it| {
@@ -50,21 +50,21 @@ pub fn signals(points: &[f64], centre: f64, sigma: f64, rules: Rules) -> Vec<Sig
         .collect();
     let mut found = Vec::new();
     for at in 0..z.len() {
-        let speaking = speaking(&z[..=at], rules);
-        found.extend(speaking.into_iter().map(|rule| Signal { at, rule }));
+        let completed = completed(&z[..=at], rules);
+        found.extend(completed.into_iter().map(|rule| Signal { at, rule }));
     }
     found
 }
 
-/// Points outside their own limits: rule 1 where limits differ from point to point.
-pub fn outside(points: &[Point]) -> Vec<Signal> {
+/// Returns rule 1 for points outside their own limits, for charts whose limits differ from point to point.
+pub fn beyond_own_limits(points: &[Point]) -> Vec<Signal> {
     let beyond = |it: &Point| it.value > it.high || it.value < it.low;
     let places = points.iter().enumerate().filter(|(_, it)| beyond(it));
     places.map(|(at, _)| Signal { at, rule: 1 }).collect()
 }
 
-/// Rules whose pattern the last point completes.
-fn speaking(z: &[f64], rules: Rules) -> Vec<u8> {
+/// Returns the rules whose pattern the last point completes.
+fn completed(z: &[f64], rules: Rules) -> Vec<u8> {
     let side = match rules {
         Rules::Nelson => 9,
         Rules::WesternElectric => 8,
@@ -101,26 +101,26 @@ fn last(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
     z.len() >= n && pattern(&z[z.len() - n..])
 }
 
-/// As [`last`], but told once when the pattern goes on for longer than `n`.
+/// Whether the last `n` points are the first to have the pattern: a longer run signals once.
 fn run(z: &[f64], n: usize, pattern: impl Fn(&[f64]) -> bool) -> bool {
     last(z, n, &pattern) && !last(&z[..z.len() - 1], n, &pattern)
 }
 
-/// At least `n` points beyond `far` on one side.
+/// Whether at least `n` points lie beyond `far` on one side.
 fn one_side(z: &[f64], n: usize, far: f64) -> bool {
     let above = z.iter().filter(|&&it| it > far).count();
     let below = z.iter().filter(|&&it| it < -far).count();
     above >= n || below >= n
 }
 
-/// The last point is one of at least `n` beyond `far` on its side.
+/// Whether the last point is one of at least `n` beyond `far` on its side.
 fn ending(z: &[f64], n: usize, far: f64) -> bool {
     let Some(&end) = z.last() else { return false };
     let with_it = z.iter().filter(|&&it| it * end > 0.0 && it.abs() > far);
     end.abs() > far && with_it.count() >= n
 }
 
-/// Every two steps in a row relate as asked.
+/// Whether `relate` holds for every two consecutive steps.
 fn steps(z: &[f64], relate: impl Fn(f64, f64) -> bool) -> bool {
     z.windows(3).all(|it| relate(it[1] - it[0], it[2] - it[1]))
 }
@@ -129,14 +129,14 @@ fn steps(z: &[f64], relate: impl Fn(f64, f64) -> bool) -> bool {
 mod tests {
     use super::*;
 
-    /// Rules that speak, with their points, about 0 with a deviation of 1.
-    fn told(points: &[f64], rules: Rules) -> Vec<(usize, u8)> {
+    /// Returns the signals about a centre of 0 with a deviation of 1, as points and rules.
+    fn signals_of(points: &[f64], rules: Rules) -> Vec<(usize, u8)> {
         let found = signals(points, 0.0, 1.0, rules);
         found.into_iter().map(|it| (it.at, it.rule)).collect()
     }
 
     #[test]
-    fn every_rule_speaks_at_the_point_that_completes_its_pattern_and_not_before() {
+    fn every_rule_signals_when_its_pattern_is_complete() {
         let weave = |n: usize, high: f64| -> Vec<f64> {
             (0..n)
                 .map(|it| if it % 2 == 0 { high } else { -high })
@@ -157,29 +157,32 @@ mod tests {
             (8, vec![1.1, -1.2, -1.4, 1.2, 1.3, -1.1, -1.5, 1.2]),
         ];
         for (rule, points) in cases {
-            let before = told(&points[..points.len() - 1], Rules::Nelson);
+            let before = signals_of(&points[..points.len() - 1], Rules::Nelson);
             assert!(before.is_empty(), "rule {rule} before its end: {before:?}");
-            assert_eq!(told(&points, Rules::Nelson), [(points.len() - 1, rule)]);
+            assert_eq!(
+                signals_of(&points, Rules::Nelson),
+                [(points.len() - 1, rule)]
+            );
         }
     }
 
     #[test]
-    fn western_electric_is_content_with_eight_on_one_side_and_looks_at_no_trend() {
+    fn western_electric_needs_eight_on_one_side() {
         let side = [0.5, 0.4, 0.6, 0.3, 0.5, 0.4, 0.4, 0.6, 0.5];
-        assert_eq!(told(&side, Rules::WesternElectric), [(7, 2)]);
+        assert_eq!(signals_of(&side, Rules::WesternElectric), [(7, 2)]);
         let trend = [-0.9, -0.4, -0.1, 0.2, 0.6, 0.9];
-        assert_eq!(told(&trend, Rules::WesternElectric), []);
+        assert_eq!(signals_of(&trend, Rules::WesternElectric), []);
     }
 
     #[test]
-    fn a_pattern_that_goes_on_is_told_once() {
+    fn a_continuing_pattern_signals_once() {
         let long: Vec<f64> = (0..30).map(|n| 0.4 + f64::from(n % 2) * 0.1).collect();
-        let sides = told(&long, Rules::WesternElectric);
+        let sides = signals_of(&long, Rules::WesternElectric);
         assert_eq!(sides, [(7, 2)]);
     }
 
     #[test]
-    fn points_without_spread_say_nothing() {
+    fn points_without_spread_give_no_signal() {
         assert_eq!(signals(&[5.0; 14], 5.0, 0.0, Rules::Nelson), []);
     }
 }

@@ -1,18 +1,19 @@
-//! Mean, variance and lag-1 autocorrelation in two passes, carried in twice the digits.
+//! Mean, variance and lag-1 autocorrelation in two passes, in double-double precision.
 //!
-//! The sum of squares minus the square of the sum loses all digits when the spread is small against
-//! the mean. Here the mean is found first and deviations from it are summed, both as [`Double`]; what
-//! error is left comes from the decimal fractions of the data not being binary ones.
+//! The sum of squares minus the square of the sum loses all digits when the spread is small relative to the mean.
+//! Here the first pass finds the mean and the second sums deviations from it, both as `Double`; the remaining
+//! error comes from storing decimal data in binary.
 //!
 //! Merging shards: `M2 = M2a + M2b + d^2 na nb / (na + nb)` with `d` the difference of means (Chan,
 //! Golub and LeVeque 1983), in the same arithmetic.
 
 use super::double::Double;
 
-/// Sums that grow side by side: an addition in twice the digits takes as long as four begun one after the other.
+/// Number of independent partial sums. An addition in double-double precision takes as long as four that the
+/// processor overlaps.
 const SIDE_BY_SIDE: usize = 4;
 
-/// Sum of the terms 0 up to, but not including, `n`.
+/// Sums the terms 0 to `n` - 1.
 fn total(n: usize, term: impl Fn(usize) -> Double) -> Double {
     let mut sums = [Double::default(); SIDE_BY_SIDE];
     let whole = n - n % SIDE_BY_SIDE;
@@ -25,7 +26,7 @@ fn total(n: usize, term: impl Fn(usize) -> Double) -> Double {
     rest.chain(sums).fold(Double::default(), Double::plus)
 }
 
-/// Moments of a set of finite values. Values that are not finite make every figure none.
+/// Moments of a set of finite values. A value that is not finite makes every figure `None`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Spread {
     n: u64,
@@ -35,7 +36,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of all values.
+    /// Computes the moments of all values.
     pub fn of(values: &[f64]) -> Self {
         if values.is_empty() {
             return Self::default();
@@ -59,7 +60,7 @@ impl Spread {
         }
     }
 
-    /// Of both sets together.
+    /// Computes the moments of both sets together.
     pub fn merged(self, other: Self) -> Self {
         let (Some((low, high)), Some((other_low, other_high))) = (self.range, other.range) else {
             return if self.n == 0 { other } else { self };
@@ -80,15 +81,15 @@ impl Spread {
         }
     }
 
-    /// How many values.
+    /// Number of values.
     pub fn n(&self) -> u64 {
         self.n
     }
-    /// None without values.
+    /// Mean; `None` without values.
     pub fn mean(&self) -> Option<f64> {
         finite(self.range.map(|_| self.mean.value()))
     }
-    /// Standard deviation with n - 1; none below two values.
+    /// Standard deviation with n - 1; `None` below two values.
     pub fn sd(&self) -> Option<f64> {
         let degrees = self.n.checked_sub(1).filter(|&it| it > 0)?;
         let variance = finite(Some(self.squares.over(degrees as f64).value()))?;
@@ -104,12 +105,12 @@ impl Spread {
     }
 }
 
-/// Lag-1 autocorrelation in the given order; none below two values or when all are equal.
+/// Returns the lag-1 autocorrelation in the given order; `None` below two values or when all are equal.
 pub fn lag1(values: &[f64]) -> Option<f64> {
     lag1_about(&Spread::of(values), values)
 }
 
-/// The same, with the moments of the very values known already.
+/// Returns the lag-1 autocorrelation, given the moments `all` of the same values.
 pub fn lag1_about(all: &Spread, values: &[f64]) -> Option<f64> {
     let squares = all.squares.value();
     let deviation = |value: f64| Double::new(value).minus(all.mean);
@@ -122,14 +123,14 @@ pub fn lag1_about(all: &Spread, values: &[f64]) -> Option<f64> {
         .filter(|it| it.is_finite())
 }
 
-/// Mean absolute difference of neighbours; none below two values.
+/// Returns the mean absolute difference of neighbours; `None` below two values.
 pub fn mean_moving_range(values: &[f64]) -> Option<f64> {
     let pairs = values.len().checked_sub(1).filter(|&it| it > 0)?;
     let sum = total(pairs, |n| Double::new((values[n + 1] - values[n]).abs()));
     finite(Some(sum.over(pairs as f64).value()))
 }
 
-/// Middle value, or the mean of the two middle ones.
+/// Returns the middle value, or the mean of the two middle ones.
 pub fn median(values: &[f64]) -> Option<f64> {
     let mut values = values.to_vec();
     let middle = values.len() / 2;

@@ -1,14 +1,14 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 
-/// Correct decimal digits of `found`.
+/// Number of correct decimal digits of `found`.
 fn digits(found: f64, certified: f64) -> f64 {
     -((found - certified).abs() / certified.abs())
         .max(1e-16)
         .log10()
 }
 
-/// NumAcc2, 3, 4 of the NIST reference data sets: one value, then two values in turn.
+/// NumAcc2, 3 and 4 of the NIST reference data sets: one value, then two alternating values.
 fn numacc(first: f64, low: f64, high: f64) -> Vec<f64> {
     let rest = (0..1000).map(|n| if n % 2 == 0 { low } else { high });
     std::iter::once(first).chain(rest).collect()
@@ -51,7 +51,7 @@ fn numacc4_has_the_digits_that_f64_data_allow() {
     assert!(digits(lag1(&values).unwrap(), -0.999) > 8.0);
 }
 
-/// A data set of NIST's statistical reference data: values, certified mean, deviation, lag-1.
+/// Checks a NIST statistical reference data set against its certified mean, deviation and lag-1 autocorrelation.
 fn certified(text: &str, n: usize, mean: f64, sd: f64, autocorrelation: f64) {
     let values: Vec<f64> = text
         .split_whitespace()
@@ -132,7 +132,7 @@ fn shards_merge_to_the_figures_of_the_whole() {
 }
 
 #[test]
-fn few_or_equal_values_have_no_spread_to_speak_of() {
+fn few_or_equal_values_have_no_spread() {
     assert_eq!(
         (Spread::of(&[]).mean(), Spread::of(&[1.0]).sd()),
         (None, None)
@@ -152,7 +152,7 @@ fn the_median_is_exact() {
 }
 
 #[test]
-fn squares_beyond_the_range_of_f64_give_no_deviation_rather_than_none_at_all() {
+fn overflowing_squares_give_no_deviation() {
     let spread = Spread::of(&[1e308, -1e308, 0.0]);
     assert_eq!((spread.mean(), spread.sd()), (Some(0.0), None));
 }

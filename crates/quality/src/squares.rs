@@ -1,6 +1,6 @@
 //! Sums of squares of a crossed study.
 //!
-//! Means first, deviations after: nothing is lost when readings differ in their last places only.
+//! Subtracts means before squaring, which loses no digits when readings differ only in their last places.
 
 use super::crossing::Cells;
 
@@ -26,7 +26,7 @@ impl Sizes {
     }
 }
 
-/// Sums of squares by source.
+/// Sums of squares by source of variation.
 pub(super) struct Squares {
     pub parts: f64,
     pub operators: f64,

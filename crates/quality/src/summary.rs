@@ -1,15 +1,15 @@
-//! The figures of one parameter, in the shape of `history stats --json`.
+//! Statistics of one parameter, with the keys of `history stats --json`.
 
 use super::capability::{Capability, D2_PAIR, Index, Limits};
 use super::spread::{self, Spread};
 use serde::Serialize;
 
-/// Null in JSON where there is nothing to say.
+/// Statistics of one parameter. A figure that cannot be computed is `None`, null in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// Parameter key.
     pub param: String,
-    /// How many values.
+    /// Number of values.
     pub n: u64,
     /// Mean.
     pub mean: Option<f64>,
@@ -23,18 +23,18 @@ pub struct Summary {
     pub median: Option<f64>,
     /// Lag-1 autocorrelation in the given order.
     pub lag1: Option<f64>,
-    /// From the mean moving range.
+    /// Cp, from the mean moving range.
     pub cp: Option<f64>,
-    /// From the mean moving range.
+    /// Cpk, from the mean moving range.
     pub cpk: Option<f64>,
     /// Lower end of the two-sided 95 % interval of `cpk`.
     pub cpk_low95: Option<f64>,
-    /// From `sd`.
+    /// Ppk, from `sd`.
     pub ppk: Option<f64>,
 }
 
 impl Summary {
-    /// Of values in order of time.
+    /// Computes the statistics of values in order of time.
     pub fn of(param: &str, values: &[f64], limits: Limits) -> Self {
         let spread = Spread::of(values);
         let within = spread::mean_moving_range(values).map(|range| range / D2_PAIR);
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn cpk_follows_the_moving_range_and_ppk_the_whole_spread() {
+    fn cpk_uses_the_moving_range_ppk_the_spread() {
         let limits = Limits {
             low: Some(0.0),
             high: Some(5.0),

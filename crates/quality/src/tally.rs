@@ -1,18 +1,18 @@
-//! Moments and a histogram of values that come one at a time, in memory that does not grow.
+//! Moments and a histogram of values that arrive one at a time, in constant memory.
 //!
-//! Values are gathered in shards of [`SHARD`], whose moments are merged without loss. The first shard
-//! fixes the classes: about twelve over its range, and as many again beyond each end; what lies still
-//! further out is counted in the outermost classes.
+//! Values are collected in shards of 1,000, whose moments are merged without loss. The first shard fixes the
+//! classes: about twelve over its range, and twelve more beyond each end. Values farther out count in the outermost
+//! classes.
 
 use super::ordered::{Histogram, Ordered};
 use super::spread::Spread;
 
-/// Values between two merges.
+/// Number of values between two merges.
 const SHARD: usize = 1_000;
-/// Classes over the range of the first shard.
+/// Number of classes over the range of the first shard.
 const CLASSES: usize = 12;
 
-/// What is known of the values so far.
+/// Running moments and histogram.
 #[derive(Debug, Clone, Default)]
 pub struct Tally {
     merged: Spread,
@@ -21,7 +21,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Takes a value; one that is not finite is left out.
+    /// Adds a value; ignores one that is not finite.
     pub fn add(&mut self, value: f64) {
         if !value.is_finite() {
             return;
@@ -32,7 +32,7 @@ impl Tally {
         }
     }
 
-    /// Moments and histogram of all values; no histogram without spread.
+    /// Returns moments and histogram of all values; the histogram is `None` when all values are equal.
     pub fn finish(mut self) -> (Spread, Option<Histogram>) {
         self.merge();
         (self.merged, self.classes.map(trimmed))
@@ -54,7 +54,7 @@ impl Tally {
     }
 }
 
-/// The same classes without their counts, and twelve more at each end.
+/// Returns the same classes, empty, with twelve more at each end.
 fn wider(it: Histogram) -> Histogram {
     Histogram {
         from: it.from - CLASSES as f64 * it.width,
@@ -63,7 +63,7 @@ fn wider(it: Histogram) -> Histogram {
     }
 }
 
-/// Without the empty classes at the ends.
+/// Removes empty classes at the ends.
 fn trimmed(it: Histogram) -> Histogram {
     let first = it.counts.iter().position(|&n| n > 0).unwrap_or(0);
     let end = it
@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tally_has_the_moments_of_the_whole_and_counts_every_value() {
+    fn a_tally_matches_the_moments_and_counts_every_value() {
         let values: Vec<f64> = (0..5_500)
             .map(|n| 7.0 + f64::from(n % 997) / 1000.0)
             .collect();

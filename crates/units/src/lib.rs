@@ -1,7 +1,7 @@
-//! Physical units as types, so that a volt is never judged against a limit in ohms.
+//! Physical units as types, so that a voltage is never compared with a limit in ohms.
 //!
-//! Arithmetic stays inside one unit; the only mixed operation is Ohm's law, spelled out as
-//! [`Volt::over`]. Rig time is integer microseconds: [`RigTime`] is an instant, [`Span`] a duration.
+//! Arithmetic stays within one unit; the only mixed operation is Ohm's law, [`Volt::over`]. Rig time is in whole
+//! microseconds: [`RigTime`] is an instant, [`Span`] a duration.
 
 use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
@@ -15,11 +15,11 @@ macro_rules! quantity {
         pub struct $name(pub f64);
 
         impl $name {
-            /// Magnitude without sign.
+            /// Returns the magnitude.
             pub fn abs(self) -> Self {
                 Self(self.0.abs())
             }
-            /// False for NaN and the infinities: such a value must never be judged.
+            /// Whether the value is neither NaN nor infinite; a verdict needs a finite value.
             pub fn is_finite(self) -> bool {
                 self.0.is_finite()
             }
@@ -70,7 +70,7 @@ quantity!(/** Time as a measured quantity (an operate time), not an instant of t
 quantity!(/** Temperature on the Celsius scale. */ Celsius, "C");
 quantity!(/** Length. */ Millimetre, "mm");
 
-/// Unit of a bare number that the type system does not follow: of a reading, a limit, a factor.
+/// Unit of a bare number, such as a reading, a limit or a factor whose type carries no unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Unit {
     /// A pure number.
@@ -92,7 +92,7 @@ pub enum Unit {
 }
 
 impl Unit {
-    /// As written in files, rows and JSON, in ASCII.
+    /// Symbol in files, rows and JSON, in ASCII.
     pub const fn symbol(self) -> &'static str {
         match self {
             Self::One => "1",
@@ -106,7 +106,7 @@ impl Unit {
         }
     }
 
-    /// As printed on paper and pages.
+    /// Symbol on paper and pages.
     pub const fn sign(self) -> &'static str {
         match self {
             Self::Ohm => "Ω",
@@ -131,20 +131,20 @@ impl Serialize for Unit {
 }
 
 impl Volt {
-    /// Ohm's law: the resistance that drops this voltage at `current`.
+    /// Ohm's law: the resistance across which `current` drops this voltage.
     pub fn over(self, current: Ampere) -> Ohm {
         Ohm(self.0 / current.0)
     }
 }
 
-/// An instant of the rig: microseconds since the program's rig clock began.
+/// An instant on the rig clock: microseconds since the clock started with the program.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
 )]
 #[serde(transparent)]
 pub struct RigTime(pub u64);
 
-/// A duration on the rig's clock, in microseconds.
+/// A duration on the rig clock, microseconds.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
 )]
@@ -152,15 +152,15 @@ pub struct RigTime(pub u64);
 pub struct Span(pub u64);
 
 impl Span {
-    /// From whole milliseconds.
+    /// Converts whole milliseconds.
     pub const fn ms(ms: u64) -> Self {
         Self(ms * 1000)
     }
-    /// From seconds, rounded to the microsecond; negative and non-finite values become zero.
+    /// Converts seconds, rounded to the microsecond; negative values and NaN become zero, values too large the greatest span.
     pub fn seconds(seconds: f64) -> Self {
         Self((seconds * 1e6).round().max(0.0) as u64)
     }
-    /// In seconds.
+    /// Converts to seconds.
     pub fn as_seconds(self) -> f64 {
         self.0 as f64 / 1e6
     }
@@ -198,19 +198,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ohms_law_is_the_only_way_between_units() {
+    fn ohms_law_is_the_only_mixed_operation() {
         assert_eq!(Volt(5.0).over(Ampere(0.0125)), Ohm(400.0));
     }
 
     #[test]
-    fn a_unit_is_written_in_ascii_and_printed_with_its_sign() {
+    fn a_unit_has_an_ascii_and_a_printed_symbol() {
         assert_eq!(serde_json::json!(Unit::Milliohm), "mOhm");
         assert_eq!(Unit::Milliohm.sign(), "mΩ");
         assert_eq!(format!("[{:>3}]", Unit::Volt), "[  V]");
     }
 
     #[test]
-    fn a_span_never_runs_backwards() {
+    fn a_span_is_never_negative() {
         assert_eq!(RigTime(5).since(RigTime(9)), Span(0));
         assert_eq!(Span::seconds(f64::NAN), Span(0));
         assert_eq!(Span::seconds(0.0000014), Span(1));

@@ -134,7 +134,7 @@ async fn stands(
     let said = send_raw(port, settings, Pace::real(), &question).await?;
     let found = setting.decode(&said.bytes, settings.checksum);
     Ok(found
-        .is_ok_and(|found| command.stands(&found))
+        .is_ok_and(|found| command.is_in_effect(&found))
         .then(|| escaped(&said.bytes)))
 }
 

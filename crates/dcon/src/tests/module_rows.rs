@@ -1,4 +1,4 @@
-//! The same for digital modules and counters.
+//! Rows for digital modules and counters.
 
 use super::{A1, ch, n, word};
 use crate::*;

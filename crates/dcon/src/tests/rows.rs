@@ -1,4 +1,4 @@
-//! What each command looks like on the wire, and what its reply means.
+//! Bytes of each command on the wire, and meaning of its reply.
 
 use super::module_rows::{counter_rows, digital_rows};
 use super::{A1, ch, config, level};

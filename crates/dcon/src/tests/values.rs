@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn readings_are_numbers_in_the_terms_of_their_notation() {
+fn readings_are_numbers_in_their_notation() {
     for (form, text, value, volts) in [
         (VOLTS, ">+02.513", Value::Engineering(2.513), Some(2.513)),
         (VOLTS, ">-10.000", Value::Engineering(-10.0), Some(-10.0)),
@@ -19,7 +19,7 @@ fn readings_are_numbers_in_the_terms_of_their_notation() {
 }
 
 #[test]
-fn a_reading_at_the_rail_is_no_number() {
+fn a_reading_at_full_scale_hex_is_no_number() {
     for (form, text, value) in [
         (VOLTS, ">+9999.9", Value::OverRange),
         (VOLTS, ">9999.9", Value::OverRange),
@@ -35,7 +35,7 @@ fn a_reading_at_the_rail_is_no_number() {
 }
 
 #[test]
-fn a_reading_beyond_what_the_range_can_say_is_refused() {
+fn a_reading_beyond_its_range_is_refused() {
     for (form, text) in [
         (VOLTS, ">+99.000"),
         (VOLTS, ">+2.5.13"),
@@ -51,7 +51,7 @@ fn a_reading_beyond_what_the_range_can_say_is_refused() {
 }
 
 #[test]
-fn all_channels_come_in_order_and_disabled_ones_stay_blank() {
+fn all_channels_come_in_order_with_disabled_ones_blank() {
     let (command, reply) = READINGS[1];
     let Ok(Reply::Readings(all)) = command.decode(&sealed(reply, true), true) else {
         panic!("{reply}")
@@ -72,7 +72,7 @@ fn all_channels_come_in_order_and_disabled_ones_stay_blank() {
 }
 
 #[test]
-fn a_level_that_the_output_cannot_reach_is_refused_before_it_is_sent() {
+fn an_unreachable_level_is_refused_before_sending() {
     let volts = TypeCode(0x32);
     assert_eq!(
         Level::nearest(OutputForm::Hex16, volts, 10.0)
@@ -115,7 +115,7 @@ fn a_level_that_the_output_cannot_reach_is_refused_before_it_is_sent() {
 }
 
 #[test]
-fn the_configuration_word_tells_baud_filter_and_slew() {
+fn the_configuration_word_gives_baud_filter_and_slew() {
     let config = config(0x32, 0x0A, 0x54);
     assert_eq!(config.baud.rate(), Some(115_200));
     assert_eq!(BaudCode::of(9_600), Some(BaudCode(6)));

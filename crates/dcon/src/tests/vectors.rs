@@ -1,10 +1,10 @@
-//! Conformance vectors of the named modules, from their manuals: read, cut off, and damaged bit by bit.
+//! Conformance vectors of the named modules, from their manuals: decoded whole, cut off, and with each bit damaged.
 
 use super::sealed;
 use crate::{Family, ReplyError, readings, understand};
 use proptest::prelude::*;
 
-/// Model, request, reply and meaning, tab by tab; frames without checksum and CR.
+/// Model, request, reply and meaning, separated by tabs; frames without checksum and CR.
 const VECTORS: &str = include_str!("vectors.txt");
 
 struct Vector {
@@ -31,7 +31,7 @@ fn vectors() -> Vec<Vector> {
     .collect()
 }
 
-/// What a module of this model says with it, without repeats.
+/// Returns the meanings of the reply from a module of this model, without repeats.
 fn said(vector: &Vector, reply: &[u8], checksum: bool) -> Vec<String> {
     let family = Family::of_name(vector.model).unwrap();
     let request = sealed(vector.request, checksum);
@@ -51,7 +51,7 @@ fn said(vector: &Vector, reply: &[u8], checksum: bool) -> Vec<String> {
 }
 
 #[test]
-fn every_vector_means_what_its_manual_says() {
+fn every_vector_decodes_as_its_manual_states() {
     for vector in vectors() {
         for checksum in [false, true] {
             let said = said(&vector, &sealed(vector.reply, checksum), checksum);
@@ -68,7 +68,7 @@ fn every_vector_means_what_its_manual_says() {
 }
 
 #[test]
-fn no_vector_cut_off_anywhere_is_taken_for_a_value() {
+fn no_truncated_vector_decodes_to_a_value() {
     for vector in vectors() {
         let family = Family::of_name(vector.model).unwrap();
         for checksum in [false, true] {
@@ -77,7 +77,7 @@ fn no_vector_cut_off_anywhere_is_taken_for_a_value() {
                 .into_iter()
                 .filter(|it| family.knows(it))
             {
-                // A command that this reply is no answer to at all says nothing about cutting.
+                // Skips commands that do not accept the whole reply either.
                 if command.decode(&whole, checksum).is_err() {
                     continue;
                 }
@@ -95,7 +95,7 @@ fn no_vector_cut_off_anywhere_is_taken_for_a_value() {
 }
 
 #[test]
-fn no_vector_with_a_checksum_and_one_wrong_bit_is_taken_for_a_value() {
+fn no_vector_with_one_wrong_bit_passes_the_checksum() {
     for vector in vectors() {
         let whole = sealed(vector.reply, true);
         for command in readings(vector.request.as_bytes()) {
@@ -114,7 +114,7 @@ fn no_vector_with_a_checksum_and_one_wrong_bit_is_taken_for_a_value() {
 }
 
 #[test]
-fn without_a_checksum_the_range_of_the_module_still_refuses_what_it_cannot_say() {
+fn without_checksum_the_range_still_refuses_damaged_values() {
     use super::{A1, PERCENT, PT100, VOLTS, ch};
     use crate::{AnalogIn, Digital};
     let one = |form| {
@@ -140,7 +140,7 @@ fn without_a_checksum_the_range_of_the_module_still_refuses_what_it_cannot_say()
 }
 
 #[test]
-fn what_only_the_factory_may_do_is_known_by_its_characters() {
+fn factory_commands_are_recognised_by_their_characters() {
     use crate::factory;
     for request in [
         "$010",
@@ -173,7 +173,7 @@ proptest! {
             let mut written = Vec::new();
             command.encode(false, &mut written);
             let written = written.strip_suffix(b"\r").unwrap_or_default();
-            // `#AABBDD` has two spellings.
+            // `#AABBDD` (7 characters) has two spellings.
             prop_assert!(written == request.as_bytes() || request.len() == 7);
             prop_assert!(readings(written).contains(&command));
         }

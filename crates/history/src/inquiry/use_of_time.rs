@@ -3,7 +3,7 @@
 use super::Result;
 use crate::{Archive, Filter, LotSummary, Moment};
 use quality::Ordered;
-use quality::effectiveness::{Effectiveness, Seen, effectiveness};
+use quality::effectiveness::{Effectiveness, Observed, effectiveness};
 
 /// The quickest share of cycles that stands for the ideal one when none is given.
 const QUICKEST: f64 = 0.05;
@@ -16,12 +16,12 @@ pub(super) fn use_of_time(
     runs: &[LotSummary],
     ideal_cycle_s: Option<f64>,
 ) -> Result<Option<Effectiveness>> {
-    let mut seen = Seen::default();
+    let mut observed = Observed::default();
     for run in runs.iter().filter(|run| run.source != "import") {
         let Some(closed) = run.closed else { continue };
-        seen.planned_s += seconds(run.opened, closed);
-        seen.parts += run.counts.parts;
-        seen.good += run.counts.pass;
+        observed.planned_s += seconds(run.opened, closed);
+        observed.parts += run.counts.parts;
+        observed.good += run.counts.pass;
     }
     let mut stood = Vec::new();
     for alarm in archive.alarms(filter)? {
@@ -34,14 +34,14 @@ pub(super) fn use_of_time(
         });
         stood.extend(end.map(|end| (alarm.raised, end)));
     }
-    seen.stopped_s = covered_s(stood);
-    seen.ideal_cycle_s = match ideal_cycle_s {
+    observed.stopped_s = covered_s(stood);
+    observed.ideal_cycle_s = match ideal_cycle_s {
         Some(ideal) => ideal,
         None => Ordered::of(&archive.cycles(filter)?)
             .quantile(QUICKEST)
             .unwrap_or(0.0),
     };
-    Ok(effectiveness(seen))
+    Ok(effectiveness(observed))
 }
 
 /// Time in which at least one of the spans stood: alarms that stand together stop the line once.

@@ -1,10 +1,10 @@
-//! Whether the core and its peer answer alike.
+//! Compares the answers of the core with those of its peer.
 
 use lpm::Move;
 
 use super::{Bench, RANGE_MM, stop};
 
-/// Verdicts that differ from the peer's, and the largest differences of the time of contact.
+/// Prints the verdicts that differ from the peer's, and the largest differences of the time of contact.
 pub fn differences(bench: &Bench, kind: &str, ways: &[Move]) {
     let (mut verdicts, mut later, mut earlier) = (Vec::new(), 0.0_f64, 0.0_f64);
     for (index, way) in ways.iter().enumerate() {

@@ -1,11 +1,11 @@
-//! How the cost of the core grows with the number of elements at the same density.
+//! Growth of the core's cost with the number of elements at constant density.
 
 use super::timing::{Rounds, TURNS, Timed};
 use super::world::{KINDS, gripper, moves, world};
 use super::{QUERIES, RANGE_MM, SIZES, built, mover, stop};
 
-/// Prints means, ns, for every size, and how many times the smallest world's the largest one's are. The sizes take
-/// turns, as contestants do.
+/// Prints the mean time in ns for every size, and the ratio of the largest to the smallest. Measurements alternate
+/// between the sizes.
 pub fn report(clock: f64) {
     let mover = mover(gripper());
     let worlds = SIZES.map(world);

@@ -1,9 +1,9 @@
-//! Speed of the collision core against its peers, in one run: `cargo bench -p lpm`.
+//! Speed of the collision core relative to its peers, measured in one run: `cargo bench -p lpm`.
 //!
-//! Printed are nanoseconds and ratios (how many times the peer needs) of mean and 99th percentile,
-//! warm, in an order that nobody can learn, and cold, and how many answers differ; below a missed bar, what it is made of ([`missed`]).
-//! `-- --quick` stops at 1,000 elements, `-- --bar` is 1,000 alone, `-- --growth` asks the core alone
-//! how its cost grows from 10 to 100,000 elements.
+//! Prints nanoseconds and ratios (peer to core) of mean and 99th percentile, warm, in random order and cold, and
+//! the number of answers that differ; below a missed bar, the parts of the time ([`missed`]). `-- --quick` stops at
+//! 1,000 elements, `-- --bar` measures 1,000 alone, `-- --growth` measures how the cost of the core alone grows
+//! from 10 to 100,000 elements.
 
 mod answers;
 mod growth;
@@ -16,17 +16,17 @@ use lpm::{Answer, Model, Move, Mover, Pose, Shape};
 use timing::{Rounds, Spread, TURNS, Timed, clock_ns, cold};
 use world::{KINDS, World, gripper, moves, world};
 
-/// Numbers of elements.
+/// Numbers of elements of the measured worlds.
 const SIZES: [usize; 5] = [10, 100, 1_000, 10_000, 100_000];
-/// Queries of each kind.
+/// Number of queries of each kind.
 const QUERIES: usize = 2_000;
-/// Queries of each kind with cold caches.
+/// Number of queries of each kind with cold caches.
 const COLD_QUERIES: usize = 300;
-/// Margin of the rows that have one, mm.
+/// Margin of the rows with a margin, mm.
 const MARGIN_MM: f64 = 0.5;
-/// How many times faster than parry3d-f64 is wanted.
+/// Required ratio of the time of parry3d-f64 to that of the core.
 const BAR: f64 = 10.0;
-/// Range of the clearance question, mm: that of `check`.
+/// Range of the clearance question, mm, as in `relayrig check`.
 const RANGE_MM: f64 = 25.0;
 
 fn main() {
@@ -65,12 +65,12 @@ struct Bench {
 fn built(world: &World) -> Model {
     let elements = world.elements.iter();
     let named = elements.map(|(shape, pose)| ("element", shape, pose));
-    Model::of(named).expect("the bodies of the scene")
+    Model::of(named).expect("valid bodies")
 }
 
 fn mover(parts: Vec<(Shape, Pose)>) -> Mover {
     let parts = parts.into_iter().map(|(shape, pose)| (pose, shape));
-    Mover::new(&Shape::Compound(parts.collect())).expect("a body of blocks and cylinders")
+    Mover::new(&Shape::Compound(parts.collect())).expect("valid blocks and cylinders")
 }
 
 fn stop(model: &Model, mover: &Mover, way: &Move) -> Option<f64> {
@@ -190,7 +190,7 @@ impl Bench {
         row(kind, &share, "clearance", &least.spread(), &[]);
     }
 
-    /// First contact with half a millimetre to be kept: both sides search then.
+    /// First contact with a margin of half a millimetre, for which both sides search.
     fn margins(&self, world: &World) {
         for kind in ["jog5", "descend", "local300"] {
             let mut ways = moves(world, kind, QUERIES);
@@ -211,13 +211,13 @@ impl Bench {
         }
     }
 
-    /// A question far above everything: what taking poses costs.
+    /// A move far above all elements: measures the cost of processing poses.
     fn far_above(&self, world: &World) {
         let ways = missed::lifted(&moves(world, "disc_yaw0", QUERIES));
         self.any_row("far above", "any hit", || Timed::new(&ways, self.clock));
     }
 
-    /// In another order in each pass.
+    /// Queries in another order in each pass.
     fn unlearned_kind(&self, kind: &str, ways: &[Move]) {
         self.any_row(kind, "any, no order", || Timed::unlearned(ways, self.clock));
     }
@@ -287,7 +287,7 @@ impl Bench {
             ours.turn(|index| {
                 let (shape, pose) = &world.elements[*index];
                 let key = model.insert("element", shape, pose);
-                model.remove(key.expect("a body of the scene"))
+                model.remove(key.expect("a valid body"))
             });
             double_edit.turn(&mut double);
             single_edit.turn(&mut single);

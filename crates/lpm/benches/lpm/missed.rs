@@ -1,4 +1,4 @@
-//! What a missed bar is made of: parts of the same questions, measured in the same run.
+//! Breaks down a missed bar: parts of the same questions, measured in the same run.
 
 use lpm::{Move, Mover};
 
@@ -6,10 +6,10 @@ use super::timing::{Spread, warm};
 use super::world::specks;
 use super::{BAR, Bench, mover, row};
 
-/// Higher than anything stands, mm.
+/// Height above every element, mm.
 const FAR_ABOVE_MM: f64 = 10_000.0;
 
-/// The same moves where nothing stands.
+/// Lifts the same moves far above the elements.
 pub fn lifted<'a>(ways: &[Move<'a>]) -> Vec<Move<'a>> {
     let mut above = ways.to_vec();
     for way in &mut above {
@@ -19,9 +19,9 @@ pub fn lifted<'a>(ways: &[Move<'a>]) -> Vec<Move<'a>> {
     above
 }
 
-/// Below a missed bar: what taking the poses costs here (everything stands far below), and with it finding whose
-/// boxes meet (four specks in the corners of the gripper's box, which meet next to nothing, so that no hit ends
-/// the question). That is where the time goes; it does not show that the bar is out of reach.
+/// Prints, below a missed bar, the cost of processing the poses (all elements far below), and of the poses plus the
+/// search for overlapping boxes: four specks in the corners of the gripper's box meet almost nothing, so no hit
+/// ends the question. This shows where the time goes, not that the bar is out of reach.
 pub fn of_question(
     bench: &Bench,
     ways: &[Move],
@@ -48,8 +48,9 @@ pub fn of_question(
     );
 }
 
-/// A copy of the model: all that is kept written once, into memory of the same pieces. Where the system takes
-/// memory back between two models, both pay for it. Building cannot be faster.
+/// Prints the time of copying the model, which writes the same data once into memory of the same structure and so
+/// bounds the building time from below. Where the system reclaims memory between two models, copying and building
+/// both pay for it.
 pub fn of_build(copy: &Spread, ours: &Spread, peer: &Spread) {
     row("build", "", "copy of it", copy, &[*peer]);
     if peer.mean < BAR * ours.mean {

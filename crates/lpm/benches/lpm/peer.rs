@@ -1,11 +1,10 @@
-//! The peers: parry3d in both precisions, each by the recipes its interface offers.
+//! The peers: parry3d in both precisions, each used in the ways its interface offers.
 //!
-//! `compound`: scene and mover are one `Compound` each, one call per question. `pairs`: the mover's
-//! parts one by one against the raw `Bvh`, pairs through `cast_shapes` or `intersection_test`; this
-//! can stop at the first hit, which the composite call cannot. Cylinders lie on the axis that the
-//! library gives them (y), as it likes them best.
+//! `compound`: scene and mover are one `Compound` each, one call per question. `pairs`: each part of the mover
+//! against the raw `Bvh`, pairs through `cast_shapes` or `intersection_test`; unlike the composite call this can
+//! stop at the first hit. Cylinders lie along the native axis of the library (y), its most favourable case.
 
-/// One precision of the library as a module.
+/// Defines a module for one precision of the library.
 macro_rules! peer {
     ($name:ident, $library:ident, $real:ty) => {
         pub mod $name {
@@ -19,7 +18,7 @@ macro_rules! peer {
             };
             use $library::shape::{Compound, SharedShape};
 
-            /// A body as the library has it, and its place.
+            /// A body of the library and its pose.
             pub type Placed = (Pose, SharedShape);
 
             pub struct Peer {
@@ -37,7 +36,7 @@ macro_rules! peer {
                 Pose::from_parts(vector(pose.position), rotation)
             }
 
-            /// Upright along z by a quarter turn about x.
+            /// Turns a cylinder upright along z by a quarter turn about x.
             fn placed((shape, place): &(lpm::Shape, lpm::Pose)) -> Placed {
                 let place = pose(place);
                 match shape {
@@ -69,7 +68,7 @@ macro_rules! peer {
                     }
                 }
 
-                /// The shapes, made and shared beforehand.
+                /// Prepares shared shapes in advance.
                 pub fn bodies(elements: &[(lpm::Shape, lpm::Pose)]) -> Vec<Placed> {
                     elements.iter().map(placed).collect()
                 }
@@ -79,7 +78,7 @@ macro_rules! peer {
                     rounds.turn(|| bodies.to_vec(), Compound::new);
                 }
 
-                /// Puts one leaf into the raw tree and takes it out; its bounds are known beforehand.
+                /// Inserts one leaf into the raw tree and removes it; its bounds are computed in advance.
                 pub fn editor(&self) -> impl FnMut(&usize) {
                     let bounds = self.scene.aabbs();
                     let spare = bounds.len() as u32;
@@ -90,7 +89,7 @@ macro_rules! peer {
                     }
                 }
 
-                /// First contact by one call; a start that overlaps counts as 0.
+                /// First contact by one call; a start with overlap counts as 0.
                 pub fn compound(&self, way: &lpm::Move) -> Option<f64> {
                     let (from, run) = (pose(&way.from), run(way));
                     if run == Vector::ZERO {
@@ -200,7 +199,7 @@ macro_rules! peer {
                 vector([to[0] - from[0], to[1] - from[1], to[2] - from[2]])
             }
 
-            /// Only whether and when: no geometry of the impact is asked for.
+            /// Options for verdict and time only, without the geometry of the impact.
             fn options(until: $real) -> ShapeCastOptions {
                 ShapeCastOptions {
                     max_time_of_impact: until,

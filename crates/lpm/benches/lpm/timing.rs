@@ -1,27 +1,26 @@
-//! How a query is timed: alone, the cost of the clock taken off, the best of several warm passes;
-//! then mean, median and 99th percentile over the queries.
+//! Times each query alone, subtracts the cost of the clock and takes the best of several warm passes; then reports
+//! mean, median and 99th percentile over the queries.
 //!
-//! In the warm rows contestants take turns, several passes each, so that all of them meet the machine in its moods: on a
-//! shared one everything may take half as long again for seconds, and a ratio of two figures that were taken one after
-//! the other (those of the cold rows and below a missed bar) says as much about that. Warm is everything
-//! then: caches, and what the processor has learned about the order of these very questions. The rows without an order
-//! ask in another one in each pass, and there the median of the passes counts.
+//! In the warm rows contestants alternate, several passes each, so that all see the same state of the machine: on a
+//! shared one everything may take 50 % longer for seconds, which distorts a ratio of two figures taken one after
+//! the other (the cold rows and those below a missed bar). Warm includes caches and branch prediction for these
+//! very queries. The rows in random order shuffle the queries before each pass and use the median of the passes.
 //!
-//! A clock that goes by steps shows less than was spent, the best of several readings most of all: with steps of 10 ns
-//! some 2 ns of a question of 50, more than of an empty one.
+//! A clock with coarse steps underreports, most of all in the best of several readings: with steps of 10 ns by
+//! about 2 ns for a query of 50 ns, more than for an empty one.
 
 use std::hint::black_box;
 use std::time::Instant;
 
 use super::world::Dice;
 
-/// Turns of each contestant.
+/// Number of turns of each contestant.
 pub const TURNS: usize = 4;
-/// Passes over all queries in a turn; the first ones also warm the caches.
+/// Passes over all queries per turn; the first ones also warm the caches.
 const PASSES: usize = 7;
-/// Queries of the clock alone.
+/// Number of empty queries that measure the clock.
 const EMPTY: usize = 2_000;
-/// Bytes written before each cold query: more than any cache level of the machines in use.
+/// Bytes written before each cold query: more than any cache level of the machines used.
 const FLUSHED_BYTES: usize = 48 << 20;
 
 /// Distribution of the time of one query, ns.
@@ -44,7 +43,7 @@ impl Spread {
     }
 }
 
-/// What reading the clock costs, ns: a query that asks nothing, timed like all others.
+/// Cost of reading the clock, ns: an empty query, timed like all others.
 pub fn clock_ns() -> f64 {
     warm(&[(); EMPTY], 0.0, |()| ()).mean
 }
@@ -53,11 +52,11 @@ pub fn clock_ns() -> f64 {
 pub struct Timed<'a, Q> {
     queries: &'a [Q],
     clock_ns: f64,
-    /// What was read of each query.
+    /// Times read for each query, ns.
     readings: Vec<Vec<f64>>,
-    /// Numbers of the queries as they are asked.
+    /// Order of the queries, as indices.
     order: Vec<usize>,
-    /// Puts them in another order before each pass.
+    /// Shuffles the order before each pass; `None` keeps it.
     dice: Option<Dice>,
 }
 
@@ -72,7 +71,7 @@ impl<'a, Q> Timed<'a, Q> {
         }
     }
 
-    /// The same in another order in each pass: what comes next has not been learned by anybody.
+    /// Queries in another order in each pass, which defeats branch prediction.
     pub fn unlearned(queries: &'a [Q], clock_ns: f64) -> Timed<'a, Q> {
         Timed {
             dice: Some(Dice::new(7)),
@@ -80,7 +79,7 @@ impl<'a, Q> Timed<'a, Q> {
         }
     }
 
-    /// Some passes.
+    /// Runs the passes of one turn.
     pub fn turn<A>(&mut self, mut ask: impl FnMut(&Q) -> A) {
         for _ in 0..PASSES {
             if let Some(dice) = &mut self.dice {
@@ -96,7 +95,7 @@ impl<'a, Q> Timed<'a, Q> {
         }
     }
 
-    /// Of the best of each query; where nothing was to be learned, of the median.
+    /// Distribution of the best time of each query; of the median time for shuffled queries.
     pub fn spread(mut self) -> Spread {
         let which = if self.dice.is_some() {
             TURNS * PASSES / 2
@@ -111,14 +110,14 @@ impl<'a, Q> Timed<'a, Q> {
     }
 }
 
-/// One contestant alone.
+/// Times one contestant alone.
 pub fn warm<Q, A>(queries: &[Q], clock_ns: f64, mut ask: impl FnMut(&Q) -> A) -> Spread {
     let mut timed = Timed::new(queries, clock_ns);
     (0..TURNS).for_each(|_| timed.turn(&mut ask));
     timed.spread()
 }
 
-/// Each query once, with every cache full of something else.
+/// Times each query once, after filling every cache with other data.
 pub fn cold<Q, A>(queries: &[Q], clock_ns: f64, ask: impl Fn(&Q) -> A) -> Spread {
     let mut ballast = vec![0u8; FLUSHED_BYTES];
     let times = queries.iter().map(|query| {
@@ -134,10 +133,10 @@ pub fn cold<Q, A>(queries: &[Q], clock_ns: f64, ask: impl Fn(&Q) -> A) -> Spread
     Spread::of(times.collect())
 }
 
-/// Tries of a round in each turn.
+/// Attempts at a round in each turn.
 const TRIES: usize = 2;
 
-/// Rounds of something large, each the best of all turns, ns.
+/// Rounds of a large operation, each with the best time of all turns, ns.
 pub struct Rounds {
     best: Vec<f64>,
 }
@@ -149,7 +148,7 @@ impl Rounds {
         }
     }
 
-    /// All rounds; what is made `ready` for them is not counted, nor is what they leave behind.
+    /// Runs all rounds; excludes the time of preparing them with `ready` and of dropping their results.
     pub fn turn<S, A>(&mut self, mut ready: impl FnMut() -> S, mut run: impl FnMut(S) -> A) {
         for best in &mut self.best {
             for _ in 0..TRIES {
@@ -163,7 +162,8 @@ impl Rounds {
         }
     }
 
-    /// Of the best of each round: the same work every time, so its percentiles are those of the machine.
+    /// Distribution of the best time of each round. Each round does the same work, so the percentiles reflect the
+    /// machine.
     pub fn spread(self) -> Spread {
         Spread::of(self.best)
     }

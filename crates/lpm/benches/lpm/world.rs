@@ -1,8 +1,8 @@
-//! The scenes and moves that are measured: a plate with stacks of elements, and one gripper.
+//! The scenes and moves of the benchmark: a plate with stacks of elements, and one gripper.
 //!
-//! Stacks of one to five elements stand at a pitch of 60 mm, 60 % blocks (5 % of them yawed) and
-//! 40 % upright cylinders, 20 to 60 mm high each. The plate grows with the number of elements, so
-//! that density stays the same. The mover is two fingers, a palm and a spindle.
+//! Stacks of one to five elements have a pitch of 60 mm, 60 % blocks (5 % of them yawed) and 40 % upright
+//! cylinders, each 20 to 60 mm high. The plate grows with the number of elements, so that the density stays
+//! constant. The mover is two fingers, a palm and a spindle.
 
 use lpm::{Move, Pose, Shape};
 use rand_xoshiro::SplitMix64;
@@ -13,16 +13,16 @@ const PITCH_MM: f64 = 60.0;
 /// Mean number of elements of a stack.
 const MEAN_STACK: f64 = 3.0;
 
-/// Numbers that look drawn and are the same in every run.
+/// Random numbers that are the same in every run.
 pub struct Dice(SplitMix64);
 
 impl Dice {
-    /// Draws from a seed.
+    /// Starts from a seed.
     pub fn new(seed: u64) -> Self {
         Self(SplitMix64::seed_from_u64(seed))
     }
 
-    /// Uniform in `low..high`.
+    /// Draws uniformly in `low..high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
@@ -31,7 +31,7 @@ impl Dice {
         self.0.next_u64() % count
     }
 
-    /// Puts things in another order.
+    /// Shuffles a slice.
     pub fn shuffle<T>(&mut self, things: &mut [T]) {
         for last in (1..things.len()).rev() {
             things.swap(last, self.below(last as u64 + 1) as usize);
@@ -39,9 +39,9 @@ impl Dice {
     }
 }
 
-/// What stands.
+/// The stationary bodies of a benchmark.
 pub struct World {
-    /// Body and place of each element, the plate first.
+    /// Body and pose of each element, the plate first.
     pub elements: Vec<(Shape, Pose)>,
     /// Edge of the square plate, mm; it lies between 0 and this in x and y, its top at z = 0.
     pub edge_mm: f64,
@@ -49,7 +49,7 @@ pub struct World {
     pub top_mm: f64,
 }
 
-/// `count` elements and the plate under them.
+/// Builds `count` elements and the plate below them.
 pub fn world(count: usize) -> World {
     let mut dice = Dice::new(count as u64);
     let side = (count as f64 / MEAN_STACK).sqrt().ceil().max(1.0) as u64;
@@ -59,8 +59,8 @@ pub fn world(count: usize) -> World {
     };
     let mut elements = vec![(plate, Pose::at([edge_mm / 2.0, edge_mm / 2.0, -10.0]))];
     let mut top_mm: f64 = 0.0;
-    // Stack after stack; when the plate is full another round goes on top of nothing: the last
-    // stacks are simply higher, which happens for the smallest worlds only.
+    // Fills stack after stack. Once the plate is full, another round starts above the stacks; this happens only in
+    // the smallest worlds.
     for stack in 0.. {
         if elements.len() > count {
             break;
@@ -107,7 +107,7 @@ fn element(dice: &mut Dice, tall: f64, centre: [f64; 3]) -> (Shape, Pose) {
     (Shape::Block { half }, pose)
 }
 
-/// Two fingers, a palm and a spindle; the origin is between the finger tips.
+/// The gripper: two fingers, a palm and a spindle, with the origin between the finger tips.
 pub fn gripper() -> Vec<(Shape, Pose)> {
     let block = |half: [f64; 3], at: [f64; 3]| (Shape::Block { half }, Pose::at(at));
     vec![
@@ -124,7 +124,7 @@ pub fn gripper() -> Vec<(Shape, Pose)> {
     ]
 }
 
-/// Four specks in corners of the gripper's box: all that is asked of boxes, and next to nothing met.
+/// Four specks in the corners of the gripper's box: they need all tests of boxes but meet almost nothing.
 pub fn specks() -> Vec<(Shape, Pose)> {
     let speck = Shape::Block { half: [0.01; 3] };
     let corners = [
@@ -148,7 +148,7 @@ pub const KINDS: [&str; 6] = [
     "traverse",
 ];
 
-/// `count` moves of one kind.
+/// Draws `count` moves of one kind.
 pub fn moves(world: &World, kind: &str, count: usize) -> Vec<Move<'static>> {
     let mut dice = Dice::new(kind.bytes().map(u64::from).sum());
     (0..count).map(|_| drawn(world, kind, &mut dice)).collect()

@@ -1,14 +1,13 @@
 //! Distance between two convex pieces, with proof.
 //!
-//! **What is proven.** For a direction `n` (any non-zero vector) the plane normal to `n` separates
-//! the pieces by at least `(n·c - extent_a(n) - extent_b(-n)) / |n|`, `c` being the vector between
-//! their centres. [`separation`] evaluates exactly this and subtracts a forward error bound
-//! ([`NOISE`](super::piece::NOISE)). Every *clear* of the whole module rests on such evaluated planes and on nothing
-//! else: no iteration count, no convergence, no simplex. The searches below only propose planes;
-//! a search that goes wrong proposes a poor plane, whose lower bound is low, and that means blocked.
+//! **Proof.** For a direction `n` (any non-zero vector) the plane normal to `n` separates the pieces by at least
+//! `(n·c - extent_a(n) - extent_b(-n)) / |n|`, where `c` is the vector between their centres. [`separation`] evaluates
+//! exactly this and subtracts a forward error bound ([`NOISE`](super::piece::NOISE)). Every *clear* of this module rests
+//! on such evaluated planes alone, not on iteration counts, convergence or a simplex. The searches below only propose
+//! planes; a search that fails proposes a poor plane with a low bound, and that means blocked.
 //!
-//! **What is searched.** [`upright`] proposes the best plane of two upright pieces in closed form;
-//! [`simplex`] walks to the best plane of any two convex pieces, [`polish`] finds its last digits.
+//! **Search.** [`upright`] proposes the best plane of two upright pieces in closed form; [`simplex`] walks to the
+//! best plane of any two convex pieces; [`polish`] finds its last digits.
 
 mod polish;
 pub(crate) mod simplex;
@@ -19,32 +18,32 @@ pub(crate) mod upright;
 use super::piece::{NOISE, Piece};
 use super::vector::{Vec3, add, dot, length, negate, reach, scale, sub};
 
-/// Searches stop when their bounds are this close, mm: a thousandth of what may be blocked.
+/// Difference of bounds at which a search stops, mm: a thousandth of the allowed early block.
 pub(crate) const RESOLUTION_MM: f64 = 1e-9;
 
 /// Bounds of the distance between an element and a mover, mm.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Gap {
-    /// Proven: the pieces are at least this far apart along `normal`. Not above zero: no proof.
+    /// Proven lower bound along `normal`; no proof when not above zero.
     pub(crate) lower: f64,
-    /// Unit vector from the element to the mover, normal of the best plane.
+    /// Unit vector from the element to the mover: the normal of the best plane.
     pub(crate) normal: Vec3,
     /// Nearest point of the element.
     pub(crate) on_element: Vec3,
 }
 
-/// A proposed plane and the points it was found from.
+/// A proposed plane and a point that supports it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Proposal {
-    /// Unit vector from a to b.
+    /// Unit vector from `a` to `b`.
     pub(crate) normal: Vec3,
-    /// Point of a, relative to its centre.
+    /// Point of `a`, relative to its centre.
     pub(crate) on_a: Vec3,
 }
 
-/// Bounds of rounding for one evaluated plane between the two pieces, mm.
+/// Rounding bound of one evaluated plane between two pieces, mm.
 ///
-/// Of the places only their difference counts: a kilometre that both have in common costs no digit.
+/// Only the difference of the places counts: a kilometre common to both costs no digit.
 pub(crate) fn noise(a: &Piece, b: &Piece, shift: Vec3) -> f64 {
     NOISE * (a.span + b.span + reach(shift) + reach(between(a, b, shift)))
 }
@@ -54,7 +53,7 @@ pub(crate) fn between(a: &Piece, b: &Piece, shift: Vec3) -> Vec3 {
     add(sub(b.centre, a.centre), shift)
 }
 
-/// The proven separation along `n`, mm; negative when this plane proves nothing.
+/// Proven separation along `n`, mm; negative when this plane proves nothing.
 pub(crate) fn separation(a: &Piece, b: &Piece, shift: Vec3, n: Vec3) -> f64 {
     let apart = dot(n, between(a, b, shift)) - a.extent(n) - b.extent(negate(n));
     let proven = apart / length(n) - noise(a, b, shift);
@@ -65,9 +64,9 @@ pub(crate) fn separation(a: &Piece, b: &Piece, shift: Vec3, n: Vec3) -> f64 {
     }
 }
 
-/// Distance of `mover`, displaced by `shift`, from `element`.
+/// Bounds the distance of `mover`, displaced by `shift`, from `element`.
 ///
-/// `hint` is a direction that may already be good (the last plane of the same pair).
+/// `hint` is a direction that may already be good, such as the last plane of the same pair.
 pub(crate) fn gap(element: &Piece, mover: &Piece, shift: Vec3, hint: Option<Vec3>) -> Gap {
     let c = between(element, mover, shift);
     let (proposal, lower) = if element.upright && mover.upright {
@@ -83,8 +82,8 @@ pub(crate) fn gap(element: &Piece, mover: &Piece, shift: Vec3, hint: Option<Vec3
     }
 }
 
-/// The closed form; where its direction is a difference of large numbers (two corners a micrometre
-/// apart) the general search sharpens it.
+/// The closed form, refined by the general search where its direction is a difference of large numbers (two corners
+/// a micrometre apart).
 fn closed_form(element: &Piece, mover: &Piece, shift: Vec3, c: Vec3) -> (Proposal, f64) {
     let (proposal, distance) = upright::propose(element, mover, c);
     let lower = separation(element, mover, shift, proposal.normal);

@@ -1,27 +1,26 @@
-//! Last digits of a plane: cutting planes in the space of directions.
+//! Finds the last digits of a plane by cutting planes in the space of directions.
 //!
-//! The walk over simplices loses digits when the nearest vector is tiny beside the pieces (a
-//! micrometre beside a metre). Directions do not: every support point `w` of `b - a` bounds the
-//! separation along any direction `m` by `m·w`, a number without cancellation. In the tangent
-//! plane of the present direction the separation is the least of such linear functions; its
-//! highest point under the support points seen so far is the next direction to try.
+//! The walk over simplices loses digits when the nearest vector is tiny compared with the pieces (a micrometre to a
+//! metre). Directions keep theirs: every support point `w` of `b - a` bounds the separation along any direction `m` by
+//! `m·w`, a number without cancellation. In the tangent plane of the current direction the separation is the minimum of
+//! such linear functions; the maximum of this minimum over the support points seen so far is the next direction to try.
 
 use super::simplex::support;
 use crate::piece::Piece;
 use crate::vector::{Vec3, add, cross, dot, scale, unit};
 
-/// Directions tried.
+/// Most directions tried.
 const MOST_TRIALS: usize = 600;
-/// Support points remembered.
+/// Most support points kept.
 const MOST_CUTS: usize = 18;
-/// First reach of a trial, as the tangent of its angle to the present direction.
+/// Trust region of the first trial, as the tangent of its angle to the current direction.
 const FIRST_REACH: f64 = 1e-2;
-/// First reaches of further rounds, when one has ended without proof that nothing is left to gain.
+/// Trust regions of further rounds, after a round that ended without proof of the optimum.
 const AGAIN_REACHES: [f64; 3] = [1e-4, 1e-6, 1e-8];
-/// Reaches below this change nothing any more.
+/// Trust regions below this change nothing.
 const LAST_REACH: f64 = 1e-15;
 
-/// A bound of the separation in the tangent plane: `height + slope·(s, t)`.
+/// A linear bound of the separation in the tangent plane: `height + slope·(s, t)`.
 #[derive(Debug, Clone, Copy)]
 struct Cut {
     height: f64,
@@ -34,7 +33,7 @@ impl Cut {
     }
 }
 
-/// A direction at least as good as `n`, whose separation is `best` (mm).
+/// Returns a direction at least as good as `n`, whose separation is `best` (mm).
 pub(super) fn polished(a: &Piece, b: &Piece, c: Vec3, n: Vec3, best: f64, resolution: f64) -> Vec3 {
     let (mut n, mut best) = (n, best);
     let mut points = vec![support(a, b, c, n).w];
@@ -58,7 +57,7 @@ pub(super) fn polished(a: &Piece, b: &Piece, c: Vec3, n: Vec3, best: f64, resolu
             let Some(next) = again.next() else {
                 break;
             };
-            // Cuts of farther away may have hidden what is near: once more without them.
+            // Cuts from distant directions may have masked nearby ones: repeats without them.
             reach = *next;
             points = vec![support(a, b, c, n).w];
             continue;
@@ -103,7 +102,7 @@ fn tangents(n: Vec3) -> [Vec3; 2] {
     [u, cross(n, u)]
 }
 
-/// Where the least of the cuts is highest within the square of half side `reach`, and how high.
+/// Returns the place within the square of half side `reach` where the minimum of the cuts is highest, and that value.
 fn highest(cuts: &[Cut], reach: f64) -> ([f64; 2], f64) {
     let value = |place: [f64; 2]| {
         cuts.iter()
@@ -151,7 +150,7 @@ fn difference(a: &Cut, b: &Cut) -> Cut {
     }
 }
 
-/// Where two ridges cross; NaN (which is never inside) when they do not.
+/// Returns the point where two ridges cross; NaN (which is never inside) when they are parallel.
 fn meeting(a: &Cut, b: &Cut) -> [f64; 2] {
     let det = a.slope[0] * b.slope[1] - a.slope[1] * b.slope[0];
     [

@@ -1,33 +1,32 @@
-//! Nearest points of any two convex pieces: a walk over simplices of their difference.
+//! Nearest points of any two convex pieces: walks over simplices of their difference.
 //!
-//! The method of Gilbert, Johnson and Keerthi on `b - a`. Differences from the usual: the normal of
-//! a triangle is taken from its edges and not from the (tiny) nearest vector, a nearest vector on
-//! an edge is made orthogonal twice, and the best plane seen on the way is kept, so that the answer
-//! never gets worse by walking on.
+//! The method of Gilbert, Johnson and Keerthi on `b - a`, with three differences: the normal of a triangle is
+//! computed from its edges and not from the (tiny) nearest vector; a nearest vector on an edge is made orthogonal
+//! twice; and the best plane so far is kept, so that further steps never make the answer worse.
 
 use super::polish::polished;
 use super::{Proposal, RESOLUTION_MM};
 use crate::piece::{NOISE, Piece};
 use crate::vector::{Vec3, add, along, cross, dot, length, negate, scale, sub, unit};
 
-/// Steps of the walk; polytopes need fewer than 20, two tilted rims up to 60.
+/// Most steps of the walk; polytopes need fewer than 20, two tilted rims up to 60.
 const MOST_STEPS: usize = 128;
 
-/// Steps without a shorter nearest vector. Its length converges to second order, the plane only to
-/// first order, so the plane may still gain when the length has no digits left.
+/// Most steps without a shorter nearest vector. The length converges to second order, the plane only to first
+/// order, so the plane may still improve when the length has no digits left.
 const MOST_STALLS: usize = 12;
 
-/// Overlaps shallower than this, mm, are looked at again: a flat simplex may seem to hold the origin.
+/// Overlaps shallower than this are checked again, mm: a flat simplex may appear to contain the origin.
 const DOUBTFUL_MM: f64 = 1e-3;
 
-/// A corner of the simplex: a point of `b - a` and the point of a it came from.
+/// A corner of the simplex: a point of `b - a` and the point of `a` from which it was computed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Corner {
     pub(super) w: Vec3,
     a: Vec3,
 }
 
-/// Nearest point of a simplex to the origin.
+/// Point of a simplex nearest to the origin.
 #[derive(Debug, Clone, Copy)]
 struct Nearest {
     /// The point.
@@ -40,7 +39,7 @@ struct Nearest {
 }
 
 impl Nearest {
-    /// Length of the combination of the corners, mm. (`v` itself may be off when the simplex is a sliver.)
+    /// Length of the combination of the corners, mm. `v` itself may be inaccurate when the simplex is a sliver.
     fn distance(&self) -> f64 {
         let weighted =
             |sum: Vec3, index: usize| along(sum, self.weights[index], self.corners[index].w);
@@ -48,7 +47,7 @@ impl Nearest {
     }
 }
 
-/// The best plane between `a` and `b`, whose centres lie `c` apart.
+/// Returns the best plane between `a` and `b`, whose centres lie `c` apart.
 pub(crate) fn propose(a: &Piece, b: &Piece, c: Vec3, hint: Option<Vec3>) -> Proposal {
     let mut walk = Walk::begin(a, b, c, hint);
     for _ in 0..MOST_STEPS {
@@ -73,7 +72,7 @@ struct Walk<'a> {
     best_normal: Vec3,
     resolution: f64,
     stalls: usize,
-    /// The origin was found inside a simplex.
+    /// Whether a simplex contained the origin, so the pieces meet.
     meets: bool,
 }
 
@@ -94,7 +93,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// False when nothing is left to gain.
+    /// Takes one step; returns false when no improvement is left.
     fn step(&mut self) -> bool {
         let Some(n) = unit(self.nearest.normal) else {
             return false;
@@ -139,7 +138,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The point of `b - a` least far along `n`.
+/// Returns the point of `b - a` that lies least far along `n`.
 pub(super) fn support(a: &Piece, b: &Piece, c: Vec3, n: Vec3) -> Corner {
     let on_a = a.farthest(n);
     Corner {
@@ -148,7 +147,7 @@ pub(super) fn support(a: &Piece, b: &Piece, c: Vec3, n: Vec3) -> Corner {
     }
 }
 
-/// Nearest point after `corner` joined the simplex; `None` when the origin is inside.
+/// Returns the nearest point after adding `corner` to the simplex; `None` when the origin is inside.
 fn refined(nearest: &Nearest, corner: Corner) -> Option<Nearest> {
     let [p, q, r] = nearest.corners;
     match nearest.count {
@@ -177,7 +176,7 @@ fn on_segment(p: Corner, q: Corner) -> Nearest {
     let edge = sub(q.w, p.w);
     let squared = dot(edge, edge);
     let t = -dot(p.w, edge) / squared;
-    // A NaN (both corners equal) falls to the first corner.
+    // With equal corners `t` is NaN, which selects the first corner.
     if !(t > 0.0) {
         return vertex(p, p.w);
     }
@@ -229,7 +228,7 @@ fn on_tetrahedron(p: Corner, q: Corner, r: Corner, s: Corner) -> Option<Nearest>
     Some(nearer(with_new, on_triangle(p, q, r)))
 }
 
-/// True when the origin lies on the inner side of all four faces by more than rounding.
+/// Whether the origin lies on the inner side of all four faces by more than rounding.
 fn encloses_origin([p, q, r, s]: [Vec3; 4]) -> bool {
     let volume = dot(cross(sub(q, p), sub(r, p)), sub(s, p));
     let parts = [

@@ -1,8 +1,8 @@
-//! Facts about the distance of two convex pieces.
+//! Tests of the distance of two convex pieces.
 //!
-//! The truth is built, not computed: for a direction `n` the nearest points are the farthest point
-//! of one piece along `n` and of the other against it; the second piece is put so that these lie
-//! exactly `gap` apart along `n`. Then the distance is `gap`, whatever the shapes.
+//! The true distance is constructed, not computed: for a direction `n` the nearest points are the farthest point of
+//! one piece along `n` and of the other against it; the test places the second piece so that these lie exactly
+//! `gap` apart along `n`. Then the distance is `gap`, whatever the shapes.
 use super::*;
 use crate::piece::pieces_of;
 use crate::pose::Frame;
@@ -11,7 +11,7 @@ use crate::{Mesh, Shape};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// A small generator, so that a failure can be repeated from its number.
+/// A small random generator whose seed reproduces a failure.
 pub(crate) struct Dice(SplitMix64);
 
 impl Dice {
@@ -21,7 +21,7 @@ impl Dice {
     pub(crate) fn next(&mut self) -> u64 {
         self.0.next_u64()
     }
-    /// In -1..1.
+    /// Draws a number in -1..1.
     pub(crate) fn signed(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
@@ -31,7 +31,7 @@ impl Dice {
     pub(crate) fn pick(&mut self, count: u64) -> u64 {
         self.next() % count
     }
-    /// From thin foil to metre.
+    /// Draws a size, from thin foil to a metre.
     pub(crate) fn size(&mut self) -> f64 {
         10f64.powf(0.5 + 2.0 * self.signed())
     }
@@ -101,7 +101,7 @@ fn direction(dice: &mut Dice, a: &Piece, b: &Piece) -> Vec3 {
 }
 
 #[test]
-fn the_distance_of_any_two_pieces_is_proven_to_half_a_nanometre() {
+fn the_distance_is_proven_to_half_a_nanometre() {
     for seed in 0..60_000 {
         let mut dice = Dice::new(seed);
         let (shape_a, shape_b) = (dice.shape(), dice.shape());
@@ -120,7 +120,7 @@ fn the_distance_of_any_two_pieces_is_proven_to_half_a_nanometre() {
         let other = add(b.centre, b.farthest(negate(n)));
         let shift = along(sub(nearest, other), gap_mm, n);
         let found = gap(&a, &b, shift, None);
-        // Building the case costs a few roundings of the coordinates, too.
+        // Constructing the case also costs a few roundings of the coordinates.
         let built = 1e-13 + 8.0 * f64::EPSILON * (reach(nearest) + reach(other) + a.span + b.span);
         assert!(
             found.lower <= gap_mm + built,

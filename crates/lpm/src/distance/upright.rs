@@ -1,7 +1,7 @@
 //! Closed forms for two upright pieces: an interval in z times a rectangle or a disc.
 //!
-//! The distance of two upright prisms is the hypotenuse of the gap in z and the gap of their
-//! footprints, so no iteration is needed, and no cross product of near-parallel edges either.
+//! The distance of two upright prisms is the hypotenuse of the gap in z and the gap of their footprints, which
+//! needs no iteration and no cross product of nearly parallel edges.
 
 use super::Proposal;
 use crate::piece::{Form, Piece};
@@ -9,11 +9,11 @@ use crate::vector::{Vec3, length, unit};
 
 type Vec2 = [f64; 2];
 
-/// What an upright piece covers on the baseplate.
+/// Footprint of an upright piece on the baseplate.
 #[derive(Debug, Clone, Copy)]
 enum Footprint {
     Disc(f64),
-    /// Half extents, and the unit vector of the first one.
+    /// Half extents, and the unit vector of the first axis.
     Rectangle(Vec2, Vec2),
 }
 
@@ -24,8 +24,8 @@ struct Flat {
     on_a: Vec2,
 }
 
-/// The best plane between the upright pieces `a` and `b`, whose centres lie `c` apart, and their
-/// distance up to rounding, mm.
+/// Returns the best plane between the upright pieces `a` and `b`, whose centres lie `c` apart, and their distance
+/// up to rounding, mm.
 pub(crate) fn propose(a: &Piece, b: &Piece, c: Vec3) -> (Proposal, f64) {
     let (foot_a, half_a) = footprint(a);
     let (foot_b, half_b) = footprint(b);
@@ -47,12 +47,12 @@ fn footprint(piece: &Piece) -> (Footprint, f64) {
             )
         }
         Form::Cylinder { radius, half } => (Footprint::Disc(radius), half),
-        // Triangles are never upright; a point in their place would prove nothing wrong.
+        // Triangles are never upright. A point in their place would yield a poor plane at worst, never a false proof.
         Form::Triangle(_) => (Footprint::Disc(0.0), 0.0),
     }
 }
 
-/// Gap in z with its sign, and the height on a, relative to its centre, nearest to b.
+/// Returns the signed gap in z, and the height on `a`, relative to its centre, nearest to `b`.
 fn heights(half_a: f64, half_b: f64, c: f64) -> (f64, f64) {
     let apart = c.abs() - half_a - half_b;
     if apart > 0.0 {
@@ -90,7 +90,7 @@ fn footprints(a: Footprint, b: Footprint, c: Vec2) -> Flat {
     }
 }
 
-/// Takes the radii of both sides off the gap.
+/// Subtracts the radii of both footprints from the gap.
 fn shrunk(flat: Flat, ra: f64, rb: f64) -> Flat {
     let distance = flat.apart[0].hypot(flat.apart[1]);
     let left = distance - ra - rb;
@@ -120,7 +120,7 @@ fn towards(flat: Flat, fraction: f64) -> Vec2 {
     ]
 }
 
-/// From the rectangle (half extents, first axis `x`, centred at the origin) to the point `p`.
+/// Returns the nearest points from a rectangle (half extents, first axis `x`, centred at the origin) to the point `p`.
 fn point_from_rectangle(half: Vec2, x: Vec2, p: Vec2) -> Flat {
     let local = [p[0] * x[0] + p[1] * x[1], p[1] * x[0] - p[0] * x[1]];
     let near = [
@@ -134,7 +134,7 @@ fn point_from_rectangle(half: Vec2, x: Vec2, p: Vec2) -> Flat {
     }
 }
 
-/// From coordinates along `x` and its left normal into the common frame.
+/// Converts coordinates along `x` and its left normal into the common frame.
 fn out_of(x: Vec2, local: Vec2) -> Vec2 {
     [
         local[0] * x[0] - local[1] * x[1],
@@ -147,7 +147,7 @@ fn rectangles(ha: Vec2, xa: Vec2, hb: Vec2, xb: Vec2, c: Vec2) -> Flat {
         return parallel(ha, hb, xa, c);
     }
     if footprints_meet(ha, xa, hb, xb, c) {
-        // The middle of the near region is good enough as a place of contact.
+        // The middle of the region of nearest points is a sufficient place of contact.
         return Flat {
             apart: [0.0, 0.0],
             on_a: point_from_rectangle(ha, xa, c).on_a,
@@ -200,7 +200,7 @@ fn corners(half: Vec2, x: Vec2) -> [Vec2; 4] {
     [[a, b], [-a, b], [-a, -b], [a, -b]].map(|local| out_of(x, local))
 }
 
-/// No axis of either rectangle separates them.
+/// Whether no axis of either rectangle separates them.
 fn footprints_meet(ha: Vec2, xa: Vec2, hb: Vec2, xb: Vec2, c: Vec2) -> bool {
     let cos = (xa[0] * xb[0] + xa[1] * xb[1]).abs();
     let sin = (xa[0] * xb[1] - xa[1] * xb[0]).abs();

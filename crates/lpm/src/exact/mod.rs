@@ -1,17 +1,17 @@
-//! Exact truth for a part of the world, in whole numbers: what the core is measured against.
+//! Exact answers in whole numbers for some bodies: the reference for tests and benchmarks.
 //!
-//! Bodies are blocks in any orientation that a quaternion of whole numbers gives, upright cylinders,
-//! and triangles; moves are straight; sizes, places and moves are whole multiples of one unit that
-//! the asker chooses (1/1024 mm, say). For these the verdict is the sign of whole numbers: no
-//! rounding, no tolerance, no search, and not a line shared with the core.
+//! Bodies are blocks in any orientation that a quaternion of whole numbers describes, upright cylinders, and
+//! triangles. Moves are straight. Sizes, places and moves are whole multiples of one unit chosen by the caller
+//! (such as 1/1024 mm). The verdict is then the sign of whole numbers, without rounding, tolerance or search, and
+//! shares no code with the core.
 //!
-//! - Two polytopes: `polytope`. A cylinder with a cylinder or an upright block: `round`.
-//! - The verdict is exact; the time of first contact is its nearest `f64` to a few units in the last
-//!   place, because roots are irrational.
-//! - A tilted block and a cylinder: [`first_contact`] panics. There is no closed form in whole numbers.
+//! - `polytope`: two polytopes. `round`: a cylinder with a cylinder or an upright block.
+//! - The verdict is exact. The time of first contact is accurate to a few units in the last place of an `f64`,
+//!   because roots are irrational.
+//! - [`first_contact`] panics for a tilted block and a cylinder, which have no closed form in whole numbers.
 //!
-//! Range: differences of places, sizes and moves below 2^28 units, quaternions of single digits;
-//! moves along few axes may be longer. Beyond it a debug build panics on overflow.
+//! Range: differences of places, sizes and moves below 2^28 units, quaternions with members of one digit; moves
+//! along few axes may be longer. Beyond this range a debug build panics on overflow.
 
 mod polytope;
 mod round;
@@ -20,10 +20,10 @@ mod times;
 use super::{Mesh, Pose, Shape};
 use polytope::Polytope;
 
-/// A body at a place, in units.
+/// A placed body, in units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Body {
-    /// Where its origin stands.
+    /// Place of the origin of its form.
     pub centre: [i64; 3],
     /// Its form.
     pub form: Form,
@@ -36,21 +36,21 @@ pub enum Form {
     Block {
         /// Half extents.
         half: [i64; 3],
-        /// Any length but zero.
+        /// Quaternion `[w, x, y, z]` of any length but zero.
         rotation: [i64; 4],
     },
-    /// About z.
+    /// Cylinder about z.
     Cylinder {
         /// Radius.
         radius: i64,
         /// Half of the height.
         half: i64,
     },
-    /// Corners relative to the centre; not shrunk to a segment or a point.
+    /// Corners relative to the centre; must span a triangle, not a segment or a point.
     Triangle([[i64; 3]; 3]),
 }
 
-/// No turn, as a quaternion.
+/// The identity quaternion.
 pub const UPRIGHT: [i64; 4] = [1, 0, 0, 0];
 
 impl Body {
@@ -63,7 +63,7 @@ impl Body {
         }
     }
 
-    /// An upright cylinder of twice the height `half`.
+    /// An upright cylinder of height `2 * half`.
     pub fn cylinder(centre: [i64; 3], radius: i64, half: i64) -> Body {
         Body {
             centre,
@@ -71,7 +71,7 @@ impl Body {
         }
     }
 
-    /// The same body elsewhere.
+    /// The same body displaced by `by`.
     pub fn moved(self, by: [i64; 3]) -> Body {
         Body {
             centre: [0, 1, 2].map(|axis| self.centre[axis] + by[axis]),
@@ -79,7 +79,7 @@ impl Body {
         }
     }
 
-    /// The body as the core knows it; `unit_mm` should be a power of two, so that nothing is rounded.
+    /// The body as a [`Shape`] of the core; `unit_mm` should be a power of two, so that nothing is rounded.
     pub fn shape(&self, unit_mm: f64) -> Shape {
         let mm = |units: i64| units as f64 * unit_mm;
         match self.form {
@@ -95,7 +95,7 @@ impl Body {
         }
     }
 
-    /// Its place as the core knows it.
+    /// The place of the body as a [`Pose`] of the core.
     pub fn pose(&self, unit_mm: f64) -> Pose {
         let rotation = match self.form {
             Form::Block { rotation, .. } => rotation,
@@ -108,10 +108,10 @@ impl Body {
     }
 }
 
-/// Fraction of `run` at which `mover` first touches `element`; `None` when it never does.
+/// Returns the fraction of `run` at which `mover` first touches `element`; `None` when it never does.
 ///
 /// # Panics
-/// A tilted block or a triangle with a cylinder; a triangle shrunk to a segment.
+/// Panics for a tilted block or a triangle with a cylinder, and for a triangle shrunk to a segment.
 pub fn first_contact(element: &Body, mover: &Body, run: [i64; 3]) -> Option<f64> {
     let apart = [0, 1, 2].map(|axis| i128::from(mover.centre[axis] - element.centre[axis]));
     let run = run.map(i128::from);

@@ -1,10 +1,9 @@
-//! Two convex polytopes with corners of whole numbers.
+//! Contact of two convex polytopes with corners of whole numbers.
 //!
-//! They meet exactly when the vector between them lies in their difference, and the difference of
-//! two polytopes is bounded by planes normal to their faces and to the products of their edges. Along
-//! a translation each such pair of planes is a stretch of time; what is left of the move when all of
-//! them have taken their share is when the bodies meet. Planes too many do no harm: the difference
-//! lies between any of them.
+//! Two polytopes meet exactly when the vector between them lies in their difference, which is bounded by planes
+//! normal to their faces and to the cross products of their edges. Along a translation each pair of such planes
+//! limits the move to an interval; the bodies meet in the intersection of all intervals. Superfluous planes do no
+//! harm, because the difference lies between them as well.
 
 use super::Form;
 use super::times::Stretch;
@@ -21,7 +20,7 @@ pub(super) struct Polytope {
 }
 
 impl Polytope {
-    /// `None` of a cylinder.
+    /// Converts a form; `None` for a cylinder.
     pub(super) fn of(form: &Form) -> Option<Polytope> {
         match form {
             Form::Block { half, rotation } => Some(block(half.map(i128::from), *rotation)),
@@ -30,7 +29,7 @@ impl Polytope {
         }
     }
 
-    /// Least and greatest reach along `axis` of the corners times `factor`.
+    /// Returns the least and greatest reach along `axis` of the corners times `factor`.
     fn reach(&self, axis: Vector, factor: i128) -> (i128, i128) {
         let mut reaches = self
             .corners
@@ -88,7 +87,7 @@ fn triangle(corners: [Vector; 3]) -> Polytope {
         normal, [0; 3],
         "a triangle that is a segment has no exact truth here"
     );
-    // The rim of a flat body counts as a face too, for neighbours in the same plane.
+    // The rims of a flat body count as faces, for neighbours in the same plane.
     let rims = edges.iter().map(|edge| cross(*edge, normal));
     Polytope {
         scale: 1,
@@ -98,7 +97,7 @@ fn triangle(corners: [Vector; 3]) -> Polytope {
     }
 }
 
-/// First time at which `b`, `apart` from `a` and running by `run`, touches `a`.
+/// Returns the first time at which `b`, `apart` from `a` and moving by `run`, touches `a`.
 pub(super) fn first_contact(a: &Polytope, b: &Polytope, apart: Vector, run: Vector) -> Option<f64> {
     let products = a
         .edges

@@ -1,19 +1,19 @@
-//! An upright cylinder with another one, or with a block that is only turned about z.
+//! An upright cylinder with another one, or with a block that is turned only about z.
 //!
-//! In z an interval. On the baseplate a disc with a disc, or a disc with a rectangle: two slabs and
-//! four discs at the corners, asked in the frame of the rectangle.
+//! In z an interval. On the baseplate a disc with a disc, or a disc with a rectangle: two slabs and four discs at
+//! the corners, in the frame of the rectangle.
 
 use super::Form;
 use super::times::{Stretch, Time};
 
-/// What stands still on the baseplate after the radius of the mover went over to it.
+/// Footprint of the element grown by the mover (Minkowski sum), against which the mover is a point.
 enum Outline {
     Disc(i128),
-    /// Half extents, and the radius around them.
+    /// Half extents of the rectangle, and the radius by which it is grown.
     Rounded([i128; 2], i128),
 }
 
-/// First time at which `mover`, `apart` from `element` and running by `run`, touches it.
+/// Returns the first time at which `mover`, `apart` from `element` and moving by `run`, touches it.
 pub(super) fn first_contact(
     element: &Form,
     mover: &Form,
@@ -22,7 +22,7 @@ pub(super) fn first_contact(
 ) -> Option<f64> {
     let (outline, high, [w, z]) = summed(element, mover);
     let during = Stretch::WHOLE.while_within(apart[2], run[2], -high, high)?;
-    // Into the frame of the rectangle: turned back, and longer by the square of the quaternion.
+    // Converts into the frame of the rectangle: rotated back, and scaled by the squared length of the quaternion.
     let turned = |[x, y]: [i128; 2]| {
         let (cos, sin) = (w * w - z * z, 2 * w * z);
         [cos * x + sin * y, cos * y - sin * x]
@@ -34,9 +34,9 @@ pub(super) fn first_contact(
     }
 }
 
-/// The sum of both bodies: outline, height, and `w` and `z` of the quaternion of the rectangle.
+/// Returns the Minkowski sum of both bodies: outline, height, and `w` and `z` of the quaternion of the rectangle.
 ///
-/// Symmetric: a rectangle is its own mirror image, so it does not matter which of both moves.
+/// The sum is symmetric: a rectangle is its own mirror image, so either body may be the mover.
 fn summed(element: &Form, mover: &Form) -> (Outline, i128, [i128; 2]) {
     match (*element, *mover) {
         (
@@ -100,15 +100,15 @@ fn rounded(
     meetings.into_iter().flatten().min_by(f64::total_cmp)
 }
 
-/// First time during which a point is within `radius` of the origin.
+/// Returns the first time during which a point is within `radius` of the origin.
 fn disc(during: Stretch, place: [i128; 2], run: [i128; 2], radius: i128) -> Option<f64> {
-    // `a t^2 + 2 b t + c` is the squared distance beyond the radius, the run shortened to whole steps.
+    // `a t^2 + 2 b t + c` is the squared distance minus the squared radius, for the run reduced to whole steps.
     let step = divisor(run[0], run[1]).max(1);
     let run = run.map(|member| member / step);
     let a = run[0] * run[0] + run[1] * run[1];
     let b = place[0] * run[0] + place[1] * run[1];
     let c = place[0] * place[0] + place[1] * place[1] - radius * radius;
-    // Positive beyond the radius, at `t = n step / d`.
+    // Positive when outside the radius at `t = n step / d`.
     let beyond =
         |Time { n, d }: Time| a * (n * step) * (n * step) + 2 * b * (n * step) * d + c * d * d;
     if beyond(during.from) <= 0 {
@@ -120,7 +120,7 @@ fn disc(during: Stretch, place: [i128; 2], run: [i128; 2], radius: i128) -> Opti
         return None;
     }
     let nearest_is_in_time = -b * during.to.d <= a * during.to.n * step;
-    // `c > 0 > b` here: of both forms of the root this one subtracts nothing.
+    // Here `c > 0 > b`: this form of the root avoids cancellation.
     (nearest_is_in_time || beyond(during.to) <= 0)
         .then(|| c as f64 / ((root as f64).sqrt() - b as f64) / step as f64)
 }

@@ -1,6 +1,6 @@
-//! Stretches of time with ends that are fractions of whole numbers.
+//! Intervals of time whose ends are fractions of whole numbers.
 
-/// `n / d` with `d > 0`.
+/// The fraction `n / d` with `d > 0`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Time {
     pub(super) n: i128,
@@ -25,7 +25,7 @@ impl Time {
     }
 }
 
-/// A closed stretch of a move, from 0 to 1 at first.
+/// A closed interval of a move, initially 0 to 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Stretch {
     pub(super) from: Time,
@@ -38,7 +38,7 @@ impl Stretch {
         to: Time { n: 1, d: 1 },
     };
 
-    /// The part of the stretch during which `low <= start + t speed <= high`.
+    /// The part of the interval during which `low <= start + t speed <= high`.
     pub(super) fn while_within(
         self,
         start: i128,

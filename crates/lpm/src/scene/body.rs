@@ -6,10 +6,11 @@ use super::node::shown;
 use crate::{Flaw, LARGEST_COORDINATE_MM, Mesh, Pose, Shape};
 
 const KINDS: &str = "\"block\", \"cylinder\", \"compound\" or \"mesh\"";
-/// Compounds may hold compounds this deep.
+/// Greatest nesting depth of compounds.
 const DEEPEST: usize = 16;
 
-/// Keys of every kind of body; `extra` are those of the place where the body stands.
+/// Returns the keys that a body of this kind may have, plus the `extra` keys of its place in the file; `None` for
+/// an unknown kind.
 fn keys<'a>(kind: &str, extra: &[&'a str]) -> Option<Vec<&'a str>> {
     let own: &[&str] = match kind {
         "block" => &["kind", "half", "pose"],
@@ -91,7 +92,7 @@ fn parts(
     Ok(parts)
 }
 
-/// Reads `{position, rotation}`, both optional.
+/// Reads `{position, rotation}`; both are optional.
 pub(super) fn pose(field: &Field) -> Result<Pose, SceneError> {
     let table = field.table(&["position", "rotation"])?;
     let mut pose = Pose::IDENTITY;
@@ -106,7 +107,7 @@ pub(super) fn pose(field: &Field) -> Result<Pose, SceneError> {
     Ok(pose)
 }
 
-/// A flaw of the geometry with the path of the body in front of its own.
+/// Converts a geometric [`Flaw`] into a [`SceneError`] with the path of the body in front.
 pub(super) fn located(checked: Result<(), Flaw>, field: &Field) -> Result<(), SceneError> {
     let Err(flaw) = checked else { return Ok(()) };
     let (path, found, expected) = match flaw {

@@ -1,14 +1,14 @@
-//! Faces of more than three corners: is a fan over the first corner the face itself?
+//! Faces of more than three corners: checks that a fan of triangles about the first corner covers the face.
 
 use crate::vector::{Vec3, cross, dot, length, sub, unit};
 
-/// How far a corner may lie off the plane, or inside of where a convex face would have it, as a share of the distance
-/// from the first corner to the farthest. Six digits, as most programs write, leave 1e-5 of a face beside the origin
-/// and more of one away from it. It is also what two ways of cutting a face that is not flat may differ by: 1 um of
-/// 10 mm. What is hollow within it only blocks more, for a fan covers every flat face.
+/// Tolerance for a corner off the plane, or inside of where a convex face would have it, relative to the distance
+/// from the first corner to the farthest. Six digits, as most programs write, leave 1e-5 for a face near the origin
+/// and more for one far from it. Two ways of cutting a face that is not flat may differ by as much: 1 um for 10 mm.
+/// A dent within the tolerance only blocks more, because the fan covers every flat face.
 const FLAT: f64 = 1e-4;
 
-/// Also of a face that is no wider than that: a segment or a point has no plane.
+/// Also true for a face no wider than the tolerance: a segment or a point has no plane.
 pub(super) fn is_flat_and_convex(corners: &[Vec3]) -> bool {
     let from_first: Vec<Vec3> = corners.iter().map(|it| sub(*it, corners[0])).collect();
     let farthest = longest(&from_first);
@@ -21,7 +21,7 @@ pub(super) fn is_flat_and_convex(corners: &[Vec3]) -> bool {
     if length(widest) <= slack {
         return true;
     }
-    // The plane of the first corner, the farthest, and the one farthest off the line between them.
+    // The plane through the first corner, the farthest corner, and the corner farthest off the line between them.
     let Some(normal) = unit(widest) else {
         return false;
     };
@@ -41,8 +41,8 @@ fn longest(ways: &[Vec3]) -> Vec3 {
     ways.iter().fold([0.0; 3], longer)
 }
 
-/// Once round a convex face is once there and once back along any direction. Twice round it would be no face at all:
-/// edges and crossings are counted by parity (`solid`).
+/// Whether the corners go round the face once: along any direction a convex face then runs once forth and once
+/// back. A face that goes round twice must be refused, because `solid` counts edges and crossings by parity.
 fn is_walked_once(flat: &[[f64; 2]]) -> bool {
     let places = || flat.iter().map(|it| it[0]);
     let span = places().fold(f64::MIN, f64::max) - places().fold(f64::MAX, f64::min);
@@ -50,8 +50,8 @@ fn is_walked_once(flat: &[[f64; 2]]) -> bool {
     steps.map(|(a, b)| (b - a).abs()).sum::<f64>() <= 3.0 * span
 }
 
-/// Whether no corner lies to the right of an edge: by no more than `slack` as the width of the triangle over the edge,
-/// for the direction of a short edge is mostly rounding.
+/// Whether no corner lies to the right of an edge by more than `slack`, measured as the width of the triangle over
+/// the edge, because the direction of a short edge is mostly rounding.
 fn is_left_of_edges<'a>(
     round: impl Iterator<Item = &'a [f64; 2]> + Clone,
     corners: &[[f64; 2]],
@@ -61,7 +61,7 @@ fn is_left_of_edges<'a>(
     edges.all(|(a, b)| corners.iter().all(|c| width(*a, *b, *c) >= -slack))
 }
 
-/// Of a triangle across its longest side, below 0 when it turns right; 0 of a point.
+/// Width of a triangle across its longest side; negative when it turns right, 0 for a point.
 fn width(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     let way = |from: [f64; 2], to: [f64; 2]| [to[0] - from[0], to[1] - from[1]];
     let (ab, ac, bc) = (way(a, b), way(a, c), way(b, c));

@@ -1,31 +1,31 @@
-//! A value and the path that leads to it: every complaint names the field.
+//! A value together with its path in the file, so that every error message names the field.
 
 use super::node::{Node, Unreadable};
 
-/// What is wrong with a scene or a move file.
+/// Error in a scene or a move file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SceneError {
-    /// The text is no TOML or JSON.
+    /// The text is not valid TOML or JSON.
     #[error("{place}not readable: {cause}")]
     Syntax {
-        /// Empty, or the line of a move file with a colon and a space.
+        /// Empty, or `line N: ` for a line of a move file.
         place: String,
-        /// What the reader of the format said.
+        /// Message of the TOML or JSON parser.
         cause: Unreadable,
     },
-    /// A field holds what it must not.
+    /// A field holds a value that is not allowed.
     #[error("{path}: found {found}, expected {expected}")]
     Field {
-        /// Such as `elements[0].half[1]`; in move files behind `line 3: `.
+        /// Path of the field, such as `elements[0].half[1]`; in move files preceded by `line 3: `.
         path: String,
-        /// What is there.
+        /// Value found.
         found: String,
-        /// What should be there.
+        /// Value expected.
         expected: String,
     },
 }
 
-/// A node with its path.
+/// A node and its path.
 #[derive(Debug, Clone)]
 pub(super) struct Field<'a> {
     pub(super) node: &'a Node,
@@ -42,7 +42,7 @@ impl<'a> Field<'a> {
         refuse(path, self.node.to_string(), expected)
     }
 
-    /// The keys of a table, every one of them known.
+    /// Reads a table; refuses keys outside `known`.
     pub(super) fn table(&self, known: &[&str]) -> Result<Table<'a>, SceneError> {
         let Node::Table(members) = self.node else {
             return self.refuse("a table");
@@ -115,7 +115,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// A table whose keys are known.
+/// A table without unknown keys.
 pub(super) struct Table<'a> {
     members: &'a [(String, Node)],
     field: Field<'a>,
@@ -138,7 +138,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// What a name should have been: `the id of a mover of the scene (gripper, jaw)`, with a dozen of them at most.
+/// Describes an expected name: `the id of a mover of the scene (gripper, jaw)`, listing at most twelve names.
 pub(super) fn expected_id(one: &str, many: &str, ids: &[&str]) -> String {
     if ids.is_empty() {
         return format!("the id of {one}; the scene has no {many}");

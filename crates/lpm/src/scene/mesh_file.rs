@@ -1,72 +1,72 @@
-//! Triangles from STL (binary or text) and OBJ, told apart by the extension.
+//! Reads triangles from STL (binary or text) and OBJ; the extension selects the format.
 //!
-//! What is damaged or can be read in two ways is refused: a mesh that lost a triangle may be open, and an open one
-//! makes a false *clear* of whatever is inside. Every complaint tells the line, what was found and what was expected.
-//! The readers are our own: stl_io hands out f32, with which a text STL of more digits would be off by 4e-6 mm at
-//! 100 mm where 1e-6 mm is promised, and which faces of an OBJ may be cut into a fan would be asked here anyway.
+//! Damaged or ambiguous files are refused: a mesh that lost a triangle may be open, and an open mesh gives a false
+//! *clear* for a body inside it. Every error names the line, the value found and the value expected. The readers are
+//! part of this crate for two reasons: stl_io returns f32, which puts a text STL of more digits off by 4e-6 mm at 100
+//! mm where 1e-6 mm is promised; and the check of which OBJ faces may be cut into a fan is needed here anyway.
 
 use super::field::{Field, SceneError};
 use super::{obj, stl};
 use crate::Mesh;
 
-/// Gives the bytes of a mesh file named in a scene, or why it cannot be read.
+/// Callback that returns the bytes of a mesh file named in a scene, or the reason why it cannot.
 pub type MeshFiles<'a> = dyn FnMut(&str) -> Result<Vec<u8>, MeshFault> + 'a;
 
 /// Why a mesh file is refused. Lines and triangles count from 1.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MeshFault {
-    /// The file cannot be had, for this reason.
+    /// The callback could not read the file, for this reason.
     #[error("{0}")]
     File(String),
-    /// A line of a text holds what it must not.
+    /// A line of a text file holds something that is not allowed.
     #[error("line {line}: found {found}, expected {expected}")]
     Line {
-        /// Which.
+        /// Line number.
         line: usize,
-        /// What is there.
+        /// Text found.
         found: String,
-        /// What should be there.
+        /// Text expected.
         expected: String,
     },
-    /// A face of more than three corners has no triangles of its own.
+    /// A face of more than three corners is not flat and convex, so its triangles are ambiguous.
     #[error("line {line}: a face that is not flat and convex; cut it into triangles")]
     Face {
-        /// Where.
+        /// Line number.
         line: usize,
     },
-    /// A corner of a binary STL is no place.
+    /// A corner of a binary STL is not finite.
     #[error("triangle {triangle}: found {found}, expected a finite number")]
     Triangle {
-        /// Which.
+        /// Number of the triangle.
         triangle: usize,
-        /// Its first wrong number.
+        /// Its first non-finite number.
         found: f64,
     },
-    /// An STL that begins like no text has not the length of a binary one.
+    /// An STL is not valid text, and its length does not match the triangle count of a binary file.
     #[error("{text}; a binary STL of {count} triangles has {expected} bytes, not {found}")]
     Length {
-        /// Why it is no text.
+        /// Error of reading the file as text.
         text: Box<Self>,
-        /// Triangles of its head.
+        /// Triangle count in the header.
         count: u32,
-        /// Bytes of so many.
+        /// Length of a binary file with that count, bytes.
         expected: u64,
-        /// Its bytes.
+        /// Length of the file, bytes.
         found: usize,
     },
-    /// An STL that begins like no text is shorter than the head of a binary one.
+    /// An STL is not valid text, and is shorter than the header of a binary file.
     #[error("{text}; a binary STL has {head} bytes or more, not {found}")]
     Short {
-        /// Why it is no text.
+        /// Error of reading the file as text.
         text: Box<Self>,
-        /// Bytes of a head.
+        /// Length of the header, bytes.
         head: usize,
-        /// Its bytes.
+        /// Length of the file, bytes.
         found: usize,
     },
 }
 
-/// Letters of a word that a complaint repeats; one of a damaged file may be as long as the file.
+/// Most characters of a word that a message repeats; a word of a damaged file may be as long as the file.
 const REPEATED: usize = 40;
 
 pub(super) fn load(field: &Field, scale: f64, files: &mut MeshFiles) -> Result<Mesh, SceneError> {
@@ -91,9 +91,9 @@ pub(super) fn load(field: &Field, scale: f64, files: &mut MeshFiles) -> Result<M
     }
 }
 
-/// The text of a file with LF behind its lines, whether it came with LF, CR or both. Bytes that are no UTF-8 (Latin-1
-/// in names and comments) are replaced, so that no word or number can hold them; a zero byte is in no text, but in a
-/// block that a disk or a transfer lost.
+/// Converts a file to text with LF line ends, from LF, CR or both. Replaces bytes that are not UTF-8 (Latin-1 in
+/// names and comments), so that no keyword or number can contain them. Refuses a zero byte: no text has one, but a
+/// block lost by a disk or a transfer does.
 pub(super) fn text(bytes: &[u8]) -> Result<String, MeshFault> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let text = String::from_utf8_lossy(bytes)
@@ -105,12 +105,12 @@ pub(super) fn text(bytes: &[u8]) -> Result<String, MeshFault> {
     }
 }
 
-/// Of a word, when it is one and finite.
+/// Parses a finite number.
 pub(super) fn number(word: &str) -> Option<f64> {
     word.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// Lines count from 1.
+/// Returns a line error; lines count from 1.
 pub(super) fn complaint<T>(line: usize, found: &str, expected: &str) -> Result<T, MeshFault> {
     Err(MeshFault::Line {
         line,
@@ -119,7 +119,7 @@ pub(super) fn complaint<T>(line: usize, found: &str, expected: &str) -> Result<T
     })
 }
 
-/// A word of the file in a complaint.
+/// Quotes a word of the file, shortened, for a message.
 pub(super) fn quoted(word: &str) -> String {
     format!("{:?}", word.chars().take(REPEATED).collect::<String>())
 }

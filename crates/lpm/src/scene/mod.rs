@@ -1,11 +1,11 @@
-//! Scenes and moves as text: bodies with names, and the ways they should go.
+//! Scenes and moves as text: named bodies and the moves to check.
 //!
-//! A scene is TOML or JSON of the same form; a move file is one JSON object per line. Everything is
-//! read and checked before anything is answered. Every complaint names the path of the field
-//! (`elements[0].half[1]`, in move files behind the number of the line), what was found and what was
-//! expected. No file is opened here: mesh files come through a callback.
+//! A scene is TOML or JSON of the same form; a move file has one JSON object per line. The whole text is read and
+//! checked before any question is answered. Every error names the path of the field (`elements[0].half[1]`, in move
+//! files preceded by the line number), the value found and the value expected. This module opens no file: a
+//! callback supplies mesh files.
 //!
-//! What only the rig needs (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`, `[guard]`) is checked and not applied.
+//! Parts for the rig alone (`rides`, `[[actuator]]`, `[[pair]]`, `[[mate]]`, `[guard]`) are checked but not applied.
 
 mod body;
 mod face;
@@ -23,7 +23,7 @@ pub use field::SceneError;
 pub use mesh_file::{MeshFault, MeshFiles};
 pub use moves::{MoveOrder, read_moves};
 pub use node::{At, Unreadable};
-pub use rig::Elsewhere;
+pub use rig::RigNames;
 
 use super::{Pose, Shape};
 use field::{Field, refuse};
@@ -38,30 +38,30 @@ pub enum Format {
     Json,
 }
 
-/// A body with its name and place.
+/// A body with its name and pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Named {
     /// Unique among its kind (elements or movers).
     pub id: String,
     /// The checked body.
     pub shape: Shape,
-    /// Where it stands; of a mover: its place in the frame that moves.
+    /// Pose of the body; for a mover, its pose in the moving frame.
     pub pose: Pose,
-    /// Actuator it rides on, if the scene says so.
+    /// Actuator that carries the body, if the scene names one.
     pub rides: Option<String>,
 }
 
-/// What stands and what may move.
+/// Stationary bodies and movers.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Scene {
-    /// Standing bodies in the order of the file.
+    /// Stationary bodies in the order of the file.
     pub elements: Vec<Named>,
-    /// Bodies that moves name.
+    /// Bodies that moves may name.
     pub movers: Vec<Named>,
 }
 
 impl Named {
-    /// The body with its pose folded in: what moves when its frame moves.
+    /// The body with its own pose applied, relative to the frame that moves.
     pub fn carried(&self) -> Shape {
         if self.pose == Pose::IDENTITY {
             self.shape.clone()
@@ -71,23 +71,23 @@ impl Named {
     }
 }
 
-/// Reads and checks a whole scene that names nothing but what it describes.
+/// Reads and checks a whole scene that is complete in itself.
 ///
 /// # Errors
-/// The first [`SceneError`]: bodies in the order of the file, then what the rig needs.
+/// Returns the first [`SceneError`]: bodies in the order of the file, then the parts for the rig.
 pub fn read_scene(text: &str, format: Format, files: &mut MeshFiles) -> Result<Scene, SceneError> {
-    read_scene_of_rig(text, format, files, &Elsewhere::default())
+    read_scene_of_rig(text, format, files, &RigNames::default())
 }
 
-/// The same of a scene that may also name what its rig has `elsewhere`.
+/// Reads a scene that may also name actuators and bodies of its rig, listed in `rig_names`.
 ///
 /// # Errors
-/// As [`read_scene`].
+/// Returns the same errors as [`read_scene`].
 pub fn read_scene_of_rig(
     text: &str,
     format: Format,
     files: &mut MeshFiles,
-    elsewhere: &Elsewhere,
+    rig_names: &RigNames,
 ) -> Result<Scene, SceneError> {
     let text = without_mark(text);
     let read = match format {
@@ -117,11 +117,11 @@ pub fn read_scene_of_rig(
         .optional("movers")
         .map_or(Ok(Vec::new()), |list| named(&list, files))?;
     let scene = Scene { elements, movers };
-    rig::check(&table, &scene, elsewhere)?;
+    rig::check(&table, &scene, rig_names)?;
     Ok(scene)
 }
 
-/// Some editors begin a file with a byte order mark.
+/// Removes the byte order mark with which some editors begin a file.
 fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }

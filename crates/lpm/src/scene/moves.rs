@@ -6,27 +6,27 @@ use super::{Named, Scene, body, without_mark};
 use crate::{LARGEST_COORDINATE_MM, Pose};
 use std::collections::HashSet;
 
-/// A move of a file; movers and elements are indices into the scene.
+/// A move of a file; movers and elements are given by their indices in the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MoveOrder {
     /// Unique in its file.
     pub id: String,
     /// Index into [`Scene::movers`].
     pub mover: usize,
-    /// Where the mover stands.
+    /// Pose of the mover at the start.
     pub from: Pose,
-    /// Where it should go.
+    /// Pose of the mover at the end.
     pub to: Pose,
-    /// Distance that must be exceeded, mm, >= 0.
+    /// Distance that the mover must exceed, mm, >= 0.
     pub margin_mm: f64,
-    /// Indices into [`Scene::elements`].
+    /// Elements that the check leaves out, as indices into [`Scene::elements`].
     pub ignore: Vec<usize>,
 }
 
 /// Reads and checks a whole move file against its scene.
 ///
 /// # Errors
-/// The first [`SceneError`], its path beginning with `line N: `.
+/// Returns the first [`SceneError`]; its path begins with `line N: `.
 pub fn read_moves(text: &str, scene: &Scene) -> Result<Vec<MoveOrder>, SceneError> {
     let mut known = HashSet::new();
     let mut orders = Vec::new();

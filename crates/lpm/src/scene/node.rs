@@ -1,11 +1,11 @@
-//! One tree for TOML and JSON: values without a meaning yet, keys in the order of the file.
+//! One tree for TOML and JSON: uninterpreted values, keys in the order of the file.
 
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use std::fmt;
 
-/// Prefix of a text that stands for a JSON number which is not finite.
+/// Prefix of a text that replaces a JSON number which is not finite.
 const NOT_FINITE: char = '\u{1}';
-/// Characters of a value that a message repeats.
+/// Most characters of a value that a message repeats.
 const LONGEST_QUOTE: usize = 120;
 
 /// A value of a scene or move file.
@@ -89,7 +89,7 @@ impl<'de> Visitor<'de> for Reader {
     }
 }
 
-/// A number as a person reads it: no row of zeros.
+/// Writes a number without a long row of zeros.
 pub(super) fn shown(number: f64) -> String {
     let is_plain = number == 0.0 || (1e-5..=1e15).contains(&number.abs());
     if is_plain || !number.is_finite() {
@@ -99,7 +99,7 @@ pub(super) fn shown(number: f64) -> String {
     }
 }
 
-/// The text, or its beginning: a message is read by a person.
+/// Returns the text, or its beginning when it is too long for a message.
 fn shortened(text: &str) -> String {
     match text.char_indices().nth(LONGEST_QUOTE) {
         Some((end, _)) => format!("{}...", &text[..end]),
@@ -107,24 +107,24 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// Why a text is no TOML or JSON, in one line.
+/// Why a text is not valid TOML or JSON, in one line.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{problem}{at}")]
 pub struct Unreadable {
-    /// What the reader of the format says.
+    /// Message of the parser.
     pub problem: String,
-    /// Where.
+    /// Place of the error.
     pub at: At,
 }
 
-/// A place in a text; lines and columns count from 1.
+/// Place in a text; lines and columns count from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum At {
-    /// The reader does not say.
+    /// The parser gives no place.
     Unknown,
-    /// In a text of one line.
+    /// Column, in a text of one line.
     Column(usize),
-    /// In a text of several.
+    /// Line and column, in a text of several lines.
     Line(usize, usize),
 }
 
@@ -153,9 +153,8 @@ pub(super) fn from_toml(text: &str) -> Result<Node, Unreadable> {
     })
 }
 
-/// Reads JSON. `NaN`, `Infinity` and numbers beyond f64, which many programs write although JSON
-/// has no such thing, become values that no number is read from, so that the path of their field
-/// can be named.
+/// Reads JSON. `NaN`, `Infinity` and numbers beyond f64, which many programs write although JSON has none of them,
+/// become nodes that do not read as numbers, so that the error names the path of their field.
 pub(super) fn from_json(text: &str) -> Result<Node, Unreadable> {
     serde_json::from_str(&marked(text)).map_err(|error| {
         let at = match error.line() {
@@ -171,7 +170,7 @@ pub(super) fn from_json(text: &str) -> Result<Node, Unreadable> {
     })
 }
 
-/// Reads JSON of one line, the number of which the caller knows.
+/// Reads one line of JSON; the caller adds the line number.
 pub(super) fn from_json_line(line: &str) -> Result<Node, Unreadable> {
     from_json(line).map_err(|error| {
         let at = match error.at {
@@ -206,7 +205,7 @@ fn marked(text: &str) -> String {
     out
 }
 
-/// Bytes of the quoted text at the beginning, quotes included.
+/// Length in bytes of the quoted string at the beginning, quotes included.
 fn quoted_length(text: &str) -> usize {
     let mut escaped = false;
     for (index, c) in text.char_indices().skip(1) {

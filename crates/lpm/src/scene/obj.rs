@@ -1,15 +1,15 @@
-//! OBJ: vertices and the faces over them, statement by statement.
+//! Reads OBJ: vertices and faces, statement by statement.
 //!
-//! A statement is a line; with a backslash at its end it goes on in the next. A comment ends with its line in any case.
-//! Points, lines, normals, names and the like carry no surface and are passed over. Every other word is refused: it may
-//! be a surface (`curv`, `surf`) or a damaged face (`F`), and the mesh would be open. What cannot be seen: a file that
-//! was cut between two faces, for the format has no end.
+//! A statement is one line; a backslash at its end continues it on the next. A comment always ends with its line.
+//! Points, lines, normals, names and the like contain no surface and are skipped. Every other keyword is refused,
+//! because it may be a surface (`curv`, `surf`) or a damaged face (`F`), whose loss would leave the mesh open. A
+//! file truncated between two faces goes undetected, because the format has no end mark.
 
 use super::face;
 use super::mesh_file::{MeshFault, complaint, number, quoted, text};
 use crate::Mesh;
 
-/// Statements without a surface.
+/// Keywords of statements without a surface.
 const PASSED_OVER: [&str; 19] = [
     "vt",
     "vn",
@@ -58,9 +58,9 @@ pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, MeshFault> {
     Ok(mesh)
 }
 
-/// A line with those that continue it, without comment.
+/// A line joined with its continuation lines, without comment.
 struct Statement<'a> {
-    /// The first one.
+    /// Number of the first line.
     line: usize,
     words: Vec<&'a str>,
     is_continued: bool,
@@ -96,7 +96,8 @@ impl<'a> Statement<'a> {
         Ok(Some(statement))
     }
 
-    /// Of one that is passed over: a name that only happens to end in a backslash would take the next line with it.
+    /// Refuses a skipped statement that swallows a keyword behind a backslash: a name may merely end in a
+    /// backslash, and the next line would be lost.
     fn check_end(&self) -> Result<(), MeshFault> {
         let taken = self.words.iter().find(|word| ["v", "f"].contains(word));
         match taken {
@@ -113,7 +114,7 @@ fn is_no_blank(letter: char) -> bool {
     !letter.is_ascii_whitespace()
 }
 
-/// A place; behind it a weight, a colour or both.
+/// Reads a vertex: three coordinates, optionally followed by a weight, a colour or both.
 fn vertex(line: usize, members: &[&str]) -> Result<[f64; 3], MeshFault> {
     let mut numbers = Vec::new();
     for word in members {
@@ -158,7 +159,7 @@ fn add_face(line: usize, words: &[&str], mesh: &mut Mesh) -> Result<(), MeshFaul
     Ok(())
 }
 
-/// `7`, `7/1`, `7/1/2`, `7//2` or, counted back from the last vertex, `-1`.
+/// Reads `7`, `7/1`, `7/1/2`, `7//2` or, counted back from the last vertex, `-1`.
 fn corner(word: &str, vertices: usize) -> Option<usize> {
     let parts: Vec<&str> = word.split('/').collect();
     let (vertex, others) = match parts[..] {

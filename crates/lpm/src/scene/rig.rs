@@ -1,8 +1,8 @@
-//! What a scene says for the rig: who rides on what, actuators, pairs, mates and the guard's table.
+//! Checks the parts of a scene for the rig: carriers, actuators, pairs, mates and the guard's table.
 //!
-//! Nothing of it is applied here, that is the guard's. It is read all the same, so that a slip is told by whoever reads
-//! the file first. What the guard asks beyond it (its eight actuators, an axis of unit length, a free stroke) it asks
-//! itself; what stands in a `[[mate]]` is left to its reader.
+//! The guard applies these parts; this module only checks them, so that the first program that reads the file
+//! reports a mistake. The guard itself checks its further demands (its eight actuators, an axis of unit length, a
+//! free stroke). The reader of `[[mate]]` checks the content of each entry.
 
 use super::Scene;
 use super::field::{Field, SceneError, Table, expected_id, refuse};
@@ -12,7 +12,7 @@ use crate::LARGEST_COORDINATE_MM;
 use std::collections::HashSet;
 
 const RULES: &str = "\"forbidden\", \"may_touch\" or \"ignore\"";
-/// Of an actuator; `points` is the short name of `points_mm`.
+/// Keys of an actuator; `points` is the short name of `points_mm`.
 const ACTUATOR: &[&str] = &[
     "id",
     "axis",
@@ -28,28 +28,28 @@ const PAIR: &[&str] = &["a", "b", "rule", "margin_mm", "depth_mm", "by"];
 const MARGINS: &[&str] = &["default_margin_mm", "touch_depth_mm", "pin_inset_mm"];
 const PLACES: &[&str] = &["mouth", "pocket", "nest"];
 
-/// Names that a scene may use and need not describe: those of the rig it belongs to.
+/// Names that a scene may use without describing them: those of its rig.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Elsewhere<'a> {
-    /// Of actuators.
+pub struct RigNames<'a> {
+    /// Names of actuators.
     pub actuators: &'a [&'a str],
-    /// Of bodies that are no elements: the part.
+    /// Names of bodies that are not elements, such as the part.
     pub bodies: &'a [&'a str],
 }
 
-/// Names that `rides`, `opposed`, `by` and the pairs may use.
+/// All names that `rides`, `opposed`, `by` and the pairs may use.
 struct Names<'a> {
     actuators: Vec<&'a str>,
     bodies: Vec<&'a str>,
 }
 
-/// Refuses the first thing in the rig's part of a scene that cannot be meant.
-pub(super) fn check(root: &Table, scene: &Scene, elsewhere: &Elsewhere) -> Result<(), SceneError> {
+/// Refuses the first invalid entry in the parts of a scene for the rig.
+pub(super) fn check(root: &Table, scene: &Scene, rig_names: &RigNames) -> Result<(), SceneError> {
     let actuators = actuators(root)?;
     let bodies = scene.elements.iter().chain(&scene.movers);
     let names = Names {
-        actuators: joined(actuators.iter().map(|(id, _)| *id), elsewhere.actuators),
-        bodies: joined(bodies.map(|body| body.id.as_str()), elsewhere.bodies),
+        actuators: joined(actuators.iter().map(|(id, _)| *id), rig_names.actuators),
+        bodies: joined(bodies.map(|body| body.id.as_str()), rig_names.bodies),
     };
     for (list, bodies) in [("elements", &scene.elements), ("movers", &scene.movers)] {
         for (index, body) in bodies.iter().enumerate() {
@@ -93,7 +93,7 @@ impl Names<'_> {
         refuse(path, Node::Text(found.to_owned()).to_string(), expected)
     }
 
-    /// A trailing `*` stands for any ending.
+    /// Accepts a body by name; a trailing `*` matches any ending.
     fn body(&self, field: &Field) -> Result<(), SceneError> {
         let found = field.text()?;
         let is_known = match found.strip_suffix('*') {
@@ -111,7 +111,7 @@ impl Names<'_> {
     }
 }
 
-/// The actuators with their ids; whom they name is looked at when all names are known.
+/// Reads the actuators with their ids; references between them are checked later, when all names are known.
 fn actuators<'a>(root: &Table<'a>) -> Result<Vec<(&'a str, Table<'a>)>, SceneError> {
     let mut known = HashSet::new();
     let mut actuators = Vec::new();
@@ -159,7 +159,7 @@ fn stroke(table: &Table) -> Result<(), SceneError> {
     }
 }
 
-/// Who carries an actuator, and whom it carries against its axis.
+/// Checks the names of the actuator that carries this one and of the one that it carries against its axis.
 fn carrying(actuator: &Table, names: &Names) -> Result<(), SceneError> {
     if let Some(rides) = actuator.optional("rides") {
         names.actuator(rides.path.clone(), rides.text()?)?;

@@ -1,6 +1,6 @@
-//! STL: triangles without shared corners.
+//! Reads STL: triangles without shared corners.
 //!
-//! A file whose length fits the count in its head is binary, whatever the head begins with. Any other is text:
+//! A file whose length fits the count in its header is binary, whatever the header begins with. Any other is text:
 //!
 //! ```text
 //! file  = solid { solid }
@@ -8,15 +8,15 @@
 //! facet = "facet" "normal" number*3 "outer" "loop" ("vertex" number*3)*3 "endloop" "endfacet"
 //! ```
 //!
-//! in any case, with blanks and line ends between words; a name goes to the end of its line. All of it must be there
-//! and nothing else. What cannot be seen: a file of several solids that was cut between two of them.
+//! in upper or lower case, with blanks and line ends between words; a name extends to the end of its line. The file
+//! must contain exactly this. A file truncated between two of its solids goes undetected.
 
 use super::mesh_file::{MeshFault, complaint, number, quoted, text};
 use crate::Mesh;
 
-/// Bytes of the head of a binary file: 80 of text and a count.
+/// Length of the header of a binary file, bytes: 80 of text and a count.
 const HEAD: usize = 84;
-/// Bytes of one binary triangle: normal, three corners as f32, and two of attributes.
+/// Length of one binary triangle, bytes: normal, three corners as f32, and two of attributes.
 const TRIANGLE: usize = 50;
 
 pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, MeshFault> {
@@ -36,12 +36,12 @@ pub(super) fn mesh(bytes: &[u8]) -> Result<Mesh, MeshFault> {
     Ok(in_threes(corners))
 }
 
-/// Bytes of a binary file of so many triangles.
+/// Length of a binary file of `count` triangles, bytes.
 fn length(count: u32) -> u64 {
     HEAD as u64 + TRIANGLE as u64 * u64::from(count)
 }
 
-/// Neither text, because of `why`, nor binary.
+/// Returns the error for a file that is neither text, because of `why`, nor binary.
 fn no_stl(why: MeshFault, found: usize, count: Option<u32>) -> MeshFault {
     let text = Box::new(why);
     match count {
@@ -87,7 +87,7 @@ fn binary(triangles: &[u8]) -> Result<Vec<[f64; 3]>, MeshFault> {
     Ok(corners)
 }
 
-/// The corners of all solids of a text.
+/// Reads the corners of all solids of a text.
 fn solids(text: &str) -> Result<Vec<[f64; 3]>, MeshFault> {
     let mut words = Words::of(text);
     let mut corners = Vec::new();
@@ -105,7 +105,7 @@ fn solids(text: &str) -> Result<Vec<[f64; 3]>, MeshFault> {
     }
 }
 
-/// What stands behind the word `facet`.
+/// Reads the rest of a facet after the word `facet`.
 fn facet(words: &mut Words, corners: &mut Vec<[f64; 3]>) -> Result<(), MeshFault> {
     words.take(&["normal"])?;
     words.point()?;
@@ -120,7 +120,7 @@ fn facet(words: &mut Words, corners: &mut Vec<[f64; 3]>) -> Result<(), MeshFault
     Ok(())
 }
 
-/// The words of a text with the line of the next one.
+/// The words of a text and the line number of the next one.
 struct Words<'a> {
     lines: std::str::Lines<'a>,
     words: std::iter::Peekable<std::str::SplitAsciiWhitespace<'a>>,
@@ -138,7 +138,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Goes to the line of the next word; whether there is none.
+    /// Advances to the line of the next word; returns whether there is none.
     fn are_over(&mut self) -> bool {
         while self.words.peek().is_none() {
             let Some(line) = self.lines.next() else {
@@ -158,7 +158,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// The next word, which must be one of these.
+    /// Reads the next word, which must be one of `expected`.
     fn take(&mut self, expected: &[&'static str]) -> Result<&'static str, MeshFault> {
         let found = self.next();
         let is_found = |it: &&&str| found.is_some_and(|word| word.eq_ignore_ascii_case(it));
@@ -180,7 +180,7 @@ impl<'a> Words<'a> {
         Ok(point)
     }
 
-    /// The rest of the line. Where a line end was lost it would hide a facet.
+    /// Skips the rest of the line; refuses a facet in it, which a lost line end would hide.
     fn name(&mut self) -> Result<(), MeshFault> {
         let name: Vec<&str> = self.words.by_ref().collect();
         let hides = |pair: &[&str]| {

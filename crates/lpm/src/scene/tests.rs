@@ -1,4 +1,4 @@
-//! Facts about scene files.
+//! Tests of scene files.
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::pose::Frame;
@@ -16,7 +16,7 @@ fn complaint(text: &str) -> String {
 const PIN: &str = r#"{"elements":[{"id":"pin","kind":"cylinder","radius":4,"height":30}],"movers":[{"id":"jaw","kind":"block","half":[1,2,3]}]}"#;
 
 #[test]
-fn toml_and_json_say_the_same() {
+fn toml_and_json_give_the_same_scene() {
     let toml = "units = \"mm\"\n[[elements]]\nid = \"pin\"\nkind = \"cylinder\"\nradius = 4\nheight = 30.0\n[[movers]]\nid = \"jaw\"\nkind = \"block\"\nhalf = [1, 2, 3]\n";
     let read = read_scene(toml, Format::Toml, &mut |_| {
         Err(MeshFault::File(String::new()))
@@ -70,7 +70,7 @@ fn a_mesh_is_inline_or_in_a_file() {
 }
 
 #[test]
-fn moves_are_complained_about_with_their_line() {
+fn an_error_in_a_move_names_its_line() {
     let scene = scene(PIN).unwrap();
     let wrong = |text: &str| read_moves(text, &scene).unwrap_err().to_string();
     let good = r#"{"id":"a","mover":"jaw","from":{},"to":{"position":[1,0,0]},"ignore":["pin"]}"#;
@@ -91,7 +91,7 @@ fn moves_are_complained_about_with_their_line() {
     assert!(wrong("{").starts_with("line 1: not readable"));
 }
 
-/// What a scene adds for the rig, all of it as it should be.
+/// A valid example of all parts of a scene for the rig.
 const FOR_THE_RIG: &str = r#"{"units":"mm",
     "elements":[{"id":"pin","kind":"cylinder","radius":4,"height":30,"rides":"slide"},
                 {"id":"finger","kind":"block","half":[1,1,1],"rides":"slide"}],
@@ -104,7 +104,7 @@ const FOR_THE_RIG: &str = r#"{"units":"mm",
     "guard":{"default_margin_mm":0.5,"nest":[0,0,1]}}"#;
 
 #[test]
-fn what_a_scene_adds_for_the_rig_is_checked_though_it_is_not_applied() {
+fn parts_of_a_scene_for_the_rig_are_checked() {
     scene(FOR_THE_RIG).unwrap();
     for (from, to, says) in [
         (
@@ -240,20 +240,20 @@ fn what_a_scene_adds_for_the_rig_is_checked_though_it_is_not_applied() {
 }
 
 #[test]
-fn a_scene_may_name_what_its_rig_has_elsewhere() {
+fn a_scene_may_use_names_of_its_rig() {
     let text = r#"{"elements":[{"id":"jaw","kind":"block","half":[1,1,1],"rides":"clamp_left"}],
         "pair":[{"a":"part_*","b":"jaw","rule":"may_touch","by":["clamp_left"]}]}"#;
     assert!(complaint(text).starts_with("elements[0].rides: found \"clamp_left\", expected the id of an actuator of the scene or its rig; the scene has no actuators"));
-    let elsewhere = Elsewhere {
+    let rig_names = RigNames {
         actuators: &["clamp_left"],
         bodies: &["part_nest"],
     };
     let mut files = |_: &str| Err(MeshFault::File(String::new()));
-    read_scene_of_rig(text, Format::Json, &mut files, &elsewhere).unwrap();
+    read_scene_of_rig(text, Format::Json, &mut files, &rig_names).unwrap();
 }
 
 #[test]
-fn a_quaternion_of_any_length_is_its_turn_and_only_zero_is_none() {
+fn every_quaternion_except_zero_is_accepted() {
     let quarter = std::f64::consts::FRAC_1_SQRT_2;
     let unit = [quarter, 0.0, 0.0, quarter.next_down()];
     let read = |rotation: [f64; 4]| {
@@ -324,7 +324,7 @@ fn a_message_names_its_place_once_and_stays_short() {
 }
 
 #[test]
-fn a_byte_order_mark_is_no_part_of_the_text() {
+fn a_byte_order_mark_is_skipped() {
     let read = scene(&format!("\u{feff}{PIN}")).unwrap();
     let toml = read_scene("\u{feff}units = \"mm\"", Format::Toml, &mut |_| {
         Err(MeshFault::File(String::new()))
@@ -335,7 +335,7 @@ fn a_byte_order_mark_is_no_part_of_the_text() {
 }
 
 #[test]
-fn a_number_of_many_digits_is_read_to_its_last_place() {
+fn a_long_number_keeps_all_its_digits() {
     let long =
         complaint(r#"{"elements":[{"id":"b","kind":"block","half":[1,1785118.2603991725,1]}]}"#);
     assert!(

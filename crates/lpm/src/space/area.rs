@@ -1,16 +1,15 @@
-//! Which squares of the baseplate something covers.
+//! Areas: the squares of the baseplate that a body covers.
 
 use super::cover::Cover;
 use super::four::Four;
 
-/// Edge of a cell, mm: about the pitch at which fixture elements stand; a power of two, so that
-/// dividing by it is exact.
+/// Edge of a cell, mm: about the pitch of fixture elements; a power of two, so that dividing by it is exact.
 pub(crate) const PITCH_MM: f64 = 64.0;
 
-/// Columns and rows beyond this, 100 km out, are one: no grid reaches there.
+/// Columns and rows beyond this (100 km out) are merged: no grid reaches there.
 const FARTHEST: f32 = (1 << 21) as f32;
 
-/// First and last column and row, each twice, in squares.
+/// First and last column and row in squares, each stored twice for the comparison of four numbers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ends {
     low: [f32; 4],
@@ -23,20 +22,20 @@ impl Ends {
         high: [FARTHEST; 4],
     };
 
-    /// Of the first square alone.
+    /// Ends of the first square alone.
     pub(super) const FIRST: Ends = Ends {
         low: [0.0; 4],
         high: [0.0; 4],
     };
 }
 
-/// Of two by two squares those that differ, by rows and columns less one.
+/// Masks of the distinct squares among two by two, indexed by rows and columns less one.
 const DIFFERENT: [[u32; 2]; 2] = [[0b0001, 0b0011], [0b0101, 0b1111]];
 
-/// Cells added around a piece that stands outside.
+/// Cells added around a piece that lies outside the grid.
 pub(super) const GROWTH: i32 = 4;
 
-/// Columns and rows, both ends included.
+/// A range of columns and rows, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Area {
     pub(crate) low: [i32; 2],
@@ -44,26 +43,26 @@ pub(crate) struct Area {
 }
 
 impl Area {
-    /// Nothing lies in an area whose ends are crossed.
+    /// The empty area: its ends are crossed.
     pub(super) const NOWHERE: Area = Area {
         low: [0; 2],
         high: [-1; 2],
     };
 
-    /// What a silhouette touches.
+    /// Returns the squares that a silhouette touches.
     #[inline]
     pub(crate) fn of(cover: &Cover) -> Area {
         Area::among(cover, &Ends::FARTHEST)
     }
 
-    /// The same, but of what lies beyond some ends the nearest squares that do not.
+    /// Returns the squares that a silhouette touches, clamped to `ends`.
     #[inline(always)]
     pub(super) fn among(cover: &Cover, ends: &Ends) -> Area {
         let corners = Four::of(&cover.low).first_two(Four::of(&cover.high));
         let squares = corners.times(Four::all(1.0 / PITCH_MM as f32));
-        // The square whose middle is nearest. What lies on a line belongs to either side, which may be: covers are
-        // rounded outward, so nothing covered lies on their bounds. (So may what lies within 2e-6 mm below 0.)
-        // All of this is monotone, so covering areas stay covering.
+        // Selects the square with the nearest centre. A bound on a grid line may belong to either side: covers are
+        // rounded outward, so the covered body itself does not lie on their bounds. The same holds for bounds up to
+        // 2e-6 mm below 0. Every step is monotone, so an area that contains another still does.
         let middles = squares.minus(Four::all(0.5));
         let within = middles.within(Four::of(&ends.low), Four::of(&ends.high));
         let [left, front, right, back] = within.nearest();
@@ -73,7 +72,7 @@ impl Area {
         }
     }
 
-    /// The ends of this area, which is not empty.
+    /// The ends of this area, which must not be empty.
     pub(super) fn ends(&self) -> Ends {
         let twice = |[x, y]: [i32; 2]| [x as f32, y as f32, x as f32, y as f32];
         Ends {
@@ -82,31 +81,31 @@ impl Area {
         }
     }
 
-    /// Number of its cells.
+    /// Number of cells.
     pub(super) fn cells(&self) -> i64 {
         let edge = |axis: usize| i64::from(self.high[axis]) - i64::from(self.low[axis]) + 1;
         edge(0) * edge(1)
     }
 
-    /// Whether it is two by two cells, or fewer.
+    /// Whether the area has at most two by two cells.
     #[inline]
     pub(super) fn is_few(&self) -> bool {
         (self.high[0] - self.low[0] <= 1) & (self.high[1] - self.low[1] <= 1)
     }
 
-    /// Of its two by two cells those that differ: bit 0 the first, bit 1 the next column, bit 2 the next row.
+    /// Mask of the distinct cells among two by two: bit 0 the first, bit 1 the next column, bit 2 the next row.
     #[inline(always)]
     pub(super) fn different(&self) -> u32 {
         let [wide, deep] = [0, 1].map(|axis: usize| (self.high[axis] - self.low[axis]) as usize);
         DIFFERENT[deep % 2][wide % 2]
     }
 
-    /// Whether `other` lies in it.
+    /// Whether the area contains `other`.
     pub(super) fn holds(&self, other: &Area) -> bool {
         (0..2).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
     }
 
-    /// Both, with room to grow where `other` reaches out.
+    /// Returns the union of both, with room to grow on the sides where `other` extends beyond this area.
     pub(super) fn with(&self, other: &Area) -> Area {
         let span = (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]) / 4 + GROWTH;
         let below = |axis: usize| {
@@ -129,7 +128,7 @@ impl Area {
         }
     }
 
-    /// Number of its columns.
+    /// Number of columns.
     pub(super) fn columns(&self) -> i64 {
         i64::from(self.high[0]) - i64::from(self.low[0]) + 1
     }

@@ -1,23 +1,23 @@
-//! What stands around a box at rest.
+//! The pieces around a box at rest.
 
 use super::area::Area;
 use super::cover::Cover;
 use super::grid::Grid;
 use super::silhouettes::{Bundle, NONE};
 
-/// Bundles in some layers around a box, each with the lanes that the box meets: those in the open first,
-/// then those of two by two squares at a time.
+/// Iterates over the bundles in some layers around a box, each with the lanes that the box meets: first the open
+/// cell, then blocks of two by two squares.
 pub(crate) struct Around<'a> {
     grid: &'a Grid,
     cover: &'a Cover,
     layers: u64,
-    /// Next bundle of the square at hand.
+    /// Next bundle of the current square.
     next: u32,
-    /// The first of two by two squares, and which of them are still to be looked at (bit 0: the first, bit 1:
-    /// that of the next column, bit 2: of the next row).
+    /// The first square of the current block, and the squares still to visit (bit 0: the first, bit 1: the next
+    /// column, bit 2: the next row).
     first: usize,
     left: u32,
-    /// How many such blocks were looked at, when there may be more.
+    /// Number of blocks visited, when there may be more.
     blocks: Option<i32>,
 }
 
@@ -43,24 +43,24 @@ impl<'a> Around<'a> {
         around
     }
 
-    /// Looks at two by two squares, or fewer.
+    /// Starts a block of at most two by two squares.
     #[inline(always)]
     fn squares(&mut self, block: &Area) {
         self.first = self.grid.place(block.low[0], block.low[1]);
-        // Their words are read without a branch between them.
+        // Reads the words of all four without a branch between them.
         let wanted = |at: u32| u32::from(self.grid.word(self.place(at)) & self.layers != 0) << at;
         let word = wanted(0) | wanted(1) | wanted(2) | wanted(3);
         self.left = word & block.different();
     }
 
-    /// The number of a square of the block.
+    /// Returns the cell number of a square of the block.
     #[inline(always)]
     fn place(&self, at: u32) -> usize {
         let row = if at < 2 { 0 } else { self.grid.columns };
         self.first + row + at as usize % 2
     }
 
-    /// Goes on to the next block of a large area.
+    /// Advances to the next block of a large area.
     #[cold]
     fn block(&mut self, blocks: i32) {
         let area = Area::among(self.cover, &self.grid.ends);
@@ -126,13 +126,13 @@ mod tests {
     }
 
     #[test]
-    fn whatever_meets_a_box_is_shown_however_large_the_box_and_wherever_it_is() {
+    fn every_piece_that_meets_a_box_is_visited() {
         let mut dice = Dice::new(19);
         let mut large = 0;
         for round in 0..40 {
             let covers: Vec<Cover> = (0..60)
                 .map(|number| {
-                    // One in a while is too large for squares.
+                    // One piece in twenty is too large for squares.
                     let size = if number % 20 == 0 { 700.0 } else { 40.0 };
                     drawn(&mut dice, 300.0, size)
                 })
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn around_a_box_over_an_empty_space_is_nothing() {
+    fn an_empty_space_has_no_pieces_around_a_box() {
         let cover = Cover::of(([-1e3; 3], [1e3; 3]));
         assert!(shown(&Space::default(), &cover).is_empty());
         let mut plate_alone = Space::default();

@@ -1,9 +1,8 @@
-//! Boxes in single precision, member by member (`low` of x of every box, ...), so that four of them
-//! are compared by one instruction.
+//! Boxes in single precision as a structure of arrays (`low` of x of every box, ...), so that one instruction
+//! compares four of them.
 //!
-//! Bounds are rounded outward, strictly. An f32 costs sharpness (6e-5 mm at 1 m, 0.06 mm at 1 km),
-//! never safety: a rounded box holds the true one, and what overlaps by rounding only is sorted out by
-//! the exact phase.
+//! Bounds are strictly rounded outward. Single precision costs sharpness (6e-5 mm at 1 m, 0.06 mm at 1 km), never
+//! safety: a rounded box contains the true one, and the exact phase sorts out overlaps caused by rounding.
 
 use super::cover::Cover;
 use super::four::Four;
@@ -17,20 +16,20 @@ pub(crate) struct Boxes<const N: usize> {
     pub(crate) high: [[f32; N]; 3],
 }
 
-/// Which boxes a box on its way meets (bit k: lane k), and not before which fraction of the way.
+/// The boxes that a moving box meets (bit k: lane k), and the fraction before which it does not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Crossing<const N: usize> {
     pub(crate) lanes: u32,
-    /// Not after the true fraction; only of lanes that are met.
+    /// At most the true fraction; valid for lanes that are met.
     pub(crate) entry: [f32; N],
 }
 
-/// Factors that outweigh the four roundings of a fraction of the way.
+/// Factors that outweigh the four roundings of a fraction of the path.
 const EARLIER: f32 = 1.0 - 8.0 * f32::EPSILON;
 const LATER: f32 = 1.0 + 8.0 * f32::EPSILON;
 
 impl<const N: usize> Boxes<N> {
-    /// Points at infinity: they meet nothing, wherever it goes.
+    /// Boxes at infinity, which meet no box on any path.
     pub(crate) const NOWHERE: Boxes<N> = Boxes {
         low: [[f32::INFINITY; N]; 3],
         high: [[f32::INFINITY; N]; 3],
@@ -44,7 +43,7 @@ impl<const N: usize> Boxes<N> {
         }
     }
 
-    /// One of them.
+    /// Returns the box of one lane.
     #[inline]
     pub(crate) fn cover(&self, lane: usize) -> Cover {
         let member = |[x, y, z]: &[[f32; N]; 3]| [x[lane], y[lane], z[lane], 0.0];
@@ -54,7 +53,7 @@ impl<const N: usize> Boxes<N> {
         }
     }
 
-    /// Bit k: box k shares a point with `cover` on every axis.
+    /// Returns bit k when box k shares a point with `cover` on every axis.
     #[inline]
     pub(crate) fn meeting(&self, cover: &Cover) -> u32 {
         let (low, high) = (cover.low.map(Four::all), cover.high.map(Four::all));
@@ -69,7 +68,7 @@ impl<const N: usize> Boxes<N> {
         })
     }
 
-    /// Before which fraction of the way each box is not met, on a way along one axis.
+    /// Returns for each box the fraction before which it is not met, along one axis.
     #[inline]
     pub(crate) fn entry(&self, cover: &Cover, pace: &Pace, axis: usize) -> [f32; N] {
         let mut entry = [0.0; N];
@@ -81,8 +80,8 @@ impl<const N: usize> Boxes<N> {
         entry
     }
 
-    /// The boxes that a box, starting as `cover`, meets on its way up to the fraction `until`. The
-    /// same holds when the boxes go the other way and `cover` stands.
+    /// Returns the boxes that a box, starting as `cover`, meets on its path up to the fraction `until`. Equally
+    /// valid when the boxes move the opposite way and `cover` is at rest.
     #[inline(always)]
     pub(crate) fn crossing(&self, cover: &Cover, pace: &Pace, until: f32) -> Crossing<N> {
         let mut crossing = Crossing {
@@ -104,7 +103,7 @@ impl<const N: usize> Boxes<N> {
         crossing
     }
 
-    /// Of four boxes: at which fractions of the way `cover` has come to one side, and has left the other.
+    /// Returns for four boxes the fractions at which `cover` reaches one side and has left the other.
     #[inline(always)]
     fn ends(&self, four: usize, cover: &Cover, pace: &Pace, axis: usize) -> (Four, Four) {
         let pace = Four::all(pace.0[axis]);
@@ -137,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_shares_a_point_is_met_and_nobody_else() {
+    fn boxes_meet_exactly_when_they_share_a_point() {
         let mut dice = Dice::new(9);
         let mut met = 0;
         for _ in 0..2_000 {
@@ -166,7 +165,7 @@ mod tests {
                 (run[0], run[1]) = (0.0, 0.0);
             }
             let mut boxes = Boxes::<4>::NOWHERE;
-            // A hair larger, as rounding outward leaves them.
+            // Slightly larger, as after rounding outward.
             boxes.set(1, &Cover::of((three(element.low), three(element.high))));
             let crossing = boxes.crossing(&mover, &Pace::of(run), 1.0);
             let at = |t: f64| {
@@ -176,7 +175,7 @@ mod tests {
                 let (low, high) = (moved(mover.low), moved(mover.high));
                 element.distance(&Cover { low, high }) == 0.0
             };
-            // Eighths hold the first contact of whole numbers with runs of 1, 2 and 4.
+            // Boxes and runs in whole numbers touch first at an eighth of the path.
             let first = (0..=8)
                 .map(|eighth| f64::from(eighth) / 8.0)
                 .find(|t| at(*t));

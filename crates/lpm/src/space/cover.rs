@@ -1,36 +1,37 @@
-//! Boxes of single precision around boxes of double precision.
+//! Boxes in single precision that enclose boxes in double precision.
 
 use super::four::Four;
 use crate::vector::Vec3;
 
-/// Two units in the last place of an f32, relative: more than the nearest one and the step away from it lose.
+/// Two units in the last place of an f32, relative: more than rounding to nearest and one step away from it lose.
 const ULP: f32 = 2.0 * f32::EPSILON;
 
-/// Four units likewise, and the least number of full precision, mm: below it an f32 loses digits (denormal).
+/// Relative rounding bound (four units in the last place), and the least normal number, mm, below which an f32
+/// loses digits.
 const SINGLE: f32 = 4.0 * f32::EPSILON;
 const TINY: f32 = f32::MIN_POSITIVE;
 
-/// An f32 that is above `x`.
+/// Returns an f32 above `x`.
 #[inline]
 pub(crate) fn above(x: f64) -> f32 {
     let nearest = x as f32;
     nearest + (nearest.abs() * ULP + TINY)
 }
 
-/// The smaller one, `b` when they cannot be compared.
+/// The smaller number; `b` when they cannot be compared.
 #[inline]
 pub(crate) fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The larger one, `b` when they cannot be compared.
+/// The larger number; `b` when they cannot be compared.
 #[inline]
 pub(crate) fn larger(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// A box of single precision that holds a box of double precision. (The fourth members are 0: four numbers
-/// are one register.)
+/// A box in single precision that encloses a box in double precision. The fourth members are 0, so that four
+/// numbers fill one register.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(align(16))]
 pub(crate) struct Cover {
@@ -52,12 +53,12 @@ impl Cover {
         }
     }
 
-    /// Around the way of this box by `run`, mm.
+    /// Returns the box around the path of this box along `run`, mm.
     #[inline]
     pub(crate) fn swept(&self, run: Vec3) -> Cover {
         let (low, high) = (Four::of(&self.low), Four::of(&self.high));
         let (way, rest) = (Four::rounded(&run), Four::all(0.0));
-        // Twice what the sum and the way may have lost.
+        // Twice the rounding of the sum and of the path.
         let slack = |bound: Four| {
             let magnitude = bound.abs().plus(way.abs());
             magnitude.times(Four::all(SINGLE)).plus(Four::all(TINY))
@@ -68,7 +69,7 @@ impl Cover {
         }
     }
 
-    /// The smallest one that holds both.
+    /// The smallest box that encloses both.
     #[inline]
     pub(crate) fn around(self, other: Cover) -> Cover {
         Cover {
@@ -77,7 +78,7 @@ impl Cover {
         }
     }
 
-    /// Not above the distance of what the covers hold, mm.
+    /// Lower bound of the distance of the enclosed bodies, mm.
     pub(crate) fn distance(&self, other: &Cover) -> f64 {
         let squared = (0..3).fold(0.0, |sum, axis| {
             let beyond = f64::from(other.low[axis]) - f64::from(self.high[axis]);

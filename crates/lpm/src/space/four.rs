@@ -1,11 +1,11 @@
-//! Four numbers of single precision, on which one instruction works at a time.
+//! Four numbers in single precision, processed by one instruction.
 
 #[cfg(not(target_arch = "x86_64"))]
 use one_by_one as machine;
 #[cfg(target_arch = "x86_64")]
 use sse as machine;
 
-/// Four numbers.
+/// Four numbers in single precision.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Four(machine::Numbers);
 
@@ -20,7 +20,7 @@ impl Four {
         Four::of(&[number; 4])
     }
 
-    /// Three numbers rounded to the nearest, and 0.
+    /// Rounds three numbers to nearest; the fourth is 0.
     #[inline(always)]
     pub(crate) fn rounded(three: &[f64; 3]) -> Four {
         Four(machine::rounded(three))
@@ -51,44 +51,43 @@ impl Four {
         Four(machine::abs(self.0))
     }
 
-    /// The smaller ones, those of `other` where they cannot be compared.
+    /// The smaller number of each pair; the one of `other` when they cannot be compared.
     #[inline(always)]
     pub(crate) fn smaller(self, other: Four) -> Four {
         Four(machine::smaller(self.0, other.0))
     }
 
-    /// The larger ones, likewise.
+    /// The larger number of each pair; the one of `other` when they cannot be compared.
     #[inline(always)]
     pub(crate) fn larger(self, other: Four) -> Four {
         Four(machine::larger(self.0, other.0))
     }
 
-    /// No number below that of `low` or above that of `high`, which are in order; what is no number
-    /// becomes one of the two.
+    /// Clamps each number between those of `low` and `high`, which are in order; NaN becomes one of the two.
     #[inline(always)]
     pub(crate) fn within(self, low: Four, high: Four) -> Four {
         self.larger(low).smaller(high)
     }
 
-    /// The first two numbers of both.
+    /// The first two numbers of `self`, then the first two of `other`.
     #[inline(always)]
     pub(crate) fn first_two(self, other: Four) -> Four {
         Four(machine::first_two(self.0, other.0))
     }
 
-    /// The nearest whole numbers of these, each of at most 2^23; of two as near the even one.
+    /// The nearest whole numbers, ties to even; each number is at most 2^23.
     #[inline(always)]
     pub(crate) fn nearest(self) -> [i32; 4] {
         machine::nearest(self.0)
     }
 
-    /// Bit k: number k is at most that of `other`. (What is no number is at most nothing.)
+    /// Returns bit k when number k is at most that of `other`; NaN never is.
     #[inline(always)]
     pub(crate) fn at_most(self, other: Four) -> u32 {
         machine::bits(machine::at_most(self.0, other.0))
     }
 
-    /// Bit k: on each of three axes number k of `self` is at most that of `other`.
+    /// Returns bit k when in all six pairs number k of the first is at most that of the second.
     #[inline(always)]
     pub(crate) fn all_at_most(pairs: [(Four, Four); 6]) -> u32 {
         let [a, b, c, d, e, f] = pairs.map(|(a, b)| machine::at_most(a.0, b.0));
@@ -101,14 +100,14 @@ impl Four {
     }
 }
 
-/// By the instructions that every x86-64 has.
+/// Implementation with SSE2, which every x86-64 has.
 #[cfg(target_arch = "x86_64")]
 mod sse {
     use std::arch::x86_64::*;
 
     pub(super) type Numbers = __m128;
 
-    /// Safe names for instructions that only work on registers.
+    /// Defines safe functions for instructions that work on registers only.
     macro_rules! instructions {
         ($($name:ident($($from:ident),+) = $intrinsic:ident;)+) => {$(
             #[inline(always)]
@@ -132,7 +131,7 @@ mod sse {
 
     #[inline(always)]
     pub(super) fn of(numbers: &[f32; 4]) -> Numbers {
-        // SAFETY: as above; four numbers may be read, wherever they stand.
+        // SAFETY: as above; the array holds four numbers, and the load needs no alignment.
         unsafe { _mm_loadu_ps(numbers.as_ptr()) }
     }
 
@@ -146,7 +145,7 @@ mod sse {
 
     #[inline(always)]
     pub(super) fn rounded(three: &[f64; 3]) -> Numbers {
-        // SAFETY: as above; two numbers may be read, and then one.
+        // SAFETY: as above; reads two numbers and then one, all within the array.
         unsafe {
             let (xy, z) = (_mm_loadu_pd(three.as_ptr()), _mm_load_sd(&three[2]));
             _mm_movelh_ps(_mm_cvtpd_ps(xy), _mm_cvtpd_ps(z))
@@ -174,12 +173,12 @@ mod sse {
     }
 }
 
-/// The same, one number after the other.
+/// The same functions, one number after the other.
 #[cfg(any(test, not(target_arch = "x86_64")))]
 mod one_by_one {
     pub(super) type Numbers = [f32; 4];
 
-    /// What one number after the other becomes.
+    /// Defines a function that applies `made` to each of the four positions.
     macro_rules! each {
         ($($name:ident($($from:ident),+) = $made:expr;)+) => {$(
             pub(super) fn $name($($from: Numbers),+) -> Numbers {
@@ -248,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn four_at_a_time_are_what_one_by_one_would_be() {
+    fn four_at_a_time_equals_one_by_one() {
         let mut dice = Dice::new(8);
         for _ in 0..4_000 {
             let (a, b) = (drawn(&mut dice), drawn(&mut dice));
@@ -281,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_rounded_is_the_nearest_whole_number() {
+    fn rounding_gives_the_nearest_whole_number() {
         let mut dice = Dice::new(12);
         for exponent in -30..22 {
             for _ in 0..100 {

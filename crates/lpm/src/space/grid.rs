@@ -1,8 +1,8 @@
-//! Grid information `V` of all layers: what stands over which square of the baseplate.
+//! Grid information `V` of all layers: which pieces stand over which square of the baseplate.
 //!
-//! A cell is one word (bit k: layer k has something here) and a chain of bundles of silhouettes. A
-//! piece is entered in every cell that its silhouette touches. Words and chains are kept apart: a
-//! way over empty squares reads words only.
+//! A cell is one word (bit k: the cell has a piece in layer k) and a chain of bundles of silhouettes. A piece is
+//! entered in every cell that its silhouette touches. Words and chains are stored separately, so that a path over
+//! empty squares reads words only.
 
 use super::Seat;
 use std::ops::Range;
@@ -12,17 +12,17 @@ use super::cover::Cover;
 use super::pool::{Cell, Chain, Pool};
 use super::silhouettes::{Bundle, Lane, NONE};
 
-/// Largest grid, in cells; pieces farther out are kept in the open cell.
+/// Most cells of the grid; pieces farther out are stored in the open cell.
 const MOST_CELLS: i64 = 1 << 18;
 
-/// The squares, and one open cell for pieces too large or too far out for them.
+/// The cells of the squares, and one open cell for pieces too large or too far out for them.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
     area: Area,
-    /// Of that area.
+    /// Ends of the area of the grid.
     pub(super) ends: Ends,
     pub(super) columns: usize,
-    /// Of each cell, as in [`Cell`]; then of the open one.
+    /// Words of the cells, as in [`Cell`]; the last one belongs to the open cell.
     pub(super) layers: Vec<u64>,
     pub(super) heads: Vec<u32>,
     pub(super) open_layers: u64,
@@ -46,7 +46,7 @@ impl Default for Grid {
 }
 
 impl Grid {
-    /// Enters a piece wherever its silhouette lies.
+    /// Enters a piece in every cell that its silhouette touches.
     pub(crate) fn put(&mut self, piece: u32, cover: &Cover, seat: &Seat) {
         let (area, lane) = (&seat.area, Lane::of(piece, cover, seat));
         if seat.is_small && self.reach_over(area) {
@@ -56,13 +56,13 @@ impl Grid {
         }
     }
 
-    /// Takes a piece out again.
+    /// Removes a piece.
     pub(crate) fn take(&mut self, piece: u32, seat: &Seat) {
         let mut known = false;
         if seat.is_small && self.area.holds(&seat.area) {
             self.each_cell(&seat.area, |pool, cell| known = pool.take(cell, piece));
         }
-        // What stood too far out when it came is in the open cell, however large the grid is now.
+        // A piece that was too far out when entered is in the open cell, even if the grid has grown since.
         if !known {
             self.in_the_open(|pool, cell| {
                 pool.take(cell, piece);
@@ -85,7 +85,7 @@ impl Grid {
         change(&mut self.pool, Cell { layers, head });
     }
 
-    /// The part of an area that has cells.
+    /// Returns the part of an area that has cells.
     #[inline]
     pub(crate) fn common(&self, area: &Area) -> Option<Area> {
         let own = &self.area;
@@ -94,23 +94,23 @@ impl Grid {
         (low[0] <= high[0] && low[1] <= high[1]).then_some(Area { low, high })
     }
 
-    /// Number of the cell of a column and a row that [`Grid::common`] found; the next column is the
-    /// next number.
+    /// Returns the number of the cell of a column and a row within [`Grid::common`]; the next column has the next
+    /// number.
     #[inline]
     pub(crate) fn place(&self, column: i32, row: i32) -> usize {
         number(self.area.low, self.columns, [column, row])
     }
 
-    /// From the number of a cell to that of the next column (axis 0) or row (1).
+    /// Returns the difference of cell numbers to the next column (axis 0) or row (axis 1).
     #[inline]
     pub(crate) fn stride(&self, axis: usize) -> usize {
         [1, self.columns][axis]
     }
 
-    /// Whether one of `steps` + 1 cells in a line may have something in one of these layers. Up to
-    /// four are asked at once, without a branch between them; of more it is not known.
+    /// Whether one of `steps` + 1 cells in a line may have a piece in one of these layers. Reads up to four cells
+    /// without a branch between them; returns true for more.
     #[inline]
-    pub(crate) fn has_something(
+    pub(crate) fn may_have_piece(
         &self,
         first: usize,
         stride: usize,
@@ -121,25 +121,25 @@ impl Grid {
         steps > 3 || steps >= 0 && (word(0) | word(1) | word(2) | word(3)) & layers != 0
     }
 
-    /// The layers that have something in a cell, if there is one of this number.
+    /// Returns the layers in which a cell has pieces; 0 for a number without a cell.
     #[inline]
     pub(super) fn word(&self, place: usize) -> u64 {
         self.layers.get(place).copied().unwrap_or(0)
     }
 
-    /// The bundles of a cell that has something in one of these layers.
+    /// Returns the bundles of a cell that has a piece in one of these layers.
     #[inline]
     pub(crate) fn in_layers(&self, place: usize, layers: u64) -> Option<Chain<'_>> {
         (self.word(place) & layers != 0).then(|| self.pool.chain(self.heads[place]))
     }
 
-    /// A bundle that was shown, by its number.
+    /// Returns a bundle by its number.
     #[inline]
     pub(crate) fn bundle(&self, number: u32) -> &Bundle {
         self.pool.bundle(number)
     }
 
-    /// The bundles of what has no square, likewise.
+    /// Returns the bundles of the open cell, if it has a piece in one of these layers.
     #[inline]
     pub(crate) fn open_in_layers(&self, layers: u64) -> Option<Chain<'_>> {
         (self.open_layers & layers != 0).then(|| self.pool.chain(self.open_head))
@@ -152,7 +152,7 @@ impl Grid {
             + self.pool.heap_bytes()
     }
 
-    /// Makes the grid reach over `area`; false when it would become too large.
+    /// Extends the grid over `area`; returns false when it would become too large.
     fn reach_over(&mut self, area: &Area) -> bool {
         if self.area.holds(area) {
             return true;
@@ -184,7 +184,7 @@ impl Grid {
         true
     }
 
-    /// Empty cells.
+    /// Makes a grid of empty cells.
     fn over(area: Area) -> Grid {
         let cells = area.cells() as usize;
         Grid {
@@ -197,8 +197,8 @@ impl Grid {
         }
     }
 
-    /// A grid with pieces numbered from 0: the same as [`Grid::put`] for one after the other. Squares
-    /// are counted first, so that every cell gets all its bundles at once.
+    /// Makes a grid with pieces numbered from 0, equal to one built by [`Grid::put`] piece by piece. Counts the
+    /// squares first, so that every cell gets all its bundles at once.
     pub(super) fn filled(covers: &[Cover], seats: &[Seat]) -> Grid {
         let with_squares = |(_, seat): &(&Cover, &Seat)| seat.is_small;
         let small = covers.iter().zip(seats).filter(with_squares);
@@ -219,13 +219,13 @@ impl Grid {
         grid
     }
 
-    /// Bundles for what will be entered, and the words of the cells; the result is where the first
-    /// silhouette of each cell goes.
+    /// Reserves the bundles for the pieces of `seats` and sets the words of the cells. Returns the lane for the
+    /// first silhouette of each cell.
     fn reserve<'a>(&mut self, seats: impl Iterator<Item = &'a Seat>) -> Vec<u32> {
         let mut counts = vec![0u32; self.layers.len()];
         for seat in seats {
             let word = seat.reach.word();
-            // Two by two squares at most: how many cannot be guessed, so four are counted, some by nothing.
+            // At most two by two squares: their number is unpredictable, so the code always counts four, some by 0.
             if seat.area.is_few() {
                 let (places, used) = few(self.area.low, self.columns, &seat.area);
                 for (square, place) in places.into_iter().enumerate() {
@@ -254,14 +254,14 @@ impl Grid {
     }
 }
 
-/// The number of the cell of a column and a row in a grid that begins at `low`.
+/// Returns the number of the cell of a column and a row in a grid that begins at `low`.
 #[inline(always)]
 fn number(low: [i32; 2], columns: usize, [column, row]: [i32; 2]) -> usize {
     (row - low[1]) as usize * columns + (column - low[0]) as usize
 }
 
-/// Shows the number of each cell of `area` in a grid that begins at `low`. (Most areas are two by two cells or fewer;
-/// how often one loop within another goes round is guessed wrong more often than whether they are wide and deep.)
+/// Passes the number of each cell of `area` in a grid that begins at `low` to `show`. Areas of at most two by two
+/// cells, the majority, avoid nested loops, whose counts are mispredicted more often.
 #[inline(always)]
 fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(usize)) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
@@ -282,8 +282,8 @@ fn each_place(low: [i32; 2], columns: usize, area: &Area, mut show: impl FnMut(u
     rows(low, columns, area).for_each(|row| row.for_each(&mut show));
 }
 
-/// The numbers of the cells of an area of two by two, or fewer, in a grid that begins at `low`, and which of them
-/// differ (bit k: that at place k).
+/// Returns the numbers of the cells of an area of at most two by two cells in a grid that begins at `low`, and
+/// which of them differ (bit k: that at index k).
 #[inline(always)]
 fn few(low: [i32; 2], columns: usize, area: &Area) -> ([usize; 4], u32) {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize);
@@ -292,7 +292,7 @@ fn few(low: [i32; 2], columns: usize, area: &Area) -> ([usize; 4], u32) {
     ([first, first + wide, next, next + wide], area.different())
 }
 
-/// The numbers of the cells of `area` in a grid that begins at `low`, row by row.
+/// Returns the numbers of the cells of `area` in a grid that begins at `low`, row by row.
 #[inline]
 fn rows(low: [i32; 2], columns: usize, area: &Area) -> impl Iterator<Item = Range<usize>> {
     let [wide, deep] = [0, 1].map(|axis: usize| (area.high[axis] - area.low[axis]) as usize + 1);

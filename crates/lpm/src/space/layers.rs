@@ -1,10 +1,10 @@
-//! Layers: the checking space cut along z, each layer with the real bottom and top of what is in it.
+//! Layers: the checking space cut along z, each layer with the actual bottom and top of its pieces.
 //!
-//! A layer is `{h1, h2, V, B}`: one step of [`STEP_MM`] of the height, from the lowest real bottom
-//! that lies in it (`h1`) to the highest real top (`h2`). A piece belongs to every layer that it
-//! reaches into, but is copied into none: of `V`, the grid information, a layer has one bit in the
-//! word of each cell of the [`Grid`](super::grid::Grid) (bit k: layer k has something here), `B`,
-//! the silhouettes, are kept by cell for all layers ([`Bundle`](super::silhouettes::Bundle)).
+//! A layer is `{h1, h2, V, B}`: a height interval of [`STEP_MM`], the lowest bottom that lies in it (`h1`) and the
+//! highest top (`h2`). A piece belongs to every layer into which it reaches, but no layer copies it. The grid
+//! information `V` of a layer is one bit in the word of each cell of the [`Grid`](super::grid::Grid) (bit k: the
+//! cell has a piece in layer k); the silhouettes `B` are stored per cell for all layers
+//! ([`Bundle`](super::silhouettes::Bundle)).
 //!
 //! The checking space Omega reaches from the lowest `h1` to the highest `h2` and follows them.
 
@@ -12,21 +12,21 @@ use super::Seat;
 use super::cover::{Cover, larger, smaller};
 use super::four::Four;
 
-/// Layers fit the bits of one word.
+/// Number of layers: one per bit of a word.
 const LAYERS: usize = 64;
 
-/// Layers that nearly all pieces pass at most.
+/// Most layers that nearly all pieces span between their lowest and highest.
 const SHORT: usize = 8;
 
-/// Height of a layer, mm: a third of the lowest elements of a fixture, so that a hand that passes
-/// over them shares no layer with them.
+/// Height of a layer, mm: a third of the lowest elements of a fixture, so that a gripper passing over them shares
+/// no layer with them.
 const STEP_MM: f32 = 8.0;
 
-/// Layers below the top of the baseplate, less the half that rounding to the nearest adds; whatever lies
-/// lower belongs to the lowest layer, what lies above all steps (440 mm) to the highest.
+/// Number of layers below the top of the baseplate, less the half that rounding to nearest adds. Anything lower
+/// belongs to the lowest layer, anything above all layers (440 mm) to the highest.
 const STEPS_BELOW: f32 = 7.5;
 
-/// The layers that a piece reaches into: the lowest and the highest.
+/// The lowest and the highest layer into which a piece reaches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Reach {
     pub(crate) low: u8,
@@ -34,19 +34,19 @@ pub(crate) struct Reach {
 }
 
 impl Reach {
-    /// Into none.
+    /// The empty reach.
     pub(super) const NONE: Reach = Reach {
         low: LAYERS as u8 - 1,
         high: 0,
     };
 
-    /// Of a piece between two heights, mm.
+    /// Computes the layers between the heights of bottom and top, mm.
     #[inline(always)]
     pub(crate) fn of(bottom_mm: f32, top_mm: f32) -> Reach {
         let heights = Four::of(&[bottom_mm, top_mm, 0.0, 0.0]);
         let steps = heights.times(Four::all(1.0 / STEP_MM));
         let steps = steps.plus(Four::all(STEPS_BELOW));
-        // All of this is monotone, which is all that safety needs.
+        // Every step is monotone, which is sufficient for safety.
         let within = steps.within(Four::all(0.0), Four::all(LAYERS as f32 - 1.0));
         let [low, high, ..] = within.nearest();
         Reach {
@@ -55,24 +55,24 @@ impl Reach {
         }
     }
 
-    /// One bit a layer.
+    /// Returns the word with one bit per layer.
     #[inline(always)]
     pub(crate) fn word(self) -> u64 {
-        // What would be shifted out is no layer.
+        // The modulus keeps the shift within the word.
         let last = LAYERS as u32 - 1;
         u64::MAX.wrapping_shl(u32::from(self.low))
             & u64::MAX.wrapping_shr(last.wrapping_sub(u32::from(self.high)))
     }
 }
 
-/// All layers, and Omega.
+/// Counts and heights of all layers, and Omega.
 #[derive(Debug, Clone)]
 pub(crate) struct Layers {
-    /// Pieces that pass through each layer from below to above, that begin in it, that end in it.
+    /// Number of pieces that pass through each layer; `beginning` and `ending` count those that begin and end in it.
     passing: [u32; LAYERS + SHORT],
     beginning: [u32; LAYERS],
     ending: [u32; LAYERS],
-    /// Lowest bottom of those that begin, highest top of those that end in a layer, mm.
+    /// Lowest bottom of the pieces that begin in each layer, highest top of those that end in it, mm.
     h1: [f32; LAYERS],
     h2: [f32; LAYERS],
     /// Bottom and top of Omega, mm.
@@ -95,10 +95,10 @@ impl Default for Layers {
 }
 
 impl Layers {
-    /// Of many pieces at once.
+    /// Builds the layers of many pieces at once.
     pub(super) fn of(seats: &[Seat], covers: &[Cover]) -> Layers {
         let mut layers = Layers::default();
-        // Pieces that begin and end in the same layer.
+        // Counts pieces that begin and end in the same layer.
         let mut within = [0u32; LAYERS];
         for (Seat { reach, .. }, cover) in seats.iter().zip(covers) {
             layers.enclose(*reach, cover.low[2], cover.high[2]);
@@ -108,8 +108,8 @@ impl Layers {
         }
         layers.bottom = layers.h1.into_iter().fold(f32::INFINITY, smaller);
         layers.top = layers.h2.into_iter().fold(f32::NEG_INFINITY, larger);
-        // Those that have begun below a layer and do not end below or in it; but for those of one layer. (Nobody ends
-        // before it begins.)
+        // Passing pieces have begun below the layer and end neither below nor in it. Pieces of one layer only are
+        // subtracted; no piece ends before it begins.
         let (mut begun, mut ended) = (0, 0);
         for (layer, within) in within.into_iter().enumerate() {
             ended += layers.ending[layer] - within;
@@ -119,7 +119,7 @@ impl Layers {
         layers
     }
 
-    /// Takes a piece between two heights (mm) in.
+    /// Adds a piece between two heights (mm).
     #[inline]
     pub(crate) fn join(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
         self.enclose(reach, bottom_mm, top_mm);
@@ -128,7 +128,7 @@ impl Layers {
         self.pass(reach, 1);
     }
 
-    /// Where a piece begins and ends. (No reach goes beyond the layers; saying so spares a check.)
+    /// Enters where a piece begins and ends. The modulus, which changes no valid layer, spares a bounds check.
     #[inline]
     fn enclose(&mut self, reach: Reach, bottom_mm: f32, top_mm: f32) {
         let [low, high] = [reach.low, reach.high].map(|layer| usize::from(layer) % LAYERS);
@@ -138,14 +138,14 @@ impl Layers {
         self.h2[high] = larger(self.h2[high], top_mm);
     }
 
-    /// Counts a piece in the layers between its lowest and its highest: 1 more, or with `u32::MAX` 1 less.
+    /// Adds `more` to the counts of the layers between the lowest and the highest of a piece; `u32::MAX` subtracts 1.
     #[inline]
     fn pass(&mut self, reach: Reach, more: u32) {
         let first = usize::from(reach.low) + 1;
         let between = usize::from(reach.high).saturating_sub(first);
         let passed = &mut self.passing[first..];
         match passed.first_chunk_mut::<SHORT>() {
-            // How many they are cannot be guessed, so all of a few are written, most with what they had.
+            // The number of layers is unpredictable, so the loop always writes `SHORT` counts, most of them unchanged.
             Some(few) if between <= SHORT => {
                 for (at, count) in few.iter_mut().enumerate() {
                     *count = count.wrapping_add(if at < between { more } else { 0 });
@@ -158,9 +158,8 @@ impl Layers {
         }
     }
 
-    /// Lets a piece go. `h1` and `h2` of a layer stay (a superset is safe) until nothing begins or
-    /// ends there.
-    pub(crate) fn leave(&mut self, reach: Reach) {
+    /// Removes a piece. `h1` and `h2` of a layer stay (a superset is safe) until no piece begins or ends there.
+    pub(crate) fn remove(&mut self, reach: Reach) {
         let (low, high) = (usize::from(reach.low), usize::from(reach.high));
         self.pass(reach, u32::MAX);
         self.beginning[low] -= 1;
@@ -179,7 +178,7 @@ impl Layers {
         }
     }
 
-    /// One bit for each layer of the heights `low..=high` (mm); none outside Omega.
+    /// Returns one bit for each layer of the heights `low..=high` (mm); 0 outside Omega.
     #[inline]
     pub(crate) fn between(&self, low: f32, high: f32) -> u64 {
         if high < self.bottom || low > self.top {
@@ -188,8 +187,8 @@ impl Layers {
         Reach::of(low, high).word()
     }
 
-    /// The same without those in which nothing reaches into these heights: what a way over many squares
-    /// is worth.
+    /// Like [`Layers::between`], but without layers in which no piece reaches into these heights. Worth its cost
+    /// for paths over many squares.
     #[inline]
     pub(crate) fn meeting(&self, low: f32, high: f32) -> u64 {
         let reach = Reach::of(low, high);
@@ -197,7 +196,7 @@ impl Layers {
         self.between(low, high) & !outermost
     }
 
-    /// The bit of a layer where `low..=high` lies between its real tops and real bottoms.
+    /// Returns the bit of a layer in which `low..=high` lies strictly between the actual tops and bottoms, else 0.
     #[inline]
     fn void(&self, layer: u8, low: f32, high: f32) -> u64 {
         let layer = usize::from(layer) % LAYERS;
@@ -218,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn no_layer_that_reaches_into_the_asked_heights_is_left_out() {
+    fn every_layer_within_the_given_heights_is_returned() {
         let mut dice = Dice::new(3);
         let mut layers = Layers::default();
         let mut standing: Vec<(f32, f32, Reach)> = Vec::new();
@@ -228,7 +227,7 @@ mod tests {
             standing.push((bottom, top, joined(&mut layers, bottom, top)));
             if round % 3 > 0 {
                 let (.., gone) = standing.swap_remove(round % standing.len());
-                layers.leave(gone);
+                layers.remove(gone);
             }
             let low = (400.0 * dice.signed()) as f32;
             let high = low + (30.0 * dice.signed().abs()) as f32;
@@ -244,13 +243,13 @@ mod tests {
     }
 
     #[test]
-    fn layers_of_many_pieces_at_once_are_those_of_one_after_the_other() {
+    fn layers_built_at_once_equal_layers_built_singly() {
         let mut dice = Dice::new(29);
         for count in [0, 1, 7, 400] {
             let covers: Vec<Cover> = (0..count)
                 .map(|_| {
                     let bottom = 300.0 * dice.signed() + 150.0;
-                    // Many end in the layer in which they begin.
+                    // Many pieces end in the layer in which they begin.
                     let tall = [3.0, 60.0, 700.0][dice.pick(3) as usize] * dice.signed().abs();
                     Cover::of(([0.0, 0.0, bottom], [1.0, 1.0, bottom + tall]))
                 })
@@ -272,15 +271,15 @@ mod tests {
         let plate = joined(&mut layers, -20.0, 0.0);
         let tower = joined(&mut layers, 0.0, 180.0);
         assert_eq!((layers.bottom, layers.top), (-20.0, 180.0));
-        layers.leave(tower);
+        layers.remove(tower);
         assert_eq!((layers.bottom, layers.top), (-20.0, 0.0));
         assert_eq!(layers.meeting(0.1, 300.0), 0);
-        layers.leave(plate);
+        layers.remove(plate);
         assert_eq!(layers.meeting(-1e6, 1e6), 0);
     }
 
     #[test]
-    fn what_passes_between_the_real_ends_of_a_layer_shares_none() {
+    fn a_box_between_actual_layer_ends_shares_none() {
         let mut layers = Layers::default();
         joined(&mut layers, -20.0, 2.0);
         joined(&mut layers, 5.0, 40.0);

@@ -1,15 +1,15 @@
 //! The checking space Omega over the baseplate: the broad phase of the layer-based projection model.
 //!
-//! Order of the questions, each an early out, all of them plain comparisons of boxes that were
-//! rounded outward, so that a piece is never lost:
+//! Three tests in order, each of which may end the check. All of them compare boxes that were rounded outward, so
+//! that no piece is lost:
 //! 1. Does the swept mover reach into the height of Omega, and into which layers? ([`layers`])
-//! 2. Which squares of the baseplate does it pass, and is one of those layers there? One word per
-//!    square answers ([`grid`]).
-//! 3. Do the silhouettes overlap, and while the mover passes? Eight at a time. ([`silhouettes`], [`boxes`])
+//! 2. Which squares of the baseplate does it pass, and does one of them have a piece in those layers? One word per
+//!    square decides ([`grid`]).
+//! 3. Do the silhouettes overlap while the mover passes? Tests eight at a time. ([`silhouettes`], [`boxes`])
 //!
-//! What is left goes to the exact phase, whose planes are those of the oriented boxes and shapes.
-//! Squares are passed in the order of the way, so that a question about the first contact ends
-//! where the first contact is. Pieces are put in and taken out one by one; nothing is ever rebuilt.
+//! The remaining pairs go to the exact phase, which tests the planes of oriented boxes and shapes. Squares are
+//! visited in the order of the path, so that a question about the first contact ends there. Pieces are inserted and
+//! removed one by one; nothing is rebuilt.
 
 mod area;
 mod around;
@@ -37,24 +37,24 @@ use grid::Grid;
 use layers::{Layers, Reach};
 use walk::Walk;
 
-/// Pieces over more cells than this are kept in the open cell (the baseplate).
+/// Most cells of a piece; larger pieces, such as the baseplate, are stored in the open cell.
 const MOST_CELLS_OF_A_PIECE: i64 = 128;
 
-/// Everything that stands, by its silhouettes.
+/// All stationary pieces, by their silhouettes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Space {
     layers: Layers,
     grid: Grid,
-    /// Where each piece is, by its number.
+    /// Squares and layers of each piece, by its number.
     seats: Vec<Seat>,
 }
 
 impl Space {
-    /// Takes a piece out of where it was entered.
+    /// Removes a piece from the cells and layers in which it was entered.
     #[inline]
     pub(crate) fn remove(&mut self, piece: u32) {
         let seat = &self.seats[piece as usize];
-        self.layers.leave(seat.reach);
+        self.layers.remove(seat.reach);
         self.grid.take(piece, seat);
     }
 
@@ -63,20 +63,21 @@ impl Space {
         self.grid.heap_bytes() + self.seats.capacity() * size_of::<Seat>()
     }
 
-    /// The bundles with what a box at rest may meet: bit k: lane k. A piece may come more than once.
+    /// Returns the bundles with pieces that a box at rest may meet, each with a mask (bit k: lane k). A piece may
+    /// come more than once.
     #[inline(always)]
     pub(crate) fn around<'a>(&'a self, cover: &'a Cover) -> Option<Around<'a>> {
         let layers = self.layers.between(cover.low[2], cover.high[2]);
         (layers != 0).then(|| Around::new(&self.grid, cover, layers))
     }
 
-    /// A bundle that was shown, by its number.
+    /// Returns a bundle by its number.
     #[inline]
     pub(crate) fn bundle(&self, number: u32) -> &Bundle {
         self.grid.bundle(number)
     }
 
-    /// Shows whatever a box on its way may meet up to the fraction `until`, bundle by bundle.
+    /// Passes every piece that a moving box may meet up to the fraction `until` to `visit`, bundle by bundle.
     #[inline]
     pub(crate) fn walk(&self, sweep: &Sweep, until: f64, visit: &mut impl Visit) {
         let cover = sweep.cover(until);
@@ -87,12 +88,12 @@ impl Space {
     }
 }
 
-/// Where a piece is entered: squares and layers.
+/// The squares and layers in which a piece is entered.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Seat {
     area: Area,
     reach: Reach,
-    /// Few enough squares to be entered in each.
+    /// Whether its squares are few enough to enter it in each.
     is_small: bool,
 }
 
@@ -108,9 +109,9 @@ impl Seat {
     }
 }
 
-/// Where pieces are entered by their covers.
+/// A collection into which pieces are entered by their covers.
 pub(crate) trait Entering {
-    /// Enters the piece of this number, which is that of one that was taken out or the next new one.
+    /// Enters the piece of this number: the number of a removed piece, or the next new one.
     fn enter(&mut self, piece: u32, cover: &Cover);
 }
 
@@ -127,22 +128,22 @@ impl Entering for Space {
     }
 }
 
-/// A space in the making: many pieces that come at once, and are seated when all are known. (Each step for all
-/// pieces before the next: one piece through all steps is one long chain that a processor has to wait for.)
+/// A space under construction from many pieces, which are entered when all are known. Each step runs over all
+/// pieces before the next step: all steps for one piece form a long dependency chain that stalls the processor.
 #[derive(Debug, Default)]
 pub(crate) struct Filling {
     covers: Vec<Cover>,
 }
 
 impl Filling {
-    /// Room for so many pieces.
+    /// Reserves room for `count` pieces.
     pub(crate) fn of(count: usize) -> Filling {
         Filling {
             covers: Vec::with_capacity(count),
         }
     }
 
-    /// The space, as if each piece had been inserted.
+    /// Builds the space, equal to one with the pieces inserted one by one.
     pub(crate) fn space(self) -> Space {
         let seats: Vec<Seat> = self.covers.iter().map(Seat::of).collect();
         Space {
@@ -154,7 +155,7 @@ impl Filling {
 }
 
 impl Entering for Filling {
-    /// Pieces come in the order of their numbers, from 0.
+    /// Pieces must come in the order of their numbers, from 0.
     #[inline]
     fn enter(&mut self, _piece: u32, cover: &Cover) {
         self.covers.push(*cover);

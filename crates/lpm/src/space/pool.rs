@@ -1,9 +1,9 @@
-//! Bundles of all cells in one block: putting in and taking out asks the allocator for nothing.
+//! Bundles of all cells in one block, so that inserting and removing pieces seldom allocates.
 
 use super::silhouettes::{Bundle, LANES, Lane, NONE};
 
-/// What is kept of a cell: the layers that have something here (bit k: layer k) and its newest bundle,
-/// the only one that need not be full.
+/// Entries of a cell: the layers in which it has pieces (bit k: layer k) and its newest bundle, the only one that
+/// may be partly filled.
 pub(super) struct Cell<'a> {
     pub(super) layers: &'a mut u64,
     pub(super) head: &'a mut u32,
@@ -30,7 +30,7 @@ impl Pool {
         *cell.layers |= lane.reach.word();
     }
 
-    /// An empty bundle before `next`.
+    /// Returns an empty bundle that precedes `next` in its chain.
     fn fresh(&mut self, next: u32) -> u32 {
         match self.spare.pop() {
             Some(spare) => {
@@ -44,12 +44,13 @@ impl Pool {
         }
     }
 
-    /// Bundles for so many silhouettes of each of some new cells, one after the other: of each cell the newest
-    /// into `heads`, and in place of the count the lane of the first silhouette ([`Pool::put_reserved`]).
+    /// Reserves bundles for `counts` silhouettes of each of several new cells, in order. Writes the newest bundle
+    /// of each cell into `heads`, and replaces each count by the lane of the cell's first silhouette
+    /// ([`Pool::put_reserved`]).
     pub(super) fn reserve(&mut self, heads: &mut [u32], counts: &mut [u32]) {
         let bundles = counts.iter().map(|count| count.div_ceil(LANES as u32));
         let whole = bundles.sum::<u32>() as usize;
-        // One more for the open cell.
+        // One more bundle for the open cell.
         self.bundles.reserve_exact(whole + 1);
         self.bundles.resize(whole, Bundle::before(NONE));
         let mut fresh = 0..whole as u32;
@@ -67,13 +68,13 @@ impl Pool {
         }
     }
 
-    /// Writes a silhouette into a lane of the reserved bundles, all of them counted.
+    /// Writes a silhouette into a lane of the reserved bundles, counted across all bundles.
     #[inline]
     pub(super) fn put_reserved(&mut self, at: u32, lane: &Lane) {
         self.bundles[at as usize / LANES].set(at as usize % LANES, lane);
     }
 
-    /// Takes a silhouette out of a cell, if it is there: the last of the newest bundle fills the gap.
+    /// Removes a silhouette from a cell, if present; the last one of the newest bundle fills the gap.
     #[inline(always)]
     pub(super) fn take(&mut self, cell: Cell<'_>, piece: u32) -> bool {
         let Some((at, lane)) = self.whereabouts(*cell.head, piece) else {
@@ -104,13 +105,13 @@ impl Pool {
         chain.find_map(|(at, bundle)| Some((at, bundle.lane_of(piece)?)))
     }
 
-    /// A bundle by its number.
+    /// Returns a bundle by its number.
     #[inline]
     pub(super) fn bundle(&self, number: u32) -> &Bundle {
         &self.bundles[number as usize]
     }
 
-    /// The bundles of a cell, by its newest.
+    /// Returns the bundles of a cell, given its newest.
     #[inline]
     pub(super) fn chain(&self, head: u32) -> Chain<'_> {
         Chain {

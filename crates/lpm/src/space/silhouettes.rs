@@ -1,4 +1,4 @@
-//! Silhouettes, `B` of the paper: what each piece covers of x, y and z, eight pieces at a time.
+//! Silhouettes (`B` in the paper): the extents of each piece in x, y and z, eight pieces at a time.
 
 use super::Seat;
 use super::boxes::Boxes;
@@ -6,10 +6,10 @@ use super::cover::Cover;
 use super::layers::Reach;
 use super::sweep::Sweep;
 
-/// Pieces of one bundle.
+/// Number of pieces of one bundle.
 pub(crate) const LANES: usize = 8;
 
-/// No bundle, no piece.
+/// Stands for no bundle and for no piece.
 pub(super) const NONE: u32 = u32::MAX;
 
 /// One silhouette of a bundle.
@@ -31,7 +31,7 @@ impl Lane {
     }
 }
 
-/// Eight silhouettes and whose they are. Lanes from `count` on are nobody's.
+/// Eight silhouettes and their pieces. Lanes from `count` on are unused.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct Bundle {
@@ -41,12 +41,12 @@ pub(crate) struct Bundle {
     lowest: [u8; LANES],
     highest: [u8; LANES],
     count: u32,
-    /// Next bundle of the same cell; always a full one.
+    /// Next bundle of the same cell, always a full one; [`NONE`] at the end.
     pub(super) next: u32,
 }
 
 impl Bundle {
-    /// An empty bundle, and the bundle that follows it in its cell.
+    /// Returns an empty bundle that precedes `next` in its cell.
     #[inline]
     pub(super) fn before(next: u32) -> Bundle {
         Bundle {
@@ -74,7 +74,7 @@ impl Bundle {
         self.set(self.last(), lane);
     }
 
-    /// Counts lanes that will be [`Bundle::set`].
+    /// Counts lanes that [`Bundle::set`] will fill.
     #[inline]
     pub(super) fn expect(&mut self, count: u32) {
         self.count = count;
@@ -87,7 +87,7 @@ impl Bundle {
         (self.lowest[at], self.highest[at]) = (lane.reach.low, lane.reach.high);
     }
 
-    /// The silhouette of a lane.
+    /// Returns the silhouette of a lane.
     #[inline]
     pub(super) fn lane(&self, at: usize) -> Lane {
         Lane {
@@ -100,7 +100,7 @@ impl Bundle {
         }
     }
 
-    /// Forgets the last lane.
+    /// Removes the last lane.
     #[inline]
     pub(super) fn pop(&mut self) {
         let last = self.last();
@@ -109,14 +109,14 @@ impl Bundle {
         self.count = self.count.saturating_sub(1);
     }
 
-    /// The newest lane; of an empty bundle, one that is nobody's.
+    /// The newest lane; in an empty bundle, an unused one.
     #[inline]
     pub(super) fn last(&self) -> usize {
         (self.count as usize).wrapping_sub(1) % LANES
     }
 
-    /// Where a piece is; first of all where the newest is, which is the first to go where parts pass and a
-    /// fixture stays.
+    /// Returns the lane of a piece. Tests the newest lane first: parts that pass through a fixture leave before the
+    /// fixture's own elements.
     #[inline]
     pub(super) fn lane_of(&self, piece: u32) -> Option<usize> {
         let last = self.last();
@@ -129,10 +129,10 @@ impl Bundle {
         (word != 0).then(|| word.trailing_zeros() as usize % LANES)
     }
 
-    /// Word of the layers from the lowest to the highest of this bundle, but for one lane.
+    /// Returns the word of the layers from the lowest to the highest of this bundle, leaving one lane out.
     ///
-    /// Asked before that lane goes: bytes that have just been written one by one are not read eight at a
-    /// time without waiting for them.
+    /// To be called before that lane is removed: reading eight bytes at once stalls right after they were written
+    /// one by one.
     #[inline]
     pub(super) fn word_without(&self, gone: Option<usize>) -> u64 {
         let gone = gone.map_or(0, |lane| 0xff << (8 * lane));
@@ -157,26 +157,27 @@ impl Bundle {
         (1 << self.count) - 1
     }
 
-    /// Bit k: the silhouette of lane k shares a point with `cover` on every axis.
+    /// Returns bit k when the silhouette of lane k shares a point with `cover` on every axis.
     #[inline]
     pub(super) fn meeting(&self, cover: &Cover) -> u32 {
         self.boxes.meeting(cover) & self.used()
     }
 
-    /// Which silhouettes a box on its way meets up to the fraction `until`, and not before when.
+    /// Returns the silhouettes that a moving box meets up to the fraction `until`, and the fraction before which it
+    /// does not.
     #[inline(always)]
     pub(super) fn crossing(&self, sweep: &Sweep, until: f32) -> (u32, [f32; LANES]) {
         let crossing = self.boxes.crossing(&sweep.start, &sweep.pace, until);
         (crossing.lanes & self.used(), crossing.entry)
     }
 
-    /// Before which fraction of a way along one axis each silhouette is not met.
+    /// Returns for each silhouette the fraction before which it is not met, along one axis.
     #[inline]
     pub(super) fn entry(&self, sweep: &Sweep, axis: usize) -> [f32; LANES] {
         self.boxes.entry(&sweep.start, &sweep.pace, axis)
     }
 
-    /// What the piece of a lane covers.
+    /// Returns the box around the piece of a lane.
     #[inline]
     pub(crate) fn cover(&self, lane: usize) -> Cover {
         self.boxes.cover(lane)
@@ -194,7 +195,7 @@ mod tests {
     use crate::distance::tests::Dice;
 
     #[test]
-    fn a_bundle_reaches_from_the_lowest_to_the_highest_layer_of_all_that_stay() {
+    fn the_layer_word_spans_all_remaining_lanes() {
         let mut dice = Dice::new(17);
         for _ in 0..2_000 {
             let mut bundle = Bundle::before(NONE);

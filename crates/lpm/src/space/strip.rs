@@ -1,36 +1,36 @@
-//! What a box passes of each band of squares that lies across its way: between two lines.
+//! The squares that a moving box passes in each band (row or column) across its path: those between two lines.
 //!
-//! Both lines are followed in whole units of 2^-32 squares. What rounding to units loses, at most one a band, is
-//! added to the width at once, so whatever is passed is in the strip. Where the box stands at the ends of its way
-//! does not count: a superset is safe.
+//! Both lines are tracked in whole units of 2^-32 squares. The rounding to units, at most one per band, is added to
+//! the width in advance, so the strip contains every passed square. It ignores where the box starts and ends within
+//! a band: a superset is safe.
 
 use super::area::{Area, PITCH_MM};
 use super::sweep::{SLACK_MM, Sweep};
 
-/// Units of a square, and their number as a power of two.
+/// Units per square, and the exponent of this power of two.
 const UNIT: f64 = (1u64 << UNIT_BITS) as f64;
 const UNIT_BITS: u32 = 32;
 
-/// Squares that no grid reaches to, and no line from there.
+/// Bound in squares, farther than any grid or any line within it reaches.
 const BEYOND: f64 = (1 << 28) as f64;
 
-/// The bands of an area in the direction of the way, which is longer along them than across.
+/// The bands of an area in the order of the path, which moves farther across the bands than along them.
 pub(super) struct Strip {
-    /// Number of the band that comes next, 0 the first.
+    /// Number of the next band, counted from 0.
     pub(super) step: i32,
     band: i32,
-    /// 1 or -1.
+    /// Direction of the bands: 1 or -1.
     towards: i32,
-    /// Number of the last one.
+    /// Number of the last band.
     last: i32,
-    /// Where both lines are over the next band, from the first row or column of the area, and how far they
-    /// go a band; in units.
+    /// Positions of both lines over the next band, counted from the first row or column of the area, and their
+    /// advance per band; in units.
     low: i64,
     high: i64,
     slope: i64,
     /// Last row or column of the area.
     width: i32,
-    /// Way until the box comes over the first band, in bands, and the whole way.
+    /// Path until the box reaches the first band, and the whole path, both in bands.
     ahead: f64,
     run: f64,
 }
@@ -45,7 +45,7 @@ impl Strip {
         } else {
             (-1, area.high[AXIS])
         };
-        // The way of the box over the first band begins and ends here, whichever way it goes.
+        // Path of the box over the first band: begins and ends here in either direction.
         let edge = f64::from(band) * PITCH_MM;
         let first = edge - f64::from(sweep.start.high[AXIS]) - SLACK_MM;
         let end = edge + PITCH_MM - f64::from(sweep.start.low[AXIS]) + SLACK_MM;
@@ -63,7 +63,7 @@ impl Strip {
         };
         let low = f64::from(sweep.start.low[across]) - SLACK_MM + slope * least;
         let high = f64::from(sweep.start.high[across]) + SLACK_MM + slope * most;
-        // What is no number, of a box without end, is every square.
+        // NaN comes from a box of infinite size, which covers every square.
         let low = if low.is_nan() { -BEYOND } else { low };
         let high = if high.is_nan() { BEYOND } else { high };
         let direction = f64::from(towards);
@@ -81,20 +81,20 @@ impl Strip {
         }
     }
 
-    /// Number of the last band that the box comes over up to the fraction `until` of its way.
+    /// Returns the number of the last band that the box reaches up to the fraction `until` of its path.
     #[inline]
     pub(super) fn last(&self, until: f64) -> i32 {
         let bands = self.run * until - self.ahead;
-        // What is no number is all of them.
+        // NaN means all bands.
         if bands < f64::from(self.last) {
-            // A cast cuts towards 0, which is downward for all that counts.
+            // The cast truncates towards 0, which rounds down the non-negative numbers that matter.
             if bands < 0.0 { -1 } else { bands as i32 }
         } else {
             self.last
         }
     }
 
-    /// The next band, and the first and last square that the box may pass of it. None, if they are crossed.
+    /// Returns the next band with its first and last square that the box may pass; none when these are crossed.
     #[inline(always)]
     pub(super) fn next(&mut self) -> (i32, i32, i32) {
         let square = |units: i64| (units >> UNIT_BITS) as i32;
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
     use crate::distance::tests::Dice;
 
-    /// Of each band in turn: its number, and the first and last square of it.
+    /// Returns for each band its number and its first and last square.
     fn bands<const AXIS: usize>(sweep: &Sweep, area: &Area, until: f64) -> Vec<(i32, i32, i32)> {
         let mut strip = Strip::new::<AXIS>(sweep, area);
         let last = strip.last(until);
@@ -128,14 +128,14 @@ mod tests {
     }
 
     #[test]
-    fn whatever_a_box_passes_of_a_band_is_in_the_strip() {
+    fn the_strip_contains_every_passed_square() {
         let mut dice = Dice::new(23);
         let (mut passed, mut spared) = (0, 0);
         for _ in 0..400 {
             let [x, y, z] = dice.vector().map(|member| 40.0 * member.abs());
             let mut at = dice.vector().map(|member| 500.0 * member);
             if dice.pick(2) == 0 {
-                // Next to a line, on either side.
+                // Places next to a line, on either side.
                 let line = PITCH_MM * dice.pick(3) as f64 - PITCH_MM;
                 (at[0], at[1]) = (
                     line - x + 3e-6 * dice.signed(),

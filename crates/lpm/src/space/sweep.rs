@@ -1,21 +1,22 @@
-//! A box on its way: what the broad phase asks with.
+//! A moving box, as the broad phase tests it.
 
 use super::cover::Cover;
 use crate::vector::Vec3;
 
-/// Slack of a place along the way, mm: the rounding of slopes and products, at most 2e-9 mm within 3e6 mm, and
-/// what [`Area`](super::area::Area) loses next to 0 by taking half a square off, at most 2e-6 mm, many times over.
+/// Slack of a place along the path, mm, with a wide reserve over the rounding of slopes and products (at most 2e-9
+/// mm within 3e6 mm) and the loss of [`Area`](super::area::Area) next to 0 from subtracting half a square (at most
+/// 2e-6 mm).
 pub(crate) const SLACK_MM: f64 = 1e-5;
 
-/// Ways shorter than this on an axis, mm, are counted as rest; every box on a way is widened by it.
+/// Displacement along an axis below which it counts as rest, mm; every moving box is widened by it.
 pub(crate) const SLOWEST_MM: f64 = 1e-9;
 
-/// How long a box takes for a millimetre of each axis, as a fraction of its way; infinite at rest.
+/// Fraction of the path per millimetre of each axis; infinite at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pace(pub(crate) [f32; 3]);
 
 impl Pace {
-    /// Of a box that is moved by `run`, mm.
+    /// Computes the pace of a box that moves by `run`, mm.
     #[inline]
     pub(crate) fn of(run: Vec3) -> Pace {
         let of = |way: f64| {
@@ -28,7 +29,7 @@ impl Pace {
         Pace([of(run[0]), of(run[1]), of(run[2])])
     }
 
-    /// Of the rest of the world, as the box sees it.
+    /// Pace of the surroundings in the frame of the box.
     #[inline]
     pub(crate) fn reversed(self) -> Pace {
         let [x, y, z] = self.0;
@@ -39,7 +40,7 @@ impl Pace {
 /// A box that is translated by `run`, mm.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sweep {
-    /// At the start, margin included.
+    /// The box at the start, margin included.
     pub(crate) start: Cover,
     pub(crate) run: Vec3,
     pub(crate) pace: Pace,
@@ -55,14 +56,14 @@ impl Sweep {
         }
     }
 
-    /// Around the way up to the fraction `until`.
+    /// Returns the box around the path up to the fraction `until`.
     #[inline]
     pub(crate) fn cover(&self, until: f64) -> Cover {
         let [x, y, z] = self.run;
         self.start.swept([x * until, y * until, z * until])
     }
 
-    /// The axis along which the way is longest.
+    /// The axis of the longest displacement.
     #[inline]
     pub(crate) fn axis(&self) -> usize {
         let [x, y, z] = [self.run[0].abs(), self.run[1].abs(), self.run[2].abs()];
@@ -73,7 +74,7 @@ impl Sweep {
         }
     }
 
-    /// Whether the way runs along more than one axis: then its box holds much that is not on the way.
+    /// Whether the box moves along more than one axis; then the box around its path holds much beside the path.
     #[inline]
     pub(crate) fn is_slanted(&self) -> bool {
         let moving = |axis: usize| u32::from(self.run[axis].abs() >= SLOWEST_MM);

@@ -1,4 +1,4 @@
-//! The way of a box over the squares of the baseplate, in the direction in which it goes.
+//! The path of a box over the squares of the baseplate, visited in the direction of motion.
 
 use super::area::Area;
 use super::cover::{Cover, above};
@@ -8,32 +8,32 @@ use super::silhouettes::{Bundle, LANES};
 use super::strip::Strip;
 use super::sweep::{SLOWEST_MM, Sweep};
 
-/// Who is shown what a box may meet.
+/// Receives the pieces that a moving box may meet.
 pub(crate) trait Visit {
-    /// Whether it matters when a piece is met.
+    /// Whether the visitor needs the pieces in the order in which they are met.
     fn in_order(&self) -> bool;
 
-    /// Bit k of `lanes`: the box may meet lane k of the bundle of this number, in order not before
-    /// `entry[k]` of the way. A piece may be shown more than once. True: nothing else matters.
+    /// Receives a bundle by its number: the box may meet lane k if bit k of `lanes` is set, and not before the fraction
+    /// `entry[k]` of the path if `in_order`. A piece may come more than once. Returns true to end the walk.
     fn bundle(&mut self, shown: (u32, &Bundle), lanes: u32, entry: &[f32; LANES]) -> bool;
 
-    /// Whatever is not shown yet is met later on the way, or as late as what was shown since the last
-    /// pause. Answers with the fraction of the way that still matters; below 0: nothing does.
+    /// Called when all pieces still to come are met no earlier than those since the last pause. Returns the
+    /// fraction of the path that still matters; below 0 to end the walk.
     fn pause(&mut self) -> f64;
 }
 
-/// A box under way.
+/// A walk in progress.
 pub(super) struct Walk<'a, V> {
     grid: &'a Grid,
     sweep: &'a Sweep,
-    /// Layers that the box passes.
+    /// Layers into which the box reaches.
     layers: u64,
-    /// Of the box on what is left of its way.
+    /// Box around the remaining path.
     cover: Cover,
-    /// The fraction of the way that matters.
+    /// Fraction of the path that still matters.
     until: f64,
     is_slanted: bool,
-    /// Along which the way is longest.
+    /// Axis of the longest displacement.
     axis: usize,
     visit: &'a mut V,
 }
@@ -59,7 +59,7 @@ impl<'a, V: Visit> Walk<'a, V> {
         }
     }
 
-    /// The open cell, then the squares.
+    /// Visits the open cell, then the squares.
     #[inline]
     pub(super) fn whole(&mut self) {
         if let Some(chain) = self.grid.open_in_layers(self.layers)
@@ -82,12 +82,12 @@ impl<'a, V: Visit> Walk<'a, V> {
         }
     }
 
-    /// True when the rest does not matter.
+    /// Visits the bundles of one cell; returns true to end the walk.
     fn bundles(&mut self, chain: Chain<'_>) -> bool {
         let (sweep, until) = (self.sweep, above(self.until));
         let in_order = self.visit.in_order();
         for (number, bundle) in chain {
-            // What only shares the box around a slanted way may be met by no time at all.
+            // A piece may overlap the box around a slanted path without being met at any time.
             let (lanes, entry) = if self.is_slanted {
                 bundle.crossing(sweep, until)
             } else {
@@ -119,7 +119,7 @@ impl<'a, V: Visit> Walk<'a, V> {
             let first = self.grid.place(area.low[0], row);
             if !self
                 .grid
-                .has_something(first, 1, area.high[0] - area.low[0], self.layers)
+                .may_have_piece(first, 1, area.high[0] - area.low[0], self.layers)
             {
                 continue;
             }
@@ -134,8 +134,8 @@ impl<'a, V: Visit> Walk<'a, V> {
         self.visit.pause();
     }
 
-    /// Band by band across the axis of the longer way, in its direction: of each band only the
-    /// squares that the box passes while it is over the band.
+    /// Visits the squares band by band across the axis of the longest displacement, in its direction; of each band
+    /// only the squares that the box passes while it is over the band.
     fn along<const AXIS: usize>(&mut self, area: &Area) {
         let mut strip = Strip::new::<AXIS>(self.sweep, area);
         let stride = self.grid.stride(1 - AXIS);
@@ -150,7 +150,7 @@ impl<'a, V: Visit> Walk<'a, V> {
                 self.grid.place(area.low[0] + from, band)
             };
             let steps = to - from;
-            if !self.grid.has_something(first, stride, steps, self.layers) {
+            if !self.grid.may_have_piece(first, stride, steps, self.layers) {
                 continue;
             }
             for square in 0..=steps as usize {

@@ -1,13 +1,13 @@
-//! Pairs built to touch, to overlap and to miss by a known amount: from a millimetre down to a nanometre
-//! (2^-20 mm), near the origin and a kilometre away, where others were seen to fail.
+//! Pairs constructed to touch, to overlap and to miss by a known amount: from a millimetre down to a nanometre
+//! (2^-20 mm), near the origin and a kilometre away, where other libraries fail.
 use super::truth::agrees;
 use crate::distance::tests::Dice;
 use crate::exact::{Body, Form};
 
-/// 2^-20 mm, a little less than a nanometre... so that sums at 1e6 mm are still exact in f64.
+/// Unit of 2^-20 mm, a little less than a nanometre, so that sums at 1e6 mm are still exact in f64.
 const UNIT_MM: f64 = 1.0 / 1_048_576.0;
 const MM: i64 = 1_048_576;
-/// Overlap below zero, gap above.
+/// Distances in units: negative for overlap, positive for a gap.
 const DELTAS: [i64; 13] = [
     0,
     MM,
@@ -48,7 +48,7 @@ fn reach(body: &Body) -> [i64; 3] {
     }
 }
 
-/// Both bodies far from the origin, and the question both ways round.
+/// Checks the pair far from the origin, with either body as mover.
 fn judged(element: &Body, mover: &Body, run: [i64; 3], dice: &mut Dice) {
     let far = OFFSETS_MM[dice.pick(4) as usize] * MM;
     let place = [far, -far, far / 1_000];
@@ -58,7 +58,7 @@ fn judged(element: &Body, mover: &Body, run: [i64; 3], dice: &mut Dice) {
 }
 
 #[test]
-fn what_is_stacked_or_stands_side_by_side_touches_exactly_when_it_does() {
+fn stacked_and_adjacent_bodies_touch_exactly() {
     for seed in 0..150 {
         let mut dice = Dice::new(seed);
         let (element, mover) = (upright(&mut dice), upright(&mut dice));
@@ -78,7 +78,7 @@ fn what_is_stacked_or_stands_side_by_side_touches_exactly_when_it_does() {
 }
 
 #[test]
-fn a_slide_or_a_tangent_of_any_length_touches_exactly_when_it_does() {
+fn slides_and_tangents_of_any_length_touch_exactly() {
     for seed in 0..150 {
         let mut dice = Dice::new(1_000 + seed);
         let (element, mover) = (upright(&mut dice), upright(&mut dice));
@@ -97,7 +97,7 @@ fn a_slide_or_a_tangent_of_any_length_touches_exactly_when_it_does() {
 }
 
 #[test]
-fn a_head_on_stop_ends_where_it_touches_or_a_hair_before() {
+fn a_head_on_move_stops_exactly_or_slightly_early() {
     for seed in 0..150 {
         let mut dice = Dice::new(2_000 + seed);
         let (element, mover) = (upright(&mut dice), upright(&mut dice));
@@ -113,7 +113,7 @@ fn a_head_on_stop_ends_where_it_touches_or_a_hair_before() {
 }
 
 #[test]
-fn a_corner_and_a_rim_three_four_five_apart_are_told_to_the_nanometre() {
+fn corner_and_rim_contacts_are_exact_to_a_nanometre() {
     for seed in 0..150 {
         let mut dice = Dice::new(3_000 + seed);
         let half = [size(&mut dice), size(&mut dice), size(&mut dice)];
@@ -141,7 +141,7 @@ fn a_corner_and_a_rim_three_four_five_apart_are_told_to_the_nanometre() {
 }
 
 #[test]
-fn what_is_inside_or_on_the_same_axis_is_blocked() {
+fn enclosed_and_coaxial_bodies_are_blocked() {
     for seed in 0..150 {
         let mut dice = Dice::new(4_000 + seed);
         let outer = upright(&mut dice);
@@ -156,8 +156,8 @@ fn what_is_inside_or_on_the_same_axis_is_blocked() {
 }
 
 #[test]
-fn turned_blocks_touch_exactly_when_whole_numbers_say_so() {
-    // Millimetres of 1/1024, quaternions of single digits, any axis: edges cross, corners meet faces.
+fn turned_blocks_agree_with_exact_arithmetic() {
+    // In units of 1/1024 mm, quaternions with members of one digit, any axis: edges cross, corners meet faces.
     for seed in 0..2_500 {
         let mut dice = Dice::new(5_000 + seed);
         let mut turned = |most: u64| {
@@ -178,8 +178,8 @@ fn turned_blocks_touch_exactly_when_whole_numbers_say_so() {
 }
 
 #[test]
-fn triangles_touch_exactly_when_whole_numbers_say_so() {
-    // A coarse grid, so that corners fall on edges and planes coincide again and again.
+fn triangles_agree_with_exact_arithmetic() {
+    // A coarse grid, so that corners often fall on edges and planes coincide.
     let mut touched = 0;
     for seed in 0..2_500 {
         let mut dice = Dice::new(8_000 + seed);

@@ -1,7 +1,7 @@
-//! What is inside of a mesh, however untidy its file.
+//! Points inside a mesh, however untidy its file.
 use super::*;
 
-/// Corners and triangles, turned outward.
+/// Corners and triangles, facing outward.
 #[derive(Clone, Default)]
 struct Soup {
     vertices: Vec<[f64; 3]>,
@@ -32,7 +32,7 @@ impl Soup {
         Soup::cuboid([-half; 3], [half; 3])
     }
 
-    /// Both in one mesh.
+    /// Combines two meshes into one.
     fn with(mut self, other: Soup) -> Soup {
         let first = self.vertices.len();
         self.vertices.extend(other.vertices);
@@ -54,7 +54,7 @@ impl Soup {
         self
     }
 
-    /// Every triangle with three corners of its own, as STL has it.
+    /// Gives every triangle three corners of its own, as in STL.
     fn loose(self) -> Soup {
         let corners = self.triangles.iter().flatten();
         Soup {
@@ -73,7 +73,7 @@ impl Soup {
     }
 }
 
-/// Whether a grain of 1 mm at a place is told to be in the mesh, and the mesh around a grain to be in the way of that.
+/// Whether the mesh encloses a grain of 1 mm at a place; asserts the same answer with the mesh as mover.
 fn is_inside(soup: &Soup, at: [f64; 3]) -> bool {
     let grain = Shape::Block { half: [0.5; 3] };
     let mesh = soup.clone().shape();
@@ -97,7 +97,7 @@ fn is_inside(soup: &Soup, at: [f64; 3]) -> bool {
 const MIDDLE: [f64; 3] = [0.0; 3];
 
 #[test]
-fn what_is_in_one_of_two_surfaces_that_reach_into_each_other_is_inside() {
+fn the_inside_of_two_intersecting_surfaces_is_solid() {
     let both = Soup::cube(10.0).with(Soup::cuboid([0.0, -8.0, -8.0], [20.0, 8.0, 8.0]));
     for x in [-5.0, 5.0, 15.0] {
         assert!(is_inside(&both, [x, 0.3, 0.2]), "{x}");
@@ -107,7 +107,7 @@ fn what_is_in_one_of_two_surfaces_that_reach_into_each_other_is_inside() {
 }
 
 #[test]
-fn a_surface_that_comes_more_than_once_is_solid() {
+fn a_repeated_surface_is_solid() {
     let cube = Soup::cube(10.0);
     let (first, again) = (cube.triangles[0], cube.clone());
     assert!(is_inside(&again.and(first), MIDDLE));
@@ -116,11 +116,11 @@ fn a_surface_that_comes_more_than_once_is_solid() {
         &cube.clone().with(cube.clone().turned_over()),
         MIDDLE
     ));
-    // One part of a mesh from both sides, another from one.
+    // One part with both orientations, another with one.
     let other = Soup::cuboid([30.0; 3], [40.0; 3]);
     let both = cube.clone().with(cube.clone().turned_over()).with(other);
     assert!(is_inside(&both, MIDDLE) && is_inside(&both, [35.0; 3]));
-    // The same with a corner in common.
+    // The same with a common corner.
     let mut hinged = both;
     let first = hinged.vertices[7];
     hinged.vertices[16..]
@@ -132,7 +132,7 @@ fn a_surface_that_comes_more_than_once_is_solid() {
 }
 
 #[test]
-fn a_stray_triangle_opens_nothing() {
+fn a_stray_triangle_leaves_the_mesh_closed() {
     let stray = |low: f64| Soup {
         vertices: vec![[low; 3], [low + 1.0, low, low], [low, low + 1.0, low + 0.5]],
         triangles: vec![[0, 1, 2]],
@@ -143,7 +143,7 @@ fn a_stray_triangle_opens_nothing() {
             "{low}"
         );
     }
-    // One that hangs on an edge, outside and inside.
+    // A triangle that shares an edge with the mesh, outside and inside.
     for tip in [[-30.0, 0.0, -10.0], [-5.0, 0.0, -5.0]] {
         let mut flap = Soup::cube(10.0).and([0, 2, 8]);
         flap.vertices.push(tip);
@@ -152,8 +152,8 @@ fn a_stray_triangle_opens_nothing() {
 }
 
 #[test]
-fn rooms_behind_a_wall_are_inside() {
-    // A wall across the middle, between the same corners as the sides.
+fn spaces_behind_an_inner_wall_are_inside() {
+    // A wall across the middle that shares its corners with the sides.
     let wall = Soup {
         vertices: vec![
             [0.0, -10.0, -10.0],
@@ -174,11 +174,11 @@ fn rooms_behind_a_wall_are_inside() {
 }
 
 #[test]
-fn a_surface_is_closed_although_a_corner_is_not_where_its_neighbour_has_it() {
+fn a_surface_with_mismatched_corners_is_closed() {
     let mut cracked = Soup::cube(10.0).loose();
     cracked.vertices[0][0] += 1e-9;
     assert!(is_inside(&cracked, MIDDLE));
-    // The edge from the first to the second corner is cut on one side only.
+    // Only one of the two triangles at the first edge has a corner on it.
     let mut cut = Soup::cube(10.0);
     let at = cut
         .triangles
@@ -198,7 +198,7 @@ fn a_surface_is_closed_although_a_corner_is_not_where_its_neighbour_has_it() {
 }
 
 #[test]
-fn a_hole_is_a_surface_within_another_that_is_turned_the_other_way() {
+fn an_inner_surface_of_opposite_orientation_is_a_hole() {
     let hollow = Soup::cube(10.0).with(Soup::cube(5.0).turned_over());
     for soup in [hollow.clone(), hollow.clone().turned_over()] {
         assert!(!is_inside(&soup, MIDDLE));
@@ -207,12 +207,12 @@ fn a_hole_is_a_surface_within_another_that_is_turned_the_other_way() {
     let island = hollow.with(Soup::cube(2.0));
     assert!(is_inside(&island, MIDDLE));
     assert!(!is_inside(&island, [3.5, 0.3, 0.2]));
-    // Turned the same way it is another part in the same place.
+    // With the same orientation it is another part in the same place.
     assert!(is_inside(&Soup::cube(10.0).with(Soup::cube(5.0)), MIDDLE));
 }
 
 #[test]
-fn what_has_an_opening_is_its_triangles() {
+fn an_open_mesh_is_its_triangles() {
     for missing in 0..12 {
         let mut open = Soup::cube(10.0);
         open.triangles.remove(missing);

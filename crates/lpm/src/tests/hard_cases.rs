@@ -1,9 +1,9 @@
-//! Straight moves where others fail: grazing, tiny tilts, foils, tangents.
+//! Straight moves that are numerically hard: grazing, tiny tilts, foils, tangents.
 use super::*;
 use crate::distance::tests::Dice;
 
 #[test]
-fn a_move_of_no_length_is_judged_where_it_stands() {
+fn a_move_of_length_zero_is_checked_in_place() {
     let model = standing(&block(1.0, 1.0, 1.0), Pose::IDENTITY);
     let still = |x| straight([x, 0.0, 0.0], [x, 0.0, 0.0]);
     assert_eq!(stop(&model, &block(1.0, 1.0, 1.0), &still(2.0)), Some(0.0));
@@ -19,7 +19,7 @@ fn leaving_a_contact_is_blocked_at_its_start() {
 }
 
 #[test]
-fn a_foil_is_not_tunnelled_by_a_ten_metre_move() {
+fn a_ten_metre_move_does_not_tunnel_a_foil() {
     let foil = standing(&block(0.0005, 50.0, 50.0), Pose::at([5000.0, 0.0, 0.0]));
     let way = straight([0.0, 0.0, 0.0], [10_000.0, 3.0, 7.0]);
     let t = stop(&foil, &cylinder(0.5, 1.0), &way).unwrap();
@@ -35,7 +35,7 @@ fn a_foil_is_not_tunnelled_by_a_ten_metre_move() {
 }
 
 #[test]
-fn overlaps_at_the_start_that_others_missed_are_blocked() {
+fn published_missed_overlaps_at_the_start_are_blocked() {
     // Cylinder on cylinder, 1 mm deep, sliding: a published miss.
     let model = standing(&cylinder(13.5625, 55.75), Pose::IDENTITY);
     let slide = straight([0.0, 0.0, 39.203125], [1.0, 0.5, 39.203125]);
@@ -54,7 +54,7 @@ fn overlaps_at_the_start_that_others_missed_are_blocked() {
 }
 
 #[test]
-fn grazing_passes_are_told_from_contact_to_a_hundredth_of_a_micrometre() {
+fn grazing_passes_and_contacts_differ_by_ten_nanometres() {
     for offset in [0.0, 1e3, 1e5, 9.9e5] {
         for gap in [1e-3, 1e-4, 1e-5] {
             let model = standing(&block(10.0, 10.0, 10.0), Pose::at([offset, offset, 0.0]));
@@ -162,7 +162,7 @@ fn crossed_and_tangent_cylinders_touch_where_their_mantles_do() {
 
 #[test]
 fn a_rim_stops_on_a_corner() {
-    // Corner of the block at 45 degrees: the rim touches at distance r from the corner.
+    // The corner of the block lies at 45 degrees: the rim touches at distance r from it.
     let model = standing(&block(10.0, 10.0, 10.0), Pose::IDENTITY);
     let mover = cylinder(5.0, 10.0);
     let slide = straight([40.0, 40.0, 15.0], [0.0, 0.0, 15.0]);
@@ -172,13 +172,13 @@ fn a_rim_stops_on_a_corner() {
 }
 
 #[test]
-fn a_graze_that_touches_in_one_point_stops_there_to_a_nanometre() {
+fn a_graze_in_one_point_stops_within_a_nanometre() {
     let pin = standing(&cylinder(30.0, 20.0), Pose::at([1000.0, 500.0, 0.0]));
-    // The way (4, 3) touches a disc of 50 + 30 at 80 mm from its centre: (-48, 64).
+    // The path (4, 3) touches a disc of 50 + 30 at 80 mm from its centre: (-48, 64).
     let across = straight([-3048.0, -2436.0, 0.0], [4952.0, 3564.0, 0.0]);
     let cases = [
         (across, cylinder(50.0, 10.0), 0.5),
-        // Along the mantle, and a block whose side ends where the mantle is touched.
+        // Along the mantle; and past a block whose side ends where the mantle touches.
         (
             straight([1080.0, -500.0, 0.0], [1080.0, 1500.0, 0.0]),
             cylinder(50.0, 10.0),
@@ -198,14 +198,14 @@ fn a_graze_that_touches_in_one_point_stops_there_to_a_nanometre() {
     }
 }
 
-/// How early a contact that grazes a round side may stop a move where places were rounded, mm, within a metre:
-/// the root of twice the radius times the rounding.
+/// How early the stop at a grazed round side may come where places were rounded, mm, within a metre: the root of
+/// twice the radius times the rounding.
 const GRAZED_EARLY_MM: f64 = 1e-4;
 
 #[test]
-fn a_graze_of_turned_bodies_within_a_metre_stops_at_most_a_ten_thousandth_of_a_millimetre_early() {
-    // A turn of three, four, five takes [5k, 0] to [3k, 4k]; a cylinder then passes along x at just the distance
-    // at which it touches over that place, or comes to its margin.
+fn a_graze_of_turned_bodies_stops_within_its_bound() {
+    // A turn by the 3-4-5 triangle takes [5k, 0] to [3k, 4k]; a cylinder then passes along x at exactly the
+    // distance at which it touches, or reaches its margin, above that place.
     let turned = Pose {
         position: [0.0; 3],
         rotation: [2.0, 0.0, 0.0, 1.0],
@@ -234,12 +234,12 @@ fn a_graze_of_turned_bodies_within_a_metre_stops_at_most_a_ten_thousandth_of_a_m
         );
         earliest = earliest.max(early);
     }
-    // It is a bound that is needed, not one for show.
+    // The bound is needed: the worst case comes within a factor of 100.
     assert!(earliest > GRAZED_EARLY_MM / 100.0, "{earliest}");
 }
 
 #[test]
-fn a_margin_or_a_range_beyond_single_precision_is_a_margin_like_any_other() {
+fn margins_and_ranges_may_exceed_single_precision() {
     let model = standing(&block(1.0, 1.0, 1.0), Pose::IDENTITY);
     let mover = block(1.0, 1.0, 1.0);
     for to in [[500.0, 0.0, 0.0], [500.0, 300.0, -40.0], [900.0, 1.0, 2.0]] {

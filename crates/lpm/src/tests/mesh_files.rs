@@ -1,4 +1,4 @@
-//! Meshes from files: one body, three ways of writing it down, and what is wrong with bad ones.
+//! Meshes from files: one body in three formats, and errors in damaged files.
 use super::*;
 use crate::scene::{Format, Scene, read_scene};
 
@@ -44,7 +44,7 @@ fn stl_text(triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
 }
 
 fn stl_binary(triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
-    // A head that begins like a text file, as some programs write it.
+    // Some programs write a binary header that begins like a text file.
     let mut bytes = b"solid in name only".to_vec();
     bytes.resize(80, b' ');
     bytes.extend((triangles.len() as u32).to_le_bytes());
@@ -92,7 +92,7 @@ fn model(name: &str, bytes: &[u8]) -> Model {
 }
 
 #[test]
-fn text_and_binary_stl_and_obj_are_the_same_body() {
+fn stl_text_stl_binary_and_obj_agree() {
     let triangles = box_triangles(true);
     let files = [
         ("a.stl", stl_text(&triangles)),
@@ -118,7 +118,7 @@ fn text_and_binary_stl_and_obj_are_the_same_body() {
 }
 
 #[test]
-fn a_closed_file_is_solid_an_open_one_is_its_triangles() {
+fn only_a_closed_mesh_file_is_solid() {
     let inside = straight([0.0; 3], [0.1, 0.0, 0.0]);
     let grain = block(0.5, 0.5, 0.5);
     for (lid, is_blocked) in [(true, true), (false, false)] {
@@ -157,7 +157,7 @@ fn the_winding_of_a_file_does_not_matter() {
 }
 
 #[test]
-fn triangles_of_a_file_that_are_segments_or_points_stop_what_meets_them() {
+fn degenerate_triangles_of_a_file_still_block() {
     let needle = [[[0.0, 0.0, 0.0], [0.0, 0.0, 10.0], [0.0, 0.0, 4.0]]];
     let point = [[[0.0, 0.0, 5.0]; 3]];
     for (name, bytes) in [
@@ -192,7 +192,7 @@ fn a_file_is_scaled() {
 }
 
 #[test]
-fn a_broken_file_is_refused_by_the_field_that_names_it() {
+fn a_broken_file_is_refused_at_its_field() {
     let whole = stl_binary(&box_triangles(true));
     let broken: [(&str, &[u8]); 8] = [
         ("a.stl", &whole[..whole.len() - 1]),

@@ -2,7 +2,7 @@
 use super::*;
 
 #[test]
-fn the_order_of_the_corners_of_a_triangle_does_not_matter() {
+fn triangle_corner_order_changes_no_answer() {
     let orders = [
         [0, 1, 2],
         [0, 2, 1],
@@ -89,7 +89,7 @@ fn box_mesh(half: f64, lid: bool) -> Shape {
 }
 
 #[test]
-fn a_closed_mesh_is_solid_and_an_open_one_is_hollow() {
+fn a_closed_mesh_is_solid_an_open_one_hollow() {
     let inside = straight([0.5, 0.2, 0.1], [1.0, 1.0, 1.0]);
     let mover = block(1.0, 1.0, 1.0);
     assert_eq!(
@@ -103,15 +103,15 @@ fn a_closed_mesh_is_solid_and_an_open_one_is_hollow() {
     let open = standing(&box_mesh(20.0, false), Pose::IDENTITY);
     assert_eq!(stop(&open, &mover, &inside), None);
     assert!((least(&open, &mover, &inside) - 18.0).abs() < 1e-9);
-    // The other way round: the mover surrounds the element.
+    // Exchanged: the mover surrounds the element.
     let pin = standing(&cylinder(1.0, 2.0), Pose::IDENTITY);
     assert_eq!(stop(&pin, &box_mesh(20.0, true), &inside), Some(0.0));
     assert_eq!(stop(&pin, &box_mesh(20.0, false), &inside), None);
 }
 
 #[test]
-fn a_turning_bar_stops_where_geometry_says_and_never_later() {
-    // Bar 200 x 10 about z, pin of radius 4 at 80 mm under 60 degrees.
+fn a_turning_bar_stops_at_the_computed_angle() {
+    // A bar of 200 x 10 about z, a pin of radius 4 at 80 mm and 60 degrees.
     let (distance, angle) = (80.0, 60f64.to_radians());
     let model = standing(
         &cylinder(4.0, 50.0),
@@ -124,8 +124,8 @@ fn a_turning_bar_stops_where_geometry_says_and_never_later() {
 }
 
 #[test]
-fn half_a_turn_meets_what_stands_beside_both_ends_of_it() {
-    // Start and end look alike; the pin is only met on the way.
+fn half_a_turn_hits_a_pin_between_its_ends() {
+    // Start and end look alike; the bar meets the pin only in between.
     let model = standing(&cylinder(4.0, 50.0), Pose::at([0.0, 90.0, 0.0]));
     let turn = way(Pose::IDENTITY, Pose::yawed([0.0; 3], 179f64.to_radians()));
     assert!(stop(&model, &block(100.0, 5.0, 5.0), &turn).is_some());

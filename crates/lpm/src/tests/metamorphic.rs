@@ -1,9 +1,9 @@
-//! What must not change an answer: which of both moves, mirrors, other axes, a shift, an element that
-//! was there and is gone. And what may change it one way only.
+//! Changes that must not alter an answer: exchanging mover and element, mirrors, other axes, a shift, an element
+//! inserted and removed again. And changes that may alter it in one direction only.
 use super::*;
 use crate::distance::tests::Dice;
 
-/// A drawn pair near each other: places on a grid of 1/64 mm, so that sums are exact.
+/// A random pair near each other: places on a grid of 1/64 mm, so that sums are exact.
 struct Drawn {
     element: Shape,
     mover: Shape,
@@ -65,7 +65,7 @@ fn same(a: (Option<f64>, f64), b: (Option<f64>, f64), seed: u64) {
 }
 
 #[test]
-fn it_does_not_matter_which_of_both_moves() {
+fn exchanging_mover_and_element_changes_no_answer() {
     for seed in 0..500 {
         let it = drawn(&mut Dice::new(seed));
         let back = it.run.map(|member| -member);
@@ -78,7 +78,7 @@ fn it_does_not_matter_which_of_both_moves() {
 }
 
 #[test]
-fn a_common_shift_and_a_change_of_axes_change_nothing() {
+fn shifts_and_changes_of_axes_change_no_answer() {
     for seed in 1_000..1_400 {
         let it = drawn(&mut Dice::new(seed));
         let plain = answer(&it.element, it.at, &it.mover, it.from, it.run);
@@ -96,7 +96,7 @@ fn a_common_shift_and_a_change_of_axes_change_nothing() {
             ),
             seed,
         );
-        // A third of a turn about the diagonal: x to y to z to x, exactly.
+        // A third of a turn about the diagonal takes x to y to z to x, exactly.
         let turned = |pose: Pose| {
             let ([x, y, z], [w, i, j, k]) = (pose.position, pose.rotation);
             Pose {
@@ -120,7 +120,7 @@ fn a_common_shift_and_a_change_of_axes_change_nothing() {
 }
 
 #[test]
-fn a_larger_margin_stops_no_later_and_a_longer_way_no_less() {
+fn larger_margins_and_longer_moves_stop_no_later() {
     for seed in 2_000..2_300 {
         let it = drawn(&mut Dice::new(seed));
         let model = standing(&it.element, it.at);
@@ -147,7 +147,7 @@ fn a_larger_margin_stops_no_later_and_a_longer_way_no_less() {
 }
 
 #[test]
-fn what_came_and_went_leaves_every_answer_as_it_was_bit_for_bit() {
+fn removed_elements_leave_every_answer_identical_in_bits() {
     for seed in 3_000..3_060 {
         let mut dice = Dice::new(seed);
         let it = drawn(&mut dice);
@@ -174,8 +174,8 @@ fn what_came_and_went_leaves_every_answer_as_it_was_bit_for_bit() {
 }
 
 #[test]
-fn the_stop_is_where_the_clearance_runs_out() {
-    // The way up to the stop is clear but for its last hair, and the stop itself is within the margin.
+fn the_clearance_reaches_zero_at_the_stop() {
+    // The path up to just before the stop is clear, and the stop itself is within the margin.
     for seed in 4_000..4_400 {
         let it = drawn(&mut Dice::new(seed));
         let model = standing(&it.element, it.at);
@@ -196,7 +196,7 @@ fn the_stop_is_where_the_clearance_runs_out() {
 }
 
 #[test]
-fn a_body_at_rest_is_judged_like_the_beginning_of_its_way() {
+fn a_body_at_rest_is_checked_like_a_start() {
     let mut dice = Dice::new(41);
     let (mut met, mut clear) = (0, 0);
     for round in 0..60 {
@@ -233,7 +233,8 @@ fn a_body_at_rest_is_judged_like_the_beginning_of_its_way() {
             assert_eq!(rests, begins, "{from:?} {margin_mm}");
             let first = model.first_contact(&hand, &asked(from));
             assert_eq!(first != Answer::Clear, begins, "{from:?} {margin_mm}");
-            // The same pose in other words: no way either, but not bit by bit.
+            // The negated quaternion is the same rotation, so the path has length zero, but its ends differ in
+            // their bits.
             let negated = from.rotation.map(|member| -member);
             let reworded = model.any_hit(
                 &hand,

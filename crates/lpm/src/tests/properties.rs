@@ -1,4 +1,4 @@
-//! Properties over many drawn scenes.
+//! Properties over many random scenes.
 use super::*;
 use crate::distance::tests::Dice;
 
@@ -28,7 +28,7 @@ fn scene(dice: &mut Dice, count: usize) -> Vec<(Shape, Pose)> {
 }
 
 #[test]
-fn the_broad_phase_loses_nobody() {
+fn the_broad_phase_loses_no_contact() {
     for seed in 0..40 {
         let mut dice = Dice::new(seed);
         let elements = scene(&mut dice, 60);
@@ -76,7 +76,7 @@ fn the_broad_phase_loses_nobody() {
 }
 
 #[test]
-fn there_and_back_and_in_two_halves_give_the_same_verdict() {
+fn reversed_and_halved_moves_give_the_same_verdict() {
     for seed in 1000..1400 {
         let mut dice = Dice::new(seed);
         let (element, pose) = scene(&mut dice, 1).remove(0);

@@ -1,6 +1,6 @@
-//! Situations in which other libraries were reported to fail, built with numbers of our own.
+//! Situations in which other libraries were reported to fail, with numbers chosen here.
 //!
-//! In brackets who was reported with it, and how it failed.
+//! Brackets name the library, the number of the report and the failure.
 use super::truth::agrees;
 use super::*;
 use crate::exact::{Body, Form};
@@ -9,7 +9,7 @@ use crate::exact::{Body, Form};
 const UNIT_MM: f64 = 1.0 / 1024.0;
 const MM: i64 = 1024;
 
-/// Both ways round, at the origin and far away.
+/// Checks the pair with either body as mover, at the origin and far away.
 fn holds(element: Body, mover: Body, run: [i64; 3]) {
     for place in [
         [0; 3],
@@ -23,7 +23,7 @@ fn holds(element: Body, mover: Body, run: [i64; 3]) {
 }
 
 #[test]
-fn coaxial_cylinders_that_overlap_are_seen() {
+fn overlapping_coaxial_cylinders_are_blocked() {
     // [parry 396: "no"; drawn solids of revolution]
     for rise in [0, MM, 9 * MM, 10 * MM, 10 * MM + 1] {
         let (tall, short) = (
@@ -36,7 +36,7 @@ fn coaxial_cylinders_that_overlap_are_seen() {
 }
 
 #[test]
-fn two_cubes_overlapping_by_a_twentieth_are_seen() {
+fn two_cubes_overlapping_by_a_twentieth_are_blocked() {
     // [libccd 25: "no" for an overlap of 0.1 of 2]
     let half = [10 * MM; 3];
     for apart in [19 * MM, 20 * MM - 1, 20 * MM, 20 * MM + 1] {
@@ -54,7 +54,7 @@ fn two_cubes_overlapping_by_a_twentieth_are_seen() {
 }
 
 #[test]
-fn a_large_block_and_a_small_one_are_told_apart() {
+fn a_large_and_a_small_block_are_separated() {
     // [libccd 17, coal 531: very different sizes; rapier 305: a cylinder through a thin large plate]
     let plate = Body::block([0; 3], [2_000 * MM, 2_000 * MM, MM / 16]);
     for gap in [-2, -1, 0, 1, 2] {
@@ -72,7 +72,7 @@ fn a_large_block_and_a_small_one_are_told_apart() {
 }
 
 #[test]
-fn a_block_that_descends_into_a_block_or_starts_in_it_is_stopped() {
+fn a_block_entering_or_overlapping_another_is_blocked() {
     // [FCL 120, 555: missed; bullet 1250, 2972: start overlap not reported; jolt 1787: touching start]
     let (base, tool) = (
         Body::block([0; 3], [50 * MM, 40 * MM, 10 * MM]),
@@ -96,7 +96,7 @@ fn a_block_that_descends_into_a_block_or_starts_in_it_is_stopped() {
 }
 
 #[test]
-fn a_cylinder_on_the_edge_of_a_block_is_judged_by_its_round_side() {
+fn a_cylinder_at_an_edge_stays_round() {
     // [FCL 319, coal 37: exceptions and no convergence near contact; godot-jolt 516: rounded by a margin]
     let block = Body::block([0; 3], [20 * MM, 20 * MM, 20 * MM]);
     for gap in [-64, -1, 0, 1, 64] {
@@ -110,7 +110,7 @@ fn a_cylinder_on_the_edge_of_a_block_is_judged_by_its_round_side() {
 }
 
 #[test]
-fn parallel_faces_and_equal_poses_give_numbers() {
+fn parallel_faces_and_equal_poses_give_finite_answers() {
     // [FCL 2: NaN for parallel faces; 628: containment; ncollide 182: panic]
     let half = [7 * MM, 5 * MM, 3 * MM];
     holds(Body::block([0; 3], half), Body::block([0; 3], half), [0; 3]);
@@ -136,7 +136,7 @@ fn parallel_faces_and_equal_poses_give_numbers() {
 }
 
 #[test]
-fn a_long_way_past_a_block_loses_no_millimetre() {
+fn a_long_move_stops_exactly_at_a_block() {
     // [parry 429: up to 139 mm short at 500 m; 317: a plain hit missed]
     let block = Body::block([400_000 * MM, 0, 0], [2 * MM, 2 * MM, 2 * MM]);
     for offset in [0, 4 * MM - 1, 4 * MM, 4 * MM + 1] {
@@ -147,7 +147,7 @@ fn a_long_way_past_a_block_loses_no_millimetre() {
 }
 
 #[test]
-fn a_disc_and_a_block_apart_by_less_than_rounding_of_squares_are_apart() {
+fn a_gap_below_the_rounding_of_squares_is_clear() {
     // [a linear complementarity solver in double said "intersects"; exact numbers said "disjoint"]
     let block = Body::block([0; 3], [300 * MM, 300 * MM, 300 * MM]);
     for gap in [0, 1, 2] {
@@ -161,7 +161,7 @@ fn a_disc_and_a_block_apart_by_less_than_rounding_of_squares_are_apart() {
 }
 
 #[test]
-fn the_hull_of_both_ends_of_a_turn_is_not_the_turn() {
+fn a_turn_is_not_the_hull_of_its_ends() {
     // [bullet by moveit 2889: hull of the end poses; a bar turned by half a turn sweeps a disc]
     let bar = block(60.0, 2.0, 2.0);
     let pin = standing(&cylinder(1.0, 20.0), Pose::at([0.0, 50.0, 0.0]));
@@ -171,7 +171,7 @@ fn the_hull_of_both_ends_of_a_turn_is_not_the_turn() {
 }
 
 #[test]
-fn no_corner_or_edge_of_a_mesh_lets_anything_through() {
+fn mesh_corners_and_edges_let_no_body_through() {
     // [embree 387, 423: rays slip through vertices; here rods, thinner and thinner, onto a common corner]
     let fan = Shape::Mesh(Mesh {
         vertices: vec![

@@ -1,6 +1,6 @@
-//! Small worlds gone through completely: no draw, no chance to look away.
+//! Small worlds, enumerated completely instead of sampled.
 //!
-//! The larger world of corners 0 to 3 (16 million moves) is gone through by `relayrig study collision`.
+//! `relayrig study collision` enumerates the larger world of corners 0 to 3 (16 million moves).
 use super::truth::agrees;
 use crate::exact::{Body, Form};
 
@@ -39,7 +39,7 @@ fn every_move(most: i64) -> Vec<[i64; 3]> {
 }
 
 #[test]
-fn every_move_between_any_two_bodies_of_a_small_world_is_judged_exactly() {
+fn every_move_in_a_small_world_is_exact() {
     let (bodies, moves) = (every_body(), every_move(1));
     let mut counted = 0;
     for element in &bodies {
@@ -54,7 +54,7 @@ fn every_move_between_any_two_bodies_of_a_small_world_is_judged_exactly() {
 }
 
 #[test]
-fn every_longer_move_past_one_body_of_a_small_world_is_judged_exactly() {
+fn every_longer_move_in_a_small_world_is_exact() {
     let (bodies, moves) = (every_body(), every_move(3));
     let mut counted = 0;
     for element in [
@@ -72,7 +72,7 @@ fn every_longer_move_past_one_body_of_a_small_world_is_judged_exactly() {
 }
 
 #[test]
-fn every_tilt_of_a_block_by_small_whole_quaternions_is_judged_exactly() {
+fn every_tilt_by_a_small_quaternion_is_exact() {
     let digits = -1..=1_i64;
     let mut counted = 0;
     for code in 0..81 {

@@ -1,14 +1,14 @@
-//! Answers held against exact truth, and the exact truth against things that are known without it.
+//! Compares answers with exact truth, and exact truth with results known independently.
 use super::*;
 use crate::exact::{Body, Form, first_contact};
 
-/// Earlier than the truth by at most this, mm of the way, and 1e-10 of a long way.
+/// How early a stop may come before the truth, mm of the path; for a long path 1e-10 of it instead.
 const LOST_MM: f64 = 5e-8;
-/// Along a grazing pass the distance changes with the square of the way: what rounding leaves in
-/// doubt of the distance (2e-12 mm) is this much of the way, mm, and 1e-8 of a long way.
+/// How early a grazing stop may come, mm; for a long path 1e-8 of it instead. Along a grazing pass the distance
+/// changes with the square of the path, so a rounding of 2e-12 mm in the distance amounts to this much.
 const GRAZING_LOST_MM: f64 = 5e-5;
 
-/// What the core says of one pair.
+/// Returns the answer of the core for one pair.
 pub(super) fn found(element: &Body, mover: &Body, run: [i64; 3], unit_mm: f64) -> Option<f64> {
     let model = standing(&element.shape(unit_mm), element.pose(unit_mm));
     let (from, to) = (mover.pose(unit_mm), mover.moved(run).pose(unit_mm));
@@ -18,7 +18,7 @@ pub(super) fn found(element: &Body, mover: &Body, run: [i64; 3], unit_mm: f64) -
     }
 }
 
-/// Same verdict as the exact truth, and a stop that is never late and hardly early.
+/// Asserts the same verdict as the exact truth, and a stop that is never late and hardly early.
 pub(super) fn agrees(element: &Body, mover: &Body, run: [i64; 3], unit_mm: f64) {
     let truth = first_contact(element, mover, run);
     let found = found(element, mover, run, unit_mm);
@@ -43,7 +43,7 @@ pub(super) fn agrees(element: &Body, mover: &Body, run: [i64; 3], unit_mm: f64) 
     }
 }
 
-/// Shrunk by one unit in radius or half extents the mover would pass: a double root, or nearly.
+/// Whether the mover would pass if it were smaller by one unit: a double root, or nearly.
 fn is_grazing(element: &Body, mover: &Body, run: [i64; 3]) -> bool {
     let form = match mover.form {
         Form::Block { half, rotation } => Form::Block {
@@ -60,8 +60,8 @@ fn is_grazing(element: &Body, mover: &Body, run: [i64; 3]) -> bool {
 }
 
 #[test]
-fn the_exact_truth_knows_a_triangle_of_three_four_five() {
-    // Corner of a block at (10, 10), a disc of radius 5 whose centre passes (13, 14) or a hair beside it.
+fn the_exact_truth_solves_a_3_4_5_triangle() {
+    // Corner of a block at (10, 10); a disc of radius 5 whose centre passes (13, 14), or slightly beside it.
     let block = Body::block([0; 3], [10_000, 10_000, 5]);
     let disc = |x: i64, y: i64| Body::cylinder([x, y, 0], 5_000, 5);
     let still = [0; 3];
@@ -71,7 +71,7 @@ fn the_exact_truth_knows_a_triangle_of_three_four_five() {
     );
     assert_eq!(first_contact(&block, &disc(13_000, 14_001), still), None);
     assert_eq!(first_contact(&disc(13_001, 14_000), &block, still), None);
-    // Along a tangent: touched halfway, at right angles to (3, 4).
+    // Along a tangent: contact halfway, at right angles to (3, 4).
     let from = disc(13_000 - 4_000, 14_000 + 3_000);
     let t = first_contact(&block, &from, [8_000, -6_000, 0]).unwrap();
     assert!((t - 0.5).abs() < 1e-15, "{t}");
@@ -82,8 +82,8 @@ fn the_exact_truth_knows_a_triangle_of_three_four_five() {
 }
 
 #[test]
-fn the_exact_truth_sees_what_dense_sampling_sees() {
-    // A coarse world in which sampling at a thousand places cannot miss a meeting of whole units.
+fn the_exact_truth_agrees_with_dense_sampling() {
+    // A coarse world in which sampling at a thousand places cannot miss a contact of whole units.
     let mut dice = crate::distance::tests::Dice::new(5);
     let mut met = 0;
     for _ in 0..3_000 {
@@ -131,7 +131,7 @@ fn the_exact_truth_sees_what_dense_sampling_sees() {
     assert!((500..2_500).contains(&met), "{met}");
 }
 
-/// From the outline of an upright body at the origin to a point.
+/// Distance in the plane from an upright body at the origin to a point.
 fn flat_distance(body: &Body, [x, y]: [f64; 2]) -> f64 {
     match body.form {
         Form::Cylinder { radius, .. } => (x.hypot(y) - radius as f64).max(0.0),

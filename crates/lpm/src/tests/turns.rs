@@ -1,10 +1,10 @@
-//! Turning moves against dense sampling, with a turn of the test's own.
+//! Turning moves against dense sampling with an independent rotation.
 use super::*;
 use crate::distance::tests::Dice;
 
-/// What the interface allows a turning move to be blocked too early, mm.
+/// How early a turning move may be blocked, mm.
 const FALSE_BLOCK_MM: f64 = 1e-3;
-/// The clearance of a turning move lies at most this above the truth, mm.
+/// How far above the truth the clearance of a turning move may lie, mm.
 const ABOVE_MM: f64 = 5e-4;
 const SAMPLES: usize = 160;
 
@@ -13,7 +13,7 @@ fn rotated(pose: &Pose) -> [f64; 4] {
     pose.rotation.map(|it| it / size)
 }
 
-/// Position linear, rotation by the shorter great circle.
+/// Linear position, rotation along the shorter great circle.
 fn pose_at(from: &Pose, to: &Pose, t: f64) -> Pose {
     let (a, mut b) = (rotated(from), rotated(to));
     let mut cos: f64 = (0..4).map(|i| a[i] * b[i]).sum();
@@ -69,7 +69,7 @@ impl Turned {
         }
     }
 
-    /// Distance of the bodies where they stand at `t`, by a move of no length.
+    /// Distance of the bodies at `t`, from a path of length zero.
     fn distance(&self, t: f64) -> f64 {
         let pose = pose_at(&self.from, &self.to, t);
         let found = self.model.clearance(&self.mover, &way(pose, pose), 1e6);
@@ -85,7 +85,7 @@ impl Turned {
 }
 
 #[test]
-fn no_sample_of_a_cleared_turn_is_within_the_margin_and_no_stop_is_late() {
+fn dense_samples_confirm_every_clear_turn_and_stop() {
     let mut blocked = 0;
     for seed in 0..250 {
         let turned = Turned::drawn(seed);
@@ -135,7 +135,7 @@ fn no_sample_of_a_cleared_turn_is_within_the_margin_and_no_stop_is_late() {
 }
 
 #[test]
-fn the_clearance_of_a_turn_is_no_larger_than_any_sample_and_is_really_reached() {
+fn the_clearance_of_a_turn_matches_dense_samples() {
     for seed in 500..620 {
         let turned = Turned::drawn(seed);
         let found = turned
@@ -159,9 +159,9 @@ fn the_clearance_of_a_turn_is_no_larger_than_any_sample_and_is_really_reached() 
 }
 
 #[test]
-fn a_turn_with_two_valleys_of_nearly_the_same_depth_has_the_clearance_of_the_deeper_one() {
-    // The samples find the other one, 14.92486 mm. On the slope of this one stands a moment that is lower by just
-    // what is resolved, 2e-4 mm, where a search for more than that has no way to go on.
+fn the_clearance_of_a_turn_finds_the_deeper_valley() {
+    // The samples find the other valley, 14.92486 mm. On the slope of the deeper one a distance is lower by just
+    // the resolution, 2e-4 mm; a search that demands more than the resolution cannot advance there.
     let model = standing(&Shape::Block { half: [3.0; 3] }, Pose::IDENTITY);
     let block = Shape::Block { half: [5.0; 3] };
     let swung = Shape::Compound(vec![(Pose::at([5.0, 0.0, 0.0]), block)]);
@@ -185,14 +185,14 @@ fn a_turn_with_two_valleys_of_nearly_the_same_depth_has_the_clearance_of_the_dee
     };
     let found = model.clearance(&swung, &way(from, to), 100.0).unwrap();
     assert!((found.distance_mm - 14.92425).abs() < 1e-5, "{found:?}");
-    // As near as the range asks, and just beyond.
+    // Exactly within the range, and just beyond.
     let at = |range_mm: f64| model.clearance(&swung, &way(from, to), range_mm);
     assert!(at(found.distance_mm + 1e-3).is_some());
     assert!(at(found.distance_mm - 1e-3).is_none());
 }
 
 #[test]
-fn a_turn_there_and_back_has_one_verdict() {
+fn a_reversed_turn_has_the_same_verdict() {
     for seed in 900..1_050 {
         let turned = Turned::drawn(seed);
         let back = way(turned.to, turned.from);
@@ -212,8 +212,8 @@ fn a_turn_there_and_back_has_one_verdict() {
 }
 
 #[test]
-fn a_disc_that_turns_in_place_beside_a_wall_is_clear_beyond_the_bound_and_blocked_at_touch() {
-    // The distance never changes: the hardest case for advancing by steps. Turned about its axis and tumbled.
+fn a_disc_turning_near_a_wall_stays_clear() {
+    // The distance never changes, the hardest case for conservative advancement. Turned about its axis, and tumbled.
     let wall = standing(&block(5.0, 100.0, 100.0), Pose::IDENTITY);
     let disc = cylinder(30.0, 8.0);
     for (gap, is_blocked) in [(-1e-3, true), (0.0, true), (1e-3, false), (0.1, false)] {
@@ -226,7 +226,7 @@ fn a_disc_that_turns_in_place_beside_a_wall_is_clear_beyond_the_bound_and_blocke
 }
 
 #[test]
-fn a_turn_by_next_to_nothing_is_the_straight_move() {
+fn a_tiny_turn_equals_the_straight_move() {
     let post = standing(&cylinder(4.0, 30.0), Pose::at([50.0, 0.0, 0.0]));
     let mover = block(3.0, 3.0, 3.0);
     let straight_stop = stop(&post, &mover, &straight([0.0; 3], [100.0, 0.0, 0.0])).unwrap();
@@ -243,8 +243,8 @@ fn a_turn_by_next_to_nothing_is_the_straight_move() {
 }
 
 #[test]
-fn an_arm_far_from_its_axis_is_swept_along_its_arc_and_not_its_chord() {
-    // The part stands 400 mm from the axis; a quarter turn bulges 117 mm out of the chord.
+fn a_long_arm_sweeps_its_arc_not_its_chord() {
+    // The part lies 400 mm from the axis; a quarter turn bulges 117 mm out of the chord.
     let arm = Shape::Compound(vec![(Pose::at([400.0, 0.0, 0.0]), block(2.0, 2.0, 2.0))]);
     let quarter = way(
         Pose::IDENTITY,

@@ -3,7 +3,7 @@
 use super::part::{Role, shape_of};
 use super::scene::Ride;
 use super::{Actuator, Guard, PartSize};
-use lpm::{Pose, Seen, Shape, outlines};
+use lpm::{Pose, Shape, View, outlines};
 
 /// A body in its place with all actuators at rest.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,7 @@ fn drawn(id: &str, shape: &Shape, pose: Pose, rides: &[Ride]) -> Drawn {
     Drawn {
         id: id.to_owned(),
         rides: rides.iter().map(|it| (it.actuator, it.direction)).collect(),
-        above: outlines(shape, pose, Seen::FromAbove),
-        front: outlines(shape, pose, Seen::FromFront),
+        above: outlines(shape, pose, View::Above),
+        front: outlines(shape, pose, View::Front),
     }
 }

@@ -1,4 +1,4 @@
-//! Ways of writing the same body down that are all right.
+//! Variants of file formats that must be accepted.
 use super::*;
 
 pub(super) fn shape(name: &str, bytes: &[u8]) -> Shape {
@@ -17,7 +17,7 @@ fn replaced(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 #[test]
-fn lines_may_end_in_any_way_and_a_file_begin_with_its_mark() {
+fn any_line_end_and_byte_order_mark_is_accepted() {
     let triangles = box_triangles(true);
     for (name, bytes) in [("a.stl", stl_text(&triangles)), ("a.obj", obj(&triangles))] {
         let plain = shape(name, &bytes);
@@ -43,7 +43,7 @@ fn names_and_comments_may_hold_any_letters() {
 }
 
 #[test]
-fn a_text_stl_may_shout_or_stand_in_one_line_and_hold_several_solids() {
+fn a_text_stl_accepts_capitals_and_several_solids() {
     let triangles = box_triangles(true);
     let text = stl_text(&triangles);
     let plain = shape("a.stl", &text);
@@ -73,7 +73,7 @@ fn a_backslash_continues_a_line() {
 }
 
 #[test]
-fn what_carries_no_surface_is_passed_over() {
+fn statements_without_a_surface_are_skipped() {
     let plain = shape("a.obj", format!("{SQUARE}f 1 2 3 4\n").as_bytes());
     let text = "mtllib a b.mtl\no f\nv 0 0 0 1.0\nv 1 0 0 0.5 0.5 0.5 # grey\nv 1 1 0 1 1 1 1\nv 0 1 0\nvt 0 0\n\
                 vn 0 0 1\nvp 0\ng v f\ns off\nmg 1 1\nusemtl m#1\nusemap off\nlod 1\nbevel on\nshadow_obj a.obj\n\

@@ -1,9 +1,9 @@
-//! Faces of more than three corners: which of them may be cut into a fan.
+//! Faces of more than three corners: which of them can be cut into a fan.
 use super::accepted::shape;
 use super::refused::refusal;
 use super::*;
 
-/// An OBJ of one face, its corners written with six digits.
+/// Writes an OBJ of one face, corners with six digits.
 fn face(corners: &[[f64; 3]]) -> Vec<u8> {
     let mut text = String::new();
     for [x, y, z] in corners {
@@ -15,7 +15,7 @@ fn face(corners: &[[f64; 3]]) -> Vec<u8> {
 }
 
 #[test]
-fn a_convex_face_is_cut_into_a_fan_however_it_lies() {
+fn a_convex_face_of_any_orientation_becomes_a_fan() {
     for turn in [0.0_f64, 0.1, 0.7, 1.3] {
         for count in [4, 5, 6, 60, 400] {
             let corner = |index: usize| {
@@ -40,7 +40,7 @@ fn a_convex_face_is_cut_into_a_fan_however_it_lies() {
 }
 
 #[test]
-fn a_face_that_is_a_triangle_a_segment_or_a_point_is_legal() {
+fn a_degenerate_face_is_legal() {
     let (a, b, c, m) = ([0.0; 3], [8.0, 0.0, 6.0], [0.0, 5.0, 1.0], [4.0, 0.0, 3.0]);
     for corners in [
         &[a, a, b, c][..],
@@ -55,7 +55,7 @@ fn a_face_that_is_a_triangle_a_segment_or_a_point_is_legal() {
     }
 }
 
-/// An OBJ of one face that begins with each of its corners in turn, in both directions.
+/// Writes an OBJ per first corner and direction of one face.
 fn faces(corners: &[[f64; 3]]) -> Vec<Vec<u8>> {
     let mut text = String::new();
     for [x, y, z] in corners {
@@ -74,7 +74,7 @@ fn faces(corners: &[[f64; 3]]) -> Vec<Vec<u8>> {
     files
 }
 
-/// Corners in a plane that leans in all directions.
+/// Places the corners in a plane oblique to all axes.
 fn leaning(flat: &[[f64; 2]], height: f64) -> Vec<[f64; 3]> {
     let place = |[x, y]: &[f64; 2]| [100.0 + 0.6 * x, *y, 0.8 * x + 0.3 * y];
     let mut corners: Vec<[f64; 3]> = flat.iter().map(place).collect();
@@ -83,7 +83,7 @@ fn leaning(flat: &[[f64; 2]], height: f64) -> Vec<[f64; 3]> {
 }
 
 #[test]
-fn a_face_that_is_not_flat_and_convex_is_refused() {
+fn a_bent_or_concave_face_is_refused() {
     let square = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]];
     let star = [0.0, 2.0, 4.0, 1.0, 3.0].map(|it| {
         let angle = it * std::f64::consts::TAU / 5.0;

@@ -1,4 +1,4 @@
-//! Files that are damaged or could be read in two ways.
+//! Damaged or ambiguous files, which must be refused.
 use super::*;
 
 pub(super) fn refusal(name: &str, bytes: &[u8]) -> String {
@@ -13,7 +13,7 @@ fn lines(bytes: &[u8]) -> Vec<&[u8]> {
 }
 
 #[test]
-fn a_text_stl_that_ends_anywhere_before_its_end_is_refused() {
+fn a_truncated_text_stl_is_refused() {
     let whole = stl_text(&box_triangles(true));
     let lines = lines(&whole);
     for kept in 0..lines.len() {
@@ -27,7 +27,7 @@ fn a_text_stl_that_ends_anywhere_before_its_end_is_refused() {
 }
 
 #[test]
-fn a_text_stl_with_a_line_too_few_or_too_many_is_refused() {
+fn an_stl_with_a_missing_or_repeated_line_is_refused() {
     let whole = stl_text(&box_triangles(true)[..2]);
     let lines = lines(&whole);
     for number in 0..lines.len() {
@@ -40,7 +40,7 @@ fn a_text_stl_with_a_line_too_few_or_too_many_is_refused() {
 }
 
 #[test]
-fn a_text_stl_whose_facets_have_four_corners_and_two_is_refused() {
+fn stl_facets_of_four_and_two_corners_are_refused() {
     let text = String::from_utf8(stl_text(&box_triangles(true)[..2])).unwrap();
     let (vertex, rim) = (
         "  vertex -3e0 -4 -5\n",
@@ -56,7 +56,7 @@ fn a_text_stl_whose_facets_have_four_corners_and_two_is_refused() {
 }
 
 #[test]
-fn every_complaint_about_a_mesh_file_tells_line_found_and_expected() {
+fn mesh_file_errors_name_line_found_and_expected() {
     let facet =
         "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet";
     let hidden = format!("solid x {facet}\nendsolid x");
@@ -143,7 +143,7 @@ fn every_complaint_about_a_mesh_file_tells_line_found_and_expected() {
 }
 
 #[test]
-fn a_binary_stl_of_another_length_is_refused_with_its_count() {
+fn a_binary_stl_of_wrong_length_is_refused() {
     let whole = stl_binary(&box_triangles(true));
     let expected = "a binary STL of 12 triangles has 684 bytes, not ";
     for length in 84..whole.len() {
@@ -158,7 +158,7 @@ fn a_binary_stl_of_another_length_is_refused_with_its_count() {
 }
 
 #[test]
-fn a_binary_stl_with_a_corner_nowhere_is_refused_by_its_triangle() {
+fn a_binary_stl_with_a_nonfinite_corner_is_refused() {
     for nowhere in [f64::NAN, f64::INFINITY, -1e39] {
         let mut triangles = box_triangles(true);
         triangles[4][2][1] = nowhere;
@@ -172,7 +172,7 @@ fn a_binary_stl_with_a_corner_nowhere_is_refused_by_its_triangle() {
 }
 
 #[test]
-fn a_word_of_an_obj_that_may_be_a_surface_is_refused() {
+fn an_unknown_obj_keyword_is_refused() {
     for word in [
         "F", "V", "fo", "face", "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm",
         "trim", "hole", "scrv", "sp", "end", "con", "ctech", "stech", "call", "csh", "bsp", "bzp",
@@ -188,7 +188,7 @@ fn a_word_of_an_obj_that_may_be_a_surface_is_refused() {
 }
 
 #[test]
-fn a_corner_of_a_face_in_no_known_form_is_refused() {
+fn a_malformed_face_corner_is_refused() {
     for corner in [
         "0", "4", "-4", "1.0", "1/", "1//", "1/0", "1/x", "1//y", "1/1/", "1/1/1/1", "/1", "",
         "1,2", "9e9",
@@ -200,7 +200,7 @@ fn a_corner_of_a_face_in_no_known_form_is_refused() {
 }
 
 #[test]
-fn a_backslash_that_can_be_read_in_two_ways_is_refused() {
+fn an_ambiguous_backslash_is_refused() {
     let known = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
     for (text, expected) in [
         ("f 1 2 3 \\", "line 5: found the end of the file"),

@@ -1,7 +1,7 @@
-//! The pieces that stand, in one block of memory: what a question reads of them, and no more.
+//! The pieces of the stationary elements in one block of memory, reduced to what questions read.
 //!
-//! An upright piece is kept as its [`Prism`] alone, which says all there is to say of it. What is
-//! tilted, and triangles, need a whole [`Piece`] each and are kept apart.
+//! An upright piece is stored as its [`Prism`] alone, which describes it completely. Tilted pieces and triangles
+//! need a whole [`Piece`] each, stored separately.
 
 use super::answer::ElementKey;
 use super::piece::{Piece, each_piece};
@@ -10,61 +10,61 @@ use super::prism::Prism;
 use super::shape::Shape;
 use super::space::{Cover, Entering};
 
-/// No piece.
+/// Stands for no piece.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// A piece where it stands.
+/// A placed stationary piece.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Standing {
-    pub(crate) form: Stands,
-    /// Its element.
+pub(crate) struct Stationary {
+    pub(crate) form: Stored,
+    /// The element to which the piece belongs.
     pub(crate) owner: ElementKey,
-    /// Another piece of the same element, or [`NONE`].
+    /// Number of another piece of the same element, or [`NONE`].
     pub(crate) sibling: u32,
 }
 
-/// How a piece stands.
+/// Form in which a piece is stored.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Stands {
-    /// Closed forms apply.
+pub(crate) enum Stored {
+    /// Upright: closed forms apply.
     Upright(Prism),
-    /// Number of the whole piece.
+    /// Tilted or a triangle: index of the whole piece.
     Askew(u32),
 }
 
-/// All standing pieces by the numbers that the space knows.
+/// All stationary pieces by the numbers that the space uses.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Pieces {
-    standing: Vec<Standing>,
+    pieces: Vec<Stationary>,
     free: Vec<u32>,
     askew: Vec<Piece>,
     free_askew: Vec<u32>,
 }
 
 impl Pieces {
-    /// Takes the pieces of a checked shape in, enters their boxes into `space` and says the number of
-    /// the first in the chain of siblings.
+    /// Adds the pieces of a checked shape, enters their boxes into `space` and returns the number of the first
+    /// piece in the chain of siblings.
     #[inline]
-    pub(crate) fn stand(
+    pub(crate) fn insert(
         &mut self,
         space: &mut impl Entering,
         shape: &Shape,
         pose: &Pose,
         owner: ElementKey,
     ) -> u32 {
-        // What nearly all elements are needs no detour by the general piece.
+        // Nearly all elements are one upright block or cylinder and skip the general piece.
         if let Some(prism) = Prism::standing(shape, pose) {
             let cover = Cover::of(prism.bounds());
-            return self.enter(space, Stands::Upright(prism), &cover, owner, NONE);
+            return self.enter(space, Stored::Upright(prism), &cover, owner, NONE);
         }
         let frame = Frame::of(pose.rotation);
         let mut first = NONE;
         each_piece(shape, |piece| {
             let piece = piece.placed(&frame, pose.position);
             let form = if piece.upright {
-                Stands::Upright(Prism::of(&piece))
+                Stored::Upright(Prism::of(&piece))
             } else {
-                Stands::Askew(kept(&mut self.askew, &mut self.free_askew, piece))
+                Stored::Askew(kept(&mut self.askew, &mut self.free_askew, piece))
             };
             let cover = Cover::of(piece.bounds());
             first = self.enter(space, form, &cover, owner, first);
@@ -76,25 +76,25 @@ impl Pieces {
     fn enter(
         &mut self,
         space: &mut impl Entering,
-        form: Stands,
+        form: Stored,
         cover: &Cover,
         owner: ElementKey,
         sibling: u32,
     ) -> u32 {
-        let standing = Standing {
+        let stationary = Stationary {
             form,
             owner,
             sibling,
         };
-        let number = kept(&mut self.standing, &mut self.free, standing);
+        let number = kept(&mut self.pieces, &mut self.free, stationary);
         space.enter(number, cover);
         number
     }
 
-    /// Forgets a piece and says which is the next one of its element.
+    /// Removes a piece and returns the number of the next piece of its element.
     #[inline]
-    pub(crate) fn let_go(&mut self, number: u32) -> u32 {
-        if let Stands::Askew(whole) = self.at(number).form {
+    pub(crate) fn remove(&mut self, number: u32) -> u32 {
+        if let Stored::Askew(whole) = self.at(number).form {
             self.free_askew.push(whole);
         }
         self.free.push(number);
@@ -102,32 +102,32 @@ impl Pieces {
     }
 
     #[inline]
-    pub(crate) fn at(&self, number: u32) -> &Standing {
-        &self.standing[number as usize]
+    pub(crate) fn at(&self, number: u32) -> &Stationary {
+        &self.pieces[number as usize]
     }
 
-    /// The whole piece, for searches.
+    /// Returns the whole piece, for searches.
     pub(crate) fn piece(&self, number: u32) -> Piece {
         match &self.at(number).form {
-            Stands::Upright(prism) => prism.piece(),
-            Stands::Askew(whole) => self.askew[*whole as usize],
+            Stored::Upright(prism) => prism.piece(),
+            Stored::Askew(whole) => self.askew[*whole as usize],
         }
     }
 
-    /// Room for so many more.
+    /// Reserves room for `count` more pieces.
     pub(crate) fn reserve(&mut self, count: usize) {
-        self.standing.reserve(count);
+        self.pieces.reserve(count);
     }
 
     /// Heap in use, bytes.
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.standing.capacity() * size_of::<Standing>()
+        self.pieces.capacity() * size_of::<Stationary>()
             + self.askew.capacity() * size_of::<Piece>()
             + (self.free.capacity() + self.free_askew.capacity()) * size_of::<u32>()
     }
 }
 
-/// Puts a thing in a free place, or behind the last.
+/// Stores a value in a free place, else at the end, and returns its index.
 #[inline]
 fn kept<T>(things: &mut Vec<T>, free: &mut Vec<u32>, thing: T) -> u32 {
     match free.pop() {

@@ -1,20 +1,22 @@
-//! Is a module already as a command would make it? An EEPROM is written a limited number of times, so a setting is read
-//! first ([`Command::setting`]) and written only if it differs ([`Command::stands`]).
+//! Tells whether a module already has the setting that a command would write. An EEPROM endures a limited number of
+//! writes, so the host reads a setting first ([`Command::setting`]) and writes it only if it differs
+//! ([`Command::is_in_effect`]).
 //!
-//! Of stored outputs two answers would have to tell, the stored pattern and the present one, and which half of the present
-//! one is outputs depends on a model that the request does not name: they are written. So is an alarm of a 7080 that is
-//! switched on, and its mode: what `@AADI` says of an alarm that is on depends on the mode, and nothing tells the mode. One that is
-//! off is off in both.
+//! Two kinds of setting are always written. Stored outputs: comparing needs both the stored and the present
+//! pattern, and which half of the present one is outputs depends on a model that the request does not name. Alarms
+//! of a 7080 that are switched on, and their mode: the meaning of the `@AADI` reply depends on the mode, which
+//! cannot be read. An alarm that is off reads the same in both modes.
 
 use super::{AnalogIn, AnalogOut, Command, Common, Config, Counter, FormatByte, Reply, TypeCode};
 
 /// Bit of the watchdog status: tripped.
 const TRIPPED: u8 = 0x04;
-/// Low bits of FF that some digital modules use as a code of their model, whatever was written.
+/// Low bits of FF in which some digital modules return a model code, whatever was written.
 const MODEL_BITS: u8 = 0x07;
 
 impl Command {
-    /// What asks for the setting that this command writes; none for what writes none, or where no answer tells.
+    /// Returns the command that reads the setting this command writes; `None` when it writes none, or when no reply
+    /// shows it.
     pub fn setting(&self) -> Option<Self> {
         match *self {
             Self::HostOk | Self::SampleAll | Self::Digital(..) => None,
@@ -25,10 +27,10 @@ impl Command {
         }
     }
 
-    /// Whether `found`, the reply to [`Command::setting`], says that writing would change nothing.
-    pub fn stands(&self, found: &Reply) -> bool {
+    /// Whether `found`, the reply to [`Command::setting`], shows that writing would change nothing.
+    pub fn is_in_effect(&self, found: &Reply) -> bool {
         match (*self, *found) {
-            (Self::Common(_, ask), found) => common_stands(ask, found),
+            (Self::Common(_, ask), found) => is_common_in_effect(ask, found),
             (Self::AnalogIn(_, AnalogIn::WriteMask(mask)), Reply::Byte(found)) => mask == found,
             (
                 Self::AnalogIn(_, AnalogIn::WriteChannelRange { range, .. }),
@@ -41,7 +43,7 @@ impl Command {
                     slew: found_slew,
                 },
             ) => found.0 & 0xF == range.get() && found_slew == slew,
-            (Self::Counter(_, ask), found) => counter_stands(ask, found),
+            (Self::Counter(_, ask), found) => is_counter_in_effect(ask, found),
             (_, _) => false,
         }
     }
@@ -69,7 +71,7 @@ fn common(ask: Common) -> Option<Common> {
     }
 }
 
-fn common_stands(ask: Common, found: Reply) -> bool {
+fn is_common_in_effect(ask: Common, found: Reply) -> bool {
     match (ask, found) {
         (
             Common::WriteConfig { address, config },
@@ -77,7 +79,7 @@ fn common_stands(ask: Common, found: Reply) -> bool {
                 address: found,
                 config: set,
             },
-        ) => address == found && meant(config) == meant(set),
+        ) => address == found && settings_of(config) == settings_of(set),
         (Common::WriteName(name), Reply::Text(found)) => {
             name.as_bytes() == found.as_str().as_bytes()
         }
@@ -98,8 +100,8 @@ fn common_stands(ask: Common, found: Reply) -> bool {
     }
 }
 
-/// What a configuration word sets.
-fn meant(config: Config) -> Config {
+/// Returns the settings in a configuration word, without its model code.
+fn settings_of(config: Config) -> Config {
     let FormatByte(format) = config.format;
     let format = match config.type_code {
         TypeCode::DIGITAL => format & !MODEL_BITS,
@@ -178,7 +180,7 @@ fn counter(ask: Counter) -> Option<Counter> {
     }
 }
 
-fn counter_stands(ask: Counter, found: Reply) -> bool {
+fn is_counter_in_effect(ask: Counter, found: Reply) -> bool {
     match (ask, found) {
         (
             Counter::WritePreset(_, value)
