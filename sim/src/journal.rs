@@ -1,7 +1,8 @@
-//! What the outputs do: every change of a digital output, every host watchdog that expires, and what struck the rig.
+//! Journal of the outputs: every change of a digital output, every expiry of a host watchdog, every fault that
+//! strikes.
 //!
-//! It is taken at the terminals, between modules and world, so that it shows what an actuator would have felt.
-//! Off until somebody listens.
+//! The journal records at the terminals, between modules and world, and so holds the signals of the actuators. It
+//! is off until [`Watched::listen`].
 
 use std::collections::BTreeMap;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -14,7 +15,7 @@ use crate::terminal::Plant;
 use crate::truth::BodyTruth;
 use crate::world::WorldOptions;
 
-/// One thing that happened.
+/// One entry of the journal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum Entry {
@@ -27,27 +28,27 @@ pub enum Entry {
         /// Bit n = channel n.
         bits: u16,
     },
-    /// A fault has struck while the rig ran.
+    /// A fault has struck the running rig.
     Struck {
         /// Rig time, microseconds.
         t_us: u64,
-        /// As it was asked for.
+        /// Text of the fault as requested.
         fault: String,
     },
-    /// A host watchdog has expired; the outputs stand as its module left them.
+    /// A host watchdog has expired; the outputs keep the values that the module has set.
     Expired {
         /// Rig time, microseconds.
         t_us: u64,
         /// Identifier of the module.
         module: String,
-        /// When the last request of any kind was heard on any line, microseconds.
+        /// Arrival of the last request on any line, microseconds.
         last_request_us: u64,
-        /// What the terminals carry now: bits, or volts.
+        /// Present value of the output: bits, or volts.
         carries: f64,
     },
 }
 
-/// The world as the modules see it, with somebody looking at the terminals.
+/// A world with a journal of its output terminals.
 pub(crate) struct Watched {
     scene: Box<dyn Scene>,
     listener: Option<Sender<Entry>>,
@@ -67,19 +68,19 @@ impl Watched {
         }
     }
 
-    /// From now on everything is told; a later listener takes the place of an earlier one.
+    /// Starts the journal; a later receiver replaces an earlier one.
     pub(crate) fn listen(&mut self) -> Receiver<Entry> {
         let (sender, receiver) = mpsc::channel();
         self.listener = Some(sender);
         receiver
     }
 
-    /// A request has been heard.
+    /// Notes the arrival of a request.
     pub(crate) fn heard(&mut self, now_us: u64) {
         self.last_request_us = now_us;
     }
 
-    /// The watchdog of a module has expired.
+    /// Records that the watchdog of a module expires now.
     pub(crate) fn expired(&mut self, module: &str) {
         self.tell(Entry::Expired {
             t_us: self.now_us,
@@ -89,7 +90,7 @@ impl Watched {
         });
     }
 
-    /// A fault strikes now.
+    /// Records that a fault strikes now.
     pub(crate) fn struck(&mut self, fault: &str) {
         self.tell(Entry::Struck {
             t_us: self.now_us,
@@ -99,7 +100,7 @@ impl Watched {
 
     fn tell(&self, entry: Entry) {
         if let Some(listener) = &self.listener {
-            // Somebody who has stopped listening misses nothing.
+            // A dropped receiver needs no further entries.
             let _ = listener.send(entry);
         }
     }

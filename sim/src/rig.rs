@@ -1,11 +1,11 @@
 //! The rig: modules on lines, the world behind them, and the order of events.
 //!
-//! Nothing is stepped through in small steps. Before a request is answered everything that is due
-//! earlier happens in order of time: conversions, steps of ramps, expiries of watchdogs, timed
-//! faults. At equal times modules come in the order of the configuration. The world is advanced to
-//! each of these instants. Rig time never runs backwards: a request that comes in with an earlier
-//! time than something already done is taken as coming now. A module is one processor: its replies keep their
-//! order, and one that comes late holds up the next. While it is held up it keeps one request and misses the rest.
+//! The rig runs from event to event. Before a module answers a request, every earlier event happens in order of
+//! time: conversions, steps of ramps, expiries of watchdogs, timed faults; events of one instant follow the order
+//! of modules in the configuration. The world advances to each of these instants. Rig time never runs backwards:
+//! a request with a time before the last event counts as arriving at that event. A module serves one request at a
+//! time: its replies keep their order, and a late reply delays the next one. Meanwhile the module keeps one
+//! request and misses all others.
 
 use std::sync::mpsc::Receiver;
 
@@ -22,47 +22,47 @@ use crate::truth::BodyTruth;
 use crate::uart;
 use crate::world::WorldOptions;
 
-/// What the world knows and no module ever tells.
+/// Facts of the world that no module reports, and control of its faults.
 pub trait Record {
-    /// One object per lot part that has entered the nest, in order.
+    /// Returns one object per lot part that has entered the nest, in order.
     fn truth(&mut self) -> Vec<serde_json::Value>;
 
-    /// Bodies that touched where they must not, in words.
+    /// Returns a description of each crash: two bodies that touch although they must not.
     fn crashes(&mut self) -> Vec<String>;
 
-    /// A fault of the world strikes from now on; `value` counts parts.
+    /// Activates a fault of the world; `value` is the number of a part.
     ///
     /// # Errors
-    /// The world has no such fault, or it cannot strike while the world runs.
+    /// Fails when the world has no such fault, or the fault applies only to the start.
     fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
         let _ = value;
         Err(SimError::UnknownFault { name: fault.into() })
     }
 
-    /// Other parts are put into the magazine; nothing where there is none.
+    /// Replaces the parts in the magazine; does nothing in a world without one.
     ///
     /// # Errors
-    /// A file of the configuration is missing or wrong.
+    /// Fails when a configuration file is missing or wrong.
     fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
         let _ = options;
         Ok(())
     }
 
-    /// Every body that has left the magazine, in order of leaving; none where there is no magazine.
+    /// Returns every body that has left the magazine, in order of leaving; none in a world without a magazine.
     fn bodies(&mut self) -> Vec<BodyTruth> {
         Vec::new()
     }
 
-    /// What began to move because an output told it to, and when, microseconds; the last ones.
+    /// Returns the start of each recent motion that an output caused: microseconds and actuator.
     fn driven(&mut self) -> Vec<(u64, &'static str)> {
         Vec::new()
     }
 
-    /// Faults of the world that still wait are called off.
+    /// Cancels the faults of the world that have not struck yet.
     fn calm(&mut self) {}
 }
 
-/// A world: terminals in front, truth behind.
+/// A world: terminals for the modules, facts for the tests.
 pub trait Scene: Plant + Record + Send {}
 
 impl<T: Plant + Record + Send> Scene for T {}
@@ -70,19 +70,19 @@ impl<T: Plant + Record + Send> Scene for T {}
 /// Bytes that a line sends to its host.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reply {
-    /// Rig time at which the last character has arrived, microseconds.
+    /// Rig time at which the last character arrives, microseconds.
     pub at_us: u64,
-    /// Everything, CR included.
+    /// All bytes, CR included.
     pub bytes: Vec<u8>,
 }
 
-/// Modules, lines and world.
+/// Modules, lines and world, with the clock of the rig.
 pub struct Rig {
     scene: Watched,
     modules: Vec<Module>,
     /// Next event of each module.
     due_us: Vec<u64>,
-    /// From when to when each module is at a reply that holds it up: it serves one request after the other.
+    /// Interval in which each module is busy with a late reply, microseconds.
     serving_us: Vec<(u64, u64)>,
     lines: Vec<LineSpec>,
     faults: LineFaults,
@@ -90,7 +90,7 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// Puts everything together at rig time 0, modules under power.
+    /// Builds a rig at rig time 0 with all modules powered.
     pub fn new(
         scene: Box<dyn Scene>,
         modules: Vec<Module>,
@@ -118,17 +118,17 @@ impl Rig {
         rig
     }
 
-    /// Lines in the order of the configuration.
+    /// Returns the lines in the order of the configuration.
     pub fn lines(&self) -> &[LineSpec] {
         &self.lines
     }
 
-    /// Rig time, microseconds.
+    /// Returns rig time, microseconds.
     pub fn now_us(&self) -> u64 {
         self.now_us
     }
 
-    /// Lets everything happen that is due up to `t_us`.
+    /// Runs every event that is due up to `t_us`.
     pub fn advance(&mut self, t_us: u64) {
         self.strike_timed(t_us);
         self.run_events(t_us);
@@ -136,12 +136,12 @@ impl Rig {
         self.scene.advance(self.now_us);
     }
 
-    /// A request (without CR) has arrived on a line at `t_us`; gives the reply, if there is one.
+    /// Delivers a request (without CR) on a line at `t_us`; returns the reply, if any.
     pub fn exchange(&mut self, line: usize, text: &[u8], t_us: u64) -> Option<Reply> {
         self.exchange_at(line, None, text, t_us)
     }
 
-    /// The same from a host that talks at a rate of its own; without one it has that of the line, and of every module.
+    /// Delivers a request at the host's own baud rate; `None` matches the line and every module.
     pub fn exchange_at(
         &mut self,
         line: usize,
@@ -187,7 +187,7 @@ impl Rig {
         Some(Reply { at_us, bytes })
     }
 
-    /// What one module sends, and after how many microseconds.
+    /// Lets one module answer; returns the delay in microseconds and the bytes.
     fn answer(&mut self, place: usize, text: &[u8]) -> Option<(u64, Vec<u8>)> {
         let now_us = self.now_us;
         let (begun_us, free_us) = self.serving_us[place];
@@ -210,19 +210,19 @@ impl Rig {
         Some((latency_us, bytes))
     }
 
-    /// When the port of a line is back, if it is away at `t_us`.
+    /// Returns the instant at which a lost port comes back; `None` while the port is present at `t_us`.
     pub fn port_back_us(&self, line: usize, t_us: u64) -> Option<u64> {
         let spec = self.lines.get(line)?;
         self.faults.port_back_us(&spec.name, t_us)
     }
 
-    /// When the port of a line goes away next, after `t_us`.
+    /// Returns the instant after `t_us` at which the port of a line vanishes next.
     pub fn next_port_loss_us(&self, line: usize, t_us: u64) -> Option<u64> {
         let spec = self.lines.get(line)?;
         self.faults.next_port_loss_us(&spec.name, t_us)
     }
 
-    /// EEPROM writes of all modules so far.
+    /// Counts the EEPROM writes of all modules.
     pub fn eeprom_writes(&self) -> u64 {
         self.modules
             .iter()
@@ -230,7 +230,7 @@ impl Rig {
             .sum()
     }
 
-    /// EEPROM writes of each module so far.
+    /// Counts the EEPROM writes of each module, by identifier.
     pub fn eeprom_writes_by_module(&self) -> Vec<(String, u64)> {
         self.modules
             .iter()
@@ -238,15 +238,15 @@ impl Rig {
             .collect()
     }
 
-    /// Everything that the outputs do from now on.
+    /// Starts a journal of the outputs, from now on.
     pub fn journal(&mut self) -> Receiver<Entry> {
         self.scene.listen()
     }
 
-    /// A fault, `NAME` or `NAME=VALUE`, strikes while the rig runs: times in its value count from now.
+    /// Activates a fault, `NAME` or `NAME=VALUE`; times in the value count from now.
     ///
     /// # Errors
-    /// The fault is unknown, its value unfit, or it is only for the start.
+    /// Fails when the fault is unknown, its value is unfit, or it applies only to the start.
     pub fn strike(&mut self, text: &str) -> Result<(), SimError> {
         let (name, value) = shared::split(text);
         self.scene.struck(text);
@@ -279,12 +279,12 @@ impl Rig {
     /// See [`Record::fill`].
     ///
     /// # Errors
-    /// As there.
+    /// Fails as [`Record::fill`] does.
     pub fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
         self.scene.fill(options)
     }
 
-    /// See [`Record::calm`]; faults of lines and modules end by their windows.
+    /// See [`Record::calm`]; faults of lines and modules end with their windows.
     pub fn calm(&mut self) {
         self.scene.calm();
     }
@@ -341,7 +341,7 @@ fn happen(module: &mut Module, event: Event, plant: &mut dyn Plant, now_us: u64)
     }
 }
 
-/// Two modules at one address: what is heard of both, from the first one on.
+/// Merges the replies of two modules at one address; the earlier one sets the delay.
 fn together(first: (u64, Vec<u8>), second: (u64, Vec<u8>), baud: u32) -> (u64, Vec<u8>) {
     let apart_us = second.0 as i64 - first.0 as i64;
     let apart_bits = apart_us * i64::from(baud) / 1_000_000;

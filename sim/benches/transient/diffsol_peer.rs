@@ -1,4 +1,4 @@
-//! The same transient by diffsol: Tsitouras 5(4) with its root finding, restarted at every root.
+//! The transient by diffsol: Tsitouras 5(4) with root finding, restarted at every root.
 
 use super::{END_S, Seen, VOLTS};
 use diffsol::{
@@ -7,7 +7,7 @@ use diffsol::{
 use rigsim::world::relay::lumped::{Drive, Kind, Model, State};
 use std::cell::Cell;
 
-/// Place of NO among the roots.
+/// Index of NO among the roots.
 const NO: usize = 3;
 
 fn state(slice: &[f64]) -> State {
@@ -17,7 +17,7 @@ fn state(slice: &[f64]) -> State {
 /// Integrates with root finding for all four stops.
 ///
 /// # Errors
-/// What diffsol says.
+/// Returns the error of diffsol.
 pub fn tsit45(model: &Model, rtol: f64) -> Result<Seen, DiffsolError> {
     let drive = Drive::still(VOLTS);
     let evaluations = Cell::new(0u64);

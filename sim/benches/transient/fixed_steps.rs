@@ -1,4 +1,4 @@
-//! Methods with a fixed step: forces by the sign of the gap, events by a straight line.
+//! Methods with a fixed step: forces follow the sign of the gap, events come from linear interpolation.
 
 use super::{END_S, Seen, VOLTS};
 use rigsim::world::relay::lumped::{Drive, LAMBDA, Model, State, V, W, X, Y};
@@ -22,7 +22,7 @@ fn run(model: &Model, h: f64, per_step: u64, step: impl Fn(&State) -> State) -> 
     Seen::of_changes(&changes, steps * per_step)
 }
 
-/// The classical method of order 4.
+/// Integrates with the classical Runge-Kutta method of order 4.
 pub fn runge_kutta(model: &Model, h: f64) -> Seen {
     run(model, h, 4, |s| {
         let along = |k: &State, part: f64| std::array::from_fn(|i| s[i] + part * h * k[i]);
@@ -34,7 +34,7 @@ pub fn runge_kutta(model: &Model, h: f64) -> Seen {
     })
 }
 
-/// Speeds first, then places with the new speeds.
+/// Integrates speeds first, then positions with the new speeds.
 pub fn semi_implicit_euler(model: &Model, h: f64) -> Seen {
     run(model, h, 1, |s| {
         let k = rates(model, s);

@@ -1,8 +1,7 @@
-//! Replies that arrive as something else: disturbed bits, foreign bytes, the own echo, a second transmitter,
-//! a wrong baud rate.
+//! Altered replies: disturbed bits, foreign bytes, the host's own echo, a second transmitter, a wrong baud rate.
 //!
-//! Two transmitters and wrong baud rates work on the bits of the wire ([`crate::uart`]), so that what comes out
-//! is what a receiver makes of them: characters shifted into each other, broken stop bits.
+//! Second transmitters and wrong baud rates act on the bits of the wire ([`crate::uart`]), so that the host
+//! receives what a real receiver would: shifted characters and broken stop bits.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -46,7 +45,7 @@ const LIST: [Known; 5] = [
     },
 ];
 
-/// How far apart two modules at one address begin to answer at most, bits: two characters.
+/// Largest offset between the replies of two modules at one address, bits: two characters.
 const APART_BITS: i64 = 20;
 
 #[derive(Default)]
@@ -88,7 +87,7 @@ impl Family for Damage {
 }
 
 impl Damage {
-    /// A second module at the address of `module` answers too.
+    /// Superposes the reply of a second module at the address of `module`.
     pub(super) fn clash(
         &self,
         module: &str,
@@ -103,7 +102,7 @@ impl Damage {
         }
     }
 
-    /// What a reply has become on its way.
+    /// Damages a reply on its way to the host.
     pub(super) fn strike(
         &self,
         request: &[u8],
@@ -129,7 +128,8 @@ impl Damage {
     }
 }
 
-/// What another module of the same kind and address would say: other digits, a good checksum if there is one.
+/// Returns the reply of another module of the same kind and address: other digits, a valid checksum if there is
+/// one.
 fn twin(reply: &[u8], rng: &mut ChaCha8Rng) -> Vec<u8> {
     let text = reply.strip_suffix(&[dcon::CR]).unwrap_or(reply);
     let bare = dcon::without_checksum(text);

@@ -1,4 +1,4 @@
-//! Replies that come, but not when they should.
+//! Late replies.
 
 use rand_chacha::ChaCha8Rng;
 
@@ -11,17 +11,17 @@ const LIST: [Known; 2] = [
         name: "delay",
         unit: "ms",
         default: "20",
-        what: "every reply takes so much longer",
+        what: "every reply takes longer by this time",
     },
     Known {
         name: "late",
         unit: "probability[/ms]",
         default: "0.01/200",
-        what: "a reply comes so late that nobody waits for it any more; the module is held up as long",
+        what: "a reply comes after the host's time-out; the module is busy until then",
     },
 ];
 
-/// Lateness when only a probability is given, microseconds: beyond any time-out.
+/// Default delay of a late reply, microseconds: longer than any time-out of a host.
 const LATE_US: u64 = 200_000;
 
 #[derive(Default)]
@@ -56,7 +56,7 @@ impl Family for Timing {
 }
 
 impl Timing {
-    /// What a reply takes longer, microseconds.
+    /// Returns the extra time of the next reply, microseconds.
     pub(super) fn extra_us(&self, rng: &mut ChaCha8Rng, now_us: u64) -> u64 {
         let delays = self
             .delays
@@ -77,7 +77,7 @@ mod tests {
     use super::super::LineFaults;
 
     #[test]
-    fn delays_add_up_and_lateness_is_what_was_asked_for() {
+    fn delays_add_up_and_a_late_reply_takes_its_value() {
         let mut faults = LineFaults::none(1);
         faults.add("delay", Some("5")).unwrap();
         faults.add("delay", Some("2.5@1")).unwrap();

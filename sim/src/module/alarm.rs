@@ -1,17 +1,17 @@
-//! Alarms of the counter module, which own its two outputs while they are on.
+//! Alarms of the counter module; while they are on, they control its two outputs.
 //!
 //! | request | mode 0: a limit per counter | mode 1: two limits on counter 0 |
 //! |---|---|---|
-//! | `~AAAS` | S = 0 | S = 1 (as the 7080D comes) |
+//! | `~AAAS` | S = 0 | S = 1 (factory setting of the 7080D) |
 //! | `@AAPA(8 hex)`, `@AARP` | limit of counter 0 | high limit, output 0 |
 //! | `@AASA(8 hex)`, `@AARA` | limit of counter 1 | high-high limit, output 1 |
 //! | `@AAEAN`, `@AADAN` | alarm of counter N on, off | refused |
 //! | `@AAEAM`, `@AAEAL`, `@AADA` | refused | momentary, latched, off |
-//! | `@AACA` | refused | ends a latched alarm until its limit is reached anew |
+//! | `@AACA` | refused | clears a latched alarm until its counter reaches the limit again |
 //!
-//! An output of an alarm is on while its counter stands at its limit or above; a latched one stays on.
+//! An output is on while its counter is at its limit or above; a latched output stays on.
 
-/// Which counters alarm, and how.
+/// Assignment of alarms to counters, with their state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mode {
     PerCounter { on: [bool; 2] },
@@ -25,22 +25,22 @@ enum Kind {
     Latched,
 }
 
-/// What a command about alarms did.
+/// Effect of an alarm command.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Told {
-    /// Changed a setting that outlives the power.
+    /// The command changed a setting that survives a power loss.
     Stored,
-    /// Changed a state.
+    /// The command changed a volatile state.
     Done,
-    /// A limit, as read.
+    /// The command read this limit.
     Limit(u32),
-    /// Belongs to the other mode.
+    /// The command belongs to the other mode.
     Refused,
-    /// Is none.
+    /// The command does not exist.
     Unknown,
 }
 
-/// Mode, limits, and what is latched.
+/// Mode, limits and latches of the alarms.
 #[derive(Debug, Clone)]
 pub(super) struct Alarm {
     mode: Mode,
@@ -49,7 +49,7 @@ pub(super) struct Alarm {
 }
 
 impl Alarm {
-    /// Off, in the mode in which the model comes.
+    /// Creates alarms that are off, in the factory mode of the model.
     pub(super) fn new(two_limits: bool) -> Self {
         let mode = if two_limits {
             Mode::TwoLimits(Kind::Off)
@@ -63,7 +63,7 @@ impl Alarm {
         }
     }
 
-    /// First digit of `@AADI`: 0 off, 1 on (momentary), 2 latched.
+    /// Returns the first digit of `@AADI`: 0 off, 1 on (momentary), 2 latched.
     pub(super) fn state(&self) -> u8 {
         match self.mode {
             Mode::PerCounter { on } => u8::from(on != [false; 2]),
@@ -73,12 +73,12 @@ impl Alarm {
         }
     }
 
-    /// The host may not write the outputs.
+    /// Checks whether the alarms control the outputs, so that the host may not write them.
     pub(super) fn owns_outputs(&self) -> bool {
         self.state() != 0
     }
 
-    /// The outputs, given what the host wrote and where the counters stand.
+    /// Returns the outputs for the host's word and the present counts; updates the latches.
     pub(super) fn outputs(&mut self, host: u8, values: [u64; 2]) -> u8 {
         let reached = |value: u64, limit: usize| value >= u64::from(self.limits[limit]);
         match self.mode {
@@ -100,7 +100,7 @@ impl Alarm {
         }
     }
 
-    /// `~AAAS`: another mode, everything off.
+    /// Changes the mode (`~AAAS`) and switches every alarm off.
     pub(super) fn set_mode(&mut self, two_limits: bool) {
         let limits = self.limits;
         *self = Self {
@@ -109,7 +109,7 @@ impl Alarm {
         };
     }
 
-    /// The body of a request that begins with `@`.
+    /// Carries out the body of a request that begins with `@`.
     pub(super) fn command(&mut self, body: &[u8]) -> Told {
         match (body, &mut self.mode) {
             ([b'E', b'A', n @ (b'0' | b'1')], Mode::PerCounter { on }) => {
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn a_latched_alarm_stays_until_it_is_cleared_and_a_momentary_one_does_not() {
+    fn a_latched_alarm_stays_on_and_a_momentary_one_ends() {
         let mut alarm = Alarm::new(true);
         for command in [&b"PA00000064"[..], b"SA000000C8", b"EAL"] {
             assert_eq!(alarm.command(command), Told::Stored);

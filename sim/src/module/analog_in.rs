@@ -3,18 +3,18 @@
 //! | request | reply |
 //! |---|---|
 //! | `#AA` | `>` and a field per channel; a disabled channel is blank |
-//! | `#AAN` | `>` and one field; `?AA` when there is no channel N |
+//! | `#AAN` | `>` and one field; `?AA` when channel N does not exist |
 //! | `$AAA` | `>` and 4 hexadecimal digits per channel, whatever the format |
-//! | `$AA5VV`, `$AA6` | enable mask, written to the EEPROM; read back |
-//! | `$AA3` | `>` and the temperature of the cold junction (7018), which is that of a room |
-//! | `$AA7CiRrr`, `$AA8Ci` | newer modules: range of one channel, written to the EEPROM; read back as `CiRrr` |
-//! | `$AAB` | newer modules: `!AANN`, the enabled channels that have left their range, bit n = channel n |
+//! | `$AA5VV`, `$AA6` | write the enable mask to the EEPROM; read it |
+//! | `$AA3` | `>` and the temperature of the cold junction (7018), always room temperature |
+//! | `$AA7CiRrr`, `$AA8Ci` | newer modules: write the range of one channel to the EEPROM; read it as `CiRrr` |
+//! | `$AAB` | newer modules: `!AANN`, the enabled channels that are outside their range, bit n = channel n |
 //!
-//! A new type code in the configuration word is that of every channel.
+//! A new type code in the configuration word applies to every channel.
 //!
-//! A reading is the last finished conversion of its channel (see [`super::converter`]), with this
-//! module's gain, offset and noise, quantised to 16 bit, 12 bit in fast mode, 24 bit for RTD.
-//! Factory calibration (`$AA0`, `$AA1`, `~AAEV`) is not simulated: a rig never sends it.
+//! A reading is the last finished conversion of its channel (see [`super::converter`]) with the module's own
+//! gain, offset and noise, quantised to 16 bit, to 12 bit in fast mode, to 24 bit for RTD. Factory calibration
+//! (`$AA0`, `$AA1`, `~AAEV`) is not simulated, since a rig never sends it.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -32,23 +32,23 @@ use crate::terminal::ModuleSpec;
 /// Bit of FF that selects the fast mode.
 const FAST: u8 = 0x20;
 
-/// Bit of FF for the mains filter.
+/// Bit of FF that selects the 50 Hz mains filter.
 const MAINS_50_HZ: u8 = 0x80;
 
 /// Temperature of the cold junction, degrees Celsius.
 const COLD_JUNCTION_C: f64 = 25.0;
 
-/// Conversions a second of the RTD module, all channels together.
+/// Conversions per second of the RTD module, all channels together.
 const RTD_PER_S: f64 = 15.0;
 
 struct AnalogIn {
     kind: Kind,
     converter: Converter,
-    /// Fractions of full scale.
+    /// Last reading of each channel, fraction of full scale.
     readings: [f64; 8],
-    /// Type code of the configuration word when it was last looked at.
+    /// Type code of the configuration word at the last comparison.
     type_code: u8,
-    /// Type code of each channel.
+    /// Present type code of each channel.
     ranges: [u8; 8],
     habit: Habit,
     rng: ChaCha8Rng,
@@ -59,7 +59,7 @@ enum Kind {
     Voltage {
         may_be_fast: bool,
     },
-    /// 7018: thermocouples too, never fast.
+    /// 7018: reads thermocouples too, has no fast mode.
     Thermocouple,
     Rtd,
 }
@@ -88,7 +88,7 @@ impl Kind {
     }
 }
 
-/// Commissions an analog input as its table says.
+/// Builds an analog input from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     model: &str,
@@ -175,7 +175,7 @@ impl AnalogIn {
         self.kind.range(self.ranges[usize::from(channel)])
     }
 
-    /// Nothing connected: an open sensor reads over range, open voltage terminals read zero.
+    /// Returns the reading without a connection: over range at a sensor input, zero at a voltage input.
     fn open_input(&self) -> f64 {
         match self.kind {
             Kind::Rtd => f64::INFINITY,
@@ -242,7 +242,7 @@ impl AnalogIn {
         dcon::done(plate.address)
     }
 
-    /// What only newer modules know.
+    /// Carries out commands that only newer modules know.
     fn newer(&mut self, plate: &mut Plate, body: &[u8]) -> Answer {
         let known = |digit: u8| dcon::hex_digit(digit).filter(|n| *n < self.kind.channels());
         match *body {
@@ -334,7 +334,7 @@ impl Family for AnalogIn {
 
     fn restart(&mut self, _plate: &Plate) {}
 
-    /// The module has been under power for long: every channel holds a reading.
+    /// Fills every channel with a reading, since the module has been powered for long.
     fn energise(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
         for channel in 0..self.kind.channels() {
             let terminal = at.plant.analog_in(at.module, channel);

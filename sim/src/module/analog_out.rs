@@ -2,16 +2,16 @@
 //!
 //! | request | reply |
 //! |---|---|
-//! | `#AA(data)`, `#AAN(data)` | `>`; beyond the range `?AA` and the nearest end; tripped `!` |
+//! | `#AA(data)`, `#AAN(data)` | `>`; out of range `?AA` and the nearest limit; with a tripped watchdog `!` |
 //! | `$AA6[N]` | last commanded value |
-//! | `$AA8[N]` | present value: what the terminals carry (7021), the computed ramp (others) |
-//! | `$AA4[N]`, `$AA7[N]` | store the commanded value as power-on value; read it |
+//! | `$AA8[N]` | present value: measured at the terminals (7021), computed from the ramp (others) |
+//! | `$AA4[N]`, `$AA7[N]` | store the commanded value as power-on value; read that value |
 //! | `~AA5[N]`, `~AA4[N]` | the same for the safe value |
 //! | `$AA9N`, `$AA9NTS` | type and slew of one channel (7022) |
 //!
-//! The terminals carry the quantised value with this module's gain error and offset. Data of the
-//! right alphabet but the wrong width are refused with `?AA`; other text is not understood. What a 7021 makes of six
-//! characters with a sign (`+5.000`) is not documented: refused, unless its table says `signed = true`.
+//! The terminals carry the quantised value with the module's own gain error and offset. Data with valid
+//! characters but the wrong width get `?AA`; other text gets no answer. The manuals do not document a signed
+//! value of six characters (`+5.000`) at a 7021: it gets `?AA` unless the table has `signed = true`.
 
 use super::habit::Habit;
 use super::output::{Data, Model, Span, model, read, span, spell};
@@ -34,11 +34,11 @@ struct Channel {
     ramp: Ramp,
     power_on: f64,
     safe: f64,
-    /// Type nibble and slew code of a 7022 channel.
+    /// Type nibble and slew code of each 7022 channel.
     own: (u8, u8),
 }
 
-/// Commissions an analog output as its table says.
+/// Builds an analog output from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     number: &str,
@@ -136,7 +136,7 @@ impl AnalogOut {
         }
     }
 
-    /// What the terminals carry: quantised, with this module's errors.
+    /// Returns the value at the terminals: quantised, with the module's own errors.
     fn carried(&self, span: Span, value: f64) -> f64 {
         let width = span.high - span.low;
         let steps = 2f64.powi(self.model.bits) - 1.0;
@@ -148,7 +148,7 @@ impl AnalogOut {
         value * (1.0 + self.habit.ao_gain) + self.habit.ao_offset_v
     }
 
-    /// The plant has one analog output per module: channel 0.
+    /// Drives the terminals; the plant has one analog output per module, channel 0.
     fn drive(&self, plate: &Plate, channel: usize, at: &mut Terminals<'_>) {
         if channel == 0 {
             let value = self.carried(self.span(plate, 0), self.channels[0].ramp.present());
@@ -199,7 +199,7 @@ impl AnalogOut {
     fn present(&self, channel: usize) -> f64 {
         let value = self.channels[channel].ramp.present();
         if self.model.true_readback {
-            // The converter that reads back is finer than the one that drives.
+            // The read-back converter has a finer resolution than the output converter.
             self.with_errors(value)
         } else {
             value

@@ -1,13 +1,13 @@
 //! The counter and frequency module 7080 (7080B, 7080D): two gated 32-bit counters.
 //!
-//! Each counter runs from its preset to its maximum and wraps to the preset, setting its overflow
-//! flag. Gating is done in hardware: a counter has seen the pulses of the clock at its input during
-//! the whole time its gate was open, whenever it is asked. Gate mode 0 counts while the gate is
-//! shut, 1 while it is open, 2 always. In frequency mode (type 51) a reading is the frequency in
-//! hertz with the step of the gate time: 10 Hz (0.1 s) or 1 Hz (1.0 s, FF bit 2).
+//! Each counter runs from its preset to its maximum, then wraps to the preset and sets its overflow flag. Gating
+//! is exact as in hardware: a counter holds the pulses of its input during the whole open time of its gate, at
+//! whatever instant the host reads it. Gate mode 0 counts while the gate is shut (low), 1 while it is open (high), 2 always. In
+//! frequency mode (type 51) a reading is the frequency in hertz with the resolution of the gate time: 10 Hz (0.1
+//! s) or 1 Hz (1.0 s, FF bit 2).
 //!
-//! `#AAN` with a bad channel is not answered. Settings that outlive the power are EEPROM writes.
-//! Alarms: [`super::alarm`]; they are looked at whenever a request comes. LED commands keep their values.
+//! `#AAN` with an invalid channel gets no answer. Settings that survive a power loss count as EEPROM writes.
+//! Every request updates the alarms ([`super::alarm`]). LED commands keep their values and have no effect.
 
 use super::alarm::{Alarm, Told};
 use super::plate::{Commissioning, Plate};
@@ -17,7 +17,7 @@ use crate::dcon::{self, Answer, Request};
 use crate::error::SimError;
 use crate::terminal::ModuleSpec;
 
-/// Bit of FF for the long frequency gate.
+/// Bit of FF that selects the long frequency gate.
 const ONE_SECOND_GATE: u8 = 0x04;
 
 struct Counter {
@@ -25,9 +25,9 @@ struct Counter {
     gate_mode: u8,
     input_mode: u8,
     filter_on: bool,
-    /// Least width of a high and a low level, microseconds.
+    /// Least width of a high level and of a low level, microseconds.
     filter_us: [u32; 2],
-    /// Thresholds of the TTL inputs in tenths of a volt, high and low.
+    /// High and low threshold of the TTL inputs, tenths of a volt.
     threshold: [u32; 2],
     outputs: u8,
     alarm: Alarm,
@@ -35,7 +35,7 @@ struct Counter {
     has_led: bool,
 }
 
-/// Commissions a counter module as its table says.
+/// Builds a counter module from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     model: &str,
@@ -88,7 +88,7 @@ fn gate_mode(spec: &ModuleSpec) -> Result<u8, SimError> {
 }
 
 impl Counter {
-    /// Time during which the gate let pulses through so far, microseconds.
+    /// Returns the time during which the gate has let pulses through so far, microseconds.
     fn gate_us(&self, channel: usize, at: &mut Terminals<'_>) -> f64 {
         let now_us = at.now_us as f64;
         match self.gate_mode {
@@ -98,7 +98,7 @@ impl Counter {
         }
     }
 
-    /// Brings both counters up to now; gives the clock of each.
+    /// Brings both counters up to now; returns the clock frequency of each, hertz.
     fn look(&mut self, at: &mut Terminals<'_>) -> [f64; 2] {
         [0, 1].map(|n| {
             let gate_us = self.gate_us(n, at);
@@ -163,7 +163,7 @@ impl Counter {
         dcon::done(plate.address)
     }
 
-    /// `$AA0H`, `$AA0L`, `$AA1H`, `$AA1L`: decimal settings of the inputs.
+    /// Carries out `$AA0H`, `$AA0L`, `$AA1H`, `$AA1L`: decimal settings of the inputs.
     fn level_command(&mut self, plate: &mut Plate, kind: u8, level: u8, rest: &[u8]) -> Answer {
         let place = usize::from(level == b'L');
         let (values, width) = match kind {
@@ -185,7 +185,7 @@ impl Counter {
         }
     }
 
-    /// `$AA4`, `$AAA`, `$AAB`, `$AA8`: modes of one digit.
+    /// Carries out `$AA4`, `$AAA`, `$AAB`, `$AA8`: one-digit modes.
     fn mode_command(
         &mut self,
         plate: &mut Plate,
@@ -271,7 +271,7 @@ impl Counter {
         }
     }
 
-    /// What the outputs carry: what the host wrote, or what the alarms say.
+    /// Returns the outputs: the alarms' word where they control, else the host's word.
     fn carried(&mut self, at: &mut Terminals<'_>) -> u8 {
         let hz = self.look(at);
         let values = [0, 1].map(|n| self.channels[n].value(hz[n]));
@@ -290,7 +290,7 @@ impl Family for Counter {
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
-        // A latched alarm notices what happened before this request.
+        // Update the latches for events before this request.
         self.carried(at);
         match (request.lead, request.body) {
             (b'#', [n @ (b'0' | b'1')]) => self.reading(plate, usize::from(n - b'0'), at),
@@ -302,7 +302,7 @@ impl Family for Counter {
                     rest @ ..,
                 ],
             ) => self.channel_command(plate, *command, usize::from(n - b'0'), rest, at),
-            // The reset status of other modules: here `$AA5N` is the state of a counter.
+            // Other modules report their reset status here; `$AA5N` is the state of a counter.
             (b'$', [b'5']) => Answer::Silence,
             (b'$', [kind @ (b'0' | b'1'), level @ (b'H' | b'L'), rest @ ..]) => {
                 self.level_command(plate, *kind, *level, rest)
@@ -340,7 +340,7 @@ impl Family for Counter {
         self.outputs = 0;
     }
 
-    /// Counts start at the preset after a power loss (the 7080B keeps them by its battery).
+    /// Counts restart at the preset after a power loss (the battery of the 7080B keeps them).
     fn restart(&mut self, _plate: &Plate) {
         self.outputs = 0;
         for channel in &mut self.channels {

@@ -3,16 +3,16 @@
 //! | request | reply |
 //! |---|---|
 //! | `@AA`, `$AA6` | `>` or `!` (then 00 at the end), first and second byte |
-//! | `@AA(data)` | all outputs; 1, 2 or 4 digits by model; `?` when it does not fit |
-//! | `#AABBDD` | a group (00, 0A, 0B) or one channel (1c, Ac, Bc) |
-//! | `#AAN`, `$AACN` | event counter of an input, 5 decimal digits; clear it |
-//! | `$AALS`, `$AAC` | inputs latched high (S = 1) or low (0); clear both |
-//! | `$AA4` | sample of `#**`; `?AA` when there was none |
+//! | `@AA(data)` | set all outputs; 1, 2 or 4 digits by model; `?` for a wrong width |
+//! | `#AABBDD` | set a group (00, 0A, 0B) or one channel (1c, Ac, Bc) |
+//! | `#AAN`, `$AACN` | read the event counter of an input, 5 decimal digits; clear it |
+//! | `$AALS`, `$AAC` | read the inputs latched high (S = 1) or low (0); clear both |
+//! | `$AA4` | inputs at the last `#**`; `?AA` when there was none |
 //! | `~AA5P`, `~AA5S`, `~AA4P`, `~AA4S` | store and read power-on and safe outputs |
 //!
-//! First and second byte: outputs and inputs; of modules with 16 inputs or 16 outputs alone, high
-//! byte and low byte. Latches see every change between two requests and every counted pulse; an
-//! input that merely stays as it was when the latches were cleared sets none.
+//! First and second byte are outputs and inputs; on modules with 16 inputs only or 16 outputs only, high byte and
+//! low byte. Latches record every change between two requests and every counted pulse; an input that has not
+//! changed since the latches were cleared sets none.
 
 use super::plate::{Commissioning, Plate};
 use super::shape::{Shape, ones};
@@ -23,12 +23,12 @@ use crate::terminal::ModuleSpec;
 
 struct Digital {
     shape: Shape,
-    /// A refused output command is answered with the address.
+    /// A refused output command gets the module's address in the answer.
     names_refusals: bool,
     outputs: u16,
     power_on: u16,
     safe: u16,
-    /// Inputs at the last look.
+    /// Inputs at the last update.
     levels: u16,
     latched_high: u16,
     latched_low: u16,
@@ -38,10 +38,10 @@ struct Digital {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct EventCounter {
-    /// Count at the moment when the terminals had seen `from_edges`.
+    /// Count at `from_edges` edges of the terminal.
     start: u64,
     from_edges: u64,
-    /// Edges at the last look, for the latches.
+    /// Edges at the last update, for the latches.
     seen_edges: u64,
 }
 
@@ -51,7 +51,7 @@ struct Sample {
     unread: bool,
 }
 
-/// Commissions a digital module as its table says.
+/// Builds a digital module from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     shape: Shape,
@@ -101,7 +101,7 @@ pub(super) fn build(
     Ok((plate, Box::new(family)))
 }
 
-/// `latches = MASK` latched high, or a table with `high` and `low`.
+/// Reads `latches = MASK` (latched high), or a table with `high` and `low`.
 fn latches(spec: &ModuleSpec) -> Result<(u16, u16), SimError> {
     match spec.settings.get("latches") {
         Some(toml::Value::Table(table)) => {
@@ -119,7 +119,7 @@ fn latches(spec: &ModuleSpec) -> Result<(u16, u16), SimError> {
 }
 
 impl Digital {
-    /// Inputs now, latches brought up to date.
+    /// Returns the present inputs and updates the latches.
     fn inputs(&mut self, at: &mut Terminals<'_>) -> u16 {
         if self.shape.inputs == 0 {
             return 0;
@@ -131,7 +131,7 @@ impl Digital {
         levels
     }
 
-    /// Pulses that no request fell into.
+    /// Latches pulses that began and ended between two requests.
     fn latch_edges(&mut self, at: &mut Terminals<'_>) {
         for (channel, counter) in self.counters.iter_mut().enumerate() {
             let edges = at.plant.edges(at.module, channel as u8);
@@ -155,7 +155,7 @@ impl Digital {
         }
     }
 
-    /// The manual of the digital modules leaves the address out of these refusals, others put it in.
+    /// Refuses an output command: the digital manuals omit the address, the others include it.
     fn refused_output(&self, plate: &Plate) -> Answer {
         if self.names_refusals {
             dcon::refused(plate.address)
@@ -195,7 +195,7 @@ impl Digital {
         dcon::accepted()
     }
 
-    /// Outputs after a group or single-channel command, `None` when there is no such channel.
+    /// Returns the outputs after a group or single-channel command; `None` when the channel does not exist.
     fn grouped(&self, group: u8, channel: u8, data: u8) -> Option<u16> {
         let all = self.shape.all_outputs();
         let (mask, bits): (u16, u16) = match (group, channel) {
@@ -294,7 +294,7 @@ impl Digital {
     }
 }
 
-/// `!(first)(second)00`: data without address.
+/// Builds `!(first)(second)00`: data without address.
 fn data_reply(words: u16) -> Answer {
     let mut text = String::from("!");
     dcon::push_hex(&mut text, u64::from(words) << 8, 6);

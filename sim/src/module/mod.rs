@@ -1,8 +1,8 @@
-//! One module of a line: its plate, its family, and the events it makes by itself.
+//! One module of a line: its common part, its family, and its own events.
 //!
-//! A module acts at three kinds of instants: when a request for it has arrived, when its own next
-//! event is due (a sample of the converter, a refresh of a ramp), and when its host watchdog
-//! expires. Between them nothing happens, so the rig runs from event to event.
+//! A module acts at three kinds of instants: when a request for it arrives, when its own next event is due (a
+//! sample of the converter, a refresh of a ramp), and when its host watchdog expires. Nothing happens in between,
+//! so the rig runs from event to event.
 //!
 //! | family | models |
 //! |---|---|
@@ -35,7 +35,7 @@ use crate::terminal::{ModuleSpec, Plant};
 use habit::Habit;
 use plate::{Commissioning, Plate};
 
-/// The screw terminals of one module at one instant.
+/// Screw terminals of one module at one instant.
 pub struct Terminals<'a> {
     /// The world, already advanced to `now_us`.
     pub plant: &'a mut dyn Plant,
@@ -45,9 +45,9 @@ pub struct Terminals<'a> {
     pub now_us: u64,
 }
 
-/// What distinguishes one product from another.
+/// Behaviour that differs between product families.
 pub trait Family: Send {
-    /// Takes a type code and a format word.
+    /// Checks whether the family accepts a type code and a format word.
     fn fits(&self, type_code: u8, format: u8) -> bool;
 
     /// Carries out a command of the family.
@@ -58,25 +58,25 @@ pub trait Family: Send {
         at: &mut Terminals<'_>,
     ) -> Answer;
 
-    /// The configuration word has changed.
+    /// Adopts a changed configuration word.
     fn configured(&mut self, plate: &Plate, at: &mut Terminals<'_>);
 
-    /// Instant of its next own event, `u64::MAX` for none.
+    /// Returns the instant of the family's next event; `u64::MAX` for none.
     fn next_us(&self) -> u64;
 
-    /// Its own event is due.
+    /// Carries out the family's event that is due.
     fn run(&mut self, plate: &Plate, at: &mut Terminals<'_>);
 
-    /// `#**`: sample the inputs now.
+    /// Samples the inputs now (`#**`).
     fn sample(&mut self, at: &mut Terminals<'_>);
 
-    /// Outputs go to their safe values at once.
+    /// Sets the outputs to their safe values at once.
     fn make_safe(&mut self, plate: &Plate, at: &mut Terminals<'_>);
 
-    /// Outputs take their power-on values, or the safe ones when the watchdog had tripped.
+    /// Sets the outputs to their power-on values, or to the safe values after a watchdog trip.
     fn restart(&mut self, plate: &Plate);
 
-    /// Terminals carry what the registers say, converters run.
+    /// Applies the registers to the terminals and starts the converters.
     fn energise(&mut self, plate: &Plate, at: &mut Terminals<'_>);
 }
 
@@ -91,10 +91,10 @@ pub struct Module {
 }
 
 impl Module {
-    /// Commissions a module as its table says.
+    /// Builds a module from its table.
     ///
     /// # Errors
-    /// The model is not simulated, or a key has a value it cannot take.
+    /// Fails when the model is not simulated, or a key has an unfit value.
     pub fn new(
         spec: &ModuleSpec,
         line: Commissioning,
@@ -123,27 +123,27 @@ impl Module {
         })
     }
 
-    /// Key of its table.
+    /// Returns the key of its table.
     pub fn id(&self) -> &str {
         &self.id
     }
 
-    /// Line it hangs on.
+    /// Returns the name of its line.
     pub fn line(&self) -> &str {
         &self.line
     }
 
-    /// Plate, for counts and faults.
+    /// Returns the common part.
     pub fn plate(&self) -> &Plate {
         &self.plate
     }
 
-    /// Plate, for faults.
+    /// Returns the common part for faults that change it.
     pub fn plate_mut(&mut self) -> &mut Plate {
         &mut self.plate
     }
 
-    /// Is meant by a request for `address`, and listens at the rate of its host; none is any.
+    /// Checks whether a request for `address` at the host's rate reaches the module; a rate of `None` matches.
     pub fn hears(&self, address: Address, host_baud: Option<u32>) -> bool {
         let meant = match address {
             Address::Everybody => true,
@@ -152,18 +152,18 @@ impl Module {
         meant && host_baud.is_none_or(|baud| baud == self.plate.baud())
     }
 
-    /// Microseconds from the end of a request to the first character of its reply.
+    /// Draws the time from the end of a request to the first character of its reply, microseconds.
     pub fn next_latency_us(&mut self) -> u64 {
         self.habit.next_latency_us(&mut self.rng) + self.plate.response_delay_us()
     }
 
-    /// Instant of its next event of any kind, `u64::MAX` for none.
+    /// Returns the instant of its next event of any kind; `u64::MAX` for none.
     pub fn next_us(&self) -> u64 {
         let expiry = self.plate.watchdog.expires_us().unwrap_or(u64::MAX);
         expiry.min(self.family.next_us())
     }
 
-    /// Carries out what is due at `now_us`.
+    /// Carries out every event that is due at `now_us`.
     pub fn run(&mut self, plant: &mut dyn Plant, now_us: u64) {
         let mut at = Terminals {
             plant,
@@ -183,7 +183,7 @@ impl Module {
         }
     }
 
-    /// The module is found under power, in the state its table says.
+    /// Starts the module as powered for long, in the state of its table.
     pub fn energise(&mut self, plant: &mut dyn Plant, now_us: u64) {
         let mut at = Terminals {
             plant,
@@ -193,14 +193,14 @@ impl Module {
         self.family.energise(&self.plate, &mut at);
     }
 
-    /// The module restarts in operation (a fault, or its own hardware watchdog).
+    /// Restarts the running module (a fault, or its own hardware watchdog).
     pub fn reset(&mut self, plant: &mut dyn Plant, now_us: u64) {
         self.plate.power_cycled();
         self.family.restart(&self.plate);
         self.energise(plant, now_us);
     }
 
-    /// The host watchdog expires now, whoever fed it.
+    /// Lets the host watchdog expire now, even if a host has just fed it.
     pub fn trip(&mut self, plant: &mut dyn Plant, now_us: u64) {
         let mut at = Terminals {
             plant,
@@ -210,7 +210,7 @@ impl Module {
         trip(&mut self.plate, self.family.as_mut(), &mut at);
     }
 
-    /// Hears `text` (without CR) and gives the bytes of its reply, if it replies.
+    /// Processes `text` (without CR); returns the bytes of the reply, if any.
     pub fn hear(&mut self, text: &[u8], plant: &mut dyn Plant, now_us: u64) -> Option<Vec<u8>> {
         let with_checksum = self.plate.uses_checksum();
         let bare = if with_checksum {
@@ -274,7 +274,7 @@ fn broadcast(
     }
 }
 
-/// `I-7017F` is a `7017F`; the LED variants of other families behave like the plain ones.
+/// Returns the model number: `7017F` for `I-7017F`; LED variants of other families map to the plain ones.
 fn model_number(model: &str) -> &str {
     let number = model.trim_start_matches("I-").trim_start_matches("M-");
     match number {
@@ -290,5 +290,5 @@ fn unknown_model(spec: &ModuleSpec) -> SimError {
     }
 }
 
-/// A family together with its plate, ready to be put on a line.
+/// Common part and family of a module, before it joins a line.
 pub type Built = (Plate, Box<dyn Family>);

@@ -1,10 +1,9 @@
-//! Escapement, pusher, clamp, probe lift, sorter and gripper, and the parts that they move.
+//! Escapement, pusher, jaws, probe lift, sorter and gripper, and the parts that they move.
 //!
-//! Air and outputs move cylinders; a cylinder without either goes to its rest, a bistable one
-//! stays. Strokes take their own time. Parts move because something moves them: the escapement
-//! lets one fall into an empty pocket, the pusher carries it to the nest, fingers that close on
-//! it take it along once sort z rises, and it falls when they open. The emergency stop vents the
-//! air and takes the servo's power.
+//! Air and outputs move the cylinders; without either a cylinder returns to its rest end, and a bistable one
+//! keeps its position. Every stroke draws its own time. A part moves only by contact: the escapement drops it
+//! into an empty pocket, the pusher carries it to the nest, closed fingers lift it as sort z rises, and open
+//! fingers drop it. The emergency stop vents the air and cuts the power of the servo.
 
 mod parts;
 mod posture;
@@ -24,7 +23,7 @@ use crate::truth::{BodyTruth, Place};
 use posture::Lookout;
 use std::collections::VecDeque;
 
-/// A cylinder of the line.
+/// Identifies a cylinder of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stroke {
     Escapement,
@@ -47,7 +46,7 @@ impl Stroke {
         Self::Gripper,
     ];
 
-    /// As in `config/scene.toml`.
+    /// Returns the name in `config/scene.toml`.
     const fn name(self) -> &'static str {
         match self {
             Self::Escapement => "escapement",
@@ -61,7 +60,7 @@ impl Stroke {
     }
 }
 
-/// Something that happens by itself later.
+/// Event that the mechanism has scheduled.
 #[derive(Debug, Clone)]
 enum Later {
     LiftOff,
@@ -76,7 +75,7 @@ enum Later {
     Calm(Fault),
 }
 
-/// So many motions are remembered: a quarter of an hour of production.
+/// Number of motion starts that are kept: a quarter of an hour of production.
 const DRIVEN: usize = 8_192;
 
 /// The mechanism with its parts.
@@ -88,7 +87,7 @@ pub struct Mechanism {
     bins: Vec<Bin>,
     lookout: Lookout,
     magazine: Magazine,
-    /// Where the parts are.
+    /// Parts by their place.
     pub places: Places,
     faults: WorldFaults,
     draw: Draw,
@@ -102,7 +101,7 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
-    /// Everything at rest, the axis braked at `park_mm`.
+    /// Creates the mechanism at rest, with the axis braked at `park_mm`.
     pub fn new(
         table: &MechanismTable,
         axis: Axis,
@@ -147,17 +146,17 @@ impl Mechanism {
         mechanism
     }
 
-    /// Next instant at which something happens by itself.
+    /// Returns the instant of the mechanism's next own event.
     pub fn next_us(&self) -> u64 {
         self.next_us
     }
 
-    /// Bodies that touched where they must not, in order of time.
+    /// Returns a description of each crash, in order of time.
     pub fn crashes(&self) -> &[String] {
         &self.crashes
     }
 
-    /// The magazine is emptied and filled with what `load` makes of the faults that still wait.
+    /// Replaces the parts in the magazine by those that `load` prepares from the remaining faults.
     pub fn fill<E>(
         &mut self,
         load: impl FnOnce(&WorldFaults) -> Result<Magazine, E>,
@@ -166,7 +165,7 @@ impl Mechanism {
         Ok(())
     }
 
-    /// Every body that has left the magazine, in order of leaving.
+    /// Returns every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
         let falling = self.later.iter().filter_map(|(_, what)| match what {
             Later::Land(_, part) => Some(part.bodies()),
@@ -177,7 +176,7 @@ impl Mechanism {
         all
     }
 
-    /// What began to move because an output told it to, and when, microseconds; the last [`DRIVEN`] of them.
+    /// Returns the start of each of the last [`DRIVEN`] motions that an output caused: microseconds and actuator.
     pub fn driven(&self) -> impl Iterator<Item = (u64, &'static str)> + '_ {
         self.driven.iter().copied()
     }
@@ -189,7 +188,7 @@ impl Mechanism {
         }
     }
 
-    /// Faults that still wait for their part or their instant are called off.
+    /// Cancels the faults that have not struck yet.
     pub fn calm(&mut self) {
         self.faults.clear();
         self.later
@@ -197,18 +196,18 @@ impl Mechanism {
         self.schedule();
     }
 
-    /// The pin block is up: the probe-up chain is closed.
+    /// Checks whether the pin block is up, so that the probe-up chain is closed.
     pub fn probes_up(&self, now_us: u64) -> bool {
         self.at(Stroke::ProbeLift).at_far(now_us)
     }
 
-    /// The pins of a clamped part stand on the probes.
+    /// Checks whether the probes touch the pins of a clamped part.
     pub fn probes_touch(&self, now_us: u64) -> bool {
         let clamped = [Stroke::JawLeft, Stroke::JawRight].map(|j| self.at(j).at_far(now_us));
         self.probes_up(now_us) && self.places.nest.is_some() && clamped == [true, true]
     }
 
-    /// All commands of the controller as they now stand.
+    /// Applies all commands of the controller.
     pub fn command(&mut self, commands: Commands, now_us: u64) {
         self.watch(now_us);
         let before = std::mem::replace(&mut self.commands, commands);
@@ -226,7 +225,7 @@ impl Mechanism {
         self.schedule();
     }
 
-    /// Lets happen what is due at [`Mechanism::next_us`].
+    /// Carries out the events that are due at [`Mechanism::next_us`].
     pub fn process(&mut self, now_us: u64) {
         self.watch(now_us);
         for stroke in Stroke::ALL {
@@ -245,13 +244,13 @@ impl Mechanism {
         self.schedule();
     }
 
-    /// A fault that has a time strikes now.
+    /// Lets a timed fault strike now.
     pub fn disturb(&mut self, fault: Fault, now_us: u64) {
         self.later.push((now_us, Later::Disturb(fault)));
         self.schedule();
     }
 
-    /// A fault is to strike at a part (counted from 1).
+    /// Adds a fault that strikes at a part (number from 1).
     pub fn ask(&mut self, fault: Fault, part: f64) {
         self.faults.ask(fault, part);
     }
@@ -268,7 +267,7 @@ impl Mechanism {
         !self.is_disturbed(Fault::Air) && !self.is_disturbed(Fault::Estop)
     }
 
-    /// Every valve is off, or there is no air.
+    /// Checks whether every valve is off or the air is gone, so that only springs move cylinders.
     fn only_springs_move(&self) -> bool {
         let valves = [
             Out::EscapementRelease,
@@ -324,7 +323,7 @@ impl Mechanism {
         }
     }
 
-    /// False when it was sent there before.
+    /// Starts a stroke; returns false if that end was already commanded.
     fn send(&mut self, stroke: Stroke, far: bool, now_us: u64) -> bool {
         if far == self.at(stroke).is_sent_far() {
             return false;
@@ -387,7 +386,7 @@ impl Mechanism {
                 self.disturbance_changed(now_us);
             }
             Later::Calm(fault) => {
-                // One that was struck again goes on until the later end.
+                // A repeated fault lasts until the later end.
                 let first = self.disturbed.iter().position(|&other| other == fault);
                 first.map(|place| self.disturbed.remove(place));
                 self.disturbance_changed(now_us);

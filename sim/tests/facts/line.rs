@@ -1,4 +1,4 @@
-//! Facts about lines in virtual time.
+//! Tests of lines in virtual time.
 
 use std::time::Duration;
 
@@ -81,7 +81,7 @@ async fn a_lost_port_ends_the_stream_and_is_there_again_when_it_is_back() {
     let begin = Instant::now();
     assert_eq!(reply(&mut port).await, b"", "the stream ends");
     assert!(plug.open().is_none());
-    // A second of the rig is a thousand here, where a microsecond is a millisecond.
+    // One second of the rig is a thousand here, since a microsecond is a millisecond.
     let mut port = loop {
         tokio::time::advance(Duration::from_secs(10)).await;
         match plug.open() {

@@ -1,4 +1,4 @@
-//! What strokes do to the parts, and to each other where they must not.
+//! Effects of strokes on the parts, and collisions between parts.
 
 use super::{Later, Mechanism, Stroke};
 use crate::truth::Place;
@@ -7,7 +7,7 @@ use crate::world::fault::Fault;
 use crate::world::magazine::Part;
 use crate::world::signal::In;
 
-/// Takes the part of one place to another one.
+/// Moves the part of one place to another place.
 fn moved(from: &mut Option<Box<Part>>, now_us: u64, to: Place) -> Option<Box<Part>> {
     let mut part = from.take()?;
     part.goes(now_us, to);
@@ -15,7 +15,7 @@ fn moved(from: &mut Option<Box<Part>>, now_us: u64, to: Place) -> Option<Box<Par
 }
 
 impl Mechanism {
-    /// What a stroke does to the parts as it begins.
+    /// Moves parts at the start of a stroke.
     pub(super) fn stroke_began(&mut self, stroke: Stroke, far: bool, now_us: u64) {
         let share = |percent: u64, of: &Cylinder| now_us + of.stroke_us() * percent / 100;
         match (stroke, far) {
@@ -40,7 +40,7 @@ impl Mechanism {
         }
     }
 
-    /// What a stroke does to the parts as it ends.
+    /// Moves parts at the end of a stroke.
     pub(super) fn stroke_ended(&mut self, stroke: Stroke, now_us: u64) {
         if !self.at(stroke).at_far(now_us) {
             self.lookout.pulled_back &= stroke != Stroke::Pusher;
@@ -97,7 +97,7 @@ impl Mechanism {
         let open = [Stroke::JawLeft, Stroke::JawRight].map(|jaw| self.at(jaw).at_rest(now_us));
         let held = open != [true, true];
         let stays = self.faults.strikes(Fault::PartStays, number);
-        // Jaws hold more than fingers, which slide off and leave the part in the nest.
+        // The jaws grip harder than the fingers, which slide off and leave the part in the nest.
         if stays || held {
             self.lookout.slides_off |= stays;
             return;
@@ -105,7 +105,7 @@ impl Mechanism {
         self.places.carried = moved(&mut self.places.nest, now_us, Place::Gripper);
     }
 
-    /// The fingers have opened far enough to let a part go.
+    /// Drops the part once the fingers have opened far enough.
     pub(super) fn let_go(&mut self, now_us: u64) {
         self.places.gripped = false;
         let number = self.places.carried.as_ref().and_then(|part| part.number);
@@ -148,7 +148,7 @@ impl Mechanism {
         }
     }
 
-    /// A carried part that is set down in the nest.
+    /// Sets a carried part down in the nest.
     pub(super) fn put_back(&mut self, now_us: u64) {
         if let Some(mut part) = self.places.carried.take() {
             match self.places.nest.is_some() {
@@ -161,7 +161,7 @@ impl Mechanism {
         }
     }
 
-    /// A carried part falls on the floor, or into somebody's hand.
+    /// Removes a carried part: it falls on the floor, or an operator takes it.
     pub(super) fn lose(&mut self, now_us: u64) {
         if let Some(part) = moved(&mut self.places.carried, now_us, Place::Floor) {
             self.places.finish(&part);

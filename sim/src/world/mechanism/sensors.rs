@@ -1,14 +1,14 @@
-//! What the sensors of the mechanism say.
+//! Signals of the mechanism's sensors.
 
 use super::{Mechanism, Stroke};
 use crate::world::fault::Fault;
 use crate::world::signal::In;
 
-/// A loose contact is off for so long, and on for three times as long.
+/// Off time of a loose contact, microseconds; its on time is three times as long.
 const FLICKER_US: u64 = 10_000;
 
 impl Mechanism {
-    /// A signal of the mechanism; `None` where it is none of its own.
+    /// Returns a signal of the mechanism; `None` for a signal of another source.
     pub fn signal(&self, signal: In, now_us: u64) -> Option<bool> {
         let rest = |s: Stroke| Some(self.at(s).at_rest(now_us));
         let far = |s: Stroke| Some(self.at(s).at_far(now_us));

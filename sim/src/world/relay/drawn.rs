@@ -1,4 +1,4 @@
-//! One relay as it really is, drawn from the lot or made to a certificate.
+//! True values of one relay, drawn from the lot or set by a certificate.
 
 use super::defect::Defect;
 use super::fit::{Pace, Wanted};
@@ -12,19 +12,19 @@ use crate::world::table::WorldTable;
 /// Resistance of one contact, milliohm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactFilm {
-    /// Scatters about its median from closure to closure.
+    /// Scatters about a median from closure to closure.
     Steady {
-        /// Middle of the closures.
+        /// Median over the closures, milliohm.
         median_mohm: f64,
-        /// Deviation of the logarithm.
+        /// Standard deviation of the logarithm.
         ln_sd: f64,
     },
-    /// Every closure anywhere in the range.
+    /// Uniform over the range at every closure, milliohm.
     Unstable([f64; 2]),
 }
 
 impl ContactFilm {
-    /// Resistance of the next closure, milliohm.
+    /// Draws the resistance of the next closure, milliohm.
     pub fn close(self, draw: &mut Draw) -> f64 {
         match self {
             Self::Steady { median_mohm, ln_sd } => draw.lognormal(median_mohm, ln_sd),
@@ -33,16 +33,16 @@ impl ContactFilm {
     }
 }
 
-/// A relay with its true values. Thresholds and coil at 23 C.
+/// True values of a relay; thresholds and coil at 23 C.
 #[derive(Debug, Clone)]
 pub struct Drawn {
-    /// Place in the lot, or in the list of certificates.
+    /// Index in the lot, or in the list of certificates.
     pub index: u64,
-    /// Has a certificate and is not part of the lot.
+    /// Marks a reference part: it has a certificate and does not belong to the lot.
     pub golden: bool,
-    /// What is wrong with it.
+    /// Defect, if any.
     pub defect: Option<Defect>,
-    /// Nominal coil voltage.
+    /// Nominal coil voltage, V.
     pub nominal_v: f64,
     /// Volts of this coil per volt of the 12 V part.
     pub volt_scale: f64,
@@ -50,45 +50,45 @@ pub struct Drawn {
     pub ohm_scale: f64,
     /// Turns of this coil per turn of the 12 V part.
     pub turns: f64,
-    /// Where its times come from.
+    /// Origin of its operate time and release time.
     pub pace: Pace,
-    /// Winding, infinite when open.
+    /// Winding resistance, ohm; infinite when open.
     pub coil_ohm: f64,
-    /// Quasi-static operate threshold.
+    /// Quasi-static operate threshold, V.
     pub operate_v: f64,
-    /// Quasi-static release threshold.
+    /// Quasi-static release threshold, V.
     pub release_v: f64,
-    /// Drive on to first make of NO at nominal voltage.
+    /// Time from drive on to first make of NO at nominal voltage, ms.
     pub operate_ms: f64,
-    /// Drive off from nominal voltage to first make of NC, into the zener.
+    /// Time from drive off to first make of NC, from nominal voltage into the zener, ms.
     pub release_ms: f64,
-    /// Bounce of NO, microseconds closed, open, closed ...
+    /// Bounce of NO: microseconds closed, open, closed ...
     pub bounce_no_us: Vec<f64>,
-    /// Bounce of NC.
+    /// Bounce of NC, in the same form.
     pub bounce_nc_us: Vec<f64>,
-    /// NO contact.
+    /// Resistance of the NO contact.
     pub film_no: ContactFilm,
-    /// NC contact.
+    /// Resistance of the NC contact.
     pub film_nc: ContactFilm,
-    /// Part minus track temperature.
+    /// Temperature of the part minus that of the track, kelvin.
     pub offset_k: f64,
     /// Thermal EMF in the contact circuit, volts.
     pub emf_v: f64,
-    /// Pins that meet probes.
+    /// Pins that touch their probes.
     pub pins: Pins,
 }
 
-/// Scale of a recipe against the 12 V part.
+/// Scale of a recipe relative to the 12 V part.
 #[derive(Debug, Clone, Copy)]
 pub struct Scale {
-    /// Nominal coil voltage of the recipe.
+    /// Nominal coil voltage of the recipe, V.
     pub nominal_v: f64,
-    /// Nominal coil resistance of the recipe.
+    /// Nominal coil resistance of the recipe, ohm.
     pub nominal_coil_ohm: f64,
 }
 
 impl Drawn {
-    /// The part at a place of the lot.
+    /// Draws the part at an index of the lot.
     pub fn of_lot(world: &WorldTable, scale: Scale, seed: u64, index: u64) -> Self {
         let mut draw = Draw::new(seed, Subject::LotPart, index);
         let mut part = Self::good(world, scale, &mut draw);
@@ -100,7 +100,7 @@ impl Drawn {
         part
     }
 
-    /// A part with a certificate: certified values with their uncertainty, the rest typical.
+    /// Draws a reference part: certified values within their uncertainty, all other values typical.
     pub fn of_certificate(
         world: &WorldTable,
         scale: Scale,
@@ -214,7 +214,7 @@ impl Drawn {
         }
     }
 
-    /// The wrong way round.
+    /// Makes the part misoriented.
     pub fn turn(&mut self) {
         self.defect = Some(Defect::Turned);
         self.pins = Pins::TURNED;
@@ -224,7 +224,7 @@ impl Drawn {
         self.ohm_scale * world.lot.nominal_coil_ohm
     }
 
-    /// Another winding of the same power: volts go with the root of the ohms.
+    /// Changes the winding at constant power: volts scale with the root of the ohms.
     fn rewind(&mut self, factor: f64, world: &WorldTable) {
         self.coil_ohm = self.nominal_ohm(world) * factor;
         self.turns *= factor.sqrt();
@@ -240,7 +240,7 @@ impl Drawn {
         }
     }
 
-    /// What a relay has to show to be the one drawn; a coil without a way through is as wound.
+    /// Returns the results that a relay with these values shows; an open coil counts as wound.
     pub fn wanted(&self, world: &WorldTable) -> Wanted {
         let wound = self.nominal_ohm(world);
         Wanted {
@@ -259,7 +259,7 @@ impl Drawn {
     }
 }
 
-/// A bounce pattern stretched to a total open time, milliseconds.
+/// Stretches a bounce pattern to a total open time, milliseconds.
 fn bounce(pattern: &[f64], open_ms: f64) -> Vec<f64> {
     let open: f64 = pattern.iter().skip(1).step_by(2).sum();
     let stretch = open_ms.max(0.0) * 1000.0 / open.max(1.0);

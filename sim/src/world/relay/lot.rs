@@ -1,4 +1,4 @@
-//! A lot of relays, and the golden parts in front of it.
+//! A lot of relays with its reference parts.
 
 use super::Relay;
 use super::drawn::{Drawn, Scale};
@@ -17,10 +17,10 @@ pub struct Lot {
 }
 
 impl Lot {
-    /// Reads the relays of a recipe; with `options.golden` also the golden parts of their nominal voltage.
+    /// Reads the relays of a recipe; with `options.golden` also the reference parts of their nominal voltage.
     ///
     /// # Errors
-    /// The recipe or the certificates cannot be read.
+    /// Fails when the recipe or the certificates cannot be read.
     pub fn read(options: &WorldOptions, world: &WorldTable) -> Result<Self, ConfigError> {
         let dir = &options.config_dir;
         let scale = read_scale(dir, &options.recipe)?;
@@ -35,17 +35,18 @@ impl Lot {
         })
     }
 
-    /// Number of golden parts.
+    /// Returns the number of reference parts.
     pub fn golden(&self) -> u64 {
         self.golden.len() as u64
     }
 
-    /// The lot part with this place under a seed.
+    /// Returns the lot part at an index under a seed.
     pub fn part(&self, seed: u64, index: u64, arrival: Arrival) -> Relay {
         self.arrive(Drawn::of_lot(&self.world, self.scale, seed, index), arrival)
     }
 
-    /// The golden part of this place, none past the last. On another day it is the same body with another temperature.
+    /// Returns the reference part at an index, `None` past the last; `other_day` gives the same body another
+    /// temperature.
     pub fn golden_part(
         &self,
         seed: u64,

@@ -1,4 +1,4 @@
-//! A relay as the probes find it, and its truth.
+//! Implements the probe interface for a relay, and its truth.
 
 use super::Relay;
 use super::defect::Defect;

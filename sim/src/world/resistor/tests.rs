@@ -1,4 +1,4 @@
-//! What a lot of dummies draws and what the probes find on one.
+//! Tests of the values that a lot of dummies draws, and of one dummy on the probes.
 #![allow(clippy::unwrap_used)]
 
 use super::*;
@@ -8,7 +8,7 @@ use crate::world::probes::Contact;
 use crate::world::specimen::Arrival;
 use crate::world::tests::config_dir;
 
-/// Out of a magazine at this temperature.
+/// Returns the arrival from a magazine at this temperature.
 fn arrival(track_c: f64) -> Arrival {
     Arrival {
         t_us: 0.0,
@@ -24,7 +24,7 @@ fn lot() -> Lot {
     Lot::new(&read_world(&config_dir(), None).unwrap())
 }
 
-/// The first part with a defect, or the first without one.
+/// Returns the first part with this defect, or the first without one.
 fn first(defect: Option<Defect>) -> Resistor {
     let lot = lot();
     let mut parts = (0..600).map(|i| lot.part(7, i, &arrival(REFERENCE_C)));
@@ -115,7 +115,7 @@ fn blind_pins_are_there_and_no_contact_closes() {
 }
 
 #[test]
-fn a_turned_part_meets_the_probes_as_a_turned_relay() {
+fn a_misoriented_dummy_matches_a_misoriented_relay() {
     let arrival = Arrival {
         turned: true,
         ..arrival(REFERENCE_C)

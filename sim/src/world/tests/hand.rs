@@ -1,9 +1,9 @@
-//! Whoever stands at the terminals: outputs set and inputs read by name.
+//! Manual control of the terminals: a test sets outputs and reads inputs by name.
 
 use super::*;
 use crate::config::{RigFile, read_rig};
 
-/// A hand on the terminals: commands by name, time in milliseconds.
+/// Controls the terminals by name; time in milliseconds.
 pub(super) struct Hand {
     pub(super) world: World,
     pub(super) rig: RigFile,
@@ -76,7 +76,7 @@ impl Hand {
         assert!(self.sees("axis_in_position"));
     }
 
-    /// Magazine to nest, clamped, probes up.
+    /// Feeds a part from the magazine to the nest, clamped, probes up.
     pub(super) fn feed(&mut self) {
         self.pulse("escapement_release", 300.0);
         assert!(self.sees("pocket_present"));
@@ -90,7 +90,7 @@ impl Hand {
         assert!(self.sees("probe_up") && self.sees("probe_chain"));
     }
 
-    /// Nest to bin, axis back at the nest.
+    /// Sorts the part from the nest into a bin; returns the axis to the nest.
     pub(super) fn sort(&mut self, point: u8) {
         self.set("axis_servo_on", true);
         self.axis(0);

@@ -1,10 +1,10 @@
-//! The line by hand: terminals in, terminals out.
+//! Tests of the line under manual control of its terminals.
 
 use super::hand::{Hand, options};
 use super::*;
 use crate::config::read_world;
 
-/// Terminal of the beam over a bin.
+/// Returns the terminal of the beam of a bin.
 fn beam(hand: &Hand, bin: &str) -> (String, u8) {
     let name = &hand.rig.bins.iter().find(|b| b.name == bin).unwrap().beam;
     let t = &hand.rig.digital_in[name];
@@ -12,7 +12,7 @@ fn beam(hand: &Hand, bin: &str) -> (String, u8) {
 }
 
 #[test]
-fn a_part_goes_by_hand_from_the_magazine_through_a_timed_test_into_its_bin() {
+fn a_part_passes_magazine_timed_test_and_bin() {
     let mut hand = Hand::new(options(false));
     hand.feed();
     hand.set("kelvin_test", true);
@@ -61,7 +61,7 @@ fn a_part_goes_by_hand_from_the_magazine_through_a_timed_test_into_its_bin() {
 }
 
 #[test]
-fn golden_parts_come_first_and_are_not_in_the_truth() {
+fn reference_parts_come_first_and_leave_no_truth() {
     let mut hand = Hand::new(options(true));
     for _ in 0..5 {
         hand.feed();
@@ -73,7 +73,7 @@ fn golden_parts_come_first_and_are_not_in_the_truth() {
 }
 
 #[test]
-fn the_source_goes_off_two_milliseconds_before_the_drive_changes() {
+fn the_source_switches_off_before_the_drive_changes() {
     let mut hand = Hand::new(options(false));
     hand.feed();
     hand.set("source_on", true);
@@ -99,7 +99,7 @@ fn nothing_is_driven_without_the_probe_up_chain() {
 }
 
 #[test]
-fn arm_on_the_reference_contact_gives_a_pulse_of_one_millisecond_on_both_gates() {
+fn arm_on_the_reference_pulses_both_gates() {
     let mut hand = Hand::new(options(false));
     hand.set("reference_contact", true);
     hand.pulse("arm", 5.0);
@@ -110,7 +110,7 @@ fn arm_on_the_reference_contact_gives_a_pulse_of_one_millisecond_on_both_gates()
 }
 
 #[test]
-fn a_ramp_starts_the_window_when_the_supply_has_moved_fifty_millivolts() {
+fn a_ramp_opens_the_window_after_fifty_millivolts() {
     let mut hand = Hand::new(options(false));
     hand.level(5.0);
     hand.set("ramp_mode", true);
@@ -124,7 +124,7 @@ fn a_ramp_starts_the_window_when_the_supply_has_moved_fifty_millivolts() {
 }
 
 #[test]
-fn without_air_the_pusher_returns_and_the_clamp_stays() {
+fn without_air_the_pusher_returns_and_the_jaws_hold() {
     let mut o = options(false);
     o.faults = vec![("air".into(), 3.0)];
     let mut hand = Hand::new(o);
@@ -137,7 +137,7 @@ fn without_air_the_pusher_returns_and_the_clamp_stays() {
 }
 
 #[test]
-fn a_double_part_darkens_the_beam_twice_and_a_fallen_one_lands_nowhere() {
+fn a_double_part_darkens_twice_a_fallen_part_lands_nowhere() {
     let mut o = options(false);
     o.faults = vec![("double_part".into(), 1.0), ("fall".into(), 2.0)];
     let mut hand = Hand::new(o);
@@ -153,7 +153,7 @@ fn a_double_part_darkens_the_beam_twice_and_a_fallen_one_lands_nowhere() {
 }
 
 #[test]
-fn a_jammed_pusher_goes_through_at_the_second_stroke() {
+fn a_jammed_pusher_succeeds_at_the_second_stroke() {
     let mut o = options(false);
     o.faults = vec![("jam_pusher".into(), 1.0)];
     let mut hand = Hand::new(o);
@@ -183,7 +183,7 @@ fn the_same_seed_and_stimuli_give_the_same_world() {
 }
 
 #[test]
-fn an_unknown_key_of_a_world_file_is_named_with_file_and_line() {
+fn an_unknown_world_key_names_file_and_line() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("world.toml");
     std::fs::write(&path, "[lot]\noperate_v_mean = 7.7\noperate_v_men = 7.8\n").unwrap();
@@ -201,7 +201,7 @@ fn an_unknown_key_of_a_world_file_is_named_with_file_and_line() {
 }
 
 #[test]
-fn a_timed_release_counts_from_drive_off_to_the_first_make_of_nc() {
+fn a_timed_release_ends_with_the_first_nc_make() {
     let mut hand = Hand::new(options(false));
     hand.feed();
     hand.level(12.0);
@@ -244,12 +244,12 @@ fn a_falling_ramp_latches_on_the_break_of_no() {
     let truth = hand.world.truth()[0]["release_voltage_v"].as_f64().unwrap();
     assert!(
         (seen - truth).abs() < 0.12,
-        "lag and temperature: {seen} against {truth}"
+        "overshoot and temperature: {seen} against {truth}"
     );
 }
 
 #[test]
-fn an_emf_that_drifts_moves_the_drop_of_a_closed_contact_and_not_that_of_the_reference() {
+fn a_drifting_emf_moves_contact_drop_but_not_reference() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("world.toml");
     std::fs::write(&path, "[board]\nemf_drift_uv_per_s = 5000.0\n").unwrap();

@@ -1,9 +1,9 @@
-//! Dummies that hold a resistor, on the line by hand.
+//! Tests of resistor dummies on the line under manual control.
 
 use super::hand::{Hand, options};
 use super::*;
 
-/// A folder of settings with one recipe, `dummy`, of this kind.
+/// Creates a configuration folder with one recipe, `dummy`, of this kind.
 fn folder(kind: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for file in ["rig.toml", "sim.toml", "scene.toml", "golden.toml"] {
@@ -18,7 +18,7 @@ fn folder(kind: &str) -> tempfile::TempDir {
     folder
 }
 
-/// Puts three dummies in the magazine and asks for golden parts, which do not exist.
+/// Returns options for three dummies and for reference parts, which this kind does not have.
 fn dummies(folder: &tempfile::TempDir) -> WorldOptions {
     WorldOptions {
         config_dir: folder.path().to_path_buf(),
@@ -28,7 +28,7 @@ fn dummies(folder: &tempfile::TempDir) -> WorldOptions {
 }
 
 #[test]
-fn a_dummy_goes_through_the_line_and_shows_its_resistance() {
+fn a_dummy_passes_the_line_and_shows_its_resistance() {
     let folder = folder("resistor");
     let mut hand = Hand::new(dummies(&folder));
     hand.feed();
@@ -62,7 +62,7 @@ fn a_dummy_goes_through_the_line_and_shows_its_resistance() {
 }
 
 #[test]
-fn a_short_runs_into_the_limit_of_the_supply() {
+fn a_short_reaches_the_current_limit_of_the_supply() {
     let folder = folder("resistor");
     let world = folder.path().join("world.toml");
     let short = "[resistor]\nnominal_ohm = 1.0\ndefects_pct = 0.0\n";
@@ -81,7 +81,7 @@ fn a_short_runs_into_the_limit_of_the_supply() {
 }
 
 #[test]
-fn the_magazine_is_filled_with_another_kind() {
+fn a_refill_may_change_the_kind_of_part() {
     let folder = folder("resistor");
     let relays = folder.path().join("recipes/jzc-22f-012.toml");
     std::fs::copy(config_dir().join("recipes/jzc-22f-012.toml"), relays).unwrap();

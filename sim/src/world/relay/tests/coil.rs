@@ -1,4 +1,4 @@
-//! Copper and current of the coil.
+//! Tests of coil temperature and coil current.
 
 use super::*;
 
@@ -34,7 +34,7 @@ fn a_held_coil_warms_as_two_heat_stores_do() {
 }
 
 #[test]
-fn a_relay_that_was_operated_and_released_carries_the_current_of_its_coil_again() {
+fn a_released_relay_carries_full_coil_current_again() {
     let world = read_world(&config_dir(), None).unwrap();
     let scale = Scale {
         nominal_v: 12.0,

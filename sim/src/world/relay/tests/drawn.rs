@@ -1,10 +1,10 @@
-//! The relays of a lot as the table of the world draws them.
+//! Tests of the relays that a lot draws from the world file.
 
 use super::*;
 use crate::world::relay::fit::Pace;
 
 #[test]
-fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
+fn a_specimen_shows_its_drawn_thresholds_and_times() {
     use crate::world::relay::lumped::Model;
     let world = still_world();
     for (nominal_v, nominal_coil_ohm) in [(12.0, 400.0), (9.0, 225.0)] {
@@ -26,7 +26,7 @@ fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
             };
             near(model.pickup().volts, part.operate_v, 1e-9);
             near(model.release().volts, part.release_v, 1e-9);
-            // A defect is drawn without regard to the times that a relay with such springs can have: they come as near as they can.
+            // The draw of a defect ignores which times such springs permit; the fit comes as near as it can.
             let sound = part.defect.is_none() && part.pace == Pace::Drawn;
             if sound || part.pace == Pace::Hinge {
                 near(wanted.operate_s(&model) * 1e3, part.operate_ms, 1e-3);
@@ -39,7 +39,7 @@ fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
 }
 
 #[test]
-fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
+fn the_lot_follows_the_table_and_contains_every_defect() {
     let world = read_world(&config_dir(), None).unwrap();
     let scale = Scale {
         nominal_v: 12.0,
@@ -78,7 +78,7 @@ fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
 }
 
 #[test]
-fn a_seed_draws_the_relays_that_it_always_drew() {
+fn a_seed_draws_the_recorded_relays() {
     let world = read_world(&config_dir(), None).unwrap();
     let drawn = |seed, index, nominal_v, nominal_coil_ohm| {
         let scale = Scale {

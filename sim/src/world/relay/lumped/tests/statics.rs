@@ -1,4 +1,4 @@
-//! Thresholds and states at rest, to twelve digits.
+//! Tests of thresholds and equilibrium states, to twelve digits.
 
 use super::*;
 
@@ -38,7 +38,7 @@ fn rigid_contacts_have_their_folds_in_closed_form() {
 }
 
 #[test]
-fn inductance_open_and_seated() {
+fn inductance_matches_reference_open_and_seated() {
     let model = relay(&[]);
     same(model.inductance(false), 0.673601548725847);
     same(model.inductance(true), 3.403125);
@@ -75,7 +75,7 @@ fn a_hung_armature_has_a_second_hump_above_the_first_fold() {
 }
 
 #[test]
-fn a_stop_gives_back_the_speed_that_the_closed_form_says() {
+fn a_stop_returns_the_closed_form_rebound_speed() {
     for (chi_v, expected) in [
         (0.25, 0.85685),
         (1.0, 0.59362),
