@@ -8,10 +8,10 @@ use serde::Deserialize;
 use crate::config::LineSpec;
 use crate::error::SimError;
 use crate::fault::LineFaults;
-use crate::module::habit::{self, Habit};
-use crate::module::plate::Commissioning;
+use crate::module::common::Commissioning;
+use crate::module::tolerances::{self, Tolerances};
 use crate::module::{Module, setting};
-use crate::rig::{Record, Rig};
+use crate::rig::{Rig, WorldRecord};
 use crate::terminal::{ModuleSpec, Plant};
 
 /// Name of the only line.
@@ -134,12 +134,12 @@ impl BenchFile {
             signals
                 .inputs
                 .insert(spec.id.clone(), setting::numbers(&spec, "inputs")?);
-            let habit = Habit {
+            let tolerances = Tolerances {
                 latency_sd_us: self.latency_sd_ms * 1e3,
-                ..Habit::exact(self.latency_ms * 1e3)
+                ..Tolerances::exact(self.latency_ms * 1e3)
             };
-            let rng = habit::stream(0, &spec.id);
-            modules.push(Module::new(&spec, commissioning, habit, rng)?);
+            let rng = tolerances::stream(0, &spec.id);
+            modules.push(Module::new(&spec, commissioning, tolerances, rng)?);
         }
         let line = LineSpec {
             name: LINE.into(),
@@ -152,7 +152,9 @@ impl BenchFile {
             return Err(SimError::FaultValue {
                 name: "target".into(),
                 found: target.into(),
-                expected: format!("a module of the file (module[0], module[1], ...) or the line {LINE}"),
+                expected: format!(
+                    "a module of the file (module[0], module[1], ...) or the line {LINE}"
+                ),
             });
         }
         Ok(Rig::new(Box::new(signals), modules, vec![line], faults))
@@ -229,7 +231,7 @@ impl Plant for Signals {
     }
 }
 
-impl Record for Signals {
+impl WorldRecord for Signals {
     fn truth(&mut self) -> Vec<serde_json::Value> {
         Vec::new()
     }

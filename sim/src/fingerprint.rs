@@ -20,9 +20,9 @@ use crate::config::LineSpec;
 use crate::error::SimError;
 use crate::fault::LineFaults;
 use crate::module::Module;
-use crate::module::habit::{self, Habit};
-use crate::module::plate::Commissioning;
-use crate::rig::{Record, Rig};
+use crate::module::common::Commissioning;
+use crate::module::tolerances::{self, Tolerances};
+use crate::rig::{Rig, WorldRecord};
 use crate::shared::{SharedRig, split};
 use crate::terminal::{ModuleSpec, Plant};
 
@@ -37,7 +37,7 @@ pub const ANALOG_STEP_US: u64 = 16_000;
 
 /// Highest time code at an analog input, the top of the triangle. The lowest is 1, since a host reads the codes
 /// at the ends of the range as over and under range.
-const TURN: u64 = 0x7FE;
+const PEAK: u64 = 0x7FE;
 
 /// Latency of a module, microseconds: mean and standard deviation.
 const LATENCY_US: (f64, f64) = (2_000.0, 200.0);
@@ -97,13 +97,13 @@ impl FingerprintLine {
         let mut modules = Vec::new();
         for address in 0x01..=0x0B {
             let spec = spec(address)?;
-            let habit = Habit {
+            let tolerances = Tolerances {
                 latency_sd_us: LATENCY_US.1,
                 normal_per_s: PER_S,
-                ..Habit::exact(LATENCY_US.0)
+                ..Tolerances::exact(LATENCY_US.0)
             };
-            let rng = habit::stream(seed, &spec.id);
-            modules.push(Module::new(&spec, commissioning, habit, rng)?);
+            let rng = tolerances::stream(seed, &spec.id);
+            modules.push(Module::new(&spec, commissioning, tolerances, rng)?);
         }
         let line = LineSpec {
             name: LINE.into(),
@@ -172,7 +172,7 @@ pub fn distance_of_analog_us(code: u16, at_us: u64) -> u64 {
 }
 
 fn up_and_down(t_us: u64) -> u64 {
-    let way = TURN - 1;
+    let way = PEAK - 1;
     let step = t_us / ANALOG_STEP_US % (2 * way);
     1 + if step <= way { step } else { 2 * way - step }
 }
@@ -270,7 +270,7 @@ impl Plant for Fingerprints {
     }
 }
 
-impl Record for Fingerprints {
+impl WorldRecord for Fingerprints {
     fn truth(&mut self) -> Vec<serde_json::Value> {
         Vec::new()
     }

@@ -2,7 +2,7 @@
 //! strikes.
 //!
 //! The journal records at the terminals, between modules and world, and so holds the signals of the actuators. It
-//! is off until [`Watched::listen`].
+//! is off until [`JournaledWorld::listen`].
 
 use std::collections::BTreeMap;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -10,7 +10,7 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use serde::Serialize;
 
 use crate::error::SimError;
-use crate::rig::{Record, Scene};
+use crate::rig::{WorldModel, WorldRecord};
 use crate::terminal::Plant;
 use crate::truth::BodyTruth;
 use crate::world::WorldOptions;
@@ -49,16 +49,16 @@ pub enum Entry {
 }
 
 /// A world with a journal of its output terminals.
-pub(crate) struct Watched {
-    scene: Box<dyn Scene>,
+pub(crate) struct JournaledWorld {
+    scene: Box<dyn WorldModel>,
     listener: Option<Sender<Entry>>,
     now_us: u64,
     last_request_us: u64,
     carries: BTreeMap<String, f64>,
 }
 
-impl Watched {
-    pub(crate) fn new(scene: Box<dyn Scene>) -> Self {
+impl JournaledWorld {
+    pub(crate) fn new(scene: Box<dyn WorldModel>) -> Self {
         Self {
             scene,
             listener: None,
@@ -82,7 +82,7 @@ impl Watched {
 
     /// Records that the watchdog of a module expires now.
     pub(crate) fn expired(&mut self, module: &str) {
-        self.tell(Entry::Expired {
+        self.send(Entry::Expired {
             t_us: self.now_us,
             module: module.to_owned(),
             last_request_us: self.last_request_us,
@@ -92,13 +92,13 @@ impl Watched {
 
     /// Records that a fault strikes now.
     pub(crate) fn struck(&mut self, fault: &str) {
-        self.tell(Entry::Struck {
+        self.send(Entry::Struck {
             t_us: self.now_us,
             fault: fault.to_owned(),
         });
     }
 
-    fn tell(&self, entry: Entry) {
+    fn send(&self, entry: Entry) {
         if let Some(listener) = &self.listener {
             // A dropped receiver needs no further entries.
             let _ = listener.send(entry);
@@ -116,7 +116,7 @@ impl Watched {
     }
 }
 
-impl Plant for Watched {
+impl Plant for JournaledWorld {
     fn advance(&mut self, t_us: u64) {
         self.now_us = t_us;
         self.scene.advance(t_us);
@@ -137,7 +137,7 @@ impl Plant for Watched {
 
     fn digital_out(&mut self, module: &str, bits: u16) {
         if self.carry(module, f64::from(bits)) {
-            self.tell(Entry::Output {
+            self.send(Entry::Output {
                 t_us: self.now_us,
                 module: module.to_owned(),
                 bits,
@@ -159,7 +159,7 @@ impl Plant for Watched {
     }
 }
 
-impl Record for Watched {
+impl WorldRecord for JournaledWorld {
     fn truth(&mut self) -> Vec<serde_json::Value> {
         self.scene.truth()
     }
@@ -176,15 +176,15 @@ impl Record for Watched {
         self.scene.bodies()
     }
 
-    fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        self.scene.fill(options)
+    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        self.scene.refill(options)
     }
 
-    fn calm(&mut self) {
-        self.scene.calm();
+    fn cancel_faults(&mut self) {
+        self.scene.cancel_faults();
     }
 
-    fn driven(&mut self) -> Vec<(u64, &'static str)> {
-        self.scene.driven()
+    fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
+        self.scene.motion_starts()
     }
 }

@@ -4,7 +4,7 @@
 //! open and close the port per request and a killed client does not keep it exclusive. Two threads serve a line:
 //! one reads the master and stamps the bytes, the other keeps absolute deadlines, so that late wake-ups never add
 //! up. A pseudo-terminal has no baud rate: this module adds the time of every character, and a client may set any
-//! rate unless [`Rates::Heeded`]. Each reply is one write. The rig advances while no client talks, so that
+//! rate unless [`Rates::Enforced`]. Each reply is one write. The rig advances while no client talks, so that
 //! watchdogs expire in time.
 //! A lost port closes its terminal: clients get an end of file or an I/O error, as with an unplugged
 //! converter. Its link disappears until the port comes back, then points at another terminal.
@@ -36,10 +36,10 @@ pub struct Ptys {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rates {
     /// None: the line's own rate applies.
-    Any,
+    Ignored,
     /// A module receives only requests at its own rate, as on a wire; 9600 with INIT* grounded. A client that
     /// sets no rate has the line's rate.
-    Heeded,
+    Enforced,
 }
 
 struct Port {
@@ -66,7 +66,7 @@ pub fn serve(rig: &SharedRig, rates: Rates) -> Result<Ptys, SimError> {
             rig: rig.clone(),
             number,
             baud,
-            host_baud: (rates == Rates::Heeded).then_some(baud),
+            host_baud: (rates == Rates::Enforced).then_some(baud),
             origin,
             socket: Arc::new(Socket::default()),
             stop: Arc::clone(&ptys.stop),

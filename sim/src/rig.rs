@@ -13,7 +13,7 @@ use crate::config::LineSpec;
 use crate::dcon;
 use crate::error::SimError;
 use crate::fault::{Event, LineFaults};
-use crate::journal::{Entry, Watched};
+use crate::journal::{Entry, JournaledWorld};
 use crate::line::wire_us;
 use crate::module::Module;
 use crate::shared;
@@ -23,7 +23,7 @@ use crate::uart;
 use crate::world::WorldOptions;
 
 /// Facts of the world that no module reports, and control of its faults.
-pub trait Record {
+pub trait WorldRecord {
     /// Returns one object per lot part that has entered the nest, in order.
     fn truth(&mut self) -> Vec<serde_json::Value>;
 
@@ -43,7 +43,7 @@ pub trait Record {
     ///
     /// # Errors
     /// Fails when a configuration file is missing or wrong.
-    fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
         let _ = options;
         Ok(())
     }
@@ -54,18 +54,18 @@ pub trait Record {
     }
 
     /// Returns the start of each recent motion that an output caused: microseconds and actuator.
-    fn driven(&mut self) -> Vec<(u64, &'static str)> {
+    fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
         Vec::new()
     }
 
     /// Cancels the faults of the world that have not struck yet.
-    fn calm(&mut self) {}
+    fn cancel_faults(&mut self) {}
 }
 
 /// A world: terminals for the modules, facts for the tests.
-pub trait Scene: Plant + Record + Send {}
+pub trait WorldModel: Plant + WorldRecord + Send {}
 
-impl<T: Plant + Record + Send> Scene for T {}
+impl<T: Plant + WorldRecord + Send> WorldModel for T {}
 
 /// Bytes that a line sends to its host.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -78,7 +78,7 @@ pub struct Reply {
 
 /// Modules, lines and world, with the clock of the rig.
 pub struct Rig {
-    scene: Watched,
+    scene: JournaledWorld,
     modules: Vec<Module>,
     /// Next event of each module.
     due_us: Vec<u64>,
@@ -92,7 +92,7 @@ pub struct Rig {
 impl Rig {
     /// Builds a rig at rig time 0 with all modules powered.
     pub fn new(
-        scene: Box<dyn Scene>,
+        scene: Box<dyn WorldModel>,
         modules: Vec<Module>,
         lines: Vec<LineSpec>,
         faults: LineFaults,
@@ -100,7 +100,7 @@ impl Rig {
         let mut rig = Self {
             due_us: vec![u64::MAX; modules.len()],
             serving_us: vec![(0, 0); modules.len()],
-            scene: Watched::new(scene),
+            scene: JournaledWorld::new(scene),
             modules,
             lines,
             faults,
@@ -110,7 +110,7 @@ impl Rig {
         for place in 0..rig.modules.len() {
             let module = &mut rig.modules[place];
             if rig.faults.is_wrong_type(module.id()) {
-                module.plate_mut().pose_as("7000");
+                module.common_mut().pose_as("7000");
             }
             module.energise(&mut rig.scene, 0);
             rig.due_us[place] = module.next_us();
@@ -157,7 +157,7 @@ impl Rig {
         self.faults.may_lose_port(&name, now_us);
         if self.faults.line_dead(&name, now_us)
             || self.faults.port_back_us(&name, now_us).is_some()
-            || self.faults.swallows(now_us)
+            || self.faults.loses_request(now_us)
         {
             return None;
         }
@@ -172,7 +172,7 @@ impl Rig {
             let answer = self.answer(place, text);
             last = Some(place);
             reply = match (reply, answer) {
-                (Some(first), Some(second)) => Some(together(first, second, baud)),
+                (Some(first), Some(second)) => Some(merged_replies(first, second, baud)),
                 (first, second) => first.or(second),
             };
         }
@@ -197,7 +197,7 @@ impl Rig {
         let upset = self.faults.before_a_request(now_us);
         let module = &mut self.modules[place];
         if let Some(event) = upset {
-            happen(module, event, &mut self.scene, now_us);
+            apply_event(module, event, &mut self.scene, now_us);
         }
         let silent = self.faults.silent(module.id(), now_us);
         let heard = module.hear(text, &mut self.scene, now_us);
@@ -226,7 +226,7 @@ impl Rig {
     pub fn eeprom_writes(&self) -> u64 {
         self.modules
             .iter()
-            .map(|module| module.plate().eeprom_writes)
+            .map(|module| module.common().eeprom_writes)
             .sum()
     }
 
@@ -234,7 +234,7 @@ impl Rig {
     pub fn eeprom_writes_by_module(&self) -> Vec<(String, u64)> {
         self.modules
             .iter()
-            .map(|module| (module.id().to_owned(), module.plate().eeprom_writes))
+            .map(|module| (module.id().to_owned(), module.common().eeprom_writes))
             .collect()
     }
 
@@ -261,37 +261,37 @@ impl Rig {
         self.scene.strike(name, number)
     }
 
-    /// See [`Record::truth`].
+    /// See [`WorldRecord::truth`].
     pub fn truth(&mut self) -> Vec<serde_json::Value> {
         self.scene.truth()
     }
 
-    /// See [`Record::crashes`].
+    /// See [`WorldRecord::crashes`].
     pub fn crashes(&mut self) -> Vec<String> {
         self.scene.crashes()
     }
 
-    /// See [`Record::bodies`].
+    /// See [`WorldRecord::bodies`].
     pub fn bodies(&mut self) -> Vec<BodyTruth> {
         self.scene.bodies()
     }
 
-    /// See [`Record::fill`].
+    /// See [`WorldRecord::refill`].
     ///
     /// # Errors
-    /// Fails as [`Record::fill`] does.
-    pub fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        self.scene.fill(options)
+    /// Fails as [`WorldRecord::refill`] does.
+    pub fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        self.scene.refill(options)
     }
 
-    /// See [`Record::calm`]; faults of lines and modules end with their windows.
-    pub fn calm(&mut self) {
-        self.scene.calm();
+    /// See [`WorldRecord::cancel_faults`]; faults of lines and modules end with their windows.
+    pub fn cancel_faults(&mut self) {
+        self.scene.cancel_faults();
     }
 
-    /// See [`Record::driven`].
-    pub fn driven(&mut self) -> Vec<(u64, &'static str)> {
-        self.scene.driven()
+    /// See [`WorldRecord::motion_starts`].
+    pub fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
+        self.scene.motion_starts()
     }
 
     fn run_events(&mut self, t_us: u64) {
@@ -302,9 +302,9 @@ impl Rig {
             self.now_us = due_us;
             self.scene.advance(due_us);
             let module = &mut self.modules[place];
-            let was_tripped = module.plate().watchdog.tripped();
+            let was_tripped = module.common().watchdog.tripped();
             module.run(&mut self.scene, due_us);
-            if module.plate().watchdog.tripped() && !was_tripped {
+            if module.common().watchdog.tripped() && !was_tripped {
                 self.scene.expired(module.id());
             }
             self.due_us[place] = module.next_us();
@@ -327,14 +327,14 @@ impl Rig {
             let target = |module: &Module| module.id() == timed.target;
             if let Some(place) = self.modules.iter().position(target) {
                 let module = &mut self.modules[place];
-                happen(module, timed.event, &mut self.scene, self.now_us);
+                apply_event(module, timed.event, &mut self.scene, self.now_us);
                 self.due_us[place] = module.next_us();
             }
         }
     }
 }
 
-fn happen(module: &mut Module, event: Event, plant: &mut dyn Plant, now_us: u64) {
+fn apply_event(module: &mut Module, event: Event, plant: &mut dyn Plant, now_us: u64) {
     match event {
         Event::Reset => module.reset(plant, now_us),
         Event::Trip => module.trip(plant, now_us),
@@ -342,7 +342,7 @@ fn happen(module: &mut Module, event: Event, plant: &mut dyn Plant, now_us: u64)
 }
 
 /// Merges the replies of two modules at one address; the earlier one sets the delay.
-fn together(first: (u64, Vec<u8>), second: (u64, Vec<u8>), baud: u32) -> (u64, Vec<u8>) {
+fn merged_replies(first: (u64, Vec<u8>), second: (u64, Vec<u8>), baud: u32) -> (u64, Vec<u8>) {
     let apart_us = second.0 as i64 - first.0 as i64;
     let apart_bits = apart_us * i64::from(baud) / 1_000_000;
     let heard = uart::superposed(&first.1, &second.1, apart_bits);

@@ -8,9 +8,9 @@ use crate::config::{LineSpec, RigFile, WorldTable, read_rig, read_world};
 use crate::error::SimError;
 use crate::fault::{self, FaultInfo, LineFaults};
 use crate::module::Module;
-use crate::module::habit::{self, Habit};
-use crate::module::plate::Commissioning;
-use crate::rig::{Record, Reply, Rig};
+use crate::module::common::Commissioning;
+use crate::module::tolerances::{self, Tolerances};
+use crate::rig::{Reply, Rig, WorldRecord};
 use crate::terminal::ModuleSpec;
 use crate::truth::BodyTruth;
 use crate::world::{World, WorldOptions};
@@ -29,7 +29,7 @@ pub struct Options {
     /// Number of lot parts in the magazine; `None` never runs out.
     pub parts: Option<u64>,
     /// Reference parts precede the lot.
-    pub golden: bool,
+    pub reference_parts: bool,
     /// Faults as `NAME` or `NAME=VALUE`.
     pub faults: Vec<String>,
 }
@@ -52,7 +52,7 @@ impl Options {
             seed: self.seed,
             recipe: self.recipe.clone(),
             parts: self.parts,
-            golden: self.golden,
+            reference_parts: self.reference_parts,
             faults,
         }
     }
@@ -175,15 +175,15 @@ fn modules(
             checksum: line.is_some_and(|line| line.checksum),
             host_watchdog_ms: file.host_watchdog_ms,
         };
-        let mut rng = habit::stream(seed, &spec.id);
-        let habit = Habit::draw(&table.devices, &mut rng);
-        let noise = noise.map(|noise| habit::stream(noise, &format!("noise of {}", spec.id)));
-        Module::new(spec, commissioning, habit, noise.unwrap_or(rng))
+        let mut rng = tolerances::stream(seed, &spec.id);
+        let tolerances = Tolerances::draw(&table.devices, &mut rng);
+        let noise = noise.map(|noise| tolerances::stream(noise, &format!("noise of {}", spec.id)));
+        Module::new(spec, commissioning, tolerances, noise.unwrap_or(rng))
     };
     file.modules.iter().map(module).collect()
 }
 
-impl Record for World {
+impl WorldRecord for World {
     fn truth(&mut self) -> Vec<serde_json::Value> {
         World::truth(self)
     }
@@ -200,16 +200,16 @@ impl Record for World {
         World::bodies(self)
     }
 
-    fn driven(&mut self) -> Vec<(u64, &'static str)> {
-        World::driven(self)
+    fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
+        World::motion_starts(self)
     }
 
-    fn calm(&mut self) {
-        World::calm(self);
+    fn cancel_faults(&mut self) {
+        World::cancel_faults(self);
     }
 
-    fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        Ok(World::fill(self, options)?)
+    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        Ok(World::refill(self, options)?)
     }
 }
 
@@ -299,18 +299,18 @@ impl SharedRig {
     ///
     /// # Errors
     /// Fails when a configuration file is missing or wrong; the magazine then stays unchanged.
-    pub fn fill(&self, options: &Options) -> Result<(), SimError> {
-        self.rig().fill(&options.of_world(Vec::new()))
+    pub fn refill(&self, options: &Options) -> Result<(), SimError> {
+        self.rig().refill(&options.of_world(Vec::new()))
     }
 
     /// Cancels the faults of the world that have not struck yet.
-    pub fn calm(&self) {
-        self.rig().calm();
+    pub fn cancel_faults(&self) {
+        self.rig().cancel_faults();
     }
 
     /// Returns the start of each recent motion that an output caused: microseconds and actuator.
-    pub fn driven(&self) -> Vec<(u64, &'static str)> {
-        self.rig().driven()
+    pub fn motion_starts(&self) -> Vec<(u64, &'static str)> {
+        self.rig().motion_starts()
     }
 
     /// Returns a description of each crash.

@@ -64,7 +64,7 @@ pub enum Place {
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyTruth {
     /// Marks a reference part.
-    pub golden: bool,
+    pub is_reference: bool,
     /// Marks a body that clung to the body before it, followed the same path, and was never tested.
     pub clung: bool,
     /// Places with the time of arrival, rig time in microseconds, in order of time.

@@ -19,7 +19,7 @@ const BAR_US: f64 = 300.0;
 
 /// Changes of NO that a scheme reports.
 #[derive(Clone, Copy, Default)]
-pub struct Seen {
+pub struct NoContactTimes {
     /// First make, s.
     pub make_s: f64,
     /// Last change, s.
@@ -30,7 +30,7 @@ pub struct Seen {
     pub evaluations: u64,
 }
 
-impl Seen {
+impl NoContactTimes {
     /// Summarises the instants at which NO changes.
     pub fn of_changes(changes: &[f64], evaluations: u64) -> Self {
         Self {
@@ -45,12 +45,12 @@ impl Seen {
 /// One row of the table.
 struct Row {
     scheme: String,
-    seen: Seen,
+    seen: NoContactTimes,
     median_us: f64,
     p99_us: f64,
 }
 
-fn measured(scheme: impl Into<String>, runs: usize, once: impl Fn() -> Seen) -> Row {
+fn measured(scheme: impl Into<String>, runs: usize, once: impl Fn() -> NoContactTimes) -> Row {
     let seen = once();
     let mut walls: Vec<f64> = (0..runs)
         .map(|_| {
@@ -68,22 +68,22 @@ fn measured(scheme: impl Into<String>, runs: usize, once: impl Fn() -> Seen) -> 
     }
 }
 
-fn own(model: &Model, rtol: f64) -> Seen {
+fn own(model: &Model, rtol: f64) -> NoContactTimes {
     let Ok(waveform) = Waveform::new(vec![[0.0, VOLTS]]) else {
-        return Seen::default();
+        return NoContactTimes::default();
     };
     let excitation = Excitation::Source(waveform);
     match model.transient(model.at_rest(0.0), &excitation, END_S, rtol) {
         Ok(run) => {
             let seen = Outcome::of(&run.events);
-            Seen {
+            NoContactTimes {
                 make_s: seen.no_first_make.unwrap_or(f64::NAN),
                 last_s: seen.no_last_change.unwrap_or(f64::NAN),
                 events: run.events.iter().filter(|e| e.kind == Kind::No).count(),
                 evaluations: run.evaluations,
             }
         }
-        Err(_) => Seen::default(),
+        Err(_) => NoContactTimes::default(),
     }
 }
 
@@ -119,7 +119,7 @@ fn main() {
     print(&rows, truth);
 }
 
-fn print(rows: &[Row], truth: Seen) {
+fn print(rows: &[Row], truth: NoContactTimes) {
     println!(
         "operation at {VOLTS} V, {} ms; errors of NO in seconds",
         END_S * 1e3

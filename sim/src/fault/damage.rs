@@ -6,38 +6,38 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Strikes, Targets};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Targets, Trigger};
+use super::{Family, FaultEntry};
 use crate::dcon;
 use crate::error::SimError;
 use crate::uart;
 
-const LIST: [Known; 5] = [
-    Known {
+const LIST: [FaultEntry; 5] = [
+    FaultEntry {
         name: "flip",
         unit: "probability",
         default: "0.01",
         what: "one bit of a reply is flipped",
     },
-    Known {
+    FaultEntry {
         name: "noise",
         unit: "probability",
         default: "0.01",
         what: "one to four random bytes before a reply",
     },
-    Known {
+    FaultEntry {
         name: "echo",
         unit: "probability",
         default: "1",
         what: "the request comes back before the reply",
     },
-    Known {
+    FaultEntry {
         name: "clash",
         unit: "MODULE[@s] or probability",
         default: "board_di",
         what: "a second module of the kind answers at the same address",
     },
-    Known {
+    FaultEntry {
         name: "garble",
         unit: "probability",
         default: "0.01",
@@ -59,25 +59,25 @@ pub(super) struct Damage {
 }
 
 impl Family for Damage {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        let chances = match asked.name {
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        let chances = match request.name {
             "flip" => &mut self.flip,
             "noise" => &mut self.noise,
             "echo" => &mut self.echo,
             "garble" => &mut self.garble,
-            _ => match asked.strikes()? {
-                Strikes::Chance(..) => &mut self.clash,
-                Strikes::Target(module) => {
-                    self.clashing.add(module, asked.window);
+            _ => match request.trigger()? {
+                Trigger::Chance(..) => &mut self.clash,
+                Trigger::Target(module) => {
+                    self.clashing.add(module, request.window);
                     return Ok(());
                 }
             },
         };
-        chances.add(asked.probability()?, asked.window);
+        chances.add(request.probability()?, request.window);
         Ok(())
     }
 
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_transmitter_and_a_wrong_baud_rate_leave_no_reply() {
+    fn second_transmitter_and_wrong_baud_rate_destroy_the_reply() {
         for fault in ["clash", "garble"] {
             let bytes = struck(fault);
             assert_ne!(bytes, b">+05.123\r", "{fault}");

@@ -3,30 +3,30 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Targets};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Targets};
+use super::{Family, FaultEntry};
 use crate::error::SimError;
 
-const LIST: [Known; 4] = [
-    Known {
+const LIST: [FaultEntry; 4] = [
+    FaultEntry {
         name: "drop",
         unit: "probability",
         default: "0.01",
         what: "a reply is lost; the module has carried out the request",
     },
-    Known {
+    FaultEntry {
         name: "deaf",
         unit: "probability",
         default: "0.01",
         what: "a request is lost; the module does nothing",
     },
-    Known {
+    FaultEntry {
         name: "truncate",
         unit: "probability",
         default: "0.01",
         what: "a reply breaks off",
     },
-    Known {
+    FaultEntry {
         name: "silence",
         unit: "MODULE[@s]",
         default: "board_di@0",
@@ -43,21 +43,21 @@ pub(super) struct Loss {
 }
 
 impl Family for Loss {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        let chances = match asked.name {
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        let chances = match request.name {
             "drop" => &mut self.drop,
             "deaf" => &mut self.deaf,
             "truncate" => &mut self.truncate,
             _ => {
-                self.silence.add(asked.value.to_owned(), asked.window);
+                self.silence.add(request.value.to_owned(), request.window);
                 return Ok(());
             }
         };
-        chances.add(asked.probability()?, asked.window);
+        chances.add(request.probability()?, request.window);
         Ok(())
     }
 
@@ -68,7 +68,7 @@ impl Family for Loss {
 
 impl Loss {
     /// Draws whether this request is lost.
-    pub(super) fn swallows(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
+    pub(super) fn loses_request(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
         self.deaf.strike(rng, now_us)
     }
 
@@ -113,6 +113,6 @@ mod tests {
         faults.add("deaf", Some("1@3")).unwrap();
         assert!(!faults.silent("timer", 999_999) && faults.silent("timer", 1_000_000));
         assert!(!faults.silent("timer", 2_000_000) && !faults.silent("rtd", 1_500_000));
-        assert!(!faults.swallows(2_999_999) && faults.swallows(3_000_000));
+        assert!(!faults.loses_request(2_999_999) && faults.loses_request(3_000_000));
     }
 }

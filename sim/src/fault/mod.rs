@@ -22,9 +22,9 @@ mod value;
 use rand_chacha::ChaCha8Rng;
 
 use crate::error::SimError;
-use crate::module::habit;
-pub use upset::{Event, Timed};
-use value::Asked;
+use crate::module::tolerances;
+pub use upset::{Event, TimedEvent};
+use value::FaultRequest;
 
 /// One fault that `--fault` accepts, for listing.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -40,7 +40,7 @@ pub struct FaultInfo {
 }
 
 /// One line of a family's fault list.
-struct Known {
+struct FaultEntry {
     name: &'static str,
     unit: &'static str,
     default: &'static str,
@@ -49,10 +49,10 @@ struct Known {
 
 /// Faults of one kind, with the requests that are active.
 trait Family {
-    fn list(&self) -> &'static [Known];
+    fn list(&self) -> &'static [FaultEntry];
 
     /// Adds one fault of the list.
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError>;
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError>;
 
     /// Returns every module or line that a fault names.
     fn targets(&self) -> Vec<&str>;
@@ -60,7 +60,7 @@ trait Family {
 
 /// Names, units and defaults of the faults of this layer.
 pub fn list() -> Vec<FaultInfo> {
-    let info = |known: &Known| FaultInfo {
+    let info = |known: &FaultEntry| FaultInfo {
         name: known.name.into(),
         unit: known.unit.into(),
         default: known.default.into(),
@@ -87,7 +87,7 @@ impl LineFaults {
     /// Creates a layer without faults; `seed` selects its random stream.
     pub fn none(seed: u64) -> Self {
         Self {
-            rng: habit::stream(seed, "faults of the line"),
+            rng: tolerances::stream(seed, "faults of the line"),
             loss: loss::Loss::default(),
             timing: timing::Timing::default(),
             damage: damage::Damage::default(),
@@ -124,8 +124,8 @@ impl LineFaults {
         for family in families {
             let known = family.list().iter().find(|known| known.name == name);
             if let Some(known) = known {
-                let asked = Asked::read(name, value.unwrap_or(known.default))?;
-                family.add(&asked.from(now_us))?;
+                let request = FaultRequest::read(name, value.unwrap_or(known.default))?;
+                family.add(&request.from(now_us))?;
                 return Ok(true);
             }
         }
@@ -169,8 +169,8 @@ impl LineFaults {
     }
 
     /// Draws whether the request that has just arrived is lost.
-    pub fn swallows(&mut self, now_us: u64) -> bool {
-        self.loss.swallows(&mut self.rng, now_us)
+    pub fn loses_request(&mut self, now_us: u64) -> bool {
+        self.loss.loses_request(&mut self.rng, now_us)
     }
 
     /// Checks whether a fault suppresses every reply of the module.
@@ -189,7 +189,7 @@ impl LineFaults {
     }
 
     /// Removes and returns the next timed event that is due.
-    pub fn due(&mut self, now_us: u64) -> Option<Timed> {
+    pub fn due(&mut self, now_us: u64) -> Option<TimedEvent> {
         self.upset.due(now_us)
     }
 
@@ -233,7 +233,7 @@ mod tests {
     fn a_rig_without_faults_changes_nothing_and_draws_nothing() {
         let mut faults = LineFaults::none(1);
         for now_us in [0, 5_000_000] {
-            assert!(!faults.swallows(now_us) && !faults.line_dead("measure", now_us));
+            assert!(!faults.loses_request(now_us) && !faults.line_dead("measure", now_us));
             assert_eq!(faults.before_a_request(now_us), None);
             let reply = faults.strike(b"#01", b">\r".to_vec(), now_us);
             assert_eq!(reply, Some((0, b">\r".to_vec())));

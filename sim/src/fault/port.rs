@@ -5,24 +5,24 @@
 
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Strikes, Targets, Window};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Targets, Trigger, Window};
+use super::{Family, FaultEntry};
 use crate::error::SimError;
 
-const LIST: [Known; 3] = [
-    Known {
+const LIST: [FaultEntry; 3] = [
+    FaultEntry {
         name: "line_cut",
         unit: "LINE[@s]",
         default: "measure@5",
         what: "a line is dead for two seconds, or until ..s",
     },
-    Known {
+    FaultEntry {
         name: "baud_mismatch",
         unit: "LINE[@s]",
         default: "measure@0",
         what: "the modules of a line run at another baud rate and understand nothing",
     },
-    Known {
+    FaultEntry {
         name: "port_lost",
         unit: "LINE[@s] or probability[/ms]",
         default: "measure@5",
@@ -42,22 +42,22 @@ pub(super) struct Port {
 }
 
 impl Family for Port {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        let line = asked.value.to_owned();
-        match asked.name {
-            "line_cut" => self.dead.add(line, ended(asked.window)),
-            "baud_mismatch" => self.dead.add(line, asked.window),
-            _ => match asked.strikes()? {
-                Strikes::Chance(probability, rest) => {
-                    let away_us = rest.map_or(Ok(AWAY_US), |ms| asked.ms(ms))?;
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        let line = request.value.to_owned();
+        match request.name {
+            "line_cut" => self.dead.add(line, ended(request.window)),
+            "baud_mismatch" => self.dead.add(line, request.window),
+            _ => match request.trigger()? {
+                Trigger::Chance(probability, rest) => {
+                    let away_us = rest.map_or(Ok(AWAY_US), |ms| request.ms(ms))?;
                     self.losses
-                        .push((away_us, Chances::one(probability, asked.window)));
+                        .push((away_us, Chances::one(probability, request.window)));
                 }
-                Strikes::Target(line) => self.lost.add(line, ended(asked.window)),
+                Trigger::Target(line) => self.lost.add(line, ended(request.window)),
             },
         }
         Ok(())

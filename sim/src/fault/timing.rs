@@ -2,18 +2,18 @@
 
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Window};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Window};
+use super::{Family, FaultEntry};
 use crate::error::SimError;
 
-const LIST: [Known; 2] = [
-    Known {
+const LIST: [FaultEntry; 2] = [
+    FaultEntry {
         name: "delay",
         unit: "ms",
         default: "20",
         what: "every reply takes longer by this time",
     },
-    Known {
+    FaultEntry {
         name: "late",
         unit: "probability[/ms]",
         default: "0.01/200",
@@ -31,22 +31,23 @@ pub(super) struct Timing {
 }
 
 impl Family for Timing {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        if asked.name == "delay" {
-            self.delays.push((asked.ms(asked.value)?, asked.window));
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        if request.name == "delay" {
+            self.delays
+                .push((request.ms(request.value)?, request.window));
             return Ok(());
         }
-        let (probability, late_us) = match asked.value.split_once('/') {
-            Some((probability, ms)) => (probability, asked.ms(ms)?),
-            None => (asked.value, LATE_US),
+        let (probability, late_us) = match request.value.split_once('/') {
+            Some((probability, ms)) => (probability, request.ms(ms)?),
+            None => (request.value, LATE_US),
         };
-        let probability = asked.probability_in(probability)?;
+        let probability = request.probability_in(probability)?;
         self.late
-            .push((late_us, Chances::one(probability, asked.window)));
+            .push((late_us, Chances::one(probability, request.window)));
         Ok(())
     }
 
@@ -77,7 +78,7 @@ mod tests {
     use super::super::LineFaults;
 
     #[test]
-    fn delays_add_up_and_a_late_reply_takes_its_value() {
+    fn delays_add_up_and_lateness_takes_its_value() {
         let mut faults = LineFaults::none(1);
         faults.add("delay", Some("5")).unwrap();
         faults.add("delay", Some("2.5@1")).unwrap();

@@ -5,24 +5,24 @@
 
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Strikes};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Trigger};
+use super::{Family, FaultEntry};
 use crate::error::SimError;
 
-const LIST: [Known; 3] = [
-    Known {
+const LIST: [FaultEntry; 3] = [
+    FaultEntry {
         name: "reset",
         unit: "MODULE[@s] or probability",
         default: "board_do@5",
         what: "a module restarts",
     },
-    Known {
+    FaultEntry {
         name: "watchdog_trip",
         unit: "MODULE[@s] or probability",
         default: "board_do@5",
         what: "a host watchdog expires early",
     },
-    Known {
+    FaultEntry {
         name: "wrong_type",
         unit: "MODULE",
         default: "board_di",
@@ -41,7 +41,7 @@ pub enum Event {
 
 /// Event of one module at one instant.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Timed {
+pub struct TimedEvent {
     /// Rig time, microseconds.
     pub at_us: u64,
     /// Identifier of the module.
@@ -55,28 +55,28 @@ pub(super) struct Upset {
     reset: Chances,
     trip: Chances,
     /// Events that have not struck yet, in order of time.
-    timed: Vec<Timed>,
+    timed: Vec<TimedEvent>,
     wrong_type: Vec<String>,
 }
 
 impl Family for Upset {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        if asked.name == "wrong_type" {
-            self.wrong_type.push(asked.value.to_owned());
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        if request.name == "wrong_type" {
+            self.wrong_type.push(request.value.to_owned());
             return Ok(());
         }
-        let (event, chances) = match asked.name {
+        let (event, chances) = match request.name {
             "reset" => (Event::Reset, &mut self.reset),
             _ => (Event::Trip, &mut self.trip),
         };
-        match asked.strikes()? {
-            Strikes::Chance(..) => chances.add(asked.probability()?, asked.window),
-            Strikes::Target(target) => self.timed.push(Timed {
-                at_us: asked.window.from_us,
+        match request.trigger()? {
+            Trigger::Chance(..) => chances.add(request.probability()?, request.window),
+            Trigger::Target(target) => self.timed.push(TimedEvent {
+                at_us: request.window.from_us,
                 target,
                 event,
             }),
@@ -103,7 +103,7 @@ impl Upset {
     }
 
     /// Removes and returns the next event that is due.
-    pub(super) fn due(&mut self, now_us: u64) -> Option<Timed> {
+    pub(super) fn due(&mut self, now_us: u64) -> Option<TimedEvent> {
         let is_due = self.timed.first().is_some_and(|next| next.at_us <= now_us);
         is_due.then(|| self.timed.remove(0))
     }

@@ -5,8 +5,7 @@
 //! | probability | `drop=0.01` | strikes each request or reply independently |
 //! | probability/ms | `late=0.01/200` | the same, with a duration |
 //! | ms | `delay=20` | duration, milliseconds |
-//! | MODULE or LINE | `reset=board_do@5` | key of a table in `rig.toml`; on a bench `module[N]` from 0, or
-//! `bench` |
+//! | MODULE or LINE | `reset=board_do@5` | key of a table in `rig.toml`; on a bench `module[N]` from 0, or `bench` |
 //!
 //! `@` introduces the second of rig time at which the fault begins, `..` the second at which it ends:
 //! `drop=0.5@10..12`. Without them the fault lasts from the start to the end of the run.
@@ -32,7 +31,7 @@ impl Window {
 
 /// One fault as the command line requests it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Asked<'a> {
+pub(super) struct FaultRequest<'a> {
     pub(super) name: &'a str,
     /// Text before `@`.
     pub(super) value: &'a str,
@@ -40,13 +39,13 @@ pub(super) struct Asked<'a> {
 }
 
 /// Trigger of a fault: chance, or the name of a module or line.
-pub(super) enum Strikes<'a> {
+pub(super) enum Trigger<'a> {
     /// Probability, and the text after `/`.
     Chance(f64, Option<&'a str>),
     Target(String),
 }
 
-impl<'a> Asked<'a> {
+impl<'a> FaultRequest<'a> {
     /// Parses `VALUE[@FROM[..UNTIL]]`.
     pub(super) fn read(name: &'a str, text: &'a str) -> Result<Self, SimError> {
         let (value, times) = match text.split_once('@') {
@@ -101,15 +100,15 @@ impl<'a> Asked<'a> {
     }
 
     /// Parses the trigger: a number is a probability, any other text the name of a module or line.
-    pub(super) fn strikes(&self) -> Result<Strikes<'a>, SimError> {
+    pub(super) fn trigger(&self) -> Result<Trigger<'a>, SimError> {
         let (number, rest) = match self.value.split_once('/') {
             Some((number, rest)) => (number, Some(rest)),
             None => (self.value, None),
         };
         if number.parse::<f64>().is_ok() {
-            Ok(Strikes::Chance(self.probability_in(number)?, rest))
+            Ok(Trigger::Chance(self.probability_in(number)?, rest))
         } else {
-            Ok(Strikes::Target(self.value.to_owned()))
+            Ok(Trigger::Target(self.value.to_owned()))
         }
     }
 }
@@ -181,25 +180,25 @@ mod tests {
 
     #[test]
     fn a_value_may_carry_a_time_window() {
-        let asked = Asked::read("drop", "0.5@10..12.5").unwrap();
-        assert_eq!(asked.probability().unwrap(), 0.5);
-        assert!(!asked.window.holds(9_999_999));
-        assert!(asked.window.holds(10_000_000));
-        assert!(!asked.window.holds(12_500_000));
-        assert!(Asked::read("drop", "0.5").unwrap().window.holds(0));
+        let request = FaultRequest::read("drop", "0.5@10..12.5").unwrap();
+        assert_eq!(request.probability().unwrap(), 0.5);
+        assert!(!request.window.holds(9_999_999));
+        assert!(request.window.holds(10_000_000));
+        assert!(!request.window.holds(12_500_000));
+        assert!(FaultRequest::read("drop", "0.5").unwrap().window.holds(0));
     }
 
     #[test]
     fn the_error_names_the_fault_and_its_value() {
         for text in ["much", "-0.1", "1.5", "NaN"] {
-            let asked = Asked::read("drop", text).unwrap();
-            let error = asked.probability().unwrap_err().to_string();
+            let request = FaultRequest::read("drop", text).unwrap();
+            let error = request.probability().unwrap_err().to_string();
             assert!(error.contains("drop") && error.contains(text), "{error}");
         }
         for times in ["soon", "-1", "1..", "..", "inf"] {
             let text = format!("timer@{times}");
-            assert!(Asked::read("silence", &text).is_err(), "{text}");
+            assert!(FaultRequest::read("silence", &text).is_err(), "{text}");
         }
-        assert!(Asked::read("delay", "x").unwrap().ms("x").is_err());
+        assert!(FaultRequest::read("delay", "x").unwrap().ms("x").is_err());
     }
 }

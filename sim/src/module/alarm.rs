@@ -27,7 +27,7 @@ enum Kind {
 
 /// Effect of an alarm command.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Told {
+pub(super) enum CommandEffect {
     /// The command changed a setting that survives a power loss.
     Stored,
     /// The command changed a volatile state.
@@ -110,48 +110,48 @@ impl Alarm {
     }
 
     /// Carries out the body of a request that begins with `@`.
-    pub(super) fn command(&mut self, body: &[u8]) -> Told {
+    pub(super) fn command(&mut self, body: &[u8]) -> CommandEffect {
         match (body, &mut self.mode) {
             ([b'E', b'A', n @ (b'0' | b'1')], Mode::PerCounter { on }) => {
                 on[usize::from(n - b'0')] = true;
-                Told::Stored
+                CommandEffect::Stored
             }
             ([b'D', b'A', n @ (b'0' | b'1')], Mode::PerCounter { on }) => {
                 on[usize::from(n - b'0')] = false;
-                Told::Stored
+                CommandEffect::Stored
             }
             (b"EAM", Mode::TwoLimits(kind)) => turn(kind, Kind::Momentary),
             (b"EAL", Mode::TwoLimits(kind)) => turn(kind, Kind::Latched),
             (b"DA", Mode::TwoLimits(kind)) => turn(kind, Kind::Off),
             (b"CA", Mode::TwoLimits(_)) => {
                 self.latched = 0;
-                Told::Done
+                CommandEffect::Done
             }
             ([b'E' | b'D', b'A', b'0' | b'1'] | b"EAM" | b"EAL" | b"DA" | b"CA", _) => {
-                Told::Refused
+                CommandEffect::Refused
             }
-            (b"RP", _) => Told::Limit(self.limits[0]),
-            (b"RA", _) => Told::Limit(self.limits[1]),
+            (b"RP", _) => CommandEffect::Limit(self.limits[0]),
+            (b"RA", _) => CommandEffect::Limit(self.limits[1]),
             ([b'P', b'A', digits @ ..], _) => self.limit(0, digits),
             ([b'S', b'A', digits @ ..], _) => self.limit(1, digits),
-            (_, _) => Told::Unknown,
+            (_, _) => CommandEffect::Unknown,
         }
     }
 
-    fn limit(&mut self, n: usize, digits: &[u8]) -> Told {
+    fn limit(&mut self, n: usize, digits: &[u8]) -> CommandEffect {
         match crate::dcon::hex(digits) {
             Some(limit) if digits.len() == 8 => {
                 self.limits[n] = limit;
-                Told::Stored
+                CommandEffect::Stored
             }
-            _ => Told::Unknown,
+            _ => CommandEffect::Unknown,
         }
     }
 }
 
-fn turn(kind: &mut Kind, to: Kind) -> Told {
+fn turn(kind: &mut Kind, to: Kind) -> CommandEffect {
     *kind = to;
-    Told::Stored
+    CommandEffect::Stored
 }
 
 #[cfg(test)]
@@ -159,33 +159,33 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_limit_per_counter_leaves_the_other_output_to_the_host() {
+    fn one_alarm_leaves_the_other_output_to_the_host() {
         let mut alarm = Alarm::new(false);
-        assert_eq!(alarm.command(b"PA00000064"), Told::Stored);
+        assert_eq!(alarm.command(b"PA00000064"), CommandEffect::Stored);
         assert_eq!(alarm.outputs(0b11, [500, 500]), 0b11);
-        assert_eq!(alarm.command(b"EA0"), Told::Stored);
+        assert_eq!(alarm.command(b"EA0"), CommandEffect::Stored);
         assert_eq!(alarm.outputs(0b10, [99, 500]), 0b10);
         assert_eq!(alarm.outputs(0b10, [100, 500]), 0b11);
-        assert_eq!(alarm.command(b"EAL"), Told::Refused);
+        assert_eq!(alarm.command(b"EAL"), CommandEffect::Refused);
     }
 
     #[test]
-    fn a_latched_alarm_stays_on_and_a_momentary_one_ends() {
+    fn a_latched_alarm_holds_and_a_momentary_ends() {
         let mut alarm = Alarm::new(true);
         for command in [&b"PA00000064"[..], b"SA000000C8", b"EAL"] {
-            assert_eq!(alarm.command(command), Told::Stored);
+            assert_eq!(alarm.command(command), CommandEffect::Stored);
         }
         assert_eq!(alarm.outputs(0, [150, 0]), 0b01);
         assert_eq!(alarm.outputs(0, [200, 0]), 0b11);
         assert_eq!(alarm.outputs(0, [0, 0]), 0b11);
-        assert_eq!(alarm.command(b"CA"), Told::Done);
+        assert_eq!(alarm.command(b"CA"), CommandEffect::Done);
         assert_eq!(alarm.outputs(0, [0, 0]), 0);
-        assert_eq!(alarm.command(b"EAM"), Told::Stored);
+        assert_eq!(alarm.command(b"EAM"), CommandEffect::Stored);
         assert_eq!(
             (alarm.outputs(0, [150, 0]), alarm.outputs(0, [0, 0])),
             (1, 0)
         );
-        assert_eq!(alarm.command(b"RA"), Told::Limit(200));
-        assert_eq!(alarm.command(b"EA0"), Told::Refused);
+        assert_eq!(alarm.command(b"RA"), CommandEffect::Limit(200));
+        assert_eq!(alarm.command(b"EA0"), CommandEffect::Refused);
     }
 }

@@ -20,10 +20,10 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
+use super::common::{Commissioning, CommonPart};
 use super::converter::Converter;
-use super::habit::Habit;
-use super::plate::{Commissioning, Plate};
 use super::range::{self, Format, Range};
+use super::tolerances::Tolerances;
 use super::{Built, Family, Terminals, setting};
 use crate::dcon::{self, Answer, Request};
 use crate::error::SimError;
@@ -50,7 +50,7 @@ struct AnalogIn {
     type_code: u8,
     /// Present type code of each channel.
     ranges: [u8; 8],
-    habit: Habit,
+    tolerances: Tolerances,
     rng: ChaCha8Rng,
 }
 
@@ -93,7 +93,7 @@ pub(super) fn build(
     spec: &ModuleSpec,
     model: &str,
     line: Commissioning,
-    habit: &Habit,
+    tolerances: &Tolerances,
     rng: ChaCha8Rng,
 ) -> Result<Built, SimError> {
     let (kind, default_type) = match model {
@@ -103,23 +103,23 @@ pub(super) fn build(
         _ => (Kind::Voltage { may_be_fast: true }, 0x08),
     };
     let type_code = type_code(spec, kind, default_type)?;
-    let plate = Plate::new(spec, line, type_code, format_bits(spec, kind)?)?;
+    let common = CommonPart::new(spec, line, type_code, format_bits(spec, kind)?)?;
     let all = (1u16 << kind.channels()).wrapping_sub(1);
     let mask = match setting::bits(spec, "mask")? {
         Some(mask) => mask,
         None => setting::bits(spec, "enabled")?.unwrap_or(u32::from(all)),
     };
-    let per_s = pace(kind, habit, plate.format);
+    let per_s = pace(kind, tolerances, common.format);
     let family = AnalogIn {
         kind,
         converter: Converter::new(kind.channels(), mask as u8 & all as u8, per_s),
         readings: [0.0; 8],
         type_code,
         ranges: [type_code; 8],
-        habit: habit.clone(),
+        tolerances: tolerances.clone(),
         rng,
     };
-    Ok((plate, Box::new(family)))
+    Ok((common, Box::new(family)))
 }
 
 fn type_code(spec: &ModuleSpec, kind: Kind, default: u8) -> Result<u8, SimError> {
@@ -150,23 +150,23 @@ fn format_bits(spec: &ModuleSpec, kind: Kind) -> Result<u8, SimError> {
     Ok(format | if fast { FAST } else { 0 })
 }
 
-fn pace(kind: Kind, habit: &Habit, format: u8) -> f64 {
+fn pace(kind: Kind, tolerances: &Tolerances, format: u8) -> f64 {
     match kind {
         Kind::Rtd => RTD_PER_S,
-        Kind::Voltage { .. } if format & FAST != 0 => habit.fast_per_s,
-        Kind::Voltage { .. } | Kind::Thermocouple => habit.normal_per_s,
+        Kind::Voltage { .. } if format & FAST != 0 => tolerances.fast_per_s,
+        Kind::Voltage { .. } | Kind::Thermocouple => tolerances.normal_per_s,
     }
 }
 
 impl AnalogIn {
-    fn convert(&mut self, plate: &Plate, channel: u8, terminal: f64) {
+    fn convert(&mut self, common: &CommonPart, channel: u8, terminal: f64) {
         let Some(range) = self.range(channel) else {
             return;
         };
         let reading = if terminal.is_nan() {
             self.open_input()
         } else {
-            self.digitise(range, plate.format, terminal)
+            self.digitise(range, common.format, terminal)
         };
         self.readings[usize::from(channel)] = reading;
     }
@@ -188,9 +188,9 @@ impl AnalogIn {
         if self.kind == Kind::Rtd {
             return (range.fraction(terminal) * steps).round() / steps;
         }
-        let ideal = terminal * (1.0 + self.habit.ai_gain)
-            + self.habit.ai_offset * range.full_scale / range.per_terminal;
-        let noise: f64 = match self.habit.ai_noise_lsb {
+        let ideal = terminal * (1.0 + self.tolerances.ai_gain)
+            + self.tolerances.ai_offset * range.full_scale / range.per_terminal;
+        let noise: f64 = match self.tolerances.ai_noise_lsb {
             0.0 => 0.0,
             sd => self.rng.sample::<f64, _>(StandardNormal) * sd,
         };
@@ -219,7 +219,7 @@ impl AnalogIn {
         Answer::Reply(text)
     }
 
-    fn one_field(&self, plate: &Plate, digit: u8, format: Format) -> Answer {
+    fn one_field(&self, common: &CommonPart, digit: u8, format: Format) -> Answer {
         match dcon::hex_digit(digit) {
             Some(channel) if channel < self.kind.channels() => {
                 let mut text = String::with_capacity(dcon::LONGEST);
@@ -227,23 +227,23 @@ impl AnalogIn {
                 self.field(channel, format, &mut text);
                 Answer::Reply(text)
             }
-            Some(_) => dcon::refused(plate.address),
+            Some(_) => dcon::refused(common.address),
             None => Answer::Unknown,
         }
     }
 
-    fn enable(&mut self, plate: &mut Plate, mask: u8, at: &mut Terminals<'_>) -> Answer {
+    fn enable(&mut self, common: &mut CommonPart, mask: u8, at: &mut Terminals<'_>) -> Answer {
         let all = (1u16 << self.kind.channels()).wrapping_sub(1);
         if u16::from(mask) & !all != 0 {
-            return dcon::refused(plate.address);
+            return dcon::refused(common.address);
         }
         self.converter.enable(mask, at);
-        plate.eeprom_writes += 1;
-        dcon::done(plate.address)
+        common.eeprom_writes += 1;
+        dcon::done(common.address)
     }
 
     /// Carries out commands that only newer modules know.
-    fn newer(&mut self, plate: &mut Plate, body: &[u8]) -> Answer {
+    fn newer(&mut self, common: &mut CommonPart, body: &[u8]) -> Answer {
         let known = |digit: u8| dcon::hex_digit(digit).filter(|n| *n < self.kind.channels());
         match *body {
             [b'B'] => {
@@ -253,23 +253,23 @@ impl AnalogIn {
                 };
                 let channels = (0..self.kind.channels()).filter(beyond);
                 let word = channels.fold(0, |word, n| word | 1u64 << n);
-                dcon::done_hex(plate.address, word, 2)
+                dcon::done_hex(common.address, word, 2)
             }
             [b'8', b'C', digit] => match known(digit) {
                 Some(n) => {
                     let range = self.ranges[usize::from(n)];
-                    dcon::done_with(plate.address, &format!("C{n}R{range:02X}"))
+                    dcon::done_with(common.address, &format!("C{n}R{range:02X}"))
                 }
-                None => dcon::refused(plate.address),
+                None => dcon::refused(common.address),
             },
             [b'7', b'C', digit, b'R', high, low] => match dcon::hex_byte(&[high, low]) {
                 Some(range) => match known(digit) {
                     Some(n) if self.kind.range(range).is_some() => {
                         self.ranges[usize::from(n)] = range;
-                        plate.eeprom_writes += 1;
-                        dcon::done(plate.address)
+                        common.eeprom_writes += 1;
+                        dcon::done(common.address)
                     }
-                    Some(_) | None => dcon::refused(plate.address),
+                    Some(_) | None => dcon::refused(common.address),
                 },
                 None => Answer::Unknown,
             },
@@ -287,58 +287,58 @@ impl Family for AnalogIn {
 
     fn answer(
         &mut self,
-        plate: &mut Plate,
+        common: &mut CommonPart,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
-        let format = Format::of(plate.format).unwrap_or(Format::Engineering);
+        let format = Format::of(common.format).unwrap_or(Format::Engineering);
         match (request.lead, request.body) {
             (b'#', []) => self.fields(format),
-            (b'#', [digit]) => self.one_field(plate, *digit, format),
+            (b'#', [digit]) => self.one_field(common, *digit, format),
             (b'$', b"A") => self.fields(Format::Hex),
             (b'$', b"3") if self.kind == Kind::Thermocouple => {
                 Answer::Reply(format!(">{COLD_JUNCTION_C:+07.1}"))
             }
-            (b'$', b"6") => dcon::done_hex(plate.address, u64::from(self.converter.mask()), 2),
+            (b'$', b"6") => dcon::done_hex(common.address, u64::from(self.converter.mask()), 2),
             (b'$', [b'5', high, low]) => match dcon::hex_byte(&[*high, *low]) {
-                Some(mask) => self.enable(plate, mask, at),
+                Some(mask) => self.enable(common, mask, at),
                 None => Answer::Unknown,
             },
-            (b'$', body) if plate.is_newer() => self.newer(plate, body),
+            (b'$', body) if common.is_newer() => self.newer(common, body),
             (_, _) => Answer::Unknown,
         }
     }
 
-    fn configured(&mut self, plate: &Plate, _at: &mut Terminals<'_>) {
-        if plate.type_code != self.type_code {
-            self.type_code = plate.type_code;
-            self.ranges = [plate.type_code; 8];
+    fn configured(&mut self, common: &CommonPart, _at: &mut Terminals<'_>) {
+        if common.type_code != self.type_code {
+            self.type_code = common.type_code;
+            self.ranges = [common.type_code; 8];
         }
         self.converter
-            .set_pace(pace(self.kind, &self.habit, plate.format));
+            .set_pace(pace(self.kind, &self.tolerances, common.format));
     }
 
     fn next_us(&self) -> u64 {
         self.converter.next_us()
     }
 
-    fn run(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+    fn run(&mut self, common: &CommonPart, at: &mut Terminals<'_>) {
         if let Some((channel, mean)) = self.converter.run(at) {
-            self.convert(plate, channel, mean);
+            self.convert(common, channel, mean);
         }
     }
 
     fn sample(&mut self, _at: &mut Terminals<'_>) {}
 
-    fn make_safe(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+    fn make_safe(&mut self, _plate: &CommonPart, _at: &mut Terminals<'_>) {}
 
-    fn restart(&mut self, _plate: &Plate) {}
+    fn restart(&mut self, _plate: &CommonPart) {}
 
     /// Fills every channel with a reading, since the module has been powered for long.
-    fn energise(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+    fn energise(&mut self, common: &CommonPart, at: &mut Terminals<'_>) {
         for channel in 0..self.kind.channels() {
             let terminal = at.plant.analog_in(at.module, channel);
-            self.convert(plate, channel, terminal);
+            self.convert(common, channel, terminal);
         }
         self.converter.start(at);
     }

@@ -14,17 +14,17 @@
 mod alarm;
 pub mod analog_in;
 pub mod analog_out;
+pub mod common;
 pub mod converter;
 pub mod counter;
 pub mod digital;
-pub mod habit;
 mod output;
-pub mod plate;
 mod pulse;
 pub mod ramp;
 pub mod range;
 pub mod setting;
 pub mod shape;
+pub mod tolerances;
 pub mod watchdog;
 
 use rand_chacha::ChaCha8Rng;
@@ -32,8 +32,8 @@ use rand_chacha::ChaCha8Rng;
 use crate::dcon::{self, Address, Answer, Request};
 use crate::error::SimError;
 use crate::terminal::{ModuleSpec, Plant};
-use habit::Habit;
-use plate::{Commissioning, Plate};
+use common::{Commissioning, CommonPart};
+use tolerances::Tolerances;
 
 /// Screw terminals of one module at one instant.
 pub struct Terminals<'a> {
@@ -53,40 +53,40 @@ pub trait Family: Send {
     /// Carries out a command of the family.
     fn answer(
         &mut self,
-        plate: &mut Plate,
+        common: &mut CommonPart,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer;
 
     /// Adopts a changed configuration word.
-    fn configured(&mut self, plate: &Plate, at: &mut Terminals<'_>);
+    fn configured(&mut self, common: &CommonPart, at: &mut Terminals<'_>);
 
     /// Returns the instant of the family's next event; `u64::MAX` for none.
     fn next_us(&self) -> u64;
 
     /// Carries out the family's event that is due.
-    fn run(&mut self, plate: &Plate, at: &mut Terminals<'_>);
+    fn run(&mut self, common: &CommonPart, at: &mut Terminals<'_>);
 
     /// Samples the inputs now (`#**`).
     fn sample(&mut self, at: &mut Terminals<'_>);
 
     /// Sets the outputs to their safe values at once.
-    fn make_safe(&mut self, plate: &Plate, at: &mut Terminals<'_>);
+    fn make_safe(&mut self, common: &CommonPart, at: &mut Terminals<'_>);
 
     /// Sets the outputs to their power-on values, or to the safe values after a watchdog trip.
-    fn restart(&mut self, plate: &Plate);
+    fn restart(&mut self, common: &CommonPart);
 
     /// Applies the registers to the terminals and starts the converters.
-    fn energise(&mut self, plate: &Plate, at: &mut Terminals<'_>);
+    fn energise(&mut self, common: &CommonPart, at: &mut Terminals<'_>);
 }
 
 /// A module on its line.
 pub struct Module {
     id: String,
     line: String,
-    plate: Plate,
+    common: CommonPart,
     family: Box<dyn Family>,
-    habit: Habit,
+    tolerances: Tolerances,
     rng: ChaCha8Rng,
 }
 
@@ -98,15 +98,17 @@ impl Module {
     pub fn new(
         spec: &ModuleSpec,
         line: Commissioning,
-        habit: Habit,
+        tolerances: Tolerances,
         rng: ChaCha8Rng,
     ) -> Result<Self, SimError> {
         let model = model_number(&spec.model);
-        let (plate, family) = match model {
+        let (common, family) = match model {
             "7017" | "7017F" | "7017R" | "7017RC" | "7018" | "7018P" | "7018R" | "7033" => {
-                analog_in::build(spec, model, line, &habit, rng.clone())?
+                analog_in::build(spec, model, line, &tolerances, rng.clone())?
             }
-            "7021" | "7021P" | "7022" | "7024" => analog_out::build(spec, model, line, &habit)?,
+            "7021" | "7021P" | "7022" | "7024" => {
+                analog_out::build(spec, model, line, &tolerances)?
+            }
             "7080" | "7080B" | "7080D" => counter::build(spec, model, line)?,
             other => match shape::shape(other) {
                 Some(shape) => digital::build(spec, shape, line)?,
@@ -116,9 +118,9 @@ impl Module {
         Ok(Self {
             id: spec.id.clone(),
             line: spec.line.clone(),
-            plate,
+            common,
             family,
-            habit,
+            tolerances,
             rng,
         })
     }
@@ -134,32 +136,32 @@ impl Module {
     }
 
     /// Returns the common part.
-    pub fn plate(&self) -> &Plate {
-        &self.plate
+    pub fn common(&self) -> &CommonPart {
+        &self.common
     }
 
     /// Returns the common part for faults that change it.
-    pub fn plate_mut(&mut self) -> &mut Plate {
-        &mut self.plate
+    pub fn common_mut(&mut self) -> &mut CommonPart {
+        &mut self.common
     }
 
     /// Checks whether a request for `address` at the host's rate reaches the module; a rate of `None` matches.
     pub fn hears(&self, address: Address, host_baud: Option<u32>) -> bool {
         let meant = match address {
             Address::Everybody => true,
-            Address::Module(address) => self.plate.hears_at(address),
+            Address::Module(address) => self.common.hears_at(address),
         };
-        meant && host_baud.is_none_or(|baud| baud == self.plate.baud())
+        meant && host_baud.is_none_or(|baud| baud == self.common.baud())
     }
 
     /// Draws the time from the end of a request to the first character of its reply, microseconds.
     pub fn next_latency_us(&mut self) -> u64 {
-        self.habit.next_latency_us(&mut self.rng) + self.plate.response_delay_us()
+        self.tolerances.next_latency_us(&mut self.rng) + self.common.response_delay_us()
     }
 
     /// Returns the instant of its next event of any kind; `u64::MAX` for none.
     pub fn next_us(&self) -> u64 {
-        let expiry = self.plate.watchdog.expires_us().unwrap_or(u64::MAX);
+        let expiry = self.common.watchdog.expires_us().unwrap_or(u64::MAX);
         expiry.min(self.family.next_us())
     }
 
@@ -171,15 +173,15 @@ impl Module {
             now_us,
         };
         if self
-            .plate
+            .common
             .watchdog
             .expires_us()
             .is_some_and(|due| due <= now_us)
         {
-            trip(&mut self.plate, self.family.as_mut(), &mut at);
+            trip(&mut self.common, self.family.as_mut(), &mut at);
         }
         if self.family.next_us() <= now_us {
-            self.family.run(&self.plate, &mut at);
+            self.family.run(&self.common, &mut at);
         }
     }
 
@@ -190,13 +192,13 @@ impl Module {
             module: &self.id,
             now_us,
         };
-        self.family.energise(&self.plate, &mut at);
+        self.family.energise(&self.common, &mut at);
     }
 
     /// Restarts the running module (a fault, or its own hardware watchdog).
     pub fn reset(&mut self, plant: &mut dyn Plant, now_us: u64) {
-        self.plate.power_cycled();
-        self.family.restart(&self.plate);
+        self.common.power_cycled();
+        self.family.restart(&self.common);
         self.energise(plant, now_us);
     }
 
@@ -207,12 +209,12 @@ impl Module {
             module: &self.id,
             now_us,
         };
-        trip(&mut self.plate, self.family.as_mut(), &mut at);
+        trip(&mut self.common, self.family.as_mut(), &mut at);
     }
 
     /// Processes `text` (without CR); returns the bytes of the reply, if any.
     pub fn hear(&mut self, text: &[u8], plant: &mut dyn Plant, now_us: u64) -> Option<Vec<u8>> {
-        let with_checksum = self.plate.uses_checksum();
+        let with_checksum = self.common.uses_checksum();
         let bare = if with_checksum {
             dcon::without_checksum(text)?
         } else {
@@ -225,7 +227,7 @@ impl Module {
             now_us,
         };
         if request.address == Address::Everybody {
-            broadcast(&mut self.plate, self.family.as_mut(), &request, &mut at);
+            broadcast(&mut self.common, self.family.as_mut(), &request, &mut at);
             return None;
         }
         match self.obey(&request, plant, now_us) {
@@ -240,35 +242,35 @@ impl Module {
             module: &self.id,
             now_us,
         };
-        let answer = self.family.answer(&mut self.plate, request, &mut at);
+        let answer = self.family.answer(&mut self.common, request, &mut at);
         if answer != Answer::Unknown {
             return answer;
         }
         let family = &self.family;
         let answer = self
-            .plate
+            .common
             .answer(request, now_us, |code, format| family.fits(code, format));
         if request.lead == b'%' {
-            self.family.configured(&self.plate, &mut at);
+            self.family.configured(&self.common, &mut at);
         }
         answer
     }
 }
 
-fn trip(plate: &mut Plate, family: &mut dyn Family, at: &mut Terminals<'_>) {
-    plate.watchdog.trip();
-    plate.eeprom_writes += 1;
-    family.make_safe(plate, at);
+fn trip(common: &mut CommonPart, family: &mut dyn Family, at: &mut Terminals<'_>) {
+    common.watchdog.trip();
+    common.eeprom_writes += 1;
+    family.make_safe(common, at);
 }
 
 fn broadcast(
-    plate: &mut Plate,
+    common: &mut CommonPart,
     family: &mut dyn Family,
     request: &Request<'_>,
     at: &mut Terminals<'_>,
 ) {
     match (request.lead, request.body) {
-        (b'~', []) => plate.watchdog.feed(at.now_us),
+        (b'~', []) => common.watchdog.feed(at.now_us),
         (b'#', []) => family.sample(at),
         (_, _) => {}
     }
@@ -291,4 +293,4 @@ fn unknown_model(spec: &ModuleSpec) -> SimError {
 }
 
 /// Common part and family of a module, before it joins a line.
-pub type Built = (Plate, Box<dyn Family>);
+pub type Built = (CommonPart, Box<dyn Family>);

@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slew_codes_double_from_a_sixteenth_of_a_volt_a_second() {
+    fn each_slew_code_doubles_the_rate() {
         assert_eq!(nominal_rate(0, false), None);
         assert_eq!(nominal_rate(5, false), Some(1.0));
         assert_eq!(nominal_rate(0xB, false), Some(64.0));

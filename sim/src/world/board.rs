@@ -145,7 +145,7 @@ impl Board {
                 .then_some(self.pulse_us);
             self.gates.arm(self.now_us, pulse);
         }
-        if self.wanted() == self.switches || self.switch_at_us.is_some() {
+        if self.commanded() == self.switches || self.switch_at_us.is_some() {
             return;
         }
         if self.source_live {
@@ -205,7 +205,7 @@ impl Board {
         }
     }
 
-    fn wanted(&self) -> Switches {
+    fn commanded(&self) -> Switches {
         Switches {
             drive: self.commands.is_on(Out::CoilDrive),
             select_no: self.commands.is_on(Out::SelectNo),
@@ -258,7 +258,7 @@ impl Board {
     /// Switches drive, selection and direction to the commanded state.
     fn throw(&mut self, part: Option<&mut Specimen>) {
         let before = self.switches;
-        self.switches = self.wanted();
+        self.switches = self.commanded();
         if before.select_no != self.switches.select_no {
             self.closed_since_us = None;
         }
@@ -333,11 +333,11 @@ impl Board {
         if self.driving && meets && !self.commands.is_on(Out::ReferenceCoil) {
             return Supply::Volts(self.behind_probes_v(part.input_ohm()));
         }
-        let clamp_v = if self.clamp_diode && meets {
+        let suppression_v = if self.clamp_diode && meets {
             self.table.diode_v
         } else {
             self.table.zener_v
         };
-        Supply::Off { clamp_v }
+        Supply::Off { suppression_v }
     }
 }

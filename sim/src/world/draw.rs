@@ -13,11 +13,11 @@ pub enum Subject {
     /// A lot part by its index in the lot.
     LotPart = 3,
     /// A reference part.
-    GoldenPart = 4,
+    ReferencePart = 4,
     /// Scatter of the operations of a lot part.
     LotOperations = 5,
     /// Scatter of the operations of a reference part.
-    GoldenOperations = 6,
+    ReferenceOperations = 6,
     /// Positions of the defects in a block of the lot.
     DefectBlock = 7,
 }

@@ -43,7 +43,7 @@ faults! {
         JamPusher = "jam_pusher", StuckClamp = "stuck_clamp", NoPart = "no_part",
         DoublePart = "double_part", Fall = "fall", ProbeDirty = "probe_dirty",
         BeamBlind = "beam_blind", AxisAlarm = "axis_alarm", StuckLift = "stuck_lift",
-        StuckGripper = "stuck_gripper", Turned = "turned", PartMisses = "part_misses",
+        StuckGripper = "stuck_gripper", Misoriented = "turned", PartMisses = "part_misses",
         PartStays = "part_stays", PartSticks = "part_sticks",
     }
     Timed {
@@ -55,7 +55,7 @@ faults! {
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",
         NoiseSeed = "noise_seed", ProbeFilm = "probe_film",
-        GoldenEvery = "golden_every",
+        ReferenceEvery = "golden_every",
     }
 }
 
@@ -98,7 +98,7 @@ impl WorldFaults {
     }
 
     /// Adds a fault that strikes at a part.
-    pub fn ask(&mut self, fault: Fault, part: f64) {
+    pub fn add(&mut self, fault: Fault, part: f64) {
         self.0.push((fault, part));
     }
 

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn gate_0_runs_from_the_start_event_to_the_latch() {
+    fn gate_0_runs_from_start_event_to_latch() {
         let mut g = gates();
         g.arm(0.0, None);
         g.start(100.0);
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn gate_1_also_counts_the_open_time_of_the_bounce() {
+    fn gate_1_counts_the_open_time_of_bounce() {
         let mut g = gates();
         g.arm(0.0, None);
         g.start(100.0);
@@ -210,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reference_pulse_opens_both_gates_and_each_adds_its_delay() {
+    fn the_reference_pulse_opens_both_gates_with_their_delays() {
         let mut g = Gates::new([7.0, -4.0], 20_000.0);
         g.contact(0.0, true);
         g.arm(5.0, Some(1_000.0));

@@ -44,7 +44,7 @@ impl Part {
     /// Returns this body with its path, and the body that clings to it.
     pub fn bodies(&self) -> impl Iterator<Item = BodyTruth> {
         let own = BodyTruth {
-            golden: self.number.is_none(),
+            is_reference: self.number.is_none(),
             clung: false,
             path: self.path.clone(),
             part: self.truth(),
@@ -74,7 +74,7 @@ pub struct Magazine {
     /// Number of lot parts; `None` for an endless lot.
     parts: Option<u64>,
     /// Number of lot parts between two reference parts, once the lot has begun.
-    golden_every: Option<u64>,
+    reference_every: Option<u64>,
     /// Reference parts and lot parts that have left.
     out: (u64, u64),
     /// Values of `out` when the magazine was filled.
@@ -99,8 +99,8 @@ impl Magazine {
             lot: Lot::read(options, world)?,
             seed: options.seed,
             parts: options.parts,
-            golden_every: faults
-                .values(Fault::GoldenEvery)
+            reference_every: faults
+                .values(Fault::ReferenceEvery)
                 .next()
                 .map(|it| it.max(1.0) as u64),
             out: (0, 0),
@@ -124,21 +124,21 @@ impl Magazine {
     /// Returns the number of remaining parts; `u64::MAX` for an endless lot.
     pub fn waiting(&self) -> u64 {
         let out = self.since_filled();
-        let ahead = self.lot.golden().saturating_sub(out.0);
+        let ahead = self.lot.reference_parts().saturating_sub(out.0);
         let lot = |parts: u64| ahead + parts.saturating_sub(out.1);
         self.parts.map_or(u64::MAX, lot)
     }
 
     /// Returns the number in the lot (from 1) of the next part; `None` for a reference part.
     pub fn next_number(&self) -> Option<u64> {
-        (self.since_filled().0 >= self.golden_due()).then_some(self.out.1 + 1)
+        (self.since_filled().0 >= self.reference_parts_due()).then_some(self.out.1 + 1)
     }
 
     /// Returns the number of reference parts that precede the next lot part.
-    fn golden_due(&self) -> u64 {
+    fn reference_parts_due(&self) -> u64 {
         let lot = self.since_filled().1;
-        let again = self.golden_every.map_or(0, |every| lot / every);
-        match self.lot.golden() {
+        let again = self.reference_every.map_or(0, |every| lot / every);
+        match self.lot.reference_parts() {
             0 => 0,
             first => first + again,
         }
@@ -152,7 +152,7 @@ impl Magazine {
         let number = self.next_number();
         let specimen = match number {
             Some(n) => self.lot_part(n - 1, now_us, faults),
-            None => self.golden_part(self.out.0, now_us, faults)?,
+            None => self.reference_part(self.out.0, now_us, faults)?,
         };
         match number {
             Some(_) => self.out.1 += 1,
@@ -179,21 +179,29 @@ impl Magazine {
             dirty_pin: faults
                 .strikes(Fault::ProbeDirty, number)
                 .then_some(DIRTY_PIN),
-            turned: faults.strikes(Fault::Turned, number),
+            misoriented: faults.strikes(Fault::Misoriented, number),
             ..self.arrival(now_us, draw)
         };
         self.lot.part(seed, body, arrival)
     }
 
     /// Creates a reference part; after the last one the first one repeats.
-    fn golden_part(&self, index: u64, now_us: u64, faults: &WorldFaults) -> Option<Specimen> {
+    fn reference_part(&self, index: u64, now_us: u64, faults: &WorldFaults) -> Option<Specimen> {
         let place = index - self.filled_at.0;
-        let body = if place < self.lot.golden() { place } else { 0 };
+        let body = if place < self.lot.reference_parts() {
+            place
+        } else {
+            0
+        };
         let noise = faults.noise_seed();
-        let draw = Draw::new(noise.unwrap_or(self.seed), Subject::GoldenOperations, index);
+        let draw = Draw::new(
+            noise.unwrap_or(self.seed),
+            Subject::ReferenceOperations,
+            index,
+        );
         let arrival = self.arrival(now_us, draw);
         self.lot
-            .golden_part(self.seed, body, noise.is_some(), arrival)
+            .reference_part(self.seed, body, noise.is_some(), arrival)
     }
 
     fn arrival(&self, now_us: u64, draw: Draw) -> Arrival {
@@ -203,7 +211,7 @@ impl Magazine {
             ambient_c: self.ambient_c,
             draw,
             dirty_pin: None,
-            turned: false,
+            misoriented: false,
         }
     }
 }

@@ -20,12 +20,12 @@ use super::signal::{Commands, In, Out};
 use super::table::MechanismTable;
 use crate::config::Bin;
 use crate::truth::{BodyTruth, Place};
-use posture::Lookout;
+use posture::CrashWatch;
 use std::collections::VecDeque;
 
 /// Identifies a cylinder of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Stroke {
+enum CylinderId {
     Escapement,
     Pusher,
     JawLeft,
@@ -35,7 +35,7 @@ enum Stroke {
     Gripper,
 }
 
-impl Stroke {
+impl CylinderId {
     const ALL: [Self; 7] = [
         Self::Escapement,
         Self::Pusher,
@@ -62,7 +62,7 @@ impl Stroke {
 
 /// Event that the mechanism has scheduled.
 #[derive(Debug, Clone)]
-enum Later {
+enum Scheduled {
     LiftOff,
     LetGo,
     Slip,
@@ -76,7 +76,7 @@ enum Later {
 }
 
 /// Number of motion starts that are kept: a quarter of an hour of production.
-const DRIVEN: usize = 8_192;
+const MOTION_STARTS_KEPT: usize = 8_192;
 
 /// The mechanism with its parts.
 #[derive(Debug, Clone)]
@@ -85,7 +85,7 @@ pub struct Mechanism {
     cylinders: [Cylinder; 7],
     axis: Axis,
     bins: Vec<Bin>,
-    lookout: Lookout,
+    lookout: CrashWatch,
     magazine: Magazine,
     /// Parts by their place.
     pub places: Places,
@@ -94,7 +94,7 @@ pub struct Mechanism {
     commands: Commands,
     disturbed: Vec<Fault>,
     dark: Vec<In>,
-    later: Vec<(u64, Later)>,
+    later: Vec<(u64, Scheduled)>,
     next_us: u64,
     crashes: Vec<String>,
     driven: VecDeque<(u64, &'static str)>,
@@ -120,16 +120,16 @@ impl Mechanism {
             table.gripper_ms,
         ];
         let at = |s: f64| (s.max(0.0) * 1e6) as u64;
-        let later: Vec<(u64, Later)> = faults
+        let later: Vec<(u64, Scheduled)> = faults
             .timed()
-            .map(|(fault, s)| (at(s), Later::Disturb(fault)))
+            .map(|(fault, s)| (at(s), Scheduled::Disturb(fault)))
             .collect();
         let mut mechanism = Self {
             table: table.clone(),
             cylinders: means.map(Cylinder::new),
             axis,
             bins,
-            lookout: Lookout::over(bodies),
+            lookout: CrashWatch::new(bodies),
             magazine,
             places: Places::default(),
             faults,
@@ -157,7 +157,7 @@ impl Mechanism {
     }
 
     /// Replaces the parts in the magazine by those that `load` prepares from the remaining faults.
-    pub fn fill<E>(
+    pub fn refill<E>(
         &mut self,
         load: impl FnOnce(&WorldFaults) -> Result<Magazine, E>,
     ) -> Result<(), E> {
@@ -168,7 +168,7 @@ impl Mechanism {
     /// Returns every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
         let falling = self.later.iter().filter_map(|(_, what)| match what {
-            Later::Land(_, part) => Some(part.bodies()),
+            Scheduled::Land(_, part) => Some(part.bodies()),
             _ => None,
         });
         let mut all: Vec<BodyTruth> = self.places.bodies().chain(falling.flatten()).collect();
@@ -176,34 +176,35 @@ impl Mechanism {
         all
     }
 
-    /// Returns the start of each of the last [`DRIVEN`] motions that an output caused: microseconds and actuator.
-    pub fn driven(&self) -> impl Iterator<Item = (u64, &'static str)> + '_ {
+    /// Returns the start of each of the last [`MOTION_STARTS_KEPT`] motions that an output caused: microseconds and actuator.
+    pub fn motion_starts(&self) -> impl Iterator<Item = (u64, &'static str)> + '_ {
         self.driven.iter().copied()
     }
 
     fn note_driven(&mut self, now_us: u64, what: &'static str) {
         self.driven.push_back((now_us, what));
-        if self.driven.len() > DRIVEN {
+        if self.driven.len() > MOTION_STARTS_KEPT {
             self.driven.pop_front();
         }
     }
 
     /// Cancels the faults that have not struck yet.
-    pub fn calm(&mut self) {
+    pub fn cancel_faults(&mut self) {
         self.faults.clear();
         self.later
-            .retain(|(_, what)| !matches!(what, Later::Disturb(_)));
+            .retain(|(_, what)| !matches!(what, Scheduled::Disturb(_)));
         self.schedule();
     }
 
     /// Checks whether the pin block is up, so that the probe-up chain is closed.
     pub fn probes_up(&self, now_us: u64) -> bool {
-        self.at(Stroke::ProbeLift).at_far(now_us)
+        self.at(CylinderId::ProbeLift).at_far(now_us)
     }
 
     /// Checks whether the probes touch the pins of a clamped part.
     pub fn probes_touch(&self, now_us: u64) -> bool {
-        let clamped = [Stroke::JawLeft, Stroke::JawRight].map(|j| self.at(j).at_far(now_us));
+        let clamped =
+            [CylinderId::JawLeft, CylinderId::JawRight].map(|j| self.at(j).at_far(now_us));
         self.probes_up(now_us) && self.places.nest.is_some() && clamped == [true, true]
     }
 
@@ -228,7 +229,7 @@ impl Mechanism {
     /// Carries out the events that are due at [`Mechanism::next_us`].
     pub fn process(&mut self, now_us: u64) {
         self.watch(now_us);
-        for stroke in Stroke::ALL {
+        for stroke in CylinderId::ALL {
             if self.at(stroke).due_us().is_some_and(|due| due <= now_us) {
                 self.cylinders[stroke as usize].arrive();
                 self.stroke_ended(stroke, now_us);
@@ -246,16 +247,16 @@ impl Mechanism {
 
     /// Lets a timed fault strike now.
     pub fn disturb(&mut self, fault: Fault, now_us: u64) {
-        self.later.push((now_us, Later::Disturb(fault)));
+        self.later.push((now_us, Scheduled::Disturb(fault)));
         self.schedule();
     }
 
     /// Adds a fault that strikes at a part (number from 1).
-    pub fn ask(&mut self, fault: Fault, part: f64) {
-        self.faults.ask(fault, part);
+    pub fn add_part_fault(&mut self, fault: Fault, part: f64) {
+        self.faults.add(fault, part);
     }
 
-    fn at(&self, stroke: Stroke) -> &Cylinder {
+    fn at(&self, stroke: CylinderId) -> &Cylinder {
         &self.cylinders[stroke as usize]
     }
 
@@ -295,10 +296,10 @@ impl Mechanism {
     fn move_cylinders(&mut self, now_us: u64) {
         let (air, on) = (self.has_air(), self.commands);
         let single = [
-            (Stroke::Escapement, Out::EscapementRelease),
-            (Stroke::Pusher, Out::PusherExtend),
-            (Stroke::ProbeLift, Out::ProbeLift),
-            (Stroke::SortZ, Out::SortZLower),
+            (CylinderId::Escapement, Out::EscapementRelease),
+            (CylinderId::Pusher, Out::PusherExtend),
+            (CylinderId::ProbeLift, Out::ProbeLift),
+            (CylinderId::SortZ, Out::SortZLower),
         ];
         for (stroke, out) in single {
             let driven = air && on.is_on(out);
@@ -307,9 +308,9 @@ impl Mechanism {
             }
         }
         let bistable = [
-            (Stroke::JawLeft, Out::ClampClose, Out::ClampOpen),
-            (Stroke::JawRight, Out::ClampClose, Out::ClampOpen),
-            (Stroke::Gripper, Out::GripperClose, Out::GripperRelease),
+            (CylinderId::JawLeft, Out::ClampClose, Out::ClampOpen),
+            (CylinderId::JawRight, Out::ClampClose, Out::ClampOpen),
+            (CylinderId::Gripper, Out::GripperClose, Out::GripperRelease),
         ];
         for (stroke, far, back) in bistable {
             let began = match (air, on.is_on(far), on.is_on(back)) {
@@ -324,7 +325,7 @@ impl Mechanism {
     }
 
     /// Starts a stroke; returns false if that end was already commanded.
-    fn send(&mut self, stroke: Stroke, far: bool, now_us: u64) -> bool {
+    fn send(&mut self, stroke: CylinderId, far: bool, now_us: u64) -> bool {
         if far == self.at(stroke).is_sent_far() {
             return false;
         }
@@ -335,15 +336,15 @@ impl Mechanism {
         true
     }
 
-    fn stalls(&mut self, stroke: Stroke) -> bool {
+    fn stalls(&mut self, stroke: CylinderId) -> bool {
         let number = |part: &Option<Box<Part>>| part.as_ref().and_then(|p| p.number);
         let (pocket, nest) = (number(&self.places.pocket), number(&self.places.nest));
         match stroke {
-            Stroke::Pusher => self.faults.strikes(Fault::JamPusher, pocket),
-            Stroke::JawRight => self.faults.strikes(Fault::StuckClamp, nest),
-            Stroke::ProbeLift => self.faults.strikes(Fault::StuckLift, nest),
-            Stroke::Gripper => self.faults.strikes(Fault::StuckGripper, nest),
-            Stroke::Escapement | Stroke::JawLeft | Stroke::SortZ => false,
+            CylinderId::Pusher => self.faults.strikes(Fault::JamPusher, pocket),
+            CylinderId::JawRight => self.faults.strikes(Fault::StuckClamp, nest),
+            CylinderId::ProbeLift => self.faults.strikes(Fault::StuckLift, nest),
+            CylinderId::Gripper => self.faults.strikes(Fault::StuckGripper, nest),
+            CylinderId::Escapement | CylinderId::JawLeft | CylinderId::SortZ => false,
         }
     }
 
@@ -360,32 +361,32 @@ impl Mechanism {
         let number = self.places.carried.as_ref().and_then(|p| p.number);
         let whole = self.axis.due_us().map_or(0, |due| due - now_us);
         if self.faults.strikes(Fault::Fall, number) {
-            self.later.push((now_us + whole / 3, Later::Slip));
+            self.later.push((now_us + whole / 3, Scheduled::Slip));
         }
         if self.faults.strikes(Fault::AxisAlarm, number) {
-            self.later.push((now_us + whole / 2, Later::Trip));
+            self.later.push((now_us + whole / 2, Scheduled::Trip));
         }
     }
 
-    fn happen(&mut self, what: Later, now_us: u64) {
+    fn happen(&mut self, what: Scheduled, now_us: u64) {
         match what {
-            Later::LiftOff => self.lift_off(now_us),
-            Later::LetGo => self.let_go(now_us),
-            Later::Slip | Later::TakenOut => self.lose(now_us),
-            Later::Trip => self.axis.trip(now_us),
-            Later::Dark(beam) => self.dark.push(beam),
-            Later::Lit(beam) => self.dark.retain(|&b| b != beam),
-            Later::Land(bin, mut part) => {
+            Scheduled::LiftOff => self.lift_off(now_us),
+            Scheduled::LetGo => self.let_go(now_us),
+            Scheduled::Slip | Scheduled::TakenOut => self.lose(now_us),
+            Scheduled::Trip => self.axis.trip(now_us),
+            Scheduled::Dark(beam) => self.dark.push(beam),
+            Scheduled::Lit(beam) => self.dark.retain(|&b| b != beam),
+            Scheduled::Land(bin, mut part) => {
                 part.goes(now_us, Place::Bin(bin));
                 self.places.finish(&part);
             }
-            Later::Disturb(fault) => {
+            Scheduled::Disturb(fault) => {
                 self.disturbed.push(fault);
                 let hold = (self.table.fault_hold_ms * 1000.0) as u64;
-                self.later.push((now_us + hold, Later::Calm(fault)));
+                self.later.push((now_us + hold, Scheduled::Calm(fault)));
                 self.disturbance_changed(now_us);
             }
-            Later::Calm(fault) => {
+            Scheduled::Calm(fault) => {
                 // A repeated fault lasts until the later end.
                 let first = self.disturbed.iter().position(|&other| other == fault);
                 first.map(|place| self.disturbed.remove(place));

@@ -12,7 +12,7 @@
 
 pub mod axis;
 pub mod board;
-#[cfg_attr(not(feature = "bodies"), path = "unwatched.rs")]
+#[cfg_attr(not(feature = "bodies"), path = "no_bodies.rs")]
 pub mod bodies;
 pub mod cylinder;
 pub mod defect;
@@ -67,7 +67,7 @@ pub struct WorldOptions {
     /// Number of lot parts in the magazine; `None` never runs out.
     pub parts: Option<u64>,
     /// Reference parts precede the lot.
-    pub golden: bool,
+    pub reference_parts: bool,
     /// Faults of the world by name and value; NaN selects the default of the table.
     pub faults: Vec<(String, f64)>,
 }
@@ -164,13 +164,13 @@ impl World {
     }
 
     /// Cancels the faults that have not struck yet.
-    pub fn calm(&mut self) {
-        self.mechanism.calm();
+    pub fn cancel_faults(&mut self) {
+        self.mechanism.cancel_faults();
     }
 
     /// Returns the start of each recent motion that an output caused: microseconds and actuator.
-    pub fn driven(&self) -> Vec<(u64, &'static str)> {
-        self.mechanism.driven().collect()
+    pub fn motion_starts(&self) -> Vec<(u64, &'static str)> {
+        self.mechanism.motion_starts().collect()
     }
 
     /// Returns a description of each crash, in order of time.
@@ -194,9 +194,13 @@ impl World {
         match (fault.kind(), value) {
             (Kind::Timed, None) => self.mechanism.disturb(fault, self.now_us),
             (Kind::Timed, Some(_)) => return Err(wrong("no value, since the fault strikes now")),
-            (Kind::OfPart, Some(part)) => self.mechanism.ask(fault, part),
+            (Kind::OfPart, Some(part)) => self.mechanism.add_part_fault(fault, part),
             (Kind::OfPart, None) => return Err(wrong("the number of a part")),
-            (Kind::OfStart, _) => return Err(wrong("a fault that a running rig accepts; this one applies only to the start")),
+            (Kind::OfStart, _) => {
+                return Err(wrong(
+                    "a fault that a running rig accepts; this one applies only to the start",
+                ));
+            }
         }
         Ok(())
     }
@@ -205,11 +209,11 @@ impl World {
     ///
     /// # Errors
     /// Fails when a configuration file is missing or wrong; the magazine then stays unchanged.
-    pub fn fill(&mut self, options: &WorldOptions) -> Result<(), ConfigError> {
+    pub fn refill(&mut self, options: &WorldOptions) -> Result<(), ConfigError> {
         let table = read_world(&options.config_dir, options.world_file.as_deref())?;
         let (track, ambient) = (self.environment.track_c, self.environment.ambient_c);
         self.mechanism
-            .fill(|faults| Magazine::load(options, &table, faults, track, ambient))?;
+            .refill(|faults| Magazine::load(options, &table, faults, track, ambient))?;
         self.mechanism_changed();
         Ok(())
     }

@@ -28,7 +28,7 @@ pub enum Supply {
     /// No source; the suppression holds its voltage while current flows.
     Off {
         /// Voltage of the suppression, V.
-        clamp_v: f64,
+        suppression_v: f64,
     },
 }
 
@@ -59,7 +59,7 @@ impl Pins {
     };
 
     /// The body is misoriented: wrong pins touch four of the five pairs.
-    pub const TURNED: Self = Self {
+    pub const MISORIENTED: Self = Self {
         present: [false; 5],
         kelvin: [true, true, false, true, true],
     };

@@ -1,7 +1,7 @@
 //! A specimen of any kind: drawn from its lot, probed by the interface board.
 //!
 //! Only this file lists the kinds, one variant for each. A kind is a folder beside this file, with a lot that
-//! draws its parts and a part that implements [`OnProbes`].
+//! draws its parts and a part that implements [`ProbeInterface`].
 
 use std::ops::{Deref, DerefMut};
 
@@ -20,7 +20,7 @@ use crate::truth::PartTruth;
 pub const REFERENCE_C: f64 = 23.0;
 
 /// Signals that the interface board finds on the pins of a specimen; a kind without contacts keeps the defaults.
-pub trait OnProbes {
+pub trait ProbeInterface {
     /// Returns the pins that touch their probes.
     fn pins(&self) -> Pins;
 
@@ -74,7 +74,7 @@ pub enum Specimen {
 }
 
 impl Deref for Specimen {
-    type Target = dyn OnProbes;
+    type Target = dyn ProbeInterface;
 
     fn deref(&self) -> &Self::Target {
         match self {
@@ -107,7 +107,7 @@ pub struct Arrival {
     /// Index of a pin that misses its Kelvin probes.
     pub dirty_pin: Option<usize>,
     /// The part is misoriented.
-    pub turned: bool,
+    pub misoriented: bool,
 }
 
 /// Parts of one recipe, drawn by seed and index.
@@ -132,9 +132,9 @@ impl Lot {
     }
 
     /// Returns the number of reference parts.
-    pub fn golden(&self) -> u64 {
+    pub fn reference_parts(&self) -> u64 {
         match self {
-            Self::Relay(lot) => lot.golden(),
+            Self::Relay(lot) => lot.reference_parts(),
             Self::Resistor(_) => 0,
         }
     }
@@ -148,7 +148,7 @@ impl Lot {
     }
 
     /// Returns the reference part at an index, `None` past the last; `other_day` gives the same body another temperature.
-    pub fn golden_part(
+    pub fn reference_part(
         &self,
         seed: u64,
         index: u64,
@@ -157,7 +157,7 @@ impl Lot {
     ) -> Option<Specimen> {
         match self {
             Self::Relay(lot) => lot
-                .golden_part(seed, index, other_day, arrival)
+                .reference_part(seed, index, other_day, arrival)
                 .map(|relay| Specimen::Relay(Box::new(relay))),
             Self::Resistor(_) => None,
         }

@@ -17,7 +17,7 @@ fn options(seed: u64) -> Options {
         seed,
         recipe: "jzc-22f-012".into(),
         parts: Some(3),
-        golden: false,
+        reference_parts: false,
         faults: Vec::new(),
     }
 }

@@ -30,7 +30,7 @@ fn ask(port: &mut File, request: &[u8]) -> Vec<u8> {
 fn a_client_may_reopen_the_port_for_every_request() {
     let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"\ninputs = [1.0]";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Ignored).expect("a pseudo-terminal");
     let (name, path) = ptys.paths().remove(0);
     assert_eq!(name, "bench");
     for _ in 0..3 {
@@ -46,7 +46,7 @@ fn a_client_may_reopen_the_port_for_every_request() {
 fn links_point_at_the_ports_and_vanish_with_them() {
     let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Ignored).expect("a pseudo-terminal");
     let folder = tempfile::tempdir().expect("a folder");
     let dir = folder.path().join("links");
     ptys.link(&dir).expect("a link");
@@ -65,7 +65,7 @@ fn a_lost_port_ends_its_client_and_returns() {
     let file = dir.path().join("bench.toml");
     std::fs::write(&file, "[[module]]\naddress = 1\nmodel = \"I-7017\"").expect("a file");
     let rig = rigsim::build_bench(&file, &["port_lost=1/100@0..0.5".to_owned()]).expect("a bench");
-    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Ignored).expect("a pseudo-terminal");
     ptys.link(dir.path()).expect("a link");
     let link = dir.path().join("bench");
     let mut port = client(&link);
@@ -109,7 +109,7 @@ fn a_module_ignores_requests_at_another_rate() {
         model = \"I-7080\"
         init = true";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig, Rates::Heeded).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Enforced).expect("a pseudo-terminal");
     let mut port = client(&ptys.paths().remove(0).1);
     // A client without a rate has the line's rate. The first module to answer is asked last.
     assert_eq!(ask(&mut port, b"$01M\r$00M\r$02M\r"), b"!027021\r");
@@ -134,7 +134,7 @@ fn opens_without_privileges(path: &Path, administrator: bool) -> bool {
 fn a_killed_client_does_not_lock_the_port() {
     let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Ignored).expect("a pseudo-terminal");
     let path = ptys.paths().remove(0).1;
     let all = std::fs::Permissions::from_mode(0o666);
     std::fs::set_permissions(&path, all).expect("own port");

@@ -12,14 +12,14 @@ const MODELS: [&str; 15] = [
 ];
 
 /// Requests that change nothing and together read all registers of a module; a module may not know some of them.
-const ASKS: [&str; 16] = [
+const QUERIES: [&str; 16] = [
     "$2", "$6", "$M", "~0", "~2", "@", "$8", "~4", "~4P", "~4S", "$A", "$B", "$4", "@G0", "$31",
     "@DI",
 ];
 
 /// Count of inputs by their effect.
 #[derive(Debug, Default)]
-pub struct Seen {
+pub struct Tally {
     /// Inputs with an answer.
     pub answered: u64,
     /// Inputs without an answer.
@@ -60,9 +60,9 @@ fn with_checksum(text: &str, checksum: bool) -> Vec<u8> {
 
 /// Reads all registers of a module. Skips `$4`, which clears the sample of a digital module and stores the value
 /// of an analog output.
-fn says(rig: &mut Rig, model: &str, checksum: bool) -> Vec<Option<Vec<u8>>> {
+fn registers(rig: &mut Rig, model: &str, checksum: bool) -> Vec<Option<Vec<u8>>> {
     let counter = model.starts_with("I-7080");
-    let asks = ASKS.iter().filter(|ask| counter || **ask != "$4");
+    let asks = QUERIES.iter().filter(|ask| counter || **ask != "$4");
     asks.map(|ask| {
         let (lead, body) = ask.split_at(1);
         let text = with_checksum(&format!("{lead}01{body}"), checksum);
@@ -110,13 +110,13 @@ fn input(random: &mut Random) -> Vec<u8> {
 }
 
 /// Sends this many inputs to every model in turn.
-pub fn throw(seed: u64, inputs: u64) -> Seen {
+pub fn throw(seed: u64, inputs: u64) -> Tally {
     let mut random = Random(SplitMix64::seed_from_u64(seed));
-    let mut seen = Seen::default();
+    let mut seen = Tally::default();
     for (place, model) in MODELS.iter().cycle().take(2 * MODELS.len()).enumerate() {
         let checksum = place >= MODELS.len();
         let mut rig = module(model, checksum);
-        let mut before = says(&mut rig, model, checksum);
+        let mut before = registers(&mut rig, model, checksum);
         for number in 0..inputs / (2 * MODELS.len() as u64) {
             let mut text = input(&mut random);
             let is_whole = checksum && number % 2 == 0;
@@ -136,13 +136,13 @@ pub fn throw(seed: u64, inputs: u64) -> Seen {
                     if text.first() == Some(&b'%') {
                         rig = module(model, checksum);
                     }
-                    before = says(&mut rig, model, checksum);
+                    before = registers(&mut rig, model, checksum);
                 }
-                None if broadcast => before = says(&mut rig, model, checksum),
+                None if broadcast => before = registers(&mut rig, model, checksum),
                 None => {
                     seen.unheard += 1;
                     assert_eq!(rig.eeprom_writes(), writes, "{model} {text:?}");
-                    let after = says(&mut rig, model, checksum);
+                    let after = registers(&mut rig, model, checksum);
                     assert!(after == before, "seed {seed}, {model}: {text:?} changed it");
                 }
             }

@@ -219,7 +219,7 @@ pub(in crate::cli) mod simulated {
             seed: args.rig.seed,
             recipe: args.recipe.clone(),
             parts: args.count,
-            golden: true,
+            reference_parts: true,
             faults: faults(plant, args),
         }
     }
@@ -233,7 +233,7 @@ pub(in crate::cli) mod simulated {
     pub fn build_empty(plant: &Plant, config: &Path, args: &RunArgs) -> anyhow::Result<SharedRig> {
         Ok(rigsim::build(&Options {
             parts: Some(0),
-            golden: false,
+            reference_parts: false,
             ..loaded(plant, config, args)
         })?)
     }
@@ -245,7 +245,7 @@ pub(in crate::cli) mod simulated {
         config: &Path,
         args: &RunArgs,
     ) -> anyhow::Result<()> {
-        Ok(rig.fill(&loaded(plant, config, args))?)
+        Ok(rig.refill(&loaded(plant, config, args))?)
     }
 
     /// The simulated rig behind its lines.
@@ -260,7 +260,7 @@ pub(in crate::cli) mod simulated {
             logs: Vec::new(),
         };
         if !args.rig.is_virtual() {
-            let ptys = pty::serve(&rig, Rates::Any)?;
+            let ptys = pty::serve(&rig, Rates::Ignored)?;
             for (name, path) in ptys.paths() {
                 let line = plant
                     .wiring

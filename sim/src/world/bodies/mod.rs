@@ -6,10 +6,10 @@
 //!
 //! Between two events of the mechanism every motion is known. [`Bodies::watch`] reviews such an interval, for
 //! moved bodies and for pairs whose swept boxes meet, in steps of [`STEP_MM`] of the longer travel. Without the
-//! feature `bodies`, `unwatched.rs` replaces this module.
+//! feature `bodies`, `no_bodies.rs` replaces this module.
 
 mod body;
-mod meeting;
+mod pair_limits;
 mod scene;
 mod shape;
 
@@ -21,7 +21,7 @@ use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use super::posture::{ACTUATORS, Posture};
 use crate::config::ConfigError;
 use body::{Body, PARTS, depth_mm, element, parts};
-use meeting::{Meeting, meeting};
+use pair_limits::{PairLimits, pair_limits};
 use scene::{Scene, Size};
 
 /// Longest travel between two checks, mm: the width of the thinnest solid of the scene.
@@ -36,7 +36,7 @@ pub const WATCHED: bool = true;
 #[derive(Debug, Clone)]
 pub struct Bodies {
     bodies: Vec<Body>,
-    meetings: Vec<Meeting>,
+    limits: Vec<PairLimits>,
     strokes: [f64; 8],
 }
 
@@ -54,15 +54,15 @@ impl Bodies {
         let mut bodies: Vec<Body> = scene.elements.iter().map(|it| element(scene, it)).collect();
         bodies.extend(parts(scene, size));
         let strokes = ACTUATORS.map(|name| scene.stroke_mm(name));
-        let mut meetings = Vec::new();
+        let mut limits = Vec::new();
         for a in 0..bodies.len() {
             for b in a + 1..bodies.len() {
-                meetings.extend(meeting(scene, &bodies, (a, b)));
+                limits.extend(pair_limits(scene, &bodies, (a, b)));
             }
         }
         Self {
             bodies,
-            meetings,
+            limits,
             strokes,
         }
     }
@@ -86,19 +86,19 @@ impl Bodies {
         let there = |(n, body): (usize, &Body)| self.is_there(n, to).then(|| body.swept(from, to));
         let boxes: Vec<Option<Aabb>> = self.bodies.iter().enumerate().map(there).collect();
         let mut found = Vec::new();
-        for meeting in self.meetings.iter().filter(|it| it.is_moved(&moved)) {
-            let (Some(one), Some(other)) = (boxes[meeting.pair.0], boxes[meeting.pair.1]) else {
-                touching.remove(&meeting.pair);
+        for limit in self.limits.iter().filter(|it| it.is_moved(&moved)) {
+            let (Some(one), Some(other)) = (boxes[limit.pair.0], boxes[limit.pair.1]) else {
+                touching.remove(&limit.pair);
                 continue;
             };
             let depth_mm = match one.intersects(&other) {
-                true => self.deepest_mm(meeting.pair, (from, to), &between),
+                true => self.deepest_mm(limit.pair, (from, to), &between),
                 false => f64::NEG_INFINITY,
             };
-            if depth_mm <= meeting.allowed(&moved, to.slack) + ROUNDING_MM {
-                touching.remove(&meeting.pair);
-            } else if touching.insert(meeting.pair) {
-                let (a, b) = (&self.bodies[meeting.pair.0], &self.bodies[meeting.pair.1]);
+            if depth_mm <= limit.allowed(&moved, to.slack) + ROUNDING_MM {
+                touching.remove(&limit.pair);
+            } else if touching.insert(limit.pair) {
+                let (a, b) = (&self.bodies[limit.pair.0], &self.bodies[limit.pair.1]);
                 found.push(format!("{} and {}, {depth_mm:.2} mm deep", a.name, b.name));
             }
         }

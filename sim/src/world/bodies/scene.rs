@@ -26,7 +26,7 @@ pub struct Body {
     pub form: Form,
     /// Pose relative to the owner; identity by default.
     #[serde(default)]
-    pub pose: Place,
+    pub pose: Placement,
 }
 
 /// Shapes; lengths in mm.
@@ -44,14 +44,14 @@ pub enum Form {
 /// Position in mm and rotation as a quaternion w, x, y, z.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(default)]
-pub struct Place {
+pub struct Placement {
     /// Position of the centre, mm.
     pub position: [f64; 3],
     /// Rotation of the axes.
     pub rotation: [f64; 4],
 }
 
-impl Default for Place {
+impl Default for Placement {
     fn default() -> Self {
         Self {
             position: [0.0; 3],
@@ -106,7 +106,7 @@ pub enum Rule {
 
 /// Places of a part (middle of the lower rear edge of its body), and permitted depths.
 #[derive(Debug, Clone, Deserialize)]
-pub struct Places {
+pub struct PartPlaces {
     /// Depth up to which a contact does not count, mm.
     pub touch_depth_mm: f64,
     /// Distance of the pins from the outline of the body, mm.
@@ -121,7 +121,7 @@ pub struct Places {
 #[derive(Debug, Clone, Deserialize)]
 pub struct Scene {
     /// Places of a part.
-    pub guard: Places,
+    pub guard: PartPlaces,
     /// All actuators.
     pub actuator: Vec<Actuator>,
     /// All elements.

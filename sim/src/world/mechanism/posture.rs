@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use super::{Mechanism, Stroke};
+use super::{CylinderId, Mechanism};
 use crate::world::bodies::Bodies;
 use crate::world::posture::Posture;
 
 /// The bodies, with the instant up to which they have been checked.
 #[derive(Debug, Clone)]
-pub(super) struct Lookout {
+pub(super) struct CrashWatch {
     bodies: Bodies,
     /// Last check: instant (microseconds) and posture.
     last: Option<(u64, Posture)>,
@@ -19,9 +19,9 @@ pub(super) struct Lookout {
     pub slides_off: bool,
 }
 
-impl Lookout {
+impl CrashWatch {
     /// Starts without a check.
-    pub fn over(bodies: Bodies) -> Self {
+    pub fn new(bodies: Bodies) -> Self {
         Self {
             bodies,
             last: None,
@@ -62,13 +62,14 @@ impl Mechanism {
 
     fn posture(&self, t_us: u64) -> Posture {
         let mut mm = [0.0; 8];
-        for (n, stroke) in Stroke::ALL.into_iter().enumerate() {
+        for (n, stroke) in CylinderId::ALL.into_iter().enumerate() {
             mm[n] = self.at(stroke).position(t_us) * self.lookout.bodies.stroke_mm(n);
         }
-        mm[Stroke::ALL.len()] = self.axis.x_mm(t_us);
+        mm[CylinderId::ALL.len()] = self.axis.x_mm(t_us);
         let places = &self.places;
         // The jaws grip harder than the fingers: a part in both grips stays in the nest.
-        let jaws_open = [Stroke::JawLeft, Stroke::JawRight].map(|jaw| self.at(jaw).at_rest(t_us));
+        let jaws_open =
+            [CylinderId::JawLeft, CylinderId::JawRight].map(|jaw| self.at(jaw).at_rest(t_us));
         let lifted = places.gripped && jaws_open == [true, true];
         Posture {
             mm,

@@ -42,7 +42,7 @@ defects! {
     /// The resistance of one contact differs at every closure and is always too high.
     UnstableContact = "unstable_contact",
     /// The relay is misoriented in the nest: coil and common miss their pins.
-    Turned = "turned",
+    Misoriented = "turned",
     /// One pin is missing.
     MissingPin = "missing_pin",
 }

@@ -19,7 +19,7 @@ use super::lumped::{Drive, Kind, Model, Parameters, Solver, State};
 
 /// Results that the fitted relay shows, at 23 C.
 #[derive(Debug, Clone, Copy)]
-pub struct Wanted {
+pub struct FitTarget {
     /// Coil resistance, ohm.
     pub coil_ohm: f64,
     /// Number of turns relative to the default relay.
@@ -33,14 +33,14 @@ pub struct Wanted {
     /// Suppression voltage of the timed release, V.
     pub zener_v: f64,
     /// Origin of the two times.
-    pub pace: Pace,
+    pub time_origin: TimeOrigin,
 }
 
 /// Origin of a relay's operate time and release time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pace {
+pub enum TimeOrigin {
     /// The lot draws both.
-    Drawn,
+    Lot,
     /// Neither is drawn: both follow from springs and winding.
     Follows,
     /// The lot draws the operate time; friction at the hinge makes it long.
@@ -63,7 +63,7 @@ const PLAUSIBLE: f64 = 2.0;
 /// relay: the start of Broyden's method, without effect on the result.
 const SLOPES: [[f64; 2]; 2] = [[0.25, 0.1], [0.25, 0.45]];
 
-impl Wanted {
+impl FitTarget {
     /// Returns parameters whose results are as near to the targets as the limits allow.
     pub fn fit(&self, base: &Parameters) -> Parameters {
         let mut p = *base;
@@ -71,10 +71,10 @@ impl Wanted {
         p.R23 = self.coil_ohm;
         p.N = base.N * self.turns;
         let p = self.with_thresholds(&p);
-        match self.pace {
-            Pace::Drawn => self.with_times(&p),
-            Pace::Follows => p,
-            Pace::Hinge => self.with_one(
+        match self.time_origin {
+            TimeOrigin::Lot => self.with_times(&p),
+            TimeOrigin::Follows => p,
+            TimeOrigin::Hinge => self.with_one(
                 0,
                 |x| Parameters {
                     c_a: p.c_a * x.exp(),
@@ -82,7 +82,7 @@ impl Wanted {
                 },
                 0.0..6.0,
             ),
-            Pace::Iron => self.with_one(
+            TimeOrigin::Iron => self.with_one(
                 1,
                 |x| Parameters {
                     k_ec: p.k_ec * x.exp(),
@@ -207,7 +207,7 @@ impl Wanted {
         first_make(
             model,
             sealed,
-            &Drive::Clamp {
+            &Drive::Suppression {
                 volts: self.zener_v,
             },
             Kind::Nc,

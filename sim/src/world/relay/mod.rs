@@ -8,18 +8,18 @@
 //! scatter between operations, since the remanence differs: a volt of remanence reduces the effective coil
 //! voltage by a volt.
 
+pub mod certificate;
 mod contacts;
 pub mod defect;
-pub mod drawn;
 pub mod fit;
-pub mod golden;
 mod lot;
 pub mod lumped;
 mod motion;
-mod on_probes;
+mod probe_interface;
 pub mod record;
 pub mod table;
 mod thermal;
+pub mod values;
 
 use std::collections::VecDeque;
 
@@ -28,18 +28,18 @@ use super::probes::{Change, Contact, Supply};
 use super::specimen::REFERENCE_C;
 use super::table::WorldTable;
 use defect::Defect;
-use drawn::Drawn;
 pub use lot::Lot;
 use lumped::{Drive, Model};
 pub use motion::Levels;
 use motion::Motion;
-use record::Record;
+use record::RelayRecord;
 use thermal::Thermal;
+use values::RelayValues;
 
 /// A relay with accessible coil and contacts.
 #[derive(Debug, Clone)]
 pub struct Relay {
-    drawn: Drawn,
+    drawn: RelayValues,
     motion: Motion,
     copper_zero_c: f64,
     scatter_v: f64,
@@ -57,7 +57,7 @@ pub struct Relay {
     settled_us: f64,
     bounce: VecDeque<Change>,
     /// Results that this relay has shown so far.
-    pub record: Record,
+    pub record: RelayRecord,
 }
 
 /// Longest interval with a constant coil resistance, microseconds.
@@ -70,7 +70,7 @@ const NEW_OPERATION: f64 = 0.1;
 impl Relay {
     /// Creates a relay from its true values at an instant; `draw` is the random stream of its operations.
     pub fn new(
-        mut drawn: Drawn,
+        mut drawn: RelayValues,
         world: &WorldTable,
         mut draw: Draw,
         t_us: f64,
@@ -82,17 +82,17 @@ impl Relay {
         let above = track_c + drawn.offset_k - ambient_c;
         let film = if welded { drawn.film_no } else { drawn.film_nc };
         let side = if welded { Contact::No } else { Contact::Nc };
-        let mut record = Record::new(&drawn);
+        let mut record = RelayRecord::new(&drawn);
         record.close(side, film.close(&mut draw));
-        let model = Model::new(&drawn.wanted(world).fit(&table.lumped));
+        let model = Model::new(&drawn.fit_target(world).fit(&table.lumped));
         drawn.operate_v = model.pickup().volts;
         drawn.release_v = model.release().volts;
         let supply = Supply::Off {
-            clamp_v: world.board.zener_v,
+            suppression_v: world.board.zener_v,
         };
         let stuck = drawn.coil_ohm.is_infinite()
             || matches!(drawn.defect, Some(Defect::StuckNo | Defect::StuckNc));
-        let drive = Drive::Clamp {
+        let drive = Drive::Suppression {
             volts: world.board.zener_v,
         };
         let scatter_v = world.lot.threshold_scatter_sd_mv * 1e-3 * drawn.volt_scale;
@@ -119,7 +119,7 @@ impl Relay {
     }
 
     /// Returns the true values, with the thresholds of the present operation.
-    pub fn drawn(&self) -> &Drawn {
+    pub fn values(&self) -> &RelayValues {
         &self.drawn
     }
 
@@ -202,7 +202,9 @@ impl Relay {
         let drive = match self.supply {
             Supply::Volts(_) if self.drawn.coil_ohm.is_infinite() => Drive::still(0.0),
             Supply::Volts(volts) => Drive::still(volts - self.operation_v),
-            Supply::Off { clamp_v } => Drive::Clamp { volts: clamp_v },
+            Supply::Off { suppression_v } => Drive::Suppression {
+                volts: suppression_v,
+            },
         };
         let ohm = self.copper_ratio() * self.motion.reference_ohm();
         self.motion.set(drive, ohm);

@@ -59,7 +59,7 @@ impl Motion {
     pub fn new(model: Model, t_s: f64, drive: Drive, stuck: bool, seated: bool) -> Self {
         let mut state = model.at_rest(0.0);
         if seated {
-            state[X] = model.places.seat;
+            state[X] = model.stops.seat;
             model.pressed(&mut state);
         }
         let solver = Solver::new(&model, &drive, t_s, state, RTOL);
@@ -85,12 +85,12 @@ impl Motion {
 
     /// Checks whether a contact or stop is touched now.
     pub fn touches(&self, kind: Kind) -> bool {
-        self.model.places.overlap(kind, &self.solver.state) > 0.0
+        self.model.stops.overlap(kind, &self.solver.state) > 0.0
     }
 
     /// Checks whether the armature is at a stop: pressed on it, or within a fiftieth of the travel.
     pub fn at_a_stop(&self) -> bool {
-        let (x, travel) = (self.solver.state[X], self.model.places.seat);
+        let (x, travel) = (self.solver.state[X], self.model.stops.seat);
         x < 0.02 * travel || x > 0.98 * travel
     }
 
@@ -99,7 +99,7 @@ impl Motion {
         let rate = self.flux_rate(&self.solver.state);
         match self.drive {
             Drive::Source { .. } => (volts - rate) / self.model.ohm(),
-            Drive::Clamp { .. } => self.model.current_at(&self.solver.state, rate).max(0.0),
+            Drive::Suppression { .. } => self.model.current_at(&self.solver.state, rate).max(0.0),
         }
     }
 

@@ -1,6 +1,6 @@
 //! Results of one relay: the last full-voltage operation and release, and its contact closures.
 
-use super::drawn::Drawn;
+use super::values::RelayValues;
 use crate::world::probes::Contact;
 
 /// Least voltage that counts as full, as a fraction of nominal.
@@ -29,16 +29,16 @@ struct Timing {
 
 /// Results of one relay on the probes.
 #[derive(Debug, Clone)]
-pub struct Record {
+pub struct RelayRecord {
     nominal_v: f64,
     closures: [Closures; 2],
     timing: [Timing; 2],
     operations: u64,
 }
 
-impl Record {
+impl RelayRecord {
     /// Creates a record without results.
-    pub fn new(drawn: &Drawn) -> Self {
+    pub fn new(drawn: &RelayValues) -> Self {
         Self {
             nominal_v: drawn.nominal_v,
             closures: Default::default(),

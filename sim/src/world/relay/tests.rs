@@ -7,7 +7,7 @@ mod contacts;
 mod drawn;
 mod transients;
 
-use super::drawn::{ContactFilm, Scale};
+use super::values::{ContactFilm, Scale};
 use super::*;
 use crate::config::read_world;
 use crate::world::draw::Subject;
@@ -33,7 +33,7 @@ fn reference_relay(world: &WorldTable) -> Relay {
         nominal_v: 12.0,
         nominal_coil_ohm: 400.0,
     };
-    let mut specimen = Drawn::of_lot(world, scale, 1, 0);
+    let mut specimen = RelayValues::of_lot(world, scale, 1, 0);
     specimen.defect = None;
     specimen.coil_ohm = 400.0;
     specimen.operate_v = 7.883_477_479_837_58;

@@ -45,9 +45,9 @@ impl Lot {
         if let Some(pin) = arrival.dirty_pin {
             part.pins.lose(pin);
         }
-        if arrival.turned {
-            part.pins = Pins::TURNED;
-            part.defect = Some(Defect::Turned);
+        if arrival.misoriented {
+            part.pins = Pins::MISORIENTED;
+            part.defect = Some(Defect::Misoriented);
         }
         part
     }
@@ -64,7 +64,7 @@ impl Lot {
                     false => good_ohm / factor,
                 }
             }
-            Defect::Turned => good_ohm,
+            Defect::Misoriented => good_ohm,
         }
     }
 }

@@ -10,7 +10,7 @@ mod lot;
 use serde::Deserialize;
 
 use super::probes::{Change, Pins, Supply};
-use super::specimen::{OnProbes, REFERENCE_C};
+use super::specimen::{ProbeInterface, REFERENCE_C};
 use crate::truth::PartTruth;
 use crate::world::table::table;
 pub use lot::Lot;
@@ -33,7 +33,7 @@ pub enum Defect {
     /// Another value of the resistor series.
     WrongValue,
     /// Misoriented in the nest.
-    Turned,
+    Misoriented,
 }
 
 impl Defect {
@@ -46,7 +46,7 @@ impl Defect {
             Self::Open => "open",
             Self::Short => "short",
             Self::WrongValue => "wrong_value",
-            Self::Turned => "turned",
+            Self::Misoriented => "turned",
         }
     }
 }
@@ -63,7 +63,7 @@ pub struct Resistor {
     supply_v: f64,
 }
 
-impl OnProbes for Resistor {
+impl ProbeInterface for Resistor {
     fn pins(&self) -> Pins {
         self.pins
     }

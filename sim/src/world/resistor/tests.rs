@@ -16,7 +16,7 @@ fn arrival(track_c: f64) -> Arrival {
         ambient_c: track_c,
         draw: Draw::new(1, Subject::LotOperations, 0),
         dirty_pin: None,
-        turned: false,
+        misoriented: false,
     }
 }
 
@@ -51,7 +51,7 @@ fn the_lot_scatters_about_its_nominal_value() {
 }
 
 #[test]
-fn every_kind_of_defect_is_equally_frequent_and_far_off() {
+fn defects_are_equally_frequent_and_far_off() {
     let lot = lot();
     let parts: Vec<Resistor> = (0..1200)
         .map(|i| lot.part(7, i, &arrival(REFERENCE_C)))
@@ -70,7 +70,7 @@ fn every_kind_of_defect_is_equally_frequent_and_far_off() {
                 Defect::WrongValue => {
                     (255.0..330.0).contains(&ohm) || (460.0..595.0).contains(&ohm)
                 }
-                Defect::Turned => false,
+                Defect::Misoriented => false,
             };
             assert!(fits, "{kind:?}: {ohm} ohm");
         }
@@ -85,7 +85,12 @@ fn the_current_follows_the_supply_at_once() {
         assert_eq!(part.input_a(), volts / part.input_ohm());
         assert_eq!(part.advance(1e6), None);
     }
-    part.drive(1e6, Supply::Off { clamp_v: 60.0 });
+    part.drive(
+        1e6,
+        Supply::Off {
+            suppression_v: 60.0,
+        },
+    );
     assert_eq!(part.input_a(), 0.0);
 }
 
@@ -117,7 +122,7 @@ fn blind_pins_are_there_and_no_contact_closes() {
 #[test]
 fn a_misoriented_dummy_matches_a_misoriented_relay() {
     let arrival = Arrival {
-        turned: true,
+        misoriented: true,
         ..arrival(REFERENCE_C)
     };
     let part = lot().part(7, 0, &arrival);

@@ -36,7 +36,7 @@ fn descending_fingers_crash_into_an_extended_pusher() {
 }
 
 #[test]
-fn an_axis_move_with_z_down_crashes_into_a_bracket() {
+fn an_axis_move_with_z_down_hits_a_bracket() {
     let mut hand = Hand::new(options(false));
     hand.set("axis_servo_on", true);
     hand.axis(0);

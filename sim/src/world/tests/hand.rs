@@ -110,13 +110,13 @@ impl Hand {
     }
 }
 
-pub(super) fn options(golden: bool) -> WorldOptions {
+pub(super) fn options(reference_parts: bool) -> WorldOptions {
     WorldOptions {
         config_dir: config_dir(),
         seed: 3,
         recipe: "jzc-22f-012".into(),
         parts: Some(3),
-        golden,
+        reference_parts,
         ..WorldOptions::default()
     }
 }

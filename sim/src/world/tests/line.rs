@@ -137,7 +137,7 @@ fn without_air_the_pusher_returns_and_the_jaws_hold() {
 }
 
 #[test]
-fn a_double_part_darkens_twice_a_fallen_part_lands_nowhere() {
+fn double_part_darkens_twice_and_fallen_part_lands_nowhere() {
     let mut o = options(false);
     o.faults = vec![("double_part".into(), 1.0), ("fall".into(), 2.0)];
     let mut hand = Hand::new(o);

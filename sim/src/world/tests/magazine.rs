@@ -11,7 +11,7 @@ fn loaded(parts: u64) -> Magazine {
         seed: 1,
         recipe: "jzc-22f-012".into(),
         parts: Some(parts),
-        golden: true,
+        reference_parts: true,
         ..WorldOptions::default()
     };
     let world = read_world(&config_dir(), None).unwrap();
@@ -33,12 +33,12 @@ fn a_refilled_magazine_repeats_only_the_reference_parts() {
     let mut second = loaded(3).in_place_of(&first);
     assert!(second.waiting() > 3);
     let two = emptied(&mut second);
-    let golden = |parts: &[(Option<u64>, f64)]| -> Vec<f64> {
-        let golden = parts.iter().filter(|(number, _)| number.is_none());
-        golden.map(|(_, coil)| *coil).collect()
+    let reference_parts = |parts: &[(Option<u64>, f64)]| -> Vec<f64> {
+        let reference_parts = parts.iter().filter(|(number, _)| number.is_none());
+        reference_parts.map(|(_, coil)| *coil).collect()
     };
-    assert_eq!(golden(&one), golden(&two));
-    assert_eq!(golden(&one).len() + 2, one.len());
+    assert_eq!(reference_parts(&one), reference_parts(&two));
+    assert_eq!(reference_parts(&one).len() + 2, one.len());
     let numbers: Vec<u64> = two.iter().filter_map(|(number, _)| *number).collect();
     assert_eq!(numbers, [3, 4, 5], "no lot part repeats");
     assert_eq!(second.waiting(), 0);
@@ -57,7 +57,7 @@ fn another_day_changes_only_temperatures_of_reference_parts() {
         let Specimen::Relay(relay) = part.specimen else {
             unreachable!("a recipe for relays")
         };
-        (relay.drawn().operate_v, relay.drawn().offset_k)
+        (relay.values().operate_v, relay.values().offset_k)
     };
     let (bodies, kelvin): (Vec<f64>, Vec<f64>) =
         [on(None), on(Some(2.0)), on(Some(3.0))].into_iter().unzip();

@@ -91,7 +91,7 @@ fn a_refill_may_change_the_kind_of_part() {
     });
     hand.feed();
     hand.sort(2);
-    hand.world.fill(&dummies(&folder)).unwrap();
+    hand.world.refill(&dummies(&folder)).unwrap();
     hand.feed();
     let truth = hand.world.truth();
     assert!(truth[0].get("resistance_ohm").is_none() && truth[0]["operate_voltage_v"].is_f64());

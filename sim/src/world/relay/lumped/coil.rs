@@ -13,7 +13,7 @@ pub enum Drive {
         since_s: f64,
     },
     /// No source; the suppression holds this voltage while current flows.
-    Clamp {
+    Suppression {
         /// Voltage of the diode or zener, V.
         volts: f64,
     },

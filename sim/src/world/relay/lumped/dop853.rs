@@ -126,7 +126,7 @@ pub const EVALUATIONS: u64 = 11;
 
 /// Result of a trial step.
 #[derive(Debug, Clone, Copy)]
-pub struct Tried {
+pub struct TrialStep {
     /// State at the end of the step.
     pub state: State,
     /// Error relative to the tolerance; up to 1 is acceptable.
@@ -167,7 +167,7 @@ pub fn step(
     s: &State,
     k1: &State,
     scale: &Tolerance,
-) -> Tried {
+) -> TrialStep {
     let at = |i: usize| t + C[i] * h;
     let k2 = f(at(0), &along(s, h, &A2, [k1]));
     let k3 = f(at(1), &along(s, h, &A3, [k1, &k2]));
@@ -191,7 +191,7 @@ pub fn step(
     let slope = blend(&B, last);
     let state = along(s, h, &[1.0], [&slope]);
     let low = blend(&B3, [k1, &k9, &k12]);
-    Tried {
+    TrialStep {
         state,
         error: scale.error(h, s, &state, &blend(&E5, last), &slope, &low),
     }

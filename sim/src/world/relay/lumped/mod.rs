@@ -69,14 +69,14 @@ pub enum Excitation {
     /// A source.
     Source(Waveform),
     /// Switched off into a suppression of this voltage, V.
-    Clamp(f64),
+    Suppression(f64),
 }
 
 impl Excitation {
     fn piece(&self, t_s: f64) -> (Drive, f64) {
         match self {
             Self::Source(waveform) => waveform.piece(t_s),
-            Self::Clamp(volts) => (Drive::Clamp { volts: *volts }, f64::INFINITY),
+            Self::Suppression(volts) => (Drive::Suppression { volts: *volts }, f64::INFINITY),
         }
     }
 }

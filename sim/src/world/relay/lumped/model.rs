@@ -1,7 +1,7 @@
 //! The equations of motion, with precomputed constants.
 
 use super::coil::Drive;
-use super::modes::{Kind, Modes, Places};
+use super::modes::{Kind, Modes, StopPositions};
 use super::parameters::Parameters;
 use super::stop::Stop;
 use super::{LAMBDA, State, X};
@@ -18,7 +18,7 @@ pub struct Model {
     per_phis: f64,
     per_mass: [f64; 2],
     /// Positions of its stops.
-    pub places: Places,
+    pub stops: StopPositions,
     pub(super) stop: Stop,
     pub(super) contact: Stop,
 }
@@ -37,7 +37,7 @@ impl Model {
             per_phis: 1.0 / p.phis,
             per_mass: [1.0 / p.m_a, 1.0 / p.m_c],
             eddy: 1.0 / (1.0 + ohm * p.k_ec * per_turns2),
-            places: Places { seat: p.X, no: p.G },
+            stops: StopPositions { seat: p.X, no: p.G },
             stop: Stop {
                 k: p.k_s,
                 chi: p.chi_s,
@@ -103,7 +103,7 @@ impl Model {
                 slope,
                 since_s,
             } => (volts + slope * (t_s - since_s) - self.ohm * current) * self.eddy,
-            Drive::Clamp { volts } => match modes.is(Kind::CoilBlocked) {
+            Drive::Suppression { volts } => match modes.is(Kind::CoilBlocked) {
                 true => self.blocked_rate(current),
                 false => (-volts - self.ohm * current) * self.eddy,
             },
@@ -123,7 +123,7 @@ impl Model {
         let conducting = self.flux_rate(t_s, current, Modes::default(), drive);
         match drive {
             Drive::Source { .. } => conducting,
-            Drive::Clamp { .. } => conducting.max(self.blocked_rate(current)),
+            Drive::Suppression { .. } => conducting.max(self.blocked_rate(current)),
         }
     }
 
@@ -134,8 +134,8 @@ impl Model {
         let eddy = self.p.k_ec / reluctance;
         let blocked = self.blocked_rate(self.still_current(s));
         match drive {
-            Drive::Clamp { .. } if flux_rate <= blocked => eddy,
-            Drive::Source { .. } | Drive::Clamp { .. } => {
+            Drive::Suppression { .. } if flux_rate <= blocked => eddy,
+            Drive::Source { .. } | Drive::Suppression { .. } => {
                 eddy + self.p.N * self.p.N / (self.ohm * reluctance)
             }
         }
@@ -185,11 +185,11 @@ impl Model {
     pub fn gap(&self, kind: Kind, s: &State, drive: &Drive) -> f64 {
         match (kind, drive) {
             (Kind::CoilBlocked, Drive::Source { .. }) => -1.0,
-            (Kind::CoilBlocked, Drive::Clamp { volts }) => {
+            (Kind::CoilBlocked, Drive::Suppression { volts }) => {
                 let current = self.still_current(s);
                 self.blocked_rate(current) - (-volts - self.ohm * current) * self.eddy
             }
-            _ => self.places.overlap(kind, s),
+            _ => self.stops.overlap(kind, s),
         }
     }
 

@@ -55,14 +55,14 @@ impl Modes {
 
 /// Positions of the stops, m.
 #[derive(Debug, Clone, Copy)]
-pub struct Places {
+pub struct StopPositions {
     /// Seat: travel of the armature.
     pub seat: f64,
     /// Fixed NO contact.
     pub no: f64,
 }
 
-impl Places {
+impl StopPositions {
     /// Returns the overlap at a stop, m; above zero while the bodies press.
     #[inline]
     pub fn overlap(self, kind: Kind, s: &State) -> f64 {

@@ -25,7 +25,7 @@ pub struct Outcome {
     pub no_makes: u32,
     /// Number of closings of NC.
     pub nc_makes: u32,
-    /// The coil current is first cut off by the clamp.
+    /// Instant at which the suppression first stops conducting.
     pub coil_blocked_first: Option<f64>,
     /// Speed of the contact at the first closing of NO.
     pub no_first_make_speed: Option<f64>,

@@ -9,7 +9,7 @@
 
 use super::State;
 use super::coil::Drive;
-use super::dop853::{EVALUATIONS, Tolerance, Tried, step};
+use super::dop853::{EVALUATIONS, Tolerance, TrialStep, step};
 use super::model::Model;
 use super::modes::{Kind, Modes};
 
@@ -50,11 +50,11 @@ const SHORT_S: f64 = 1e-6;
 /// Longest step, s: a few time constants of the flux.
 const LONG_S: f64 = 2e-3;
 /// Shortest useful step, s: the rounding of the instant itself.
-const NOTHING_S: f64 = 1e-17;
+const SHORTEST_S: f64 = 1e-17;
 /// Distance from the start of a step within which a turning point counts as checked, s.
 const NEAR_S: f64 = 1e-9;
 /// Limit of the number of evaluations: a second of chatter.
-const ENDLESS: u64 = 400_000_000;
+const EVALUATION_LIMIT: u64 = 400_000_000;
 
 /// An integration in progress.
 #[derive(Debug, Clone)]
@@ -112,7 +112,7 @@ impl Solver {
             if tried.error.is_nan() || tried.error > 1.0 {
                 continue;
             }
-            let (h, state) = self.past_a_graze(model, drive, &slope, h, tried.state);
+            let (h, state) = self.cut_at_graze(model, drive, &slope, h, tried.state);
             if let Some((h, state, kind)) = self.first_change(model, drive, &slope, h, state) {
                 return Ok(Some(self.change(h, state, kind)));
             }
@@ -129,7 +129,7 @@ impl Solver {
     }
 
     #[inline]
-    fn attempt(&mut self, model: &Model, drive: &Drive, slope: &State, h: f64) -> Tried {
+    fn attempt(&mut self, model: &Model, drive: &Drive, slope: &State, h: f64) -> TrialStep {
         self.evaluations += EVALUATIONS;
         let modes = self.modes;
         let f = |t: f64, s: &State| model.rates(t, s, modes, drive);
@@ -149,10 +149,10 @@ impl Solver {
         } else {
             h * factor
         };
-        if self.h < NOTHING_S || self.t_s + self.h == self.t_s {
+        if self.h < SHORTEST_S || self.t_s + self.h == self.t_s {
             return Err(SolveError::Runaway { t_s: self.t_s });
         }
-        if self.evaluations > ENDLESS {
+        if self.evaluations > EVALUATION_LIMIT {
             return Err(SolveError::Endless {
                 t_s: self.t_s,
                 evaluations: self.evaluations,
@@ -176,7 +176,7 @@ impl Solver {
     }
 
     /// Ends the step at a turning point where an overlap comes near a touch.
-    fn past_a_graze(
+    fn cut_at_graze(
         &mut self,
         model: &Model,
         drive: &Drive,
@@ -189,8 +189,8 @@ impl Solver {
             let side = if self.modes.is(kind) { 1.0 } else { -1.0 };
             let of = |s: &State| {
                 (
-                    side * model.places.overlap(kind, s),
-                    side * model.places.rate(kind, s),
+                    side * model.stops.overlap(kind, s),
+                    side * model.stops.rate(kind, s),
                 )
             };
             let ((from, falls), (to, rises)) = (of(&self.state), of(&state));

@@ -98,13 +98,13 @@ fn a_step_just_above_the_threshold_operates_late() {
 }
 
 #[test]
-fn switch_off_into_the_zener_is_quick_and_into_a_diode_slow() {
+fn a_zener_releases_quickly_and_a_diode_slowly() {
     let world = still_world();
-    let release = |clamp_v: f64| {
+    let release = |suppression_v: f64| {
         let mut relay = reference_relay(&world);
         relay.drive(0.0, Supply::Volts(12.0));
         while relay.advance(100_000.0).is_some() {}
-        relay.drive(100_000.0, Supply::Off { clamp_v });
+        relay.drive(100_000.0, Supply::Off { suppression_v });
         let open = first(&mut relay, 150_000.0, Contact::No, false).unwrap();
         let make = first(&mut relay, 150_000.0, Contact::Nc, true).unwrap();
         ((open - 1e5) / 1000.0, (make - 1e5) / 1000.0)

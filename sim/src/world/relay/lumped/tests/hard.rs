@@ -26,7 +26,7 @@ fn near_pickup_each_decade_adds_the_same_time() {
 }
 
 #[test]
-fn a_step_from_zero_picks_up_below_the_static_threshold() {
+fn a_step_from_zero_operates_below_static_pickup() {
     let model = relay(&[]);
     let below_v = model.pickup().volts - DYNAMIC_V;
     near(Some(below_v), 0.0276, 5e-5);
@@ -35,7 +35,7 @@ fn a_step_from_zero_picks_up_below_the_static_threshold() {
 }
 
 #[test]
-fn a_step_from_just_below_picks_up_nearly_at_the_static_threshold() {
+fn a_step_from_just_below_operates_near_static_pickup() {
     let model = relay(&[]);
     let pickup = model.pickup().volts;
     let floating = from_rest(&model, &step(0.97 * pickup), 0.4).state;
@@ -56,7 +56,7 @@ fn a_step_from_just_below_picks_up_nearly_at_the_static_threshold() {
 }
 
 #[test]
-fn a_short_pulse_reopens_and_recloses_only_nc() {
+fn a_short_pulse_opens_and_recloses_only_nc() {
     let model = relay(&[]);
     let seen = outcome(&model, &step(0.99 * model.pickup().volts), 0.04);
     near(seen.nc_first_open, 9.249e-3, 5e-7);
@@ -101,7 +101,7 @@ fn stiffer_contacts_bounce_more_and_operate_alike() {
 }
 
 #[test]
-fn hard_contacts_and_stops_keep_every_one_of_their_events() {
+fn hard_contacts_and_stops_keep_all_their_events() {
     let model = relay(&[("k_c", 1e10), ("k_s", 1e12)]);
     let run = from_rest(&model, &step(12.0), 0.008);
     let seen = Outcome::of(&run.events);
@@ -152,7 +152,12 @@ fn a_warm_coil_operates_later() {
 fn chatter_between_near_rigid_bodies_comes_to_rest() {
     let model = relay(&[("k_s", 1e13), ("chi_s", 1.0), ("k_c", 1e12), ("chi_c", 1.0)]);
     let run = model
-        .transient(model.sealed(12.0), &Excitation::Clamp(60.0), 0.04, 1e-8)
+        .transient(
+            model.sealed(12.0),
+            &Excitation::Suppression(60.0),
+            0.04,
+            1e-8,
+        )
         .unwrap();
     assert!(run.events.len() > 100, "{} events", run.events.len());
     let late = run.events.iter().filter(|e| e.t_s > 0.035).count();

@@ -40,9 +40,14 @@ fn outcome(model: &Model, excitation: &Excitation, end_s: f64) -> Outcome {
 }
 
 /// Integrates from 12 V, switched off into a suppression.
-fn switched_off(model: &Model, clamp_v: f64, end_s: f64) -> Transient {
+fn switched_off(model: &Model, suppression_v: f64, end_s: f64) -> Transient {
     model
-        .transient(model.sealed(12.0), &Excitation::Clamp(clamp_v), end_s, FINE)
+        .transient(
+            model.sealed(12.0),
+            &Excitation::Suppression(suppression_v),
+            end_s,
+            FINE,
+        )
         .unwrap()
 }
 

@@ -66,7 +66,7 @@ fn at_rest_and_sealed_nothing_moves() {
 }
 
 #[test]
-fn a_hung_armature_has_a_second_hump_above_the_first_fold() {
+fn a_hung_armature_has_a_higher_second_hump() {
     let model = relay(&[("k_l", 12_000.0), ("d0", -0.01e-3), ("G", 0.30e-3)]);
     near(Some(model.pickup().volts), 8.4098, 5e-5);
     near(Some(model.second_hump().volts), 9.7065, 5e-5);

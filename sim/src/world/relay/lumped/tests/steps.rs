@@ -90,13 +90,13 @@ fn a_step_just_above_pickup_makes_three_times() {
 #[test]
 fn switch_off_releases_at_the_instants_of_the_reference() {
     let model = relay(&[]);
-    for (clamp_v, open, make, dead, last, makes) in RELEASES {
-        let seen = Outcome::of(&switched_off(&model, clamp_v, 0.018).events);
+    for (suppression_v, open, make, dead, last, makes) in RELEASES {
+        let seen = Outcome::of(&switched_off(&model, suppression_v, 0.018).events);
         near(seen.no_first_open, open, 1e-10);
         near(seen.nc_first_make, make, 1e-10);
         near(seen.coil_blocked_first, dead, 1e-10);
         near(seen.nc_last_change, last, 1e-8);
-        assert_eq!(seen.nc_makes, makes, "{clamp_v} V");
+        assert_eq!(seen.nc_makes, makes, "{suppression_v} V");
     }
 }
 

@@ -6,7 +6,7 @@ use crate::world::posture::ACTUATORS;
 
 /// Limits of a pair of bodies.
 #[derive(Debug, Clone)]
-pub struct Meeting {
+pub struct PairLimits {
     /// Indices in the list of bodies.
     pub pair: (usize, usize),
     /// Actuators that move the two bodies relative to each other.
@@ -17,7 +17,7 @@ pub struct Meeting {
     deeper: Option<(f64, [bool; 8])>,
 }
 
-impl Meeting {
+impl PairLimits {
     /// Checks whether a moved actuator moves the two bodies relative to each other.
     pub fn is_moved(&self, moved: &[bool; 8]) -> bool {
         (0..ACTUATORS.len()).any(|n| self.by[n] && moved[n])
@@ -40,7 +40,7 @@ impl Meeting {
 
 /// Returns the limits of a pair; `None` when no actuator moves them relative to each other, or the scene ignores
 /// them.
-pub fn meeting(scene: &Scene, bodies: &[Body], pair: (usize, usize)) -> Option<Meeting> {
+pub fn pair_limits(scene: &Scene, bodies: &[Body], pair: (usize, usize)) -> Option<PairLimits> {
     let (a, b) = (&bodies[pair.0], &bodies[pair.1]);
     if a.moves == b.moves {
         return None;
@@ -56,7 +56,7 @@ pub fn meeting(scene: &Scene, bodies: &[Body], pair: (usize, usize)) -> Option<M
             (touch_mm, Some((it.depth_mm.unwrap_or(touch_mm), by)))
         }
     };
-    Some(Meeting {
+    Some(PairLimits {
         pair,
         by: std::array::from_fn(|n| a.moves[n] != b.moves[n]),
         depth_mm,

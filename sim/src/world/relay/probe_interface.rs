@@ -4,9 +4,9 @@ use super::Relay;
 use super::defect::Defect;
 use crate::truth::PartTruth;
 use crate::world::probes::{Change, Contact, Pins, Supply};
-use crate::world::specimen::OnProbes;
+use crate::world::specimen::ProbeInterface;
 
-impl OnProbes for Relay {
+impl ProbeInterface for Relay {
     fn pins(&self) -> Pins {
         self.drawn.pins
     }

@@ -14,7 +14,7 @@ const QUICKEST_US: f64 = 100.0;
 
 /// Individual errors, conversion rates and latency of one module.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Habit {
+pub struct Tolerances {
     /// Mean time from the request's CR to the reply's first character, microseconds.
     pub latency_us: f64,
     /// Standard deviation of the latency between transactions, microseconds.
@@ -39,7 +39,7 @@ pub struct Habit {
     pub normal_per_s: f64,
 }
 
-impl Habit {
+impl Tolerances {
     /// Creates a module without errors that answers after exactly `latency_us`.
     pub fn exact(latency_us: f64) -> Self {
         Self {
@@ -86,12 +86,12 @@ impl Habit {
 /// Returns the random stream of `seed` that belongs to `name`.
 pub fn stream(seed: u64, name: &str) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream(fingerprint(name));
+    rng.set_stream(fnv1a(name));
     rng
 }
 
 /// Hashes a name by 64-bit FNV-1a, which is stable across builds.
-fn fingerprint(name: &str) -> u64 {
+fn fnv1a(name: &str) -> u64 {
     name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })
@@ -111,12 +111,14 @@ mod tests {
 
     #[test]
     fn latency_never_falls_below_a_tenth_of_a_millisecond() {
-        let habit = Habit {
+        let tolerances = Tolerances {
             latency_sd_us: 5_000.0,
-            ..Habit::exact(2_000.0)
+            ..Tolerances::exact(2_000.0)
         };
         let mut rng = stream(3, "m");
-        let least = (0..1000).map(|_| habit.next_latency_us(&mut rng)).min();
+        let least = (0..1000)
+            .map(|_| tolerances.next_latency_us(&mut rng))
+            .min();
         assert_eq!(least, Some(100));
     }
 }

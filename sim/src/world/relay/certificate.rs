@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::drawn::Scale;
+use super::values::Scale;
 use crate::config::{ConfigError, content, read_text};
 
 /// A certified value with its standard uncertainty, in the unit of the value.
@@ -49,7 +49,7 @@ struct RecipePart {
 ///
 /// # Errors
 /// Fails when the file cannot be read or is not a list of certificates.
-pub fn read_golden(dir: &Path, nominal_v: f64) -> Result<Vec<Certificate>, ConfigError> {
+pub fn read_certificates(dir: &Path, nominal_v: f64) -> Result<Vec<Certificate>, ConfigError> {
     let path = dir.join("golden.toml");
     let text = read_text(&path)?;
     let file: GoldenFile = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;

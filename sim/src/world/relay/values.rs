@@ -1,8 +1,8 @@
 //! True values of one relay, drawn from the lot or set by a certificate.
 
+use super::certificate::Certificate;
 use super::defect::Defect;
-use super::fit::{Pace, Wanted};
-use super::golden::Certificate;
+use super::fit::{FitTarget, TimeOrigin};
 use super::table::LotTable;
 use crate::world::defect;
 use crate::world::draw::{Draw, Subject};
@@ -35,11 +35,11 @@ impl ContactFilm {
 
 /// True values of a relay; thresholds and coil at 23 C.
 #[derive(Debug, Clone)]
-pub struct Drawn {
+pub struct RelayValues {
     /// Index in the lot, or in the list of certificates.
     pub index: u64,
     /// Marks a reference part: it has a certificate and does not belong to the lot.
-    pub golden: bool,
+    pub is_reference: bool,
     /// Defect, if any.
     pub defect: Option<Defect>,
     /// Nominal coil voltage, V.
@@ -51,7 +51,7 @@ pub struct Drawn {
     /// Turns of this coil per turn of the 12 V part.
     pub turns: f64,
     /// Origin of its operate time and release time.
-    pub pace: Pace,
+    pub time_origin: TimeOrigin,
     /// Winding resistance, ohm; infinite when open.
     pub coil_ohm: f64,
     /// Quasi-static operate threshold, V.
@@ -87,7 +87,7 @@ pub struct Scale {
     pub nominal_coil_ohm: f64,
 }
 
-impl Drawn {
+impl RelayValues {
     /// Draws the part at an index of the lot.
     pub fn of_lot(world: &WorldTable, scale: Scale, seed: u64, index: u64) -> Self {
         let mut draw = Draw::new(seed, Subject::LotPart, index);
@@ -108,10 +108,10 @@ impl Drawn {
         index: u64,
         paper: &Certificate,
     ) -> Self {
-        let mut draw = Draw::new(seed, Subject::GoldenPart, index);
+        let mut draw = Draw::new(seed, Subject::ReferencePart, index);
         let mut part = Self::good(world, scale, &mut draw);
         part.index = index;
-        part.golden = true;
+        part.is_reference = true;
         part.operate_v = draw.normal(paper.operate_voltage_v.value, paper.operate_voltage_v.u);
         part.release_v = draw.normal(paper.release_voltage_v.value, paper.release_voltage_v.u);
         part.coil_ohm = draw.normal(paper.coil_resistance_ohm.value, paper.coil_resistance_ohm.u);
@@ -128,13 +128,13 @@ impl Drawn {
         let slowness = follows * operate + own * draw.normal(0.0, 1.0);
         Self {
             index: 0,
-            golden: false,
+            is_reference: false,
             defect: None,
             nominal_v: scale.nominal_v,
             volt_scale,
             ohm_scale,
             turns: ohm_scale / volt_scale,
-            pace: Pace::Drawn,
+            time_origin: TimeOrigin::Lot,
             coil_ohm: ohm_scale * draw.normal(lot.coil_ohm_mean, lot.coil_ohm_sd),
             operate_v: volt_scale * (lot.operate_v_mean + lot.operate_v_sd * operate),
             release_v: volt_scale * draw.normal(lot.release_v_mean, lot.release_v_sd),
@@ -165,7 +165,7 @@ impl Drawn {
                 let left = draw.between(table.shorted_turns_coil_factor);
                 self.coil_ohm = self.nominal_ohm(world) * left;
                 self.turns *= left;
-                self.pace = Pace::Follows;
+                self.time_origin = TimeOrigin::Follows;
             }
             Defect::WrongCoil => self.rewind(draw.between(table.wrong_coil_factor), world),
             Defect::WeakSpring => {
@@ -178,11 +178,11 @@ impl Drawn {
             }
             Defect::Slow if draw.uniform() < 0.5 => {
                 self.operate_ms = draw.between(table.slow_operate_ms);
-                self.pace = Pace::Hinge;
+                self.time_origin = TimeOrigin::Hinge;
             }
             Defect::Slow => {
                 self.release_ms = draw.between(table.slow_release_ms);
-                self.pace = Pace::Iron;
+                self.time_origin = TimeOrigin::Iron;
             }
             Defect::Bouncing if draw.uniform() < 0.5 => {
                 self.bounce_no_us =
@@ -209,15 +209,15 @@ impl Drawn {
             Defect::UnstableContact => {
                 self.spoil_contact(ContactFilm::Unstable(table.unstable_contact_mohm), draw);
             }
-            Defect::Turned => self.turn(),
+            Defect::Misoriented => self.misorient(),
             Defect::MissingPin => self.pins.lose(draw.below(5) as usize),
         }
     }
 
     /// Makes the part misoriented.
-    pub fn turn(&mut self) {
-        self.defect = Some(Defect::Turned);
-        self.pins = Pins::TURNED;
+    pub fn misorient(&mut self) {
+        self.defect = Some(Defect::Misoriented);
+        self.pins = Pins::MISORIENTED;
     }
 
     fn nominal_ohm(&self, world: &WorldTable) -> f64 {
@@ -228,7 +228,7 @@ impl Drawn {
     fn rewind(&mut self, factor: f64, world: &WorldTable) {
         self.coil_ohm = self.nominal_ohm(world) * factor;
         self.turns *= factor.sqrt();
-        self.pace = Pace::Follows;
+        self.time_origin = TimeOrigin::Follows;
         self.operate_v *= factor.sqrt();
         self.release_v *= factor.sqrt();
     }
@@ -241,9 +241,9 @@ impl Drawn {
     }
 
     /// Returns the results that a relay with these values shows; an open coil counts as wound.
-    pub fn wanted(&self, world: &WorldTable) -> Wanted {
+    pub fn fit_target(&self, world: &WorldTable) -> FitTarget {
         let wound = self.nominal_ohm(world);
-        Wanted {
+        FitTarget {
             coil_ohm: if self.coil_ohm.is_finite() {
                 self.coil_ohm
             } else {
@@ -254,7 +254,7 @@ impl Drawn {
             seconds: [self.operate_ms * 1e-3, self.release_ms * 1e-3],
             nominal_v: self.nominal_v,
             zener_v: world.board.zener_v,
-            pace: self.pace,
+            time_origin: self.time_origin,
         }
     }
 }
