@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::config::LineSpec;
 use crate::error::SimError;
 use crate::fault::LineFaults;
-use crate::module::common::Commissioning;
+use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
 use crate::module::{Module, setting};
 use crate::rig::{Rig, WorldRecord};

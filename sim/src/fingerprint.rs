@@ -20,7 +20,7 @@ use crate::config::LineSpec;
 use crate::error::SimError;
 use crate::fault::LineFaults;
 use crate::module::Module;
-use crate::module::common::Commissioning;
+use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
 use crate::rig::{Rig, WorldRecord};
 use crate::shared::{SharedRig, split};

@@ -76,12 +76,12 @@ impl JournaledWorld {
     }
 
     /// Notes the arrival of a request.
-    pub(crate) fn heard(&mut self, now_us: u64) {
+    pub(crate) fn note_request(&mut self, now_us: u64) {
         self.last_request_us = now_us;
     }
 
     /// Records that the watchdog of a module expires now.
-    pub(crate) fn expired(&mut self, module: &str) {
+    pub(crate) fn record_expiry(&mut self, module: &str) {
         self.send(Entry::Expired {
             t_us: self.now_us,
             module: module.to_owned(),
@@ -91,7 +91,7 @@ impl JournaledWorld {
     }
 
     /// Records that a fault strikes now.
-    pub(crate) fn struck(&mut self, fault: &str) {
+    pub(crate) fn record_fault(&mut self, fault: &str) {
         self.send(Entry::Struck {
             t_us: self.now_us,
             fault: fault.to_owned(),

@@ -110,7 +110,7 @@ impl Rig {
         for place in 0..rig.modules.len() {
             let module = &mut rig.modules[place];
             if rig.faults.is_wrong_type(module.id()) {
-                module.common_mut().pose_as("7000");
+                module.base_mut().pose_as("7000");
             }
             module.energise(&mut rig.scene, 0);
             rig.due_us[place] = module.next_us();
@@ -151,7 +151,7 @@ impl Rig {
     ) -> Option<Reply> {
         self.advance(t_us);
         let now_us = self.now_us;
-        self.scene.heard(now_us);
+        self.scene.note_request(now_us);
         let spec = self.lines.get(line)?;
         let (name, baud) = (spec.name.clone(), host_baud.unwrap_or(spec.baud));
         self.faults.may_lose_port(&name, now_us);
@@ -226,7 +226,7 @@ impl Rig {
     pub fn eeprom_writes(&self) -> u64 {
         self.modules
             .iter()
-            .map(|module| module.common().eeprom_writes)
+            .map(|module| module.base().eeprom_writes)
             .sum()
     }
 
@@ -234,7 +234,7 @@ impl Rig {
     pub fn eeprom_writes_by_module(&self) -> Vec<(String, u64)> {
         self.modules
             .iter()
-            .map(|module| (module.id().to_owned(), module.common().eeprom_writes))
+            .map(|module| (module.id().to_owned(), module.base().eeprom_writes))
             .collect()
     }
 
@@ -249,7 +249,7 @@ impl Rig {
     /// Fails when the fault is unknown, its value is unfit, or it applies only to the start.
     pub fn strike(&mut self, text: &str) -> Result<(), SimError> {
         let (name, value) = shared::split(text);
-        self.scene.struck(text);
+        self.scene.record_fault(text);
         if self.faults.add_from(self.now_us, name, value)? {
             let known = |target: &str| {
                 self.modules.iter().any(|module| module.id() == target)
@@ -302,10 +302,10 @@ impl Rig {
             self.now_us = due_us;
             self.scene.advance(due_us);
             let module = &mut self.modules[place];
-            let was_tripped = module.common().watchdog.tripped();
+            let was_tripped = module.base().watchdog.tripped();
             module.run(&mut self.scene, due_us);
-            if module.common().watchdog.tripped() && !was_tripped {
-                self.scene.expired(module.id());
+            if module.base().watchdog.tripped() && !was_tripped {
+                self.scene.record_expiry(module.id());
             }
             self.due_us[place] = module.next_us();
         }

@@ -8,7 +8,7 @@ use crate::config::{LineSpec, RigFile, WorldTable, read_rig, read_world};
 use crate::error::SimError;
 use crate::fault::{self, FaultInfo, LineFaults};
 use crate::module::Module;
-use crate::module::common::Commissioning;
+use crate::module::base::Commissioning;
 use crate::module::tolerances::{self, Tolerances};
 use crate::rig::{Reply, Rig, WorldRecord};
 use crate::terminal::ModuleSpec;

@@ -20,7 +20,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
-use super::common::{Commissioning, CommonPart};
+use super::base::{Commissioning, ModuleBase};
 use super::converter::Converter;
 use super::range::{self, Format, Range};
 use super::tolerances::Tolerances;
@@ -103,13 +103,13 @@ pub(super) fn build(
         _ => (Kind::Voltage { may_be_fast: true }, 0x08),
     };
     let type_code = type_code(spec, kind, default_type)?;
-    let common = CommonPart::new(spec, line, type_code, format_bits(spec, kind)?)?;
+    let base = ModuleBase::new(spec, line, type_code, format_bits(spec, kind)?)?;
     let all = (1u16 << kind.channels()).wrapping_sub(1);
     let mask = match setting::bits(spec, "mask")? {
         Some(mask) => mask,
         None => setting::bits(spec, "enabled")?.unwrap_or(u32::from(all)),
     };
-    let per_s = pace(kind, tolerances, common.format);
+    let per_s = pace(kind, tolerances, base.format);
     let family = AnalogIn {
         kind,
         converter: Converter::new(kind.channels(), mask as u8 & all as u8, per_s),
@@ -119,7 +119,7 @@ pub(super) fn build(
         tolerances: tolerances.clone(),
         rng,
     };
-    Ok((common, Box::new(family)))
+    Ok((base, Box::new(family)))
 }
 
 fn type_code(spec: &ModuleSpec, kind: Kind, default: u8) -> Result<u8, SimError> {
@@ -159,14 +159,14 @@ fn pace(kind: Kind, tolerances: &Tolerances, format: u8) -> f64 {
 }
 
 impl AnalogIn {
-    fn convert(&mut self, common: &CommonPart, channel: u8, terminal: f64) {
+    fn convert(&mut self, base: &ModuleBase, channel: u8, terminal: f64) {
         let Some(range) = self.range(channel) else {
             return;
         };
         let reading = if terminal.is_nan() {
             self.open_input()
         } else {
-            self.digitise(range, common.format, terminal)
+            self.digitise(range, base.format, terminal)
         };
         self.readings[usize::from(channel)] = reading;
     }
@@ -219,7 +219,7 @@ impl AnalogIn {
         Answer::Reply(text)
     }
 
-    fn one_field(&self, common: &CommonPart, digit: u8, format: Format) -> Answer {
+    fn one_field(&self, base: &ModuleBase, digit: u8, format: Format) -> Answer {
         match dcon::hex_digit(digit) {
             Some(channel) if channel < self.kind.channels() => {
                 let mut text = String::with_capacity(dcon::LONGEST);
@@ -227,23 +227,23 @@ impl AnalogIn {
                 self.field(channel, format, &mut text);
                 Answer::Reply(text)
             }
-            Some(_) => dcon::refused(common.address),
+            Some(_) => dcon::refused(base.address),
             None => Answer::Unknown,
         }
     }
 
-    fn enable(&mut self, common: &mut CommonPart, mask: u8, at: &mut Terminals<'_>) -> Answer {
+    fn enable(&mut self, base: &mut ModuleBase, mask: u8, at: &mut Terminals<'_>) -> Answer {
         let all = (1u16 << self.kind.channels()).wrapping_sub(1);
         if u16::from(mask) & !all != 0 {
-            return dcon::refused(common.address);
+            return dcon::refused(base.address);
         }
         self.converter.enable(mask, at);
-        common.eeprom_writes += 1;
-        dcon::done(common.address)
+        base.eeprom_writes += 1;
+        dcon::done(base.address)
     }
 
     /// Carries out commands that only newer modules know.
-    fn newer(&mut self, common: &mut CommonPart, body: &[u8]) -> Answer {
+    fn newer(&mut self, base: &mut ModuleBase, body: &[u8]) -> Answer {
         let known = |digit: u8| dcon::hex_digit(digit).filter(|n| *n < self.kind.channels());
         match *body {
             [b'B'] => {
@@ -253,23 +253,23 @@ impl AnalogIn {
                 };
                 let channels = (0..self.kind.channels()).filter(beyond);
                 let word = channels.fold(0, |word, n| word | 1u64 << n);
-                dcon::done_hex(common.address, word, 2)
+                dcon::done_hex(base.address, word, 2)
             }
             [b'8', b'C', digit] => match known(digit) {
                 Some(n) => {
                     let range = self.ranges[usize::from(n)];
-                    dcon::done_with(common.address, &format!("C{n}R{range:02X}"))
+                    dcon::done_with(base.address, &format!("C{n}R{range:02X}"))
                 }
-                None => dcon::refused(common.address),
+                None => dcon::refused(base.address),
             },
             [b'7', b'C', digit, b'R', high, low] => match dcon::hex_byte(&[high, low]) {
                 Some(range) => match known(digit) {
                     Some(n) if self.kind.range(range).is_some() => {
                         self.ranges[usize::from(n)] = range;
-                        common.eeprom_writes += 1;
-                        dcon::done(common.address)
+                        base.eeprom_writes += 1;
+                        dcon::done(base.address)
                     }
-                    Some(_) | None => dcon::refused(common.address),
+                    Some(_) | None => dcon::refused(base.address),
                 },
                 None => Answer::Unknown,
             },
@@ -287,58 +287,58 @@ impl Family for AnalogIn {
 
     fn answer(
         &mut self,
-        common: &mut CommonPart,
+        base: &mut ModuleBase,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
-        let format = Format::of(common.format).unwrap_or(Format::Engineering);
+        let format = Format::of(base.format).unwrap_or(Format::Engineering);
         match (request.lead, request.body) {
             (b'#', []) => self.fields(format),
-            (b'#', [digit]) => self.one_field(common, *digit, format),
+            (b'#', [digit]) => self.one_field(base, *digit, format),
             (b'$', b"A") => self.fields(Format::Hex),
             (b'$', b"3") if self.kind == Kind::Thermocouple => {
                 Answer::Reply(format!(">{COLD_JUNCTION_C:+07.1}"))
             }
-            (b'$', b"6") => dcon::done_hex(common.address, u64::from(self.converter.mask()), 2),
+            (b'$', b"6") => dcon::done_hex(base.address, u64::from(self.converter.mask()), 2),
             (b'$', [b'5', high, low]) => match dcon::hex_byte(&[*high, *low]) {
-                Some(mask) => self.enable(common, mask, at),
+                Some(mask) => self.enable(base, mask, at),
                 None => Answer::Unknown,
             },
-            (b'$', body) if common.is_newer() => self.newer(common, body),
+            (b'$', body) if base.is_newer() => self.newer(base, body),
             (_, _) => Answer::Unknown,
         }
     }
 
-    fn configured(&mut self, common: &CommonPart, _at: &mut Terminals<'_>) {
-        if common.type_code != self.type_code {
-            self.type_code = common.type_code;
-            self.ranges = [common.type_code; 8];
+    fn configured(&mut self, base: &ModuleBase, _at: &mut Terminals<'_>) {
+        if base.type_code != self.type_code {
+            self.type_code = base.type_code;
+            self.ranges = [base.type_code; 8];
         }
         self.converter
-            .set_pace(pace(self.kind, &self.tolerances, common.format));
+            .set_pace(pace(self.kind, &self.tolerances, base.format));
     }
 
     fn next_us(&self) -> u64 {
         self.converter.next_us()
     }
 
-    fn run(&mut self, common: &CommonPart, at: &mut Terminals<'_>) {
+    fn run(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
         if let Some((channel, mean)) = self.converter.run(at) {
-            self.convert(common, channel, mean);
+            self.convert(base, channel, mean);
         }
     }
 
     fn sample(&mut self, _at: &mut Terminals<'_>) {}
 
-    fn make_safe(&mut self, _plate: &CommonPart, _at: &mut Terminals<'_>) {}
+    fn make_safe(&mut self, _plate: &ModuleBase, _at: &mut Terminals<'_>) {}
 
-    fn restart(&mut self, _plate: &CommonPart) {}
+    fn restart(&mut self, _plate: &ModuleBase) {}
 
     /// Fills every channel with a reading, since the module has been powered for long.
-    fn energise(&mut self, common: &CommonPart, at: &mut Terminals<'_>) {
+    fn energise(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
         for channel in 0..self.kind.channels() {
             let terminal = at.plant.analog_in(at.module, channel);
-            self.convert(common, channel, terminal);
+            self.convert(base, channel, terminal);
         }
         self.converter.start(at);
     }

@@ -13,7 +13,7 @@
 //! characters but the wrong width get `?AA`; other text gets no answer. The manuals do not document a signed
 //! value of six characters (`+5.000`) at a 7021: it gets `?AA` unless the table has `signed = true`.
 
-use super::common::{Commissioning, CommonPart};
+use super::base::{Commissioning, ModuleBase};
 use super::output::{Data, Model, Span, model, read, span, spell};
 use super::ramp::{Ramp, nominal_rate};
 use super::range::Format;
@@ -66,14 +66,14 @@ pub(super) fn build(
     let format = Format::named(name)
         .ok_or_else(|| setting::wrong(spec, "format", "engineering, percent or hex"))?;
     let plate_type = if model.own_slew { 0x3F } else { type_code };
-    let common = CommonPart::new(spec, line, plate_type, format | slew << 2)?;
+    let base = ModuleBase::new(spec, line, plate_type, format | slew << 2)?;
     let channels = channels(spec, model, type_code, slew)?;
     let family = AnalogOut {
         model,
         channels,
         tolerances: tolerances.clone(),
     };
-    Ok((common, Box::new(family)))
+    Ok((base, Box::new(family)))
 }
 
 fn channels(
@@ -108,11 +108,11 @@ fn channels(
 }
 
 impl AnalogOut {
-    fn span(&self, common: &CommonPart, channel: usize) -> Span {
+    fn span(&self, base: &ModuleBase, channel: usize) -> Span {
         let type_code = if self.model.own_slew {
             0x30 | self.channels[channel].own.0
         } else {
-            common.type_code
+            base.type_code
         };
         span(self.model, type_code).unwrap_or(Span {
             low: 0.0,
@@ -121,16 +121,16 @@ impl AnalogOut {
         })
     }
 
-    fn slew(&self, common: &CommonPart, channel: usize) -> u8 {
+    fn slew(&self, base: &ModuleBase, channel: usize) -> u8 {
         if self.model.own_slew {
             self.channels[channel].own.1
         } else {
-            common.format >> 2 & 0xF
+            base.format >> 2 & 0xF
         }
     }
 
-    fn format(&self, common: &CommonPart) -> Format {
-        match Format::of(common.format) {
+    fn format(&self, base: &ModuleBase) -> Format {
+        match Format::of(base.format) {
             Some(format) if !self.model.signed => format,
             _ => Format::Engineering,
         }
@@ -149,34 +149,34 @@ impl AnalogOut {
     }
 
     /// Drives the terminals; the plant has one analog output per module, channel 0.
-    fn drive(&self, common: &CommonPart, channel: usize, at: &mut Terminals<'_>) {
+    fn drive(&self, base: &ModuleBase, channel: usize, at: &mut Terminals<'_>) {
         if channel == 0 {
-            let value = self.carried(self.span(common, 0), self.channels[0].ramp.present());
+            let value = self.carried(self.span(base, 0), self.channels[0].ramp.present());
             at.plant.analog_out(at.module, value);
         }
     }
 
     fn output(
         &mut self,
-        common: &CommonPart,
+        base: &ModuleBase,
         channel: usize,
         data: &[u8],
         at: &mut Terminals<'_>,
     ) -> Answer {
-        if common.watchdog.tripped() {
+        if base.watchdog.tripped() {
             return dcon::ignored();
         }
-        let span = self.span(common, channel);
-        let value = match read(self.model, self.format(common), span, data) {
+        let span = self.span(base, channel);
+        let value = match read(self.model, self.format(base), span, data) {
             Data::Value(value) => value,
-            Data::WrongWidth => return dcon::refused(common.address),
+            Data::WrongWidth => return dcon::refused(base.address),
             Data::Nonsense => return Answer::Unknown,
         };
         let legal = value.clamp(span.low, span.high);
-        match self.slew(common, channel) {
+        match self.slew(base, channel) {
             0 => {
                 self.channels[channel].ramp.jump(legal);
-                self.drive(common, channel, at);
+                self.drive(base, channel, at);
             }
             _ => {
                 let refresh_us = self.tolerances.ao_refresh_us;
@@ -186,14 +186,14 @@ impl AnalogOut {
         if legal == value {
             dcon::accepted()
         } else {
-            dcon::refused(common.address)
+            dcon::refused(base.address)
         }
     }
 
-    fn shown(&self, common: &CommonPart, channel: usize, value: f64) -> Answer {
-        let span = self.span(common, channel);
-        let text = spell(self.model, self.format(common), span, value);
-        dcon::done_with(common.address, &text)
+    fn shown(&self, base: &ModuleBase, channel: usize, value: f64) -> Answer {
+        let span = self.span(base, channel);
+        let text = spell(self.model, self.format(base), span, value);
+        dcon::done_with(base.address, &text)
     }
 
     fn present(&self, channel: usize) -> f64 {
@@ -208,46 +208,46 @@ impl AnalogOut {
 
     fn command(
         &mut self,
-        common: &mut CommonPart,
+        base: &mut ModuleBase,
         lead: u8,
         digit: u8,
         channel: usize,
         rest: &[u8],
     ) -> Answer {
-        let store = |common: &mut CommonPart| {
-            common.eeprom_writes += 1;
-            dcon::done(common.address)
+        let store = |base: &mut ModuleBase| {
+            base.eeprom_writes += 1;
+            dcon::done(base.address)
         };
         let target = self.channels[channel].ramp.target();
         match (lead, digit, rest) {
-            (b'$', b'6', []) => self.shown(common, channel, target),
-            (b'$', b'8', []) => self.shown(common, channel, self.present(channel)),
-            (b'$', b'7', []) => self.shown(common, channel, self.channels[channel].power_on),
-            (b'~', b'4', []) => self.shown(common, channel, self.channels[channel].safe),
+            (b'$', b'6', []) => self.shown(base, channel, target),
+            (b'$', b'8', []) => self.shown(base, channel, self.present(channel)),
+            (b'$', b'7', []) => self.shown(base, channel, self.channels[channel].power_on),
+            (b'~', b'4', []) => self.shown(base, channel, self.channels[channel].safe),
             (b'$', b'4', []) => {
                 self.channels[channel].power_on = target;
-                store(common)
+                store(base)
             }
             (b'~', b'5', []) => {
                 self.channels[channel].safe = target;
-                store(common)
+                store(base)
             }
-            (b'$', b'9', rest) if self.model.own_slew => self.own_slew(common, channel, rest),
+            (b'$', b'9', rest) if self.model.own_slew => self.own_slew(base, channel, rest),
             (_, _, _) => Answer::Unknown,
         }
     }
 
-    fn own_slew(&mut self, common: &mut CommonPart, channel: usize, rest: &[u8]) -> Answer {
+    fn own_slew(&mut self, base: &mut ModuleBase, channel: usize, rest: &[u8]) -> Answer {
         match rest {
             [] => {
                 let (kind, slew) = self.channels[channel].own;
-                dcon::done_hex(common.address, u64::from(kind << 4 | slew), 2)
+                dcon::done_hex(base.address, u64::from(kind << 4 | slew), 2)
             }
             [kind @ b'0'..=b'2', slew] => match dcon::hex_digit(*slew) {
                 Some(slew) => {
                     self.channels[channel].own = (kind - b'0', slew);
-                    common.eeprom_writes += 1;
-                    dcon::done(common.address)
+                    base.eeprom_writes += 1;
+                    dcon::done(base.address)
                 }
                 None => Answer::Unknown,
             },
@@ -268,7 +268,7 @@ impl Family for AnalogOut {
 
     fn answer(
         &mut self,
-        common: &mut CommonPart,
+        base: &mut ModuleBase,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
@@ -276,33 +276,33 @@ impl Family for AnalogOut {
         match (request.lead, request.body) {
             (b'#', [digit, data @ ..]) if self.model.numbered => match channel_of(*digit) {
                 Some(channel) if channel < self.channels.len() => {
-                    self.output(common, channel, data, at)
+                    self.output(base, channel, data, at)
                 }
-                Some(_) => dcon::refused(common.address),
+                Some(_) => dcon::refused(base.address),
                 None => Answer::Unknown,
             },
-            (b'#', data) if !self.model.numbered => self.output(common, 0, data, at),
+            (b'#', data) if !self.model.numbered => self.output(base, 0, data, at),
             (lead @ (b'$' | b'~'), [command @ b'4'..=b'9', digit, rest @ ..])
                 if self.model.numbered =>
             {
                 match channel_of(*digit) {
                     Some(channel) if channel < self.channels.len() => {
-                        self.command(common, lead, *command, channel, rest)
+                        self.command(base, lead, *command, channel, rest)
                     }
-                    Some(_) => dcon::refused(common.address),
+                    Some(_) => dcon::refused(base.address),
                     None => Answer::Unknown,
                 }
             }
             (lead @ (b'$' | b'~'), [command @ b'4'..=b'9', rest @ ..]) if !self.model.numbered => {
-                self.command(common, lead, *command, 0, rest)
+                self.command(base, lead, *command, 0, rest)
             }
             (_, _) => Answer::Unknown,
         }
     }
 
-    fn configured(&mut self, common: &CommonPart, _at: &mut Terminals<'_>) {
+    fn configured(&mut self, base: &ModuleBase, _at: &mut Terminals<'_>) {
         for channel in 0..self.channels.len() {
-            let span = self.span(common, channel);
+            let span = self.span(base, channel);
             let target = self.channels[channel]
                 .ramp
                 .target()
@@ -319,32 +319,31 @@ impl Family for AnalogOut {
             .fold(u64::MAX, |next, channel| next.min(channel.ramp.next_us()))
     }
 
-    fn run(&mut self, common: &CommonPart, at: &mut Terminals<'_>) {
+    fn run(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
         let refresh_us = self.tolerances.ao_refresh_us;
         for channel in 0..self.channels.len() {
             if self.channels[channel].ramp.next_us() > at.now_us {
                 continue;
             }
-            let is_current = self.span(common, channel).is_current;
-            let rate =
-                nominal_rate(self.slew(common, channel), is_current).unwrap_or(f64::INFINITY);
+            let is_current = self.span(base, channel).is_current;
+            let rate = nominal_rate(self.slew(base, channel), is_current).unwrap_or(f64::INFINITY);
             let step = rate * (1.0 + self.tolerances.ao_slope) * refresh_us as f64 * 1e-6;
             self.channels[channel].ramp.step(step, refresh_us);
-            self.drive(common, channel, at);
+            self.drive(base, channel, at);
         }
     }
 
     fn sample(&mut self, _at: &mut Terminals<'_>) {}
 
-    fn make_safe(&mut self, common: &CommonPart, at: &mut Terminals<'_>) {
+    fn make_safe(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
         for channel in &mut self.channels {
             channel.ramp.jump(channel.safe);
         }
-        self.drive(common, 0, at);
+        self.drive(base, 0, at);
     }
 
-    fn restart(&mut self, common: &CommonPart) {
-        let tripped = common.watchdog.tripped();
+    fn restart(&mut self, base: &ModuleBase) {
+        let tripped = base.watchdog.tripped();
         for channel in &mut self.channels {
             let value = if tripped {
                 channel.safe
@@ -355,7 +354,7 @@ impl Family for AnalogOut {
         }
     }
 
-    fn energise(&mut self, common: &CommonPart, at: &mut Terminals<'_>) {
-        self.drive(common, 0, at);
+    fn energise(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
+        self.drive(base, 0, at);
     }
 }

@@ -14,7 +14,7 @@
 //! low byte. Latches record every change between two requests and every counted pulse; an input that has not
 //! changed since the latches were cleared sets none.
 
-use super::common::{Commissioning, CommonPart};
+use super::base::{Commissioning, ModuleBase};
 use super::shape::{Shape, ones};
 use super::{Built, Family, Terminals, setting};
 use crate::dcon::{self, Answer, Request};
@@ -61,7 +61,7 @@ pub(super) fn build(
     if type_code != 0x40 {
         return Err(setting::wrong(spec, "type", "40"));
     }
-    let mut common = CommonPart::new(spec, line, type_code, 0)?;
+    let mut base = ModuleBase::new(spec, line, type_code, 0)?;
     let bits = |key: &str| Ok::<u16, SimError>(setting::bits(spec, key)?.unwrap_or(0) as u16);
     let safe = if spec.settings.contains_key("safe_outputs") {
         bits("safe_outputs")?
@@ -91,14 +91,14 @@ pub(super) fn build(
         counters: (0..shape.inputs).map(counter).collect(),
         sampled: None,
     };
-    family.restart(&common);
+    family.restart(&base);
     if let Some(outputs) = setting::bits(spec, "outputs")? {
         family.outputs = outputs as u16 & shape.all_outputs();
     }
     if setting::flag(spec, "rising")?.unwrap_or(false) {
-        common.format |= 0x80;
+        base.format |= 0x80;
     }
-    Ok((common, Box::new(family)))
+    Ok((base, Box::new(family)))
 }
 
 /// Reads `latches = MASK` (latched high), or a table with `high` and `low`.
@@ -156,44 +156,39 @@ impl Digital {
     }
 
     /// Refuses an output command: the digital manuals omit the address, the others include it.
-    fn refused_output(&self, common: &CommonPart) -> Answer {
+    fn refused_output(&self, base: &ModuleBase) -> Answer {
         if self.names_refusals {
-            dcon::refused(common.address)
+            dcon::refused(base.address)
         } else {
             dcon::refused_output()
         }
     }
 
-    fn write_all(&mut self, common: &CommonPart, data: &[u8], at: &mut Terminals<'_>) -> Answer {
+    fn write_all(&mut self, base: &ModuleBase, data: &[u8], at: &mut Terminals<'_>) -> Answer {
         let Some(value) = dcon::hex(data) else {
             return Answer::Unknown;
         };
         let too_much = value & !u32::from(self.shape.all_outputs()) != 0;
         if self.shape.outputs == 0 || data.len() != self.shape.output_digits() || too_much {
-            return self.refused_output(common);
+            return self.refused_output(base);
         }
-        if common.watchdog.tripped() {
+        if base.watchdog.tripped() {
             return dcon::ignored();
         }
         self.drive(value as u16, at);
         dcon::accepted()
     }
 
-    fn write_group(
-        &mut self,
-        common: &CommonPart,
-        body: [u8; 4],
-        at: &mut Terminals<'_>,
-    ) -> Answer {
+    fn write_group(&mut self, base: &ModuleBase, body: [u8; 4], at: &mut Terminals<'_>) -> Answer {
         let [group, channel, high, low] = body;
         let (Some(channel), Some(data)) = (dcon::hex_digit(channel), dcon::hex_byte(&[high, low]))
         else {
             return Answer::Unknown;
         };
         let Some(outputs) = self.grouped(group, channel, data) else {
-            return self.refused_output(common);
+            return self.refused_output(base);
         };
-        if common.watchdog.tripped() {
+        if base.watchdog.tripped() {
             return dcon::ignored();
         }
         self.drive(outputs, at);
@@ -217,28 +212,28 @@ impl Digital {
         reachable.then_some((self.outputs & !mask | bits) & all)
     }
 
-    fn count(&mut self, common: &CommonPart, digit: u8, at: &mut Terminals<'_>) -> Answer {
+    fn count(&mut self, base: &ModuleBase, digit: u8, at: &mut Terminals<'_>) -> Answer {
         let Some(channel) = dcon::hex_digit(digit) else {
             return Answer::Unknown;
         };
         let Some(counter) = self.counters.get(usize::from(channel)) else {
-            return dcon::refused(common.address);
+            return dcon::refused(base.address);
         };
         let edges = at.plant.edges(at.module, channel);
         let count = (counter.start + edges - counter.from_edges) % 65_536;
-        dcon::done_with(common.address, &format!("{count:05}"))
+        dcon::done_with(base.address, &format!("{count:05}"))
     }
 
-    fn clear_count(&mut self, common: &CommonPart, digit: u8, at: &mut Terminals<'_>) -> Answer {
+    fn clear_count(&mut self, base: &ModuleBase, digit: u8, at: &mut Terminals<'_>) -> Answer {
         let Some(channel) = dcon::hex_digit(digit) else {
             return Answer::Unknown;
         };
         let Some(counter) = self.counters.get_mut(usize::from(channel)) else {
-            return dcon::refused(common.address);
+            return dcon::refused(base.address);
         };
         counter.start = 0;
         counter.from_edges = at.plant.edges(at.module, channel);
-        dcon::done(common.address)
+        dcon::done(base.address)
     }
 
     fn latched(&mut self, high: bool, at: &mut Terminals<'_>) -> Answer {
@@ -252,17 +247,17 @@ impl Digital {
         data_reply(latched)
     }
 
-    fn clear_latches(&mut self, common: &CommonPart, at: &mut Terminals<'_>) -> Answer {
+    fn clear_latches(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) -> Answer {
         self.inputs(at);
         self.latch_edges(at);
         self.latched_high = 0;
         self.latched_low = 0;
-        dcon::done(common.address)
+        dcon::done(base.address)
     }
 
-    fn sampled(&mut self, common: &CommonPart) -> Answer {
+    fn sampled(&mut self, base: &ModuleBase) -> Answer {
         let Some(sample) = &mut self.sampled else {
-            return dcon::refused(common.address);
+            return dcon::refused(base.address);
         };
         let unread = std::mem::take(&mut sample.unread);
         let mut text = String::from(if unread { "!1" } else { "!0" });
@@ -270,34 +265,29 @@ impl Digital {
         Answer::Reply(text)
     }
 
-    fn store(&mut self, common: &mut CommonPart, which: u8) -> Answer {
+    fn store(&mut self, base: &mut ModuleBase, which: u8) -> Answer {
         match which {
             b'P' => self.power_on = self.outputs,
             _ => self.safe = self.outputs,
         }
-        common.eeprom_writes += 1;
-        dcon::done(common.address)
+        base.eeprom_writes += 1;
+        dcon::done(base.address)
     }
 
-    fn stored(&self, common: &CommonPart, which: u8) -> Answer {
+    fn stored(&self, base: &ModuleBase, which: u8) -> Answer {
         let value = u64::from(if which == b'P' {
             self.power_on
         } else {
             self.safe
         });
         let wide = self.shape.outputs > 8;
-        dcon::done_hex(common.address, if wide { value } else { value << 8 }, 4)
+        dcon::done_hex(base.address, if wide { value } else { value << 8 }, 4)
     }
 
-    fn input_command(
-        &mut self,
-        common: &CommonPart,
-        body: &[u8],
-        at: &mut Terminals<'_>,
-    ) -> Answer {
+    fn input_command(&mut self, base: &ModuleBase, body: &[u8], at: &mut Terminals<'_>) -> Answer {
         match body {
-            [b'C', digit] => self.clear_count(common, *digit, at),
-            [b'C'] => self.clear_latches(common, at),
+            [b'C', digit] => self.clear_count(base, *digit, at),
+            [b'C'] => self.clear_latches(base, at),
             [b'L', level @ (b'0' | b'1')] => self.latched(*level == b'1', at),
             _ => Answer::Unknown,
         }
@@ -318,7 +308,7 @@ impl Family for Digital {
 
     fn answer(
         &mut self,
-        common: &mut CommonPart,
+        base: &mut ModuleBase,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
@@ -329,40 +319,40 @@ impl Family for Digital {
                 dcon::push_hex(&mut text, u64::from(self.words(at)), 4);
                 Answer::Reply(text)
             }
-            (b'@', data) => self.write_all(common, data, at),
-            (b'#', [a, b, c, d]) => self.write_group(common, [*a, *b, *c, *d], at),
-            (b'#', [digit]) if has_inputs => self.count(common, *digit, at),
+            (b'@', data) => self.write_all(base, data, at),
+            (b'#', [a, b, c, d]) => self.write_group(base, [*a, *b, *c, *d], at),
+            (b'#', [digit]) if has_inputs => self.count(base, *digit, at),
             (b'$', b"6") => {
                 let words = self.words(at);
                 data_reply(words)
             }
-            (b'$', b"4") => self.sampled(common),
-            (b'$', body) if has_inputs => self.input_command(common, body, at),
-            (b'~', [b'5', which @ (b'P' | b'S')]) => self.store(common, *which),
-            (b'~', [b'4', which @ (b'P' | b'S')]) => self.stored(common, *which),
+            (b'$', b"4") => self.sampled(base),
+            (b'$', body) if has_inputs => self.input_command(base, body, at),
+            (b'~', [b'5', which @ (b'P' | b'S')]) => self.store(base, *which),
+            (b'~', [b'4', which @ (b'P' | b'S')]) => self.stored(base, *which),
             (_, _) => Answer::Unknown,
         }
     }
 
-    fn configured(&mut self, _plate: &CommonPart, _at: &mut Terminals<'_>) {}
+    fn configured(&mut self, _plate: &ModuleBase, _at: &mut Terminals<'_>) {}
 
     fn next_us(&self) -> u64 {
         u64::MAX
     }
 
-    fn run(&mut self, _plate: &CommonPart, _at: &mut Terminals<'_>) {}
+    fn run(&mut self, _plate: &ModuleBase, _at: &mut Terminals<'_>) {}
 
     fn sample(&mut self, at: &mut Terminals<'_>) {
         let data = self.words(at);
         self.sampled = Some(Sample { data, unread: true });
     }
 
-    fn make_safe(&mut self, _plate: &CommonPart, at: &mut Terminals<'_>) {
+    fn make_safe(&mut self, _plate: &ModuleBase, at: &mut Terminals<'_>) {
         self.drive(self.safe, at);
     }
 
-    fn restart(&mut self, common: &CommonPart) {
-        self.outputs = if common.watchdog.tripped() {
+    fn restart(&mut self, base: &ModuleBase) {
+        self.outputs = if base.watchdog.tripped() {
             self.safe
         } else {
             self.power_on
@@ -370,7 +360,7 @@ impl Family for Digital {
         self.sampled = None;
     }
 
-    fn energise(&mut self, _plate: &CommonPart, at: &mut Terminals<'_>) {
+    fn energise(&mut self, _plate: &ModuleBase, at: &mut Terminals<'_>) {
         if self.shape.inputs > 0 {
             self.levels = at.plant.digital_in(at.module) & ones(self.shape.inputs);
         }

@@ -14,7 +14,7 @@
 mod alarm;
 pub mod analog_in;
 pub mod analog_out;
-pub mod common;
+pub mod base;
 pub mod converter;
 pub mod counter;
 pub mod digital;
@@ -32,7 +32,7 @@ use rand_chacha::ChaCha8Rng;
 use crate::dcon::{self, Address, Answer, Request};
 use crate::error::SimError;
 use crate::terminal::{ModuleSpec, Plant};
-use common::{Commissioning, CommonPart};
+use base::{Commissioning, ModuleBase};
 use tolerances::Tolerances;
 
 /// Screw terminals of one module at one instant.
@@ -53,38 +53,38 @@ pub trait Family: Send {
     /// Carries out a command of the family.
     fn answer(
         &mut self,
-        common: &mut CommonPart,
+        base: &mut ModuleBase,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer;
 
     /// Adopts a changed configuration word.
-    fn configured(&mut self, common: &CommonPart, at: &mut Terminals<'_>);
+    fn configured(&mut self, base: &ModuleBase, at: &mut Terminals<'_>);
 
     /// Returns the instant of the family's next event; `u64::MAX` for none.
     fn next_us(&self) -> u64;
 
     /// Carries out the family's event that is due.
-    fn run(&mut self, common: &CommonPart, at: &mut Terminals<'_>);
+    fn run(&mut self, base: &ModuleBase, at: &mut Terminals<'_>);
 
     /// Samples the inputs now (`#**`).
     fn sample(&mut self, at: &mut Terminals<'_>);
 
     /// Sets the outputs to their safe values at once.
-    fn make_safe(&mut self, common: &CommonPart, at: &mut Terminals<'_>);
+    fn make_safe(&mut self, base: &ModuleBase, at: &mut Terminals<'_>);
 
     /// Sets the outputs to their power-on values, or to the safe values after a watchdog trip.
-    fn restart(&mut self, common: &CommonPart);
+    fn restart(&mut self, base: &ModuleBase);
 
     /// Applies the registers to the terminals and starts the converters.
-    fn energise(&mut self, common: &CommonPart, at: &mut Terminals<'_>);
+    fn energise(&mut self, base: &ModuleBase, at: &mut Terminals<'_>);
 }
 
 /// A module on its line.
 pub struct Module {
     id: String,
     line: String,
-    common: CommonPart,
+    base: ModuleBase,
     family: Box<dyn Family>,
     tolerances: Tolerances,
     rng: ChaCha8Rng,
@@ -102,7 +102,7 @@ impl Module {
         rng: ChaCha8Rng,
     ) -> Result<Self, SimError> {
         let model = model_number(&spec.model);
-        let (common, family) = match model {
+        let (base, family) = match model {
             "7017" | "7017F" | "7017R" | "7017RC" | "7018" | "7018P" | "7018R" | "7033" => {
                 analog_in::build(spec, model, line, &tolerances, rng.clone())?
             }
@@ -118,7 +118,7 @@ impl Module {
         Ok(Self {
             id: spec.id.clone(),
             line: spec.line.clone(),
-            common,
+            base,
             family,
             tolerances,
             rng,
@@ -136,32 +136,32 @@ impl Module {
     }
 
     /// Returns the common part.
-    pub fn common(&self) -> &CommonPart {
-        &self.common
+    pub fn base(&self) -> &ModuleBase {
+        &self.base
     }
 
     /// Returns the common part for faults that change it.
-    pub fn common_mut(&mut self) -> &mut CommonPart {
-        &mut self.common
+    pub fn base_mut(&mut self) -> &mut ModuleBase {
+        &mut self.base
     }
 
     /// Checks whether a request for `address` at the host's rate reaches the module; a rate of `None` matches.
     pub fn hears(&self, address: Address, host_baud: Option<u32>) -> bool {
         let meant = match address {
             Address::Everybody => true,
-            Address::Module(address) => self.common.hears_at(address),
+            Address::Module(address) => self.base.hears_at(address),
         };
-        meant && host_baud.is_none_or(|baud| baud == self.common.baud())
+        meant && host_baud.is_none_or(|baud| baud == self.base.baud())
     }
 
     /// Draws the time from the end of a request to the first character of its reply, microseconds.
     pub fn next_latency_us(&mut self) -> u64 {
-        self.tolerances.next_latency_us(&mut self.rng) + self.common.response_delay_us()
+        self.tolerances.next_latency_us(&mut self.rng) + self.base.response_delay_us()
     }
 
     /// Returns the instant of its next event of any kind; `u64::MAX` for none.
     pub fn next_us(&self) -> u64 {
-        let expiry = self.common.watchdog.expires_us().unwrap_or(u64::MAX);
+        let expiry = self.base.watchdog.expires_us().unwrap_or(u64::MAX);
         expiry.min(self.family.next_us())
     }
 
@@ -173,15 +173,15 @@ impl Module {
             now_us,
         };
         if self
-            .common
+            .base
             .watchdog
             .expires_us()
             .is_some_and(|due| due <= now_us)
         {
-            trip(&mut self.common, self.family.as_mut(), &mut at);
+            trip(&mut self.base, self.family.as_mut(), &mut at);
         }
         if self.family.next_us() <= now_us {
-            self.family.run(&self.common, &mut at);
+            self.family.run(&self.base, &mut at);
         }
     }
 
@@ -192,13 +192,13 @@ impl Module {
             module: &self.id,
             now_us,
         };
-        self.family.energise(&self.common, &mut at);
+        self.family.energise(&self.base, &mut at);
     }
 
     /// Restarts the running module (a fault, or its own hardware watchdog).
     pub fn reset(&mut self, plant: &mut dyn Plant, now_us: u64) {
-        self.common.power_cycled();
-        self.family.restart(&self.common);
+        self.base.power_cycled();
+        self.family.restart(&self.base);
         self.energise(plant, now_us);
     }
 
@@ -209,12 +209,12 @@ impl Module {
             module: &self.id,
             now_us,
         };
-        trip(&mut self.common, self.family.as_mut(), &mut at);
+        trip(&mut self.base, self.family.as_mut(), &mut at);
     }
 
     /// Processes `text` (without CR); returns the bytes of the reply, if any.
     pub fn hear(&mut self, text: &[u8], plant: &mut dyn Plant, now_us: u64) -> Option<Vec<u8>> {
-        let with_checksum = self.common.uses_checksum();
+        let with_checksum = self.base.uses_checksum();
         let bare = if with_checksum {
             dcon::without_checksum(text)?
         } else {
@@ -227,7 +227,7 @@ impl Module {
             now_us,
         };
         if request.address == Address::Everybody {
-            broadcast(&mut self.common, self.family.as_mut(), &request, &mut at);
+            broadcast(&mut self.base, self.family.as_mut(), &request, &mut at);
             return None;
         }
         match self.obey(&request, plant, now_us) {
@@ -242,35 +242,35 @@ impl Module {
             module: &self.id,
             now_us,
         };
-        let answer = self.family.answer(&mut self.common, request, &mut at);
+        let answer = self.family.answer(&mut self.base, request, &mut at);
         if answer != Answer::Unknown {
             return answer;
         }
         let family = &self.family;
         let answer = self
-            .common
+            .base
             .answer(request, now_us, |code, format| family.fits(code, format));
         if request.lead == b'%' {
-            self.family.configured(&self.common, &mut at);
+            self.family.configured(&self.base, &mut at);
         }
         answer
     }
 }
 
-fn trip(common: &mut CommonPart, family: &mut dyn Family, at: &mut Terminals<'_>) {
-    common.watchdog.trip();
-    common.eeprom_writes += 1;
-    family.make_safe(common, at);
+fn trip(base: &mut ModuleBase, family: &mut dyn Family, at: &mut Terminals<'_>) {
+    base.watchdog.trip();
+    base.eeprom_writes += 1;
+    family.make_safe(base, at);
 }
 
 fn broadcast(
-    common: &mut CommonPart,
+    base: &mut ModuleBase,
     family: &mut dyn Family,
     request: &Request<'_>,
     at: &mut Terminals<'_>,
 ) {
     match (request.lead, request.body) {
-        (b'~', []) => common.watchdog.feed(at.now_us),
+        (b'~', []) => base.watchdog.feed(at.now_us),
         (b'#', []) => family.sample(at),
         (_, _) => {}
     }
@@ -293,4 +293,4 @@ fn unknown_model(spec: &ModuleSpec) -> SimError {
 }
 
 /// Common part and family of a module, before it joins a line.
-pub type Built = (CommonPart, Box<dyn Family>);
+pub type Built = (ModuleBase, Box<dyn Family>);

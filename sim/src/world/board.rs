@@ -195,8 +195,8 @@ impl Board {
             In::KelvinCom => kelvin(2),
             In::KelvinNo => kelvin(3),
             In::KelvinNc => kelvin(4),
-            In::NoClosed => Some(self.sees(Contact::No, part)),
-            In::NcClosed => Some(self.sees(Contact::Nc, part)),
+            In::NoClosed => Some(self.senses(Contact::No, part)),
+            In::NcClosed => Some(self.senses(Contact::Nc, part)),
             In::Window => Some(self.gates.window()),
             In::Latch => Some(self.gates.latch()),
             In::SourceCompliance => Some(self.source_limited(part)),
@@ -222,7 +222,7 @@ impl Board {
     }
 
     fn selected_closed(&self, part: Option<&Specimen>) -> bool {
-        self.commands.is_on(Out::ReferenceContact) || self.sees(self.selected(), part)
+        self.commands.is_on(Out::ReferenceContact) || self.senses(self.selected(), part)
     }
 
     /// Returns the instant of the board's next own event.

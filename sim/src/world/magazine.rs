@@ -61,7 +61,7 @@ impl Part {
     }
 
     /// Records the arrival at a place.
-    pub fn goes(&mut self, now_us: u64, place: Place) {
+    pub fn arrive(&mut self, now_us: u64, place: Place) {
         self.path.push((now_us, place));
     }
 }

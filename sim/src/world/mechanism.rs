@@ -71,8 +71,8 @@ enum Scheduled {
     Dark(In),
     Lit(In),
     Land(String, Box<Part>),
-    Disturb(Fault),
-    Calm(Fault),
+    Strike(Fault),
+    End(Fault),
 }
 
 /// Number of motion starts that are kept: a quarter of an hour of production.
@@ -94,7 +94,7 @@ pub struct Mechanism {
     commands: Commands,
     disturbed: Vec<Fault>,
     dark: Vec<In>,
-    later: Vec<(u64, Scheduled)>,
+    scheduled: Vec<(u64, Scheduled)>,
     next_us: u64,
     crashes: Vec<String>,
     driven: VecDeque<(u64, &'static str)>,
@@ -120,9 +120,9 @@ impl Mechanism {
             table.gripper_ms,
         ];
         let at = |s: f64| (s.max(0.0) * 1e6) as u64;
-        let later: Vec<(u64, Scheduled)> = faults
+        let scheduled: Vec<(u64, Scheduled)> = faults
             .timed()
-            .map(|(fault, s)| (at(s), Scheduled::Disturb(fault)))
+            .map(|(fault, s)| (at(s), Scheduled::Strike(fault)))
             .collect();
         let mut mechanism = Self {
             table: table.clone(),
@@ -137,7 +137,7 @@ impl Mechanism {
             commands: Commands::default(),
             disturbed: Vec::new(),
             dark: Vec::new(),
-            later,
+            scheduled,
             next_us: u64::MAX,
             crashes: Vec::new(),
             driven: VecDeque::new(),
@@ -167,7 +167,7 @@ impl Mechanism {
 
     /// Returns every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
-        let falling = self.later.iter().filter_map(|(_, what)| match what {
+        let falling = self.scheduled.iter().filter_map(|(_, what)| match what {
             Scheduled::Land(_, part) => Some(part.bodies()),
             _ => None,
         });
@@ -191,8 +191,8 @@ impl Mechanism {
     /// Cancels the faults that have not struck yet.
     pub fn cancel_faults(&mut self) {
         self.faults.clear();
-        self.later
-            .retain(|(_, what)| !matches!(what, Scheduled::Disturb(_)));
+        self.scheduled
+            .retain(|(_, what)| !matches!(what, Scheduled::Strike(_)));
         self.schedule();
     }
 
@@ -238,16 +238,16 @@ impl Mechanism {
         if self.axis.due_us().is_some_and(|due| due <= now_us) {
             self.axis.arrive();
         }
-        while let Some(place) = self.later.iter().position(|(due, _)| *due <= now_us) {
-            let (_, what) = self.later.remove(place);
-            self.happen(what, now_us);
+        while let Some(place) = self.scheduled.iter().position(|(due, _)| *due <= now_us) {
+            let (_, what) = self.scheduled.remove(place);
+            self.run_event(what, now_us);
         }
         self.schedule();
     }
 
     /// Lets a timed fault strike now.
-    pub fn disturb(&mut self, fault: Fault, now_us: u64) {
-        self.later.push((now_us, Scheduled::Disturb(fault)));
+    pub fn strike(&mut self, fault: Fault, now_us: u64) {
+        self.scheduled.push((now_us, Scheduled::Strike(fault)));
         self.schedule();
     }
 
@@ -286,7 +286,7 @@ impl Mechanism {
     fn schedule(&mut self) {
         let strokes = self.cylinders.iter().filter_map(Cylinder::due_us);
         let others = self
-            .later
+            .scheduled
             .iter()
             .map(|(due, _)| *due)
             .chain(self.axis.due_us());
@@ -361,32 +361,32 @@ impl Mechanism {
         let number = self.places.carried.as_ref().and_then(|p| p.number);
         let whole = self.axis.due_us().map_or(0, |due| due - now_us);
         if self.faults.strikes(Fault::Fall, number) {
-            self.later.push((now_us + whole / 3, Scheduled::Slip));
+            self.scheduled.push((now_us + whole / 3, Scheduled::Slip));
         }
         if self.faults.strikes(Fault::AxisAlarm, number) {
-            self.later.push((now_us + whole / 2, Scheduled::Trip));
+            self.scheduled.push((now_us + whole / 2, Scheduled::Trip));
         }
     }
 
-    fn happen(&mut self, what: Scheduled, now_us: u64) {
+    fn run_event(&mut self, what: Scheduled, now_us: u64) {
         match what {
             Scheduled::LiftOff => self.lift_off(now_us),
             Scheduled::LetGo => self.let_go(now_us),
-            Scheduled::Slip | Scheduled::TakenOut => self.lose(now_us),
+            Scheduled::Slip | Scheduled::TakenOut => self.drop_carried(now_us),
             Scheduled::Trip => self.axis.trip(now_us),
             Scheduled::Dark(beam) => self.dark.push(beam),
             Scheduled::Lit(beam) => self.dark.retain(|&b| b != beam),
             Scheduled::Land(bin, mut part) => {
-                part.goes(now_us, Place::Bin(bin));
+                part.arrive(now_us, Place::Bin(bin));
                 self.places.finish(&part);
             }
-            Scheduled::Disturb(fault) => {
+            Scheduled::Strike(fault) => {
                 self.disturbed.push(fault);
                 let hold = (self.table.fault_hold_ms * 1000.0) as u64;
-                self.later.push((now_us + hold, Scheduled::Calm(fault)));
+                self.scheduled.push((now_us + hold, Scheduled::End(fault)));
                 self.disturbance_changed(now_us);
             }
-            Scheduled::Calm(fault) => {
+            Scheduled::End(fault) => {
                 // A repeated fault lasts until the later end.
                 let first = self.disturbed.iter().position(|&other| other == fault);
                 first.map(|place| self.disturbed.remove(place));

@@ -192,7 +192,7 @@ impl World {
             expected: expected.into(),
         };
         match (fault.kind(), value) {
-            (Kind::Timed, None) => self.mechanism.disturb(fault, self.now_us),
+            (Kind::Timed, None) => self.mechanism.strike(fault, self.now_us),
             (Kind::Timed, Some(_)) => return Err(wrong("no value, since the fault strikes now")),
             (Kind::OfPart, Some(part)) => self.mechanism.add_part_fault(fault, part),
             (Kind::OfPart, None) => return Err(wrong("the number of a part")),

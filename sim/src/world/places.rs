@@ -27,7 +27,7 @@ impl Places {
             self.entered += 1;
             part.seq = self.entered;
         }
-        part.goes(now_us, Place::Nest);
+        part.arrive(now_us, Place::Nest);
         while part.specimen.advance(now_us as f64).is_some() {}
         self.nest = Some(part);
     }

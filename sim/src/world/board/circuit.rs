@@ -28,7 +28,7 @@ impl Board {
         sum.clamp(0.0, self.table.supply_max_v)
     }
 
-    pub(super) fn sees(&self, contact: Contact, part: Option<&Specimen>) -> bool {
+    pub(super) fn senses(&self, contact: Contact, part: Option<&Specimen>) -> bool {
         self.touching
             && part.is_some_and(|it| it.pins().contact(contact) && self.trips(it, contact))
     }
@@ -82,7 +82,7 @@ impl Board {
             return Some(self.reference_contact_ohm);
         }
         let contact = self.selected();
-        let closed = self.sees(contact, part);
+        let closed = self.senses(contact, part);
         part.filter(|_| closed)
             .and_then(|it| it.contact_mohm(contact))
             .map(|mohm| mohm * 1e-3)

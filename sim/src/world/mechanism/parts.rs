@@ -10,7 +10,7 @@ use crate::world::signal::In;
 /// Moves the part of one place to another place.
 fn moved(from: &mut Option<Box<Part>>, now_us: u64, to: Place) -> Option<Box<Part>> {
     let mut part = from.take()?;
-    part.goes(now_us, to);
+    part.arrive(now_us, to);
     Some(part)
 }
 
@@ -30,11 +30,11 @@ impl Mechanism {
             (CylinderId::SortZ, true) => self.lookout.slides_off = false,
             (CylinderId::SortZ, false) if self.places.gripped => {
                 let at = share(25, self.at(CylinderId::SortZ));
-                self.later.push((at, Scheduled::LiftOff));
+                self.scheduled.push((at, Scheduled::LiftOff));
             }
             (CylinderId::Gripper, false) => {
                 let at = share(30, self.at(CylinderId::Gripper));
-                self.later.push((at, Scheduled::LetGo));
+                self.scheduled.push((at, Scheduled::LetGo));
             }
             (_, _) => {}
         }
@@ -75,7 +75,7 @@ impl Mechanism {
             return;
         };
         if self.faults.strikes(Fault::PartMisses, part.number) || self.places.nest.is_some() {
-            part.goes(now_us, Place::Floor);
+            part.arrive(now_us, Place::Floor);
             self.places.finish(&part);
         } else {
             self.places.enter_nest(part, now_us);
@@ -116,7 +116,7 @@ impl Mechanism {
         let number = self.places.carried.as_ref().and_then(|part| part.number);
         if self.faults.strikes(Fault::PartSticks, number) {
             let hold = (self.table.fault_hold_ms * 1000.0) as u64;
-            self.later.push((now_us + hold, Scheduled::TakenOut));
+            self.scheduled.push((now_us + hold, Scheduled::TakenOut));
             return;
         }
         let x = self.axis.x_mm(now_us);
@@ -130,7 +130,7 @@ impl Mechanism {
             None if near(0.0) && self.at(CylinderId::SortZ).at_far(now_us) => {
                 return self.put_back(now_us);
             }
-            None => return self.lose(now_us),
+            None => return self.drop_carried(now_us),
         };
         if let Some(part) = moved(&mut self.places.carried, now_us, Place::Air) {
             self.fall(part, name, beam, now_us);
@@ -142,12 +142,12 @@ impl Mechanism {
         let seen = !self.faults.strikes(Fault::BeamBlind, part.number);
         let bodies = if part.double { 2 } else { 1 };
         let mut dark = now_us + us(self.draw.between(self.table.fall_ms));
-        self.later.push((dark, Scheduled::Land(bin, part)));
+        self.scheduled.push((dark, Scheduled::Land(bin, part)));
         for _ in 0..bodies {
             let lit = dark + us(self.draw.between(self.table.beam_dark_ms));
             if let Some(beam) = beam.filter(|_| seen) {
-                self.later.push((dark, Scheduled::Dark(beam)));
-                self.later.push((lit, Scheduled::Lit(beam)));
+                self.scheduled.push((dark, Scheduled::Dark(beam)));
+                self.scheduled.push((lit, Scheduled::Lit(beam)));
             }
             dark = lit + us(25.0);
         }
@@ -158,7 +158,7 @@ impl Mechanism {
         if let Some(mut part) = self.places.carried.take() {
             match self.places.nest.is_some() {
                 true => {
-                    part.goes(now_us, Place::Floor);
+                    part.arrive(now_us, Place::Floor);
                     self.places.finish(&part);
                 }
                 false => self.places.enter_nest(part, now_us),
@@ -167,7 +167,7 @@ impl Mechanism {
     }
 
     /// Removes a carried part: it falls on the floor, or an operator takes it.
-    pub(super) fn lose(&mut self, now_us: u64) {
+    pub(super) fn drop_carried(&mut self, now_us: u64) {
         if let Some(part) = moved(&mut self.places.carried, now_us, Place::Floor) {
             self.places.finish(&part);
         }

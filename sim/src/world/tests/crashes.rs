@@ -81,7 +81,7 @@ fn without_valves_fingers_slide_off_and_jaws_hold() {
     }
     hand.wait(500.0);
     assert_untouched(&hand);
-    assert!(hand.sees("nest_present") && hand.sees("sort_z_up") && !hand.sees("gripper_part"));
+    assert!(hand.is_on("nest_present") && hand.is_on("sort_z_up") && !hand.is_on("gripper_part"));
 }
 
 #[test]
@@ -112,6 +112,6 @@ fn fingers_that_leave_their_part_do_not_crash() {
     hand.pulse("clamp_open", 200.0);
     hand.set("sort_z_lower", false);
     hand.wait(400.0);
-    assert!(hand.sees("nest_present") && hand.sees("sort_z_up"));
+    assert!(hand.is_on("nest_present") && hand.is_on("sort_z_up"));
     assert_untouched(&hand);
 }

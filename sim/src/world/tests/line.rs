@@ -16,7 +16,7 @@ fn a_part_passes_magazine_timed_test_and_bin() {
     let mut hand = Hand::new(options(false));
     hand.feed();
     hand.set("kelvin_test", true);
-    assert!(hand.sees("kelvin_com") && hand.sees("kelvin_no") && hand.sees("nc_closed"));
+    assert!(hand.is_on("kelvin_com") && hand.is_on("kelvin_no") && hand.is_on("nc_closed"));
     hand.level(12.0);
     hand.set("select_no", true);
     hand.set("arm", true);
@@ -25,21 +25,21 @@ fn a_part_passes_magazine_timed_test_and_bin() {
     let before_1 = hand.gate_ms("gate_1");
     hand.set("coil_drive", true);
     hand.wait(40.0);
-    assert!(hand.sees("latch") && hand.sees("no_closed") && !hand.sees("nc_closed"));
-    assert!((hand.reads("coil_voltage") - 12.0).abs() < 1e-9);
-    assert!((hand.reads("coil_current") - 0.03).abs() < 0.002);
+    assert!(hand.is_on("latch") && hand.is_on("no_closed") && !hand.is_on("nc_closed"));
+    assert!((hand.value("coil_voltage") - 12.0).abs() < 1e-9);
+    assert!((hand.value("coil_current") - 0.03).abs() < 0.002);
     let operate = hand.gate_ms("gate_0") - before;
     let bounce = hand.gate_ms("gate_1") - before_1 - operate;
     hand.set("source_on", true);
     hand.wait(10.0);
-    let plus = hand.reads("contact_drop");
+    let plus = hand.value("contact_drop");
     hand.set("source_reverse", true);
     hand.wait(10.0);
-    let mohm = (plus - hand.reads("contact_drop")) / 2.0 * 1000.0;
+    let mohm = (plus - hand.value("contact_drop")) / 2.0 * 1000.0;
     hand.set("source_on", false);
     hand.set("coil_drive", false);
     hand.wait(50.0);
-    assert!(hand.sees("nc_closed") && !hand.sees("no_closed"));
+    assert!(hand.is_on("nc_closed") && !hand.is_on("no_closed"));
     hand.sort(4);
     let (module, channel) = beam(&hand, "voltage");
     assert_eq!(hand.world.edges(&module, channel), 1);
@@ -78,14 +78,14 @@ fn the_source_switches_off_before_the_drive_changes() {
     hand.feed();
     hand.set("source_on", true);
     hand.wait(10.0);
-    assert!((hand.reads("contact_current") - 1.0).abs() < 0.0011);
+    assert!((hand.value("contact_current") - 1.0).abs() < 0.0011);
     hand.level(12.0);
     hand.set("coil_drive", true);
     hand.wait(1.9);
-    assert_eq!(hand.reads("contact_current"), 0.0);
-    assert_eq!(hand.reads("coil_voltage"), 0.0);
+    assert_eq!(hand.value("contact_current"), 0.0);
+    assert_eq!(hand.value("coil_voltage"), 0.0);
     hand.wait(0.2);
-    assert!((hand.reads("coil_voltage") - 12.0).abs() < 1e-9);
+    assert!((hand.value("coil_voltage") - 12.0).abs() < 1e-9);
 }
 
 #[test]
@@ -94,8 +94,8 @@ fn nothing_is_driven_without_the_probe_up_chain() {
     hand.level(12.0);
     hand.set("coil_drive", true);
     hand.wait(10.0);
-    assert_eq!(hand.reads("coil_voltage"), 0.0);
-    assert!((hand.reads("supply_voltage") - 12.0).abs() < 1e-9);
+    assert_eq!(hand.value("coil_voltage"), 0.0);
+    assert!((hand.value("supply_voltage") - 12.0).abs() < 1e-9);
 }
 
 #[test]
@@ -118,9 +118,9 @@ fn a_ramp_opens_the_window_after_fifty_millivolts() {
     hand.set("arm", true);
     hand.world.analog_out("ao_fine", 0.049 / 1.5);
     hand.wait(1.0);
-    assert!(!hand.sees("window"));
+    assert!(!hand.is_on("window"));
     hand.world.analog_out("ao_fine", 0.051 / 1.5);
-    assert!(hand.sees("window"));
+    assert!(hand.is_on("window"));
 }
 
 #[test]
@@ -131,9 +131,11 @@ fn without_air_the_pusher_returns_and_the_jaws_hold() {
     hand.pulse("clamp_close", 300.0);
     hand.set("pusher_extend", true);
     hand.wait(1000.0);
-    assert!(hand.sees("pusher_extended"));
+    assert!(hand.is_on("pusher_extended"));
     hand.wait(2500.0);
-    assert!(!hand.sees("air_ok") && hand.sees("pusher_retracted") && hand.sees("jaw_left_closed"));
+    assert!(
+        !hand.is_on("air_ok") && hand.is_on("pusher_retracted") && hand.is_on("jaw_left_closed")
+    );
 }
 
 #[test]
@@ -159,10 +161,10 @@ fn a_jammed_pusher_succeeds_at_the_second_stroke() {
     let mut hand = Hand::new(o);
     hand.pulse("escapement_release", 300.0);
     hand.pulse("pusher_extend", 800.0);
-    assert!(!hand.sees("pusher_extended") && !hand.sees("nest_present"));
+    assert!(!hand.is_on("pusher_extended") && !hand.is_on("nest_present"));
     hand.wait(800.0);
     hand.pulse("pusher_extend", 800.0);
-    assert!(hand.sees("nest_present"));
+    assert!(hand.is_on("nest_present"));
     assert_eq!(hand.world.crashes(), Vec::<String>::new());
 }
 
@@ -234,7 +236,7 @@ fn a_falling_ramp_latches_on_the_break_of_no() {
     hand.wait(1.0);
     let before = hand.gate_ms("gate_0");
     let mut volts = 4.0;
-    while !hand.sees("latch") {
+    while !hand.is_on("latch") {
         volts -= 0.0015;
         assert!(volts > 0.5, "no release");
         hand.level(volts);
@@ -258,12 +260,12 @@ fn a_drifting_emf_moves_contact_drop_but_not_reference() {
         ..options(false)
     });
     hand.feed();
-    let first = hand.reads("contact_drop");
+    let first = hand.value("contact_drop");
     hand.wait(100.0);
-    let moved = hand.reads("contact_drop") - first;
+    let moved = hand.value("contact_drop") - first;
     assert!((moved - 0.0005).abs() < 1e-12, "{moved}");
     hand.set("reference_contact", true);
-    let first = hand.reads("contact_drop");
+    let first = hand.value("contact_drop");
     hand.wait(100.0);
-    assert_eq!(hand.reads("contact_drop"), first);
+    assert_eq!(hand.value("contact_drop"), first);
 }

@@ -34,23 +34,23 @@ fn a_dummy_passes_the_line_and_shows_its_resistance() {
     hand.feed();
     hand.set("kelvin_test", true);
     let pins = ["coil_a", "coil_b", "com", "no", "nc"];
-    assert!(pins.iter().all(|pin| hand.sees(&format!("kelvin_{pin}"))));
+    assert!(pins.iter().all(|pin| hand.is_on(&format!("kelvin_{pin}"))));
     hand.set("kelvin_test", false);
     hand.level(2.5);
     hand.set("coil_drive", true);
     hand.wait(1.0);
-    let (volts, amperes) = (hand.reads("coil_voltage"), hand.reads("coil_current_fine"));
+    let (volts, amperes) = (hand.value("coil_voltage"), hand.value("coil_current_fine"));
     assert!((volts - 2.5).abs() < 1e-9, "{volts} V");
     for contact in ["no_closed", "nc_closed"] {
-        assert!(!hand.sees(contact), "{contact}");
+        assert!(!hand.is_on(contact), "{contact}");
     }
     hand.set("source_on", true);
     hand.wait(20.0);
-    assert_eq!(hand.reads("contact_current"), 0.0);
+    assert_eq!(hand.value("contact_current"), 0.0);
     hand.set("source_on", false);
     hand.set("coil_drive", false);
     hand.wait(1.0);
-    assert_eq!(hand.reads("coil_current"), 0.0);
+    assert_eq!(hand.value("coil_current"), 0.0);
     hand.sort(2);
     let truth = &hand.world.truth()[0];
     let ohm = truth["resistance_ohm"].as_f64().unwrap();
@@ -75,7 +75,7 @@ fn a_short_reaches_the_current_limit_of_the_supply() {
     hand.level(2.5);
     hand.set("coil_drive", true);
     hand.wait(1.0);
-    let (volts, amperes) = (hand.reads("coil_voltage"), hand.reads("coil_current"));
+    let (volts, amperes) = (hand.value("coil_voltage"), hand.value("coil_current"));
     assert!((volts - 0.15).abs() < 0.002, "{volts} V");
     assert!(amperes >= 0.05, "{amperes} A");
 }

@@ -103,7 +103,7 @@ impl Model {
                 slope,
                 since_s,
             } => (volts + slope * (t_s - since_s) - self.ohm * current) * self.eddy,
-            Drive::Suppression { volts } => match modes.is(Kind::CoilBlocked) {
+            Drive::Suppression { volts } => match modes.is_engaged(Kind::CoilBlocked) {
                 true => self.blocked_rate(current),
                 false => (-volts - self.ohm * current) * self.eddy,
             },
@@ -161,16 +161,16 @@ impl Model {
         let leaf = p.k_l * (x + p.d0 - y) + p.c_l * (v - w);
         let mut load = p.F_r0 + p.k_r * x + p.c_a * v + leaf;
         let mut tip = leaf;
-        if modes.is(Kind::Backstop) {
+        if modes.is_engaged(Kind::Backstop) {
             load -= self.stop.push(-x, -v);
         }
-        if modes.is(Kind::Seat) {
+        if modes.is_engaged(Kind::Seat) {
             load += self.stop.push(x - p.X, v);
         }
-        if modes.is(Kind::Nc) {
+        if modes.is_engaged(Kind::Nc) {
             tip += self.contact.push(-y, -w);
         }
-        if modes.is(Kind::No) {
+        if modes.is_engaged(Kind::No) {
             tip -= self.contact.push(y - p.G, w);
         }
         let across = phi * per_spread;
@@ -197,7 +197,7 @@ impl Model {
     pub fn modes(&self, s: &State, drive: &Drive) -> Modes {
         let mut modes = Modes::default();
         for kind in Kind::TOUCHING.into_iter().chain([Kind::CoilBlocked]) {
-            modes.put(kind, self.gap(kind, s, drive) > 0.0);
+            modes.set(kind, self.gap(kind, s, drive) > 0.0);
         }
         modes
     }

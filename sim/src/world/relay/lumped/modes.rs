@@ -43,12 +43,12 @@ pub struct Modes([bool; 5]);
 impl Modes {
     /// Checks whether a kind is engaged.
     #[inline]
-    pub fn is(self, kind: Kind) -> bool {
+    pub fn is_engaged(self, kind: Kind) -> bool {
         self.0[kind as usize]
     }
 
     /// Sets or clears the flag of a kind.
-    pub fn put(&mut self, kind: Kind, on: bool) {
+    pub fn set(&mut self, kind: Kind, on: bool) {
         self.0[kind as usize] = on;
     }
 }

@@ -90,7 +90,7 @@ impl Solver {
     /// Applies a changed drive: recomputes the flag of the suppression.
     pub fn drive_changed(&mut self, model: &Model, drive: &Drive) {
         let blocked = model.gap(Kind::CoilBlocked, &self.state, drive) > 0.0;
-        self.modes.put(Kind::CoilBlocked, blocked);
+        self.modes.set(Kind::CoilBlocked, blocked);
     }
 
     /// Advances to `until_s`, or to the first event before it.
@@ -162,10 +162,10 @@ impl Solver {
     }
 
     fn change(&mut self, h: f64, state: State, kind: Kind) -> Event {
-        let on = !self.modes.is(kind);
+        let on = !self.modes.is_engaged(kind);
         self.t_s += h;
         self.state = state;
-        self.modes.put(kind, on);
+        self.modes.set(kind, on);
         self.h = self.h.min(SHORT_S);
         Event {
             t_s: self.t_s,
@@ -186,7 +186,11 @@ impl Solver {
     ) -> (f64, State) {
         let mut best = (h, state);
         for kind in Kind::TOUCHING {
-            let side = if self.modes.is(kind) { 1.0 } else { -1.0 };
+            let side = if self.modes.is_engaged(kind) {
+                1.0
+            } else {
+                -1.0
+            };
             let of = |s: &State| {
                 (
                     side * model.stops.overlap(kind, s),
@@ -218,7 +222,7 @@ impl Solver {
         let mut first = None;
         let (mut h, mut state) = (h, state);
         for kind in Kind::TOUCHING.into_iter().chain([Kind::CoilBlocked]) {
-            if (model.gap(kind, &state, drive) > 0.0) != self.modes.is(kind) {
+            if (model.gap(kind, &state, drive) > 0.0) != self.modes.is_engaged(kind) {
                 (h, state) = self.locate(model, drive, slope, kind, h, state);
                 first = Some((h, state, kind));
             }
@@ -236,7 +240,11 @@ impl Solver {
         h: f64,
         state: State,
     ) -> (f64, State) {
-        let side = if self.modes.is(kind) { 1.0 } else { -1.0 };
+        let side = if self.modes.is_engaged(kind) {
+            1.0
+        } else {
+            -1.0
+        };
         let gap = |s: &State| side * model.gap(kind, s, drive);
         let (mut lo, mut low) = (0.0, gap(&self.state).max(0.0));
         let (mut hi, mut high) = (h, gap(&state));

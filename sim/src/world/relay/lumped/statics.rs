@@ -232,7 +232,7 @@ impl Model {
             let free = self.pull(s[0] / p.N, p.X - s[X]) - p.F_r0 - p.k_r * s[X] - leaf;
             push = if seated { free } else { -free };
             let known = if seated { s[X] - p.X } else { -s[X] };
-            let depth = self.stop.nearer(known, push);
+            let depth = self.stop.refine(known, push);
             s[X] = if seated { p.X + depth } else { -depth };
             if (s[X] - before).abs() <= 1e-15 * p.X {
                 break;

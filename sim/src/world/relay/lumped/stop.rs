@@ -31,7 +31,7 @@ impl Stop {
 
     /// Refines a nearby overlap by one step of Newton's method; the error becomes its square.
     #[inline]
-    pub fn nearer(self, known: f64, force: f64) -> f64 {
+    pub fn refine(self, known: f64, force: f64) -> f64 {
         let next = known / 3.0 + force / (1.5 * self.k * known.sqrt());
         match known > 0.0 && force > 0.0 && next < 4.0 * known {
             true => next,

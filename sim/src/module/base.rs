@@ -47,7 +47,7 @@ pub struct Commissioning {
 
 /// Registers and commands that every family shares.
 #[derive(Debug, Clone)]
-pub struct CommonPart {
+pub struct ModuleBase {
     /// Stored address, valid on the line unless INIT* is grounded.
     pub address: u8,
     /// Type code TT.
@@ -73,7 +73,7 @@ pub struct CommonPart {
     reset_unread: bool,
 }
 
-impl CommonPart {
+impl ModuleBase {
     /// Reads the common keys of the module's table, for a given type code and the family's bits of FF.
     pub fn new(
         spec: &ModuleSpec,
