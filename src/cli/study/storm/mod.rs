@@ -266,7 +266,7 @@ impl<'a> Sea<'a> {
             seed,
             recipe: self.order.recipe.clone(),
             parts: None,
-            golden,
+            reference_parts: golden,
             faults: faults.to_vec(),
         })?)
     }
