@@ -1,4 +1,4 @@
-//! The device codec under 10^7 inputs of garbage: `cargo bench -p rigsim --bench device_fuzz [-- INPUTS [SEED]]`.
+//! 10^7 random inputs for the device codec: `cargo bench -p rigsim --bench device_fuzz [-- INPUTS [SEED]]`.
 
 #[path = "../tests/fuzz/garbage.rs"]
 mod garbage;

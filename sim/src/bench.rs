@@ -1,4 +1,4 @@
-//! Modules on a bench: no rig, fixed signals at the terminals, one line, any DCON client.
+//! Modules on a bench: fixed signals at the terminals of one line, for any DCON client.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,16 +8,16 @@ use serde::Deserialize;
 use crate::config::LineSpec;
 use crate::error::SimError;
 use crate::fault::LineFaults;
-use crate::module::habit::{self, Habit};
-use crate::module::plate::Commissioning;
+use crate::module::base::Commissioning;
+use crate::module::tolerances::{self, Tolerances};
 use crate::module::{Module, setting};
-use crate::rig::{Record, Rig};
+use crate::rig::{Rig, WorldRecord};
 use crate::terminal::{ModuleSpec, Plant};
 
 /// Name of the only line.
 pub const LINE: &str = "bench";
 
-/// Time-out of a watchdog that a bench enables without saying, milliseconds.
+/// Default time-out of an enabled watchdog, milliseconds.
 const WATCHDOG_MS: f64 = 1_000.0;
 
 #[derive(Deserialize)]
@@ -48,7 +48,7 @@ fn default_latency() -> f64 {
     2.0
 }
 
-/// Keys of a bench module beyond address and model.
+/// Keys of a bench module besides `address` and `model`.
 const KEYS: [&str; 32] = [
     "checksum",
     "format",
@@ -84,10 +84,10 @@ const KEYS: [&str; 32] = [
     "refusal",
 ];
 
-/// Builds the bench that a file describes.
+/// Builds the bench of a file.
 ///
 /// # Errors
-/// The file cannot be read, or a module in it has a key or value that it cannot take.
+/// Fails when the file cannot be read, or a module has an unknown key or an unfit value.
 pub fn build(file: &Path, faults: LineFaults) -> Result<Rig, SimError> {
     let text = std::fs::read_to_string(file).map_err(|error| bench(file, error.to_string()))?;
     parse(&text)
@@ -99,10 +99,10 @@ pub fn build(file: &Path, faults: LineFaults) -> Result<Rig, SimError> {
         })
 }
 
-/// Builds a bench without faults from its text.
+/// Builds a bench without faults from the text of a bench file.
 ///
 /// # Errors
-/// As [`build`].
+/// Fails as [`build`] does.
 pub fn build_text(text: &str) -> Result<Rig, SimError> {
     parse(text)
         .map_err(|why| bench(Path::new("-"), why.to_string().trim().to_owned()))?
@@ -134,12 +134,12 @@ impl BenchFile {
             signals
                 .inputs
                 .insert(spec.id.clone(), setting::numbers(&spec, "inputs")?);
-            let habit = Habit {
+            let tolerances = Tolerances {
                 latency_sd_us: self.latency_sd_ms * 1e3,
-                ..Habit::exact(self.latency_ms * 1e3)
+                ..Tolerances::exact(self.latency_ms * 1e3)
             };
-            let rng = habit::stream(0, &spec.id);
-            modules.push(Module::new(&spec, commissioning, habit, rng)?);
+            let rng = tolerances::stream(0, &spec.id);
+            modules.push(Module::new(&spec, commissioning, tolerances, rng)?);
         }
         let line = LineSpec {
             name: LINE.into(),
@@ -152,7 +152,9 @@ impl BenchFile {
             return Err(SimError::FaultValue {
                 name: "target".into(),
                 found: target.into(),
-                expected: format!("a module of the file, module[0] and on, or the line {LINE}"),
+                expected: format!(
+                    "a module of the file (module[0], module[1], ...) or the line {LINE}"
+                ),
             });
         }
         Ok(Rig::new(Box::new(signals), modules, vec![line], faults))
@@ -185,7 +187,7 @@ impl BenchModule {
     }
 }
 
-/// Terminals that carry what the file says, for ever.
+/// Terminals with the constant signals of the bench file.
 #[derive(Default)]
 struct Signals {
     inputs: BTreeMap<String, Vec<f64>>,
@@ -206,7 +208,7 @@ impl Plant for Signals {
 
     fn analog_out(&mut self, _module: &str, _volts: f64) {}
 
-    /// A terminal that the file does not mention is open and reads 1.
+    /// A terminal that the file omits is open and reads 1.
     fn digital_in(&mut self, module: &str) -> u16 {
         (0..16u8).fold(0, |levels, channel| {
             let open = self.input(module, channel).unwrap_or(1.0) != 0.0;
@@ -229,7 +231,7 @@ impl Plant for Signals {
     }
 }
 
-impl Record for Signals {
+impl WorldRecord for Signals {
     fn truth(&mut self) -> Vec<serde_json::Value> {
         Vec::new()
     }

@@ -1,9 +1,9 @@
-//! The simulator's own reading of `config/`.
+//! Reads `config/` for the simulated rig.
 //!
-//! The rig file says what is wired to which terminal; the world looks signals up by their fixed
-//! names, so a rewired `rig.toml` makes a rewired simulated rig. The world file
-//! ([`crate::world::table`]) says what the rig and the parts really are. Nothing here is shared
-//! with the controller: two readers that agree by accident would hide a slip.
+//! The rig file assigns signals to terminals; the world finds signals by their fixed names, so a
+//! rewired `rig.toml` gives a rewired simulated rig. The world file ([`crate::world::table`]) holds
+//! the true values of the rig and the parts. The controller reads the same files with its own code:
+//! a shared reader would hide its mistakes from the tests.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -13,35 +13,35 @@ use serde::Deserialize;
 use crate::terminal::ModuleSpec;
 pub use crate::world::table::{DeviceWorld, FaultSpec, WorldTable, read_world};
 
-/// Why a file of the configuration cannot be used.
+/// Reason why a configuration file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum ConfigError {
-    /// The file cannot be read at all.
+    /// The file cannot be read.
     #[error("{path}: cannot be read")]
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Reason that the operating system gives.
         source: std::io::Error,
     },
-    /// The file is no TOML, or a key is unknown, missing or of the wrong kind.
+    /// The file is not TOML, or a key is unknown, missing or of the wrong type.
     #[error("{path}:{line}: {message}")]
     Content {
         /// The file.
         path: PathBuf,
-        /// Line of the trouble, from 1; 0 where a key is missing altogether.
+        /// Line of the error, from 1; 0 when a key is missing.
         line: usize,
-        /// What was found and expected.
+        /// Found and expected content.
         message: String,
     },
-    /// A value is readable but cannot be.
+    /// A value has the right type but is not possible.
     #[error("{path}: {key}: {message}")]
     Value {
         /// The file.
         path: PathBuf,
         /// Key as a dotted path.
         key: String,
-        /// What was found and expected.
+        /// Found and expected content.
         message: String,
     },
 }
@@ -53,7 +53,7 @@ pub struct LineSpec {
     pub name: String,
     /// Bits per second.
     pub baud: u32,
-    /// Whether the modules of the line want a checksum.
+    /// Modules of the line use a checksum.
     pub checksum: bool,
 }
 
@@ -66,11 +66,11 @@ pub struct Terminal {
     pub channel: u8,
     /// The terminal reads 0 while the signal is present.
     pub active_low: bool,
-    /// Volts at the terminal per unit of the quantity (inputs), units per volt (outputs).
+    /// Volts at the terminal per unit of the quantity (inputs), or units per volt (outputs).
     pub gain: f64,
 }
 
-/// A sorting bin.
+/// A sorting bin, with its place on the axis and its beam.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bin {
     /// Key of the table `[bin]`.
@@ -79,39 +79,39 @@ pub struct Bin {
     pub point: u8,
     /// Position along the axis, mm from the nest.
     pub x_mm: f64,
-    /// Digital input that watches the chute.
+    /// Name of the digital input that monitors the chute.
     pub beam: String,
 }
 
-/// References on the interface board as their labels say.
+/// References on the interface board, with the values of their labels.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct References {
     /// Coil substitute, ohm.
     pub coil_ohm: f64,
-    /// Half width of its error.
+    /// Half width of the tolerance of the coil substitute, percent.
     pub coil_tolerance_pct: f64,
     /// Contact substitute, milliohm.
     pub contact_mohm: f64,
-    /// Half width of its error.
+    /// Half width of the tolerance of the contact substitute, percent.
     pub contact_tolerance_pct: f64,
     /// Voltage reference, volts.
     pub voltage_v: f64,
-    /// Half width of its error.
+    /// Half width of the tolerance of the voltage reference, percent.
     pub voltage_tolerance_pct: f64,
-    /// Length of the reference gate pulse.
+    /// Length of the reference gate pulse, milliseconds.
     pub gate_pulse_ms: f64,
-    /// Nominal clock of the gated counters.
+    /// Nominal clock of the gated counters, hertz.
     pub counter_clock_hz: f64,
 }
 
-/// `rig.toml` as the simulator needs it.
+/// Content of `rig.toml` that the simulated rig needs.
 #[derive(Debug, Clone)]
 pub struct RigFile {
     /// Serial lines in order of name.
     pub lines: Vec<LineSpec>,
     /// Modules in order of identifier.
     pub modules: Vec<ModuleSpec>,
-    /// Time after the last host OK at which a watched module falls to its safe outputs.
+    /// Time after the last host OK at which a watched module sets its safe outputs, milliseconds.
     pub host_watchdog_ms: f64,
     /// Analog inputs by point name.
     pub analog_in: BTreeMap<String, Terminal>,
@@ -125,7 +125,7 @@ pub struct RigFile {
     pub counter: BTreeMap<String, Terminal>,
     /// RTD inputs by point name.
     pub temperature: BTreeMap<String, Terminal>,
-    /// Named stops of the sort axis that are no bins: number in the point table and x in mm.
+    /// Named stops of the sort axis other than bins: number in the point table, and x in mm.
     pub axis: BTreeMap<String, (u8, f64)>,
     /// Bins in order of name.
     pub bins: Vec<Bin>,
@@ -136,7 +136,7 @@ pub struct RigFile {
 /// Reads `rig.toml` of the configuration folder.
 ///
 /// # Errors
-/// The file cannot be read, is no TOML, or lacks something the simulated rig is made from.
+/// Fails when the file cannot be read, is not TOML, or lacks a required key.
 pub fn read_rig(dir: &Path) -> Result<RigFile, ConfigError> {
     let path = dir.join("rig.toml");
     let text = read_text(&path)?;
@@ -144,7 +144,7 @@ pub fn read_rig(dir: &Path) -> Result<RigFile, ConfigError> {
     Ok(resolve(raw))
 }
 
-/// Reads a file of the configuration as text.
+/// Reads a configuration file as text.
 pub(crate) fn read_text(path: &Path) -> Result<String, ConfigError> {
     std::fs::read_to_string(path).map_err(|source| ConfigError::Read {
         path: path.to_path_buf(),
@@ -152,7 +152,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ConfigError> {
     })
 }
 
-/// A TOML error with its line.
+/// Builds the error for invalid TOML, with its line.
 pub(crate) fn content(path: &Path, text: &str, error: &toml::de::Error) -> ConfigError {
     let line = error.span().map_or(0, |s| line_of(text, s.start));
     let message = error.message().lines().collect::<Vec<_>>().join(" ");
@@ -163,7 +163,7 @@ pub(crate) fn content(path: &Path, text: &str, error: &toml::de::Error) -> Confi
     }
 }
 
-/// Line (from 1) of a byte offset.
+/// Returns the line (from 1) of a byte offset.
 fn line_of(text: &str, offset: usize) -> usize {
     text.as_bytes()
         .iter()

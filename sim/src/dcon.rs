@@ -1,61 +1,61 @@
-//! The device side of DCON: what a request is, when it is heard, and how replies are spelt.
+//! The device side of DCON: how a module parses requests and formats replies.
 //!
-//! A request is `LEAD AA BODY [CHK] CR` with LEAD one of `# $ % @ ~`, AA two upper-case hexadecimal
-//! digits, CHK the low byte of the sum of everything before it. `**` in place of AA is a broadcast.
-//! A module answers `!AA..` (done), `>..` (data or output accepted), `?AA` (understood, refused) or
-//! bare `!` (output ignored, the host watchdog has tripped). What is not understood, and what comes
-//! with a wrong checksum, is met with silence. Everything is upper case; CR ends a frame, never LF.
+//! A request is `LEAD AA BODY [CHK] CR`: LEAD is one of `# $ % @ ~`, AA two upper-case hexadecimal digits, CHK
+//! the low byte of the sum of all characters before it. `**` in place of AA is a broadcast. A module answers
+//! `!AA..` (done), `>..` (data, or output accepted), `?AA` (understood but refused) or bare `!` (output ignored,
+//! the host watchdog has tripped). It does not answer an unknown request or a wrong checksum. All letters are
+//! upper case; CR ends a frame, never LF.
 
 /// Ends every frame in both directions.
 pub const CR: u8 = b'\r';
 
-/// Longest text of a request or reply that is kept, without CR; longer ones are line noise.
+/// Longest request or reply that is kept, characters without CR; longer text is line noise.
 pub const LONGEST: usize = 64;
 
-/// Whom a request speaks to.
+/// Addressee of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Address {
     /// One module.
     Module(u8),
-    /// `**`: every module of the line, none of which answers.
+    /// `**`: every module of the line; none of them answers.
     Everybody,
 }
 
-/// A request as a module sees it: checksum taken off, CR gone.
+/// A request as a module parses it, without checksum and CR.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Request<'a> {
     /// First character, one of `# $ % @ ~`.
     pub lead: u8,
-    /// Two characters after it.
+    /// Address in the two characters after the lead.
     pub address: Address,
-    /// The rest.
+    /// All characters after the address.
     pub body: &'a [u8],
 }
 
-/// What a family of modules has to say to a request.
+/// Response of a module family to a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
-    /// The text, without checksum and CR.
+    /// Reply text, without checksum and CR.
     Reply(String),
-    /// Understood, and rightly not answered.
+    /// The module understands the request and does not answer it.
     Silence,
-    /// No command of this family.
+    /// The family does not know the command.
     Unknown,
 }
 
-/// Sum of all characters, low byte.
+/// Returns the low byte of the sum of all characters.
 pub fn checksum(text: &[u8]) -> u8 {
     text.iter().fold(0, |sum, byte| sum.wrapping_add(*byte))
 }
 
-/// `text` without its two checksum digits, or `None` when they are missing or wrong.
+/// Returns `text` without its two checksum digits; `None` when they are missing or wrong.
 pub fn without_checksum(text: &[u8]) -> Option<&[u8]> {
     let split = text.len().checked_sub(2)?;
     let (body, digits) = text.split_at(split);
     (hex_byte(digits)? == checksum(body)).then_some(body)
 }
 
-/// Adds checksum (when the module uses it) and CR.
+/// Appends the checksum (if the module uses one) and CR.
 pub fn framed(mut text: String, with_checksum: bool) -> Vec<u8> {
     if with_checksum {
         let sum = checksum(text.as_bytes());
@@ -65,7 +65,7 @@ pub fn framed(mut text: String, with_checksum: bool) -> Vec<u8> {
     text.into_bytes()
 }
 
-/// Lead and address alone: enough to know who is meant, before the checksum is looked at.
+/// Parses lead and address only, before the checksum is verified.
 pub fn addressee(text: &[u8]) -> Option<Address> {
     match text {
         [b'#' | b'$' | b'%' | b'@' | b'~', b'*', b'*', ..] => Some(Address::Everybody),
@@ -76,7 +76,7 @@ pub fn addressee(text: &[u8]) -> Option<Address> {
     }
 }
 
-/// Reads a request whose checksum is already off.
+/// Parses a request whose checksum is already removed.
 pub fn request(text: &[u8]) -> Option<Request<'_>> {
     let address = addressee(text)?;
     let (lead, body) = (*text.first()?, text.get(3..)?);
@@ -87,7 +87,7 @@ pub fn request(text: &[u8]) -> Option<Request<'_>> {
     })
 }
 
-/// Two upper-case hexadecimal digits.
+/// Parses two upper-case hexadecimal digits.
 pub fn hex_byte(digits: &[u8]) -> Option<u8> {
     match digits {
         [_, _] => hex(digits).and_then(|value| u8::try_from(value).ok()),
@@ -95,7 +95,7 @@ pub fn hex_byte(digits: &[u8]) -> Option<u8> {
     }
 }
 
-/// Up to eight upper-case hexadecimal digits; lower case is an error of the sender.
+/// Parses up to eight upper-case hexadecimal digits; rejects lower case.
 pub fn hex(digits: &[u8]) -> Option<u32> {
     if digits.is_empty() || digits.len() > 8 {
         return None;
@@ -105,7 +105,7 @@ pub fn hex(digits: &[u8]) -> Option<u32> {
     })
 }
 
-/// One upper-case hexadecimal digit.
+/// Parses one upper-case hexadecimal digit.
 pub fn hex_digit(digit: u8) -> Option<u8> {
     match digit {
         b'0'..=b'9' => Some(digit - b'0'),
@@ -114,7 +114,7 @@ pub fn hex_digit(digit: u8) -> Option<u8> {
     }
 }
 
-/// Decimal digits only, no sign.
+/// Parses decimal digits without a sign.
 pub fn decimal(digits: &[u8]) -> Option<u32> {
     if digits.is_empty() || digits.len() > 9 {
         return None;
@@ -135,41 +135,41 @@ pub fn push_hex(text: &mut String, value: u64, digits: u32) {
     }
 }
 
-/// `!AA`
+/// Builds `!AA`.
 pub fn done(address: u8) -> Answer {
     Answer::Reply(headed('!', address))
 }
 
-/// `!AA` and data.
+/// Builds `!AA` followed by data.
 pub fn done_with(address: u8, data: &str) -> Answer {
     let mut text = headed('!', address);
     text.push_str(data);
     Answer::Reply(text)
 }
 
-/// `!AA` and `digits` hexadecimal digits.
+/// Builds `!AA` followed by `digits` hexadecimal digits.
 pub fn done_hex(address: u8, value: u64, digits: u32) -> Answer {
     let mut text = headed('!', address);
     push_hex(&mut text, value, digits);
     Answer::Reply(text)
 }
 
-/// `?AA`
+/// Builds `?AA`.
 pub fn refused(address: u8) -> Answer {
     Answer::Reply(headed('?', address))
 }
 
-/// `?`, the refusal of digital output commands.
+/// Builds `?`, the refusal of a digital output command.
 pub fn refused_output() -> Answer {
     Answer::Reply("?".into())
 }
 
-/// `>`, an output command was carried out.
+/// Builds `>`: the module has carried out the output command.
 pub fn accepted() -> Answer {
     Answer::Reply(">".into())
 }
 
-/// `!`, an output command was ignored since the host watchdog holds the outputs.
+/// Builds `!`: the module ignores the output command because its host watchdog has tripped.
 pub fn ignored() -> Answer {
     Answer::Reply("!".into())
 }
@@ -187,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_request_with_a_wrong_checksum_is_not_heard() {
+    fn a_wrong_checksum_makes_a_request_invalid() {
         assert_eq!(without_checksum(b"$012B7"), Some(&b"$012"[..]));
         assert_eq!(without_checksum(b"$012B8"), None);
         assert_eq!(without_checksum(b"$012b7"), None);

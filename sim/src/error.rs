@@ -1,4 +1,4 @@
-//! Why a simulated rig cannot be set up.
+//! Reasons why a simulated rig cannot be built or served.
 
 use std::path::PathBuf;
 
@@ -11,40 +11,40 @@ pub enum SimError {
     /// A file of the configuration is missing or wrong.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// `--fault` names something the rig cannot do.
+    /// `--fault` names an unknown fault.
     #[error("fault `{name}` is unknown; `sim --faults` lists them all")]
     UnknownFault {
-        /// As given.
+        /// Name from the command line.
         name: String,
     },
-    /// The value of a fault does not fit.
+    /// The value of a fault has the wrong form or range.
     #[error("fault `{name}`: found `{found}`, expected {expected}")]
     FaultValue {
         /// Name of the fault.
         name: String,
         /// Text after `=`.
         found: String,
-        /// Form and range.
+        /// Expected form and range.
         expected: String,
     },
-    /// No module of that name is simulated.
+    /// The model of a module is not simulated.
     #[error("module `{module}`: model `{model}` is not simulated")]
     UnknownModel {
         /// Key of the module's table.
         module: String,
-        /// As written.
+        /// Model from the file.
         model: String,
     },
-    /// A key of a module's table has a value that the module cannot take.
+    /// A key of a module's table has an unfit value.
     #[error("module `{module}`: `{key}` = {found}, expected {expected}")]
     Setting {
         /// Key of the module's table.
         module: String,
         /// Key inside the table.
         key: String,
-        /// As written.
+        /// Value from the file.
         found: String,
-        /// Form and range.
+        /// Expected form and range.
         expected: &'static str,
     },
     /// A bench file cannot be read.
@@ -52,15 +52,15 @@ pub enum SimError {
     Bench {
         /// The file.
         file: PathBuf,
-        /// What was found and what was expected.
+        /// Found and expected content.
         why: String,
     },
-    /// The system gave no pseudo-terminal or link.
+    /// The operating system refuses a pseudo-terminal or a link.
     #[error("cannot {what}")]
     Terminal {
-        /// What was being done.
+        /// Action that failed.
         what: String,
-        /// The system's reason.
+        /// Reason that the operating system gives.
         source: std::io::Error,
     },
 }

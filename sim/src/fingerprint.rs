@@ -1,4 +1,4 @@
-//! A line for storms: every value on it says which module and channel it belongs to, and mostly when it was taken.
+//! A line for fuzz tests: every value identifies its module and channel, and most values also their time.
 //!
 //! | address | model | value |
 //! |---|---|---|
@@ -9,8 +9,9 @@
 //! | 08, 09 | I-7043 | module (4 bits), the rest is the host's; so at power-on and when safe |
 //! | 0A, 0B | I-7021P, hex | the same |
 //!
-//! A module is its address from 0 here, but for the analog inputs. Time of analog inputs goes up and down, so that the
-//! mean over a window of the converter is a time of that window. What the outputs carry is recorded for the judge.
+//! The module number is the address less one, except at analog inputs. Time at an analog input rises and falls as
+//! a triangle, so that the mean over a converter window equals the time within that window. The line also records
+//! its output words, so that a test can check them.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -19,46 +20,46 @@ use crate::config::LineSpec;
 use crate::error::SimError;
 use crate::fault::LineFaults;
 use crate::module::Module;
-use crate::module::habit::{self, Habit};
-use crate::module::plate::Commissioning;
-use crate::rig::{Record, Rig};
+use crate::module::base::Commissioning;
+use crate::module::tolerances::{self, Tolerances};
+use crate::rig::{Rig, WorldRecord};
 use crate::shared::{SharedRig, split};
 use crate::terminal::{ModuleSpec, Plant};
 
 /// Name of the line.
 pub const LINE: &str = "storm";
 
-/// Steps of time in words of digital inputs, microseconds.
+/// Time step in words of digital inputs, microseconds.
 pub const WORD_STEP_US: u64 = 512;
 
-/// Steps of time at analog inputs, microseconds.
+/// Time step at analog inputs, microseconds.
 pub const ANALOG_STEP_US: u64 = 16_000;
 
-/// Highest time at an analog input before it goes down again. The lowest is 1: a host takes the codes at both ends of
-/// a range for over and under range.
-const TURN: u64 = 0x7FE;
+/// Highest time code at an analog input, the top of the triangle. The lowest is 1, since a host reads the codes
+/// at the ends of the range as over and under range.
+const PEAK: u64 = 0x7FE;
 
-/// Latency of a module, microseconds, mean and standard deviation.
+/// Latency of a module, microseconds: mean and standard deviation.
 const LATENCY_US: (f64, f64) = (2_000.0, 200.0);
 
-/// Conversions a second of the voltage modules.
+/// Conversions per second of the voltage modules.
 const PER_S: f64 = 60.0;
 
-/// The line and what its outputs carry.
+/// The simulated line and the history of its outputs.
 #[derive(Clone)]
 pub struct FingerprintLine {
-    /// The line, the only one of this rig.
+    /// Rig that has this line only.
     pub rig: SharedRig,
     outputs: Outputs,
 }
 
-/// Changes that are kept of each output; a transaction makes one or two.
+/// Number of changes that are kept per output; a transaction makes one or two.
 const CHANGES: usize = 16;
 
-/// Since when (microseconds) an output carries what, the last change at the end.
+/// Output words with the instant (microseconds) at which each appeared, oldest first.
 type Changes = VecDeque<(u64, u16)>;
 
-/// What the outputs of each module carry and carried.
+/// Output history of every module, by identifier.
 #[derive(Clone, Default)]
 struct Outputs(Arc<Mutex<BTreeMap<String, Changes>>>);
 
@@ -76,10 +77,10 @@ impl Outputs {
 }
 
 impl FingerprintLine {
-    /// Builds it with checksums, at `baud`, with the faults of lines and modules that are asked for.
+    /// Builds the line with checksums, at `baud` bits per second, with faults of lines and modules.
     ///
     /// # Errors
-    /// A fault is unknown or its value unfit.
+    /// Fails when a fault is unknown or its value is unfit.
     pub fn build(seed: u64, baud: u32, faults: &[&str]) -> Result<Self, SimError> {
         let mut on_the_line = LineFaults::none(seed);
         for text in faults {
@@ -96,13 +97,13 @@ impl FingerprintLine {
         let mut modules = Vec::new();
         for address in 0x01..=0x0B {
             let spec = spec(address)?;
-            let habit = Habit {
+            let tolerances = Tolerances {
                 latency_sd_us: LATENCY_US.1,
                 normal_per_s: PER_S,
-                ..Habit::exact(LATENCY_US.0)
+                ..Tolerances::exact(LATENCY_US.0)
             };
-            let rng = habit::stream(seed, &spec.id);
-            modules.push(Module::new(&spec, commissioning, habit, rng)?);
+            let rng = tolerances::stream(seed, &spec.id);
+            modules.push(Module::new(&spec, commissioning, tolerances, rng)?);
         }
         let line = LineSpec {
             name: LINE.into(),
@@ -121,7 +122,8 @@ impl FingerprintLine {
         })
     }
 
-    /// Whether the outputs of a module carried `word` (bits, or 65535ths of 10 V) at any time between, both included.
+    /// Checks whether the outputs of a module carried `word` (bits, or 65535ths of 10 V) within the interval,
+    /// ends included.
     pub fn carried(&self, address: u8, word: u16, from_us: u64, to_us: u64) -> bool {
         let all = self
             .outputs
@@ -139,38 +141,38 @@ impl FingerprintLine {
     }
 }
 
-/// The word of an output of `address` that bears the mark of its module.
+/// Returns output word `number` with the mark of the module at `address`.
 pub const fn marked(address: u8, number: u16) -> u16 {
     (address as u16) << 12 | number & 0xFFF
 }
 
-/// Where a code of an analog input comes from: address and channel.
+/// Returns the address and channel that an analog code identifies.
 pub const fn origin_of_analog(code: u16) -> (u8, u8) {
     ((code >> 14) as u8 + 1, (code >> 11 & 7) as u8)
 }
 
-/// Where a count comes from: address and channel.
+/// Returns the address and channel that a count identifies.
 pub const fn origin_of_count(count: u32) -> (u8, u8) {
     ((count >> 28) as u8, (count >> 27 & 1) as u8)
 }
 
-/// Where a word comes from.
+/// Returns the address that a word identifies.
 pub const fn origin_of_word(word: u16) -> u8 {
     (word >> 12) as u8
 }
 
-/// How long before `now_us` a word of digital inputs was taken, microseconds, modulo 2 s; to one step.
+/// Returns the age of a digital input word at `now_us`, microseconds, modulo 2 s, to one step.
 pub const fn age_of_word_us(word: u16, now_us: u64) -> u64 {
     ((now_us / WORD_STEP_US).wrapping_sub(word as u64) & 0xFFF) * WORD_STEP_US
 }
 
-/// How far the time at an analog input is from that of `at_us`, microseconds.
+/// Returns the distance between the time in an analog code and `at_us`, microseconds.
 pub fn distance_of_analog_us(code: u16, at_us: u64) -> u64 {
     u64::from(code & 0x7FF).abs_diff(up_and_down(at_us)) * ANALOG_STEP_US
 }
 
 fn up_and_down(t_us: u64) -> u64 {
-    let way = TURN - 1;
+    let way = PEAK - 1;
     let step = t_us / ANALOG_STEP_US % (2 * way);
     1 + if step <= way { step } else { 2 * way - step }
 }
@@ -219,7 +221,7 @@ fn spec(address: u8) -> Result<ModuleSpec, SimError> {
     })
 }
 
-/// The world behind the terminals.
+/// Signals at the terminals of the line.
 struct Fingerprints {
     now_us: u64,
     outputs: Outputs,
@@ -268,7 +270,7 @@ impl Plant for Fingerprints {
     }
 }
 
-impl Record for Fingerprints {
+impl WorldRecord for Fingerprints {
     fn truth(&mut self) -> Vec<serde_json::Value> {
         Vec::new()
     }
@@ -297,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn every_input_tells_its_module_and_channel_and_time() {
+    fn every_input_identifies_module_channel_and_time() {
         let line = FingerprintLine::build(1, 115_200, &[]).unwrap();
         for round in 1..50u64 {
             let now_us = round * 700_000;
@@ -306,7 +308,8 @@ mod tests {
                     let code =
                         hex(&ask(&line, &format!("#{address:02X}{channel}"), now_us), 1) as u16;
                     assert_eq!(origin_of_analog(code), (address, channel));
-                    // At most eight windows of 1/60 s, or three of 1/15 s, ago, and to two steps.
+                    // A result is at most eight windows of 1/60 s, or three of 1/15 s, old; two steps of
+                    // tolerance.
                     assert!(distance_of_analog_us(code, now_us) <= 250_000, "{code:04X}");
                 }
             }
@@ -325,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn outputs_bear_the_mark_of_their_module_until_the_host_writes() {
+    fn outputs_carry_their_mark_until_the_host_writes() {
         let line = FingerprintLine::build(1, 115_200, &[]).unwrap();
         for address in 8..=0x0B {
             assert!(line.carried(address, marked(address, 0), 0, 0));
@@ -336,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn what_an_output_carried_is_known_for_the_time_that_it_did() {
+    fn the_output_history_covers_the_time_of_each_word() {
         let line = FingerprintLine::build(1, 115_200, &[]).unwrap();
         assert_eq!(ask(&line, "@098123", 2_000), ">");
         assert_eq!(ask(&line, "@098456", 5_000), ">");

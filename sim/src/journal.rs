@@ -1,7 +1,8 @@
-//! What the outputs do: every change of a digital output, every host watchdog that expires, and what struck the rig.
+//! Journal of the outputs: every change of a digital output, every expiry of a host watchdog, every fault that
+//! strikes.
 //!
-//! It is taken at the terminals, between modules and world, so that it shows what an actuator would have felt.
-//! Off until somebody listens.
+//! The journal records at the terminals, between modules and world, and so holds the signals of the actuators. It
+//! is off until [`JournaledWorld::listen`].
 
 use std::collections::BTreeMap;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -9,12 +10,12 @@ use std::sync::mpsc::{self, Receiver, Sender};
 use serde::Serialize;
 
 use crate::error::SimError;
-use crate::rig::{Record, Scene};
+use crate::rig::{WorldModel, WorldRecord};
 use crate::terminal::Plant;
 use crate::truth::BodyTruth;
 use crate::world::WorldOptions;
 
-/// One thing that happened.
+/// One entry of the journal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub enum Entry {
@@ -27,37 +28,37 @@ pub enum Entry {
         /// Bit n = channel n.
         bits: u16,
     },
-    /// A fault has struck while the rig ran.
+    /// A fault has struck the running rig.
     Struck {
         /// Rig time, microseconds.
         t_us: u64,
-        /// As it was asked for.
+        /// Text of the fault as requested.
         fault: String,
     },
-    /// A host watchdog has expired; the outputs stand as its module left them.
+    /// A host watchdog has expired; the outputs keep the values that the module has set.
     Expired {
         /// Rig time, microseconds.
         t_us: u64,
         /// Identifier of the module.
         module: String,
-        /// When the last request of any kind was heard on any line, microseconds.
+        /// Arrival of the last request on any line, microseconds.
         last_request_us: u64,
-        /// What the terminals carry now: bits, or volts.
+        /// Present value of the output: bits, or volts.
         carries: f64,
     },
 }
 
-/// The world as the modules see it, with somebody looking at the terminals.
-pub(crate) struct Watched {
-    scene: Box<dyn Scene>,
+/// A world with a journal of its output terminals.
+pub(crate) struct JournaledWorld {
+    scene: Box<dyn WorldModel>,
     listener: Option<Sender<Entry>>,
     now_us: u64,
     last_request_us: u64,
     carries: BTreeMap<String, f64>,
 }
 
-impl Watched {
-    pub(crate) fn new(scene: Box<dyn Scene>) -> Self {
+impl JournaledWorld {
+    pub(crate) fn new(scene: Box<dyn WorldModel>) -> Self {
         Self {
             scene,
             listener: None,
@@ -67,21 +68,21 @@ impl Watched {
         }
     }
 
-    /// From now on everything is told; a later listener takes the place of an earlier one.
+    /// Starts the journal; a later receiver replaces an earlier one.
     pub(crate) fn listen(&mut self) -> Receiver<Entry> {
         let (sender, receiver) = mpsc::channel();
         self.listener = Some(sender);
         receiver
     }
 
-    /// A request has been heard.
-    pub(crate) fn heard(&mut self, now_us: u64) {
+    /// Notes the arrival of a request.
+    pub(crate) fn note_request(&mut self, now_us: u64) {
         self.last_request_us = now_us;
     }
 
-    /// The watchdog of a module has expired.
-    pub(crate) fn expired(&mut self, module: &str) {
-        self.tell(Entry::Expired {
+    /// Records that the watchdog of a module expires now.
+    pub(crate) fn record_expiry(&mut self, module: &str) {
+        self.send(Entry::Expired {
             t_us: self.now_us,
             module: module.to_owned(),
             last_request_us: self.last_request_us,
@@ -89,17 +90,17 @@ impl Watched {
         });
     }
 
-    /// A fault strikes now.
-    pub(crate) fn struck(&mut self, fault: &str) {
-        self.tell(Entry::Struck {
+    /// Records that a fault strikes now.
+    pub(crate) fn record_fault(&mut self, fault: &str) {
+        self.send(Entry::Struck {
             t_us: self.now_us,
             fault: fault.to_owned(),
         });
     }
 
-    fn tell(&self, entry: Entry) {
+    fn send(&self, entry: Entry) {
         if let Some(listener) = &self.listener {
-            // Somebody who has stopped listening misses nothing.
+            // A dropped receiver needs no further entries.
             let _ = listener.send(entry);
         }
     }
@@ -115,7 +116,7 @@ impl Watched {
     }
 }
 
-impl Plant for Watched {
+impl Plant for JournaledWorld {
     fn advance(&mut self, t_us: u64) {
         self.now_us = t_us;
         self.scene.advance(t_us);
@@ -136,7 +137,7 @@ impl Plant for Watched {
 
     fn digital_out(&mut self, module: &str, bits: u16) {
         if self.carry(module, f64::from(bits)) {
-            self.tell(Entry::Output {
+            self.send(Entry::Output {
                 t_us: self.now_us,
                 module: module.to_owned(),
                 bits,
@@ -158,7 +159,7 @@ impl Plant for Watched {
     }
 }
 
-impl Record for Watched {
+impl WorldRecord for JournaledWorld {
     fn truth(&mut self) -> Vec<serde_json::Value> {
         self.scene.truth()
     }
@@ -175,15 +176,15 @@ impl Record for Watched {
         self.scene.bodies()
     }
 
-    fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        self.scene.fill(options)
+    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        self.scene.refill(options)
     }
 
-    fn calm(&mut self) {
-        self.scene.calm();
+    fn cancel_faults(&mut self) {
+        self.scene.cancel_faults();
     }
 
-    fn driven(&mut self) -> Vec<(u64, &'static str)> {
-        self.scene.driven()
+    fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
+        self.scene.motion_starts()
     }
 }

@@ -1,17 +1,27 @@
-//! The simulated rig: what a relay tester's modules, mechanism and specimens do, behind two lines.
+//! The simulated rig: modules, mechanism and specimens of a relay tester, behind serial lines.
 //!
-//! In reading order:
-//! - [`terminal`]: the screw terminals between modules and world
-//! - [`dcon`], [`module`], [`line`]: the device side of the protocol, one family per file
-//! - [`world`], [`config`], [`truth`]: interface board, mechanism, specimens and what they really were
-//! - [`rig`]: everything together, from event to event
-//! - [`fault`]: what can go wrong between a module and its host
-//! - [`journal`]: what the outputs do, for tests of safety
-//! - [`wire`], [`pace`]: lines as streams in virtual time; [`pty`]: as pseudo-terminals in real time
-//! - [`bench`]: modules alone with fixed signals
-//! - [`fingerprint`]: a line on which every value tells whose it is
+//! A host sends bytes to a line and receives the bytes that real modules would send; physics behind the terminals
+//! determines their values. The controller shares nothing with this crate but bytes and the files in `config/`.
 //!
-//! The controller shares nothing with this crate but bytes and the files in `config/`.
+//! | module | content, in reading order |
+//! |---|---|
+//! | [`terminal`] | screw terminals: the boundary between modules and world |
+//! | [`dcon`], [`module`], [`line`] | the device side of the protocol, one file per family |
+//! | [`world`], [`config`], [`truth`] | interface board, mechanism and specimens, with their true values |
+//! | [`rig`] | lines, modules and world together, from event to event |
+//! | [`fault`] | faults between a module and its host |
+//! | [`journal`] | record of the outputs, for tests of safety |
+//! | [`wire`], [`pace`], [`pty`] | lines as streams in virtual time, and as pseudo-terminals in real time |
+//! | [`bench`] | modules alone, with fixed signals |
+//! | [`fingerprint`] | a line whose values identify their module and channel |
+//!
+//! ```
+//! let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"\ninputs = [5.0]";
+//! let mut rig = rigsim::bench::build_text(bench)?;
+//! let reply = rig.exchange(0, b"#010", 0).expect("module 1 answers");
+//! assert_eq!(reply.bytes, b">+05.000\r");
+//! # Ok::<(), rigsim::SimError>(())
+//! ```
 
 pub mod bench;
 pub mod config;

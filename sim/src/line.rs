@@ -1,44 +1,43 @@
-//! One serial line as its modules hear it: characters take time, CR ends a request.
+//! One serial line at the modules' end: timing of characters and framing of requests.
 //!
-//! The host hands bytes over at once; on the wire each takes ten bits. A request has arrived when
-//! its CR has. Fragments are joined, several requests in one piece are taken one after the other,
-//! a partial request is forgotten after [`SILENCE_US`] without a character, and one longer than any
-//! request is dropped up to its CR.
+//! The host passes bytes at once; on the wire each takes ten bits. A request arrives with its CR. The receiver
+//! joins fragments, separates several requests in one piece, discards a partial request after [`SILENCE_US`]
+//! without a character, and discards an overlong request up to its CR.
 
 use crate::dcon;
 
-/// A partial request older than this is what a crashed client left behind.
+/// Silence after which a partial request is discarded as the remains of a crashed client, microseconds.
 pub const SILENCE_US: u64 = 150_000;
 
 /// Bits of a character: start, eight data, stop.
 const BITS: u64 = 10;
 
-/// Time of `characters` on the wire, microseconds, rounded up.
+/// Returns the time of `characters` on the wire, microseconds, rounded up.
 pub fn wire_us(characters: usize, baud: u32) -> u64 {
     (characters as u64 * BITS * 1_000_000).div_ceil(u64::from(baud.max(1)))
 }
 
-/// A request and the instant at which its CR has arrived.
+/// A request and the instant at which its CR arrives.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Arrival {
     /// Rig time, microseconds.
     pub at_us: u64,
-    /// Without CR.
+    /// Request without CR.
     pub text: Vec<u8>,
 }
 
-/// Receiver of a line.
+/// Receiver of a line; joins bytes to requests.
 #[derive(Debug, Clone)]
 pub struct Receiver {
     baud: u32,
     partial: Vec<u8>,
     too_long: bool,
-    /// The wire is busy with characters until then.
+    /// Instant until which earlier characters occupy the wire.
     busy_until_us: u64,
 }
 
 impl Receiver {
-    /// Nothing heard yet.
+    /// Creates a receiver without pending characters.
     pub fn new(baud: u32) -> Self {
         Self {
             baud,
@@ -48,12 +47,12 @@ impl Receiver {
         }
     }
 
-    /// From now on the host talks at this rate.
+    /// Changes the host's baud rate for the bytes that follow.
     pub fn retune(&mut self, baud: u32) {
         self.baud = baud;
     }
 
-    /// Takes bytes that the host sent at `now_us`; gives the requests they complete.
+    /// Takes bytes that the host sends at `now_us`; returns the requests that they complete.
     pub fn take(&mut self, bytes: &[u8], now_us: u64) -> Vec<Arrival> {
         if now_us > self.busy_until_us + SILENCE_US {
             self.partial.clear();
@@ -88,14 +87,14 @@ mod tests {
     }
 
     #[test]
-    fn a_request_has_arrived_when_its_last_character_has() {
+    fn a_request_arrives_with_its_last_character() {
         let mut line = Receiver::new(9_600);
         let arrivals = line.take(b"#01\r", 1_000);
         assert_eq!(arrivals[0].at_us, 1_000 + 4_167);
     }
 
     #[test]
-    fn fragments_are_joined_and_two_requests_in_one_piece_are_two() {
+    fn fragments_join_and_joined_requests_separate() {
         let mut line = Receiver::new(115_200);
         assert!(line.take(b"#0", 0).is_empty());
         let arrivals = line.take(b"1\r$012\r", 50_000);
@@ -104,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_crashed_client_left_is_forgotten_after_silence() {
+    fn a_partial_request_is_discarded_after_silence() {
         let mut line = Receiver::new(115_200);
         assert!(line.take(b"#0", 0).is_empty());
         let arrivals = line.take(b"$012\r", 200_000);
@@ -112,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn an_endless_request_is_dropped_up_to_its_end() {
+    fn an_overlong_request_is_dropped_up_to_its_end() {
         let mut line = Receiver::new(115_200);
         assert!(line.take(&[b'x'; 500], 0).is_empty());
         assert_eq!(texts(&line.take(b"\r#01\r", 50_000)), [&b"#01"[..]]);

@@ -1,7 +1,7 @@
-//! The simulated rig alone, on pseudo-terminals in real time, until it is killed.
+//! Serves the simulated rig alone, on pseudo-terminals in real time, until the process is killed.
 //!
 //! `rigsim [--config DIR] [--seed N] [--world FILE] [--recipe NAME] [--fault NAME[=VALUE]]...
-//! [--bench FILE] [--link DIR]`; the first line of stdout names the port of each line.
+//! [--bench FILE] [--link DIR]`; the first line of stdout is a JSON object with the port of each line.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -39,7 +39,7 @@ fn serve(arguments: &Arguments) -> Result<(SharedRig, Ptys), SimError> {
         Some(file) => rigsim::build_bench(file, &arguments.options.faults)?,
         None => rigsim::build(&arguments.options)?,
     };
-    let ptys = pty::serve(&rig, Rates::Any)?;
+    let ptys = pty::serve(&rig, Rates::Ignored)?;
     if let Some(dir) = &arguments.link {
         ptys.link(dir)?;
     }
@@ -60,7 +60,7 @@ fn arguments(mut given: impl Iterator<Item = String>) -> Result<Arguments, Strin
             seed: 1,
             recipe: "jzc-22f-012".into(),
             parts: None,
-            golden: true,
+            reference_parts: true,
             faults: Vec::new(),
         },
         bench: None,

@@ -1,13 +1,13 @@
 //! Lines as pseudo-terminals in real time.
 //!
-//! The slave is put into raw mode before anybody opens it, and one slave descriptor stays open, so
-//! that clients may open and close the port per request; a killed one does not keep it for itself. Two threads serve a line: one reads the
-//! master and stamps what comes, the other keeps absolute deadlines, so that late wake-ups never
-//! add up. A pseudo-terminal has no baud rate: the time of every character is added here, and whatever rate a
-//! client has set is as good as another, unless [`Rates::Heeded`]. Each reply is one write. While nobody talks the rig still goes on, so that watchdogs expire in time.
-//!
-//! A lost port is a terminal that is closed from this side: clients see an end of file or an I/O error,
-//! as with an unplugged converter. Its link is gone until the port is back, then points at another terminal.
+//! The slave is in raw mode before a client opens it, and one slave descriptor stays open, so that clients may
+//! open and close the port per request and a killed client does not keep it exclusive. Two threads serve a line:
+//! one reads the master and stamps the bytes, the other keeps absolute deadlines, so that late wake-ups never add
+//! up. A pseudo-terminal has no baud rate: this module adds the time of every character, and a client may set any
+//! rate unless [`Rates::Enforced`]. Each reply is one write. The rig advances while no client talks, so that
+//! watchdogs expire in time.
+//! A lost port closes its terminal: clients get an end of file or an I/O error, as with an unplugged
+//! converter. Its link disappears until the port comes back, then points at another terminal.
 
 mod server;
 mod socket;
@@ -26,20 +26,20 @@ use server::Server;
 use socket::Socket;
 use tty::Tty;
 
-/// The pseudo-terminals of a rig; dropping it stops them.
+/// Pseudo-terminals of a rig; dropping the value stops them.
 pub struct Ptys {
     ports: Vec<Port>,
     stop: Arc<AtomicBool>,
 }
 
-/// What the rate that a client has set at its end means.
+/// Effect of the baud rate that a client sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rates {
-    /// Nothing: it is heard at the rate of the line.
-    Any,
-    /// A module hears only who talks at its own rate, as on a wire; 9600 with INIT* grounded. A client that sets
-    /// none has that of the line.
-    Heeded,
+    /// None: the line's own rate applies.
+    Ignored,
+    /// A module receives only requests at its own rate, as on a wire; 9600 with INIT* grounded. A client that
+    /// sets no rate has the line's rate.
+    Enforced,
 }
 
 struct Port {
@@ -48,11 +48,11 @@ struct Port {
     thread: Option<JoinHandle<()>>,
 }
 
-/// Opens a pseudo-terminal per line and starts to answer. Rig time goes on from where the rig
-/// stands and follows the wall clock.
+/// Opens a pseudo-terminal per line and starts to answer. Rig time continues from its present value and follows
+/// the wall clock.
 ///
 /// # Errors
-/// The system gives no pseudo-terminal or thread.
+/// Fails when the system refuses a pseudo-terminal or a thread.
 pub fn serve(rig: &SharedRig, rates: Rates) -> Result<Ptys, SimError> {
     let origin = Instant::now()
         .checked_sub(Duration::from_micros(rig.now_us()))
@@ -66,7 +66,7 @@ pub fn serve(rig: &SharedRig, rates: Rates) -> Result<Ptys, SimError> {
             rig: rig.clone(),
             number,
             baud,
-            host_baud: (rates == Rates::Heeded).then_some(baud),
+            host_baud: (rates == Rates::Enforced).then_some(baud),
             origin,
             socket: Arc::new(Socket::default()),
             stop: Arc::clone(&ptys.stop),
@@ -87,17 +87,17 @@ fn terminal(what: &str, source: io::Error) -> SimError {
 }
 
 impl Ptys {
-    /// Name of each line and the port a client opens.
+    /// Returns the name of each line with the path of its port.
     pub fn paths(&self) -> Vec<(String, PathBuf)> {
         let path = |port: &Port| (port.line.clone(), port.socket.path());
         self.ports.iter().map(path).collect()
     }
 
-    /// Makes a symbolic link per line name in `dir` (created if need be); an older link is
-    /// replaced, any other file is not. Stopping removes the links.
+    /// Makes a symbolic link per line name in `dir` (created if missing). Replaces an older link, never another
+    /// kind of file. Stopping removes the links.
     ///
     /// # Errors
-    /// The folder or a link cannot be made.
+    /// Fails when the folder or a link cannot be made.
     pub fn link(&self, dir: &Path) -> Result<(), SimError> {
         std::fs::create_dir_all(dir)
             .map_err(|source| terminal(&format!("make the folder {}", dir.display()), source))?;
@@ -122,7 +122,7 @@ impl Drop for Ptys {
             port.socket.wake_reader();
             port.socket.free_writer();
             if let Some(thread) = port.thread.take() {
-                // A thread that panicked has said so already.
+                // The panic message of the thread is already on stderr.
                 let _ = thread.join();
             }
             port.socket.unlink();

@@ -1,11 +1,11 @@
 //! The rig: modules on lines, the world behind them, and the order of events.
 //!
-//! Nothing is stepped through in small steps. Before a request is answered everything that is due
-//! earlier happens in order of time: conversions, steps of ramps, expiries of watchdogs, timed
-//! faults. At equal times modules come in the order of the configuration. The world is advanced to
-//! each of these instants. Rig time never runs backwards: a request that comes in with an earlier
-//! time than something already done is taken as coming now. A module is one processor: its replies keep their
-//! order, and one that comes late holds up the next. While it is held up it keeps one request and misses the rest.
+//! The rig runs from event to event. Before a module answers a request, every earlier event happens in order of
+//! time: conversions, steps of ramps, expiries of watchdogs, timed faults; events of one instant follow the order
+//! of modules in the configuration. The world advances to each of these instants. Rig time never runs backwards:
+//! a request with a time before the last event counts as arriving at that event. A module serves one request at a
+//! time: its replies keep their order, and a late reply delays the next one. Meanwhile the module keeps one
+//! request and misses all others.
 
 use std::sync::mpsc::Receiver;
 
@@ -13,7 +13,7 @@ use crate::config::LineSpec;
 use crate::dcon;
 use crate::error::SimError;
 use crate::fault::{Event, LineFaults};
-use crate::journal::{Entry, Watched};
+use crate::journal::{Entry, JournaledWorld};
 use crate::line::wire_us;
 use crate::module::Module;
 use crate::shared;
@@ -22,67 +22,67 @@ use crate::truth::BodyTruth;
 use crate::uart;
 use crate::world::WorldOptions;
 
-/// What the world knows and no module ever tells.
-pub trait Record {
-    /// One object per lot part that has entered the nest, in order.
+/// Facts of the world that no module reports, and control of its faults.
+pub trait WorldRecord {
+    /// Returns one object per lot part that has entered the nest, in order.
     fn truth(&mut self) -> Vec<serde_json::Value>;
 
-    /// Bodies that touched where they must not, in words.
+    /// Returns a description of each crash: two bodies that touch although they must not.
     fn crashes(&mut self) -> Vec<String>;
 
-    /// A fault of the world strikes from now on; `value` counts parts.
+    /// Activates a fault of the world; `value` is the number of a part.
     ///
     /// # Errors
-    /// The world has no such fault, or it cannot strike while the world runs.
+    /// Fails when the world has no such fault, or the fault applies only to the start.
     fn strike(&mut self, fault: &str, value: Option<f64>) -> Result<(), SimError> {
         let _ = value;
         Err(SimError::UnknownFault { name: fault.into() })
     }
 
-    /// Other parts are put into the magazine; nothing where there is none.
+    /// Replaces the parts in the magazine; does nothing in a world without one.
     ///
     /// # Errors
-    /// A file of the configuration is missing or wrong.
-    fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+    /// Fails when a configuration file is missing or wrong.
+    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
         let _ = options;
         Ok(())
     }
 
-    /// Every body that has left the magazine, in order of leaving; none where there is no magazine.
+    /// Returns every body that has left the magazine, in order of leaving; none in a world without a magazine.
     fn bodies(&mut self) -> Vec<BodyTruth> {
         Vec::new()
     }
 
-    /// What began to move because an output told it to, and when, microseconds; the last ones.
-    fn driven(&mut self) -> Vec<(u64, &'static str)> {
+    /// Returns the start of each recent motion that an output caused: microseconds and actuator.
+    fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
         Vec::new()
     }
 
-    /// Faults of the world that still wait are called off.
-    fn calm(&mut self) {}
+    /// Cancels the faults of the world that have not struck yet.
+    fn cancel_faults(&mut self) {}
 }
 
-/// A world: terminals in front, truth behind.
-pub trait Scene: Plant + Record + Send {}
+/// A world: terminals for the modules, facts for the tests.
+pub trait WorldModel: Plant + WorldRecord + Send {}
 
-impl<T: Plant + Record + Send> Scene for T {}
+impl<T: Plant + WorldRecord + Send> WorldModel for T {}
 
 /// Bytes that a line sends to its host.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reply {
-    /// Rig time at which the last character has arrived, microseconds.
+    /// Rig time at which the last character arrives, microseconds.
     pub at_us: u64,
-    /// Everything, CR included.
+    /// All bytes, CR included.
     pub bytes: Vec<u8>,
 }
 
-/// Modules, lines and world.
+/// Modules, lines and world, with the clock of the rig.
 pub struct Rig {
-    scene: Watched,
+    scene: JournaledWorld,
     modules: Vec<Module>,
     /// Next event of each module.
     due_us: Vec<u64>,
-    /// From when to when each module is at a reply that holds it up: it serves one request after the other.
+    /// Interval in which each module is busy with a late reply, microseconds.
     serving_us: Vec<(u64, u64)>,
     lines: Vec<LineSpec>,
     faults: LineFaults,
@@ -90,9 +90,9 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// Puts everything together at rig time 0, modules under power.
+    /// Builds a rig at rig time 0 with all modules powered.
     pub fn new(
-        scene: Box<dyn Scene>,
+        scene: Box<dyn WorldModel>,
         modules: Vec<Module>,
         lines: Vec<LineSpec>,
         faults: LineFaults,
@@ -100,7 +100,7 @@ impl Rig {
         let mut rig = Self {
             due_us: vec![u64::MAX; modules.len()],
             serving_us: vec![(0, 0); modules.len()],
-            scene: Watched::new(scene),
+            scene: JournaledWorld::new(scene),
             modules,
             lines,
             faults,
@@ -110,7 +110,7 @@ impl Rig {
         for place in 0..rig.modules.len() {
             let module = &mut rig.modules[place];
             if rig.faults.is_wrong_type(module.id()) {
-                module.plate_mut().pose_as("7000");
+                module.base_mut().pose_as("7000");
             }
             module.energise(&mut rig.scene, 0);
             rig.due_us[place] = module.next_us();
@@ -118,17 +118,17 @@ impl Rig {
         rig
     }
 
-    /// Lines in the order of the configuration.
+    /// Returns the lines in the order of the configuration.
     pub fn lines(&self) -> &[LineSpec] {
         &self.lines
     }
 
-    /// Rig time, microseconds.
+    /// Returns rig time, microseconds.
     pub fn now_us(&self) -> u64 {
         self.now_us
     }
 
-    /// Lets everything happen that is due up to `t_us`.
+    /// Runs every event that is due up to `t_us`.
     pub fn advance(&mut self, t_us: u64) {
         self.strike_timed(t_us);
         self.run_events(t_us);
@@ -136,12 +136,12 @@ impl Rig {
         self.scene.advance(self.now_us);
     }
 
-    /// A request (without CR) has arrived on a line at `t_us`; gives the reply, if there is one.
+    /// Delivers a request (without CR) on a line at `t_us`; returns the reply, if any.
     pub fn exchange(&mut self, line: usize, text: &[u8], t_us: u64) -> Option<Reply> {
         self.exchange_at(line, None, text, t_us)
     }
 
-    /// The same from a host that talks at a rate of its own; without one it has that of the line, and of every module.
+    /// Delivers a request at the host's own baud rate; `None` matches the line and every module.
     pub fn exchange_at(
         &mut self,
         line: usize,
@@ -151,13 +151,13 @@ impl Rig {
     ) -> Option<Reply> {
         self.advance(t_us);
         let now_us = self.now_us;
-        self.scene.heard(now_us);
+        self.scene.note_request(now_us);
         let spec = self.lines.get(line)?;
         let (name, baud) = (spec.name.clone(), host_baud.unwrap_or(spec.baud));
         self.faults.may_lose_port(&name, now_us);
         if self.faults.line_dead(&name, now_us)
             || self.faults.port_back_us(&name, now_us).is_some()
-            || self.faults.swallows(now_us)
+            || self.faults.loses_request(now_us)
         {
             return None;
         }
@@ -172,7 +172,7 @@ impl Rig {
             let answer = self.answer(place, text);
             last = Some(place);
             reply = match (reply, answer) {
-                (Some(first), Some(second)) => Some(together(first, second, baud)),
+                (Some(first), Some(second)) => Some(merged_replies(first, second, baud)),
                 (first, second) => first.or(second),
             };
         }
@@ -187,7 +187,7 @@ impl Rig {
         Some(Reply { at_us, bytes })
     }
 
-    /// What one module sends, and after how many microseconds.
+    /// Lets one module answer; returns the delay in microseconds and the bytes.
     fn answer(&mut self, place: usize, text: &[u8]) -> Option<(u64, Vec<u8>)> {
         let now_us = self.now_us;
         let (begun_us, free_us) = self.serving_us[place];
@@ -197,7 +197,7 @@ impl Rig {
         let upset = self.faults.before_a_request(now_us);
         let module = &mut self.modules[place];
         if let Some(event) = upset {
-            happen(module, event, &mut self.scene, now_us);
+            apply_event(module, event, &mut self.scene, now_us);
         }
         let silent = self.faults.silent(module.id(), now_us);
         let heard = module.hear(text, &mut self.scene, now_us);
@@ -210,46 +210,46 @@ impl Rig {
         Some((latency_us, bytes))
     }
 
-    /// When the port of a line is back, if it is away at `t_us`.
+    /// Returns the instant at which a lost port comes back; `None` while the port is present at `t_us`.
     pub fn port_back_us(&self, line: usize, t_us: u64) -> Option<u64> {
         let spec = self.lines.get(line)?;
         self.faults.port_back_us(&spec.name, t_us)
     }
 
-    /// When the port of a line goes away next, after `t_us`.
+    /// Returns the instant after `t_us` at which the port of a line vanishes next.
     pub fn next_port_loss_us(&self, line: usize, t_us: u64) -> Option<u64> {
         let spec = self.lines.get(line)?;
         self.faults.next_port_loss_us(&spec.name, t_us)
     }
 
-    /// EEPROM writes of all modules so far.
+    /// Counts the EEPROM writes of all modules.
     pub fn eeprom_writes(&self) -> u64 {
         self.modules
             .iter()
-            .map(|module| module.plate().eeprom_writes)
+            .map(|module| module.base().eeprom_writes)
             .sum()
     }
 
-    /// EEPROM writes of each module so far.
+    /// Counts the EEPROM writes of each module, by identifier.
     pub fn eeprom_writes_by_module(&self) -> Vec<(String, u64)> {
         self.modules
             .iter()
-            .map(|module| (module.id().to_owned(), module.plate().eeprom_writes))
+            .map(|module| (module.id().to_owned(), module.base().eeprom_writes))
             .collect()
     }
 
-    /// Everything that the outputs do from now on.
+    /// Starts a journal of the outputs, from now on.
     pub fn journal(&mut self) -> Receiver<Entry> {
         self.scene.listen()
     }
 
-    /// A fault, `NAME` or `NAME=VALUE`, strikes while the rig runs: times in its value count from now.
+    /// Activates a fault, `NAME` or `NAME=VALUE`; times in the value count from now.
     ///
     /// # Errors
-    /// The fault is unknown, its value unfit, or it is only for the start.
+    /// Fails when the fault is unknown, its value is unfit, or it applies only to the start.
     pub fn strike(&mut self, text: &str) -> Result<(), SimError> {
         let (name, value) = shared::split(text);
-        self.scene.struck(text);
+        self.scene.record_fault(text);
         if self.faults.add_from(self.now_us, name, value)? {
             let known = |target: &str| {
                 self.modules.iter().any(|module| module.id() == target)
@@ -261,37 +261,37 @@ impl Rig {
         self.scene.strike(name, number)
     }
 
-    /// See [`Record::truth`].
+    /// See [`WorldRecord::truth`].
     pub fn truth(&mut self) -> Vec<serde_json::Value> {
         self.scene.truth()
     }
 
-    /// See [`Record::crashes`].
+    /// See [`WorldRecord::crashes`].
     pub fn crashes(&mut self) -> Vec<String> {
         self.scene.crashes()
     }
 
-    /// See [`Record::bodies`].
+    /// See [`WorldRecord::bodies`].
     pub fn bodies(&mut self) -> Vec<BodyTruth> {
         self.scene.bodies()
     }
 
-    /// See [`Record::fill`].
+    /// See [`WorldRecord::refill`].
     ///
     /// # Errors
-    /// As there.
-    pub fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        self.scene.fill(options)
+    /// Fails as [`WorldRecord::refill`] does.
+    pub fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        self.scene.refill(options)
     }
 
-    /// See [`Record::calm`]; faults of lines and modules end by their windows.
-    pub fn calm(&mut self) {
-        self.scene.calm();
+    /// See [`WorldRecord::cancel_faults`]; faults of lines and modules end with their windows.
+    pub fn cancel_faults(&mut self) {
+        self.scene.cancel_faults();
     }
 
-    /// See [`Record::driven`].
-    pub fn driven(&mut self) -> Vec<(u64, &'static str)> {
-        self.scene.driven()
+    /// See [`WorldRecord::motion_starts`].
+    pub fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
+        self.scene.motion_starts()
     }
 
     fn run_events(&mut self, t_us: u64) {
@@ -302,10 +302,10 @@ impl Rig {
             self.now_us = due_us;
             self.scene.advance(due_us);
             let module = &mut self.modules[place];
-            let was_tripped = module.plate().watchdog.tripped();
+            let was_tripped = module.base().watchdog.tripped();
             module.run(&mut self.scene, due_us);
-            if module.plate().watchdog.tripped() && !was_tripped {
-                self.scene.expired(module.id());
+            if module.base().watchdog.tripped() && !was_tripped {
+                self.scene.record_expiry(module.id());
             }
             self.due_us[place] = module.next_us();
         }
@@ -327,22 +327,22 @@ impl Rig {
             let target = |module: &Module| module.id() == timed.target;
             if let Some(place) = self.modules.iter().position(target) {
                 let module = &mut self.modules[place];
-                happen(module, timed.event, &mut self.scene, self.now_us);
+                apply_event(module, timed.event, &mut self.scene, self.now_us);
                 self.due_us[place] = module.next_us();
             }
         }
     }
 }
 
-fn happen(module: &mut Module, event: Event, plant: &mut dyn Plant, now_us: u64) {
+fn apply_event(module: &mut Module, event: Event, plant: &mut dyn Plant, now_us: u64) {
     match event {
         Event::Reset => module.reset(plant, now_us),
         Event::Trip => module.trip(plant, now_us),
     }
 }
 
-/// Two modules at one address: what is heard of both, from the first one on.
-fn together(first: (u64, Vec<u8>), second: (u64, Vec<u8>), baud: u32) -> (u64, Vec<u8>) {
+/// Merges the replies of two modules at one address; the earlier one sets the delay.
+fn merged_replies(first: (u64, Vec<u8>), second: (u64, Vec<u8>), baud: u32) -> (u64, Vec<u8>) {
     let apart_us = second.0 as i64 - first.0 as i64;
     let apart_bits = apart_us * i64::from(baud) / 1_000_000;
     let heard = uart::superposed(&first.1, &second.1, apart_bits);

@@ -1,4 +1,4 @@
-//! Building a rig from its files and sharing it between lines.
+//! Builds a rig from its files and shares it between lines.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -8,33 +8,33 @@ use crate::config::{LineSpec, RigFile, WorldTable, read_rig, read_world};
 use crate::error::SimError;
 use crate::fault::{self, FaultInfo, LineFaults};
 use crate::module::Module;
-use crate::module::habit::{self, Habit};
-use crate::module::plate::Commissioning;
-use crate::rig::{Record, Reply, Rig};
+use crate::module::base::Commissioning;
+use crate::module::tolerances::{self, Tolerances};
+use crate::rig::{Reply, Rig, WorldRecord};
 use crate::terminal::ModuleSpec;
 use crate::truth::BodyTruth;
 use crate::world::{World, WorldOptions};
 
-/// Which rig, which lot, which troubles.
+/// Choice of rig, lot and faults.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// Folder with `rig.toml`, `sim.toml`, `golden.toml`, `recipes/`.
     pub config_dir: PathBuf,
     /// World file in place of `sim.toml`.
     pub world: Option<PathBuf>,
-    /// Draws rig and lot.
+    /// Seed of the rig's errors and of the lot.
     pub seed: u64,
-    /// Recipe whose parts are in the magazine.
+    /// Recipe of the parts in the magazine.
     pub recipe: String,
-    /// Lot parts in the magazine, `None` for no end.
+    /// Number of lot parts in the magazine; `None` never runs out.
     pub parts: Option<u64>,
-    /// Golden parts lie in front of the lot.
-    pub golden: bool,
-    /// `NAME` or `NAME=VALUE`.
+    /// Reference parts precede the lot.
+    pub reference_parts: bool,
+    /// Faults as `NAME` or `NAME=VALUE`.
     pub faults: Vec<String>,
 }
 
-/// A rig that all its lines use; cloning shares it.
+/// A rig that all its lines use; clones share it.
 #[derive(Clone)]
 pub struct SharedRig(Arc<Mutex<Rig>>);
 
@@ -52,16 +52,16 @@ impl Options {
             seed: self.seed,
             recipe: self.recipe.clone(),
             parts: self.parts,
-            golden: self.golden,
+            reference_parts: self.reference_parts,
             faults,
         }
     }
 }
 
-/// Builds the rig of `config_dir` with the errors and parts that the seed draws.
+/// Builds the rig of `config_dir`; the seed draws its errors and parts.
 ///
 /// # Errors
-/// A file is missing or wrong, a module is not simulated, a fault unknown or its value unfit.
+/// Fails when a file is missing or wrong, a module is not simulated, or a fault is unknown or has an unfit value.
 pub fn build(options: &Options) -> Result<SharedRig, SimError> {
     let file = read_rig(&options.config_dir)?;
     let table = read_world(&options.config_dir, options.world.as_deref())?;
@@ -83,11 +83,11 @@ pub fn build(options: &Options) -> Result<SharedRig, SimError> {
     Ok(SharedRig::new(rig))
 }
 
-/// Builds the modules of a bench file with fixed signals at their terminals, on one line `bench`. Faults are
-/// those of lines and modules; a bench has no world.
+/// Builds the modules of a bench file on one line `bench`. Only faults of lines and modules apply, as a bench has
+/// no world.
 ///
 /// # Errors
-/// As [`bench::build`], or a fault is unknown or its value unfit.
+/// Fails as [`bench::build`] does, or when a fault is unknown or has an unfit value.
 pub fn build_bench(file: &Path, faults: &[String]) -> Result<SharedRig, SimError> {
     let mut on_the_line = LineFaults::none(0);
     for text in faults {
@@ -99,10 +99,10 @@ pub fn build_bench(file: &Path, faults: &[String]) -> Result<SharedRig, SimError
     Ok(SharedRig::new(bench::build(file, on_the_line)?))
 }
 
-/// Every fault that `--fault` takes.
+/// Lists every fault that `--fault` accepts.
 ///
 /// # Errors
-/// The world file cannot be read: the world's faults are listed there.
+/// Fails when the world file, which lists the faults of the world, cannot be read.
 pub fn faults(config_dir: &Path, world: Option<&Path>) -> Result<Vec<FaultInfo>, SimError> {
     let table = read_world(config_dir, world)?;
     let of_the_world = table.fault.iter().map(|(name, spec)| FaultInfo {
@@ -114,7 +114,7 @@ pub fn faults(config_dir: &Path, world: Option<&Path>) -> Result<Vec<FaultInfo>,
     Ok(fault::list().into_iter().chain(of_the_world).collect())
 }
 
-/// Name and value of `NAME[=VALUE]`.
+/// Splits `NAME[=VALUE]`.
 pub(crate) fn split(text: &str) -> (&str, Option<&str>) {
     match text.split_once('=') {
         Some((name, value)) => (name, Some(value)),
@@ -134,7 +134,7 @@ fn world_fault(
     Ok((name.into(), number))
 }
 
-/// The value of a fault of the world.
+/// Parses the value of a fault of the world.
 pub(crate) fn number(name: &str, text: &str) -> Result<f64, SimError> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
@@ -146,7 +146,7 @@ pub(crate) fn number(name: &str, text: &str) -> Result<f64, SimError> {
     }
 }
 
-/// A fault that strikes a module or line which does not exist would silently do nothing.
+/// Checks that every module and line that a fault names exists; a misspelt name would have no effect.
 pub(crate) fn check_targets(
     faults: &LineFaults,
     known: impl Fn(&str) -> bool,
@@ -161,7 +161,7 @@ pub(crate) fn check_targets(
     }
 }
 
-/// The errors of a module belong to the rig, its noise to the day.
+/// Builds the modules. The rig's seed draws their errors, the noise seed (if any) their noise.
 fn modules(
     file: &RigFile,
     table: &WorldTable,
@@ -175,15 +175,15 @@ fn modules(
             checksum: line.is_some_and(|line| line.checksum),
             host_watchdog_ms: file.host_watchdog_ms,
         };
-        let mut rng = habit::stream(seed, &spec.id);
-        let habit = Habit::draw(&table.devices, &mut rng);
-        let noise = noise.map(|noise| habit::stream(noise, &format!("noise of {}", spec.id)));
-        Module::new(spec, commissioning, habit, noise.unwrap_or(rng))
+        let mut rng = tolerances::stream(seed, &spec.id);
+        let tolerances = Tolerances::draw(&table.devices, &mut rng);
+        let noise = noise.map(|noise| tolerances::stream(noise, &format!("noise of {}", spec.id)));
+        Module::new(spec, commissioning, tolerances, noise.unwrap_or(rng))
     };
     file.modules.iter().map(module).collect()
 }
 
-impl Record for World {
+impl WorldRecord for World {
     fn truth(&mut self) -> Vec<serde_json::Value> {
         World::truth(self)
     }
@@ -200,16 +200,16 @@ impl Record for World {
         World::bodies(self)
     }
 
-    fn driven(&mut self) -> Vec<(u64, &'static str)> {
-        World::driven(self)
+    fn motion_starts(&mut self) -> Vec<(u64, &'static str)> {
+        World::motion_starts(self)
     }
 
-    fn calm(&mut self) {
-        World::calm(self);
+    fn cancel_faults(&mut self) {
+        World::cancel_faults(self);
     }
 
-    fn fill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
-        Ok(World::fill(self, options)?)
+    fn refill(&mut self, options: &WorldOptions) -> Result<(), SimError> {
+        Ok(World::refill(self, options)?)
     }
 }
 
@@ -219,7 +219,7 @@ impl SharedRig {
         Self(Arc::new(Mutex::new(rig)))
     }
 
-    /// A request (without CR) has arrived on line `line` at `t_us`.
+    /// See [`Rig::exchange`].
     pub fn exchange(&self, line: usize, text: &[u8], t_us: u64) -> Option<Reply> {
         self.rig().exchange(line, text, t_us)
     }
@@ -235,90 +235,90 @@ impl SharedRig {
         self.rig().exchange_at(line, host_baud, text, t_us)
     }
 
-    /// Lets everything happen that is due up to `t_us`.
+    /// See [`Rig::advance`].
     pub fn advance(&self, t_us: u64) {
         self.rig().advance(t_us);
     }
 
-    /// Rig time, microseconds.
+    /// Returns rig time, microseconds.
     pub fn now_us(&self) -> u64 {
         self.rig().now_us()
     }
 
-    /// Name and baud rate of each line, in the order of their numbers.
+    /// Returns name and baud rate of each line, in the order of their numbers.
     pub fn lines(&self) -> Vec<(String, u32)> {
         let name = |line: &LineSpec| (line.name.clone(), line.baud);
         self.rig().lines().iter().map(name).collect()
     }
 
-    /// When the port of a line is back, if it is away at `t_us`.
+    /// See [`Rig::port_back_us`].
     pub fn port_back_us(&self, line: usize, t_us: u64) -> Option<u64> {
         self.rig().port_back_us(line, t_us)
     }
 
-    /// When the port of a line goes away next, after `t_us`.
+    /// See [`Rig::next_port_loss_us`].
     pub fn next_port_loss_us(&self, line: usize, t_us: u64) -> Option<u64> {
         self.rig().next_port_loss_us(line, t_us)
     }
 
-    /// EEPROM writes of all modules so far.
+    /// Counts the EEPROM writes of all modules.
     pub fn eeprom_writes(&self) -> u64 {
         self.rig().eeprom_writes()
     }
 
-    /// EEPROM writes of each module so far.
+    /// Counts the EEPROM writes of each module, by identifier.
     pub fn eeprom_writes_by_module(&self) -> Vec<(String, u64)> {
         self.rig().eeprom_writes_by_module()
     }
 
-    /// Everything that the outputs do from now on.
+    /// See [`Rig::journal`].
     pub fn journal(&self) -> std::sync::mpsc::Receiver<crate::journal::Entry> {
         self.rig().journal()
     }
 
-    /// A fault, `NAME` or `NAME=VALUE`, strikes while the rig runs: times in its value count from now.
+    /// Activates a fault, `NAME` or `NAME=VALUE`; times in the value count from now.
     ///
     /// # Errors
-    /// The fault is unknown, its value unfit, or it is only for the start.
+    /// Fails when the fault is unknown, its value is unfit, or it applies only to the start.
     pub fn strike(&self, fault: &str) -> Result<(), SimError> {
         self.rig().strike(fault)
     }
 
-    /// Truth of every lot part that has entered the nest, in order.
+    /// Returns the truth of every lot part that has entered the nest, in order.
     pub fn truth(&self) -> Vec<serde_json::Value> {
         self.rig().truth()
     }
 
-    /// Every body that has left the magazine, in order of leaving.
+    /// Returns every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
         self.rig().bodies()
     }
 
-    /// A person empties the magazine and fills it for another lot; of the options recipe, number of parts and golden
-    /// parts matter.
+    /// Replaces the parts in the magazine for another lot, as an operator does; only recipe, number of parts and
+    /// reference parts of the options apply.
     ///
     /// # Errors
-    /// A file of the configuration is missing or wrong; then the magazine is as it was.
-    pub fn fill(&self, options: &Options) -> Result<(), SimError> {
-        self.rig().fill(&options.of_world(Vec::new()))
+    /// Fails when a configuration file is missing or wrong; the magazine then stays unchanged.
+    pub fn refill(&self, options: &Options) -> Result<(), SimError> {
+        self.rig().refill(&options.of_world(Vec::new()))
     }
 
-    /// Faults of the world that still wait for their part or their instant are called off.
-    pub fn calm(&self) {
-        self.rig().calm();
+    /// Cancels the faults of the world that have not struck yet.
+    pub fn cancel_faults(&self) {
+        self.rig().cancel_faults();
     }
 
-    /// What began to move because an output told it to, and when, microseconds; the last ones.
-    pub fn driven(&self) -> Vec<(u64, &'static str)> {
-        self.rig().driven()
+    /// Returns the start of each recent motion that an output caused: microseconds and actuator.
+    pub fn motion_starts(&self) -> Vec<(u64, &'static str)> {
+        self.rig().motion_starts()
     }
 
-    /// Bodies that touched where they must not.
+    /// Returns a description of each crash.
     pub fn crashes(&self) -> Vec<String> {
         self.rig().crashes()
     }
 
-    /// A line that panicked has left the rig between two events, where it is whole.
+    /// Locks the rig. A poisoned lock is safe: a line that panics leaves the rig between two events.
     fn rig(&self) -> MutexGuard<'_, Rig> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }

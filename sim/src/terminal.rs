@@ -1,9 +1,8 @@
-//! The screw terminals: where the modules of a line meet the world they measure and drive.
+//! The screw terminals: the boundary between the modules and the world that they measure and drive.
 //!
-//! A module knows bytes, converters and registers; the world knows coils, cylinders and contacts.
-//! They meet here in volts, logic levels and gate times, at integer microseconds of rig time that
-//! never run backwards. A module asks and writes only after [`Plant::advance`] has brought the
-//! world to that instant.
+//! Modules have bytes, converters and registers; the world has coils, cylinders and contacts. The two exchange
+//! volts, logic levels and gate times, at integer microseconds of rig time that never run backwards. A module
+//! reads and writes only after [`Plant::advance`] has brought the world to that instant.
 
 use std::collections::BTreeMap;
 
@@ -12,38 +11,38 @@ use std::collections::BTreeMap;
 pub struct ModuleSpec {
     /// Key of the table `[module.ID]`.
     pub id: String,
-    /// Name of the line it hangs on.
+    /// Name of its line.
     pub line: String,
     /// Address on that line.
     pub address: u8,
     /// Model name as printed on the housing, `I-7017F`.
     pub model: String,
-    /// The other keys of its table (type, format, fast, mask, slew, watchdog, safe ...).
+    /// All other keys of its table (type, format, fast, mask, slew, watchdog, safe ...).
     pub settings: BTreeMap<String, toml::Value>,
 }
 
-/// What is behind the terminals. Modules are named by their identifier in `config/rig.toml`.
+/// The world behind the terminals; modules are named by their identifiers in `config/rig.toml`.
 pub trait Plant {
-    /// Brings the world to `t_us`; everything else below speaks of that instant.
+    /// Brings the world to `t_us`; all other methods refer to that instant.
     fn advance(&mut self, t_us: u64);
 
-    /// Volts between the terminals of an analog input (an RTD input: degrees Celsius at the sensor,
-    /// errors of the sensor included). NaN: nothing connected.
+    /// Volts at the terminals of an analog input (RTD input: degrees Celsius with the errors of the sensor). NaN
+    /// means that nothing is connected.
     fn analog_in(&mut self, module: &str, channel: u8) -> f64;
 
-    /// The output stage of an analog output now stands at `volts` (called at every refresh of a slew).
+    /// Sets the output stage of an analog output to `volts`, at every refresh of a slew.
     fn analog_out(&mut self, module: &str, volts: f64);
 
-    /// Electrical levels of all digital inputs, bit n = channel n; 1 is open, no signal.
+    /// Electrical levels of all digital inputs, bit n = channel n; 1 is open (no signal).
     fn digital_in(&mut self, module: &str) -> u16;
 
-    /// All digital outputs of a module, bit n = channel n; 1 is on.
+    /// Sets all digital outputs of a module, bit n = channel n; 1 is on.
     fn digital_out(&mut self, module: &str, bits: u16);
 
-    /// Falling edges seen so far at a digital input whose low level lasted at least 5 ms.
+    /// Number of falling edges so far at a digital input; only low levels of at least 5 ms count.
     fn edges(&mut self, module: &str, channel: u8) -> u64;
 
-    /// Total time the gate of a counter has been open so far, in microseconds (gate delay included).
+    /// Total open time of a counter's gate so far, microseconds, gate delay included.
     fn gate_open_us(&mut self, module: &str, channel: u8) -> f64;
 
     /// True frequency of the reference clock at both counter inputs, hertz.

@@ -1,80 +1,80 @@
-//! What a specimen really was and where its body went: the record that judges the controller.
+//! True values of each specimen and the path of its body: the record that judges the controller.
 
 use serde::Serialize;
 
 use crate::world::relay::Levels;
 
-/// True values of one lot part; absent where the part never showed the quantity.
+/// True values of one lot part; `None` where the part has not shown the quantity.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct PartTruth {
-    /// Order of entering the nest, from 1; golden parts are not counted.
+    /// Order of entering the nest, from 1, without reference parts.
     pub seq: u64,
-    /// Coil resistance at the reference temperature; absent for an open coil.
+    /// Coil resistance at the reference temperature, ohm; `None` for an open coil.
     pub coil_resistance_ohm: Option<f64>,
-    /// Quasi-static operate threshold at the reference temperature.
+    /// Quasi-static operate threshold at the reference temperature, V.
     pub operate_voltage_v: Option<f64>,
-    /// Quasi-static release threshold at the reference temperature.
+    /// Quasi-static release threshold at the reference temperature, V.
     pub release_voltage_v: Option<f64>,
-    /// Last operation at full voltage, drive on to first make.
+    /// Time from drive on to first make in the last full-voltage operation, ms.
     pub operate_time_ms: Option<f64>,
-    /// Last release from full voltage, drive off to first make of NC.
+    /// Time from drive off to first make of NC in the last full-voltage release, ms.
     pub release_time_ms: Option<f64>,
-    /// Open time of NO after its first make in that operation.
+    /// Open time of NO after its first make in that operation, ms.
     pub operate_bounce_ms: Option<f64>,
-    /// Open time of NC after its first make in that release.
+    /// Open time of NC after its first make in that release, ms.
     pub release_bounce_ms: Option<f64>,
-    /// Mean over the closures of NO on which the source was on.
+    /// Mean over the closures of NO that carried the source's current, milliohm.
     pub contact_resistance_no_mohm: Option<f64>,
-    /// Mean over the closures of NC on which the source was on.
+    /// Mean over the closures of NC that carried the source's current, milliohm.
     pub contact_resistance_nc_mohm: Option<f64>,
-    /// Resistance of a dummy at the reference temperature; absent for an open one. Relays have no such key.
+    /// Resistance of a dummy at the reference temperature, ohm; `None` for an open one. Relays omit this key.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub resistance_ohm: Option<f64>,
-    /// Operations of a relay at full voltage, from rest to the first make of NO. Dummies have no such key.
+    /// Number of full-voltage operations of a relay, from rest to the first make of NO. Dummies omit this key.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub operations: Option<u64>,
-    /// Name of the defect.
+    /// Name of the defect, if any.
     pub defect: Option<&'static str>,
     /// Bin in which the body came to rest.
     pub landed_in: Option<String>,
-    /// How its motion was computed: rig time held in equilibrium, and with all five states.
+    /// Rig time on each level of the motion model: held in equilibrium, and all five states integrated.
     pub levels: Levels,
 }
 
-/// Somewhere between magazine and bin.
+/// Location of a body between magazine and bin.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Place {
-    /// Before the pusher.
+    /// In the pocket, before the pusher.
     Pocket,
-    /// In front of a pusher that is under way.
+    /// In front of the moving pusher.
     Pusher,
     /// In the nest.
     Nest,
-    /// Between fingers that have lifted it.
+    /// Lifted by the fingers.
     Gripper,
     /// Falling down a chute.
     Air,
-    /// Come to rest in this bin.
+    /// At rest in this bin.
     Bin(String),
-    /// Come to rest beside every bin.
+    /// At rest outside every bin.
     Floor,
 }
 
-/// One body, golden parts included.
+/// One body, with its path; reference parts included.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyTruth {
-    /// A golden part.
-    pub golden: bool,
-    /// It clung to the body before it, went wherever that went, and was never tested.
+    /// Marks a reference part.
+    pub is_reference: bool,
+    /// Marks a body that clung to the body before it, followed the same path, and was never tested.
     pub clung: bool,
-    /// Where it came to and when, rig time in microseconds, in order of time.
+    /// Places with the time of arrival, rig time in microseconds, in order of time.
     pub path: Vec<(u64, Place)>,
-    /// What it was.
+    /// True values of the part.
     pub part: PartTruth,
 }
 
 impl BodyTruth {
-    /// Where it was at an instant; none before it left the magazine.
+    /// Returns the place at an instant; `None` before the body left the magazine.
     pub fn at(&self, t_us: u64) -> Option<&Place> {
         let earlier = self.path.iter().rev();
         earlier

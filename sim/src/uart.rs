@@ -1,10 +1,10 @@
-//! Bits on the wire: what a receiver makes of two transmitters at once, or of a wrong baud rate.
+//! Bits on the wire: characters that a receiver gets from two transmitters at once, or at a wrong baud rate.
 //!
 //! A character is a start bit (0), eight data bits from the lowest, and a stop bit (1); an idle wire is 1. The
-//! receiver waits for a start bit, takes ten bits from there, and goes on with the next start bit. A character
-//! with a broken stop bit is handed over as 0, as a terminal in raw mode does.
+//! receiver waits for a start bit, takes ten bits, and waits for the next start bit. It reads a character with a
+//! broken stop bit as 0, as a terminal in raw mode does.
 
-/// Bits of one character.
+/// Number of bits in a character.
 const CHARACTER: usize = 10;
 
 fn bits_of(bytes: &[u8]) -> Vec<bool> {
@@ -20,7 +20,7 @@ fn characters_of(bits: &[bool]) -> Vec<u8> {
     let mut at = 0;
     while let Some(start) = bits[at.min(bits.len())..].iter().position(|bit| !bit) {
         let begin = at.min(bits.len()) + start;
-        // Past the end the wire is idle.
+        // The wire is idle past the end.
         let bit = |n: usize| bits.get(begin + n).copied().unwrap_or(true);
         let data = (0..8).fold(0u8, |byte, n| byte | u8::from(bit(n + 1)) << n);
         characters.push(if bit(9) { data } else { 0 });
@@ -29,7 +29,7 @@ fn characters_of(bits: &[bool]) -> Vec<u8> {
     characters
 }
 
-/// Two transmitters, the second `apart` bits after the first (before it when negative): a 0 of either wins.
+/// Superposes two transmitters, the second `apart` bits after the first (before it when negative); a 0 wins.
 pub(crate) fn superposed(first: &[u8], second: &[u8], apart: i64) -> Vec<u8> {
     let pad = |bytes: &[u8], before: i64| {
         let idle = usize::try_from(before).unwrap_or(0);
@@ -45,7 +45,7 @@ pub(crate) fn superposed(first: &[u8], second: &[u8], apart: i64) -> Vec<u8> {
     characters_of(&both)
 }
 
-/// What a receiver hears of a transmitter that sends `times` as slowly as it listens.
+/// Returns the characters that a receiver gets from a transmitter `times` slower than its own rate.
 pub(crate) fn heard_faster(bytes: &[u8], times: usize) -> Vec<u8> {
     let sent = bits_of(bytes);
     let slow: Vec<bool> = sent
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_one_transmitter_sends_is_heard() {
+    fn one_transmitter_is_received_unchanged() {
         let every: Vec<u8> = (0..=255).collect();
         assert_eq!(characters_of(&bits_of(&every)), every);
         assert_eq!(superposed(&every, &[], 7), every);
@@ -68,25 +68,25 @@ mod tests {
     }
 
     #[test]
-    fn two_transmitters_in_step_leave_the_zeros_of_both() {
+    fn synchronous_transmitters_merge_their_zeros() {
         assert_eq!(superposed(b">12\r", b">34\r", 0), [b'>', b'1', b'0', b'\r']);
         assert_eq!(superposed(b"!01", b"!01", 0), b"!01");
     }
 
     #[test]
-    fn transmitters_that_do_not_overlap_are_heard_one_after_the_other() {
+    fn transmitters_without_overlap_arrive_in_sequence() {
         assert_eq!(superposed(b">1\r", b">2\r", 30), b">1\r>2\r");
         assert_eq!(superposed(b">1\r", b">2\r", -31), b">2\r>1\r");
     }
 
     #[test]
-    fn half_a_character_apart_nothing_is_left_of_either() {
+    fn half_a_character_apart_destroys_both_replies() {
         let heard = superposed(b">7FFF47\r", b">800006\r", 5);
         assert!(!heard.windows(2).any(|pair| pair == b">7" || pair == b">8"));
     }
 
     #[test]
-    fn a_slower_transmitter_is_heard_as_other_and_more_characters() {
+    fn a_slower_transmitter_gives_more_and_other_characters() {
         let heard = heard_faster(b">+05.123\r", 2);
         assert!(heard.len() > 9 && !heard.contains(&b'>'));
     }

@@ -1,9 +1,9 @@
 //! Lines as in-process byte streams in virtual time (tokio's paused clock, current-thread runtime).
 //!
-//! A task per line reads requests, waits until their last character has arrived, lets the rig
-//! answer, waits until the reply's last character has arrived and hands the reply over in one
-//! piece. Replies that are on their way never hinder the next request. A lost port ends the stream;
-//! when it is back, its [`Plug`] has another one.
+//! The task of a line reads requests, waits until the last character has arrived, lets the rig answer, waits
+//! until the last character of the reply has arrived, and writes the reply in one piece. A pending reply never
+//! delays the next request. A lost port ends the stream; when the port comes back, its [`Plug`] offers a new
+//! stream.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,15 +16,15 @@ use crate::line::{Arrival, Receiver};
 use crate::pace::Pace;
 use crate::rig::Reply;
 
-/// Room of a stream in each direction; a reply is at most 64 characters.
+/// Buffer size of a stream in each direction, bytes; a reply has at most 64 characters.
 const ROOM: usize = 4_096;
 
-/// Where the host gets the stream of a line from, again after the port was lost or closed.
+/// Source of a line's stream; offers a new stream after the port was lost or closed.
 #[derive(Clone, Default)]
 pub struct Plug(Arc<Mutex<Option<DuplexStream>>>);
 
 impl Plug {
-    /// The stream, if the port is there and nobody has it.
+    /// Takes the stream; `None` while the port is absent or the stream is already taken.
     pub fn open(&self) -> Option<DuplexStream> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
@@ -33,20 +33,20 @@ impl Plug {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = stream;
     }
 
-    /// Somebody may still want to open it.
+    /// Checks whether another clone of the plug exists, so that a host may still open it.
     fn is_held(&self) -> bool {
         Arc::strong_count(&self.0) > 1
     }
 }
 
-/// Opens every line of the rig and spawns its task on the current runtime. Rig time goes on from
-/// where the rig stands. A stream that has ended cannot be had again.
+/// Opens every line and spawns its task on the current runtime. Rig time continues from its present value. A
+/// stream that has ended cannot be opened again.
 pub fn in_process(rig: &SharedRig) -> Vec<(String, DuplexStream)> {
     let opened = |(name, plug): (String, Plug)| plug.open().map(|stream| (name, stream));
     plugs(rig).into_iter().filter_map(opened).collect()
 }
 
-/// As [`in_process`], with streams that can be had again.
+/// Opens every line as [`in_process`] does, with streams that can be opened again.
 pub fn plugs(rig: &SharedRig) -> Vec<(String, Plug)> {
     let pace = Pace::start();
     let lines = rig.lines();
@@ -80,22 +80,22 @@ struct Line {
     plug: Plug,
     receiver: Receiver,
     arrivals: VecDeque<Arrival>,
-    /// Few and mostly one: late replies overtake each other.
+    /// Replies on their way, mostly one; a late reply may be overtaken.
     replies: Vec<Reply>,
 }
 
 impl Line {
-    /// A fresh stream; the host's end is in the plug.
+    /// Creates a stream and puts the host's end into the plug.
     fn plugged(&self) -> DuplexStream {
         let (host, device) = tokio::io::duplex(ROOM);
         self.plug.put(Some(host));
         device
     }
 
-    /// Until the host has closed its end and nobody can open it again.
+    /// Serves until the host has closed its end and nobody can open it again.
     async fn serve(mut self, mut device: DuplexStream) {
         loop {
-            // An error is a host that went away, just as an end is.
+            // An error means that the host is gone, as an end of file does.
             let _ = self.converse(&mut device).await;
             drop(device);
             self.plug.put(None);
@@ -112,7 +112,7 @@ impl Line {
         }
     }
 
-    /// Until the host closes its end or the port is lost.
+    /// Serves until the host closes its end or the port is lost.
     async fn converse(&mut self, device: &mut DuplexStream) -> std::io::Result<()> {
         let mut bytes = [0u8; 256];
         while self.rig.port_back_us(self.number, self.now_us()).is_none() {

@@ -1,4 +1,4 @@
-//! Facts about modules and lines, seen from the host's side.
+//! Tests of modules and lines from the host's side.
 
 mod facts {
     mod conformance;

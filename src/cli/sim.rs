@@ -78,14 +78,14 @@ pub fn run(config: &Path, args: &SimArgs) -> anyhow::Result<Exit> {
             seed: args.seed,
             recipe: args.recipe.clone(),
             parts: None,
-            golden: true,
+            reference_parts: true,
             faults: args.fault.clone(),
         })?,
     };
     let rates = if args.heed_baud {
-        Rates::Heeded
+        Rates::Enforced
     } else {
-        Rates::Any
+        Rates::Ignored
     };
     let ptys = pty::serve(&rig, rates)?;
     if let Some(dir) = &args.link {

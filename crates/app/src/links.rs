@@ -178,7 +178,7 @@ fn simulated_lines(
     };
     let mut lines = Lines::default();
     if source.pace == super::source::SimulatedPace::Real {
-        let ptys = pty::serve(&rig, pty::Rates::Any)?;
+        let ptys = pty::serve(&rig, pty::Rates::Ignored)?;
         for (name, path) in ptys.paths() {
             lines.serial(plant, named(&name)?, &path.to_string_lossy(), pace);
         }

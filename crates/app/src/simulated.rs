@@ -34,7 +34,7 @@ fn loaded(plant: &Plant, source: &Simulated, order: &LotOrder) -> Options {
         seed: source.seed,
         recipe: order.recipe.clone(),
         parts: order.count,
-        golden: true,
+        reference_parts: true,
         faults: faults(plant, source),
     }
 }
@@ -58,7 +58,7 @@ pub fn build_empty(
 ) -> anyhow::Result<SharedRig> {
     Ok(rigsim::build(&Options {
         parts: Some(0),
-        golden: false,
+        reference_parts: false,
         ..loaded(plant, source, order)
     })?)
 }
@@ -73,5 +73,5 @@ pub fn load(
     source: &Simulated,
     order: &LotOrder,
 ) -> anyhow::Result<()> {
-    Ok(rig.fill(&loaded(plant, source, order))?)
+    Ok(rig.refill(&loaded(plant, source, order))?)
 }

@@ -1,13 +1,13 @@
-//! The same transient by diffsol: Tsitouras 5(4) with its root finding, restarted at every root.
+//! The transient by diffsol: Tsitouras 5(4) with root finding, restarted at every root.
 
-use super::{END_S, Seen, VOLTS};
+use super::{END_S, NoContactTimes, VOLTS};
 use diffsol::{
     DiffsolError, NalgebraMat, OdeBuilder, OdeEquations, OdeSolverMethod, OdeSolverStopReason, Op,
 };
 use rigsim::world::relay::lumped::{Drive, Kind, Model, State};
 use std::cell::Cell;
 
-/// Place of NO among the roots.
+/// Index of NO among the roots.
 const NO: usize = 3;
 
 fn state(slice: &[f64]) -> State {
@@ -17,8 +17,8 @@ fn state(slice: &[f64]) -> State {
 /// Integrates with root finding for all four stops.
 ///
 /// # Errors
-/// What diffsol says.
-pub fn tsit45(model: &Model, rtol: f64) -> Result<Seen, DiffsolError> {
+/// Returns the error of diffsol.
+pub fn tsit45(model: &Model, rtol: f64) -> Result<NoContactTimes, DiffsolError> {
     let drive = Drive::still(VOLTS);
     let evaluations = Cell::new(0u64);
     let start = model.at_rest(0.0);
@@ -36,7 +36,7 @@ pub fn tsit45(model: &Model, rtol: f64) -> Result<Seen, DiffsolError> {
             |s, _, _, gaps| {
                 let s = state(s);
                 for (gap, kind) in gaps.iter_mut().zip(Kind::TOUCHING) {
-                    *gap = model.places.overlap(kind, &s);
+                    *gap = model.stops.overlap(kind, &s);
                 }
             },
             4,
@@ -58,5 +58,5 @@ pub fn tsit45(model: &Model, rtol: f64) -> Result<Seen, DiffsolError> {
             OdeSolverStopReason::InternalTimestep => {}
         }
     }
-    Ok(Seen::of_changes(&changes, evaluations.get()))
+    Ok(NoContactTimes::of_changes(&changes, evaluations.get()))
 }

@@ -1,9 +1,8 @@
 //! Accuracy of a relay transient against its cost: `cargo bench -p rigsim --bench transient`.
 //!
-//! A 12 V operation of the default relay, 8 ms from rest. Each scheme says when NO makes and when it
-//! changes for the last time; the errors are against the own method at a tolerance of 1e-14. Wall
-//! time is the median (and the 99th percentile) of many runs in this process, the ratio is to the own
-//! method at 1e-6.
+//! The case is a 12 V operation of the default relay, 8 ms from rest. Each scheme reports the first make and the
+//! last change of NO; errors are relative to this project's method at a tolerance of 1e-14. Wall time is the
+//! median (and the 99th percentile) of many runs in this process; the ratio is relative to this method at 1e-6.
 
 mod diffsol_peer;
 mod fixed_steps;
@@ -15,24 +14,24 @@ use std::time::Instant;
 pub const END_S: f64 = 0.008;
 /// Coil voltage, V.
 pub const VOLTS: f64 = 12.0;
-/// Bar of the own method, at an error of 1e-9 s.
+/// Wall-time limit of this project's method at an error of 1e-9 s, microseconds.
 const BAR_US: f64 = 300.0;
 
-/// What a scheme has seen of NO.
+/// Changes of NO that a scheme reports.
 #[derive(Clone, Copy, Default)]
-pub struct Seen {
+pub struct NoContactTimes {
     /// First make, s.
     pub make_s: f64,
     /// Last change, s.
     pub last_s: f64,
-    /// Changes of NO, or of all modes where the scheme knows them.
+    /// Number of changes of NO, or of all modes where the scheme reports them.
     pub events: usize,
     /// Evaluations of the equations, 0 where unknown.
     pub evaluations: u64,
 }
 
-impl Seen {
-    /// From the instants at which NO changed.
+impl NoContactTimes {
+    /// Summarises the instants at which NO changes.
     pub fn of_changes(changes: &[f64], evaluations: u64) -> Self {
         Self {
             make_s: changes.first().copied().unwrap_or(f64::NAN),
@@ -43,15 +42,15 @@ impl Seen {
     }
 }
 
-/// A row of the table.
+/// One row of the table.
 struct Row {
     scheme: String,
-    seen: Seen,
+    seen: NoContactTimes,
     median_us: f64,
     p99_us: f64,
 }
 
-fn measured(scheme: impl Into<String>, runs: usize, once: impl Fn() -> Seen) -> Row {
+fn measured(scheme: impl Into<String>, runs: usize, once: impl Fn() -> NoContactTimes) -> Row {
     let seen = once();
     let mut walls: Vec<f64> = (0..runs)
         .map(|_| {
@@ -69,22 +68,22 @@ fn measured(scheme: impl Into<String>, runs: usize, once: impl Fn() -> Seen) -> 
     }
 }
 
-fn own(model: &Model, rtol: f64) -> Seen {
+fn own(model: &Model, rtol: f64) -> NoContactTimes {
     let Ok(waveform) = Waveform::new(vec![[0.0, VOLTS]]) else {
-        return Seen::default();
+        return NoContactTimes::default();
     };
     let excitation = Excitation::Source(waveform);
     match model.transient(model.at_rest(0.0), &excitation, END_S, rtol) {
         Ok(run) => {
             let seen = Outcome::of(&run.events);
-            Seen {
+            NoContactTimes {
                 make_s: seen.no_first_make.unwrap_or(f64::NAN),
                 last_s: seen.no_last_change.unwrap_or(f64::NAN),
                 events: run.events.iter().filter(|e| e.kind == Kind::No).count(),
                 evaluations: run.evaluations,
             }
         }
-        Err(_) => Seen::default(),
+        Err(_) => NoContactTimes::default(),
     }
 }
 
@@ -120,7 +119,7 @@ fn main() {
     print(&rows, truth);
 }
 
-fn print(rows: &[Row], truth: Seen) {
+fn print(rows: &[Row], truth: NoContactTimes) {
     println!(
         "operation at {VOLTS} V, {} ms; errors of NO in seconds",
         END_S * 1e3

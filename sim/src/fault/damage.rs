@@ -1,44 +1,43 @@
-//! Replies that arrive as something else: disturbed bits, foreign bytes, the own echo, a second transmitter,
-//! a wrong baud rate.
+//! Altered replies: disturbed bits, foreign bytes, the host's own echo, a second transmitter, a wrong baud rate.
 //!
-//! Two transmitters and wrong baud rates work on the bits of the wire ([`crate::uart`]), so that what comes out
-//! is what a receiver makes of them: characters shifted into each other, broken stop bits.
+//! Second transmitters and wrong baud rates act on the bits of the wire ([`crate::uart`]), so that the host
+//! receives what a real receiver would: shifted characters and broken stop bits.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Strikes, Targets};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Targets, Trigger};
+use super::{Family, FaultEntry};
 use crate::dcon;
 use crate::error::SimError;
 use crate::uart;
 
-const LIST: [Known; 5] = [
-    Known {
+const LIST: [FaultEntry; 5] = [
+    FaultEntry {
         name: "flip",
         unit: "probability",
         default: "0.01",
         what: "one bit of a reply is flipped",
     },
-    Known {
+    FaultEntry {
         name: "noise",
         unit: "probability",
         default: "0.01",
         what: "one to four random bytes before a reply",
     },
-    Known {
+    FaultEntry {
         name: "echo",
         unit: "probability",
         default: "1",
         what: "the request comes back before the reply",
     },
-    Known {
+    FaultEntry {
         name: "clash",
         unit: "MODULE[@s] or probability",
         default: "board_di",
         what: "a second module of the kind answers at the same address",
     },
-    Known {
+    FaultEntry {
         name: "garble",
         unit: "probability",
         default: "0.01",
@@ -46,7 +45,7 @@ const LIST: [Known; 5] = [
     },
 ];
 
-/// How far apart two modules at one address begin to answer at most, bits: two characters.
+/// Largest offset between the replies of two modules at one address, bits: two characters.
 const APART_BITS: i64 = 20;
 
 #[derive(Default)]
@@ -60,25 +59,25 @@ pub(super) struct Damage {
 }
 
 impl Family for Damage {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        let chances = match asked.name {
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        let chances = match request.name {
             "flip" => &mut self.flip,
             "noise" => &mut self.noise,
             "echo" => &mut self.echo,
             "garble" => &mut self.garble,
-            _ => match asked.strikes()? {
-                Strikes::Chance(..) => &mut self.clash,
-                Strikes::Target(module) => {
-                    self.clashing.add(module, asked.window);
+            _ => match request.trigger()? {
+                Trigger::Chance(..) => &mut self.clash,
+                Trigger::Target(module) => {
+                    self.clashing.add(module, request.window);
                     return Ok(());
                 }
             },
         };
-        chances.add(asked.probability()?, asked.window);
+        chances.add(request.probability()?, request.window);
         Ok(())
     }
 
@@ -88,7 +87,7 @@ impl Family for Damage {
 }
 
 impl Damage {
-    /// A second module at the address of `module` answers too.
+    /// Superposes the reply of a second module at the address of `module`.
     pub(super) fn clash(
         &self,
         module: &str,
@@ -103,7 +102,7 @@ impl Damage {
         }
     }
 
-    /// What a reply has become on its way.
+    /// Damages a reply on its way to the host.
     pub(super) fn strike(
         &self,
         request: &[u8],
@@ -129,7 +128,8 @@ impl Damage {
     }
 }
 
-/// What another module of the same kind and address would say: other digits, a good checksum if there is one.
+/// Returns the reply of another module of the same kind and address: other digits, a valid checksum if there is
+/// one.
 fn twin(reply: &[u8], rng: &mut ChaCha8Rng) -> Vec<u8> {
     let text = reply.strip_suffix(&[dcon::CR]).unwrap_or(reply);
     let bare = dcon::without_checksum(text);
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn a_second_transmitter_and_a_wrong_baud_rate_leave_no_reply() {
+    fn second_transmitter_and_wrong_baud_rate_destroy_the_reply() {
         for fault in ["clash", "garble"] {
             let bytes = struck(fault);
             assert_ne!(bytes, b">+05.123\r", "{fault}");

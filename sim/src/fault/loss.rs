@@ -1,36 +1,36 @@
-//! Things that do not arrive: whole requests, whole replies, ends of replies, a module for good.
+//! Lost requests, lost or truncated replies, and silent modules.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Targets};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Targets};
+use super::{Family, FaultEntry};
 use crate::error::SimError;
 
-const LIST: [Known; 4] = [
-    Known {
+const LIST: [FaultEntry; 4] = [
+    FaultEntry {
         name: "drop",
         unit: "probability",
         default: "0.01",
-        what: "a reply is lost; what was asked is done",
+        what: "a reply is lost; the module has carried out the request",
     },
-    Known {
+    FaultEntry {
         name: "deaf",
         unit: "probability",
         default: "0.01",
-        what: "a request is not heard; nothing is done",
+        what: "a request is lost; the module does nothing",
     },
-    Known {
+    FaultEntry {
         name: "truncate",
         unit: "probability",
         default: "0.01",
         what: "a reply breaks off",
     },
-    Known {
+    FaultEntry {
         name: "silence",
         unit: "MODULE[@s]",
         default: "board_di@0",
-        what: "a module hears and is silent for good",
+        what: "a module carries out requests and never answers",
     },
 ];
 
@@ -43,21 +43,21 @@ pub(super) struct Loss {
 }
 
 impl Family for Loss {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        let chances = match asked.name {
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        let chances = match request.name {
             "drop" => &mut self.drop,
             "deaf" => &mut self.deaf,
             "truncate" => &mut self.truncate,
             _ => {
-                self.silence.add(asked.value.to_owned(), asked.window);
+                self.silence.add(request.value.to_owned(), request.window);
                 return Ok(());
             }
         };
-        chances.add(asked.probability()?, asked.window);
+        chances.add(request.probability()?, request.window);
         Ok(())
     }
 
@@ -67,17 +67,17 @@ impl Family for Loss {
 }
 
 impl Loss {
-    /// Nobody hears this request.
-    pub(super) fn swallows(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
+    /// Draws whether this request is lost.
+    pub(super) fn loses_request(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
         self.deaf.strike(rng, now_us)
     }
 
-    /// The module hears, but is silent.
+    /// Checks whether a fault suppresses every reply of the module now.
     pub(super) fn silences(&self, module: &str, now_us: u64) -> bool {
         self.silence.hold(module, now_us)
     }
 
-    /// What arrives of a reply; nothing when it is lost.
+    /// Loses or truncates a reply; a lost reply becomes empty.
     pub(super) fn strike(&self, reply: &mut Vec<u8>, rng: &mut ChaCha8Rng, now_us: u64) {
         if self.drop.strike(rng, now_us) {
             reply.clear();
@@ -94,7 +94,7 @@ mod tests {
     use super::super::LineFaults;
 
     #[test]
-    fn a_truncation_never_leaves_all_and_a_drop_leaves_nothing() {
+    fn truncation_shortens_a_reply_and_drop_removes_it() {
         let mut faults = LineFaults::none(7);
         faults.add("truncate", Some("1")).unwrap();
         for _ in 0..100 {
@@ -107,12 +107,12 @@ mod tests {
     }
 
     #[test]
-    fn a_module_is_silent_and_requests_are_unheard_while_it_was_asked() {
+    fn silence_and_deaf_hold_within_their_windows() {
         let mut faults = LineFaults::none(7);
         faults.add("silence", Some("timer@1..2")).unwrap();
         faults.add("deaf", Some("1@3")).unwrap();
         assert!(!faults.silent("timer", 999_999) && faults.silent("timer", 1_000_000));
         assert!(!faults.silent("timer", 2_000_000) && !faults.silent("rtd", 1_500_000));
-        assert!(!faults.swallows(2_999_999) && faults.swallows(3_000_000));
+        assert!(!faults.loses_request(2_999_999) && faults.loses_request(3_000_000));
     }
 }

@@ -1,16 +1,16 @@
-//! Faults of lines and modules: a layer between what a module answers and what the host receives.
+//! Faults of lines and modules: a layer that changes a module's reply before the host receives it.
 //!
 //! | file | family |
 //! |---|---|
-//! | `loss` | what does not arrive |
-//! | `timing` | what arrives too late |
-//! | `damage` | what arrives as something else |
-//! | `upset` | modules that restart, trip, or are other products |
-//! | `port` | lines that are dead, ports that vanish and come back |
+//! | `loss` | lost requests and replies, silent modules |
+//! | `timing` | late replies |
+//! | `damage` | altered replies |
+//! | `upset` | modules that restart, trip, or are replaced by another product |
+//! | `port` | dead lines, ports that vanish and come back |
 //!
-//! Any number of them can be asked for together, and one more than once. How a value is written: `value`.
-//! Draws come from a stream of their own, so that a fault changes nothing else of the rig. LineFaults of the world
-//! (mechanism, board, part) are listed in `sim.toml`.
+//! Faults combine freely, and one name may appear more than once; `value` describes the form of a value. All
+//! draws come from a random stream of their own, so that adding a fault changes no other draw of the rig.
+//! `sim.toml` lists the faults of the world (mechanism, board, part).
 
 mod damage;
 mod loss;
@@ -22,45 +22,45 @@ mod value;
 use rand_chacha::ChaCha8Rng;
 
 use crate::error::SimError;
-use crate::module::habit;
-pub use upset::{Event, Timed};
-use value::Asked;
+use crate::module::tolerances;
+pub use upset::{Event, TimedEvent};
+use value::FaultRequest;
 
-/// One fault that can be asked for.
+/// One fault that `--fault` accepts, for listing.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct FaultInfo {
     /// Name for `--fault`.
     pub name: String,
-    /// Unit or form of the value.
+    /// Unit or form of the value, as text.
     pub unit: String,
-    /// Value when none is given.
+    /// Value that applies when the command gives none.
     pub default: String,
-    /// What happens.
+    /// Effect of the fault, one English phrase.
     pub what: String,
 }
 
-/// A fault of this layer.
-struct Known {
+/// One line of a family's fault list.
+struct FaultEntry {
     name: &'static str,
     unit: &'static str,
     default: &'static str,
     what: &'static str,
 }
 
-/// Faults that are of one kind.
+/// Faults of one kind, with the requests that are active.
 trait Family {
-    fn list(&self) -> &'static [Known];
+    fn list(&self) -> &'static [FaultEntry];
 
-    /// Takes one of the list.
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError>;
+    /// Adds one fault of the list.
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError>;
 
-    /// Every module or line that was named.
+    /// Returns every module or line that a fault names.
     fn targets(&self) -> Vec<&str>;
 }
 
 /// Names, units and defaults of the faults of this layer.
 pub fn list() -> Vec<FaultInfo> {
-    let info = |known: &Known| FaultInfo {
+    let info = |known: &FaultEntry| FaultInfo {
         name: known.name.into(),
         unit: known.unit.into(),
         default: known.default.into(),
@@ -73,7 +73,7 @@ pub fn list() -> Vec<FaultInfo> {
         .collect()
 }
 
-/// The faults that strike lines and modules.
+/// Active faults of lines and modules, with their random stream.
 pub struct LineFaults {
     rng: ChaCha8Rng,
     loss: loss::Loss,
@@ -84,10 +84,10 @@ pub struct LineFaults {
 }
 
 impl LineFaults {
-    /// None at all.
+    /// Creates a layer without faults; `seed` selects its random stream.
     pub fn none(seed: u64) -> Self {
         Self {
-            rng: habit::stream(seed, "faults of the line"),
+            rng: tolerances::stream(seed, "faults of the line"),
             loss: loss::Loss::default(),
             timing: timing::Timing::default(),
             damage: damage::Damage::default(),
@@ -96,18 +96,18 @@ impl LineFaults {
         }
     }
 
-    /// Adds one; `false` when the name is none of this layer's.
+    /// Adds a fault; returns `false` when this layer has no fault of that name.
     ///
     /// # Errors
-    /// The value does not have the form of the fault.
+    /// Fails when the value does not have the form that the fault expects.
     pub fn add(&mut self, name: &str, value: Option<&str>) -> Result<bool, SimError> {
         self.add_from(0, name, value)
     }
 
-    /// Adds one whose times are counted from `now_us`.
+    /// Adds a fault whose times count from `now_us`.
     ///
     /// # Errors
-    /// As [`LineFaults::add`].
+    /// Fails as [`LineFaults::add`] does.
     pub fn add_from(
         &mut self,
         now_us: u64,
@@ -124,8 +124,8 @@ impl LineFaults {
         for family in families {
             let known = family.list().iter().find(|known| known.name == name);
             if let Some(known) = known {
-                let asked = Asked::read(name, value.unwrap_or(known.default))?;
-                family.add(&asked.from(now_us))?;
+                let request = FaultRequest::read(name, value.unwrap_or(known.default))?;
+                family.add(&request.from(now_us))?;
                 return Ok(true);
             }
         }
@@ -142,63 +142,64 @@ impl LineFaults {
         ]
     }
 
-    /// Every module or line that a fault names.
+    /// Returns every module or line that a fault names.
     pub fn targets(&self) -> impl Iterator<Item = &str> {
         let families = self.families().into_iter();
         families.flat_map(|family| family.targets())
     }
 
-    /// The line carries nothing now.
+    /// Checks whether the line is dead now.
     pub fn line_dead(&self, line: &str, now_us: u64) -> bool {
         self.port.line_dead(line, now_us)
     }
 
-    /// When the port of a line is back, if it is away now.
+    /// Returns the instant at which a lost port comes back; `None` while the port is present.
     pub fn port_back_us(&self, line: &str, now_us: u64) -> Option<u64> {
         self.port.back_us(line, now_us)
     }
 
-    /// When the port of a line goes away next.
+    /// Returns the instant at which the port of a line vanishes next.
     pub fn next_port_loss_us(&self, line: &str, now_us: u64) -> Option<u64> {
         self.port.next_loss_us(line, now_us)
     }
 
-    /// A request has come in: it may cost the port.
+    /// Draws whether the request that has just arrived makes the port vanish.
     pub fn may_lose_port(&mut self, line: &str, now_us: u64) {
         self.port.may_lose(line, &mut self.rng, now_us);
     }
 
-    /// Nobody hears the request that has just come in.
-    pub fn swallows(&mut self, now_us: u64) -> bool {
-        self.loss.swallows(&mut self.rng, now_us)
+    /// Draws whether the request that has just arrived is lost.
+    pub fn loses_request(&mut self, now_us: u64) -> bool {
+        self.loss.loses_request(&mut self.rng, now_us)
     }
 
-    /// The module hears, but is silent.
+    /// Checks whether a fault suppresses every reply of the module.
     pub fn silent(&self, module: &str, now_us: u64) -> bool {
         self.loss.silences(module, now_us)
     }
 
-    /// Another product sits at the address of this module.
+    /// Checks whether another product replaces this module.
     pub fn is_wrong_type(&self, module: &str) -> bool {
         self.upset.is_wrong_type(module)
     }
 
-    /// What happens to a module just before it hears a request.
+    /// Draws an upset that strikes a module just before it receives a request.
     pub fn before_a_request(&mut self, now_us: u64) -> Option<Event> {
         self.upset.before_a_request(&mut self.rng, now_us)
     }
 
-    /// The next event that was asked for by name and is due, taken out.
-    pub fn due(&mut self, now_us: u64) -> Option<Timed> {
+    /// Removes and returns the next timed event that is due.
+    pub fn due(&mut self, now_us: u64) -> Option<TimedEvent> {
         self.upset.due(now_us)
     }
 
-    /// A second module may answer together with `module`.
+    /// Superposes the reply of a second module at the same address, when the fault strikes.
     pub fn clash(&mut self, module: &str, reply: &mut Vec<u8>, now_us: u64) {
         self.damage.clash(module, reply, &mut self.rng, now_us);
     }
 
-    /// What becomes of a reply: extra microseconds and the bytes, `None` when nothing arrives.
+    /// Applies loss, damage and delay to a reply; returns the extra microseconds and the bytes, `None` when
+    /// nothing arrives.
     pub fn strike(
         &mut self,
         request: &[u8],
@@ -219,7 +220,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_listed_fault_can_be_asked_for_without_a_value() {
+    fn every_listed_fault_has_a_default_value() {
         let mut all = LineFaults::none(1);
         for fault in list() {
             assert!(all.add(&fault.name, None).unwrap(), "{}", fault.name);
@@ -232,7 +233,7 @@ mod tests {
     fn a_rig_without_faults_changes_nothing_and_draws_nothing() {
         let mut faults = LineFaults::none(1);
         for now_us in [0, 5_000_000] {
-            assert!(!faults.swallows(now_us) && !faults.line_dead("measure", now_us));
+            assert!(!faults.loses_request(now_us) && !faults.line_dead("measure", now_us));
             assert_eq!(faults.before_a_request(now_us), None);
             let reply = faults.strike(b"#01", b">\r".to_vec(), now_us);
             assert_eq!(reply, Some((0, b">\r".to_vec())));
@@ -241,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_of_a_running_rig_counts_its_times_from_now() {
+    fn a_fault_added_later_counts_its_times_from_now() {
         let mut faults = LineFaults::none(1);
         let value = Some("motion@1..3");
         assert!(faults.add_from(10_000_000, "line_cut", value).unwrap());

@@ -1,63 +1,63 @@
-//! Lines that carry nothing, and ports that vanish.
+//! Dead lines and lost ports.
 //!
-//! A cut line is silent and stays open; a lost port ends every open descriptor, as an unplugged converter does,
-//! and is there again after two seconds unless something else was said.
+//! A cut line is silent and stays open. A lost port ends every open descriptor, as an unplugged converter does.
+//! Both recover after two seconds unless the value names another duration.
 
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Strikes, Targets, Window};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Targets, Trigger, Window};
+use super::{Family, FaultEntry};
 use crate::error::SimError;
 
-const LIST: [Known; 3] = [
-    Known {
+const LIST: [FaultEntry; 3] = [
+    FaultEntry {
         name: "line_cut",
         unit: "LINE[@s]",
         default: "measure@5",
         what: "a line is dead for two seconds, or until ..s",
     },
-    Known {
+    FaultEntry {
         name: "baud_mismatch",
         unit: "LINE[@s]",
         default: "measure@0",
         what: "the modules of a line run at another baud rate and understand nothing",
     },
-    Known {
+    FaultEntry {
         name: "port_lost",
         unit: "LINE[@s] or probability[/ms]",
         default: "measure@5",
-        what: "a port vanishes and is back after two seconds, at ..s, or after so many ms",
+        what: "a port vanishes and is back after two seconds, at ..s, or after the given ms",
     },
 ];
 
-/// How long a cut line stays dead and a port away when nothing is said, microseconds.
+/// Default duration of a cut line or a lost port, microseconds.
 const AWAY_US: u64 = 2_000_000;
 
 #[derive(Default)]
 pub(super) struct Port {
     dead: Targets,
     lost: Targets,
-    /// Time away and when it may happen.
+    /// Time without the port (microseconds), and the chance of losing it per request.
     losses: Vec<(u64, Chances)>,
 }
 
 impl Family for Port {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        let line = asked.value.to_owned();
-        match asked.name {
-            "line_cut" => self.dead.add(line, ended(asked.window)),
-            "baud_mismatch" => self.dead.add(line, asked.window),
-            _ => match asked.strikes()? {
-                Strikes::Chance(probability, rest) => {
-                    let away_us = rest.map_or(Ok(AWAY_US), |ms| asked.ms(ms))?;
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        let line = request.value.to_owned();
+        match request.name {
+            "line_cut" => self.dead.add(line, ended(request.window)),
+            "baud_mismatch" => self.dead.add(line, request.window),
+            _ => match request.trigger()? {
+                Trigger::Chance(probability, rest) => {
+                    let away_us = rest.map_or(Ok(AWAY_US), |ms| request.ms(ms))?;
                     self.losses
-                        .push((away_us, Chances::one(probability, asked.window)));
+                        .push((away_us, Chances::one(probability, request.window)));
                 }
-                Strikes::Target(line) => self.lost.add(line, ended(asked.window)),
+                Trigger::Target(line) => self.lost.add(line, ended(request.window)),
             },
         }
         Ok(())
@@ -76,12 +76,12 @@ fn ended(window: Window) -> Window {
 }
 
 impl Port {
-    /// The line carries nothing now.
+    /// Checks whether the line is dead now.
     pub(super) fn line_dead(&self, line: &str, now_us: u64) -> bool {
         self.dead.hold(line, now_us)
     }
 
-    /// May take the port away while a request is on the line.
+    /// Draws whether a request makes the port vanish.
     pub(super) fn may_lose(&mut self, line: &str, rng: &mut ChaCha8Rng, now_us: u64) {
         for (away_us, chances) in &self.losses {
             if chances.strike(rng, now_us) {
@@ -95,7 +95,7 @@ impl Port {
         }
     }
 
-    /// The instant at which the port is back, when it is away now.
+    /// Returns the instant at which a lost port comes back; `None` while the port is present.
     pub(super) fn back_us(&self, line: &str, now_us: u64) -> Option<u64> {
         let away = self
             .lost
@@ -104,7 +104,7 @@ impl Port {
         away.filter_map(|window| window.until_us).max()
     }
 
-    /// The next instant at which the port goes away.
+    /// Returns the instant at which the port vanishes next.
     pub(super) fn next_loss_us(&self, line: &str, now_us: u64) -> Option<u64> {
         let to_come = self.lost.windows(line).map(|window| window.from_us);
         to_come.filter(|from_us| *from_us > now_us).min()
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_port_says_when_it_goes_and_when_it_is_back() {
+    fn a_lost_port_announces_loss_and_return() {
         let mut faults = LineFaults::none(1);
         faults.add("port_lost", Some("motion@1..1.5")).unwrap();
         assert_eq!(faults.next_port_loss_us("motion", 0), Some(1_000_000));

@@ -1,27 +1,27 @@
-//! Replies that come, but not when they should.
+//! Late replies.
 
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Window};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Window};
+use super::{Family, FaultEntry};
 use crate::error::SimError;
 
-const LIST: [Known; 2] = [
-    Known {
+const LIST: [FaultEntry; 2] = [
+    FaultEntry {
         name: "delay",
         unit: "ms",
         default: "20",
-        what: "every reply takes so much longer",
+        what: "every reply takes longer by this time",
     },
-    Known {
+    FaultEntry {
         name: "late",
         unit: "probability[/ms]",
         default: "0.01/200",
-        what: "a reply comes so late that nobody waits for it any more; the module is held up as long",
+        what: "a reply comes after the host's time-out; the module is busy until then",
     },
 ];
 
-/// Lateness when only a probability is given, microseconds: beyond any time-out.
+/// Default delay of a late reply, microseconds: longer than any time-out of a host.
 const LATE_US: u64 = 200_000;
 
 #[derive(Default)]
@@ -31,22 +31,23 @@ pub(super) struct Timing {
 }
 
 impl Family for Timing {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        if asked.name == "delay" {
-            self.delays.push((asked.ms(asked.value)?, asked.window));
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        if request.name == "delay" {
+            self.delays
+                .push((request.ms(request.value)?, request.window));
             return Ok(());
         }
-        let (probability, late_us) = match asked.value.split_once('/') {
-            Some((probability, ms)) => (probability, asked.ms(ms)?),
-            None => (asked.value, LATE_US),
+        let (probability, late_us) = match request.value.split_once('/') {
+            Some((probability, ms)) => (probability, request.ms(ms)?),
+            None => (request.value, LATE_US),
         };
-        let probability = asked.probability_in(probability)?;
+        let probability = request.probability_in(probability)?;
         self.late
-            .push((late_us, Chances::one(probability, asked.window)));
+            .push((late_us, Chances::one(probability, request.window)));
         Ok(())
     }
 
@@ -56,7 +57,7 @@ impl Family for Timing {
 }
 
 impl Timing {
-    /// What a reply takes longer, microseconds.
+    /// Returns the extra time of the next reply, microseconds.
     pub(super) fn extra_us(&self, rng: &mut ChaCha8Rng, now_us: u64) -> u64 {
         let delays = self
             .delays
@@ -77,7 +78,7 @@ mod tests {
     use super::super::LineFaults;
 
     #[test]
-    fn delays_add_up_and_lateness_is_what_was_asked_for() {
+    fn delays_add_up_and_lateness_takes_its_value() {
         let mut faults = LineFaults::none(1);
         faults.add("delay", Some("5")).unwrap();
         faults.add("delay", Some("2.5@1")).unwrap();

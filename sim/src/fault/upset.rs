@@ -1,27 +1,28 @@
-//! Modules that are not what they were: restarted, tripped, exchanged for another product.
+//! Modules that restart, trip, or are replaced by another product.
 //!
-//! A module by name is upset once, at its instant; with a probability it is upset just before a request to it.
+//! A fault that names a module strikes it once, at its instant; a fault with a probability strikes just before a
+//! request.
 
 use rand_chacha::ChaCha8Rng;
 
-use super::value::{Asked, Chances, Strikes};
-use super::{Family, Known};
+use super::value::{Chances, FaultRequest, Trigger};
+use super::{Family, FaultEntry};
 use crate::error::SimError;
 
-const LIST: [Known; 3] = [
-    Known {
+const LIST: [FaultEntry; 3] = [
+    FaultEntry {
         name: "reset",
         unit: "MODULE[@s] or probability",
         default: "board_do@5",
         what: "a module restarts",
     },
-    Known {
+    FaultEntry {
         name: "watchdog_trip",
         unit: "MODULE[@s] or probability",
         default: "board_do@5",
         what: "a host watchdog expires early",
     },
-    Known {
+    FaultEntry {
         name: "wrong_type",
         unit: "MODULE",
         default: "board_di",
@@ -29,23 +30,23 @@ const LIST: [Known; 3] = [
     },
 ];
 
-/// What happens to a module.
+/// Event that a fault causes in a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Event {
-    /// It restarts.
+    /// The module restarts.
     Reset,
-    /// Its host watchdog expires.
+    /// The host watchdog of the module expires.
     Trip,
 }
 
-/// A thing that happens to one module at an instant.
+/// Event of one module at one instant.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Timed {
+pub struct TimedEvent {
     /// Rig time, microseconds.
     pub at_us: u64,
     /// Identifier of the module.
     pub target: String,
-    /// What happens.
+    /// Event that occurs.
     pub event: Event,
 }
 
@@ -53,29 +54,29 @@ pub struct Timed {
 pub(super) struct Upset {
     reset: Chances,
     trip: Chances,
-    /// In order of time.
-    timed: Vec<Timed>,
+    /// Events that have not struck yet, in order of time.
+    timed: Vec<TimedEvent>,
     wrong_type: Vec<String>,
 }
 
 impl Family for Upset {
-    fn list(&self) -> &'static [Known] {
+    fn list(&self) -> &'static [FaultEntry] {
         &LIST
     }
 
-    fn add(&mut self, asked: &Asked<'_>) -> Result<(), SimError> {
-        if asked.name == "wrong_type" {
-            self.wrong_type.push(asked.value.to_owned());
+    fn add(&mut self, request: &FaultRequest<'_>) -> Result<(), SimError> {
+        if request.name == "wrong_type" {
+            self.wrong_type.push(request.value.to_owned());
             return Ok(());
         }
-        let (event, chances) = match asked.name {
+        let (event, chances) = match request.name {
             "reset" => (Event::Reset, &mut self.reset),
             _ => (Event::Trip, &mut self.trip),
         };
-        match asked.strikes()? {
-            Strikes::Chance(..) => chances.add(asked.probability()?, asked.window),
-            Strikes::Target(target) => self.timed.push(Timed {
-                at_us: asked.window.from_us,
+        match request.trigger()? {
+            Trigger::Chance(..) => chances.add(request.probability()?, request.window),
+            Trigger::Target(target) => self.timed.push(TimedEvent {
+                at_us: request.window.from_us,
                 target,
                 event,
             }),
@@ -93,7 +94,7 @@ impl Family for Upset {
 }
 
 impl Upset {
-    /// What happens to a module just before it hears a request.
+    /// Draws an event that strikes a module just before it receives a request.
     pub(super) fn before_a_request(&self, rng: &mut ChaCha8Rng, now_us: u64) -> Option<Event> {
         if self.reset.strike(rng, now_us) {
             return Some(Event::Reset);
@@ -101,8 +102,8 @@ impl Upset {
         self.trip.strike(rng, now_us).then_some(Event::Trip)
     }
 
-    /// The next event that is due, taken out.
-    pub(super) fn due(&mut self, now_us: u64) -> Option<Timed> {
+    /// Removes and returns the next event that is due.
+    pub(super) fn due(&mut self, now_us: u64) -> Option<TimedEvent> {
         let is_due = self.timed.first().is_some_and(|next| next.at_us <= now_us);
         is_due.then(|| self.timed.remove(0))
     }
@@ -119,7 +120,7 @@ mod tests {
     use super::Event;
 
     #[test]
-    fn events_by_name_strike_once_and_in_order_of_time() {
+    fn named_events_strike_once_in_order_of_time() {
         let mut faults = LineFaults::none(1);
         faults.add("reset", Some("timer@3")).unwrap();
         faults.add("watchdog_trip", Some("board_do@2")).unwrap();
@@ -130,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn events_by_chance_strike_before_a_request() {
+    fn random_events_strike_before_a_request() {
         let mut faults = LineFaults::none(1);
         assert_eq!(faults.before_a_request(0), None);
         faults.add("watchdog_trip", Some("1@1")).unwrap();

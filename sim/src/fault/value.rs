@@ -1,25 +1,25 @@
-//! How the value of a fault is written, and when it strikes.
+//! Syntax of a fault's value, and the time window in which the fault strikes.
 //!
 //! | form | example | means |
 //! |---|---|---|
-//! | probability | `drop=0.01` | each time on its own |
-//! | probability/ms | `late=0.01/200` | each time on its own, so long |
-//! | ms | `delay=20` | milliseconds |
-//! | MODULE or LINE | `reset=board_do@5` | a table of `rig.toml`; on a bench `module[N]` from 0, and `bench` |
+//! | probability | `drop=0.01` | strikes each request or reply independently |
+//! | probability/ms | `late=0.01/200` | the same, with a duration |
+//! | ms | `delay=20` | duration, milliseconds |
+//! | MODULE or LINE | `reset=board_do@5` | key of a table in `rig.toml`; on a bench `module[N]` from 0, or `bench` |
 //!
-//! After `@` comes the second of rig time from which it strikes, and after `..` the one at which it ends:
-//! `drop=0.5@10..12`. Without them: from the start, and for good.
+//! `@` introduces the second of rig time at which the fault begins, `..` the second at which it ends:
+//! `drop=0.5@10..12`. Without them the fault lasts from the start to the end of the run.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::error::SimError;
 
-/// From when until when, microseconds of rig time.
+/// Time window of a fault, microseconds of rig time; the end is excluded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Window {
     pub(super) from_us: u64,
-    /// `None` when nothing was said.
+    /// End of the window; `None` for an open end.
     pub(super) until_us: Option<u64>,
 }
 
@@ -29,24 +29,24 @@ impl Window {
     }
 }
 
-/// A fault as it was asked for.
+/// One fault as the command line requests it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Asked<'a> {
+pub(super) struct FaultRequest<'a> {
     pub(super) name: &'a str,
-    /// What stands before `@`.
+    /// Text before `@`.
     pub(super) value: &'a str,
     pub(super) window: Window,
 }
 
-/// Whom a fault strikes: anybody now and then, or one by name.
-pub(super) enum Strikes<'a> {
-    /// A probability, and what stands behind `/`.
+/// Trigger of a fault: chance, or the name of a module or line.
+pub(super) enum Trigger<'a> {
+    /// Probability, and the text after `/`.
     Chance(f64, Option<&'a str>),
     Target(String),
 }
 
-impl<'a> Asked<'a> {
-    /// Takes `VALUE[@FROM[..UNTIL]]` apart.
+impl<'a> FaultRequest<'a> {
+    /// Parses `VALUE[@FROM[..UNTIL]]`.
     pub(super) fn read(name: &'a str, text: &'a str) -> Result<Self, SimError> {
         let (value, times) = match text.split_once('@') {
             Some((value, times)) => (value, times),
@@ -54,7 +54,7 @@ impl<'a> Asked<'a> {
         };
         let instant = |seconds: &str| match seconds.parse::<f64>() {
             Ok(s) if (0.0..1e9).contains(&s) => Ok((s * 1e6).round() as u64),
-            _ => Err(wrong(name, seconds, "seconds from 0 behind `@`")),
+            _ => Err(wrong(name, seconds, "seconds from 0 after `@`")),
         };
         let window = match times.split_once("..") {
             None => Window {
@@ -73,7 +73,7 @@ impl<'a> Asked<'a> {
         })
     }
 
-    /// The same, with its times counted from `now_us`.
+    /// Shifts the window so that its times count from `now_us`.
     pub(super) fn from(mut self, now_us: u64) -> Self {
         self.window.from_us += now_us;
         self.window.until_us = self.window.until_us.map(|until_us| until_us + now_us);
@@ -91,7 +91,7 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// Milliseconds, as microseconds.
+    /// Parses milliseconds; returns microseconds.
     pub(super) fn ms(&self, text: &str) -> Result<u64, SimError> {
         match text.parse::<f64>() {
             Ok(ms) if (0.0..1e9).contains(&ms) => Ok((ms * 1e3).round() as u64),
@@ -99,21 +99,21 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// A number is a probability, everything else the name of a module or line.
-    pub(super) fn strikes(&self) -> Result<Strikes<'a>, SimError> {
+    /// Parses the trigger: a number is a probability, any other text the name of a module or line.
+    pub(super) fn trigger(&self) -> Result<Trigger<'a>, SimError> {
         let (number, rest) = match self.value.split_once('/') {
             Some((number, rest)) => (number, Some(rest)),
             None => (self.value, None),
         };
         if number.parse::<f64>().is_ok() {
-            Ok(Strikes::Chance(self.probability_in(number)?, rest))
+            Ok(Trigger::Chance(self.probability_in(number)?, rest))
         } else {
-            Ok(Strikes::Target(self.value.to_owned()))
+            Ok(Trigger::Target(self.value.to_owned()))
         }
     }
 }
 
-/// Probabilities, each in its window.
+/// Probabilities, each with its time window.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Chances(Vec<(f64, Window)>);
 
@@ -126,7 +126,7 @@ impl Chances {
         self.0.push((probability, window));
     }
 
-    /// Draws; nothing is drawn where nothing can strike.
+    /// Draws whether any of them strikes; draws nothing while no window is open.
     pub(super) fn strike(&self, rng: &mut ChaCha8Rng, now_us: u64) -> bool {
         self.0.iter().any(|(probability, window)| {
             window.holds(now_us) && *probability > 0.0 && rng.random::<f64>() < *probability
@@ -134,7 +134,7 @@ impl Chances {
     }
 }
 
-/// Modules or lines by name, each in its window.
+/// Names of modules or lines, each with its time window.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Targets(Vec<(String, Window)>);
 
@@ -147,13 +147,13 @@ impl Targets {
         self.windows(name).any(|window| window.holds(now_us))
     }
 
-    /// Every window of one name.
+    /// Returns every window of one name.
     pub(super) fn windows(&self, name: &str) -> impl Iterator<Item = Window> {
         let mine = self.0.iter().filter(move |(known, _)| known == name);
         mine.map(|(_, window)| *window)
     }
 
-    /// Drops windows that have ended.
+    /// Removes windows that ended before `now_us`.
     pub(super) fn forget_before(&mut self, now_us: u64) {
         self.0
             .retain(|(_, window)| window.until_us.is_none_or(|until| now_us < until));
@@ -164,7 +164,7 @@ impl Targets {
     }
 }
 
-/// The error of a value that does not fit.
+/// Builds the error for a value of the wrong form or range.
 pub(super) fn wrong(name: &str, found: &str, expected: &str) -> SimError {
     SimError::FaultValue {
         name: name.into(),
@@ -179,26 +179,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_value_may_say_from_when_until_when() {
-        let asked = Asked::read("drop", "0.5@10..12.5").unwrap();
-        assert_eq!(asked.probability().unwrap(), 0.5);
-        assert!(!asked.window.holds(9_999_999));
-        assert!(asked.window.holds(10_000_000));
-        assert!(!asked.window.holds(12_500_000));
-        assert!(Asked::read("drop", "0.5").unwrap().window.holds(0));
+    fn a_value_may_carry_a_time_window() {
+        let request = FaultRequest::read("drop", "0.5@10..12.5").unwrap();
+        assert_eq!(request.probability().unwrap(), 0.5);
+        assert!(!request.window.holds(9_999_999));
+        assert!(request.window.holds(10_000_000));
+        assert!(!request.window.holds(12_500_000));
+        assert!(FaultRequest::read("drop", "0.5").unwrap().window.holds(0));
     }
 
     #[test]
-    fn a_value_that_does_not_fit_names_itself() {
+    fn the_error_names_the_fault_and_its_value() {
         for text in ["much", "-0.1", "1.5", "NaN"] {
-            let asked = Asked::read("drop", text).unwrap();
-            let error = asked.probability().unwrap_err().to_string();
+            let request = FaultRequest::read("drop", text).unwrap();
+            let error = request.probability().unwrap_err().to_string();
             assert!(error.contains("drop") && error.contains(text), "{error}");
         }
         for times in ["soon", "-1", "1..", "..", "inf"] {
             let text = format!("timer@{times}");
-            assert!(Asked::read("silence", &text).is_err(), "{text}");
+            assert!(FaultRequest::read("silence", &text).is_err(), "{text}");
         }
-        assert!(Asked::read("delay", "x").unwrap().ms("x").is_err());
+        assert!(FaultRequest::read("delay", "x").unwrap().ms("x").is_err());
     }
 }

@@ -1,17 +1,17 @@
-//! Alarms of the counter module, which own its two outputs while they are on.
+//! Alarms of the counter module; while they are on, they control its two outputs.
 //!
 //! | request | mode 0: a limit per counter | mode 1: two limits on counter 0 |
 //! |---|---|---|
-//! | `~AAAS` | S = 0 | S = 1 (as the 7080D comes) |
+//! | `~AAAS` | S = 0 | S = 1 (factory setting of the 7080D) |
 //! | `@AAPA(8 hex)`, `@AARP` | limit of counter 0 | high limit, output 0 |
 //! | `@AASA(8 hex)`, `@AARA` | limit of counter 1 | high-high limit, output 1 |
 //! | `@AAEAN`, `@AADAN` | alarm of counter N on, off | refused |
 //! | `@AAEAM`, `@AAEAL`, `@AADA` | refused | momentary, latched, off |
-//! | `@AACA` | refused | ends a latched alarm until its limit is reached anew |
+//! | `@AACA` | refused | clears a latched alarm until its counter reaches the limit again |
 //!
-//! An output of an alarm is on while its counter stands at its limit or above; a latched one stays on.
+//! An output is on while its counter is at its limit or above; a latched output stays on.
 
-/// Which counters alarm, and how.
+/// Assignment of alarms to counters, with their state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Mode {
     PerCounter { on: [bool; 2] },
@@ -25,22 +25,22 @@ enum Kind {
     Latched,
 }
 
-/// What a command about alarms did.
+/// Effect of an alarm command.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) enum Told {
-    /// Changed a setting that outlives the power.
+pub(super) enum CommandEffect {
+    /// The command changed a setting that survives a power loss.
     Stored,
-    /// Changed a state.
+    /// The command changed a volatile state.
     Done,
-    /// A limit, as read.
+    /// The command read this limit.
     Limit(u32),
-    /// Belongs to the other mode.
+    /// The command belongs to the other mode.
     Refused,
-    /// Is none.
+    /// The command does not exist.
     Unknown,
 }
 
-/// Mode, limits, and what is latched.
+/// Mode, limits and latches of the alarms.
 #[derive(Debug, Clone)]
 pub(super) struct Alarm {
     mode: Mode,
@@ -49,7 +49,7 @@ pub(super) struct Alarm {
 }
 
 impl Alarm {
-    /// Off, in the mode in which the model comes.
+    /// Creates alarms that are off, in the factory mode of the model.
     pub(super) fn new(two_limits: bool) -> Self {
         let mode = if two_limits {
             Mode::TwoLimits(Kind::Off)
@@ -63,7 +63,7 @@ impl Alarm {
         }
     }
 
-    /// First digit of `@AADI`: 0 off, 1 on (momentary), 2 latched.
+    /// Returns the first digit of `@AADI`: 0 off, 1 on (momentary), 2 latched.
     pub(super) fn state(&self) -> u8 {
         match self.mode {
             Mode::PerCounter { on } => u8::from(on != [false; 2]),
@@ -73,12 +73,12 @@ impl Alarm {
         }
     }
 
-    /// The host may not write the outputs.
+    /// Checks whether the alarms control the outputs, so that the host may not write them.
     pub(super) fn owns_outputs(&self) -> bool {
         self.state() != 0
     }
 
-    /// The outputs, given what the host wrote and where the counters stand.
+    /// Returns the outputs for the host's word and the present counts; updates the latches.
     pub(super) fn outputs(&mut self, host: u8, values: [u64; 2]) -> u8 {
         let reached = |value: u64, limit: usize| value >= u64::from(self.limits[limit]);
         match self.mode {
@@ -100,7 +100,7 @@ impl Alarm {
         }
     }
 
-    /// `~AAAS`: another mode, everything off.
+    /// Changes the mode (`~AAAS`) and switches every alarm off.
     pub(super) fn set_mode(&mut self, two_limits: bool) {
         let limits = self.limits;
         *self = Self {
@@ -109,49 +109,49 @@ impl Alarm {
         };
     }
 
-    /// The body of a request that begins with `@`.
-    pub(super) fn command(&mut self, body: &[u8]) -> Told {
+    /// Carries out the body of a request that begins with `@`.
+    pub(super) fn command(&mut self, body: &[u8]) -> CommandEffect {
         match (body, &mut self.mode) {
             ([b'E', b'A', n @ (b'0' | b'1')], Mode::PerCounter { on }) => {
                 on[usize::from(n - b'0')] = true;
-                Told::Stored
+                CommandEffect::Stored
             }
             ([b'D', b'A', n @ (b'0' | b'1')], Mode::PerCounter { on }) => {
                 on[usize::from(n - b'0')] = false;
-                Told::Stored
+                CommandEffect::Stored
             }
             (b"EAM", Mode::TwoLimits(kind)) => turn(kind, Kind::Momentary),
             (b"EAL", Mode::TwoLimits(kind)) => turn(kind, Kind::Latched),
             (b"DA", Mode::TwoLimits(kind)) => turn(kind, Kind::Off),
             (b"CA", Mode::TwoLimits(_)) => {
                 self.latched = 0;
-                Told::Done
+                CommandEffect::Done
             }
             ([b'E' | b'D', b'A', b'0' | b'1'] | b"EAM" | b"EAL" | b"DA" | b"CA", _) => {
-                Told::Refused
+                CommandEffect::Refused
             }
-            (b"RP", _) => Told::Limit(self.limits[0]),
-            (b"RA", _) => Told::Limit(self.limits[1]),
+            (b"RP", _) => CommandEffect::Limit(self.limits[0]),
+            (b"RA", _) => CommandEffect::Limit(self.limits[1]),
             ([b'P', b'A', digits @ ..], _) => self.limit(0, digits),
             ([b'S', b'A', digits @ ..], _) => self.limit(1, digits),
-            (_, _) => Told::Unknown,
+            (_, _) => CommandEffect::Unknown,
         }
     }
 
-    fn limit(&mut self, n: usize, digits: &[u8]) -> Told {
+    fn limit(&mut self, n: usize, digits: &[u8]) -> CommandEffect {
         match crate::dcon::hex(digits) {
             Some(limit) if digits.len() == 8 => {
                 self.limits[n] = limit;
-                Told::Stored
+                CommandEffect::Stored
             }
-            _ => Told::Unknown,
+            _ => CommandEffect::Unknown,
         }
     }
 }
 
-fn turn(kind: &mut Kind, to: Kind) -> Told {
+fn turn(kind: &mut Kind, to: Kind) -> CommandEffect {
     *kind = to;
-    Told::Stored
+    CommandEffect::Stored
 }
 
 #[cfg(test)]
@@ -159,33 +159,33 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_limit_per_counter_leaves_the_other_output_to_the_host() {
+    fn one_alarm_leaves_the_other_output_to_the_host() {
         let mut alarm = Alarm::new(false);
-        assert_eq!(alarm.command(b"PA00000064"), Told::Stored);
+        assert_eq!(alarm.command(b"PA00000064"), CommandEffect::Stored);
         assert_eq!(alarm.outputs(0b11, [500, 500]), 0b11);
-        assert_eq!(alarm.command(b"EA0"), Told::Stored);
+        assert_eq!(alarm.command(b"EA0"), CommandEffect::Stored);
         assert_eq!(alarm.outputs(0b10, [99, 500]), 0b10);
         assert_eq!(alarm.outputs(0b10, [100, 500]), 0b11);
-        assert_eq!(alarm.command(b"EAL"), Told::Refused);
+        assert_eq!(alarm.command(b"EAL"), CommandEffect::Refused);
     }
 
     #[test]
-    fn a_latched_alarm_stays_until_it_is_cleared_and_a_momentary_one_does_not() {
+    fn a_latched_alarm_holds_and_a_momentary_ends() {
         let mut alarm = Alarm::new(true);
         for command in [&b"PA00000064"[..], b"SA000000C8", b"EAL"] {
-            assert_eq!(alarm.command(command), Told::Stored);
+            assert_eq!(alarm.command(command), CommandEffect::Stored);
         }
         assert_eq!(alarm.outputs(0, [150, 0]), 0b01);
         assert_eq!(alarm.outputs(0, [200, 0]), 0b11);
         assert_eq!(alarm.outputs(0, [0, 0]), 0b11);
-        assert_eq!(alarm.command(b"CA"), Told::Done);
+        assert_eq!(alarm.command(b"CA"), CommandEffect::Done);
         assert_eq!(alarm.outputs(0, [0, 0]), 0);
-        assert_eq!(alarm.command(b"EAM"), Told::Stored);
+        assert_eq!(alarm.command(b"EAM"), CommandEffect::Stored);
         assert_eq!(
             (alarm.outputs(0, [150, 0]), alarm.outputs(0, [0, 0])),
             (1, 0)
         );
-        assert_eq!(alarm.command(b"RA"), Told::Limit(200));
-        assert_eq!(alarm.command(b"EA0"), Told::Refused);
+        assert_eq!(alarm.command(b"RA"), CommandEffect::Limit(200));
+        assert_eq!(alarm.command(b"EA0"), CommandEffect::Refused);
     }
 }

@@ -3,27 +3,27 @@
 //! | request | reply |
 //! |---|---|
 //! | `#AA` | `>` and a field per channel; a disabled channel is blank |
-//! | `#AAN` | `>` and one field; `?AA` when there is no channel N |
+//! | `#AAN` | `>` and one field; `?AA` when channel N does not exist |
 //! | `$AAA` | `>` and 4 hexadecimal digits per channel, whatever the format |
-//! | `$AA5VV`, `$AA6` | enable mask, written to the EEPROM; read back |
-//! | `$AA3` | `>` and the temperature of the cold junction (7018), which is that of a room |
-//! | `$AA7CiRrr`, `$AA8Ci` | newer modules: range of one channel, written to the EEPROM; read back as `CiRrr` |
-//! | `$AAB` | newer modules: `!AANN`, the enabled channels that have left their range, bit n = channel n |
+//! | `$AA5VV`, `$AA6` | write the enable mask to the EEPROM; read it |
+//! | `$AA3` | `>` and the temperature of the cold junction (7018), always room temperature |
+//! | `$AA7CiRrr`, `$AA8Ci` | newer modules: write the range of one channel to the EEPROM; read it as `CiRrr` |
+//! | `$AAB` | newer modules: `!AANN`, the enabled channels that are outside their range, bit n = channel n |
 //!
-//! A new type code in the configuration word is that of every channel.
+//! A new type code in the configuration word applies to every channel.
 //!
-//! A reading is the last finished conversion of its channel (see [`super::converter`]), with this
-//! module's gain, offset and noise, quantised to 16 bit, 12 bit in fast mode, 24 bit for RTD.
-//! Factory calibration (`$AA0`, `$AA1`, `~AAEV`) is not simulated: a rig never sends it.
+//! A reading is the last finished conversion of its channel (see [`super::converter`]) with the module's own
+//! gain, offset and noise, quantised to 16 bit, to 12 bit in fast mode, to 24 bit for RTD. Factory calibration
+//! (`$AA0`, `$AA1`, `~AAEV`) is not simulated, since a rig never sends it.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
 
+use super::base::{Commissioning, ModuleBase};
 use super::converter::Converter;
-use super::habit::Habit;
-use super::plate::{Commissioning, Plate};
 use super::range::{self, Format, Range};
+use super::tolerances::Tolerances;
 use super::{Built, Family, Terminals, setting};
 use crate::dcon::{self, Answer, Request};
 use crate::error::SimError;
@@ -32,25 +32,25 @@ use crate::terminal::ModuleSpec;
 /// Bit of FF that selects the fast mode.
 const FAST: u8 = 0x20;
 
-/// Bit of FF for the mains filter.
+/// Bit of FF that selects the 50 Hz mains filter.
 const MAINS_50_HZ: u8 = 0x80;
 
 /// Temperature of the cold junction, degrees Celsius.
 const COLD_JUNCTION_C: f64 = 25.0;
 
-/// Conversions a second of the RTD module, all channels together.
+/// Conversions per second of the RTD module, all channels together.
 const RTD_PER_S: f64 = 15.0;
 
 struct AnalogIn {
     kind: Kind,
     converter: Converter,
-    /// Fractions of full scale.
+    /// Last reading of each channel, fraction of full scale.
     readings: [f64; 8],
-    /// Type code of the configuration word when it was last looked at.
+    /// Type code of the configuration word at the last comparison.
     type_code: u8,
-    /// Type code of each channel.
+    /// Present type code of each channel.
     ranges: [u8; 8],
-    habit: Habit,
+    tolerances: Tolerances,
     rng: ChaCha8Rng,
 }
 
@@ -59,7 +59,7 @@ enum Kind {
     Voltage {
         may_be_fast: bool,
     },
-    /// 7018: thermocouples too, never fast.
+    /// 7018: reads thermocouples too, has no fast mode.
     Thermocouple,
     Rtd,
 }
@@ -88,12 +88,12 @@ impl Kind {
     }
 }
 
-/// Commissions an analog input as its table says.
+/// Builds an analog input from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     model: &str,
     line: Commissioning,
-    habit: &Habit,
+    tolerances: &Tolerances,
     rng: ChaCha8Rng,
 ) -> Result<Built, SimError> {
     let (kind, default_type) = match model {
@@ -103,23 +103,23 @@ pub(super) fn build(
         _ => (Kind::Voltage { may_be_fast: true }, 0x08),
     };
     let type_code = type_code(spec, kind, default_type)?;
-    let plate = Plate::new(spec, line, type_code, format_bits(spec, kind)?)?;
+    let base = ModuleBase::new(spec, line, type_code, format_bits(spec, kind)?)?;
     let all = (1u16 << kind.channels()).wrapping_sub(1);
     let mask = match setting::bits(spec, "mask")? {
         Some(mask) => mask,
         None => setting::bits(spec, "enabled")?.unwrap_or(u32::from(all)),
     };
-    let per_s = pace(kind, habit, plate.format);
+    let per_s = pace(kind, tolerances, base.format);
     let family = AnalogIn {
         kind,
         converter: Converter::new(kind.channels(), mask as u8 & all as u8, per_s),
         readings: [0.0; 8],
         type_code,
         ranges: [type_code; 8],
-        habit: habit.clone(),
+        tolerances: tolerances.clone(),
         rng,
     };
-    Ok((plate, Box::new(family)))
+    Ok((base, Box::new(family)))
 }
 
 fn type_code(spec: &ModuleSpec, kind: Kind, default: u8) -> Result<u8, SimError> {
@@ -150,23 +150,23 @@ fn format_bits(spec: &ModuleSpec, kind: Kind) -> Result<u8, SimError> {
     Ok(format | if fast { FAST } else { 0 })
 }
 
-fn pace(kind: Kind, habit: &Habit, format: u8) -> f64 {
+fn pace(kind: Kind, tolerances: &Tolerances, format: u8) -> f64 {
     match kind {
         Kind::Rtd => RTD_PER_S,
-        Kind::Voltage { .. } if format & FAST != 0 => habit.fast_per_s,
-        Kind::Voltage { .. } | Kind::Thermocouple => habit.normal_per_s,
+        Kind::Voltage { .. } if format & FAST != 0 => tolerances.fast_per_s,
+        Kind::Voltage { .. } | Kind::Thermocouple => tolerances.normal_per_s,
     }
 }
 
 impl AnalogIn {
-    fn convert(&mut self, plate: &Plate, channel: u8, terminal: f64) {
+    fn convert(&mut self, base: &ModuleBase, channel: u8, terminal: f64) {
         let Some(range) = self.range(channel) else {
             return;
         };
         let reading = if terminal.is_nan() {
             self.open_input()
         } else {
-            self.digitise(range, plate.format, terminal)
+            self.digitise(range, base.format, terminal)
         };
         self.readings[usize::from(channel)] = reading;
     }
@@ -175,7 +175,7 @@ impl AnalogIn {
         self.kind.range(self.ranges[usize::from(channel)])
     }
 
-    /// Nothing connected: an open sensor reads over range, open voltage terminals read zero.
+    /// Returns the reading without a connection: over range at a sensor input, zero at a voltage input.
     fn open_input(&self) -> f64 {
         match self.kind {
             Kind::Rtd => f64::INFINITY,
@@ -188,9 +188,9 @@ impl AnalogIn {
         if self.kind == Kind::Rtd {
             return (range.fraction(terminal) * steps).round() / steps;
         }
-        let ideal = terminal * (1.0 + self.habit.ai_gain)
-            + self.habit.ai_offset * range.full_scale / range.per_terminal;
-        let noise: f64 = match self.habit.ai_noise_lsb {
+        let ideal = terminal * (1.0 + self.tolerances.ai_gain)
+            + self.tolerances.ai_offset * range.full_scale / range.per_terminal;
+        let noise: f64 = match self.tolerances.ai_noise_lsb {
             0.0 => 0.0,
             sd => self.rng.sample::<f64, _>(StandardNormal) * sd,
         };
@@ -219,7 +219,7 @@ impl AnalogIn {
         Answer::Reply(text)
     }
 
-    fn one_field(&self, plate: &Plate, digit: u8, format: Format) -> Answer {
+    fn one_field(&self, base: &ModuleBase, digit: u8, format: Format) -> Answer {
         match dcon::hex_digit(digit) {
             Some(channel) if channel < self.kind.channels() => {
                 let mut text = String::with_capacity(dcon::LONGEST);
@@ -227,23 +227,23 @@ impl AnalogIn {
                 self.field(channel, format, &mut text);
                 Answer::Reply(text)
             }
-            Some(_) => dcon::refused(plate.address),
+            Some(_) => dcon::refused(base.address),
             None => Answer::Unknown,
         }
     }
 
-    fn enable(&mut self, plate: &mut Plate, mask: u8, at: &mut Terminals<'_>) -> Answer {
+    fn enable(&mut self, base: &mut ModuleBase, mask: u8, at: &mut Terminals<'_>) -> Answer {
         let all = (1u16 << self.kind.channels()).wrapping_sub(1);
         if u16::from(mask) & !all != 0 {
-            return dcon::refused(plate.address);
+            return dcon::refused(base.address);
         }
         self.converter.enable(mask, at);
-        plate.eeprom_writes += 1;
-        dcon::done(plate.address)
+        base.eeprom_writes += 1;
+        dcon::done(base.address)
     }
 
-    /// What only newer modules know.
-    fn newer(&mut self, plate: &mut Plate, body: &[u8]) -> Answer {
+    /// Carries out commands that only newer modules know.
+    fn newer(&mut self, base: &mut ModuleBase, body: &[u8]) -> Answer {
         let known = |digit: u8| dcon::hex_digit(digit).filter(|n| *n < self.kind.channels());
         match *body {
             [b'B'] => {
@@ -253,23 +253,23 @@ impl AnalogIn {
                 };
                 let channels = (0..self.kind.channels()).filter(beyond);
                 let word = channels.fold(0, |word, n| word | 1u64 << n);
-                dcon::done_hex(plate.address, word, 2)
+                dcon::done_hex(base.address, word, 2)
             }
             [b'8', b'C', digit] => match known(digit) {
                 Some(n) => {
                     let range = self.ranges[usize::from(n)];
-                    dcon::done_with(plate.address, &format!("C{n}R{range:02X}"))
+                    dcon::done_with(base.address, &format!("C{n}R{range:02X}"))
                 }
-                None => dcon::refused(plate.address),
+                None => dcon::refused(base.address),
             },
             [b'7', b'C', digit, b'R', high, low] => match dcon::hex_byte(&[high, low]) {
                 Some(range) => match known(digit) {
                     Some(n) if self.kind.range(range).is_some() => {
                         self.ranges[usize::from(n)] = range;
-                        plate.eeprom_writes += 1;
-                        dcon::done(plate.address)
+                        base.eeprom_writes += 1;
+                        dcon::done(base.address)
                     }
-                    Some(_) | None => dcon::refused(plate.address),
+                    Some(_) | None => dcon::refused(base.address),
                 },
                 None => Answer::Unknown,
             },
@@ -287,58 +287,58 @@ impl Family for AnalogIn {
 
     fn answer(
         &mut self,
-        plate: &mut Plate,
+        base: &mut ModuleBase,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
-        let format = Format::of(plate.format).unwrap_or(Format::Engineering);
+        let format = Format::of(base.format).unwrap_or(Format::Engineering);
         match (request.lead, request.body) {
             (b'#', []) => self.fields(format),
-            (b'#', [digit]) => self.one_field(plate, *digit, format),
+            (b'#', [digit]) => self.one_field(base, *digit, format),
             (b'$', b"A") => self.fields(Format::Hex),
             (b'$', b"3") if self.kind == Kind::Thermocouple => {
                 Answer::Reply(format!(">{COLD_JUNCTION_C:+07.1}"))
             }
-            (b'$', b"6") => dcon::done_hex(plate.address, u64::from(self.converter.mask()), 2),
+            (b'$', b"6") => dcon::done_hex(base.address, u64::from(self.converter.mask()), 2),
             (b'$', [b'5', high, low]) => match dcon::hex_byte(&[*high, *low]) {
-                Some(mask) => self.enable(plate, mask, at),
+                Some(mask) => self.enable(base, mask, at),
                 None => Answer::Unknown,
             },
-            (b'$', body) if plate.is_newer() => self.newer(plate, body),
+            (b'$', body) if base.is_newer() => self.newer(base, body),
             (_, _) => Answer::Unknown,
         }
     }
 
-    fn configured(&mut self, plate: &Plate, _at: &mut Terminals<'_>) {
-        if plate.type_code != self.type_code {
-            self.type_code = plate.type_code;
-            self.ranges = [plate.type_code; 8];
+    fn configured(&mut self, base: &ModuleBase, _at: &mut Terminals<'_>) {
+        if base.type_code != self.type_code {
+            self.type_code = base.type_code;
+            self.ranges = [base.type_code; 8];
         }
         self.converter
-            .set_pace(pace(self.kind, &self.habit, plate.format));
+            .set_pace(pace(self.kind, &self.tolerances, base.format));
     }
 
     fn next_us(&self) -> u64 {
         self.converter.next_us()
     }
 
-    fn run(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+    fn run(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
         if let Some((channel, mean)) = self.converter.run(at) {
-            self.convert(plate, channel, mean);
+            self.convert(base, channel, mean);
         }
     }
 
     fn sample(&mut self, _at: &mut Terminals<'_>) {}
 
-    fn make_safe(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+    fn make_safe(&mut self, _plate: &ModuleBase, _at: &mut Terminals<'_>) {}
 
-    fn restart(&mut self, _plate: &Plate) {}
+    fn restart(&mut self, _plate: &ModuleBase) {}
 
-    /// The module has been under power for long: every channel holds a reading.
-    fn energise(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+    /// Fills every channel with a reading, since the module has been powered for long.
+    fn energise(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
         for channel in 0..self.kind.channels() {
             let terminal = at.plant.analog_in(at.module, channel);
-            self.convert(plate, channel, terminal);
+            self.convert(base, channel, terminal);
         }
         self.converter.start(at);
     }

@@ -2,22 +2,22 @@
 //!
 //! | request | reply |
 //! |---|---|
-//! | `#AA(data)`, `#AAN(data)` | `>`; beyond the range `?AA` and the nearest end; tripped `!` |
+//! | `#AA(data)`, `#AAN(data)` | `>`; out of range `?AA` and the nearest limit; with a tripped watchdog `!` |
 //! | `$AA6[N]` | last commanded value |
-//! | `$AA8[N]` | present value: what the terminals carry (7021), the computed ramp (others) |
-//! | `$AA4[N]`, `$AA7[N]` | store the commanded value as power-on value; read it |
+//! | `$AA8[N]` | present value: measured at the terminals (7021), computed from the ramp (others) |
+//! | `$AA4[N]`, `$AA7[N]` | store the commanded value as power-on value; read that value |
 //! | `~AA5[N]`, `~AA4[N]` | the same for the safe value |
 //! | `$AA9N`, `$AA9NTS` | type and slew of one channel (7022) |
 //!
-//! The terminals carry the quantised value with this module's gain error and offset. Data of the
-//! right alphabet but the wrong width are refused with `?AA`; other text is not understood. What a 7021 makes of six
-//! characters with a sign (`+5.000`) is not documented: refused, unless its table says `signed = true`.
+//! The terminals carry the quantised value with the module's own gain error and offset. Data with valid
+//! characters but the wrong width get `?AA`; other text gets no answer. The manuals do not document a signed
+//! value of six characters (`+5.000`) at a 7021: it gets `?AA` unless the table has `signed = true`.
 
-use super::habit::Habit;
+use super::base::{Commissioning, ModuleBase};
 use super::output::{Data, Model, Span, model, read, span, spell};
-use super::plate::{Commissioning, Plate};
 use super::ramp::{Ramp, nominal_rate};
 use super::range::Format;
+use super::tolerances::Tolerances;
 use super::{Built, Family, Terminals, setting};
 use crate::dcon::{self, Answer, Request};
 use crate::error::SimError;
@@ -26,7 +26,7 @@ use crate::terminal::ModuleSpec;
 struct AnalogOut {
     model: Model,
     channels: Vec<Channel>,
-    habit: Habit,
+    tolerances: Tolerances,
 }
 
 #[derive(Debug, Clone)]
@@ -34,16 +34,16 @@ struct Channel {
     ramp: Ramp,
     power_on: f64,
     safe: f64,
-    /// Type nibble and slew code of a 7022 channel.
+    /// Type nibble and slew code of each 7022 channel.
     own: (u8, u8),
 }
 
-/// Commissions an analog output as its table says.
+/// Builds an analog output from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     number: &str,
     line: Commissioning,
-    habit: &Habit,
+    tolerances: &Tolerances,
 ) -> Result<Built, SimError> {
     let model = Model {
         takes_sign: setting::flag(spec, "signed")?.unwrap_or(false),
@@ -66,14 +66,14 @@ pub(super) fn build(
     let format = Format::named(name)
         .ok_or_else(|| setting::wrong(spec, "format", "engineering, percent or hex"))?;
     let plate_type = if model.own_slew { 0x3F } else { type_code };
-    let plate = Plate::new(spec, line, plate_type, format | slew << 2)?;
+    let base = ModuleBase::new(spec, line, plate_type, format | slew << 2)?;
     let channels = channels(spec, model, type_code, slew)?;
     let family = AnalogOut {
         model,
         channels,
-        habit: habit.clone(),
+        tolerances: tolerances.clone(),
     };
-    Ok((plate, Box::new(family)))
+    Ok((base, Box::new(family)))
 }
 
 fn channels(
@@ -108,11 +108,11 @@ fn channels(
 }
 
 impl AnalogOut {
-    fn span(&self, plate: &Plate, channel: usize) -> Span {
+    fn span(&self, base: &ModuleBase, channel: usize) -> Span {
         let type_code = if self.model.own_slew {
             0x30 | self.channels[channel].own.0
         } else {
-            plate.type_code
+            base.type_code
         };
         span(self.model, type_code).unwrap_or(Span {
             low: 0.0,
@@ -121,22 +121,22 @@ impl AnalogOut {
         })
     }
 
-    fn slew(&self, plate: &Plate, channel: usize) -> u8 {
+    fn slew(&self, base: &ModuleBase, channel: usize) -> u8 {
         if self.model.own_slew {
             self.channels[channel].own.1
         } else {
-            plate.format >> 2 & 0xF
+            base.format >> 2 & 0xF
         }
     }
 
-    fn format(&self, plate: &Plate) -> Format {
-        match Format::of(plate.format) {
+    fn format(&self, base: &ModuleBase) -> Format {
+        match Format::of(base.format) {
             Some(format) if !self.model.signed => format,
             _ => Format::Engineering,
         }
     }
 
-    /// What the terminals carry: quantised, with this module's errors.
+    /// Returns the value at the terminals: quantised, with the module's own errors.
     fn carried(&self, span: Span, value: f64) -> f64 {
         let width = span.high - span.low;
         let steps = 2f64.powi(self.model.bits) - 1.0;
@@ -145,61 +145,61 @@ impl AnalogOut {
     }
 
     fn with_errors(&self, value: f64) -> f64 {
-        value * (1.0 + self.habit.ao_gain) + self.habit.ao_offset_v
+        value * (1.0 + self.tolerances.ao_gain) + self.tolerances.ao_offset_v
     }
 
-    /// The plant has one analog output per module: channel 0.
-    fn drive(&self, plate: &Plate, channel: usize, at: &mut Terminals<'_>) {
+    /// Drives the terminals; the plant has one analog output per module, channel 0.
+    fn drive(&self, base: &ModuleBase, channel: usize, at: &mut Terminals<'_>) {
         if channel == 0 {
-            let value = self.carried(self.span(plate, 0), self.channels[0].ramp.present());
+            let value = self.carried(self.span(base, 0), self.channels[0].ramp.present());
             at.plant.analog_out(at.module, value);
         }
     }
 
     fn output(
         &mut self,
-        plate: &Plate,
+        base: &ModuleBase,
         channel: usize,
         data: &[u8],
         at: &mut Terminals<'_>,
     ) -> Answer {
-        if plate.watchdog.tripped() {
+        if base.watchdog.tripped() {
             return dcon::ignored();
         }
-        let span = self.span(plate, channel);
-        let value = match read(self.model, self.format(plate), span, data) {
+        let span = self.span(base, channel);
+        let value = match read(self.model, self.format(base), span, data) {
             Data::Value(value) => value,
-            Data::WrongWidth => return dcon::refused(plate.address),
+            Data::WrongWidth => return dcon::refused(base.address),
             Data::Nonsense => return Answer::Unknown,
         };
         let legal = value.clamp(span.low, span.high);
-        match self.slew(plate, channel) {
+        match self.slew(base, channel) {
             0 => {
                 self.channels[channel].ramp.jump(legal);
-                self.drive(plate, channel, at);
+                self.drive(base, channel, at);
             }
             _ => {
-                let refresh_us = self.habit.ao_refresh_us;
+                let refresh_us = self.tolerances.ao_refresh_us;
                 self.channels[channel].ramp.go(legal, at.now_us, refresh_us);
             }
         }
         if legal == value {
             dcon::accepted()
         } else {
-            dcon::refused(plate.address)
+            dcon::refused(base.address)
         }
     }
 
-    fn shown(&self, plate: &Plate, channel: usize, value: f64) -> Answer {
-        let span = self.span(plate, channel);
-        let text = spell(self.model, self.format(plate), span, value);
-        dcon::done_with(plate.address, &text)
+    fn shown(&self, base: &ModuleBase, channel: usize, value: f64) -> Answer {
+        let span = self.span(base, channel);
+        let text = spell(self.model, self.format(base), span, value);
+        dcon::done_with(base.address, &text)
     }
 
     fn present(&self, channel: usize) -> f64 {
         let value = self.channels[channel].ramp.present();
         if self.model.true_readback {
-            // The converter that reads back is finer than the one that drives.
+            // The read-back converter has a finer resolution than the output converter.
             self.with_errors(value)
         } else {
             value
@@ -208,46 +208,46 @@ impl AnalogOut {
 
     fn command(
         &mut self,
-        plate: &mut Plate,
+        base: &mut ModuleBase,
         lead: u8,
         digit: u8,
         channel: usize,
         rest: &[u8],
     ) -> Answer {
-        let store = |plate: &mut Plate| {
-            plate.eeprom_writes += 1;
-            dcon::done(plate.address)
+        let store = |base: &mut ModuleBase| {
+            base.eeprom_writes += 1;
+            dcon::done(base.address)
         };
         let target = self.channels[channel].ramp.target();
         match (lead, digit, rest) {
-            (b'$', b'6', []) => self.shown(plate, channel, target),
-            (b'$', b'8', []) => self.shown(plate, channel, self.present(channel)),
-            (b'$', b'7', []) => self.shown(plate, channel, self.channels[channel].power_on),
-            (b'~', b'4', []) => self.shown(plate, channel, self.channels[channel].safe),
+            (b'$', b'6', []) => self.shown(base, channel, target),
+            (b'$', b'8', []) => self.shown(base, channel, self.present(channel)),
+            (b'$', b'7', []) => self.shown(base, channel, self.channels[channel].power_on),
+            (b'~', b'4', []) => self.shown(base, channel, self.channels[channel].safe),
             (b'$', b'4', []) => {
                 self.channels[channel].power_on = target;
-                store(plate)
+                store(base)
             }
             (b'~', b'5', []) => {
                 self.channels[channel].safe = target;
-                store(plate)
+                store(base)
             }
-            (b'$', b'9', rest) if self.model.own_slew => self.own_slew(plate, channel, rest),
+            (b'$', b'9', rest) if self.model.own_slew => self.own_slew(base, channel, rest),
             (_, _, _) => Answer::Unknown,
         }
     }
 
-    fn own_slew(&mut self, plate: &mut Plate, channel: usize, rest: &[u8]) -> Answer {
+    fn own_slew(&mut self, base: &mut ModuleBase, channel: usize, rest: &[u8]) -> Answer {
         match rest {
             [] => {
                 let (kind, slew) = self.channels[channel].own;
-                dcon::done_hex(plate.address, u64::from(kind << 4 | slew), 2)
+                dcon::done_hex(base.address, u64::from(kind << 4 | slew), 2)
             }
             [kind @ b'0'..=b'2', slew] => match dcon::hex_digit(*slew) {
                 Some(slew) => {
                     self.channels[channel].own = (kind - b'0', slew);
-                    plate.eeprom_writes += 1;
-                    dcon::done(plate.address)
+                    base.eeprom_writes += 1;
+                    dcon::done(base.address)
                 }
                 None => Answer::Unknown,
             },
@@ -268,7 +268,7 @@ impl Family for AnalogOut {
 
     fn answer(
         &mut self,
-        plate: &mut Plate,
+        base: &mut ModuleBase,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
@@ -276,33 +276,33 @@ impl Family for AnalogOut {
         match (request.lead, request.body) {
             (b'#', [digit, data @ ..]) if self.model.numbered => match channel_of(*digit) {
                 Some(channel) if channel < self.channels.len() => {
-                    self.output(plate, channel, data, at)
+                    self.output(base, channel, data, at)
                 }
-                Some(_) => dcon::refused(plate.address),
+                Some(_) => dcon::refused(base.address),
                 None => Answer::Unknown,
             },
-            (b'#', data) if !self.model.numbered => self.output(plate, 0, data, at),
+            (b'#', data) if !self.model.numbered => self.output(base, 0, data, at),
             (lead @ (b'$' | b'~'), [command @ b'4'..=b'9', digit, rest @ ..])
                 if self.model.numbered =>
             {
                 match channel_of(*digit) {
                     Some(channel) if channel < self.channels.len() => {
-                        self.command(plate, lead, *command, channel, rest)
+                        self.command(base, lead, *command, channel, rest)
                     }
-                    Some(_) => dcon::refused(plate.address),
+                    Some(_) => dcon::refused(base.address),
                     None => Answer::Unknown,
                 }
             }
             (lead @ (b'$' | b'~'), [command @ b'4'..=b'9', rest @ ..]) if !self.model.numbered => {
-                self.command(plate, lead, *command, 0, rest)
+                self.command(base, lead, *command, 0, rest)
             }
             (_, _) => Answer::Unknown,
         }
     }
 
-    fn configured(&mut self, plate: &Plate, _at: &mut Terminals<'_>) {
+    fn configured(&mut self, base: &ModuleBase, _at: &mut Terminals<'_>) {
         for channel in 0..self.channels.len() {
-            let span = self.span(plate, channel);
+            let span = self.span(base, channel);
             let target = self.channels[channel]
                 .ramp
                 .target()
@@ -319,31 +319,31 @@ impl Family for AnalogOut {
             .fold(u64::MAX, |next, channel| next.min(channel.ramp.next_us()))
     }
 
-    fn run(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
-        let refresh_us = self.habit.ao_refresh_us;
+    fn run(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
+        let refresh_us = self.tolerances.ao_refresh_us;
         for channel in 0..self.channels.len() {
             if self.channels[channel].ramp.next_us() > at.now_us {
                 continue;
             }
-            let is_current = self.span(plate, channel).is_current;
-            let rate = nominal_rate(self.slew(plate, channel), is_current).unwrap_or(f64::INFINITY);
-            let step = rate * (1.0 + self.habit.ao_slope) * refresh_us as f64 * 1e-6;
+            let is_current = self.span(base, channel).is_current;
+            let rate = nominal_rate(self.slew(base, channel), is_current).unwrap_or(f64::INFINITY);
+            let step = rate * (1.0 + self.tolerances.ao_slope) * refresh_us as f64 * 1e-6;
             self.channels[channel].ramp.step(step, refresh_us);
-            self.drive(plate, channel, at);
+            self.drive(base, channel, at);
         }
     }
 
     fn sample(&mut self, _at: &mut Terminals<'_>) {}
 
-    fn make_safe(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
+    fn make_safe(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
         for channel in &mut self.channels {
             channel.ramp.jump(channel.safe);
         }
-        self.drive(plate, 0, at);
+        self.drive(base, 0, at);
     }
 
-    fn restart(&mut self, plate: &Plate) {
-        let tripped = plate.watchdog.tripped();
+    fn restart(&mut self, base: &ModuleBase) {
+        let tripped = base.watchdog.tripped();
         for channel in &mut self.channels {
             let value = if tripped {
                 channel.safe
@@ -354,7 +354,7 @@ impl Family for AnalogOut {
         }
     }
 
-    fn energise(&mut self, plate: &Plate, at: &mut Terminals<'_>) {
-        self.drive(plate, 0, at);
+    fn energise(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) {
+        self.drive(base, 0, at);
     }
 }

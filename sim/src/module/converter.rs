@@ -1,22 +1,22 @@
-//! One free-running converter behind several inputs.
+//! One free-running converter that scans several inputs.
 //!
-//! The enabled channels take turns in channel order; each conversion integrates its own window of
-//! `1/rate` and can be read from the window's end. Nobody can hurry it: a faster line only reads the
-//! same result again, and after a change of the world a channel is good only when a window that
-//! began after the change has ended. The window is integrated by Simpson's rule over its begin,
-//! middle and end. A change of mask lets the running window finish.
+//! The enabled channels take turns in channel order. Each conversion integrates its own window of `1/rate`, and
+//! its result appears at the end of the window. No request speeds up the scan: a faster line only reads the same
+//! result again, and after a change of the world a reading is valid only when its window began after the change.
+//! Simpson's rule over start, middle and end integrates the window. A change of the mask lets the running window
+//! finish.
 
 use super::Terminals;
 
-/// Cadence, mask and the window in progress.
+/// Scan rate, channel mask and the window in progress.
 #[derive(Debug, Clone)]
 pub struct Converter {
     channels: u8,
     mask: u8,
     period_us: f64,
     window: Option<Window>,
-    /// Start of the present cadence and windows since: ends stay exact though periods are no whole
-    /// microseconds.
+    /// Start of the present scan rate, and the number of windows since then: window ends stay exact although a
+    /// period is no whole number of microseconds.
     origin_us: u64,
     windows: u64,
 }
@@ -31,7 +31,7 @@ struct Window {
 }
 
 impl Converter {
-    /// At rest; [`Converter::start`] sets it going.
+    /// Creates a stopped converter; [`Converter::start`] starts it.
     pub fn new(channels: u8, mask: u8, per_s: f64) -> Self {
         Self {
             channels,
@@ -43,12 +43,12 @@ impl Converter {
         }
     }
 
-    /// Enabled channels, bit n = channel n.
+    /// Returns the enabled channels, bit n = channel n.
     pub fn mask(&self) -> u8 {
         self.mask
     }
 
-    /// Begins a window with the first enabled channel unless one is running already.
+    /// Begins a window with the first enabled channel unless a window is running.
     pub fn start(&mut self, at: &mut Terminals<'_>) {
         if self.window.is_none() {
             self.origin_us = at.now_us;
@@ -57,13 +57,13 @@ impl Converter {
         }
     }
 
-    /// Enables other channels; the running window finishes first.
+    /// Changes the enabled channels; the running window finishes first.
     pub fn enable(&mut self, mask: u8, at: &mut Terminals<'_>) {
         self.mask = mask;
         self.start(at);
     }
 
-    /// Takes another pace from the next window on.
+    /// Changes the conversions per second from the next window on.
     pub fn set_pace(&mut self, per_s: f64) {
         self.period_us = 1e6 / per_s;
         if let Some(window) = &self.window {
@@ -72,7 +72,7 @@ impl Converter {
         }
     }
 
-    /// Instant of the next sample, `u64::MAX` when nothing is enabled.
+    /// Returns the instant of the next sample; `u64::MAX` while no channel is enabled.
     pub fn next_us(&self) -> u64 {
         match &self.window {
             None => u64::MAX,
@@ -81,7 +81,7 @@ impl Converter {
         }
     }
 
-    /// Takes the sample that is due; gives channel and mean at the end of a window.
+    /// Takes the sample that is due; returns channel and mean at the end of a window.
     pub fn run(&mut self, at: &mut Terminals<'_>) -> Option<(u8, f64)> {
         let window = self.window.as_mut()?;
         let sample = at.plant.analog_in(at.module, window.channel);

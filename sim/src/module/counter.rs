@@ -1,23 +1,23 @@
 //! The counter and frequency module 7080 (7080B, 7080D): two gated 32-bit counters.
 //!
-//! Each counter runs from its preset to its maximum and wraps to the preset, setting its overflow
-//! flag. Gating is done in hardware: a counter has seen the pulses of the clock at its input during
-//! the whole time its gate was open, whenever it is asked. Gate mode 0 counts while the gate is
-//! shut, 1 while it is open, 2 always. In frequency mode (type 51) a reading is the frequency in
-//! hertz with the step of the gate time: 10 Hz (0.1 s) or 1 Hz (1.0 s, FF bit 2).
+//! Each counter runs from its preset to its maximum, then wraps to the preset and sets its overflow flag. Gating
+//! is exact as in hardware: a counter holds the pulses of its input during the whole open time of its gate, at
+//! whatever instant the host reads it. Gate mode 0 counts while the gate is shut (low), 1 while it is open (high), 2 always. In
+//! frequency mode (type 51) a reading is the frequency in hertz with the resolution of the gate time: 10 Hz (0.1
+//! s) or 1 Hz (1.0 s, FF bit 2).
 //!
-//! `#AAN` with a bad channel is not answered. Settings that outlive the power are EEPROM writes.
-//! Alarms: [`super::alarm`]; they are looked at whenever a request comes. LED commands keep their values.
+//! `#AAN` with an invalid channel gets no answer. Settings that survive a power loss count as EEPROM writes.
+//! Every request updates the alarms ([`super::alarm`]). LED commands keep their values and have no effect.
 
-use super::alarm::{Alarm, Told};
-use super::plate::{Commissioning, Plate};
+use super::alarm::{Alarm, CommandEffect};
+use super::base::{Commissioning, ModuleBase};
 use super::pulse::{Channel, channels};
 use super::{Built, Family, Terminals, setting};
 use crate::dcon::{self, Answer, Request};
 use crate::error::SimError;
 use crate::terminal::ModuleSpec;
 
-/// Bit of FF for the long frequency gate.
+/// Bit of FF that selects the long frequency gate.
 const ONE_SECOND_GATE: u8 = 0x04;
 
 struct Counter {
@@ -25,9 +25,9 @@ struct Counter {
     gate_mode: u8,
     input_mode: u8,
     filter_on: bool,
-    /// Least width of a high and a low level, microseconds.
+    /// Least width of a high level and of a low level, microseconds.
     filter_us: [u32; 2],
-    /// Thresholds of the TTL inputs in tenths of a volt, high and low.
+    /// High and low threshold of the TTL inputs, tenths of a volt.
     threshold: [u32; 2],
     outputs: u8,
     alarm: Alarm,
@@ -35,7 +35,7 @@ struct Counter {
     has_led: bool,
 }
 
-/// Commissions a counter module as its table says.
+/// Builds a counter module from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     model: &str,
@@ -70,7 +70,7 @@ pub(super) fn build(
         led: small("led", 0)?,
         has_led: model == "7080D",
     };
-    Ok((Plate::new(spec, line, type_code, 0)?, Box::new(family)))
+    Ok((ModuleBase::new(spec, line, type_code, 0)?, Box::new(family)))
 }
 
 fn gate_mode(spec: &ModuleSpec) -> Result<u8, SimError> {
@@ -88,7 +88,7 @@ fn gate_mode(spec: &ModuleSpec) -> Result<u8, SimError> {
 }
 
 impl Counter {
-    /// Time during which the gate let pulses through so far, microseconds.
+    /// Returns the time during which the gate has let pulses through so far, microseconds.
     fn gate_us(&self, channel: usize, at: &mut Terminals<'_>) -> f64 {
         let now_us = at.now_us as f64;
         match self.gate_mode {
@@ -98,8 +98,8 @@ impl Counter {
         }
     }
 
-    /// Brings both counters up to now; gives the clock of each.
-    fn look(&mut self, at: &mut Terminals<'_>) -> [f64; 2] {
+    /// Brings both counters up to now; returns the clock frequency of each, hertz.
+    fn update(&mut self, at: &mut Terminals<'_>) -> [f64; 2] {
         [0, 1].map(|n| {
             let gate_us = self.gate_us(n, at);
             let channel = &mut self.channels[n];
@@ -112,16 +112,16 @@ impl Counter {
     }
 
     fn set_gate_mode(&mut self, mode: u8, at: &mut Terminals<'_>) {
-        self.look(at);
+        self.update(at);
         self.gate_mode = mode;
         for n in 0..2 {
             self.channels[n].seen_us = self.gate_us(n, at);
         }
     }
 
-    fn reading(&mut self, plate: &Plate, n: usize, at: &mut Terminals<'_>) -> Answer {
-        let hz = self.look(at)[n];
-        let value = match (plate.type_code, plate.format & ONE_SECOND_GATE) {
+    fn reading(&mut self, base: &ModuleBase, n: usize, at: &mut Terminals<'_>) -> Answer {
+        let hz = self.update(at)[n];
+        let value = match (base.type_code, base.format & ONE_SECOND_GATE) {
             (0x50, _) => self.channels[n].value(hz),
             (_, 0) => (hz / 10.0).floor() as u64 * 10,
             (_, _) => hz.floor() as u64,
@@ -133,62 +133,62 @@ impl Counter {
 
     fn channel_command(
         &mut self,
-        plate: &mut Plate,
+        base: &mut ModuleBase,
         command: u8,
         n: usize,
         rest: &[u8],
         at: &mut Terminals<'_>,
     ) -> Answer {
-        let hz = self.look(at)[n];
+        let hz = self.update(at)[n];
         let channel = &mut self.channels[n];
         match (command, rest) {
             (b'6', []) => channel.reset(hz),
             (b'7', []) => {
-                return dcon::done_hex(plate.address, u64::from(channel.overflow(hz)), 1);
+                return dcon::done_hex(base.address, u64::from(channel.overflow(hz)), 1);
             }
             (b'5', []) => {
-                return dcon::done_hex(plate.address, u64::from(channel.running), 1);
+                return dcon::done_hex(base.address, u64::from(channel.running), 1);
             }
             (b'5', [run @ (b'0' | b'1')]) => channel.running = *run == b'1',
-            (b'3', []) => return dcon::done_hex(plate.address, u64::from(channel.maximum), 8),
+            (b'3', []) => return dcon::done_hex(base.address, u64::from(channel.maximum), 8),
             (b'3', digits) => match dcon::hex(digits) {
                 Some(maximum) if digits.len() == 8 => {
                     channel.maximum = maximum;
-                    plate.eeprom_writes += 1;
+                    base.eeprom_writes += 1;
                 }
                 _ => return Answer::Unknown,
             },
             (_, _) => return Answer::Unknown,
         }
-        dcon::done(plate.address)
+        dcon::done(base.address)
     }
 
-    /// `$AA0H`, `$AA0L`, `$AA1H`, `$AA1L`: decimal settings of the inputs.
-    fn level_command(&mut self, plate: &mut Plate, kind: u8, level: u8, rest: &[u8]) -> Answer {
+    /// Carries out `$AA0H`, `$AA0L`, `$AA1H`, `$AA1L`: decimal settings of the inputs.
+    fn level_command(&mut self, base: &mut ModuleBase, kind: u8, level: u8, rest: &[u8]) -> Answer {
         let place = usize::from(level == b'L');
         let (values, width) = match kind {
             b'0' => (&mut self.filter_us, 5),
             _ => (&mut self.threshold, 2),
         };
         if rest.is_empty() {
-            return dcon::done_with(plate.address, &format!("{:0width$}", values[place]));
+            return dcon::done_with(base.address, &format!("{:0width$}", values[place]));
         }
         let limits = if kind == b'0' { 2..=65_535 } else { 0..=50 };
         match dcon::decimal(rest) {
             Some(value) if rest.len() == width && limits.contains(&value) => {
                 values[place] = value;
-                plate.eeprom_writes += 1;
-                dcon::done(plate.address)
+                base.eeprom_writes += 1;
+                dcon::done(base.address)
             }
-            Some(_) if rest.len() == width => dcon::refused(plate.address),
+            Some(_) if rest.len() == width => dcon::refused(base.address),
             _ => Answer::Unknown,
         }
     }
 
-    /// `$AA4`, `$AAA`, `$AAB`, `$AA8`: modes of one digit.
+    /// Carries out `$AA4`, `$AAA`, `$AAB`, `$AA8`: one-digit modes.
     fn mode_command(
         &mut self,
-        plate: &mut Plate,
+        base: &mut ModuleBase,
         mode: u8,
         rest: &[u8],
         at: &mut Terminals<'_>,
@@ -201,7 +201,7 @@ impl Counter {
         };
         let [digit] = rest else {
             return if rest.is_empty() {
-                dcon::done_hex(plate.address, u64::from(present), 1)
+                dcon::done_hex(base.address, u64::from(present), 1)
             } else {
                 Answer::Unknown
             };
@@ -214,66 +214,66 @@ impl Counter {
                     b'B' => self.input_mode = value,
                     _ => self.led = value,
                 }
-                plate.eeprom_writes += 1;
-                dcon::done(plate.address)
+                base.eeprom_writes += 1;
+                dcon::done(base.address)
             }
-            Some(_) => dcon::refused(plate.address),
+            Some(_) => dcon::refused(base.address),
             None => Answer::Unknown,
         }
     }
 
-    fn at_command(&mut self, plate: &mut Plate, body: &[u8], at: &mut Terminals<'_>) -> Answer {
+    fn at_command(&mut self, base: &mut ModuleBase, body: &[u8], at: &mut Terminals<'_>) -> Answer {
         match body {
             [b'G', n @ (b'0' | b'1')] => {
                 let preset = self.channels[usize::from(n - b'0')].preset;
-                dcon::done_hex(plate.address, u64::from(preset), 8)
+                dcon::done_hex(base.address, u64::from(preset), 8)
             }
             [b'P', n @ (b'0' | b'1'), digits @ ..] if digits.len() == 8 => {
                 let Some(preset) = dcon::hex(digits) else {
                     return Answer::Unknown;
                 };
-                self.look(at);
+                self.update(at);
                 self.channels[usize::from(n - b'0')].preset = preset;
-                plate.eeprom_writes += 1;
-                dcon::done(plate.address)
+                base.eeprom_writes += 1;
+                dcon::done(base.address)
             }
             b"DI" => {
                 let outputs = u64::from(self.carried(at));
                 let state = u64::from(self.alarm.state());
-                dcon::done_hex(plate.address, state << 16 | outputs << 8, 5)
+                dcon::done_hex(base.address, state << 16 | outputs << 8, 5)
             }
-            [b'D', b'O', b'0', data @ b'0'..=b'3'] => self.write(plate, data - b'0'),
-            _ => self.alarm_command(plate, body),
+            [b'D', b'O', b'0', data @ b'0'..=b'3'] => self.write(base, data - b'0'),
+            _ => self.alarm_command(base, body),
         }
     }
 
-    fn write(&mut self, plate: &Plate, outputs: u8) -> Answer {
-        if plate.watchdog.tripped() {
+    fn write(&mut self, base: &ModuleBase, outputs: u8) -> Answer {
+        if base.watchdog.tripped() {
             return dcon::ignored();
         }
         if self.alarm.owns_outputs() {
-            return dcon::refused(plate.address);
+            return dcon::refused(base.address);
         }
         self.outputs = outputs;
-        dcon::done(plate.address)
+        dcon::done(base.address)
     }
 
-    fn alarm_command(&mut self, plate: &mut Plate, body: &[u8]) -> Answer {
+    fn alarm_command(&mut self, base: &mut ModuleBase, body: &[u8]) -> Answer {
         match self.alarm.command(body) {
-            Told::Stored => {
-                plate.eeprom_writes += 1;
-                dcon::done(plate.address)
+            CommandEffect::Stored => {
+                base.eeprom_writes += 1;
+                dcon::done(base.address)
             }
-            Told::Done => dcon::done(plate.address),
-            Told::Limit(limit) => dcon::done_hex(plate.address, u64::from(limit), 8),
-            Told::Refused => dcon::refused(plate.address),
-            Told::Unknown => Answer::Unknown,
+            CommandEffect::Done => dcon::done(base.address),
+            CommandEffect::Limit(limit) => dcon::done_hex(base.address, u64::from(limit), 8),
+            CommandEffect::Refused => dcon::refused(base.address),
+            CommandEffect::Unknown => Answer::Unknown,
         }
     }
 
-    /// What the outputs carry: what the host wrote, or what the alarms say.
+    /// Returns the outputs: the alarms' word where they control, else the host's word.
     fn carried(&mut self, at: &mut Terminals<'_>) -> u8 {
-        let hz = self.look(at);
+        let hz = self.update(at);
         let values = [0, 1].map(|n| self.channels[n].value(hz[n]));
         self.alarm.outputs(self.outputs, values)
     }
@@ -286,14 +286,14 @@ impl Family for Counter {
 
     fn answer(
         &mut self,
-        plate: &mut Plate,
+        base: &mut ModuleBase,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
-        // A latched alarm notices what happened before this request.
+        // Update the latches for events before this request.
         self.carried(at);
         match (request.lead, request.body) {
-            (b'#', [n @ (b'0' | b'1')]) => self.reading(plate, usize::from(n - b'0'), at),
+            (b'#', [n @ (b'0' | b'1')]) => self.reading(base, usize::from(n - b'0'), at),
             (
                 b'$',
                 [
@@ -301,54 +301,54 @@ impl Family for Counter {
                     n @ (b'0' | b'1'),
                     rest @ ..,
                 ],
-            ) => self.channel_command(plate, *command, usize::from(n - b'0'), rest, at),
-            // The reset status of other modules: here `$AA5N` is the state of a counter.
+            ) => self.channel_command(base, *command, usize::from(n - b'0'), rest, at),
+            // Other modules report their reset status here; `$AA5N` is the state of a counter.
             (b'$', [b'5']) => Answer::Silence,
             (b'$', [kind @ (b'0' | b'1'), level @ (b'H' | b'L'), rest @ ..]) => {
-                self.level_command(plate, *kind, *level, rest)
+                self.level_command(base, *kind, *level, rest)
             }
             (b'$', [mode @ (b'4' | b'A' | b'B'), rest @ ..]) => {
-                self.mode_command(plate, *mode, rest, at)
+                self.mode_command(base, *mode, rest, at)
             }
             (b'$', [mode @ b'8', rest @ ..]) if self.has_led => {
-                self.mode_command(plate, *mode, rest, at)
+                self.mode_command(base, *mode, rest, at)
             }
             (b'$', [b'9', data @ ..]) if self.has_led && data.len() == 5 => {
-                dcon::done(plate.address)
+                dcon::done(base.address)
             }
             (b'~', [b'A', mode @ (b'0' | b'1')]) => {
                 self.alarm.set_mode(*mode == b'1');
-                plate.eeprom_writes += 1;
-                dcon::done(plate.address)
+                base.eeprom_writes += 1;
+                dcon::done(base.address)
             }
-            (b'@', body) => self.at_command(plate, body, at),
+            (b'@', body) => self.at_command(base, body, at),
             (_, _) => Answer::Unknown,
         }
     }
 
-    fn configured(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+    fn configured(&mut self, _plate: &ModuleBase, _at: &mut Terminals<'_>) {}
 
     fn next_us(&self) -> u64 {
         u64::MAX
     }
 
-    fn run(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+    fn run(&mut self, _plate: &ModuleBase, _at: &mut Terminals<'_>) {}
 
     fn sample(&mut self, _at: &mut Terminals<'_>) {}
 
-    fn make_safe(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {
+    fn make_safe(&mut self, _plate: &ModuleBase, _at: &mut Terminals<'_>) {
         self.outputs = 0;
     }
 
-    /// Counts start at the preset after a power loss (the 7080B keeps them by its battery).
-    fn restart(&mut self, _plate: &Plate) {
+    /// Counts restart at the preset after a power loss (the battery of the 7080B keeps them).
+    fn restart(&mut self, _plate: &ModuleBase) {
         self.outputs = 0;
         for channel in &mut self.channels {
             channel.power_cycle();
         }
     }
 
-    fn energise(&mut self, _plate: &Plate, at: &mut Terminals<'_>) {
+    fn energise(&mut self, _plate: &ModuleBase, at: &mut Terminals<'_>) {
         for n in 0..2 {
             self.channels[n].seen_us = self.gate_us(n, at);
         }

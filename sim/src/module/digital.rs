@@ -3,18 +3,18 @@
 //! | request | reply |
 //! |---|---|
 //! | `@AA`, `$AA6` | `>` or `!` (then 00 at the end), first and second byte |
-//! | `@AA(data)` | all outputs; 1, 2 or 4 digits by model; `?` when it does not fit |
-//! | `#AABBDD` | a group (00, 0A, 0B) or one channel (1c, Ac, Bc) |
-//! | `#AAN`, `$AACN` | event counter of an input, 5 decimal digits; clear it |
-//! | `$AALS`, `$AAC` | inputs latched high (S = 1) or low (0); clear both |
-//! | `$AA4` | sample of `#**`; `?AA` when there was none |
+//! | `@AA(data)` | set all outputs; 1, 2 or 4 digits by model; `?` for a wrong width |
+//! | `#AABBDD` | set a group (00, 0A, 0B) or one channel (1c, Ac, Bc) |
+//! | `#AAN`, `$AACN` | read the event counter of an input, 5 decimal digits; clear it |
+//! | `$AALS`, `$AAC` | read the inputs latched high (S = 1) or low (0); clear both |
+//! | `$AA4` | inputs at the last `#**`; `?AA` when there was none |
 //! | `~AA5P`, `~AA5S`, `~AA4P`, `~AA4S` | store and read power-on and safe outputs |
 //!
-//! First and second byte: outputs and inputs; of modules with 16 inputs or 16 outputs alone, high
-//! byte and low byte. Latches see every change between two requests and every counted pulse; an
-//! input that merely stays as it was when the latches were cleared sets none.
+//! First and second byte are outputs and inputs; on modules with 16 inputs only or 16 outputs only, high byte and
+//! low byte. Latches record every change between two requests and every counted pulse; an input that has not
+//! changed since the latches were cleared sets none.
 
-use super::plate::{Commissioning, Plate};
+use super::base::{Commissioning, ModuleBase};
 use super::shape::{Shape, ones};
 use super::{Built, Family, Terminals, setting};
 use crate::dcon::{self, Answer, Request};
@@ -23,12 +23,12 @@ use crate::terminal::ModuleSpec;
 
 struct Digital {
     shape: Shape,
-    /// A refused output command is answered with the address.
+    /// A refused output command gets the module's address in the answer.
     names_refusals: bool,
     outputs: u16,
     power_on: u16,
     safe: u16,
-    /// Inputs at the last look.
+    /// Inputs at the last update.
     levels: u16,
     latched_high: u16,
     latched_low: u16,
@@ -38,10 +38,10 @@ struct Digital {
 
 #[derive(Debug, Clone, Copy, Default)]
 struct EventCounter {
-    /// Count at the moment when the terminals had seen `from_edges`.
+    /// Count at `from_edges` edges of the terminal.
     start: u64,
     from_edges: u64,
-    /// Edges at the last look, for the latches.
+    /// Edges at the last update, for the latches.
     seen_edges: u64,
 }
 
@@ -51,7 +51,7 @@ struct Sample {
     unread: bool,
 }
 
-/// Commissions a digital module as its table says.
+/// Builds a digital module from its table.
 pub(super) fn build(
     spec: &ModuleSpec,
     shape: Shape,
@@ -61,7 +61,7 @@ pub(super) fn build(
     if type_code != 0x40 {
         return Err(setting::wrong(spec, "type", "40"));
     }
-    let mut plate = Plate::new(spec, line, type_code, 0)?;
+    let mut base = ModuleBase::new(spec, line, type_code, 0)?;
     let bits = |key: &str| Ok::<u16, SimError>(setting::bits(spec, key)?.unwrap_or(0) as u16);
     let safe = if spec.settings.contains_key("safe_outputs") {
         bits("safe_outputs")?
@@ -91,17 +91,17 @@ pub(super) fn build(
         counters: (0..shape.inputs).map(counter).collect(),
         sampled: None,
     };
-    family.restart(&plate);
+    family.restart(&base);
     if let Some(outputs) = setting::bits(spec, "outputs")? {
         family.outputs = outputs as u16 & shape.all_outputs();
     }
     if setting::flag(spec, "rising")?.unwrap_or(false) {
-        plate.format |= 0x80;
+        base.format |= 0x80;
     }
-    Ok((plate, Box::new(family)))
+    Ok((base, Box::new(family)))
 }
 
-/// `latches = MASK` latched high, or a table with `high` and `low`.
+/// Reads `latches = MASK` (latched high), or a table with `high` and `low`.
 fn latches(spec: &ModuleSpec) -> Result<(u16, u16), SimError> {
     match spec.settings.get("latches") {
         Some(toml::Value::Table(table)) => {
@@ -119,7 +119,7 @@ fn latches(spec: &ModuleSpec) -> Result<(u16, u16), SimError> {
 }
 
 impl Digital {
-    /// Inputs now, latches brought up to date.
+    /// Returns the present inputs and updates the latches.
     fn inputs(&mut self, at: &mut Terminals<'_>) -> u16 {
         if self.shape.inputs == 0 {
             return 0;
@@ -131,7 +131,7 @@ impl Digital {
         levels
     }
 
-    /// Pulses that no request fell into.
+    /// Latches pulses that began and ended between two requests.
     fn latch_edges(&mut self, at: &mut Terminals<'_>) {
         for (channel, counter) in self.counters.iter_mut().enumerate() {
             let edges = at.plant.edges(at.module, channel as u8);
@@ -155,47 +155,47 @@ impl Digital {
         }
     }
 
-    /// The manual of the digital modules leaves the address out of these refusals, others put it in.
-    fn refused_output(&self, plate: &Plate) -> Answer {
+    /// Refuses an output command: the digital manuals omit the address, the others include it.
+    fn refused_output(&self, base: &ModuleBase) -> Answer {
         if self.names_refusals {
-            dcon::refused(plate.address)
+            dcon::refused(base.address)
         } else {
             dcon::refused_output()
         }
     }
 
-    fn write_all(&mut self, plate: &Plate, data: &[u8], at: &mut Terminals<'_>) -> Answer {
+    fn write_all(&mut self, base: &ModuleBase, data: &[u8], at: &mut Terminals<'_>) -> Answer {
         let Some(value) = dcon::hex(data) else {
             return Answer::Unknown;
         };
         let too_much = value & !u32::from(self.shape.all_outputs()) != 0;
         if self.shape.outputs == 0 || data.len() != self.shape.output_digits() || too_much {
-            return self.refused_output(plate);
+            return self.refused_output(base);
         }
-        if plate.watchdog.tripped() {
+        if base.watchdog.tripped() {
             return dcon::ignored();
         }
         self.drive(value as u16, at);
         dcon::accepted()
     }
 
-    fn write_group(&mut self, plate: &Plate, body: [u8; 4], at: &mut Terminals<'_>) -> Answer {
+    fn write_group(&mut self, base: &ModuleBase, body: [u8; 4], at: &mut Terminals<'_>) -> Answer {
         let [group, channel, high, low] = body;
         let (Some(channel), Some(data)) = (dcon::hex_digit(channel), dcon::hex_byte(&[high, low]))
         else {
             return Answer::Unknown;
         };
         let Some(outputs) = self.grouped(group, channel, data) else {
-            return self.refused_output(plate);
+            return self.refused_output(base);
         };
-        if plate.watchdog.tripped() {
+        if base.watchdog.tripped() {
             return dcon::ignored();
         }
         self.drive(outputs, at);
         dcon::accepted()
     }
 
-    /// Outputs after a group or single-channel command, `None` when there is no such channel.
+    /// Returns the outputs after a group or single-channel command; `None` when the channel does not exist.
     fn grouped(&self, group: u8, channel: u8, data: u8) -> Option<u16> {
         let all = self.shape.all_outputs();
         let (mask, bits): (u16, u16) = match (group, channel) {
@@ -212,28 +212,28 @@ impl Digital {
         reachable.then_some((self.outputs & !mask | bits) & all)
     }
 
-    fn count(&mut self, plate: &Plate, digit: u8, at: &mut Terminals<'_>) -> Answer {
+    fn count(&mut self, base: &ModuleBase, digit: u8, at: &mut Terminals<'_>) -> Answer {
         let Some(channel) = dcon::hex_digit(digit) else {
             return Answer::Unknown;
         };
         let Some(counter) = self.counters.get(usize::from(channel)) else {
-            return dcon::refused(plate.address);
+            return dcon::refused(base.address);
         };
         let edges = at.plant.edges(at.module, channel);
         let count = (counter.start + edges - counter.from_edges) % 65_536;
-        dcon::done_with(plate.address, &format!("{count:05}"))
+        dcon::done_with(base.address, &format!("{count:05}"))
     }
 
-    fn clear_count(&mut self, plate: &Plate, digit: u8, at: &mut Terminals<'_>) -> Answer {
+    fn clear_count(&mut self, base: &ModuleBase, digit: u8, at: &mut Terminals<'_>) -> Answer {
         let Some(channel) = dcon::hex_digit(digit) else {
             return Answer::Unknown;
         };
         let Some(counter) = self.counters.get_mut(usize::from(channel)) else {
-            return dcon::refused(plate.address);
+            return dcon::refused(base.address);
         };
         counter.start = 0;
         counter.from_edges = at.plant.edges(at.module, channel);
-        dcon::done(plate.address)
+        dcon::done(base.address)
     }
 
     fn latched(&mut self, high: bool, at: &mut Terminals<'_>) -> Answer {
@@ -247,17 +247,17 @@ impl Digital {
         data_reply(latched)
     }
 
-    fn clear_latches(&mut self, plate: &Plate, at: &mut Terminals<'_>) -> Answer {
+    fn clear_latches(&mut self, base: &ModuleBase, at: &mut Terminals<'_>) -> Answer {
         self.inputs(at);
         self.latch_edges(at);
         self.latched_high = 0;
         self.latched_low = 0;
-        dcon::done(plate.address)
+        dcon::done(base.address)
     }
 
-    fn sampled(&mut self, plate: &Plate) -> Answer {
+    fn sampled(&mut self, base: &ModuleBase) -> Answer {
         let Some(sample) = &mut self.sampled else {
-            return dcon::refused(plate.address);
+            return dcon::refused(base.address);
         };
         let unread = std::mem::take(&mut sample.unread);
         let mut text = String::from(if unread { "!1" } else { "!0" });
@@ -265,36 +265,36 @@ impl Digital {
         Answer::Reply(text)
     }
 
-    fn store(&mut self, plate: &mut Plate, which: u8) -> Answer {
+    fn store(&mut self, base: &mut ModuleBase, which: u8) -> Answer {
         match which {
             b'P' => self.power_on = self.outputs,
             _ => self.safe = self.outputs,
         }
-        plate.eeprom_writes += 1;
-        dcon::done(plate.address)
+        base.eeprom_writes += 1;
+        dcon::done(base.address)
     }
 
-    fn stored(&self, plate: &Plate, which: u8) -> Answer {
+    fn stored(&self, base: &ModuleBase, which: u8) -> Answer {
         let value = u64::from(if which == b'P' {
             self.power_on
         } else {
             self.safe
         });
         let wide = self.shape.outputs > 8;
-        dcon::done_hex(plate.address, if wide { value } else { value << 8 }, 4)
+        dcon::done_hex(base.address, if wide { value } else { value << 8 }, 4)
     }
 
-    fn input_command(&mut self, plate: &Plate, body: &[u8], at: &mut Terminals<'_>) -> Answer {
+    fn input_command(&mut self, base: &ModuleBase, body: &[u8], at: &mut Terminals<'_>) -> Answer {
         match body {
-            [b'C', digit] => self.clear_count(plate, *digit, at),
-            [b'C'] => self.clear_latches(plate, at),
+            [b'C', digit] => self.clear_count(base, *digit, at),
+            [b'C'] => self.clear_latches(base, at),
             [b'L', level @ (b'0' | b'1')] => self.latched(*level == b'1', at),
             _ => Answer::Unknown,
         }
     }
 }
 
-/// `!(first)(second)00`: data without address.
+/// Builds `!(first)(second)00`: data without address.
 fn data_reply(words: u16) -> Answer {
     let mut text = String::from("!");
     dcon::push_hex(&mut text, u64::from(words) << 8, 6);
@@ -308,7 +308,7 @@ impl Family for Digital {
 
     fn answer(
         &mut self,
-        plate: &mut Plate,
+        base: &mut ModuleBase,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer {
@@ -319,40 +319,40 @@ impl Family for Digital {
                 dcon::push_hex(&mut text, u64::from(self.words(at)), 4);
                 Answer::Reply(text)
             }
-            (b'@', data) => self.write_all(plate, data, at),
-            (b'#', [a, b, c, d]) => self.write_group(plate, [*a, *b, *c, *d], at),
-            (b'#', [digit]) if has_inputs => self.count(plate, *digit, at),
+            (b'@', data) => self.write_all(base, data, at),
+            (b'#', [a, b, c, d]) => self.write_group(base, [*a, *b, *c, *d], at),
+            (b'#', [digit]) if has_inputs => self.count(base, *digit, at),
             (b'$', b"6") => {
                 let words = self.words(at);
                 data_reply(words)
             }
-            (b'$', b"4") => self.sampled(plate),
-            (b'$', body) if has_inputs => self.input_command(plate, body, at),
-            (b'~', [b'5', which @ (b'P' | b'S')]) => self.store(plate, *which),
-            (b'~', [b'4', which @ (b'P' | b'S')]) => self.stored(plate, *which),
+            (b'$', b"4") => self.sampled(base),
+            (b'$', body) if has_inputs => self.input_command(base, body, at),
+            (b'~', [b'5', which @ (b'P' | b'S')]) => self.store(base, *which),
+            (b'~', [b'4', which @ (b'P' | b'S')]) => self.stored(base, *which),
             (_, _) => Answer::Unknown,
         }
     }
 
-    fn configured(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+    fn configured(&mut self, _plate: &ModuleBase, _at: &mut Terminals<'_>) {}
 
     fn next_us(&self) -> u64 {
         u64::MAX
     }
 
-    fn run(&mut self, _plate: &Plate, _at: &mut Terminals<'_>) {}
+    fn run(&mut self, _plate: &ModuleBase, _at: &mut Terminals<'_>) {}
 
     fn sample(&mut self, at: &mut Terminals<'_>) {
         let data = self.words(at);
         self.sampled = Some(Sample { data, unread: true });
     }
 
-    fn make_safe(&mut self, _plate: &Plate, at: &mut Terminals<'_>) {
+    fn make_safe(&mut self, _plate: &ModuleBase, at: &mut Terminals<'_>) {
         self.drive(self.safe, at);
     }
 
-    fn restart(&mut self, plate: &Plate) {
-        self.outputs = if plate.watchdog.tripped() {
+    fn restart(&mut self, base: &ModuleBase) {
+        self.outputs = if base.watchdog.tripped() {
             self.safe
         } else {
             self.power_on
@@ -360,7 +360,7 @@ impl Family for Digital {
         self.sampled = None;
     }
 
-    fn energise(&mut self, _plate: &Plate, at: &mut Terminals<'_>) {
+    fn energise(&mut self, _plate: &ModuleBase, at: &mut Terminals<'_>) {
         if self.shape.inputs > 0 {
             self.levels = at.plant.digital_in(at.module) & ones(self.shape.inputs);
         }

@@ -1,8 +1,8 @@
-//! One module of a line: its plate, its family, and the events it makes by itself.
+//! One module of a line: its common part, its family, and its own events.
 //!
-//! A module acts at three kinds of instants: when a request for it has arrived, when its own next
-//! event is due (a sample of the converter, a refresh of a ramp), and when its host watchdog
-//! expires. Between them nothing happens, so the rig runs from event to event.
+//! A module acts at three kinds of instants: when a request for it arrives, when its own next event is due (a
+//! sample of the converter, a refresh of a ramp), and when its host watchdog expires. Nothing happens in between,
+//! so the rig runs from event to event.
 //!
 //! | family | models |
 //! |---|---|
@@ -14,17 +14,17 @@
 mod alarm;
 pub mod analog_in;
 pub mod analog_out;
+pub mod base;
 pub mod converter;
 pub mod counter;
 pub mod digital;
-pub mod habit;
 mod output;
-pub mod plate;
 mod pulse;
 pub mod ramp;
 pub mod range;
 pub mod setting;
 pub mod shape;
+pub mod tolerances;
 pub mod watchdog;
 
 use rand_chacha::ChaCha8Rng;
@@ -32,10 +32,10 @@ use rand_chacha::ChaCha8Rng;
 use crate::dcon::{self, Address, Answer, Request};
 use crate::error::SimError;
 use crate::terminal::{ModuleSpec, Plant};
-use habit::Habit;
-use plate::{Commissioning, Plate};
+use base::{Commissioning, ModuleBase};
+use tolerances::Tolerances;
 
-/// The screw terminals of one module at one instant.
+/// Screw terminals of one module at one instant.
 pub struct Terminals<'a> {
     /// The world, already advanced to `now_us`.
     pub plant: &'a mut dyn Plant,
@@ -45,68 +45,70 @@ pub struct Terminals<'a> {
     pub now_us: u64,
 }
 
-/// What distinguishes one product from another.
+/// Behaviour that differs between product families.
 pub trait Family: Send {
-    /// Takes a type code and a format word.
+    /// Checks whether the family accepts a type code and a format word.
     fn fits(&self, type_code: u8, format: u8) -> bool;
 
     /// Carries out a command of the family.
     fn answer(
         &mut self,
-        plate: &mut Plate,
+        base: &mut ModuleBase,
         request: &Request<'_>,
         at: &mut Terminals<'_>,
     ) -> Answer;
 
-    /// The configuration word has changed.
-    fn configured(&mut self, plate: &Plate, at: &mut Terminals<'_>);
+    /// Adopts a changed configuration word.
+    fn configured(&mut self, base: &ModuleBase, at: &mut Terminals<'_>);
 
-    /// Instant of its next own event, `u64::MAX` for none.
+    /// Returns the instant of the family's next event; `u64::MAX` for none.
     fn next_us(&self) -> u64;
 
-    /// Its own event is due.
-    fn run(&mut self, plate: &Plate, at: &mut Terminals<'_>);
+    /// Carries out the family's event that is due.
+    fn run(&mut self, base: &ModuleBase, at: &mut Terminals<'_>);
 
-    /// `#**`: sample the inputs now.
+    /// Samples the inputs now (`#**`).
     fn sample(&mut self, at: &mut Terminals<'_>);
 
-    /// Outputs go to their safe values at once.
-    fn make_safe(&mut self, plate: &Plate, at: &mut Terminals<'_>);
+    /// Sets the outputs to their safe values at once.
+    fn make_safe(&mut self, base: &ModuleBase, at: &mut Terminals<'_>);
 
-    /// Outputs take their power-on values, or the safe ones when the watchdog had tripped.
-    fn restart(&mut self, plate: &Plate);
+    /// Sets the outputs to their power-on values, or to the safe values after a watchdog trip.
+    fn restart(&mut self, base: &ModuleBase);
 
-    /// Terminals carry what the registers say, converters run.
-    fn energise(&mut self, plate: &Plate, at: &mut Terminals<'_>);
+    /// Applies the registers to the terminals and starts the converters.
+    fn energise(&mut self, base: &ModuleBase, at: &mut Terminals<'_>);
 }
 
 /// A module on its line.
 pub struct Module {
     id: String,
     line: String,
-    plate: Plate,
+    base: ModuleBase,
     family: Box<dyn Family>,
-    habit: Habit,
+    tolerances: Tolerances,
     rng: ChaCha8Rng,
 }
 
 impl Module {
-    /// Commissions a module as its table says.
+    /// Builds a module from its table.
     ///
     /// # Errors
-    /// The model is not simulated, or a key has a value it cannot take.
+    /// Fails when the model is not simulated, or a key has an unfit value.
     pub fn new(
         spec: &ModuleSpec,
         line: Commissioning,
-        habit: Habit,
+        tolerances: Tolerances,
         rng: ChaCha8Rng,
     ) -> Result<Self, SimError> {
         let model = model_number(&spec.model);
-        let (plate, family) = match model {
+        let (base, family) = match model {
             "7017" | "7017F" | "7017R" | "7017RC" | "7018" | "7018P" | "7018R" | "7033" => {
-                analog_in::build(spec, model, line, &habit, rng.clone())?
+                analog_in::build(spec, model, line, &tolerances, rng.clone())?
             }
-            "7021" | "7021P" | "7022" | "7024" => analog_out::build(spec, model, line, &habit)?,
+            "7021" | "7021P" | "7022" | "7024" => {
+                analog_out::build(spec, model, line, &tolerances)?
+            }
             "7080" | "7080B" | "7080D" => counter::build(spec, model, line)?,
             other => match shape::shape(other) {
                 Some(shape) => digital::build(spec, shape, line)?,
@@ -116,54 +118,54 @@ impl Module {
         Ok(Self {
             id: spec.id.clone(),
             line: spec.line.clone(),
-            plate,
+            base,
             family,
-            habit,
+            tolerances,
             rng,
         })
     }
 
-    /// Key of its table.
+    /// Returns the key of its table.
     pub fn id(&self) -> &str {
         &self.id
     }
 
-    /// Line it hangs on.
+    /// Returns the name of its line.
     pub fn line(&self) -> &str {
         &self.line
     }
 
-    /// Plate, for counts and faults.
-    pub fn plate(&self) -> &Plate {
-        &self.plate
+    /// Returns the common part.
+    pub fn base(&self) -> &ModuleBase {
+        &self.base
     }
 
-    /// Plate, for faults.
-    pub fn plate_mut(&mut self) -> &mut Plate {
-        &mut self.plate
+    /// Returns the common part for faults that change it.
+    pub fn base_mut(&mut self) -> &mut ModuleBase {
+        &mut self.base
     }
 
-    /// Is meant by a request for `address`, and listens at the rate of its host; none is any.
+    /// Checks whether a request for `address` at the host's rate reaches the module; a rate of `None` matches.
     pub fn hears(&self, address: Address, host_baud: Option<u32>) -> bool {
         let meant = match address {
             Address::Everybody => true,
-            Address::Module(address) => self.plate.hears_at(address),
+            Address::Module(address) => self.base.hears_at(address),
         };
-        meant && host_baud.is_none_or(|baud| baud == self.plate.baud())
+        meant && host_baud.is_none_or(|baud| baud == self.base.baud())
     }
 
-    /// Microseconds from the end of a request to the first character of its reply.
+    /// Draws the time from the end of a request to the first character of its reply, microseconds.
     pub fn next_latency_us(&mut self) -> u64 {
-        self.habit.next_latency_us(&mut self.rng) + self.plate.response_delay_us()
+        self.tolerances.next_latency_us(&mut self.rng) + self.base.response_delay_us()
     }
 
-    /// Instant of its next event of any kind, `u64::MAX` for none.
+    /// Returns the instant of its next event of any kind; `u64::MAX` for none.
     pub fn next_us(&self) -> u64 {
-        let expiry = self.plate.watchdog.expires_us().unwrap_or(u64::MAX);
+        let expiry = self.base.watchdog.expires_us().unwrap_or(u64::MAX);
         expiry.min(self.family.next_us())
     }
 
-    /// Carries out what is due at `now_us`.
+    /// Carries out every event that is due at `now_us`.
     pub fn run(&mut self, plant: &mut dyn Plant, now_us: u64) {
         let mut at = Terminals {
             plant,
@@ -171,48 +173,48 @@ impl Module {
             now_us,
         };
         if self
-            .plate
+            .base
             .watchdog
             .expires_us()
             .is_some_and(|due| due <= now_us)
         {
-            trip(&mut self.plate, self.family.as_mut(), &mut at);
+            trip(&mut self.base, self.family.as_mut(), &mut at);
         }
         if self.family.next_us() <= now_us {
-            self.family.run(&self.plate, &mut at);
+            self.family.run(&self.base, &mut at);
         }
     }
 
-    /// The module is found under power, in the state its table says.
+    /// Starts the module as powered for long, in the state of its table.
     pub fn energise(&mut self, plant: &mut dyn Plant, now_us: u64) {
         let mut at = Terminals {
             plant,
             module: &self.id,
             now_us,
         };
-        self.family.energise(&self.plate, &mut at);
+        self.family.energise(&self.base, &mut at);
     }
 
-    /// The module restarts in operation (a fault, or its own hardware watchdog).
+    /// Restarts the running module (a fault, or its own hardware watchdog).
     pub fn reset(&mut self, plant: &mut dyn Plant, now_us: u64) {
-        self.plate.power_cycled();
-        self.family.restart(&self.plate);
+        self.base.power_cycled();
+        self.family.restart(&self.base);
         self.energise(plant, now_us);
     }
 
-    /// The host watchdog expires now, whoever fed it.
+    /// Lets the host watchdog expire now, even if a host has just fed it.
     pub fn trip(&mut self, plant: &mut dyn Plant, now_us: u64) {
         let mut at = Terminals {
             plant,
             module: &self.id,
             now_us,
         };
-        trip(&mut self.plate, self.family.as_mut(), &mut at);
+        trip(&mut self.base, self.family.as_mut(), &mut at);
     }
 
-    /// Hears `text` (without CR) and gives the bytes of its reply, if it replies.
+    /// Processes `text` (without CR); returns the bytes of the reply, if any.
     pub fn hear(&mut self, text: &[u8], plant: &mut dyn Plant, now_us: u64) -> Option<Vec<u8>> {
-        let with_checksum = self.plate.uses_checksum();
+        let with_checksum = self.base.uses_checksum();
         let bare = if with_checksum {
             dcon::without_checksum(text)?
         } else {
@@ -225,7 +227,7 @@ impl Module {
             now_us,
         };
         if request.address == Address::Everybody {
-            broadcast(&mut self.plate, self.family.as_mut(), &request, &mut at);
+            broadcast(&mut self.base, self.family.as_mut(), &request, &mut at);
             return None;
         }
         match self.obey(&request, plant, now_us) {
@@ -240,41 +242,41 @@ impl Module {
             module: &self.id,
             now_us,
         };
-        let answer = self.family.answer(&mut self.plate, request, &mut at);
+        let answer = self.family.answer(&mut self.base, request, &mut at);
         if answer != Answer::Unknown {
             return answer;
         }
         let family = &self.family;
         let answer = self
-            .plate
+            .base
             .answer(request, now_us, |code, format| family.fits(code, format));
         if request.lead == b'%' {
-            self.family.configured(&self.plate, &mut at);
+            self.family.configured(&self.base, &mut at);
         }
         answer
     }
 }
 
-fn trip(plate: &mut Plate, family: &mut dyn Family, at: &mut Terminals<'_>) {
-    plate.watchdog.trip();
-    plate.eeprom_writes += 1;
-    family.make_safe(plate, at);
+fn trip(base: &mut ModuleBase, family: &mut dyn Family, at: &mut Terminals<'_>) {
+    base.watchdog.trip();
+    base.eeprom_writes += 1;
+    family.make_safe(base, at);
 }
 
 fn broadcast(
-    plate: &mut Plate,
+    base: &mut ModuleBase,
     family: &mut dyn Family,
     request: &Request<'_>,
     at: &mut Terminals<'_>,
 ) {
     match (request.lead, request.body) {
-        (b'~', []) => plate.watchdog.feed(at.now_us),
+        (b'~', []) => base.watchdog.feed(at.now_us),
         (b'#', []) => family.sample(at),
         (_, _) => {}
     }
 }
 
-/// `I-7017F` is a `7017F`; the LED variants of other families behave like the plain ones.
+/// Returns the model number: `7017F` for `I-7017F`; LED variants of other families map to the plain ones.
 fn model_number(model: &str) -> &str {
     let number = model.trim_start_matches("I-").trim_start_matches("M-");
     match number {
@@ -290,5 +292,5 @@ fn unknown_model(spec: &ModuleSpec) -> SimError {
     }
 }
 
-/// A family together with its plate, ready to be put on a line.
-pub type Built = (Plate, Box<dyn Family>);
+/// Common part and family of a module, before it joins a line.
+pub type Built = (ModuleBase, Box<dyn Family>);

@@ -1,18 +1,18 @@
-//! Models and ranges of analog outputs, and how their values are written.
+//! Models and ranges of analog outputs, and the text format of their values.
 
 use super::range::Format;
 use crate::dcon;
 
-/// What the models differ in.
+/// Differences between the models.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Model {
     pub(super) channels: u8,
     pub(super) bits: i32,
-    /// Data carry a sign (7024).
+    /// Data contain a sign (7024).
     pub(super) signed: bool,
-    /// Data may carry a sign for their first digit.
+    /// Data may contain a sign.
     pub(super) takes_sign: bool,
-    /// Commands carry a channel digit.
+    /// Commands contain a channel digit.
     pub(super) numbered: bool,
     /// Type and slew belong to the channel (7022).
     pub(super) own_slew: bool,
@@ -20,7 +20,7 @@ pub(super) struct Model {
     pub(super) true_readback: bool,
 }
 
-/// Ends of an output range and whether it is a current.
+/// Limits of an output range, and whether it is a current.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Span {
     pub(super) low: f64,
@@ -28,7 +28,7 @@ pub(super) struct Span {
     pub(super) is_current: bool,
 }
 
-/// Range of a type code, `None` when the model does not have it.
+/// Returns the range of a type code; `None` when the model does not have it.
 pub(super) fn span(model: Model, type_code: u8) -> Option<Span> {
     let (low, high, is_current) = match type_code {
         0x30 => (0.0, 20.0, true),
@@ -46,7 +46,7 @@ pub(super) fn span(model: Model, type_code: u8) -> Option<Span> {
     })
 }
 
-/// Model of a number.
+/// Returns the model with this number.
 pub(super) fn model(number: &str) -> Model {
     let one = Model {
         channels: 1,
@@ -79,7 +79,7 @@ pub(super) fn model(number: &str) -> Model {
     }
 }
 
-/// Reads the data of an output command.
+/// Parses the data of an output command.
 pub(super) fn read(model: Model, format: Format, span: Span, data: &[u8]) -> Data {
     match format {
         Format::Hex => {
@@ -106,7 +106,7 @@ pub(super) fn read(model: Model, format: Format, span: Span, data: &[u8]) -> Dat
     }
 }
 
-/// Spells a value of the output.
+/// Formats a value of the output.
 pub(super) fn spell(model: Model, format: Format, span: Span, value: f64) -> String {
     let fraction = (value - span.low) / (span.high - span.low);
     match format {
@@ -124,14 +124,14 @@ pub(super) fn spell(model: Model, format: Format, span: Span, value: f64) -> Str
     }
 }
 
-/// Data of an output command.
+/// Parsed data of an output command.
 pub(super) enum Data {
     Value(f64),
     WrongWidth,
     Nonsense,
 }
 
-/// `ddd.dd` and the like, with or without a leading sign.
+/// Parses `ddd.dd` and similar forms, with or without a leading sign.
 fn fixed(data: &[u8], signed: bool, whole: usize, decimals: usize) -> Data {
     let alphabet = |byte: &u8| byte.is_ascii_digit() || matches!(byte, b'+' | b'-' | b'.');
     if data.is_empty() || !data.iter().all(alphabet) {

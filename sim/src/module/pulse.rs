@@ -1,4 +1,4 @@
-//! One counter: pulses let through by the gate, between preset and maximum.
+//! One counter: the pulses that pass its gate, between preset and maximum.
 
 use super::{Terminals, setting};
 use crate::error::SimError;
@@ -11,19 +11,19 @@ pub(super) struct Channel {
     pub(super) maximum: u32,
     pub(super) running: bool,
     pub(super) overflowed: bool,
-    /// Time during which pulses were let through, microseconds.
+    /// Open time of the gate that the counter has accounted for, microseconds.
     pub(super) counted_us: f64,
-    /// Gate time at the last look.
+    /// Open time of the gate at the last update, microseconds.
     pub(super) seen_us: f64,
-    /// Pulses that had passed when the counter stood at `start` above its preset.
+    /// Pulses that had passed when the counter was at `start` above its preset.
     zero_pulses: u64,
     start: u64,
-    /// Frequency at a bench input; on a rig the reference clock of the plant.
+    /// Frequency at a bench input, hertz; `None` on a rig, where the plant's reference clock applies.
     bench_hz: Option<f64>,
 }
 
 impl Channel {
-    /// True frequency at its input.
+    /// Returns the true frequency at the input, hertz.
     pub(super) fn hz(&self, at: &Terminals<'_>) -> f64 {
         self.bench_hz
             .unwrap_or_else(|| at.plant.reference_clock_hz())
@@ -41,17 +41,17 @@ impl Channel {
         self.start + (self.pulses(hz) - self.zero_pulses)
     }
 
-    /// What `#AAN` reads at an input of `hz`.
+    /// Returns the count that `#AAN` reads at an input of `hz`.
     pub(super) fn value(&self, hz: f64) -> u64 {
         u64::from(self.preset) + self.position(hz) % self.span()
     }
 
-    /// Has passed its maximum since the last reset.
+    /// Checks whether the counter has passed its maximum since the last reset.
     pub(super) fn overflow(&self, hz: f64) -> bool {
         self.overflowed || self.position(hz) >= self.span()
     }
 
-    /// Stands at its preset with nothing counted.
+    /// Returns the counter to its preset without counts.
     pub(super) fn power_cycle(&mut self) {
         self.start = 0;
         self.zero_pulses = 0;
@@ -59,7 +59,7 @@ impl Channel {
         self.overflowed = false;
     }
 
-    /// Back to the preset, overflow forgotten.
+    /// Returns the counter to its preset and clears the overflow.
     pub(super) fn reset(&mut self, hz: f64) {
         self.zero_pulses = self.pulses(hz);
         self.start = 0;
@@ -67,7 +67,7 @@ impl Channel {
     }
 }
 
-/// Both channels as the module's table says.
+/// Reads both channels from the module's table.
 pub(super) fn channels(spec: &ModuleSpec) -> Result<[Channel; 2], SimError> {
     let preset = setting::numbers(spec, "preset")?;
     let maximum = setting::numbers(spec, "maximum")?;

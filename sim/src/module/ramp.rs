@@ -1,9 +1,9 @@
-//! The output stage of one analog channel: target, present value, slew.
+//! Output stage of one analog channel: target, present value and slew.
 //!
-//! With slew code 0 the output follows at once. Otherwise it moves in steps, one per refresh, at
-//! 0.0625 V/s (0.125 mA/s) times two for each further code, until it stands at the target.
+//! With slew code 0 the output jumps to its target. Otherwise it moves in one step per refresh; code 1 is 0.0625
+//! V/s (0.125 mA/s), and each further code doubles the rate.
 
-/// Values in the unit of the output (V or mA).
+/// Slewed output; values in the unit of the output (V or mA).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ramp {
     target: f64,
@@ -11,14 +11,14 @@ pub struct Ramp {
     next_us: Option<u64>,
 }
 
-/// Nominal rate of a slew code, units a second; `None` for code 0.
+/// Returns the nominal rate of a slew code, units per second; `None` for code 0.
 pub fn nominal_rate(code: u8, is_current: bool) -> Option<f64> {
     let first = if is_current { 0.125 } else { 0.0625 };
     (code > 0).then(|| first * f64::from(1u32 << (code.min(15) - 1)))
 }
 
 impl Ramp {
-    /// At rest.
+    /// Creates an output at rest.
     pub fn at(value: f64) -> Self {
         Self {
             target: value,
@@ -27,22 +27,22 @@ impl Ramp {
         }
     }
 
-    /// Last commanded value.
+    /// Returns the last commanded value.
     pub fn target(&self) -> f64 {
         self.target
     }
 
-    /// Where the output stands.
+    /// Returns the present value.
     pub fn present(&self) -> f64 {
         self.present
     }
 
-    /// Jumps, whatever the slew code.
+    /// Jumps to a value, whatever the slew code.
     pub fn jump(&mut self, value: f64) {
         *self = Self::at(value);
     }
 
-    /// Goes to `value` in steps, the first one refresh from now unless steps are running already.
+    /// Moves to `value` in steps; the first step follows one refresh from now unless steps are running.
     pub fn go(&mut self, value: f64, now_us: u64, refresh_us: u64) {
         self.target = value;
         if self.next_us.is_none() && self.present != value {
@@ -50,12 +50,12 @@ impl Ramp {
         }
     }
 
-    /// Instant of the next step, `u64::MAX` at rest.
+    /// Returns the instant of the next step; `u64::MAX` at rest.
     pub fn next_us(&self) -> u64 {
         self.next_us.unwrap_or(u64::MAX)
     }
 
-    /// One step of at most `step` units.
+    /// Moves by at most `step` units.
     pub fn step(&mut self, step: f64, refresh_us: u64) {
         let left = self.target - self.present;
         if left.abs() <= step {
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slew_codes_double_from_a_sixteenth_of_a_volt_a_second() {
+    fn each_slew_code_doubles_the_rate() {
         assert_eq!(nominal_rate(0, false), None);
         assert_eq!(nominal_rate(5, false), Some(1.0));
         assert_eq!(nominal_rate(0xB, false), Some(64.0));

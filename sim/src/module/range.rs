@@ -1,27 +1,27 @@
-//! Ranges of analog inputs and how a reading is spelt in the three data formats.
+//! Ranges of analog inputs, and the text of a reading in the three data formats.
 //!
-//! A reading is kept as a fraction of full scale after quantising: -1 to 1 (0 to 1 where the range
-//! has no negative side), infinite where the range is left. Plain voltage ranges saturate; current,
-//! thermocouple and RTD ranges show `+9999.9` instead.
+//! A reading is a fraction of full scale after quantising: -1 to 1 (0 to 1 for a range without a negative side),
+//! infinite outside the range. Plain voltage ranges saturate; current, thermocouple and RTD ranges show `+9999.9`
+//! instead.
 
 use crate::dcon;
 
 /// One type code TT of an analog input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
-    /// Value at +FS, in the unit of the engineering format (V, mV, mA, C).
+    /// Value at +FS, unit of the engineering format (V, mV, mA, C).
     pub full_scale: f64,
-    /// Lowest value, same unit.
+    /// Lowest value, unit of the engineering format.
     pub lowest: f64,
-    /// Decimals of the engineering format; the width is always 7.
+    /// Decimals of the engineering format; its width is always 7.
     pub decimals: usize,
-    /// Terminal value (V, mA, C) times this is the engineering value: 1000 for mV ranges.
+    /// Factor from the terminal value (V, mA, C) to the engineering value: 1000 for mV ranges.
     pub per_terminal: f64,
-    /// Leaving the range shows as over-range text instead of saturating.
+    /// The range shows over-range text instead of saturating.
     pub shows_over: bool,
 }
 
-/// Low two bits of FF.
+/// Data format, the low two bits of FF.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
     /// Sign, five digits and a point.
@@ -33,7 +33,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// From FF; 11 is no format.
+    /// Reads the format from FF; `None` for the invalid code 11.
     pub fn of(ff: u8) -> Option<Self> {
         match ff & 0b11 {
             0b00 => Some(Self::Engineering),
@@ -43,7 +43,7 @@ impl Format {
         }
     }
 
-    /// Bits of FF from the words of a configuration file.
+    /// Returns the bits of FF for a format name of a configuration file.
     pub fn named(name: &str) -> Option<u8> {
         match name {
             "engineering" => Some(0b00),
@@ -55,14 +55,14 @@ impl Format {
 }
 
 impl Range {
-    /// Full-scale fraction of a value at the terminals; infinite where the range is left.
+    /// Returns the full-scale fraction of a terminal value; infinite outside the range.
     pub fn fraction(&self, terminal: f64) -> f64 {
         let value = terminal * self.per_terminal;
         let fraction = value / self.full_scale;
         if !self.shows_over {
             return fraction.clamp(self.lowest / self.full_scale, 1.0);
         }
-        // A unit in the last place beyond the end is still the end.
+        // One unit in the last place beyond the limit counts as the limit.
         let slack = 0.5 * 10f64.powi(-(self.decimals as i32));
         if value > self.full_scale + slack {
             f64::INFINITY
@@ -73,7 +73,7 @@ impl Range {
         }
     }
 
-    /// Appends the reading in `format`.
+    /// Appends the text of a reading in `format`.
     pub fn spell(&self, fraction: f64, format: Format, text: &mut String) {
         use std::fmt::Write as _;
         let over = fraction.is_infinite();
@@ -94,7 +94,7 @@ impl Range {
         };
     }
 
-    /// Hexadecimal code: 8000 to 7FFF, or 0000 to FFFF where nothing is negative.
+    /// Returns the hexadecimal code: 8000 to 7FFF, or 0000 to FFFF for a range without a negative side.
     pub fn code(&self, fraction: f64) -> u16 {
         if self.lowest >= 0.0 {
             return (fraction.clamp(0.0, 1.0) * 65_535.0).round() as u16;
@@ -109,7 +109,7 @@ fn without_minus_zero(value: f64, decimals: usize) -> f64 {
     if value.abs() < half_step { 0.0 } else { value }
 }
 
-/// Ranges of the 7017 and 7018 families.
+/// Returns a range of the 7017 and 7018 families.
 pub fn voltage_range(type_code: u8) -> Option<Range> {
     let (full_scale, decimals, per_terminal) = match type_code {
         0x00 => (15.0, 3, 1e3),
@@ -174,7 +174,7 @@ fn thermocouple_range(type_code: u8) -> Option<Range> {
     })
 }
 
-/// Ranges of the RTD module, degrees Celsius.
+/// Returns a range of the RTD module, degrees Celsius.
 pub fn rtd_range(type_code: u8) -> Option<Range> {
     let (full_scale, lowest) = match type_code {
         0x20 | 0x24 => (100.0, -100.0),
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn ten_volts_are_spelt_in_three_ways() {
+    fn ten_volts_read_in_all_three_formats() {
         let range = voltage_range(0x08).unwrap();
         assert_eq!(spelt(range, 5.0, Format::Engineering), "+05.000");
         assert_eq!(spelt(range, 5.0, Format::Percent), "+050.00");
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn voltage_saturates_and_current_says_over_range() {
+    fn voltage_saturates_and_current_shows_over_range() {
         assert_eq!(
             spelt(voltage_range(0x08).unwrap(), 13.0, Format::Engineering),
             "+10.000"

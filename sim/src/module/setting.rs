@@ -1,4 +1,4 @@
-//! Reading the keys of one module's table; an absent key is `None`, a wrong one is an error.
+//! Reads the keys of one module's table: an absent key is `None`, an unfit value is an error.
 
 use toml::Value;
 
@@ -6,22 +6,22 @@ use crate::dcon;
 use crate::error::SimError;
 use crate::terminal::ModuleSpec;
 
-/// Text of a key.
+/// Reads a text.
 pub fn text<'a>(spec: &'a ModuleSpec, key: &str) -> Result<Option<&'a str>, SimError> {
     read(spec, key, "text", Value::as_str)
 }
 
-/// True or false.
+/// Reads true or false.
 pub fn flag(spec: &ModuleSpec, key: &str) -> Result<Option<bool>, SimError> {
     read(spec, key, "true or false", Value::as_bool)
 }
 
-/// An integer or floating number.
+/// Reads an integer or a floating-point number.
 pub fn number(spec: &ModuleSpec, key: &str) -> Result<Option<f64>, SimError> {
     read(spec, key, "a number", as_number)
 }
 
-/// A number for each channel; a single number stands for channel 0, a logic value for 0 or 1.
+/// Reads a number per channel; a single number applies to channel 0, true and false count as 1 and 0.
 pub fn numbers(spec: &ModuleSpec, key: &str) -> Result<Vec<f64>, SimError> {
     let list = read(spec, key, "a list of numbers", |value| match value {
         Value::Array(items) => items.iter().map(as_number).collect(),
@@ -30,7 +30,7 @@ pub fn numbers(spec: &ModuleSpec, key: &str) -> Result<Vec<f64>, SimError> {
     Ok(list.unwrap_or_default())
 }
 
-/// A bit mask: hexadecimal text, an integer, or a list of 0 and 1 from channel 0 upwards.
+/// Reads a bit mask: hexadecimal text, an integer, or a list of 0 and 1 from channel 0 upwards.
 pub fn bits(spec: &ModuleSpec, key: &str) -> Result<Option<u32>, SimError> {
     read(
         spec,
@@ -45,7 +45,7 @@ pub fn bits(spec: &ModuleSpec, key: &str) -> Result<Option<u32>, SimError> {
     )
 }
 
-/// A type code or slew code: hexadecimal text.
+/// Reads a type code or slew code: hexadecimal text.
 pub fn code(spec: &ModuleSpec, key: &str) -> Result<Option<u8>, SimError> {
     read(spec, key, "hexadecimal text up to FF", |value| {
         let code = dcon::hex(value.as_str()?.as_bytes())?;
@@ -53,7 +53,7 @@ pub fn code(spec: &ModuleSpec, key: &str) -> Result<Option<u8>, SimError> {
     })
 }
 
-/// The error for a key whose form is right but whose value is not.
+/// Builds the error for a value of the right type but the wrong range.
 pub fn wrong(spec: &ModuleSpec, key: &str, expected: &'static str) -> SimError {
     SimError::Setting {
         module: spec.id.clone(),

@@ -1,4 +1,4 @@
-//! How many inputs and outputs a digital module has, and what follows for its data.
+//! Number of inputs and outputs of each digital module, and the widths of its data.
 
 /// Channels of a model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -9,7 +9,7 @@ pub struct Shape {
     pub outputs: u8,
 }
 
-/// Channels of a model number, `None` when it is no digital module.
+/// Returns the channels of a model number; `None` for a module that is not digital.
 pub fn shape(number: &str) -> Option<Shape> {
     let (inputs, outputs) = match number {
         "7041" => (14, 0),
@@ -29,12 +29,12 @@ pub fn shape(number: &str) -> Option<Shape> {
 }
 
 impl Shape {
-    /// Mask of all outputs.
+    /// Returns the mask of all outputs.
     pub(super) fn all_outputs(self) -> u16 {
         ones(self.outputs)
     }
 
-    /// Digits of `@AA(data)`.
+    /// Returns the number of data digits in `@AA(data)`.
     pub(super) fn output_digits(self) -> usize {
         match self.outputs {
             0..=4 => 1,
@@ -43,7 +43,7 @@ impl Shape {
         }
     }
 
-    /// First and second byte of a data reply.
+    /// Returns the first and second byte of a data reply as one word.
     pub(super) fn first_and_second(self, inputs: u16, outputs: u16) -> u16 {
         if self.outputs == 0 {
             inputs
@@ -55,7 +55,7 @@ impl Shape {
     }
 }
 
-/// Mask of so many channels.
+/// Returns the mask of the lowest `channels` channels.
 pub(super) fn ones(channels: u8) -> u16 {
     ((1u32 << channels) - 1) as u16
 }

@@ -1,26 +1,25 @@
 //! The host watchdog of one module.
 //!
-//! Only `~**` feeds it. When it expires the outputs fall to their safe values, status 04 goes to
-//! the EEPROM, the watchdog disables itself, and every output command is answered with bare `!`
-//! until `~AA1` clears the status. A watchdog that is enabled at power-on begins to count with the
-//! first `~**` it hears (not documented; so a rig may wait for its controller); one that is enabled
-//! by `~AA3` counts at once.
+//! Only `~**` feeds the watchdog. When it expires, the outputs take their safe values, status 04 goes to the
+//! EEPROM, the watchdog disables itself, and every output command gets bare `!` until `~AA1` clears the status. A
+//! watchdog that is enabled at power-on starts with the first `~**` (undocumented; a rig can so wait for its
+//! controller); one that `~AA3` enables starts at once.
 
-/// Status of a module whose watchdog has expired, as `~AA0` shows it.
+/// Status of a tripped watchdog in the reply to `~AA0`.
 const TRIPPED: u8 = 0x04;
 
-/// Enable flag, time-out and state.
+/// Enable flag, time-out and state of the watchdog.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Watchdog {
     enabled: bool,
-    /// In tenths of a second, 1 to 255.
+    /// Time-out in tenths of a second, 1 to 255.
     tenths: u8,
     expires_us: Option<u64>,
     tripped: bool,
 }
 
 impl Watchdog {
-    /// As found at power-on.
+    /// Creates the watchdog in its state at power-on.
     pub fn new(enabled: bool, tenths: u8, tripped: bool) -> Self {
         Self {
             enabled,
@@ -30,48 +29,48 @@ impl Watchdog {
         }
     }
 
-    /// Starts over with new values, now.
+    /// Restarts the watchdog with new settings at `now_us`.
     pub fn set(&mut self, enabled: bool, tenths: u8, now_us: u64) {
         self.enabled = enabled;
         self.tenths = tenths;
         self.expires_us = enabled.then(|| self.deadline(now_us));
     }
 
-    /// The host is well.
+    /// Feeds the watchdog (`~**`).
     pub fn feed(&mut self, now_us: u64) {
         if self.enabled {
             self.expires_us = Some(self.deadline(now_us));
         }
     }
 
-    /// Instant at which it expires, if nobody feeds it.
+    /// Returns the instant of expiry if no host feeds it; `None` while it does not run.
     pub fn expires_us(&self) -> Option<u64> {
         self.expires_us
     }
 
-    /// It has expired: remembers the trip and disables itself.
+    /// Trips the watchdog: stores the status and disables it.
     pub fn trip(&mut self) {
         self.enabled = false;
         self.expires_us = None;
         self.tripped = true;
     }
 
-    /// Forgets the trip.
+    /// Clears the trip status.
     pub fn clear(&mut self) {
         self.tripped = false;
     }
 
-    /// Outputs are held at their safe values.
+    /// Checks whether the watchdog holds the outputs at their safe values.
     pub fn tripped(&self) -> bool {
         self.tripped
     }
 
-    /// Answer to `~AA0`.
+    /// Returns the status in the reply to `~AA0`.
     pub fn status(&self) -> u8 {
         if self.tripped { TRIPPED } else { 0 }
     }
 
-    /// Enable flag and time-out in tenths of a second.
+    /// Returns the enable flag and the time-out in tenths of a second.
     pub fn setting(&self) -> (bool, u8) {
         (self.enabled, self.tenths)
     }
@@ -86,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_watchdog_waits_for_its_first_host_and_then_insists() {
+    fn a_watchdog_starts_with_its_first_host_request() {
         let mut dog = Watchdog::new(true, 10, false);
         assert_eq!(dog.expires_us(), None);
         dog.feed(500);

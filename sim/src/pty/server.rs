@@ -1,4 +1,4 @@
-//! One line in real time: reads stamped as they come, answers at absolute deadlines, a port that may vanish.
+//! Real-time server of one line: timestamps on reads, replies at absolute deadlines, recovery of a lost port.
 
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -14,20 +14,21 @@ use crate::SharedRig;
 use crate::line::{self, Arrival};
 use crate::rig::Reply;
 
-/// Longest pause of a line's thread.
+/// Longest sleep of a line's thread.
 const IDLE: Duration = Duration::from_millis(50);
 
-/// A sleeping thread wakes some 60 us late; it is woken so much earlier and yields until the deadline.
+/// Time by which the thread wakes before a deadline: a sleep ends some 60 us late, so the thread yields until the
+/// deadline.
 const EARLY: Duration = Duration::from_micros(120);
 
-/// Bytes as they came, with the instant at which they were read.
+/// Bytes of one read, with the instant of the read.
 type Piece = (Instant, Vec<u8>);
 
 pub(super) struct Server {
     pub(super) rig: SharedRig,
     pub(super) number: usize,
     pub(super) baud: u32,
-    /// Rate of the client, if it matters.
+    /// Baud rate that the client has set; `None` while the rate is ignored.
     pub(super) host_baud: Option<u32>,
     /// Instant of rig time 0.
     pub(super) origin: Instant,
@@ -38,7 +39,7 @@ pub(super) struct Server {
     pub(super) replies: Vec<Reply>,
 }
 
-/// The thread that reads the master until it is told to end.
+/// Thread that reads the master until `end` is set.
 struct Reader {
     thread: JoinHandle<()>,
     pieces: Receiver<Piece>,
@@ -63,7 +64,7 @@ impl Reader {
     fn finish(self, socket: &Socket) {
         self.end.store(true, Ordering::Release);
         socket.wake_reader();
-        // A thread that panicked has said so already.
+        // The panic message of the thread is already on stderr.
         let _ = self.thread.join();
     }
 }
@@ -82,10 +83,10 @@ fn read(mut master: File, pieces: &Sender<Piece>, end: &AtomicBool) {
 }
 
 impl Server {
-    /// Until told to stop; a port that was lost is opened anew when it is back.
+    /// Serves until `stop` is set; opens a new terminal when a lost port comes back.
     pub(super) fn serve(mut self, mut master: File) {
         loop {
-            // A terminal that fails is a port that is lost.
+            // An I/O error of the terminal counts as a lost port.
             let _ = self.converse(master);
             self.socket.unplug();
             self.stay_away();
@@ -118,7 +119,7 @@ impl Server {
         self.rig.port_back_us(self.number, now_us).is_some()
     }
 
-    /// While the port is lost the rig goes on.
+    /// Advances the rig while the port is lost.
     fn stay_away(&self) {
         while self.away() && !self.stopped() {
             std::thread::sleep(IDLE);
@@ -126,7 +127,7 @@ impl Server {
         }
     }
 
-    /// Until told to stop, or until the port is lost.
+    /// Serves one terminal until `stop` is set or the port is lost.
     fn converse(&mut self, mut master: File) -> io::Result<()> {
         let reader = Reader::start(&master)?;
         let mut outcome = Ok(());
@@ -147,7 +148,7 @@ impl Server {
         outcome
     }
 
-    /// Takes over the rate that the client has set.
+    /// Adopts the baud rate that the client has set.
     fn retune(&mut self) {
         if let Some(known) = self.host_baud {
             let baud = self.socket.baud().unwrap_or(known);
@@ -176,7 +177,7 @@ impl Server {
         }
     }
 
-    /// Rig time; when a deadline is as near as the thread was woken early, at that deadline.
+    /// Returns rig time; within [`EARLY`] of a deadline waits for it and returns the deadline.
     fn close_to_deadline(&self) -> u64 {
         let next_us = self.next_us();
         loop {

@@ -1,4 +1,4 @@
-//! Where clients find the port of a line; the terminal behind it changes when the port is lost.
+//! Path and links of a line's port; they outlive the terminal, which changes when the port is lost.
 
 use std::io;
 use std::os::fd::OwnedFd;
@@ -7,85 +7,85 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rustix::termios::{QueueSelector, ioctl_tiocnxcl, tcflush, tcgetattr};
 
-/// Path, links and the slave that is kept open.
+/// Path, links, and the slave descriptor that stays open; shared between threads.
 #[derive(Default)]
-pub(super) struct Socket(Mutex<Behind>);
+pub(super) struct Socket(Mutex<PortState>);
 
 #[derive(Default)]
-struct Behind {
+struct PortState {
     path: PathBuf,
     slave: Option<OwnedFd>,
     links: Vec<PathBuf>,
 }
 
 impl Socket {
-    fn behind(&self) -> MutexGuard<'_, Behind> {
+    fn state(&self) -> MutexGuard<'_, PortState> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub(super) fn path(&self) -> PathBuf {
-        self.behind().path.clone()
+        self.state().path.clone()
     }
 
-    /// A terminal is there; the links point at it.
+    /// Installs a new terminal and points the links at it.
     pub(super) fn plug(&self, path: &Path, slave: OwnedFd) -> io::Result<()> {
-        let mut behind = self.behind();
-        path.clone_into(&mut behind.path);
-        behind.slave = Some(slave);
-        behind.links.iter().try_for_each(|link| point(link, path))
+        let mut state = self.state();
+        path.clone_into(&mut state.path);
+        state.slave = Some(slave);
+        state.links.iter().try_for_each(|link| point(link, path))
     }
 
-    /// The terminal is gone, and so are the links until it is back.
+    /// Removes the terminal and its links.
     pub(super) fn unplug(&self) {
-        let mut behind = self.behind();
-        behind.slave = None;
-        behind.links.iter().for_each(|link| remove(link));
+        let mut state = self.state();
+        state.slave = None;
+        state.links.iter().for_each(|link| remove(link));
     }
 
-    /// Makes a link, and makes it again whenever the port comes back.
+    /// Makes a link, and restores it whenever the port comes back.
     pub(super) fn link(&self, link: PathBuf) -> io::Result<()> {
-        let mut behind = self.behind();
-        point(&link, &behind.path)?;
-        behind.links.push(link);
+        let mut state = self.state();
+        point(&link, &state.path)?;
+        state.links.push(link);
         Ok(())
     }
 
     /// Removes the links for good.
     pub(super) fn unlink(&self) {
-        self.behind().links.drain(..).for_each(|link| remove(&link));
+        self.state().links.drain(..).for_each(|link| remove(&link));
     }
 
-    /// A client that was killed has left the terminal exclusive; as long as this slave is open, nobody else would end
-    /// that.
+    /// Ends exclusive mode. A killed client leaves the terminal exclusive, and the open slave keeps that mode
+    /// alive.
     pub(super) fn share(&self) {
-        if let Some(slave) = &self.behind().slave {
+        if let Some(slave) = &self.state().slave {
             let _ = ioctl_tiocnxcl(slave);
         }
     }
 
-    /// The rate that the client has set at its end.
+    /// Returns the baud rate that the client has set.
     pub(super) fn baud(&self) -> Option<u32> {
-        let behind = self.behind();
-        let mode = tcgetattr(behind.slave.as_ref()?).ok()?;
+        let state = self.state();
+        let mode = tcgetattr(state.slave.as_ref()?).ok()?;
         Some(mode.output_speed())
     }
 
-    /// Wakes the reader by a character, which is no request.
+    /// Wakes the reader with one character, which forms no request.
     pub(super) fn wake_reader(&self) {
-        if let Some(slave) = &self.behind().slave {
+        if let Some(slave) = &self.state().slave {
             let _ = rustix::io::write(slave, b"\r");
         }
     }
 
-    /// Frees a writer whose host does not read.
+    /// Unblocks a writer whose host does not read.
     pub(super) fn free_writer(&self) {
-        if let Some(slave) = &self.behind().slave {
+        if let Some(slave) = &self.state().slave {
             let _ = tcflush(slave, QueueSelector::IFlush);
         }
     }
 }
 
-/// An older link is replaced, any other file is not.
+/// Makes a symbolic link; replaces an older link, never another kind of file.
 fn point(link: &Path, path: &Path) -> io::Result<()> {
     if link.is_symlink() {
         remove(link);
@@ -93,7 +93,7 @@ fn point(link: &Path, path: &Path) -> io::Result<()> {
     std::os::unix::fs::symlink(path, link)
 }
 
-/// A link that somebody removed already is as good as removed.
+/// Removes a link; ignores a link that is already gone.
 fn remove(link: &Path) {
     let _ = std::fs::remove_file(link);
 }

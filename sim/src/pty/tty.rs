@@ -1,4 +1,4 @@
-//! One pseudo-terminal, as a client that knows nothing of terminals expects it.
+//! One pseudo-terminal in raw mode, for clients that set no terminal options.
 
 use std::fs::File;
 use std::io;
@@ -10,7 +10,7 @@ use rustix::fs::{Mode, OFlags};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
-/// Both ends; the slave is in raw mode and stays open while clients come and go.
+/// Master and slave; the open slave keeps the terminal alive between clients.
 pub(super) struct Tty {
     pub(super) master: File,
     pub(super) slave: OwnedFd,
@@ -18,7 +18,7 @@ pub(super) struct Tty {
 }
 
 impl Tty {
-    /// `baud` is what a client finds that sets nothing.
+    /// Opens the terminal; `baud` is the initial rate.
     pub(super) fn open(baud: u32) -> io::Result<Self> {
         let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&master)?;

@@ -1,6 +1,6 @@
-//! The sort axis: an electric slide with a point table, trapezoidal moves, brakes without servo.
+//! The sort axis: an electric slide with a point table, trapezoidal moves, and brakes that hold without servo.
 
-/// The slide; positions in mm from the nest.
+/// The slide; all positions in mm from the nest.
 #[derive(Debug, Clone)]
 pub struct Axis {
     speed: f64,
@@ -16,11 +16,11 @@ pub struct Axis {
     moving: bool,
 }
 
-/// Shortest time in which the drive answers a start, microseconds.
+/// Shortest time from a start command to the drive's response, microseconds.
 const ANSWER_US: u64 = 5_000;
 
 impl Axis {
-    /// A slide that stands braked at `x_mm`; speed in mm/s, acceleration in mm/s2.
+    /// Creates a braked slide at `x_mm`; speed in mm/s, acceleration in mm/s2.
     pub fn new(speed: f64, acceleration: f64, points: [Option<f64>; 8], x_mm: f64) -> Self {
         Self {
             speed,
@@ -37,7 +37,7 @@ impl Axis {
         }
     }
 
-    /// Where it is.
+    /// Returns the position, mm.
     pub fn x_mm(&self, now_us: u64) -> f64 {
         if now_us >= self.end_us {
             return self.to;
@@ -58,22 +58,22 @@ impl Axis {
         self.from + way.clamp(0.0, whole).copysign(self.to - self.from)
     }
 
-    /// On the way.
+    /// Checks whether a move is running.
     pub fn is_moving(&self) -> bool {
         self.moving
     }
 
-    /// The drive has tripped.
+    /// Checks whether the drive has tripped.
     pub fn is_alarmed(&self) -> bool {
         self.alarm
     }
 
-    /// Stands on the point it was last sent to.
+    /// Checks whether the slide has reached its last target point.
     pub fn is_in_position(&self) -> bool {
         self.in_position
     }
 
-    /// Power to the servo; without it the brakes hold.
+    /// Switches the servo; without servo the brakes stop and hold the slide.
     pub fn servo(&mut self, on: bool, now_us: u64) {
         if self.servo && !on {
             self.brake(now_us);
@@ -81,7 +81,7 @@ impl Axis {
         self.servo = on;
     }
 
-    /// Goes to a point of the table; false if the drive does not start.
+    /// Starts a move to a point of the table; returns false if the drive does not start.
     pub fn go(&mut self, point: usize, now_us: u64) -> bool {
         let Some(target) = self.points.get(point).copied().flatten() else {
             return false;
@@ -104,7 +104,7 @@ impl Axis {
         true
     }
 
-    /// Trips the drive where it is.
+    /// Trips the drive at its present position.
     pub fn trip(&mut self, now_us: u64) {
         self.brake(now_us);
         self.alarm = true;
@@ -115,12 +115,12 @@ impl Axis {
         self.alarm = false;
     }
 
-    /// Instant at which the move ends.
+    /// Returns the instant at which the move ends.
     pub fn due_us(&self) -> Option<u64> {
         self.moving.then_some(self.end_us)
     }
 
-    /// The move that is due has ended.
+    /// Ends the move that is due.
     pub fn arrive(&mut self) {
         self.moving = false;
         self.in_position = true;

@@ -1,9 +1,9 @@
 //! The interface board: coil supply, contact source, monitors, references and interlocks.
 //!
-//! Drive and source need the probe-up chain. The source waits until the selected contact has been
-//! closed for a while and goes off ahead of any change of drive, selection or direction, which
-//! then comes late. The clamp changes only while the coil is free of current. Part or no part,
-//! every terminal answers what its circuit would.
+//! Drive and source need the closed probe-up chain. The source waits until the selected contact has been closed
+//! for a while; it switches off ahead of any change of drive, selection or direction, which therefore takes
+//! effect later. The coil suppression changes only without coil current. Every terminal follows its circuit, with
+//! or without a part.
 
 mod circuit;
 
@@ -15,10 +15,10 @@ use super::specimen::Specimen;
 use super::table::BoardTable;
 use crate::config::References;
 
-/// A pin counts as met below so much between force and sense.
+/// Largest resistance between force and sense at which a pin counts as connected.
 const KELVIN_OHM: f64 = 5.0;
 
-/// What drive, selection and direction stand at.
+/// Present state of drive, selection and direction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Switches {
     drive: bool,
@@ -46,7 +46,7 @@ pub struct Board {
     clamp_diode: bool,
     chain: bool,
     touching: bool,
-    /// Film on both probes of the coil together, and what a touch adds.
+    /// Film on both coil probes together, and its growth per touch.
     film_ohm: f64,
     film_per_touch_ohm: f64,
     source_live: bool,
@@ -57,7 +57,7 @@ pub struct Board {
 }
 
 impl Board {
-    /// A board with its errors drawn; `gain` is volts of supply per volt of each source.
+    /// Creates a board with drawn errors; `gain` is volts of supply per volt of each source.
     pub fn new(
         table: &BoardTable,
         reference: &References,
@@ -101,7 +101,7 @@ impl Board {
         }
     }
 
-    /// Brings board and part to `t_us`.
+    /// Advances board and part to `t_us`.
     pub fn advance(&mut self, t_us: f64, mut part: Option<&mut Specimen>) {
         loop {
             let due = self.next_us().filter(|&at| at <= t_us);
@@ -122,7 +122,7 @@ impl Board {
         }
     }
 
-    /// A source of the coil supply now stands at `volts`.
+    /// Sets a source of the coil supply to `volts`.
     pub fn supply(&mut self, source: Source, volts: f64, part: Option<&mut Specimen>) {
         self.volts[source as usize] = volts;
         let away = (self.supply_v() - self.arm_level_v).abs() * 1000.0 > self.table.ramp_start_mv;
@@ -133,7 +133,7 @@ impl Board {
         self.refresh(part);
     }
 
-    /// All commands of the controller as they now stand.
+    /// Applies all commands of the controller.
     pub fn command(&mut self, commands: Commands, mut part: Option<&mut Specimen>) {
         let before = std::mem::replace(&mut self.commands, commands);
         self.refresh(part.as_deref_mut());
@@ -145,7 +145,7 @@ impl Board {
                 .then_some(self.pulse_us);
             self.gates.arm(self.now_us, pulse);
         }
-        if self.wanted() == self.switches || self.switch_at_us.is_some() {
+        if self.commanded() == self.switches || self.switch_at_us.is_some() {
             return;
         }
         if self.source_live {
@@ -156,7 +156,7 @@ impl Board {
         }
     }
 
-    /// The probe block is up (`chain`) and on the pins of a part (`touching`).
+    /// Sets the state of the probes: block up (`chain`), and in contact with a part (`touching`).
     pub fn probe(&mut self, chain: bool, touching: bool, part: Option<&mut Specimen>) {
         if touching && !self.touching {
             self.film_ohm += self.film_per_touch_ohm;
@@ -166,22 +166,22 @@ impl Board {
         self.refresh(part);
     }
 
-    /// From now on each touch leaves so much film on both probes of the coil together.
+    /// Makes each further touch add this film to both coil probes together.
     pub fn soil(&mut self, per_touch_ohm: f64) {
         self.film_per_touch_ohm = per_touch_ohm;
     }
 
-    /// The coil voltage divider shifts by so many parts per thousand.
+    /// Shifts the coil voltage divider, parts per thousand.
     pub fn drift(&mut self, per_mille: f64) {
         self.divider = 1.0 + per_mille * 1e-3;
     }
 
-    /// Open time of a gate so far.
+    /// Returns the total open time of a gate, microseconds.
     pub fn gate_open_us(&self, gate: usize) -> f64 {
         self.gates.open_us(gate, self.now_us)
     }
 
-    /// A digital signal of the board; `None` where the signal is none of its own.
+    /// Returns a digital signal of the board; `None` for a signal of another source.
     pub fn signal(&self, signal: In, part: Option<&Specimen>) -> Option<bool> {
         let kelvin = |pin: usize| {
             let film_ohm = if pin < 2 { self.film_ohm / 2.0 } else { 0.0 };
@@ -195,8 +195,8 @@ impl Board {
             In::KelvinCom => kelvin(2),
             In::KelvinNo => kelvin(3),
             In::KelvinNc => kelvin(4),
-            In::NoClosed => Some(self.sees(Contact::No, part)),
-            In::NcClosed => Some(self.sees(Contact::Nc, part)),
+            In::NoClosed => Some(self.senses(Contact::No, part)),
+            In::NcClosed => Some(self.senses(Contact::Nc, part)),
             In::Window => Some(self.gates.window()),
             In::Latch => Some(self.gates.latch()),
             In::SourceCompliance => Some(self.source_limited(part)),
@@ -205,7 +205,7 @@ impl Board {
         }
     }
 
-    fn wanted(&self) -> Switches {
+    fn commanded(&self) -> Switches {
         Switches {
             drive: self.commands.is_on(Out::CoilDrive),
             select_no: self.commands.is_on(Out::SelectNo),
@@ -222,10 +222,10 @@ impl Board {
     }
 
     fn selected_closed(&self, part: Option<&Specimen>) -> bool {
-        self.commands.is_on(Out::ReferenceContact) || self.sees(self.selected(), part)
+        self.commands.is_on(Out::ReferenceContact) || self.senses(self.selected(), part)
     }
 
-    /// Next instant at which the board does something by itself.
+    /// Returns the instant of the board's next own event.
     fn next_us(&self) -> Option<f64> {
         let times = [
             self.switch_at_us,
@@ -255,17 +255,17 @@ impl Board {
         }
     }
 
-    /// Drive, selection and direction take the wanted position.
+    /// Switches drive, selection and direction to the commanded state.
     fn throw(&mut self, part: Option<&mut Specimen>) {
         let before = self.switches;
-        self.switches = self.wanted();
+        self.switches = self.commanded();
         if before.select_no != self.switches.select_no {
             self.closed_since_us = None;
         }
         self.refresh(part);
     }
 
-    /// The latch looks at contact events as the monitor sees them.
+    /// Passes a contact event, as the monitor detects it, to the latch.
     fn contact_event(&mut self, contact: Contact, closed: bool, part: &Specimen) {
         let met = part.pins().contact(contact) && self.touching;
         if !met || self.commands.is_on(Out::ReferenceContact) {
@@ -280,7 +280,7 @@ impl Board {
         }
     }
 
-    /// Everything that follows at once from commands, probes and contacts.
+    /// Updates everything that follows at once from commands, probes and contacts.
     fn refresh(&mut self, mut part: Option<&mut Specimen>) {
         let now = self.now_us;
         self.select_clamp(part.as_deref());
@@ -313,7 +313,7 @@ impl Board {
         }
     }
 
-    /// Start and opposite edges that the drive gives to the window.
+    /// Passes the start edge or the opposite edge of the drive to the window.
     fn edges_of_drive(&mut self) {
         let driving = self.switches.drive && self.chain;
         if driving == std::mem::replace(&mut self.driving, driving) {
@@ -333,11 +333,11 @@ impl Board {
         if self.driving && meets && !self.commands.is_on(Out::ReferenceCoil) {
             return Supply::Volts(self.behind_probes_v(part.input_ohm()));
         }
-        let clamp_v = if self.clamp_diode && meets {
+        let suppression_v = if self.clamp_diode && meets {
             self.table.diode_v
         } else {
             self.table.zener_v
         };
-        Supply::Off { clamp_v }
+        Supply::Off { suppression_v }
     }
 }

@@ -1,6 +1,6 @@
-//! One pneumatic stroke after another: position 0 at rest, 1 at the far end.
+//! One pneumatic cylinder: position 0 at rest, 1 at the far end.
 
-/// A cylinder and the stroke it is on.
+/// A cylinder and its current stroke.
 #[derive(Debug, Clone)]
 pub struct Cylinder {
     mean_us: f64,
@@ -13,7 +13,7 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    /// At rest, with a mean stroke time.
+    /// Creates a cylinder at rest with a mean stroke time.
     pub fn new(mean_ms: f64) -> Self {
         Self {
             mean_us: mean_ms * 1000.0,
@@ -26,7 +26,7 @@ impl Cylinder {
         }
     }
 
-    /// Where it is, 0 to 1.
+    /// Returns the position, 0 to 1.
     pub fn position(&self, now_us: u64) -> f64 {
         if now_us >= self.end_us {
             return self.to;
@@ -35,23 +35,23 @@ impl Cylinder {
         self.from + (self.to - self.from) * share
     }
 
-    /// Stands at the end it starts from.
+    /// Checks whether the cylinder is at its rest end.
     pub fn at_rest(&self, now_us: u64) -> bool {
         self.position(now_us) <= 0.0
     }
 
-    /// Stands at the far end.
+    /// Checks whether the cylinder is at its far end.
     pub fn at_far(&self, now_us: u64) -> bool {
         self.position(now_us) >= 1.0
     }
 
-    /// Which end it was last sent to.
+    /// Checks whether the last command was the far end.
     pub fn is_sent_far(&self) -> bool {
         self.far
     }
 
-    /// Sends it to an end; a full stroke takes the mean time `scatter`, and it `stalls` short of
-    /// the far end if asked to. Returns false if it was already sent there.
+    /// Starts a stroke to an end. A full stroke takes the mean time multiplied by `scatter`; `stalls` makes it
+    /// stop short of the far end. Returns false if that end was already commanded.
     pub fn send(&mut self, far: bool, now_us: u64, scatter: f64, stalls: bool) -> bool {
         if far == self.far {
             return false;
@@ -70,17 +70,17 @@ impl Cylinder {
         true
     }
 
-    /// Instant at which the stroke ends, until [`Cylinder::arrive`] has seen it.
+    /// Returns the end of the stroke; `None` after [`Cylinder::arrive`].
     pub fn due_us(&self) -> Option<u64> {
         (!self.arrived).then_some(self.end_us)
     }
 
-    /// Takes note of the end of a stroke that is due.
+    /// Ends the stroke that is due.
     pub fn arrive(&mut self) {
         self.arrived = true;
     }
 
-    /// Duration of the present stroke, microseconds.
+    /// Returns the duration of the present stroke, microseconds.
     pub fn stroke_us(&self) -> u64 {
         self.end_us - self.start_us
     }

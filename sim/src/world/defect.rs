@@ -1,9 +1,9 @@
-//! Which parts of a lot have a defect.
+//! Distribution of defects over a lot.
 
 use super::draw::{Draw, Subject};
 
-/// The defect of a lot part: in each block of (kinds / rate) parts every kind appears once, at a
-/// place of its own that the seed chooses.
+/// Returns the defect of a lot part: each block of (kinds / rate) parts contains every kind once, at a place that
+/// the seed draws.
 pub fn of_part<D: Copy>(kinds: &[D], seed: u64, index: u64, rate_pct: f64) -> Option<D> {
     if rate_pct <= 0.0 {
         return None;

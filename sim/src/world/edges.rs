@@ -1,9 +1,9 @@
-//! Falling edges at digital inputs, as an event counter with a 5 ms filter sees them.
+//! Counts falling edges at a digital input, with the 5 ms filter of an event counter.
 
 /// Shortest low level that counts, microseconds.
 const FILTER_US: u64 = 5_000;
 
-/// Edges at one terminal.
+/// Edge counter of one terminal.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Edges {
     low_since_us: Option<u64>,
@@ -12,7 +12,7 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// The level (true: high) from now on.
+    /// Sets the level (true: high) from now on.
     pub fn level(&mut self, high: bool, now_us: u64) {
         match (high, self.low_since_us) {
             (false, None) => {
@@ -27,13 +27,13 @@ impl Edges {
         }
     }
 
-    /// Edges so far.
+    /// Returns the number of edges so far.
     pub fn count(&mut self, now_us: u64) -> u64 {
         self.settle(now_us);
         self.count
     }
 
-    /// Starts from a level without counting it.
+    /// Sets the initial level without counting an edge.
     pub fn begin(&mut self, high: bool, now_us: u64) {
         self.low_since_us = (!high).then_some(now_us);
         self.counted = true;
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_falling_part_counts_once_and_a_spike_not_at_all() {
+    fn a_falling_part_counts_once_and_a_spike_never() {
         let mut beam = Edges::default();
         beam.begin(true, 0);
         for (t, high) in [(100, false), (9_000, true), (50_000, false), (52_000, true)] {
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lasting_low_counts_as_soon_as_the_filter_has_passed() {
+    fn a_lasting_low_counts_after_the_filter_time() {
         let mut input = Edges::default();
         input.begin(true, 0);
         input.level(false, 1_000);

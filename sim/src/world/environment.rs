@@ -4,18 +4,18 @@ use super::draw::Draw;
 use super::signal::Sensor;
 use super::table::EnvironmentTable;
 
-/// True temperatures and what the sensors make of them, degrees Celsius.
+/// True temperatures and the errors of their sensors, degrees Celsius.
 #[derive(Debug, Clone)]
 pub struct Environment {
-    /// Air around nest and magazine.
+    /// Air temperature around nest and magazine.
     pub ambient_c: f64,
-    /// Magazine track, and the parts in it on average.
+    /// Temperature of the magazine track, and mean temperature of the parts in it.
     pub track_c: f64,
     read_c: [f64; 3],
 }
 
 impl Environment {
-    /// Draws the day and the errors of the sensors.
+    /// Draws the temperatures and the errors of the sensors.
     pub fn new(table: &EnvironmentTable, draw: &mut Draw) -> Self {
         let ambient_c = draw.between([table.ambient_low_c, table.ambient_high_c]);
         let track_c = ambient_c + draw.half(table.track_minus_ambient_half_k);
@@ -28,7 +28,7 @@ impl Environment {
         }
     }
 
-    /// What a sensor shows.
+    /// Returns the reading of a sensor, degrees Celsius.
     pub fn sensor_c(&self, sensor: Sensor) -> f64 {
         self.read_c[sensor as usize]
     }

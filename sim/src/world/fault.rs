@@ -1,4 +1,4 @@
-//! Faults of the world that can be asked for by name.
+//! Faults of the world, by name.
 
 use std::path::Path;
 
@@ -6,31 +6,31 @@ use super::table::FaultSpec;
 use crate::config::ConfigError;
 use std::collections::BTreeMap;
 
-/// What the value of a fault counts.
+/// Meaning of a fault's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// Seconds of rig time; it ends by itself.
+    /// Start in seconds of rig time; the fault ends by itself.
     Timed,
-    /// Lot parts as they leave the magazine, from 1; it strikes once.
+    /// Number of a lot part in the order of leaving the magazine, from 1; the fault strikes once.
     OfPart,
-    /// Something of the whole rig, from its start.
+    /// Parameter of the whole rig, from its start.
     OfStart,
 }
 
 macro_rules! faults {
     ($($kind:ident { $($name:ident = $text:literal),* $(,)? })*) => {
-        /// A fault of mechanism, board or part; `config/sim.toml` says what each does.
+        /// A fault of mechanism, board or part; `config/sim.toml` describes each.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         #[allow(missing_docs)] // explained beside the default in config/sim.toml
         pub enum Fault { $($($name,)*)* }
 
         impl Fault {
-            /// The fault of this name.
+            /// Returns the fault of this name.
             pub fn from_name(name: &str) -> Option<Self> {
                 match name { $($($text => Some(Fault::$name),)*)* _ => None }
             }
 
-            /// What its value counts.
+            /// Returns the meaning of the fault's value.
             pub fn kind(self) -> Kind {
                 match self { $($(Fault::$name => Kind::$kind,)*)* }
             }
@@ -43,7 +43,7 @@ faults! {
         JamPusher = "jam_pusher", StuckClamp = "stuck_clamp", NoPart = "no_part",
         DoublePart = "double_part", Fall = "fall", ProbeDirty = "probe_dirty",
         BeamBlind = "beam_blind", AxisAlarm = "axis_alarm", StuckLift = "stuck_lift",
-        StuckGripper = "stuck_gripper", Turned = "turned", PartMisses = "part_misses",
+        StuckGripper = "stuck_gripper", Misoriented = "turned", PartMisses = "part_misses",
         PartStays = "part_stays", PartSticks = "part_sticks",
     }
     Timed {
@@ -55,19 +55,19 @@ faults! {
     OfStart {
         Drift = "drift", Refeed = "refeed", PartsSeed = "parts_seed",
         NoiseSeed = "noise_seed", ProbeFilm = "probe_film",
-        GoldenEvery = "golden_every",
+        ReferenceEvery = "golden_every",
     }
 }
 
-/// The faults that strike the machine and its parts, with their values.
+/// Active faults of mechanism, board and parts, with their values.
 #[derive(Debug, Clone, Default)]
 pub struct WorldFaults(Vec<(Fault, f64)>);
 
 impl WorldFaults {
-    /// Resolves names; a value that is NaN takes the default of the table.
+    /// Resolves names; NaN selects the default of the table.
     ///
     /// # Errors
-    /// There is no fault of that name.
+    /// Fails when no fault has that name.
     pub fn resolve(
         asked: &[(String, f64)],
         table: &BTreeMap<String, FaultSpec>,
@@ -91,18 +91,18 @@ impl WorldFaults {
             .map(Self)
     }
 
-    /// Faults that have a time, each with its second.
+    /// Returns the timed faults with their start in seconds.
     pub fn timed(&self) -> impl Iterator<Item = (Fault, f64)> + '_ {
         let asked = self.0.iter().copied();
         asked.filter(|(fault, _)| fault.kind() == Kind::Timed)
     }
 
-    /// One more that is to strike at a part.
-    pub fn ask(&mut self, fault: Fault, part: f64) {
+    /// Adds a fault that strikes at a part.
+    pub fn add(&mut self, fault: Fault, part: f64) {
         self.0.push((fault, part));
     }
 
-    /// Values asked for under one name.
+    /// Returns every active value of one fault.
     pub fn values(&self, fault: Fault) -> impl Iterator<Item = f64> + '_ {
         self.0
             .iter()
@@ -110,17 +110,17 @@ impl WorldFaults {
             .map(|(_, v)| *v)
     }
 
-    /// Seed of the day, where it is not that of the rig.
+    /// Returns the seed of noise and temperatures, where it differs from the seed of the rig.
     pub fn noise_seed(&self) -> Option<u64> {
         self.values(Fault::NoiseSeed).next().map(|it| it as u64)
     }
 
-    /// Whatever still waits for its part is called off.
+    /// Cancels every fault that waits for its part.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// Takes away a fault that strikes once at a part (counted from 1); true if it was asked for.
+    /// Removes a fault that strikes at this part (number from 1); returns true if it was active.
     pub fn strikes(&mut self, fault: Fault, part: Option<u64>) -> bool {
         let hit = |(f, v): &(Fault, f64)| *f == fault && part == Some(*v as u64);
         let place = self.0.iter().position(hit);

@@ -1,15 +1,14 @@
 //! Window flip-flop, latch and the two counter gates of the interface board.
 //!
-//! - Window W: cleared by ARM, set by the start event while the latch is clear, cleared by the
-//!   opposite edge and a while after the latch.
-//! - Latch L: set by the selected contact event while W is set, cleared by ARM.
+//! - Window W: ARM clears it; the start event sets it while the latch is clear; the opposite edge clears it, and
+//!   so does the time-out after the latch.
+//! - Latch L: the selected contact event sets it while W is set; ARM clears it.
 //! - Gate 0 = W and not L. Gate 1 = W and not the selected contact.
 //! - ARM with the reference contact selected opens both gates for the reference pulse instead.
 //!
-//! Each gate has a delay of its own, added once per ARM as it first opens (taken off for a
-//! negative one).
+//! Each gate has its own delay, added (or subtracted, if negative) once per ARM when the gate first opens.
 
-/// The two gates and what governs them.
+/// The two counter gates with their flip-flops.
 #[derive(Debug, Clone)]
 pub struct Gates {
     window: bool,
@@ -25,7 +24,7 @@ pub struct Gates {
 }
 
 impl Gates {
-    /// Gates with their delays; the window closes `after_latch_us` after the latch.
+    /// Creates gates with their delays; the window closes `after_latch_us` after the latch.
     pub fn new(delay_us: [f64; 2], after_latch_us: f64) -> Self {
         Self {
             window: false,
@@ -41,23 +40,23 @@ impl Gates {
         }
     }
 
-    /// State of the window flip-flop.
+    /// Returns the state of the window flip-flop.
     pub fn window(&self) -> bool {
         self.window
     }
 
-    /// State of the latch.
+    /// Returns the state of the latch.
     pub fn latch(&self) -> bool {
         self.latch
     }
 
-    /// Total open time of a gate up to `t_us`.
+    /// Returns the total open time of a gate up to `t_us`, microseconds.
     pub fn open_us(&self, gate: usize, t_us: f64) -> f64 {
         let running = self.open_from_us[gate].map_or(0.0, |from| (t_us - from).max(0.0));
         self.total_us[gate] + running
     }
 
-    /// Clears both flip-flops; with a pulse length, opens both gates for so long.
+    /// Clears both flip-flops; with a pulse length, opens both gates for that time.
     pub fn arm(&mut self, t_us: f64, pulse_us: Option<f64>) {
         self.window = false;
         self.latch = false;
@@ -69,7 +68,7 @@ impl Gates {
         self.update(t_us);
     }
 
-    /// The start event.
+    /// Applies the start event.
     pub fn start(&mut self, t_us: f64) {
         if !self.latch {
             self.window = true;
@@ -77,14 +76,14 @@ impl Gates {
         }
     }
 
-    /// The edge opposite to the start.
+    /// Applies the edge opposite to the start.
     pub fn opposite(&mut self, t_us: f64) {
         self.window = false;
         self.window_ends_us = None;
         self.update(t_us);
     }
 
-    /// The selected contact event.
+    /// Applies the selected contact event.
     pub fn event(&mut self, t_us: f64) {
         if self.window && !self.latch {
             self.latch = true;
@@ -93,7 +92,7 @@ impl Gates {
         }
     }
 
-    /// The selected contact as the monitor sees it.
+    /// Sets the selected contact as the monitor detects it.
     pub fn contact(&mut self, t_us: f64, closed: bool) {
         if self.contact_closed != closed {
             self.contact_closed = closed;
@@ -101,13 +100,13 @@ impl Gates {
         }
     }
 
-    /// Next instant at which something ends by itself.
+    /// Returns the instant of the next event by time.
     pub fn next_us(&self) -> Option<f64> {
         let ends = [self.window_ends_us, self.pulse_ends_us];
         ends.into_iter().flatten().min_by(f64::total_cmp)
     }
 
-    /// Ends what is due.
+    /// Ends the pulse or the window that is due.
     pub fn expire(&mut self, t_us: f64) {
         if self.window_ends_us.is_some_and(|end| end <= t_us) {
             self.window = false;
@@ -154,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn gate_0_runs_from_the_start_event_to_the_latch() {
+    fn gate_0_runs_from_start_event_to_latch() {
         let mut g = gates();
         g.arm(0.0, None);
         g.start(100.0);
@@ -164,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn gate_1_also_counts_the_open_time_of_the_bounce() {
+    fn gate_1_counts_the_open_time_of_bounce() {
         let mut g = gates();
         g.arm(0.0, None);
         g.start(100.0);
@@ -211,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reference_pulse_opens_both_gates_and_each_adds_its_delay() {
+    fn the_reference_pulse_opens_both_gates_with_their_delays() {
         let mut g = Gates::new([7.0, -4.0], 20_000.0);
         g.contact(0.0, true);
         g.arm(5.0, Some(1_000.0));

@@ -1,4 +1,4 @@
-//! The magazine track and every part that has left it. It may be emptied and filled anew while the rig runs.
+//! The magazine track and its parts; an operator may empty and refill it while the rig runs.
 
 use super::draw::{Draw, Subject};
 use super::specimen::{Arrival, Lot, Specimen};
@@ -10,26 +10,26 @@ use super::{
 use crate::config::ConfigError;
 use crate::truth::{BodyTruth, PartTruth, Place};
 
-/// The pin that [`Fault::ProbeDirty`] takes: NO.
+/// Index of the pin that [`Fault::ProbeDirty`] affects: NO.
 const DIRTY_PIN: usize = 3;
 
-/// A part outside the magazine.
+/// A part that has left the magazine.
 #[derive(Debug, Clone)]
 pub struct Part {
-    /// What the probes find; it keeps its history.
+    /// Specimen; it keeps its operating history.
     pub specimen: Specimen,
-    /// Order of entering the nest, from 1; 0 before, and for golden parts always.
+    /// Order of entering the nest, from 1; 0 before that, and for every reference part.
     pub seq: u64,
-    /// Place in the lot from 1, none for golden parts: what `--fault` counts by.
+    /// Number in the lot from 1, which faults of a part refer to; `None` for reference parts.
     pub number: Option<u64>,
-    /// A second body clings to it.
+    /// A second body clings to this one.
     pub double: bool,
-    /// Where it has been, and since when, microseconds.
+    /// Places with the time of arrival, microseconds.
     pub path: Vec<(u64, Place)>,
 }
 
 impl Part {
-    /// What this part was.
+    /// Returns the true values of this part.
     pub fn truth(&self) -> PartTruth {
         PartTruth {
             seq: self.seq,
@@ -41,10 +41,10 @@ impl Part {
         }
     }
 
-    /// The same with its way, and the body that clings to it.
+    /// Returns this body with its path, and the body that clings to it.
     pub fn bodies(&self) -> impl Iterator<Item = BodyTruth> {
         let own = BodyTruth {
-            golden: self.number.is_none(),
+            is_reference: self.number.is_none(),
             clung: false,
             path: self.path.clone(),
             part: self.truth(),
@@ -60,34 +60,34 @@ impl Part {
         std::iter::once(own).chain(second)
     }
 
-    /// It comes to a place.
-    pub fn goes(&mut self, now_us: u64, place: Place) {
+    /// Records the arrival at a place.
+    pub fn arrive(&mut self, now_us: u64, place: Place) {
         self.path.push((now_us, place));
     }
 }
 
-/// Parts in the order in which they leave: golden ones first.
+/// Parts in the order in which they leave: reference parts first.
 #[derive(Debug, Clone)]
 pub struct Magazine {
     lot: Lot,
     seed: u64,
-    /// Lot parts that lie in it, none for no end.
+    /// Number of lot parts; `None` for an endless lot.
     parts: Option<u64>,
-    /// Lot parts between two golden ones, once the lot has begun.
-    golden_every: Option<u64>,
-    /// Golden and lot parts that have left.
+    /// Number of lot parts between two reference parts, once the lot has begun.
+    reference_every: Option<u64>,
+    /// Reference parts and lot parts that have left.
     out: (u64, u64),
-    /// How many of each had left when the magazine was filled.
+    /// Values of `out` when the magazine was filled.
     filled_at: (u64, u64),
     track_c: f64,
     ambient_c: f64,
 }
 
 impl Magazine {
-    /// A full magazine; temperatures are those of the track and of the air.
+    /// Loads a full magazine, with the temperatures of its track and of the air.
     ///
     /// # Errors
-    /// The recipe or the certificates cannot be read.
+    /// Fails when the recipe or the certificates cannot be read.
     pub fn load(
         options: &WorldOptions,
         world: &WorldTable,
@@ -99,8 +99,8 @@ impl Magazine {
             lot: Lot::read(options, world)?,
             seed: options.seed,
             parts: options.parts,
-            golden_every: faults
-                .values(Fault::GoldenEvery)
+            reference_every: faults
+                .values(Fault::ReferenceEvery)
                 .next()
                 .map(|it| it.max(1.0) as u64),
             out: (0, 0),
@@ -110,41 +110,41 @@ impl Magazine {
         })
     }
 
-    /// The same after another one was emptied: parts are counted on, so that none of them comes twice.
+    /// Continues the counts of the magazine before, so that no lot part comes twice.
     pub fn in_place_of(mut self, before: &Self) -> Self {
         (self.out, self.filled_at) = (before.out, before.out);
         self
     }
 
-    /// Golden and lot parts that have left since it was filled.
+    /// Returns the reference parts and lot parts that have left since the filling.
     fn since_filled(&self) -> (u64, u64) {
         (self.out.0 - self.filled_at.0, self.out.1 - self.filled_at.1)
     }
 
-    /// Parts that still wait, `u64::MAX` for an endless lot.
+    /// Returns the number of remaining parts; `u64::MAX` for an endless lot.
     pub fn waiting(&self) -> u64 {
         let out = self.since_filled();
-        let ahead = self.lot.golden().saturating_sub(out.0);
+        let ahead = self.lot.reference_parts().saturating_sub(out.0);
         let lot = |parts: u64| ahead + parts.saturating_sub(out.1);
         self.parts.map_or(u64::MAX, lot)
     }
 
-    /// Place in the lot (from 1) of the part that leaves next; none when it is a golden one.
+    /// Returns the number in the lot (from 1) of the next part; `None` for a reference part.
     pub fn next_number(&self) -> Option<u64> {
-        (self.since_filled().0 >= self.golden_due()).then_some(self.out.1 + 1)
+        (self.since_filled().0 >= self.reference_parts_due()).then_some(self.out.1 + 1)
     }
 
-    /// Golden parts that belong before the next lot part.
-    fn golden_due(&self) -> u64 {
+    /// Returns the number of reference parts that precede the next lot part.
+    fn reference_parts_due(&self) -> u64 {
         let lot = self.since_filled().1;
-        let again = self.golden_every.map_or(0, |every| lot / every);
-        match self.lot.golden() {
+        let again = self.reference_every.map_or(0, |every| lot / every);
+        match self.lot.reference_parts() {
             0 => 0,
             first => first + again,
         }
     }
 
-    /// The next part leaves; `None` from an empty track.
+    /// Removes and returns the next part; `None` when the track is empty.
     pub fn take(&mut self, now_us: u64, faults: &mut WorldFaults) -> Option<Part> {
         if self.waiting() == 0 {
             return None;
@@ -152,7 +152,7 @@ impl Magazine {
         let number = self.next_number();
         let specimen = match number {
             Some(n) => self.lot_part(n - 1, now_us, faults),
-            None => self.golden_part(self.out.0, now_us, faults)?,
+            None => self.reference_part(self.out.0, now_us, faults)?,
         };
         match number {
             Some(_) => self.out.1 += 1,
@@ -167,7 +167,7 @@ impl Magazine {
         })
     }
 
-    /// A part that is fed again is the same body, and operates anew.
+    /// Creates a lot part; a part that a fault feeds again has the same body with fresh operations.
     fn lot_part(&self, index: u64, now_us: u64, faults: &mut WorldFaults) -> Specimen {
         let asked = |fault| faults.values(fault).next().map(|it| it as u64);
         let seed = asked(Fault::PartsSeed).unwrap_or(self.seed);
@@ -179,21 +179,29 @@ impl Magazine {
             dirty_pin: faults
                 .strikes(Fault::ProbeDirty, number)
                 .then_some(DIRTY_PIN),
-            turned: faults.strikes(Fault::Turned, number),
+            misoriented: faults.strikes(Fault::Misoriented, number),
             ..self.arrival(now_us, draw)
         };
         self.lot.part(seed, body, arrival)
     }
 
-    /// After the last one the first golden part comes again.
-    fn golden_part(&self, index: u64, now_us: u64, faults: &WorldFaults) -> Option<Specimen> {
+    /// Creates a reference part; after the last one the first one repeats.
+    fn reference_part(&self, index: u64, now_us: u64, faults: &WorldFaults) -> Option<Specimen> {
         let place = index - self.filled_at.0;
-        let body = if place < self.lot.golden() { place } else { 0 };
+        let body = if place < self.lot.reference_parts() {
+            place
+        } else {
+            0
+        };
         let noise = faults.noise_seed();
-        let draw = Draw::new(noise.unwrap_or(self.seed), Subject::GoldenOperations, index);
+        let draw = Draw::new(
+            noise.unwrap_or(self.seed),
+            Subject::ReferenceOperations,
+            index,
+        );
         let arrival = self.arrival(now_us, draw);
         self.lot
-            .golden_part(self.seed, body, noise.is_some(), arrival)
+            .reference_part(self.seed, body, noise.is_some(), arrival)
     }
 
     fn arrival(&self, now_us: u64, draw: Draw) -> Arrival {
@@ -203,7 +211,7 @@ impl Magazine {
             ambient_c: self.ambient_c,
             draw,
             dirty_pin: None,
-            turned: false,
+            misoriented: false,
         }
     }
 }

@@ -1,10 +1,9 @@
-//! Escapement, pusher, clamp, probe lift, sorter and gripper, and the parts that they move.
+//! Escapement, pusher, jaws, probe lift, sorter and gripper, and the parts that they move.
 //!
-//! Air and outputs move cylinders; a cylinder without either goes to its rest, a bistable one
-//! stays. Strokes take their own time. Parts move because something moves them: the escapement
-//! lets one fall into an empty pocket, the pusher carries it to the nest, fingers that close on
-//! it take it along once sort z rises, and it falls when they open. The emergency stop vents the
-//! air and takes the servo's power.
+//! Air and outputs move the cylinders; without either a cylinder returns to its rest end, and a bistable one
+//! keeps its position. Every stroke draws its own time. A part moves only by contact: the escapement drops it
+//! into an empty pocket, the pusher carries it to the nest, closed fingers lift it as sort z rises, and open
+//! fingers drop it. The emergency stop vents the air and cuts the power of the servo.
 
 mod parts;
 mod posture;
@@ -21,12 +20,12 @@ use super::signal::{Commands, In, Out};
 use super::table::MechanismTable;
 use crate::config::Bin;
 use crate::truth::{BodyTruth, Place};
-use posture::Lookout;
+use posture::CrashWatch;
 use std::collections::VecDeque;
 
-/// A cylinder of the line.
+/// Identifies a cylinder of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Stroke {
+enum CylinderId {
     Escapement,
     Pusher,
     JawLeft,
@@ -36,7 +35,7 @@ enum Stroke {
     Gripper,
 }
 
-impl Stroke {
+impl CylinderId {
     const ALL: [Self; 7] = [
         Self::Escapement,
         Self::Pusher,
@@ -47,7 +46,7 @@ impl Stroke {
         Self::Gripper,
     ];
 
-    /// As in `config/scene.toml`.
+    /// Returns the name in `config/scene.toml`.
     const fn name(self) -> &'static str {
         match self {
             Self::Escapement => "escapement",
@@ -61,9 +60,9 @@ impl Stroke {
     }
 }
 
-/// Something that happens by itself later.
+/// Event that the mechanism has scheduled.
 #[derive(Debug, Clone)]
-enum Later {
+enum Scheduled {
     LiftOff,
     LetGo,
     Slip,
@@ -72,12 +71,12 @@ enum Later {
     Dark(In),
     Lit(In),
     Land(String, Box<Part>),
-    Disturb(Fault),
-    Calm(Fault),
+    Strike(Fault),
+    End(Fault),
 }
 
-/// So many motions are remembered: a quarter of an hour of production.
-const DRIVEN: usize = 8_192;
+/// Number of motion starts that are kept: a quarter of an hour of production.
+const MOTION_STARTS_KEPT: usize = 8_192;
 
 /// The mechanism with its parts.
 #[derive(Debug, Clone)]
@@ -86,23 +85,23 @@ pub struct Mechanism {
     cylinders: [Cylinder; 7],
     axis: Axis,
     bins: Vec<Bin>,
-    lookout: Lookout,
+    lookout: CrashWatch,
     magazine: Magazine,
-    /// Where the parts are.
+    /// Parts by their place.
     pub places: Places,
     faults: WorldFaults,
     draw: Draw,
     commands: Commands,
     disturbed: Vec<Fault>,
     dark: Vec<In>,
-    later: Vec<(u64, Later)>,
+    scheduled: Vec<(u64, Scheduled)>,
     next_us: u64,
     crashes: Vec<String>,
     driven: VecDeque<(u64, &'static str)>,
 }
 
 impl Mechanism {
-    /// Everything at rest, the axis braked at `park_mm`.
+    /// Creates the mechanism at rest, with the axis braked at `park_mm`.
     pub fn new(
         table: &MechanismTable,
         axis: Axis,
@@ -121,16 +120,16 @@ impl Mechanism {
             table.gripper_ms,
         ];
         let at = |s: f64| (s.max(0.0) * 1e6) as u64;
-        let later: Vec<(u64, Later)> = faults
+        let scheduled: Vec<(u64, Scheduled)> = faults
             .timed()
-            .map(|(fault, s)| (at(s), Later::Disturb(fault)))
+            .map(|(fault, s)| (at(s), Scheduled::Strike(fault)))
             .collect();
         let mut mechanism = Self {
             table: table.clone(),
             cylinders: means.map(Cylinder::new),
             axis,
             bins,
-            lookout: Lookout::over(bodies),
+            lookout: CrashWatch::new(bodies),
             magazine,
             places: Places::default(),
             faults,
@@ -138,7 +137,7 @@ impl Mechanism {
             commands: Commands::default(),
             disturbed: Vec::new(),
             dark: Vec::new(),
-            later,
+            scheduled,
             next_us: u64::MAX,
             crashes: Vec::new(),
             driven: VecDeque::new(),
@@ -147,18 +146,18 @@ impl Mechanism {
         mechanism
     }
 
-    /// Next instant at which something happens by itself.
+    /// Returns the instant of the mechanism's next own event.
     pub fn next_us(&self) -> u64 {
         self.next_us
     }
 
-    /// Bodies that touched where they must not, in order of time.
+    /// Returns a description of each crash, in order of time.
     pub fn crashes(&self) -> &[String] {
         &self.crashes
     }
 
-    /// The magazine is emptied and filled with what `load` makes of the faults that still wait.
-    pub fn fill<E>(
+    /// Replaces the parts in the magazine by those that `load` prepares from the remaining faults.
+    pub fn refill<E>(
         &mut self,
         load: impl FnOnce(&WorldFaults) -> Result<Magazine, E>,
     ) -> Result<(), E> {
@@ -166,10 +165,10 @@ impl Mechanism {
         Ok(())
     }
 
-    /// Every body that has left the magazine, in order of leaving.
+    /// Returns every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
-        let falling = self.later.iter().filter_map(|(_, what)| match what {
-            Later::Land(_, part) => Some(part.bodies()),
+        let falling = self.scheduled.iter().filter_map(|(_, what)| match what {
+            Scheduled::Land(_, part) => Some(part.bodies()),
             _ => None,
         });
         let mut all: Vec<BodyTruth> = self.places.bodies().chain(falling.flatten()).collect();
@@ -177,38 +176,39 @@ impl Mechanism {
         all
     }
 
-    /// What began to move because an output told it to, and when, microseconds; the last [`DRIVEN`] of them.
-    pub fn driven(&self) -> impl Iterator<Item = (u64, &'static str)> + '_ {
+    /// Returns the start of each of the last [`MOTION_STARTS_KEPT`] motions that an output caused: microseconds and actuator.
+    pub fn motion_starts(&self) -> impl Iterator<Item = (u64, &'static str)> + '_ {
         self.driven.iter().copied()
     }
 
     fn note_driven(&mut self, now_us: u64, what: &'static str) {
         self.driven.push_back((now_us, what));
-        if self.driven.len() > DRIVEN {
+        if self.driven.len() > MOTION_STARTS_KEPT {
             self.driven.pop_front();
         }
     }
 
-    /// Faults that still wait for their part or their instant are called off.
-    pub fn calm(&mut self) {
+    /// Cancels the faults that have not struck yet.
+    pub fn cancel_faults(&mut self) {
         self.faults.clear();
-        self.later
-            .retain(|(_, what)| !matches!(what, Later::Disturb(_)));
+        self.scheduled
+            .retain(|(_, what)| !matches!(what, Scheduled::Strike(_)));
         self.schedule();
     }
 
-    /// The pin block is up: the probe-up chain is closed.
+    /// Checks whether the pin block is up, so that the probe-up chain is closed.
     pub fn probes_up(&self, now_us: u64) -> bool {
-        self.at(Stroke::ProbeLift).at_far(now_us)
+        self.at(CylinderId::ProbeLift).at_far(now_us)
     }
 
-    /// The pins of a clamped part stand on the probes.
+    /// Checks whether the probes touch the pins of a clamped part.
     pub fn probes_touch(&self, now_us: u64) -> bool {
-        let clamped = [Stroke::JawLeft, Stroke::JawRight].map(|j| self.at(j).at_far(now_us));
+        let clamped =
+            [CylinderId::JawLeft, CylinderId::JawRight].map(|j| self.at(j).at_far(now_us));
         self.probes_up(now_us) && self.places.nest.is_some() && clamped == [true, true]
     }
 
-    /// All commands of the controller as they now stand.
+    /// Applies all commands of the controller.
     pub fn command(&mut self, commands: Commands, now_us: u64) {
         self.watch(now_us);
         let before = std::mem::replace(&mut self.commands, commands);
@@ -226,10 +226,10 @@ impl Mechanism {
         self.schedule();
     }
 
-    /// Lets happen what is due at [`Mechanism::next_us`].
+    /// Carries out the events that are due at [`Mechanism::next_us`].
     pub fn process(&mut self, now_us: u64) {
         self.watch(now_us);
-        for stroke in Stroke::ALL {
+        for stroke in CylinderId::ALL {
             if self.at(stroke).due_us().is_some_and(|due| due <= now_us) {
                 self.cylinders[stroke as usize].arrive();
                 self.stroke_ended(stroke, now_us);
@@ -238,25 +238,25 @@ impl Mechanism {
         if self.axis.due_us().is_some_and(|due| due <= now_us) {
             self.axis.arrive();
         }
-        while let Some(place) = self.later.iter().position(|(due, _)| *due <= now_us) {
-            let (_, what) = self.later.remove(place);
-            self.happen(what, now_us);
+        while let Some(place) = self.scheduled.iter().position(|(due, _)| *due <= now_us) {
+            let (_, what) = self.scheduled.remove(place);
+            self.run_event(what, now_us);
         }
         self.schedule();
     }
 
-    /// A fault that has a time strikes now.
-    pub fn disturb(&mut self, fault: Fault, now_us: u64) {
-        self.later.push((now_us, Later::Disturb(fault)));
+    /// Lets a timed fault strike now.
+    pub fn strike(&mut self, fault: Fault, now_us: u64) {
+        self.scheduled.push((now_us, Scheduled::Strike(fault)));
         self.schedule();
     }
 
-    /// A fault is to strike at a part (counted from 1).
-    pub fn ask(&mut self, fault: Fault, part: f64) {
-        self.faults.ask(fault, part);
+    /// Adds a fault that strikes at a part (number from 1).
+    pub fn add_part_fault(&mut self, fault: Fault, part: f64) {
+        self.faults.add(fault, part);
     }
 
-    fn at(&self, stroke: Stroke) -> &Cylinder {
+    fn at(&self, stroke: CylinderId) -> &Cylinder {
         &self.cylinders[stroke as usize]
     }
 
@@ -268,7 +268,7 @@ impl Mechanism {
         !self.is_disturbed(Fault::Air) && !self.is_disturbed(Fault::Estop)
     }
 
-    /// Every valve is off, or there is no air.
+    /// Checks whether every valve is off or the air is gone, so that only springs move cylinders.
     fn only_springs_move(&self) -> bool {
         let valves = [
             Out::EscapementRelease,
@@ -286,7 +286,7 @@ impl Mechanism {
     fn schedule(&mut self) {
         let strokes = self.cylinders.iter().filter_map(Cylinder::due_us);
         let others = self
-            .later
+            .scheduled
             .iter()
             .map(|(due, _)| *due)
             .chain(self.axis.due_us());
@@ -296,10 +296,10 @@ impl Mechanism {
     fn move_cylinders(&mut self, now_us: u64) {
         let (air, on) = (self.has_air(), self.commands);
         let single = [
-            (Stroke::Escapement, Out::EscapementRelease),
-            (Stroke::Pusher, Out::PusherExtend),
-            (Stroke::ProbeLift, Out::ProbeLift),
-            (Stroke::SortZ, Out::SortZLower),
+            (CylinderId::Escapement, Out::EscapementRelease),
+            (CylinderId::Pusher, Out::PusherExtend),
+            (CylinderId::ProbeLift, Out::ProbeLift),
+            (CylinderId::SortZ, Out::SortZLower),
         ];
         for (stroke, out) in single {
             let driven = air && on.is_on(out);
@@ -308,9 +308,9 @@ impl Mechanism {
             }
         }
         let bistable = [
-            (Stroke::JawLeft, Out::ClampClose, Out::ClampOpen),
-            (Stroke::JawRight, Out::ClampClose, Out::ClampOpen),
-            (Stroke::Gripper, Out::GripperClose, Out::GripperRelease),
+            (CylinderId::JawLeft, Out::ClampClose, Out::ClampOpen),
+            (CylinderId::JawRight, Out::ClampClose, Out::ClampOpen),
+            (CylinderId::Gripper, Out::GripperClose, Out::GripperRelease),
         ];
         for (stroke, far, back) in bistable {
             let began = match (air, on.is_on(far), on.is_on(back)) {
@@ -324,8 +324,8 @@ impl Mechanism {
         }
     }
 
-    /// False when it was sent there before.
-    fn send(&mut self, stroke: Stroke, far: bool, now_us: u64) -> bool {
+    /// Starts a stroke; returns false if that end was already commanded.
+    fn send(&mut self, stroke: CylinderId, far: bool, now_us: u64) -> bool {
         if far == self.at(stroke).is_sent_far() {
             return false;
         }
@@ -336,15 +336,15 @@ impl Mechanism {
         true
     }
 
-    fn stalls(&mut self, stroke: Stroke) -> bool {
+    fn stalls(&mut self, stroke: CylinderId) -> bool {
         let number = |part: &Option<Box<Part>>| part.as_ref().and_then(|p| p.number);
         let (pocket, nest) = (number(&self.places.pocket), number(&self.places.nest));
         match stroke {
-            Stroke::Pusher => self.faults.strikes(Fault::JamPusher, pocket),
-            Stroke::JawRight => self.faults.strikes(Fault::StuckClamp, nest),
-            Stroke::ProbeLift => self.faults.strikes(Fault::StuckLift, nest),
-            Stroke::Gripper => self.faults.strikes(Fault::StuckGripper, nest),
-            Stroke::Escapement | Stroke::JawLeft | Stroke::SortZ => false,
+            CylinderId::Pusher => self.faults.strikes(Fault::JamPusher, pocket),
+            CylinderId::JawRight => self.faults.strikes(Fault::StuckClamp, nest),
+            CylinderId::ProbeLift => self.faults.strikes(Fault::StuckLift, nest),
+            CylinderId::Gripper => self.faults.strikes(Fault::StuckGripper, nest),
+            CylinderId::Escapement | CylinderId::JawLeft | CylinderId::SortZ => false,
         }
     }
 
@@ -361,33 +361,33 @@ impl Mechanism {
         let number = self.places.carried.as_ref().and_then(|p| p.number);
         let whole = self.axis.due_us().map_or(0, |due| due - now_us);
         if self.faults.strikes(Fault::Fall, number) {
-            self.later.push((now_us + whole / 3, Later::Slip));
+            self.scheduled.push((now_us + whole / 3, Scheduled::Slip));
         }
         if self.faults.strikes(Fault::AxisAlarm, number) {
-            self.later.push((now_us + whole / 2, Later::Trip));
+            self.scheduled.push((now_us + whole / 2, Scheduled::Trip));
         }
     }
 
-    fn happen(&mut self, what: Later, now_us: u64) {
+    fn run_event(&mut self, what: Scheduled, now_us: u64) {
         match what {
-            Later::LiftOff => self.lift_off(now_us),
-            Later::LetGo => self.let_go(now_us),
-            Later::Slip | Later::TakenOut => self.lose(now_us),
-            Later::Trip => self.axis.trip(now_us),
-            Later::Dark(beam) => self.dark.push(beam),
-            Later::Lit(beam) => self.dark.retain(|&b| b != beam),
-            Later::Land(bin, mut part) => {
-                part.goes(now_us, Place::Bin(bin));
+            Scheduled::LiftOff => self.lift_off(now_us),
+            Scheduled::LetGo => self.let_go(now_us),
+            Scheduled::Slip | Scheduled::TakenOut => self.drop_carried(now_us),
+            Scheduled::Trip => self.axis.trip(now_us),
+            Scheduled::Dark(beam) => self.dark.push(beam),
+            Scheduled::Lit(beam) => self.dark.retain(|&b| b != beam),
+            Scheduled::Land(bin, mut part) => {
+                part.arrive(now_us, Place::Bin(bin));
                 self.places.finish(&part);
             }
-            Later::Disturb(fault) => {
+            Scheduled::Strike(fault) => {
                 self.disturbed.push(fault);
                 let hold = (self.table.fault_hold_ms * 1000.0) as u64;
-                self.later.push((now_us + hold, Later::Calm(fault)));
+                self.scheduled.push((now_us + hold, Scheduled::End(fault)));
                 self.disturbance_changed(now_us);
             }
-            Later::Calm(fault) => {
-                // One that was struck again goes on until the later end.
+            Scheduled::End(fault) => {
+                // A repeated fault lasts until the later end.
                 let first = self.disturbed.iter().position(|&other| other == fault);
                 first.map(|place| self.disturbed.remove(place));
                 self.disturbance_changed(now_us);

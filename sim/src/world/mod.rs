@@ -6,13 +6,13 @@
 //!                 board <-> probes <-> specimen of the part in the nest (a folder per kind: relay, resistor)
 //! ```
 //!
-//! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the
-//! board. Everything is drawn from the seed in streams of its own, so the same stimuli give the
-//! same world again. Nothing here knows what the controller is for.
+//! Time runs from event to event: strokes and falls in the mechanism, contacts and timers on the board. Every
+//! subject draws from a stream of its own, so the same seed and stimuli give the same world. The world does not
+//! depend on the purpose of the controller.
 
 pub mod axis;
 pub mod board;
-#[cfg_attr(not(feature = "bodies"), path = "unwatched.rs")]
+#[cfg_attr(not(feature = "bodies"), path = "no_bodies.rs")]
 pub mod bodies;
 pub mod cylinder;
 pub mod defect;
@@ -53,22 +53,22 @@ use specimen::Specimen;
 use table::WorldTable;
 use wiring::{Wire, Wiring};
 
-/// What to build.
+/// Configuration of a world.
 #[derive(Debug, Clone, Default)]
 pub struct WorldOptions {
     /// Folder with `rig.toml`, `sim.toml`, `golden.toml` and `recipes/`.
     pub config_dir: PathBuf,
-    /// Another world on top of `sim.toml`.
+    /// World file that overrides keys of `sim.toml`.
     pub world_file: Option<PathBuf>,
-    /// Draws rig and lot.
+    /// Seed of the rig's errors and of the lot.
     pub seed: u64,
     /// Recipe of the parts in the magazine.
     pub recipe: String,
-    /// Lot parts in the magazine; `None` never runs out.
+    /// Number of lot parts in the magazine; `None` never runs out.
     pub parts: Option<u64>,
-    /// Golden parts come first.
-    pub golden: bool,
-    /// Faults of the world by name with their value (NaN: the default of the table).
+    /// Reference parts precede the lot.
+    pub reference_parts: bool,
+    /// Faults of the world by name and value; NaN selects the default of the table.
     pub faults: Vec<(String, f64)>,
 }
 
@@ -92,7 +92,7 @@ impl World {
     /// Builds the world.
     ///
     /// # Errors
-    /// A file of the configuration is missing or wrong, or there is no fault of a name.
+    /// Fails when a configuration file is missing or wrong, or a fault is unknown.
     pub fn build(options: &WorldOptions) -> Result<Self, ConfigError> {
         let rig = read_rig(&options.config_dir)?;
         let table = read_world(&options.config_dir, options.world_file.as_deref())?;
@@ -144,12 +144,12 @@ impl World {
         Ok(world)
     }
 
-    /// Seed of the day, where it is not that of the rig.
+    /// Returns the seed of noise and temperatures, where it differs from the seed of the rig.
     pub fn noise_seed(&self) -> Option<u64> {
         self.noise_seed
     }
 
-    /// Truth of every lot part that has entered the nest, in order.
+    /// Returns the truth of every lot part that has entered the nest, in order.
     pub fn truth(&self) -> Vec<serde_json::Value> {
         let truths = self.mechanism.places.truth();
         truths
@@ -158,30 +158,30 @@ impl World {
             .collect()
     }
 
-    /// Every body that has left the magazine, in order of leaving.
+    /// Returns every body that has left the magazine, in order of leaving.
     pub fn bodies(&self) -> Vec<BodyTruth> {
         self.mechanism.bodies()
     }
 
-    /// Faults that still wait for their part or their instant are called off.
-    pub fn calm(&mut self) {
-        self.mechanism.calm();
+    /// Cancels the faults that have not struck yet.
+    pub fn cancel_faults(&mut self) {
+        self.mechanism.cancel_faults();
     }
 
-    /// What began to move because an output told it to, and when, microseconds; the last ones.
-    pub fn driven(&self) -> Vec<(u64, &'static str)> {
-        self.mechanism.driven().collect()
+    /// Returns the start of each recent motion that an output caused: microseconds and actuator.
+    pub fn motion_starts(&self) -> Vec<(u64, &'static str)> {
+        self.mechanism.motion_starts().collect()
     }
 
-    /// Bodies that touched where they must not, in order of time.
+    /// Returns a description of each crash, in order of time.
     pub fn crashes(&self) -> Vec<String> {
         self.mechanism.crashes().to_vec()
     }
 
-    /// A fault strikes from now on; `value` counts parts.
+    /// Activates a fault; `value` is the number of a part.
     ///
     /// # Errors
-    /// There is no such fault, it is only for the start, or the part is not named.
+    /// Fails when the fault is unknown, applies only to the start, or needs the number of a part.
     pub fn strike(&mut self, name: &str, value: Option<f64>) -> Result<(), SimError> {
         let Some(fault) = Fault::from_name(name) else {
             return Err(SimError::UnknownFault { name: name.into() });
@@ -192,29 +192,33 @@ impl World {
             expected: expected.into(),
         };
         match (fault.kind(), value) {
-            (Kind::Timed, None) => self.mechanism.disturb(fault, self.now_us),
-            (Kind::Timed, Some(_)) => return Err(wrong("no value: it strikes now")),
-            (Kind::OfPart, Some(part)) => self.mechanism.ask(fault, part),
+            (Kind::Timed, None) => self.mechanism.strike(fault, self.now_us),
+            (Kind::Timed, Some(_)) => return Err(wrong("no value, since the fault strikes now")),
+            (Kind::OfPart, Some(part)) => self.mechanism.add_part_fault(fault, part),
             (Kind::OfPart, None) => return Err(wrong("the number of a part")),
-            (Kind::OfStart, _) => return Err(wrong("to be asked for at the start")),
+            (Kind::OfStart, _) => {
+                return Err(wrong(
+                    "a fault that a running rig accepts; this one applies only to the start",
+                ));
+            }
         }
         Ok(())
     }
 
-    /// A person empties the magazine and fills it with other parts; of the options only those about parts matter.
+    /// Replaces the parts in the magazine as an operator does; only the options about parts apply.
     ///
     /// # Errors
-    /// A file of the configuration is missing or wrong; then nothing has changed.
-    pub fn fill(&mut self, options: &WorldOptions) -> Result<(), ConfigError> {
+    /// Fails when a configuration file is missing or wrong; the magazine then stays unchanged.
+    pub fn refill(&mut self, options: &WorldOptions) -> Result<(), ConfigError> {
         let table = read_world(&options.config_dir, options.world_file.as_deref())?;
         let (track, ambient) = (self.environment.track_c, self.environment.ambient_c);
         self.mechanism
-            .fill(|faults| Magazine::load(options, &table, faults, track, ambient))?;
+            .refill(|faults| Magazine::load(options, &table, faults, track, ambient))?;
         self.mechanism_changed();
         Ok(())
     }
 
-    /// What lies in the nest.
+    /// Returns the specimen in the nest.
     fn specimen(&self) -> Option<&Specimen> {
         self.mechanism
             .places
@@ -223,7 +227,7 @@ impl World {
             .map(|part| &part.specimen)
     }
 
-    /// A signal at this instant.
+    /// Returns a digital signal at this instant.
     fn signal(&self, signal: In) -> bool {
         let own = self.mechanism.signal(signal, self.now_us);
         own.or_else(|| self.board.signal(signal, self.specimen()))
@@ -245,7 +249,7 @@ impl World {
         }
     }
 
-    /// What follows from a change in the mechanism at this instant.
+    /// Updates board, sensors and edges after a change in the mechanism.
     fn mechanism_changed(&mut self) {
         let now = self.now_us;
         let (up, touch) = (
@@ -355,7 +359,7 @@ fn in_nest(mechanism: &mut Mechanism) -> Option<&mut Specimen> {
         .map(|part: &mut Part| &mut part.specimen)
 }
 
-/// Volts of supply per volt of each source; a source that is not wired gives none.
+/// Returns the volts of supply per volt of each source; 0 for a source without a wire.
 fn supply_gains(wiring: &Wiring) -> [f64; 3] {
     let mut gains = [0.0; 3];
     for (_, wire) in wiring.sources.values().flatten() {
@@ -368,7 +372,7 @@ fn supply_gains(wiring: &Wiring) -> [f64; 3] {
     gains
 }
 
-/// The slide with the stops and bins of the rig file, braked at its park position.
+/// Builds the slide with the stops and bins of the rig file, braked at its park position.
 fn sort_axis(rig: &RigFile, table: &WorldTable) -> Axis {
     let mut points = [None; 8];
     let stops = rig

@@ -1,54 +1,54 @@
-//! Where every part is: each place holds the part itself, so none is in two places.
+//! Parts by place: each place owns its part, so no part is in two places.
 
 use super::magazine::Part;
 use crate::truth::{BodyTruth, PartTruth, Place};
 
-/// The places of the line between magazine and bin.
+/// Places of the line between magazine and bin.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
-    /// In the pocket before the pusher.
+    /// Part in the pocket, before the pusher.
     pub pocket: Option<Box<Part>>,
-    /// In front of a pusher that is under way.
+    /// Part in front of the moving pusher.
     pub pushed: Option<Box<Part>>,
-    /// In the nest.
+    /// Part in the nest.
     pub nest: Option<Box<Part>>,
-    /// The fingers hold the part that is still in the nest.
+    /// The fingers hold the part in the nest.
     pub gripped: bool,
-    /// In the gripper, clear of the nest.
+    /// Part in the gripper, clear of the nest.
     pub carried: Option<Box<Part>>,
     entered: u64,
     done: Vec<BodyTruth>,
 }
 
 impl Places {
-    /// A part comes to the nest; lot parts are counted, coming back changes nothing.
+    /// Moves a part into the nest; counts a lot part at its first entry.
     pub fn enter_nest(&mut self, mut part: Box<Part>, now_us: u64) {
         if part.number.is_some() && part.seq == 0 {
             self.entered += 1;
             part.seq = self.entered;
         }
-        part.goes(now_us, Place::Nest);
+        part.arrive(now_us, Place::Nest);
         while part.specimen.advance(now_us as f64).is_some() {}
         self.nest = Some(part);
     }
 
-    /// Lot parts that have entered the nest.
+    /// Returns the number of lot parts that have entered the nest.
     pub fn entered(&self) -> u64 {
         self.entered
     }
 
-    /// A part has left the line.
+    /// Records a part that has left the line.
     pub fn finish(&mut self, part: &Part) {
         self.done.extend(part.bodies());
     }
 
-    /// Number in the lot of the part that the fingers hold.
+    /// Returns the number in the lot of the part between the fingers.
     pub fn held_number(&self) -> Option<u64> {
         let nest = self.nest.as_ref().filter(|_| self.gripped);
         self.carried.as_ref().or(nest).and_then(|p| p.number)
     }
 
-    /// Truth of every lot part that has entered the nest, in that order.
+    /// Returns the truth of every lot part that has entered the nest, in that order.
     pub fn truth(&self) -> Vec<PartTruth> {
         let inside = [&self.nest, &self.carried].into_iter().flatten();
         let done = self.done.iter().map(|body| body.part.clone());
@@ -58,7 +58,7 @@ impl Places {
         all
     }
 
-    /// Every body that has left the magazine and is not in the air, in no order.
+    /// Returns every body that has left the magazine and is not falling, in no order.
     pub fn bodies(&self) -> impl Iterator<Item = BodyTruth> + '_ {
         let inside = [&self.pocket, &self.pushed, &self.nest, &self.carried];
         let inside = inside.into_iter().flatten().flat_map(|part| part.bodies());

@@ -1,6 +1,6 @@
-//! Where the actuators stand and parts lie at an instant.
+//! Positions of actuators and parts at an instant.
 
-/// Names of the actuators, in the order of [`Posture::mm`]: cylinders first, the axis last.
+/// Names of the actuators in the order of [`Posture::mm`]: cylinders first, the axis last.
 pub const ACTUATORS: [&str; 8] = [
     "escapement",
     "pusher",
@@ -12,19 +12,19 @@ pub const ACTUATORS: [&str; 8] = [
     "sort_axis",
 ];
 
-/// Where everything is at an instant.
+/// Positions of actuators and parts at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Posture {
-    /// Way of each actuator from rest, mm.
+    /// Travel of each actuator from rest, mm.
     pub mm: [f64; 8],
-    /// A part lies in the pocket.
+    /// A part is in the pocket.
     pub pocket: bool,
-    /// A part is before the pusher, on its way to the nest or back.
+    /// A part is in front of the pusher, on its way to the nest or back.
     pub pushed: bool,
-    /// A part lies in the nest and nobody lifts it.
+    /// A part is in the nest and not lifted.
     pub nest: bool,
     /// The fingers hold a part.
     pub held: bool,
-    /// Only springs move, or fingers slide off: a grip gives way without harm.
+    /// A grip yields without damage: only springs move, or the fingers slide off.
     pub slack: bool,
 }

@@ -1,4 +1,4 @@
-//! What the interface board and a specimen exchange through the five pairs of probes, whatever kind the specimen is.
+//! Signals between the interface board and a specimen of any kind, through the five pairs of probes.
 
 /// One of the two contacts that a specimen may have between its output pins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,26 +14,26 @@ pub enum Contact {
 pub struct Change {
     /// Instant, microseconds.
     pub t_us: f64,
-    /// Which contact.
+    /// Contact that has changed.
     pub contact: Contact,
-    /// Closed from now on.
+    /// True when the contact has closed, false when it has opened.
     pub closed: bool,
 }
 
-/// What drives the input pins.
+/// Drive at the input pins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Supply {
-    /// A source, V.
+    /// A voltage source, V.
     Volts(f64),
-    /// Nothing but the clamp, volts across it while current flows.
+    /// No source; the suppression holds its voltage while current flows.
     Off {
-        /// Forward voltage of the clamp.
-        clamp_v: f64,
+        /// Voltage of the suppression, V.
+        suppression_v: f64,
     },
 }
 
 impl Supply {
-    /// Volts that a source applies.
+    /// Returns the voltage of the source; 0 without a source.
     pub fn volts(self) -> f64 {
         match self {
             Self::Volts(v) => v,
@@ -42,40 +42,40 @@ impl Supply {
     }
 }
 
-/// Which of the five pins meet their probes: input a, input b, common, NO, NC.
+/// Connection of the five pins: input a, input b, common, NO, NC.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pins {
-    /// The pin that belongs there is there.
+    /// The right pin is present at this probe pair.
     pub present: [bool; 5],
-    /// Force and sense probe meet on metal: the Kelvin test finds it good, whatever pin it is.
+    /// Force and sense probe touch metal, of whatever pin, so that the Kelvin test passes.
     pub kelvin: [bool; 5],
 }
 
 impl Pins {
-    /// Every pin meets its probes.
+    /// Every pin touches its probes.
     pub const ALL: Self = Self {
         present: [true; 5],
         kelvin: [true; 5],
     };
 
-    /// The body lies the wrong way round: other pins meet four of the five pairs.
-    pub const TURNED: Self = Self {
+    /// The body is misoriented: wrong pins touch four of the five pairs.
+    pub const MISORIENTED: Self = Self {
         present: [false; 5],
         kelvin: [true, true, false, true, true],
     };
 
-    /// A pin meets its probes no more.
+    /// Removes the connection of a pin.
     pub fn lose(&mut self, pin: usize) {
         self.present[pin] = false;
         self.kelvin[pin] = false;
     }
 
-    /// The input can be driven.
+    /// Checks whether the board can drive the input.
     pub fn input(self) -> bool {
         self.present[0] && self.present[1]
     }
 
-    /// A contact can be seen.
+    /// Checks whether the board can sense a contact.
     pub fn contact(self, contact: Contact) -> bool {
         let own = match contact {
             Contact::No => self.present[3],

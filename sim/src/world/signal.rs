@@ -1,4 +1,4 @@
-//! The fixed names of the points: what hangs on which terminal is looked up by these.
+//! The fixed names of the points, which assign signals to terminals.
 
 macro_rules! vocabulary {
     ($(#[$doc:meta])* $enum:ident { $($name:ident = $text:literal),* $(,)? }) => {
@@ -11,7 +11,7 @@ macro_rules! vocabulary {
             /// Every point, in order of the enum.
             pub const ALL: &'static [$enum] = &[$($enum::$name),*];
 
-            /// The point of this name.
+            /// Returns the point of this name.
             pub fn from_name(name: &str) -> Option<Self> {
                 match name { $($text => Some($enum::$name),)* _ => None }
             }
@@ -83,23 +83,23 @@ vocabulary! {
     Gate { Latched = "gate_0", Contact = "gate_1" }
 }
 
-/// The state of all digital commands.
+/// State of all digital commands.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Commands(u64);
 
 impl Commands {
-    /// Whether a command is on.
+    /// Checks whether a command is on.
     pub fn is_on(self, out: Out) -> bool {
         self.0 >> out as u64 & 1 == 1
     }
 
-    /// The same with one command changed.
+    /// Returns the state with one command changed.
     pub fn with(self, out: Out, on: bool) -> Self {
         let bit = 1u64 << out as u64;
         Self(if on { self.0 | bit } else { self.0 & !bit })
     }
 
-    /// A command that has gone on since `before`.
+    /// Checks whether a command has switched on since `before`.
     pub fn rises(self, before: Self, out: Out) -> bool {
         self.is_on(out) && !before.is_on(out)
     }

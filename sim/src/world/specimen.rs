@@ -1,7 +1,7 @@
-//! A specimen of any kind: what a lot draws, and what the probes find on it.
+//! A specimen of any kind: drawn from its lot, probed by the interface board.
 //!
-//! Nothing outside this file knows which kinds there are. A kind is a folder beside it with a lot that draws its
-//! parts and a part that answers on the probes; here stands one variant for each.
+//! Only this file lists the kinds, one variant for each. A kind is a folder beside this file, with a lot that
+//! draws its parts and a part that implements [`ProbeInterface`].
 
 use std::ops::{Deref, DerefMut};
 
@@ -16,51 +16,51 @@ use super::table::WorldTable;
 use crate::config::{ConfigError, content, read_text};
 use crate::truth::PartTruth;
 
-/// Temperature at which true values are stated, degrees Celsius.
+/// Reference temperature of true values, degrees Celsius.
 pub const REFERENCE_C: f64 = 23.0;
 
-/// What the interface board finds on the pins of a specimen. A kind without contacts leaves these out.
-pub trait OnProbes {
-    /// Pins that meet their probes.
+/// Signals that the interface board finds on the pins of a specimen; a kind without contacts keeps the defaults.
+pub trait ProbeInterface {
+    /// Returns the pins that touch their probes.
     fn pins(&self) -> Pins;
 
-    /// Resistance between the two input pins now, ohm; infinite when open.
+    /// Returns the present resistance between the input pins, ohm; infinite when open.
     fn input_ohm(&self) -> f64;
 
-    /// Current through the input pins now, ampere.
+    /// Returns the present current through the input pins, ampere.
     fn input_a(&self) -> f64;
 
-    /// Another supply at the input pins from now on; the specimen must have been advanced to `t_us`.
+    /// Changes the drive at the input pins; the specimen must already be at `t_us`.
     fn drive(&mut self, t_us: f64, supply: Supply);
 
-    /// Goes on to `t_us`, or to the first change of a contact before it.
+    /// Advances to `t_us`, or to the first change of a contact before it.
     fn advance(&mut self, t_us: f64) -> Option<Change>;
 
-    /// Resistance of a contact, milliohm; none while it is open.
+    /// Returns the resistance of a contact, milliohm; `None` while it is open.
     fn contact_mohm(&self, _contact: Contact) -> Option<f64> {
         None
     }
 
-    /// The contact source flows through a contact.
+    /// Notes that the current of the contact source flows through a contact.
     fn source_on(&mut self, _contact: Contact) {}
 
-    /// Thermal EMF in the contact circuit, volts.
+    /// Returns the thermal EMF in the contact circuit, volts.
     fn emf_v(&self) -> f64 {
         0.0
     }
 
-    /// True values so far, without order and place.
+    /// Returns the true values so far, without sequence number and bin.
     fn truth(&self) -> PartTruth;
 }
 
-/// Kind of a lot: key `kind` of its recipe; a recipe without the key is one for relays.
+/// Kind of a lot, key `kind` of its recipe; without that key the recipe is for relays.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LotKind {
     /// Electromagnetic relays with one changeover contact.
     #[default]
     EmRelay,
-    /// Dummies that hold one resistor, for a check of the fixture.
+    /// Dummies with one resistor each, to check the fixture.
     Resistor,
 }
 
@@ -69,12 +69,12 @@ pub enum LotKind {
 pub enum Specimen {
     /// An electromagnetic relay.
     Relay(Box<Relay>),
-    /// A dummy that holds a resistor.
+    /// A dummy that contains a resistor.
     Resistor(Resistor),
 }
 
 impl Deref for Specimen {
-    type Target = dyn OnProbes;
+    type Target = dyn ProbeInterface;
 
     fn deref(&self) -> &Self::Target {
         match self {
@@ -93,37 +93,37 @@ impl DerefMut for Specimen {
     }
 }
 
-/// How a part comes out of the magazine.
+/// Conditions under which a part leaves the magazine.
 #[derive(Debug, Clone)]
 pub struct Arrival {
     /// Instant, microseconds.
     pub t_us: f64,
-    /// The magazine has soaked at this temperature.
+    /// Temperature of the part after its time in the magazine, degrees Celsius.
     pub track_c: f64,
-    /// Air around the nest.
+    /// Air temperature around the nest, degrees Celsius.
     pub ambient_c: f64,
-    /// Chance of what the part does from now on.
+    /// Random stream of the part's operations.
     pub draw: Draw,
-    /// This pin of it misses its Kelvin probes.
+    /// Index of a pin that misses its Kelvin probes.
     pub dirty_pin: Option<usize>,
-    /// It lies the wrong way round.
-    pub turned: bool,
+    /// The part is misoriented.
+    pub misoriented: bool,
 }
 
-/// Parts of one recipe, drawn by seed and place.
+/// Parts of one recipe, drawn by seed and index.
 #[derive(Debug, Clone)]
 pub enum Lot {
-    /// Relays, with golden parts.
+    /// Relays, with reference parts.
     Relay(Box<relay::Lot>),
-    /// Dummies; none of them has a certificate.
+    /// Dummies; none has a certificate.
     Resistor(resistor::Lot),
 }
 
 impl Lot {
-    /// The lot of a recipe.
+    /// Reads the lot of a recipe.
     ///
     /// # Errors
-    /// The recipe or what belongs to its kind cannot be read, or there is no such kind.
+    /// Fails when the recipe or a file of its kind cannot be read, or the kind is unknown.
     pub fn read(options: &WorldOptions, world: &WorldTable) -> Result<Self, ConfigError> {
         Ok(match read_kind(options)? {
             LotKind::EmRelay => Self::Relay(Box::new(relay::Lot::read(options, world)?)),
@@ -131,15 +131,15 @@ impl Lot {
         })
     }
 
-    /// Number of golden parts.
-    pub fn golden(&self) -> u64 {
+    /// Returns the number of reference parts.
+    pub fn reference_parts(&self) -> u64 {
         match self {
-            Self::Relay(lot) => lot.golden(),
+            Self::Relay(lot) => lot.reference_parts(),
             Self::Resistor(_) => 0,
         }
     }
 
-    /// The lot part with this place under a seed.
+    /// Returns the lot part at an index under a seed.
     pub fn part(&self, seed: u64, index: u64, arrival: Arrival) -> Specimen {
         match self {
             Self::Relay(lot) => Specimen::Relay(Box::new(lot.part(seed, index, arrival))),
@@ -147,8 +147,8 @@ impl Lot {
         }
     }
 
-    /// The golden part of this place, none past the last; on another day it is the same body with another temperature.
-    pub fn golden_part(
+    /// Returns the reference part at an index, `None` past the last; `other_day` gives the same body another temperature.
+    pub fn reference_part(
         &self,
         seed: u64,
         index: u64,
@@ -157,7 +157,7 @@ impl Lot {
     ) -> Option<Specimen> {
         match self {
             Self::Relay(lot) => lot
-                .golden_part(seed, index, other_day, arrival)
+                .reference_part(seed, index, other_day, arrival)
                 .map(|relay| Specimen::Relay(Box::new(relay))),
             Self::Resistor(_) => None,
         }

@@ -1,7 +1,7 @@
-//! The world file: everything about the simulated rig and its parts that is a number.
+//! The world file: all numbers of the simulated rig and its parts.
 //!
-//! `config/sim.toml` explains each key beside its value. Every key must be known; a file given
-//! with `--world` may leave keys out and then takes them from `sim.toml`.
+//! `config/sim.toml` describes each key beside its value. Unknown keys are errors; a file for `--world` may omit
+//! keys and then takes them from `sim.toml`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -24,7 +24,7 @@ macro_rules! table {
 pub(super) use table;
 
 table!(
-    /// Errors and paces of modules and lines.
+    /// Errors and conversion rates of modules, timing of lines.
     DeviceWorld {
         latency_ms_mean: f64, latency_ms_sd: f64,
         ai_gain_pct: f64, ai_offset_pct_of_range: f64, ai_noise_lsb: f64,
@@ -61,11 +61,11 @@ table!(
     }
 );
 table!(
-    /// A fault that can be asked for by name.
+    /// A fault that a command may request by name.
     FaultSpec { unit: String, default: f64, help: String }
 );
 table!(
-    /// The whole file.
+    /// All tables of the file.
     WorldTable {
         devices: DeviceWorld, board: BoardTable, environment: EnvironmentTable, lot: LotTable,
         relay: RelayTable, defects: DefectTable, resistor: ResistorTable, mechanism: MechanismTable,
@@ -73,11 +73,11 @@ table!(
     }
 );
 
-/// Reads `sim.toml` of the configuration folder, or another world on top of it.
+/// Reads `sim.toml` of the configuration folder, with a second world file on top.
 ///
 /// # Errors
-/// A file cannot be read, is no TOML, has an unknown key or a value of the wrong kind, or a relay
-/// that cannot be.
+/// Fails when a file cannot be read, is not TOML, has an unknown key or a value of the wrong type, or describes
+/// an impossible relay.
 pub fn read_world(dir: &Path, other: Option<&Path>) -> Result<WorldTable, ConfigError> {
     let world = parsed(dir, other)?;
     let Some((name, expected)) = world.relay.lumped.fault() else {
@@ -106,7 +106,7 @@ fn parsed(dir: &Path, other: Option<&Path>) -> Result<WorldTable, ConfigError> {
     }
 }
 
-/// A partial world over the default one.
+/// Merges a partial world into the default one.
 fn overlay(base_path: &Path, path: &Path, text: &str) -> Result<WorldTable, ConfigError> {
     let base_text = read_text(base_path)?;
     let mut base: toml::Table =
@@ -132,7 +132,7 @@ fn merge(base: &mut toml::Table, over: toml::Table) {
     }
 }
 
-/// Line of the first key that the message quotes, 0 if it stands nowhere.
+/// Returns the line of the first key that the message quotes; 0 if the text lacks it.
 fn line_of_key(text: &str, message: &str) -> usize {
     let key = message.split('`').nth(1).unwrap_or_default();
     let names = |l: &str| !key.is_empty() && l.trim_start_matches(['[', ' ']).starts_with(key);

@@ -1,4 +1,4 @@
-//! Facts about the world: the magazine, and the line by hand.
+//! Tests of the world: the magazine, and the line under manual control.
 #![allow(clippy::unwrap_used)]
 
 mod crashes;

@@ -1,4 +1,4 @@
-//! Which signal hangs on which terminal, by module and channel.
+//! Assignment of signals to terminals, by module and channel.
 
 use std::collections::BTreeMap;
 
@@ -8,18 +8,18 @@ use crate::config::{RigFile, Terminal};
 /// A signal at a terminal.
 #[derive(Debug, Clone, Copy)]
 pub struct Wire<S> {
-    /// What hangs there.
+    /// Signal of this terminal.
     pub signal: S,
     /// The terminal reads 0 while the signal is present.
     pub active_low: bool,
-    /// Volts at the terminal per unit.
+    /// Volts at the terminal per unit of the quantity.
     pub gain: f64,
 }
 
-/// Terminals of one kind, by module and channel.
+/// Signals of one kind, by module and channel.
 type Terminals<S> = BTreeMap<String, Vec<(u8, Wire<S>)>>;
 
-/// All terminals of the rig.
+/// Signals at all terminals of the rig.
 #[derive(Debug, Clone)]
 pub struct Wiring {
     /// Digital inputs.
@@ -37,7 +37,7 @@ pub struct Wiring {
 }
 
 impl Wiring {
-    /// Looks every named point up; points with names this rig does not have stay unwired.
+    /// Resolves every named point; ignores points with names that this rig does not have.
     pub fn new(rig: &RigFile) -> Self {
         Self {
             inputs: terminals(&rig.digital_in, In::from_name),
@@ -50,7 +50,7 @@ impl Wiring {
     }
 }
 
-/// What hangs on one terminal.
+/// Returns the signal at one terminal.
 pub fn at<S: Copy>(terminals: &Terminals<S>, module: &str, channel: u8) -> Option<Wire<S>> {
     on(terminals, module)
         .iter()
@@ -58,7 +58,7 @@ pub fn at<S: Copy>(terminals: &Terminals<S>, module: &str, channel: u8) -> Optio
         .map(|(_, wire)| *wire)
 }
 
-/// Everything on one module.
+/// Returns the signals at one module.
 pub fn on<'a, S>(terminals: &'a Terminals<S>, module: &str) -> &'a [(u8, Wire<S>)] {
     terminals.get(module).map_or(&[], Vec::as_slice)
 }

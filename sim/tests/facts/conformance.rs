@@ -1,4 +1,4 @@
-//! The conversations of `conformance.txt`, and what must not be understood.
+//! Replays the conversations of `conformance.txt`, and damaged requests that must get no answer.
 
 use rigsim::bench;
 use rigsim::rig::Rig;
@@ -41,7 +41,7 @@ fn converse(block: &str, line_number: usize) -> usize {
 }
 
 #[test]
-fn modules_answer_as_their_manuals_say() {
+fn modules_answer_as_documented() {
     let mut asked = 0;
     let mut line_number = 1;
     for block in CONVERSATIONS.split("\n\n") {
@@ -53,7 +53,7 @@ fn modules_answer_as_their_manuals_say() {
     assert!(asked > 200, "only {asked} requests found");
 }
 
-/// Every request of the conversations with a checksum, as (bench, request).
+/// Returns every request of the conversations with a checksum, as (bench, request).
 fn checked_requests() -> Vec<(String, &'static str)> {
     let mut found = Vec::new();
     for block in CONVERSATIONS.split("\n\n") {
@@ -67,7 +67,7 @@ fn checked_requests() -> Vec<(String, &'static str)> {
 }
 
 #[test]
-fn with_checksum_a_flipped_bit_or_a_missing_end_is_met_with_silence() {
+fn with_checksum_a_damaged_request_gets_no_answer() {
     for (file, request) in checked_requests() {
         let mut rig = bench::build_text(&file).expect("a bench");
         if ask(&mut rig, request, 0).is_empty() {

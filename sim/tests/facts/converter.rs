@@ -1,4 +1,4 @@
-//! Facts about free-running converters, ramps and watchdogs on a bench of known signals.
+//! Tests of free-running converters, ramps and watchdogs on a bench with known signals.
 
 use rigsim::bench;
 use rigsim::rig::Rig;
@@ -21,7 +21,7 @@ fn a_reply_comes_after_latency_and_its_characters() {
 }
 
 #[test]
-fn a_ramp_at_sixty_four_volts_a_second_moves_in_steps_of_a_refresh() {
+fn a_ramp_moves_one_step_per_refresh() {
     let mut rig =
         rig("[[module]]\naddress = 1\nmodel = \"I-7021P\"\nslew = \"B\"\nformat = \"engineering\"");
     assert_eq!(ask(&mut rig, "#0110.000", 0), ">");
@@ -33,7 +33,7 @@ fn a_ramp_at_sixty_four_volts_a_second_moves_in_steps_of_a_refresh() {
 }
 
 #[test]
-fn settings_are_eeprom_writes_and_outputs_are_not() {
+fn settings_write_the_eeprom_and_outputs_do_not() {
     let mut rig = rig("baud = 9600\n[[module]]\naddress = 1\nmodel = \"I-7043\"");
     for request in ["@01FFFF", "@01", "$016", "~010", "$012", "$015"] {
         ask(&mut rig, request, 0);
@@ -46,7 +46,7 @@ fn settings_are_eeprom_writes_and_outputs_are_not() {
 }
 
 #[test]
-fn a_watchdog_expires_though_nobody_asks() {
+fn a_watchdog_expires_without_requests() {
     let file = "[[module]]\naddress = 1\nmodel = \"I-7021P\"\nsafe = [0.0]\nwatchdog = { enabled \
                 = true, timeout_s = 1.0 }";
     let mut rig = rig(file);
@@ -59,7 +59,7 @@ fn a_watchdog_expires_though_nobody_asks() {
 }
 
 #[test]
-fn two_modules_at_one_address_spoil_each_other() {
+fn two_modules_at_one_address_corrupt_both_replies() {
     let file = "[[module]]\naddress = 1\nmodel = \"I-7017\"\n[[module]]\naddress = 1\nmodel = \
                 \"I-7060\"";
     let mut rig = rig(file);
@@ -69,7 +69,7 @@ fn two_modules_at_one_address_spoil_each_other() {
 }
 
 #[test]
-fn a_bench_file_that_is_wrong_says_where() {
+fn an_invalid_bench_file_names_the_key() {
     let unknown = bench::build_text("[[module]]\naddress = 1\nmodel = \"I-7017\"\ninput = [1]");
     assert!(unknown.is_err_and(|error| error.to_string().contains("`input`")));
     let model = bench::build_text("[[module]]\naddress = 1\nmodel = \"I-9999\"");

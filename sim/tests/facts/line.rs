@@ -1,4 +1,4 @@
-//! Facts about lines in virtual time.
+//! Tests of lines in virtual time.
 
 use std::time::Duration;
 
@@ -47,7 +47,7 @@ async fn fragments_and_two_requests_in_one_piece_are_answered() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn nobody_answers_for_an_absent_module() {
+async fn an_absent_module_gives_no_answer() {
     let mut port = open();
     port.write_all(b"#090\r").await.expect("a stream");
     let silence = timeout(Duration::from_secs(1_000), reply(&mut port)).await;
@@ -67,7 +67,7 @@ async fn a_partial_request_is_forgotten_after_silence() {
 }
 
 #[tokio::test(start_paused = true)]
-async fn a_lost_port_ends_the_stream_and_is_there_again_when_it_is_back() {
+async fn a_lost_port_ends_the_stream_and_returns() {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("bench.toml");
     std::fs::write(&file, BENCH).expect("a file");
@@ -81,7 +81,7 @@ async fn a_lost_port_ends_the_stream_and_is_there_again_when_it_is_back() {
     let begin = Instant::now();
     assert_eq!(reply(&mut port).await, b"", "the stream ends");
     assert!(plug.open().is_none());
-    // A second of the rig is a thousand here, where a microsecond is a millisecond.
+    // One second of the rig is a thousand here, since a microsecond is a millisecond.
     let mut port = loop {
         tokio::time::advance(Duration::from_secs(10)).await;
         match plug.open() {

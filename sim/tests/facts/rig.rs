@@ -1,4 +1,4 @@
-//! Facts about the whole rig of `config/`: commissioning, cadence, safe outputs, same seed same bytes.
+//! Tests of the whole rig of `config/`: module settings, scan rate, safe outputs, reproducibility.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -17,7 +17,7 @@ fn options(seed: u64) -> Options {
         seed,
         recipe: "jzc-22f-012".into(),
         parts: Some(3),
-        golden: false,
+        reference_parts: false,
         faults: Vec::new(),
     }
 }
@@ -33,7 +33,7 @@ fn with_checksum(text: &str) -> Vec<u8> {
     format!("{text}{sum:02X}").into_bytes()
 }
 
-/// Reply without checksum, empty for silence.
+/// Returns the reply without checksum; empty for no reply.
 fn ask(rig: &SharedRig, line: usize, text: &str, at_us: u64) -> String {
     let Some(reply) = rig.exchange(line, &with_checksum(text), at_us) else {
         return String::new();
@@ -43,7 +43,7 @@ fn ask(rig: &SharedRig, line: usize, text: &str, at_us: u64) -> String {
 }
 
 #[test]
-fn modules_are_commissioned_as_the_rig_file_says() {
+fn modules_follow_the_settings_of_the_rig_file() {
     let rig = rig(1, &[]);
     for (request, reply) in [
         ("$012", "!01080A62"),
@@ -71,7 +71,7 @@ fn modules_are_commissioned_as_the_rig_file_says() {
 }
 
 #[test]
-fn the_reference_voltage_reads_within_what_the_makers_promise() {
+fn the_reference_voltage_reads_within_the_stated_tolerances() {
     for seed in 0..20 {
         let rig = rig(seed, &[]);
         let reply = {
@@ -89,7 +89,7 @@ fn the_reference_voltage_reads_within_what_the_makers_promise() {
 }
 
 #[test]
-fn polling_faster_than_the_converter_only_reads_the_same_again() {
+fn fast_polling_reads_the_same_conversion_again() {
     let rig = rig(1, &[]);
     assert_eq!(ask(&rig, MEASURE, "$01580", 0), "!01");
     let mut changes = 0;
@@ -99,12 +99,12 @@ fn polling_faster_than_the_converter_only_reads_the_same_again() {
         changes += u32::from(reply != last);
         last = reply;
     }
-    // 150 conversions in two seconds, some of which repeat the code before.
+    // 150 conversions in two seconds; some repeat the previous code.
     assert!((40..=151).contains(&changes), "{changes}");
 }
 
 #[test]
-fn when_the_host_falls_silent_every_watched_output_is_safe_within_its_time() {
+fn watched_outputs_become_safe_after_host_silence() {
     let rig = rig(1, &[]);
     for line in [MEASURE, MOTION] {
         assert_eq!(ask(&rig, line, "~**", 0), "");
@@ -117,12 +117,12 @@ fn when_the_host_falls_silent_every_watched_output_is_safe_within_its_time() {
     assert_eq!(ask(&rig, MEASURE, "@04", 1_000_000), ">0000");
     assert_eq!(ask(&rig, MEASURE, "~020", 1_000_000), "!0204");
     assert_eq!(ask(&rig, MEASURE, "#024000", 1_000_000), "!");
-    // Three analog and three digital output modules noted it.
+    // Three analog and three digital output modules stored the trip.
     assert_eq!(rig.eeprom_writes(), 6);
 }
 
 #[test]
-fn a_fault_of_a_module_that_does_not_exist_is_refused() {
+fn a_fault_of_an_unknown_module_is_refused() {
     let build = |fault: &str| {
         let mut options = options(1);
         options.faults = vec![fault.into()];
@@ -141,7 +141,7 @@ fn a_fault_of_a_module_that_does_not_exist_is_refused() {
 }
 
 #[test]
-fn a_silent_module_falls_silent_at_its_time_and_a_reset_shows() {
+fn a_silence_starts_on_time_and_a_reset_shows() {
     let rig = rig(
         1,
         &["silence=timer@1", "reset=board_do@2", "wrong_type=rtd"],
@@ -196,7 +196,7 @@ fn session(seed: u64, faults: &[&str]) -> (Vec<u8>, Vec<u8>) {
 }
 
 #[test]
-fn the_same_seed_gives_the_same_bytes_on_both_lines() {
+fn one_seed_gives_the_same_bytes_on_both_lines() {
     let first = session(5, &[]);
     assert!(first.0.len() > 3_000 && first.1.len() > 2_000);
     assert_eq!(first, session(5, &[]));

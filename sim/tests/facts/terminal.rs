@@ -1,4 +1,4 @@
-//! Facts about pseudo-terminals: any client may come, go and come again.
+//! Tests of pseudo-terminals: clients open, close and reopen a port.
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
@@ -27,10 +27,10 @@ fn ask(port: &mut File, request: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn a_naive_client_may_reopen_the_port_for_every_request() {
+fn a_client_may_reopen_the_port_for_every_request() {
     let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"\ninputs = [1.0]";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Ignored).expect("a pseudo-terminal");
     let (name, path) = ptys.paths().remove(0);
     assert_eq!(name, "bench");
     for _ in 0..3 {
@@ -43,10 +43,10 @@ fn a_naive_client_may_reopen_the_port_for_every_request() {
 }
 
 #[test]
-fn links_point_at_the_ports_and_go_with_them() {
+fn links_point_at_the_ports_and_vanish_with_them() {
     let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Ignored).expect("a pseudo-terminal");
     let folder = tempfile::tempdir().expect("a folder");
     let dir = folder.path().join("links");
     ptys.link(&dir).expect("a link");
@@ -60,21 +60,21 @@ fn links_point_at_the_ports_and_go_with_them() {
 }
 
 #[test]
-fn a_lost_port_is_an_end_for_its_client_and_comes_back_under_its_link() {
+fn a_lost_port_ends_its_client_and_returns() {
     let dir = tempfile::tempdir().expect("a folder");
     let file = dir.path().join("bench.toml");
     std::fs::write(&file, "[[module]]\naddress = 1\nmodel = \"I-7017\"").expect("a file");
     let rig = rigsim::build_bench(&file, &["port_lost=1/100@0..0.5".to_owned()]).expect("a bench");
-    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Ignored).expect("a pseudo-terminal");
     ptys.link(dir.path()).expect("a link");
     let link = dir.path().join("bench");
     let mut port = client(&link);
-    // The request costs the port: an error or an end, never a wait for ever.
+    // The request makes the port vanish: the client gets an error or an end, never an endless wait.
     port.write_all(b"$01M\r").expect("a port");
     let mut bytes = [0u8; 16];
     assert!(matches!(port.read(&mut bytes), Ok(0) | Err(_)));
     drop(port);
-    // The rig brings it back by itself; until then the link is not there, or still at its end.
+    // The rig restores the port by itself; until then the link is absent or points at the old terminal.
     let back = std::iter::repeat_with(|| {
         let mut options = OpenOptions::new();
         let port = options.read(true).write(true).open(&link);
@@ -96,7 +96,7 @@ fn set_baud(port: &File, baud: u32) {
 }
 
 #[test]
-fn where_rates_are_heeded_a_module_hears_only_its_own_and_with_init_grounded_9600() {
+fn a_module_ignores_requests_at_another_rate() {
     let bench = "[[module]]
         address = 1
         model = \"I-7017\"
@@ -109,9 +109,9 @@ fn where_rates_are_heeded_a_module_hears_only_its_own_and_with_init_grounded_960
         model = \"I-7080\"
         init = true";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig, Rates::Heeded).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Enforced).expect("a pseudo-terminal");
     let mut port = client(&ptys.paths().remove(0).1);
-    // Whoever sets no rate has that of the line. Each time the first to answer is asked last.
+    // A client without a rate has the line's rate. The first module to answer is asked last.
     assert_eq!(ask(&mut port, b"$01M\r$00M\r$02M\r"), b"!027021\r");
     set_baud(&port, 9_600);
     assert_eq!(ask(&mut port, b"$02M\r$01M\r"), b"!017017\r");
@@ -119,8 +119,8 @@ fn where_rates_are_heeded_a_module_hears_only_its_own_and_with_init_grounded_960
     ptys.stop();
 }
 
-/// Whether somebody without privileges can open a port; an administrator may always.
-fn opens_for_anybody(path: &Path, administrator: bool) -> bool {
+/// Checks whether a user without privileges can open a port; an administrator always can.
+fn opens_without_privileges(path: &Path, administrator: bool) -> bool {
     let open = format!("exec 3<>{}", path.display());
     let mut shell = Command::new(if administrator { "setpriv" } else { "sh" });
     if administrator {
@@ -131,20 +131,20 @@ fn opens_for_anybody(path: &Path, administrator: bool) -> bool {
 }
 
 #[test]
-fn a_client_that_was_killed_does_not_keep_the_port_for_itself() {
+fn a_killed_client_does_not_lock_the_port() {
     let bench = "[[module]]\naddress = 1\nmodel = \"I-7017\"";
     let rig = SharedRig::new(rigsim::bench::build_text(bench).expect("a bench"));
-    let ptys = pty::serve(&rig, Rates::Any).expect("a pseudo-terminal");
+    let ptys = pty::serve(&rig, Rates::Ignored).expect("a pseudo-terminal");
     let path = ptys.paths().remove(0).1;
     let all = std::fs::Permissions::from_mode(0o666);
     std::fs::set_permissions(&path, all).expect("own port");
     let folder = tempfile::tempdir().expect("a folder");
     let administrator = folder.path().metadata().expect("a folder").uid() == 0;
-    // Ended without a word of leave, as by a kill.
+    // The client ends without cleanup, as after a kill.
     let port = client(&path);
     ioctl_tiocexcl(&port).expect("a terminal");
     drop(port);
-    let mut tries = std::iter::repeat_with(|| opens_for_anybody(&path, administrator));
+    let mut tries = std::iter::repeat_with(|| opens_without_privileges(&path, administrator));
     assert!(tries.by_ref().take(1_000).any(|opened| opened));
     ptys.stop();
 }

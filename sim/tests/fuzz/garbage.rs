@@ -1,5 +1,5 @@
-//! Bytes from a seed: half of them nearly requests, a quarter damaged requests, a quarter anything at all. After
-//! everything that was met with silence the module must say of itself exactly what it said before.
+//! Random bytes from a seed: half near-requests, a quarter damaged requests, a quarter arbitrary bytes. After
+//! each input without an answer, the module must report exactly the same registers as before.
 
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
@@ -11,18 +11,18 @@ const MODELS: [&str; 15] = [
     "I-7043", "I-7050", "I-7060", "I-7080", "I-7080D", "M-7067",
 ];
 
-/// Requests that change nothing and together tell what a module holds; some are unknown to some of them.
-const ASKS: [&str; 16] = [
+/// Requests that change nothing and together read all registers of a module; a module may not know some of them.
+const QUERIES: [&str; 16] = [
     "$2", "$6", "$M", "~0", "~2", "@", "$8", "~4", "~4P", "~4S", "$A", "$B", "$4", "@G0", "$31",
     "@DI",
 ];
 
-/// What became of the bytes.
+/// Count of inputs by their effect.
 #[derive(Debug, Default)]
-pub struct Seen {
-    /// Inputs that a module answered.
+pub struct Tally {
+    /// Inputs with an answer.
     pub answered: u64,
-    /// Inputs met with silence.
+    /// Inputs without an answer.
     pub unheard: u64,
 }
 
@@ -58,11 +58,11 @@ fn with_checksum(text: &str, checksum: bool) -> Vec<u8> {
     format!("{text}{end}").into_bytes()
 }
 
-/// What a module says of itself. `$4` of a digital module reads a sample once and of an analog output it stores,
-/// so that the ask is left out there.
-fn says(rig: &mut Rig, model: &str, checksum: bool) -> Vec<Option<Vec<u8>>> {
+/// Reads all registers of a module. Skips `$4`, which clears the sample of a digital module and stores the value
+/// of an analog output.
+fn registers(rig: &mut Rig, model: &str, checksum: bool) -> Vec<Option<Vec<u8>>> {
     let counter = model.starts_with("I-7080");
-    let asks = ASKS.iter().filter(|ask| counter || **ask != "$4");
+    let asks = QUERIES.iter().filter(|ask| counter || **ask != "$4");
     asks.map(|ask| {
         let (lead, body) = ask.split_at(1);
         let text = with_checksum(&format!("{lead}01{body}"), checksum);
@@ -109,14 +109,14 @@ fn input(random: &mut Random) -> Vec<u8> {
     text
 }
 
-/// Throws so many inputs at every model in turn.
-pub fn throw(seed: u64, inputs: u64) -> Seen {
+/// Sends this many inputs to every model in turn.
+pub fn throw(seed: u64, inputs: u64) -> Tally {
     let mut random = Random(SplitMix64::seed_from_u64(seed));
-    let mut seen = Seen::default();
+    let mut seen = Tally::default();
     for (place, model) in MODELS.iter().cycle().take(2 * MODELS.len()).enumerate() {
         let checksum = place >= MODELS.len();
         let mut rig = module(model, checksum);
-        let mut before = says(&mut rig, model, checksum);
+        let mut before = registers(&mut rig, model, checksum);
         for number in 0..inputs / (2 * MODELS.len() as u64) {
             let mut text = input(&mut random);
             let is_whole = checksum && number % 2 == 0;
@@ -131,17 +131,18 @@ pub fn throw(seed: u64, inputs: u64) -> Seen {
                 Some(reply) => {
                     seen.answered += 1;
                     assert_eq!(reply.bytes.last(), Some(&b'\r'), "{model} {text:?}");
-                    // It may have been told another address, or to use no checksum: a fresh one goes on.
+                    // The input may have changed the address or the checksum setting: continue with a fresh
+                    // module.
                     if text.first() == Some(&b'%') {
                         rig = module(model, checksum);
                     }
-                    before = says(&mut rig, model, checksum);
+                    before = registers(&mut rig, model, checksum);
                 }
-                None if broadcast => before = says(&mut rig, model, checksum),
+                None if broadcast => before = registers(&mut rig, model, checksum),
                 None => {
                     seen.unheard += 1;
                     assert_eq!(rig.eeprom_writes(), writes, "{model} {text:?}");
-                    let after = says(&mut rig, model, checksum);
+                    let after = registers(&mut rig, model, checksum);
                     assert!(after == before, "seed {seed}, {model}: {text:?} changed it");
                 }
             }

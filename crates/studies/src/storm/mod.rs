@@ -189,7 +189,7 @@ impl<'a> Sea<'a> {
         if calibration.is_none() {
             calibration = Some(self.calibration(weather.rig, db)?);
         }
-        rig.calm();
+        rig.cancel_faults();
         for n in 1..=CALM {
             let pause_us = CEASES_US.saturating_sub(rig.now_us()) + 1_000_000;
             let life = Life {
@@ -233,7 +233,7 @@ impl<'a> Sea<'a> {
         Ok(Case {
             lives,
             bodies: rig.bodies(),
-            driven: rig.driven(),
+            driven: rig.motion_starts(),
             touched: rig.crashes(),
             rows: archive.query(&all)?,
             alarms: archive.alarms(&Filter::default())?,
@@ -265,7 +265,7 @@ impl<'a> Sea<'a> {
             seed,
             recipe: self.order.recipe.clone(),
             parts: None,
-            golden,
+            reference_parts: golden,
             faults: faults.to_vec(),
         })?)
     }

@@ -149,7 +149,7 @@ fn excitation(case: &Field) -> anyhow::Result<Excitation> {
         if volts < 0.0 {
             return Err(clamp.wrong("volts, 0 or more, or null"));
         }
-        return Ok(Excitation::Clamp(volts));
+        return Ok(Excitation::Suppression(volts));
     }
     let field = case.must("waveform", "a list of [s, V]")?;
     let list = field.list("a list of [s, V]")?;

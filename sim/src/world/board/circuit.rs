@@ -1,4 +1,4 @@
-//! Ohm's law on the interface board: what every measuring point would show at this instant.
+//! Circuit equations of the interface board: the value at every measuring point at this instant.
 
 use super::Board;
 use crate::world::probes::Contact;
@@ -6,7 +6,7 @@ use crate::world::signal::{Out, Quantity};
 use crate::world::specimen::Specimen;
 
 impl Board {
-    /// A quantity in its own unit, before the gain of its terminal.
+    /// Returns a quantity in its own unit, before the gain of its terminal.
     pub fn quantity(&self, quantity: Quantity, part: Option<&Specimen>) -> f64 {
         match quantity {
             Quantity::CoilVoltage | Quantity::CoilVoltageFine => self.coil_v(part) * self.divider,
@@ -18,7 +18,7 @@ impl Board {
         }
     }
 
-    /// Clips what an analog input can see, volts.
+    /// Clips a voltage to the range of an analog input.
     pub fn clip(&self, volts: f64) -> f64 {
         volts.clamp(-self.table.input_limit_v, self.table.input_limit_v)
     }
@@ -28,12 +28,12 @@ impl Board {
         sum.clamp(0.0, self.table.supply_max_v)
     }
 
-    pub(super) fn sees(&self, contact: Contact, part: Option<&Specimen>) -> bool {
+    pub(super) fn senses(&self, contact: Contact, part: Option<&Specimen>) -> bool {
         self.touching
             && part.is_some_and(|it| it.pins().contact(contact) && self.trips(it, contact))
     }
 
-    /// A contact is closed, and low enough for the monitor.
+    /// Checks whether a contact is closed with a resistance low enough for the monitor.
     pub(super) fn trips(&self, part: &Specimen, contact: Contact) -> bool {
         part.contact_mohm(contact).is_some_and(|mohm| {
             let ohm = mohm * 1e-3;
@@ -45,8 +45,8 @@ impl Board {
         self.supply_v().min(self.table.supply_limit_ma * 1e-3 * ohm)
     }
 
-    /// What is left of the supply at the pins of a coil. The film is part of the divider only: that it shortens L/R, by
-    /// a hundredth at 4 ohm, is left out.
+    /// Returns the supply voltage that reaches the pins of a coil. The film acts on the divider only; the model
+    /// ignores its effect on L/R, one percent at 4 ohm.
     pub(super) fn behind_probes_v(&self, coil_ohm: f64) -> f64 {
         let share = 1.0 / (1.0 + self.film_ohm / coil_ohm);
         self.limited_v(coil_ohm + self.film_ohm) * share
@@ -76,13 +76,13 @@ impl Board {
         }
     }
 
-    /// Resistance between the sense wires, `None` when open.
+    /// Returns the resistance between the sense wires; `None` when open.
     pub(super) fn contact_ohm(&self, part: Option<&Specimen>) -> Option<f64> {
         if self.commands.is_on(Out::ReferenceContact) {
             return Some(self.reference_contact_ohm);
         }
         let contact = self.selected();
-        let closed = self.sees(contact, part);
+        let closed = self.senses(contact, part);
         part.filter(|_| closed)
             .and_then(|it| it.contact_mohm(contact))
             .map(|mohm| mohm * 1e-3)
@@ -113,7 +113,7 @@ impl Board {
         (self.contact_a(part) + monitor_a) * ohm + emf
     }
 
-    /// What the EMF has moved by since the selected contact closed, volts.
+    /// Returns the change of the EMF since the selected contact closed, volts.
     fn emf_drift_v(&self) -> f64 {
         let closed_us = self
             .closed_since_us

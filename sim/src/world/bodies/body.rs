@@ -1,4 +1,4 @@
-//! One body: its convex solids where they stand at rest, and how each actuator carries them.
+//! One body: its convex solids at rest, and its motion with each actuator.
 
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::math::{Pose, Vector};
@@ -12,16 +12,16 @@ const PUSHER: usize = 1;
 const SORT_Z: usize = 5;
 const SORT_AXIS: usize = 7;
 
-/// Places of a part, in the order in which they are listed behind the elements.
+/// Places of a part, in the order of the bodies after the elements.
 pub const PARTS: [&str; 4] = ["part_pocket", "part_pusher", "part_nest", "part_gripper"];
 
-/// One body: its solids at rest and how it moves.
+/// One body: its solids at rest and its motion.
 #[derive(Debug, Clone)]
 pub struct Body {
-    /// As in the scene.
+    /// Name in the scene.
     pub name: String,
     solids: Vec<Solid>,
-    /// Way per mm of each actuator.
+    /// Travel per mm of each actuator.
     pub moves: [Vector; 8],
     rest_box: Aabb,
 }
@@ -45,7 +45,7 @@ impl Body {
         ways.fold(Vector::ZERO, |sum, (per_mm, mm)| sum + *per_mm * mm)
     }
 
-    /// Everything that it passes between two postures, as a box.
+    /// Returns the box that encloses the body along the way between two postures.
     pub fn swept(&self, from: &Posture, to: &Posture) -> Aabb {
         let at = |posture| {
             let way = self.offset(posture);
@@ -55,7 +55,7 @@ impl Body {
     }
 }
 
-/// How deep two bodies are in each other, mm; negative infinity when they are apart.
+/// Returns the depth to which two bodies penetrate each other, mm; negative infinity when they are apart.
 pub fn depth_mm(a: &Body, b: &Body, posture: &Posture) -> f64 {
     let (way_a, way_b) = (a.offset(posture), b.offset(posture));
     let mut depth = f64::NEG_INFINITY;
@@ -71,7 +71,7 @@ pub fn depth_mm(a: &Body, b: &Body, posture: &Posture) -> f64 {
     depth
 }
 
-/// An element on its actuator, and on those that carry that one.
+/// Builds an element that moves with its actuator and with those that carry that actuator.
 pub fn element(scene: &Scene, element: &Element) -> Body {
     let mut moves = [Vector::ZERO; 8];
     let mut rides = element.rides.as_deref();
@@ -90,7 +90,8 @@ pub fn element(scene: &Scene, element: &Element) -> Body {
     Body::new(element.id.clone(), solids, moves)
 }
 
-/// A part in each of its places. One that the fingers hold is drawn where it was gripped: z down, axis at the nest.
+/// Builds a part in each of its places; a part between the fingers is defined at its grip: z down, axis at the
+/// nest.
 pub fn parts(scene: &Scene, size: &Size) -> Vec<Body> {
     let places = &scene.guard;
     let lowered = Vector::new(0.0, 0.0, scene.stroke_mm(ACTUATORS[SORT_Z]));

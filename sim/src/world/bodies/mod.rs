@@ -1,15 +1,15 @@
-//! Bodies that touch where they must not: the truth of `parry3d` about shapes read from `scene.toml`.
+//! Detection of crashes: exact distances by `parry3d` between shapes from `scene.toml`.
 //!
-//! Nothing of the controller's guard is in here: other code, other library, no margins. Two bodies that press into each
-//! other deeper than their pair allows have crashed; a pair that nobody names may not touch at all. Where a pair names
-//! the actuators that may press it together, no other one may move the two against each other while they touch.
+//! This check shares nothing with the controller's guard: other code, other library, no margins. Two bodies crash
+//! when they press into each other deeper than their pair permits; a pair that the scene omits must not touch at
+//! all. A pair that lists actuators may touch only through these.
 //!
-//! Between two events of the mechanism everything moves on a known course. [`Bodies::watch`] looks back over such a
-//! span, only at bodies that moved and only at pairs whose swept boxes meet, in steps of [`STEP_MM`] of the longer way.
-//! Without the feature `bodies` the rig has the stand-in of `unwatched.rs` instead.
+//! Between two events of the mechanism every motion is known. [`Bodies::watch`] reviews such an interval, for
+//! moved bodies and for pairs whose swept boxes meet, in steps of [`STEP_MM`] of the longer travel. Without the
+//! feature `bodies`, `no_bodies.rs` replaces this module.
 
 mod body;
-mod meeting;
+mod pair_limits;
 mod scene;
 mod shape;
 
@@ -21,30 +21,30 @@ use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use super::posture::{ACTUATORS, Posture};
 use crate::config::ConfigError;
 use body::{Body, PARTS, depth_mm, element, parts};
-use meeting::{Meeting, meeting};
+use pair_limits::{PairLimits, pair_limits};
 use scene::{Scene, Size};
 
-/// A body that moves further is looked at more than once, mm: as long as the thinnest solid of the scene is wide.
+/// Longest travel between two checks, mm: the width of the thinnest solid of the scene.
 const STEP_MM: f64 = 2.0;
-/// Bodies that stand side by side are apart by less than this in floating point, mm.
+/// Largest rounding error in the distance of two bodies side by side, mm.
 const ROUNDING_MM: f64 = 1e-9;
 
-/// True: this program looks for bodies that touch.
+/// True: this program detects crashes.
 pub const WATCHED: bool = true;
 
 /// All bodies of the rig.
 #[derive(Debug, Clone)]
 pub struct Bodies {
     bodies: Vec<Body>,
-    meetings: Vec<Meeting>,
+    limits: Vec<PairLimits>,
     strokes: [f64; 8],
 }
 
 impl Bodies {
-    /// The bodies of a folder of settings, with parts of the size of a recipe.
+    /// Reads the bodies of a configuration folder, with parts of the size of a recipe.
     ///
     /// # Errors
-    /// `scene.toml` or the recipe cannot be read, or names what is not there.
+    /// Fails when `scene.toml` or the recipe cannot be read, or refers to an unknown name.
     pub fn read(dir: &Path, recipe: &str) -> Result<Self, ConfigError> {
         let (scene, size) = scene::read(dir, recipe)?;
         Ok(Self::new(&scene, &size))
@@ -54,26 +54,27 @@ impl Bodies {
         let mut bodies: Vec<Body> = scene.elements.iter().map(|it| element(scene, it)).collect();
         bodies.extend(parts(scene, size));
         let strokes = ACTUATORS.map(|name| scene.stroke_mm(name));
-        let mut meetings = Vec::new();
+        let mut limits = Vec::new();
         for a in 0..bodies.len() {
             for b in a + 1..bodies.len() {
-                meetings.extend(meeting(scene, &bodies, (a, b)));
+                limits.extend(pair_limits(scene, &bodies, (a, b)));
             }
         }
         Self {
             bodies,
-            meetings,
+            limits,
             strokes,
         }
     }
 
-    /// Stroke of an actuator, mm; 0 for one that has points.
+    /// Returns the stroke of an actuator, mm; 0 for an actuator with points.
     pub fn stroke_mm(&self, actuator: usize) -> f64 {
         self.strokes[actuator]
     }
 
-    /// Looks at a span from `from` to `to`, in which no part changes its place; `between` tells the posture at a share
-    /// of it, 0 to 1. Gives the pairs that touched in it; those of `touching` had touched before.
+    /// Checks the interval from `from` to `to`, in which no part changes its place; `between` gives the posture
+    /// at a fraction of it, 0 to 1. Returns a description of each new crash; `touching` holds the pairs that
+    /// already touch.
     pub fn watch(
         &self,
         from: &Posture,
@@ -85,26 +86,26 @@ impl Bodies {
         let there = |(n, body): (usize, &Body)| self.is_there(n, to).then(|| body.swept(from, to));
         let boxes: Vec<Option<Aabb>> = self.bodies.iter().enumerate().map(there).collect();
         let mut found = Vec::new();
-        for meeting in self.meetings.iter().filter(|it| it.is_moved(&moved)) {
-            let (Some(one), Some(other)) = (boxes[meeting.pair.0], boxes[meeting.pair.1]) else {
-                touching.remove(&meeting.pair);
+        for limit in self.limits.iter().filter(|it| it.is_moved(&moved)) {
+            let (Some(one), Some(other)) = (boxes[limit.pair.0], boxes[limit.pair.1]) else {
+                touching.remove(&limit.pair);
                 continue;
             };
             let depth_mm = match one.intersects(&other) {
-                true => self.deepest_mm(meeting.pair, (from, to), &between),
+                true => self.deepest_mm(limit.pair, (from, to), &between),
                 false => f64::NEG_INFINITY,
             };
-            if depth_mm <= meeting.allowed(&moved, to.slack) + ROUNDING_MM {
-                touching.remove(&meeting.pair);
-            } else if touching.insert(meeting.pair) {
-                let (a, b) = (&self.bodies[meeting.pair.0], &self.bodies[meeting.pair.1]);
+            if depth_mm <= limit.allowed(&moved, to.slack) + ROUNDING_MM {
+                touching.remove(&limit.pair);
+            } else if touching.insert(limit.pair) {
+                let (a, b) = (&self.bodies[limit.pair.0], &self.bodies[limit.pair.1]);
                 found.push(format!("{} and {}, {depth_mm:.2} mm deep", a.name, b.name));
             }
         }
         found
     }
 
-    /// How deep two bodies are in each other at most on their way, mm.
+    /// Returns the greatest depth of two bodies along their way, mm.
     fn deepest_mm(
         &self,
         pair: (usize, usize),
@@ -119,14 +120,14 @@ impl Bodies {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Parts are where the posture says.
+    /// Checks whether the posture has this body; a part exists at its present place only.
     fn is_there(&self, body: usize, posture: &Posture) -> bool {
         let first = self.bodies.len() - PARTS.len();
         let there = [posture.pocket, posture.pushed, posture.nest, posture.held];
         body.checked_sub(first).is_none_or(|place| there[place])
     }
 
-    /// How far two bodies move against each other, mm at most.
+    /// Returns an upper bound of the relative travel of two bodies, mm.
     fn way_mm(&self, (a, b): (usize, usize), from: &Posture, to: &Posture) -> f64 {
         (0..ACTUATORS.len())
             .map(|n| {

@@ -1,4 +1,4 @@
-//! The bodies of the rig as `scene.toml` describes them, read anew: elements, actuators, and who may touch whom.
+//! Bodies, actuators and contact rules of the rig, read from `scene.toml` for the simulated rig alone.
 
 use std::path::Path;
 
@@ -6,52 +6,52 @@ use serde::Deserialize;
 
 use crate::config::{ConfigError, content, read_text};
 
-/// A body that rides on an actuator, or stands.
+/// A body that is fixed or moves with an actuator.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Element {
     /// Name.
     pub id: String,
-    /// Actuator it rides on.
+    /// Actuator that carries it.
     pub rides: Option<String>,
-    /// Form and place.
+    /// Shape and pose.
     #[serde(flatten)]
     pub body: Body,
 }
 
-/// A form at a place.
+/// A shape with its pose.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Body {
-    /// Form.
+    /// Shape.
     #[serde(flatten)]
     pub form: Form,
-    /// Place; where its owner is when nothing is said.
+    /// Pose relative to the owner; identity by default.
     #[serde(default)]
-    pub pose: Place,
+    pub pose: Placement,
 }
 
-/// Forms, mm.
+/// Shapes; lengths in mm.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum Form {
-    /// Half edges.
+    /// Box with these half edges.
     Block { half: [f64; 3] },
-    /// Along its own z, centred.
+    /// Cylinder along its own z, centred.
     Cylinder { radius: f64, height: f64 },
-    /// Several in one.
+    /// Union of several bodies.
     Compound { parts: Vec<Body> },
 }
 
-/// Where something is, mm and a quaternion w, x, y, z.
+/// Position in mm and rotation as a quaternion w, x, y, z.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(default)]
-pub struct Place {
-    /// Of the centre.
+pub struct Placement {
+    /// Position of the centre, mm.
     pub position: [f64; 3],
-    /// Of its axes.
+    /// Rotation of the axes.
     pub rotation: [f64; 4],
 }
 
-impl Default for Place {
+impl Default for Placement {
     fn default() -> Self {
         Self {
             position: [0.0; 3],
@@ -60,79 +60,79 @@ impl Default for Place {
     }
 }
 
-/// What moves bodies.
+/// An actuator that moves bodies.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Actuator {
     /// Name.
     pub id: String,
     /// Direction from rest to the far end.
     pub axis: [f64; 3],
-    /// Stroke; none where it has points.
+    /// Stroke, mm; `None` for an actuator with points.
     pub stroke_mm: Option<f64>,
-    /// Actuator it rides on itself.
+    /// Actuator that carries this one.
     pub rides: Option<String>,
-    /// Elements that go the other way.
+    /// Elements that move in the opposite direction.
     #[serde(default)]
     pub opposed: Vec<String>,
 }
 
-/// Two bodies, or two groups of bodies, and what they may do.
+/// Rule for two bodies or two groups of bodies.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Pair {
-    /// One; a trailing `*` stands for any ending.
+    /// First body; a trailing `*` matches any ending.
     pub a: String,
-    /// The other.
+    /// Second body, in the same form.
     pub b: String,
-    /// What they may do.
+    /// Rule for the two.
     pub rule: Rule,
-    /// How deep they may press into each other, mm.
+    /// Permitted depth, mm.
     pub depth_mm: Option<f64>,
-    /// Actuators that may press them together; empty: any.
+    /// Actuators that may press them together; empty for any.
     #[serde(default)]
     pub by: Vec<String>,
 }
 
-/// What two bodies may do.
+/// Contact rule of a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rule {
-    /// Not touch.
+    /// The bodies must not touch.
     Forbidden,
-    /// Touch.
+    /// The bodies may touch.
     MayTouch,
-    /// Run in each other by construction.
+    /// The bodies overlap by design and are never checked.
     Ignore,
 }
 
-/// Places of a part: the middle of the lower rear edge of its body; and how deep a touch may be.
+/// Places of a part (middle of the lower rear edge of its body), and permitted depths.
 #[derive(Debug, Clone, Deserialize)]
-pub struct Places {
-    /// Depth of a touch that is none, mm.
+pub struct PartPlaces {
+    /// Depth up to which a contact does not count, mm.
     pub touch_depth_mm: f64,
-    /// How far inside of the outline of the body the pins stand, mm.
+    /// Distance of the pins from the outline of the body, mm.
     pub pin_inset_mm: f64,
-    /// Before the pusher.
+    /// Part in the pocket, before the pusher.
     pub pocket: [f64; 3],
-    /// Under test.
+    /// Part in the nest.
     pub nest: [f64; 3],
 }
 
-/// The file.
+/// Content of `scene.toml`.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Scene {
-    /// Places of parts.
-    pub guard: Places,
-    /// What moves.
+    /// Places of a part.
+    pub guard: PartPlaces,
+    /// All actuators.
     pub actuator: Vec<Actuator>,
-    /// What there is.
+    /// All elements.
     pub elements: Vec<Element>,
-    /// Who may touch whom.
+    /// Contact rules.
     #[serde(default)]
     pub pair: Vec<Pair>,
 }
 
 impl Scene {
-    /// Stroke of an actuator, mm; 0 for one that has points.
+    /// Returns the stroke of an actuator, mm; 0 for an actuator with points.
     pub fn stroke_mm(&self, actuator: &str) -> f64 {
         let own = self.actuator.iter().find(|it| it.id == actuator);
         own.and_then(|it| it.stroke_mm).unwrap_or(0.0)
@@ -140,7 +140,7 @@ impl Scene {
 }
 
 impl Pair {
-    /// It speaks of these two, in either order.
+    /// Checks whether the rule applies to these two bodies, in either order.
     pub fn is_of(&self, one: &str, other: &str) -> bool {
         let fits = |pattern: &str, name: &str| match pattern.strip_suffix('*') {
             Some(start) => name.starts_with(start),
@@ -153,9 +153,9 @@ impl Pair {
 /// Size of the parts of a recipe, mm.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub struct Size {
-    /// Along x, y, z without pins.
+    /// Extent along x, y, z without pins.
     pub body_mm: [f64; 3],
-    /// Below the body.
+    /// Length of the pins below the body.
     pub pin_length_mm: f64,
 }
 
@@ -164,10 +164,10 @@ struct RecipeFile {
     part: Size,
 }
 
-/// Reads the scene and the size of the recipe's parts.
+/// Reads the scene and the part size of a recipe.
 ///
 /// # Errors
-/// A file cannot be read or lacks what is asked of it.
+/// Fails when a file cannot be read or lacks a required key.
 pub fn read(dir: &Path, recipe: &str) -> Result<(Scene, Size), ConfigError> {
     let path = dir.join("scene.toml");
     let text = read_text(&path)?;

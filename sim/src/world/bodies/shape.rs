@@ -1,4 +1,4 @@
-//! Solids of `parry3d` for the bodies of the scene and for a part.
+//! Solids of `parry3d` for the bodies of the scene and for the parts.
 
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::{Pose, Rot3, Vector};
@@ -9,7 +9,7 @@ use super::scene::{Body, Form, Size};
 /// A convex solid at rest.
 #[derive(Clone)]
 pub struct Solid {
-    /// Form.
+    /// Shape.
     pub shape: SharedShape,
     rest: Pose,
     rest_box: Aabb,
@@ -31,18 +31,18 @@ impl Solid {
         }
     }
 
-    /// Its box at rest.
+    /// Returns the bounding box at rest.
     pub fn rest_box(&self) -> Aabb {
         self.rest_box
     }
 
-    /// Where it is after a way.
+    /// Returns the pose after a travel.
     pub fn placed(&self, way: Vector) -> Pose {
         Pose::from_parts(self.rest.translation + way, self.rest.rotation)
     }
 }
 
-/// The convex solids of a body.
+/// Builds the convex solids of a body.
 pub fn solids(body: &Body, at: &Pose) -> Vec<Solid> {
     let [x, y, z] = body.pose.position;
     let own = Pose::from_parts(Vector::new(x, y, z), turn(body.pose.rotation));
@@ -50,7 +50,7 @@ pub fn solids(body: &Body, at: &Pose) -> Vec<Solid> {
     match &body.form {
         Form::Block { half: [x, y, z] } => vec![Solid::new(SharedShape::cuboid(*x, *y, *z), here)],
         Form::Cylinder { radius, height } => {
-            // A cylinder lies on y there and is turned up.
+            // `parry3d` aligns a cylinder with y; rotate it to z.
             let half_turn = std::f64::consts::FRAC_1_SQRT_2;
             let up = Rot3::from_xyzw(half_turn, 0.0, 0.0, half_turn).normalize();
             let turned = here * Pose::from_parts(Vector::ZERO, up);
@@ -63,7 +63,7 @@ pub fn solids(body: &Body, at: &Pose) -> Vec<Solid> {
     }
 }
 
-/// A part whose body has the middle of its lower rear edge at `place`, moved by `more`.
+/// Builds a part with the middle of its lower rear edge at `place`, displaced by `more`.
 pub fn part(size: &Size, inset_mm: f64, place: [f64; 3], more: Vector) -> Vec<Solid> {
     let [length, width, height] = size.body_mm;
     let [x, y, z] = place;
@@ -85,7 +85,7 @@ pub fn part(size: &Size, inset_mm: f64, place: [f64; 3], more: Vector) -> Vec<So
     ]
 }
 
-/// A turn as the file writes it, w first.
+/// Converts a quaternion with w first.
 fn turn([w, x, y, z]: [f64; 4]) -> Rot3 {
     Rot3::from_xyzw(x, y, z, w).normalize()
 }

@@ -1,61 +1,64 @@
-//! What strokes do to the parts, and to each other where they must not.
+//! Effects of strokes on the parts, and collisions between parts.
 
-use super::{Later, Mechanism, Stroke};
+use super::{CylinderId, Mechanism, Scheduled};
 use crate::truth::Place;
 use crate::world::cylinder::Cylinder;
 use crate::world::fault::Fault;
 use crate::world::magazine::Part;
 use crate::world::signal::In;
 
-/// Takes the part of one place to another one.
+/// Moves the part of one place to another place.
 fn moved(from: &mut Option<Box<Part>>, now_us: u64, to: Place) -> Option<Box<Part>> {
     let mut part = from.take()?;
-    part.goes(now_us, to);
+    part.arrive(now_us, to);
     Some(part)
 }
 
 impl Mechanism {
-    /// What a stroke does to the parts as it begins.
-    pub(super) fn stroke_began(&mut self, stroke: Stroke, far: bool, now_us: u64) {
+    /// Moves parts at the start of a stroke.
+    pub(super) fn stroke_began(&mut self, stroke: CylinderId, far: bool, now_us: u64) {
         let share = |percent: u64, of: &Cylinder| now_us + of.stroke_us() * percent / 100;
         match (stroke, far) {
-            (Stroke::Pusher, true) => {
+            (CylinderId::Pusher, true) => {
                 self.places.pushed = moved(&mut self.places.pocket, now_us, Place::Pusher);
                 self.lookout.pulled_back = false;
             }
-            (Stroke::Pusher, false) if self.places.pushed.is_some() => {
+            (CylinderId::Pusher, false) if self.places.pushed.is_some() => {
                 self.places.pocket = moved(&mut self.places.pushed, now_us, Place::Pocket);
                 self.lookout.pulled_back = true;
             }
-            (Stroke::SortZ, true) => self.lookout.slides_off = false,
-            (Stroke::SortZ, false) if self.places.gripped => {
-                let at = share(25, self.at(Stroke::SortZ));
-                self.later.push((at, Later::LiftOff));
+            (CylinderId::SortZ, true) => self.lookout.slides_off = false,
+            (CylinderId::SortZ, false) if self.places.gripped => {
+                let at = share(25, self.at(CylinderId::SortZ));
+                self.scheduled.push((at, Scheduled::LiftOff));
             }
-            (Stroke::Gripper, false) => {
-                let at = share(30, self.at(Stroke::Gripper));
-                self.later.push((at, Later::LetGo));
+            (CylinderId::Gripper, false) => {
+                let at = share(30, self.at(CylinderId::Gripper));
+                self.scheduled.push((at, Scheduled::LetGo));
             }
             (_, _) => {}
         }
     }
 
-    /// What a stroke does to the parts as it ends.
-    pub(super) fn stroke_ended(&mut self, stroke: Stroke, now_us: u64) {
+    /// Moves parts at the end of a stroke.
+    pub(super) fn stroke_ended(&mut self, stroke: CylinderId, now_us: u64) {
         if !self.at(stroke).at_far(now_us) {
-            self.lookout.pulled_back &= stroke != Stroke::Pusher;
+            self.lookout.pulled_back &= stroke != CylinderId::Pusher;
             return;
         }
         match stroke {
-            Stroke::Escapement => self.drop_into_pocket(now_us),
-            Stroke::Pusher => self.push_into_nest(now_us),
-            Stroke::Gripper => self.grip(now_us),
-            Stroke::JawLeft | Stroke::JawRight | Stroke::ProbeLift | Stroke::SortZ => {}
+            CylinderId::Escapement => self.drop_into_pocket(now_us),
+            CylinderId::Pusher => self.push_into_nest(now_us),
+            CylinderId::Gripper => self.grip(now_us),
+            CylinderId::JawLeft
+            | CylinderId::JawRight
+            | CylinderId::ProbeLift
+            | CylinderId::SortZ => {}
         }
     }
 
     pub(super) fn drop_into_pocket(&mut self, now_us: u64) {
-        let free = self.places.pocket.is_none() && self.at(Stroke::Pusher).at_rest(now_us);
+        let free = self.places.pocket.is_none() && self.at(CylinderId::Pusher).at_rest(now_us);
         if !free
             || self.is_disturbed(Fault::Starved)
             || self
@@ -72,7 +75,7 @@ impl Mechanism {
             return;
         };
         if self.faults.strikes(Fault::PartMisses, part.number) || self.places.nest.is_some() {
-            part.goes(now_us, Place::Floor);
+            part.arrive(now_us, Place::Floor);
             self.places.finish(&part);
         } else {
             self.places.enter_nest(part, now_us);
@@ -83,7 +86,8 @@ impl Mechanism {
         let over =
             !self.axis.is_moving() && self.axis.x_mm(now_us).abs() < self.table.axis_window_mm;
         let empty = self.places.carried.is_none();
-        if over && empty && self.at(Stroke::SortZ).at_far(now_us) && self.places.nest.is_some() {
+        if over && empty && self.at(CylinderId::SortZ).at_far(now_us) && self.places.nest.is_some()
+        {
             self.places.gripped = true;
         }
     }
@@ -94,10 +98,11 @@ impl Mechanism {
         }
         self.places.gripped = false;
         let number = self.places.nest.as_ref().and_then(|part| part.number);
-        let open = [Stroke::JawLeft, Stroke::JawRight].map(|jaw| self.at(jaw).at_rest(now_us));
+        let open =
+            [CylinderId::JawLeft, CylinderId::JawRight].map(|jaw| self.at(jaw).at_rest(now_us));
         let held = open != [true, true];
         let stays = self.faults.strikes(Fault::PartStays, number);
-        // Jaws hold more than fingers, which slide off and leave the part in the nest.
+        // The jaws grip harder than the fingers, which slide off and leave the part in the nest.
         if stays || held {
             self.lookout.slides_off |= stays;
             return;
@@ -105,13 +110,13 @@ impl Mechanism {
         self.places.carried = moved(&mut self.places.nest, now_us, Place::Gripper);
     }
 
-    /// The fingers have opened far enough to let a part go.
+    /// Drops the part once the fingers have opened far enough.
     pub(super) fn let_go(&mut self, now_us: u64) {
         self.places.gripped = false;
         let number = self.places.carried.as_ref().and_then(|part| part.number);
         if self.faults.strikes(Fault::PartSticks, number) {
             let hold = (self.table.fault_hold_ms * 1000.0) as u64;
-            self.later.push((now_us + hold, Later::TakenOut));
+            self.scheduled.push((now_us + hold, Scheduled::TakenOut));
             return;
         }
         let x = self.axis.x_mm(now_us);
@@ -122,10 +127,10 @@ impl Mechanism {
             .find(|b| near(b.x_mm) && !self.axis.is_moving());
         let (name, beam) = match bin {
             Some(bin) => (bin.name.clone(), In::from_name(&bin.beam)),
-            None if near(0.0) && self.at(Stroke::SortZ).at_far(now_us) => {
+            None if near(0.0) && self.at(CylinderId::SortZ).at_far(now_us) => {
                 return self.put_back(now_us);
             }
-            None => return self.lose(now_us),
+            None => return self.drop_carried(now_us),
         };
         if let Some(part) = moved(&mut self.places.carried, now_us, Place::Air) {
             self.fall(part, name, beam, now_us);
@@ -137,23 +142,23 @@ impl Mechanism {
         let seen = !self.faults.strikes(Fault::BeamBlind, part.number);
         let bodies = if part.double { 2 } else { 1 };
         let mut dark = now_us + us(self.draw.between(self.table.fall_ms));
-        self.later.push((dark, Later::Land(bin, part)));
+        self.scheduled.push((dark, Scheduled::Land(bin, part)));
         for _ in 0..bodies {
             let lit = dark + us(self.draw.between(self.table.beam_dark_ms));
             if let Some(beam) = beam.filter(|_| seen) {
-                self.later.push((dark, Later::Dark(beam)));
-                self.later.push((lit, Later::Lit(beam)));
+                self.scheduled.push((dark, Scheduled::Dark(beam)));
+                self.scheduled.push((lit, Scheduled::Lit(beam)));
             }
             dark = lit + us(25.0);
         }
     }
 
-    /// A carried part that is set down in the nest.
+    /// Sets a carried part down in the nest.
     pub(super) fn put_back(&mut self, now_us: u64) {
         if let Some(mut part) = self.places.carried.take() {
             match self.places.nest.is_some() {
                 true => {
-                    part.goes(now_us, Place::Floor);
+                    part.arrive(now_us, Place::Floor);
                     self.places.finish(&part);
                 }
                 false => self.places.enter_nest(part, now_us),
@@ -161,8 +166,8 @@ impl Mechanism {
         }
     }
 
-    /// A carried part falls on the floor, or into somebody's hand.
-    pub(super) fn lose(&mut self, now_us: u64) {
+    /// Removes a carried part: it falls on the floor, or an operator takes it.
+    pub(super) fn drop_carried(&mut self, now_us: u64) {
         if let Some(part) = moved(&mut self.places.carried, now_us, Place::Floor) {
             self.places.finish(&part);
         }

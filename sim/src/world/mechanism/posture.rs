@@ -1,27 +1,27 @@
-//! Where the actuators stand and parts lie, for the bodies; and the look back over the way that they have moved.
+//! Postures of the mechanism for the detection of crashes, and the review of the motion since the last one.
 
 use std::collections::BTreeSet;
 
-use super::{Mechanism, Stroke};
+use super::{CylinderId, Mechanism};
 use crate::world::bodies::Bodies;
 use crate::world::posture::Posture;
 
-/// The bodies, and up to when they were looked at.
+/// The bodies, with the instant up to which they have been checked.
 #[derive(Debug, Clone)]
-pub(super) struct Lookout {
+pub(super) struct CrashWatch {
     bodies: Bodies,
-    /// The last look, microseconds, and where everything stood.
+    /// Last check: instant (microseconds) and posture.
     last: Option<(u64, Posture)>,
     touching: BTreeSet<(usize, usize)>,
-    /// The part of the pocket is still before the pusher that takes it back there.
+    /// The part of the pocket is still in front of the pusher that pulls it back.
     pub pulled_back: bool,
-    /// Rising fingers leave their part in the nest, by a fault.
+    /// A fault makes the rising fingers leave their part in the nest.
     pub slides_off: bool,
 }
 
-impl Lookout {
-    /// Nobody has looked yet.
-    pub fn over(bodies: Bodies) -> Self {
+impl CrashWatch {
+    /// Starts without a check.
+    pub fn new(bodies: Bodies) -> Self {
         Self {
             bodies,
             last: None,
@@ -33,13 +33,13 @@ impl Lookout {
 }
 
 impl Mechanism {
-    /// Looks at everything that moved since the last look. Whoever changes a course or a place looks first.
+    /// Checks all motion since the last check. Every change of a stroke or a place must call it first.
     pub(super) fn watch(&mut self, now_us: u64) {
         let now = self.posture(now_us);
         let Some((from_us, before)) = self.lookout.last.replace((now_us, now)) else {
             return;
         };
-        // Places have not changed since then, or somebody would have looked.
+        // The places have not changed since the last check, since every change calls it.
         let from = Posture {
             mm: before.mm,
             ..now
@@ -62,13 +62,14 @@ impl Mechanism {
 
     fn posture(&self, t_us: u64) -> Posture {
         let mut mm = [0.0; 8];
-        for (n, stroke) in Stroke::ALL.into_iter().enumerate() {
+        for (n, stroke) in CylinderId::ALL.into_iter().enumerate() {
             mm[n] = self.at(stroke).position(t_us) * self.lookout.bodies.stroke_mm(n);
         }
-        mm[Stroke::ALL.len()] = self.axis.x_mm(t_us);
+        mm[CylinderId::ALL.len()] = self.axis.x_mm(t_us);
         let places = &self.places;
-        // Jaws hold more than fingers: what both hold stays in the nest.
-        let jaws_open = [Stroke::JawLeft, Stroke::JawRight].map(|jaw| self.at(jaw).at_rest(t_us));
+        // The jaws grip harder than the fingers: a part in both grips stays in the nest.
+        let jaws_open =
+            [CylinderId::JawLeft, CylinderId::JawRight].map(|jaw| self.at(jaw).at_rest(t_us));
         let lifted = places.gripped && jaws_open == [true, true];
         Posture {
             mm,

@@ -1,45 +1,46 @@
-//! What the sensors of the mechanism say.
+//! Signals of the mechanism's sensors.
 
-use super::{Mechanism, Stroke};
+use super::{CylinderId, Mechanism};
 use crate::world::fault::Fault;
 use crate::world::signal::In;
 
-/// A loose contact is off for so long, and on for three times as long.
+/// Off time of a loose contact, microseconds; its on time is three times as long.
 const FLICKER_US: u64 = 10_000;
 
 impl Mechanism {
-    /// A signal of the mechanism; `None` where it is none of its own.
+    /// Returns a signal of the mechanism; `None` for a signal of another source.
     pub fn signal(&self, signal: In, now_us: u64) -> Option<bool> {
-        let rest = |s: Stroke| Some(self.at(s).at_rest(now_us));
-        let far = |s: Stroke| Some(self.at(s).at_far(now_us));
+        let rest = |s: CylinderId| Some(self.at(s).at_rest(now_us));
+        let far = |s: CylinderId| Some(self.at(s).at_far(now_us));
         match signal {
             In::EmergencyStopOk => Some(!self.is_disturbed(Fault::Estop)),
             In::DoorClosed => Some(!self.is_disturbed(Fault::Door)),
             In::AirOk => Some(self.has_air()),
-            In::EscapementHold => rest(Stroke::Escapement),
+            In::EscapementHold => rest(CylinderId::Escapement),
             In::PocketPresent => Some(self.places.pocket.is_some()),
             In::TrackLevel if self.is_disturbed(Fault::Starved) => Some(false),
             In::TrackLevel => Some(self.magazine.waiting() >= self.table.track_level_parts),
             In::PusherRetracted if self.is_disturbed(Fault::SensorBounce) => Some(
-                self.at(Stroke::Pusher).at_rest(now_us) && !(now_us / FLICKER_US).is_multiple_of(4),
+                self.at(CylinderId::Pusher).at_rest(now_us)
+                    && !(now_us / FLICKER_US).is_multiple_of(4),
             ),
-            In::PusherRetracted => rest(Stroke::Pusher),
+            In::PusherRetracted => rest(CylinderId::Pusher),
             In::PusherExtended if self.is_disturbed(Fault::SensorStuck) => Some(true),
-            In::PusherExtended => far(Stroke::Pusher),
+            In::PusherExtended => far(CylinderId::Pusher),
             In::NestPresent => Some(self.places.nest.is_some()),
-            In::JawLeftOpen => rest(Stroke::JawLeft),
-            In::JawLeftClosed => far(Stroke::JawLeft),
-            In::JawRightOpen => rest(Stroke::JawRight),
-            In::JawRightClosed => far(Stroke::JawRight),
+            In::JawLeftOpen => rest(CylinderId::JawLeft),
+            In::JawLeftClosed => far(CylinderId::JawLeft),
+            In::JawRightOpen => rest(CylinderId::JawRight),
+            In::JawRightClosed => far(CylinderId::JawRight),
             In::ProbeDown if self.is_disturbed(Fault::SensorLost) => Some(false),
-            In::ProbeDown => rest(Stroke::ProbeLift),
-            In::ProbeUp => far(Stroke::ProbeLift),
+            In::ProbeDown => rest(CylinderId::ProbeLift),
+            In::ProbeUp => far(CylinderId::ProbeLift),
             In::AxisInPosition => Some(self.axis.is_in_position()),
             In::AxisBusy => Some(self.axis.is_moving()),
             In::AxisAlarm => Some(self.axis.is_alarmed()),
-            In::SortZUp => rest(Stroke::SortZ),
-            In::SortZDown => far(Stroke::SortZ),
-            In::GripperOpen => rest(Stroke::Gripper),
+            In::SortZUp => rest(CylinderId::SortZ),
+            In::SortZDown => far(CylinderId::SortZ),
+            In::GripperOpen => rest(CylinderId::Gripper),
             In::GripperPart => Some(self.places.gripped || self.places.carried.is_some()),
             In::ButtonStart => Some(self.is_disturbed(Fault::StartButton)),
             In::ButtonReset => Some(self.is_disturbed(Fault::ResetButton)),

@@ -1,15 +1,15 @@
-//! What the motion of the armature means for the contacts.
+//! Contact events that follow from the motion of the armature.
 //!
-//! A first make is the first touch of a contact after the other one was closed: it is a new closure
-//! with a resistance of its own, and its bounce list speaks for it until it has settled. Every other
-//! touch and break is passed on as it is, the flutter of a failing pulse for one.
+//! A first make is the first touch of a contact after the other one was closed. It starts a new closure with a
+//! resistance of its own, and a bounce list determines its bounce until it settles. All other touches and breaks
+//! come from the motion directly, for example the flutter of a pulse that is too short.
 
 use super::lumped::{Event, Kind};
 use super::{Relay, SETTLING_US};
 use crate::world::probes::{Change, Contact};
 
 impl Relay {
-    /// A mode of the motion has changed.
+    /// Handles a change of mode in the motion.
     pub(super) fn touched(&mut self, event: &Event) -> Option<Change> {
         let contact = match event.kind {
             Kind::No => Contact::No,
@@ -29,13 +29,13 @@ impl Relay {
         }
     }
 
-    /// The next entry of the bounce list is due.
+    /// Applies the next entry of the bounce list, which is due.
     pub(super) fn bounced(&mut self) -> Option<Change> {
         let change = self.bounce.pop_front()?;
         self.set(change.t_us, change.contact, change.closed)
     }
 
-    /// Once a closure has settled, the contact is what the motion says.
+    /// Matches the contact to the motion after its closure has settled.
     pub(super) fn synchronised(&mut self, t_us: f64) -> Option<Change> {
         if t_us < self.settled_us || !self.bounce.is_empty() {
             return None;
@@ -47,13 +47,13 @@ impl Relay {
         self.set(t_us, self.side, closed)
     }
 
-    /// A contact opens for good; its bounce ends.
+    /// Opens a contact and ends its bounce.
     fn part(&mut self, contact: Contact, t_us: f64) -> Option<Change> {
         self.bounce.clear();
         self.set(t_us, contact, false)
     }
 
-    /// First make after a flight: a new closure, a new operation, a new bounce.
+    /// Handles the first make after a flight: starts a closure, an operation and a bounce.
     fn make(&mut self, contact: Contact, t_us: f64) -> Option<Change> {
         self.side = contact;
         self.settled_us = t_us + SETTLING_US;

@@ -1,4 +1,4 @@
-//! What can be wrong with a relay.
+//! Defects of a relay.
 
 macro_rules! defects {
     ($($(#[$doc:meta])* $name:ident = $text:literal),* $(,)?) => {
@@ -7,10 +7,10 @@ macro_rules! defects {
         pub enum Defect { $($(#[$doc])* $name),* }
 
         impl Defect {
-            /// Every kind.
+            /// Every defect.
             pub const ALL: &'static [Defect] = &[$(Defect::$name),*];
 
-            /// Name in the truth.
+            /// Returns the name in the truth file.
             pub fn name(self) -> &'static str {
                 match self { $(Defect::$name => $text),* }
             }
@@ -19,30 +19,30 @@ macro_rules! defects {
 }
 
 defects! {
-    /// No current at all.
+    /// The coil carries no current.
     OpenCoil = "open_coil",
-    /// Resistance too low.
+    /// The coil resistance is too low.
     ShortedTurns = "shorted_turns",
-    /// A winding for another voltage.
+    /// The winding is for another voltage.
     WrongCoil = "wrong_coil",
-    /// Releases too low.
+    /// The release voltage is too low.
     WeakSpring = "weak_spring",
-    /// Operates too high.
+    /// The operate voltage is too high.
     StiffSpring = "stiff_spring",
-    /// Operates or releases late.
+    /// The operate time or the release time is too long.
     Slow = "slow",
-    /// Bounces too long on one contact.
+    /// One contact bounces too long.
     Bouncing = "bouncing",
-    /// NC welded: never opens, NO never makes.
+    /// NC is welded: it never opens, and NO never makes.
     StuckNc = "stuck_nc",
-    /// NO welded: never opens, NC never makes.
+    /// NO is welded: it never opens, and NC never makes.
     StuckNo = "stuck_no",
-    /// One contact has too much resistance.
+    /// The resistance of one contact is too high.
     HighContact = "high_contact",
-    /// One contact has another, always too high, resistance at every closure.
+    /// The resistance of one contact differs at every closure and is always too high.
     UnstableContact = "unstable_contact",
-    /// Lies in the nest the wrong way round: coil and common miss their pins.
-    Turned = "turned",
-    /// One pin is not there.
+    /// The relay is misoriented in the nest: coil and common miss their pins.
+    Misoriented = "turned",
+    /// One pin is missing.
     MissingPin = "missing_pin",
 }

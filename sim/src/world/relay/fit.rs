@@ -1,80 +1,80 @@
-//! A relay with wanted thresholds and times: the parameters that give a drawn specimen its values.
+//! Fits the parameters of the relay model to the thresholds and times of a drawn specimen.
 //!
-//! What the world file draws are results: thresholds, times, resistance. What moves is a set of
-//! parameters, so the default relay is bent until its results are the drawn ones:
+//! The world file draws results: thresholds, times, resistance. The model needs parameters, so the fit adjusts
+//! those of the default relay until the results match:
 //!
 //! - spring and travel together carry the pickup threshold (both hang on the same bent part),
 //! - the reluctance of the closed iron carries the release threshold,
 //! - mass of the armature and conductance of the eddy currents carry operate and release time.
 //!
-//! Thresholds first, by Newton's method on the exact statics; they do not depend on mass or eddy
-//! currents. Then the times, by Broyden's method on whole transients. All in logarithms, so that
-//! nothing becomes negative. One pair of times in thirty no relay has: a heavy armature does not fall
-//! fast. Then the operate time is the drawn one and the release time as near as it goes. A slow relay drags at its hinge, or its iron holds the flux: one
-//! parameter, by bisection, and the other time follows.
+//! Newton's method on the exact statics fits the thresholds first; they do not depend on mass or eddy currents.
+//! Broyden's method on whole transients then fits the times. All parameters are logarithms, so none becomes
+//! negative. No relay can show about one pair of times in thirty, since a heavy armature does not fall fast; then
+//! the operate time is exact and the release time as near as possible. A slow relay has friction at its hinge, or
+//! iron that holds the flux: bisection fits that one parameter, and the other time follows.
 
 use std::ops::Range;
 
 use super::lumped::{Drive, Kind, Model, Parameters, Solver, State};
 
-/// What a relay shall show, at 23 C.
+/// Results that the fitted relay shows, at 23 C.
 #[derive(Debug, Clone, Copy)]
-pub struct Wanted {
+pub struct FitTarget {
     /// Coil resistance, ohm.
     pub coil_ohm: f64,
-    /// Turns against those of the default relay.
+    /// Number of turns relative to the default relay.
     pub turns: f64,
-    /// Quasi-static thresholds, V: pickup and release.
+    /// Quasi-static pickup and release thresholds, V.
     pub volts: [f64; 2],
     /// Operate time from nominal voltage and release time into the zener, s.
     pub seconds: [f64; 2],
-    /// Nominal coil voltage.
+    /// Nominal coil voltage, V.
     pub nominal_v: f64,
-    /// Clamp of the timed release, V.
+    /// Suppression voltage of the timed release, V.
     pub zener_v: f64,
-    /// Which of the two times are its own.
-    pub pace: Pace,
+    /// Origin of the two times.
+    pub time_origin: TimeOrigin,
 }
 
-/// Where a relay has its times from.
+/// Origin of a relay's operate time and release time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pace {
-    /// Both were drawn.
-    Drawn,
-    /// Neither: they follow from springs and winding.
+pub enum TimeOrigin {
+    /// The lot draws both.
+    Lot,
+    /// Neither is drawn: both follow from springs and winding.
     Follows,
-    /// A hinge that drags: it operates late.
+    /// The lot draws the operate time; friction at the hinge makes it long.
     Hinge,
-    /// Iron that holds the flux: it releases late.
+    /// The lot draws the release time; iron that holds the flux makes it long.
     Iron,
 }
 
-/// Tolerance of the transients: a fit needs a microsecond.
+/// Relative tolerance of the transients, sufficient for a microsecond.
 const RTOL: f64 = 1e-6;
-/// A time that is right to this share is right, 0.5 us in 5 ms.
+/// Relative error at which a time counts as matched, 0.5 us in 5 ms.
 const GOOD: f64 = 1e-4;
-/// No relay of any lot takes longer, s.
+/// Upper limit of the times of any relay, s.
 const LONGEST_S: f64 = 0.04;
-/// How far from the default relay a parameter may be bent, as a logarithm.
+/// Largest change of a parameter from the default relay, natural logarithm.
 const FURTHEST: f64 = 3.5;
-/// The same for mass and eddy currents of a sound relay: an eighth to eightfold.
+/// Largest change of mass and eddy currents of a sound relay, natural logarithm: a factor of eight.
 const PLAUSIBLE: f64 = 2.0;
-/// Logarithmic slopes of operate and release time (rows) by mass and eddy currents (columns) of the
-/// default relay; a start for Broyden's method, no result depends on them.
+/// Logarithmic slopes of operate and release time (rows) with mass and eddy currents (columns) of the default
+/// relay: the start of Broyden's method, without effect on the result.
 const SLOPES: [[f64; 2]; 2] = [[0.25, 0.1], [0.25, 0.45]];
 
-impl Wanted {
-    /// Parameters of such a relay, as near to the wanted values as bending goes.
+impl FitTarget {
+    /// Returns parameters whose results are as near to the targets as the limits allow.
     pub fn fit(&self, base: &Parameters) -> Parameters {
         let mut p = *base;
         p.T = 23.0;
         p.R23 = self.coil_ohm;
         p.N = base.N * self.turns;
         let p = self.with_thresholds(&p);
-        match self.pace {
-            Pace::Drawn => self.with_times(&p),
-            Pace::Follows => p,
-            Pace::Hinge => self.with_one(
+        match self.time_origin {
+            TimeOrigin::Lot => self.with_times(&p),
+            TimeOrigin::Follows => p,
+            TimeOrigin::Hinge => self.with_one(
                 0,
                 |x| Parameters {
                     c_a: p.c_a * x.exp(),
@@ -82,7 +82,7 @@ impl Wanted {
                 },
                 0.0..6.0,
             ),
-            Pace::Iron => self.with_one(
+            TimeOrigin::Iron => self.with_one(
                 1,
                 |x| Parameters {
                     k_ec: p.k_ec * x.exp(),
@@ -166,7 +166,7 @@ impl Wanted {
         }
     }
 
-    /// One parameter alone for one time alone, which grows with it.
+    /// Fits one time, which grows with one parameter, by that parameter alone.
     fn with_one(
         &self,
         which: usize,
@@ -191,7 +191,7 @@ impl Wanted {
         bent(low)
     }
 
-    /// From rest at nominal voltage to the first make of NO, s.
+    /// Returns the time from rest at nominal voltage to the first make of NO, s.
     pub fn operate_s(&self, model: &Model) -> f64 {
         first_make(
             model,
@@ -201,13 +201,13 @@ impl Wanted {
         )
     }
 
-    /// From nominal voltage into the zener to the first make of NC, s.
+    /// Returns the time from nominal voltage into the zener to the first make of NC, s.
     pub fn release_s(&self, model: &Model) -> f64 {
         let sealed = model.sealed(self.nominal_v);
         first_make(
             model,
             sealed,
-            &Drive::Clamp {
+            &Drive::Suppression {
                 volts: self.zener_v,
             },
             Kind::Nc,
@@ -215,7 +215,7 @@ impl Wanted {
     }
 }
 
-/// First make of a contact, s; [`LONGEST_S`] if there is none.
+/// Returns the first make of a contact, s; [`LONGEST_S`] if it never makes.
 fn first_make(model: &Model, start: State, drive: &Drive, contact: Kind) -> f64 {
     let mut solver = Solver::new(model, drive, 0.0, start, RTOL);
     while let Ok(Some(event)) = solver.advance(model, drive, LONGEST_S) {
@@ -230,7 +230,7 @@ fn size([a, b]: [f64; 2]) -> f64 {
     a.abs().max(b.abs())
 }
 
-/// Solution of two linear equations.
+/// Solves two linear equations; `None` for a singular matrix.
 fn solved([[a, b], [c, d]]: [[f64; 2]; 2], [x, y]: [f64; 2]) -> Option<[f64; 2]> {
     let det = a * d - b * c;
     (det.abs() > 1e-12).then(|| [(d * x - b * y) / det, (a * y - c * x) / det])

@@ -1,8 +1,8 @@
-//! A lot of relays, and the golden parts in front of it.
+//! A lot of relays with its reference parts.
 
 use super::Relay;
-use super::drawn::{Drawn, Scale};
-use super::golden::{Certificate, read_golden, read_scale};
+use super::certificate::{Certificate, read_certificates, read_scale};
+use super::values::{RelayValues, Scale};
 use crate::config::ConfigError;
 use crate::world::WorldOptions;
 use crate::world::specimen::Arrival;
@@ -13,48 +13,52 @@ use crate::world::table::WorldTable;
 pub struct Lot {
     world: WorldTable,
     scale: Scale,
-    golden: Vec<Certificate>,
+    certificates: Vec<Certificate>,
 }
 
 impl Lot {
-    /// Reads the relays of a recipe; with `options.golden` also the golden parts of their nominal voltage.
+    /// Reads the relays of a recipe; with `options.reference_parts` also the reference parts of their nominal voltage.
     ///
     /// # Errors
-    /// The recipe or the certificates cannot be read.
+    /// Fails when the recipe or the certificates cannot be read.
     pub fn read(options: &WorldOptions, world: &WorldTable) -> Result<Self, ConfigError> {
         let dir = &options.config_dir;
         let scale = read_scale(dir, &options.recipe)?;
-        let golden = match options.golden {
-            true => read_golden(dir, scale.nominal_v)?,
+        let certificates = match options.reference_parts {
+            true => read_certificates(dir, scale.nominal_v)?,
             false => Vec::new(),
         };
         Ok(Self {
             world: world.clone(),
             scale,
-            golden,
+            certificates,
         })
     }
 
-    /// Number of golden parts.
-    pub fn golden(&self) -> u64 {
-        self.golden.len() as u64
+    /// Returns the number of reference parts.
+    pub fn reference_parts(&self) -> u64 {
+        self.certificates.len() as u64
     }
 
-    /// The lot part with this place under a seed.
+    /// Returns the lot part at an index under a seed.
     pub fn part(&self, seed: u64, index: u64, arrival: Arrival) -> Relay {
-        self.arrive(Drawn::of_lot(&self.world, self.scale, seed, index), arrival)
+        self.arrive(
+            RelayValues::of_lot(&self.world, self.scale, seed, index),
+            arrival,
+        )
     }
 
-    /// The golden part of this place, none past the last. On another day it is the same body with another temperature.
-    pub fn golden_part(
+    /// Returns the reference part at an index, `None` past the last; `other_day` gives the same body another
+    /// temperature.
+    pub fn reference_part(
         &self,
         seed: u64,
         index: u64,
         other_day: bool,
         mut arrival: Arrival,
     ) -> Option<Relay> {
-        let paper = self.golden.get(index as usize)?;
-        let mut drawn = Drawn::of_certificate(&self.world, self.scale, seed, index, paper);
+        let paper = self.certificates.get(index as usize)?;
+        let mut drawn = RelayValues::of_certificate(&self.world, self.scale, seed, index, paper);
         if other_day {
             let sd_k = self.world.environment.part_minus_track_sd_k;
             drawn.offset_k = arrival.draw.normal(0.0, sd_k);
@@ -62,12 +66,12 @@ impl Lot {
         Some(self.arrive(drawn, arrival))
     }
 
-    fn arrive(&self, mut drawn: Drawn, arrival: Arrival) -> Relay {
+    fn arrive(&self, mut drawn: RelayValues, arrival: Arrival) -> Relay {
         if let Some(pin) = arrival.dirty_pin {
             drawn.pins.lose(pin);
         }
-        if arrival.turned {
-            drawn.turn();
+        if arrival.misoriented {
+            drawn.misorient();
         }
         let (track, ambient) = (arrival.track_c, arrival.ambient_c);
         Relay::new(

@@ -1,25 +1,25 @@
 //! A relay on the probes: coil, armature and two contacts, moved from event to event.
 //!
-//! Flux, armature and leaf move by the five-state model of [`lumped`], with the parameters that
-//! [`fit`] finds for the specimen; [`motion`] holds the equilibrium while nothing moves. So lag of a
-//! ramp, slowing near the threshold, flutter of a pulse that ends too early and the time of a clamp
-//! are those of the equations. Two things are laid over them, because they scatter from closure to
-//! closure in a way no lumped model tells: the bounce list of a first make, and the resistance of a
-//! closure. Thresholds follow the copper's temperature and scatter from operation to operation: the
-//! remanence differs, and a volt of remanence is a volt less at the coil.
+//! The five-state model of [`lumped`] moves flux, armature and leaf, with the parameters that [`fit`] finds for
+//! the specimen; [`motion`] holds the equilibrium while nothing moves. The equations therefore determine the
+//! overshoot of a ramp, the slowing near the threshold, the flutter after a short pulse and the effect of the
+//! suppression. Two properties that scatter between closures and that no lumped model gives are added: the bounce
+//! list of a first make, and the resistance of a closure. Thresholds follow the temperature of the copper and
+//! scatter between operations, since the remanence differs: a volt of remanence reduces the effective coil
+//! voltage by a volt.
 
+pub mod certificate;
 mod contacts;
 pub mod defect;
-pub mod drawn;
 pub mod fit;
-pub mod golden;
 mod lot;
 pub mod lumped;
 mod motion;
-mod on_probes;
+mod probe_interface;
 pub mod record;
 pub mod table;
 mod thermal;
+pub mod values;
 
 use std::collections::VecDeque;
 
@@ -28,18 +28,18 @@ use super::probes::{Change, Contact, Supply};
 use super::specimen::REFERENCE_C;
 use super::table::WorldTable;
 use defect::Defect;
-use drawn::Drawn;
 pub use lot::Lot;
 use lumped::{Drive, Model};
 pub use motion::Levels;
 use motion::Motion;
-use record::Record;
+use record::RelayRecord;
 use thermal::Thermal;
+use values::RelayValues;
 
-/// A relay whose coil and contacts somebody can touch.
+/// A relay with accessible coil and contacts.
 #[derive(Debug, Clone)]
 pub struct Relay {
-    drawn: Drawn,
+    drawn: RelayValues,
     motion: Motion,
     copper_zero_c: f64,
     scatter_v: f64,
@@ -51,26 +51,26 @@ pub struct Relay {
     since_us: f64,
     operation_v: f64,
     closed: [bool; 2],
-    /// The contact that made last: the armature is on its side, or was.
+    /// The contact that made last; the armature is, or was, on its side.
     side: Contact,
-    /// Until then the bounce list speaks for the contact that has made.
+    /// End of the bounce list of the contact that has made, microseconds.
     settled_us: f64,
     bounce: VecDeque<Change>,
-    /// What this relay has shown so far.
-    pub record: Record,
+    /// Results that this relay has shown so far.
+    pub record: RelayRecord,
 }
 
-/// Longest stretch over which the resistance is held still, microseconds.
+/// Longest interval with a constant coil resistance, microseconds.
 const STILL_US: f64 = 50_000.0;
-/// The bounce of a closure is over after so long, microseconds.
+/// Time after which the bounce of a closure has ended, microseconds.
 const SETTLING_US: f64 = 8_000.0;
-/// A change of the supply by so much of nominal begins a new operation and ends any settling.
+/// Change of the supply, relative to nominal, that starts a new operation and ends the settling.
 const NEW_OPERATION: f64 = 0.1;
 
 impl Relay {
-    /// Puts a drawn relay into the world at an instant; `draw` is the chance of its operations.
+    /// Creates a relay from its true values at an instant; `draw` is the random stream of its operations.
     pub fn new(
-        mut drawn: Drawn,
+        mut drawn: RelayValues,
         world: &WorldTable,
         mut draw: Draw,
         t_us: f64,
@@ -82,17 +82,17 @@ impl Relay {
         let above = track_c + drawn.offset_k - ambient_c;
         let film = if welded { drawn.film_no } else { drawn.film_nc };
         let side = if welded { Contact::No } else { Contact::Nc };
-        let mut record = Record::new(&drawn);
+        let mut record = RelayRecord::new(&drawn);
         record.close(side, film.close(&mut draw));
-        let model = Model::new(&drawn.wanted(world).fit(&table.lumped));
+        let model = Model::new(&drawn.fit_target(world).fit(&table.lumped));
         drawn.operate_v = model.pickup().volts;
         drawn.release_v = model.release().volts;
         let supply = Supply::Off {
-            clamp_v: world.board.zener_v,
+            suppression_v: world.board.zener_v,
         };
         let stuck = drawn.coil_ohm.is_infinite()
             || matches!(drawn.defect, Some(Defect::StuckNo | Defect::StuckNc));
-        let drive = Drive::Clamp {
+        let drive = Drive::Suppression {
             volts: world.board.zener_v,
         };
         let scatter_v = world.lot.threshold_scatter_sd_mv * 1e-3 * drawn.volt_scale;
@@ -118,27 +118,27 @@ impl Relay {
         relay
     }
 
-    /// What it was drawn as; its thresholds are those that it moves with.
-    pub fn drawn(&self) -> &Drawn {
+    /// Returns the true values, with the thresholds of the present operation.
+    pub fn values(&self) -> &RelayValues {
         &self.drawn
     }
 
-    /// Rig time that its armature was held, and moved.
+    /// Returns the rig time on each level of the motion.
     pub fn levels(&self) -> Levels {
         self.motion.levels()
     }
 
-    /// Whether a contact is closed now.
+    /// Checks whether a contact is closed now.
     pub fn is_closed(&self, contact: Contact) -> bool {
         self.closed[contact as usize]
     }
 
-    /// Coil resistance now, ohm.
+    /// Returns the present coil resistance, ohm.
     pub fn coil_ohm(&self) -> f64 {
         self.drawn.coil_ohm * self.copper_ratio()
     }
 
-    /// Coil current now, ampere.
+    /// Returns the present coil current, ampere.
     pub fn coil_current_a(&self) -> f64 {
         match self.drawn.coil_ohm.is_infinite() {
             true => 0.0,
@@ -146,7 +146,7 @@ impl Relay {
         }
     }
 
-    /// Another supply from now on; the relay must have been advanced to `t_us`.
+    /// Changes the supply; the relay must already be at `t_us`.
     pub fn drive(&mut self, t_us: f64, supply: Supply) {
         if supply == self.supply {
             return;
@@ -162,7 +162,7 @@ impl Relay {
             .supply_step(t_us, old, new, self.motion.at_a_stop());
     }
 
-    /// Goes on to `t_us`, or to the first change of a contact before it.
+    /// Advances to `t_us`, or to the first change of a contact before it.
     pub fn advance(&mut self, t_us: f64) -> Option<Change> {
         loop {
             let due = self.bounce.front().map_or(f64::INFINITY, |c| c.t_us);
@@ -188,7 +188,7 @@ impl Relay {
         above_zero / (REFERENCE_C - self.copper_zero_c)
     }
 
-    /// Heat up to `t_us`; the supply has been still since the last call.
+    /// Heats the coil up to `t_us`; the supply has been constant since the last call.
     fn settle(&mut self, t_us: f64) {
         let volts = self.supply.volts();
         let seconds = (t_us - self.since_us) * 1e-6;
@@ -197,12 +197,14 @@ impl Relay {
         self.since_us = t_us;
     }
 
-    /// Supply and copper as they now are reach the motion.
+    /// Passes the present supply and copper temperature to the motion.
     fn restart(&mut self) {
         let drive = match self.supply {
             Supply::Volts(_) if self.drawn.coil_ohm.is_infinite() => Drive::still(0.0),
             Supply::Volts(volts) => Drive::still(volts - self.operation_v),
-            Supply::Off { clamp_v } => Drive::Clamp { volts: clamp_v },
+            Supply::Off { suppression_v } => Drive::Suppression {
+                volts: suppression_v,
+            },
         };
         let ohm = self.copper_ratio() * self.motion.reference_ohm();
         self.motion.set(drive, ohm);

@@ -1,47 +1,48 @@
-//! The armature on its way through a test: held on a stop while nothing moves, integrated while it does.
+//! Motion of the armature: held on a stop in equilibrium, integrated while it moves.
 //!
-//! Two levels, and the motion chooses:
+//! The motion selects one of two levels:
 //!
-//! - *held*: the armature is pressed on backstop or seat. Travel and leaf follow the flux in
-//!   equilibrium, only the flux moves; a flux that stands still costs nothing.
-//! - *moving*: all five states of [`super::lumped`], from the instant at which the push on the stop
-//!   falls to [`LEAST_PUSH_N`] until the bounce has died out.
+//! - *held*: the armature is pressed on backstop or seat. Only the flux is integrated, travel and leaf follow it
+//!   in equilibrium; a constant flux costs nothing.
+//! - *moving*: all five states of [`super::lumped`] are integrated, from the instant at which the force on the
+//!   stop falls to [`LEAST_PUSH_N`] until the bounce has died out.
 //!
-//! A model without the leaf would be cheaper than the five states and 4 % off in time; between the
-//! stops the five states cost about 4 us per rig millisecond, so there is nothing to gain by it.
+//! A model without the leaf would be cheaper and 4 % off in time; between the stops the five states cost only
+//! about 4 us per rig millisecond.
 
 use serde::Serialize;
 
 use super::lumped::{Drive, Event, Kind, LAMBDA, Model, Solver, State, V, W, X, Y};
 
-/// Tolerance of a step: instants to a nanosecond, where the counters resolve 20 us.
+/// Relative tolerance of a step: instants to a nanosecond, while the counters resolve 20 us.
 const RTOL: f64 = 1e-6;
-/// A push below this lets the armature move, N: half of that at rest, so that it is still slow then.
+/// Force on a stop below which the armature is integrated, N: half the force at rest, so that it still moves
+/// slowly then.
 const LEAST_PUSH_N: f64 = 0.02;
-/// Above this much speed it is not at rest, m/s: it would hop by less than 0.2 um.
+/// Speed above which the armature is not at rest, m/s; slower hops stay below 0.2 um.
 const CALM_M_PER_S: f64 = 4e-3;
-/// And further than this from its equilibrium neither, m.
+/// Distance from equilibrium above which the armature is not at rest, m.
 const CALM_M: f64 = 2e-7;
-/// So often a moving armature is looked at, s.
+/// Interval between two tests for rest of a moving armature, s.
 const LOOK_S: f64 = 5e-4;
 /// Longest step of the flux while held, s.
 const FLUX_STEP_S: f64 = 2.5e-4;
-/// And no more than this share of its time constant: behind a blocked clamp, where eddy currents alone
-/// carry it, that may be 0.05 ms, and a step of three of them runs away.
+/// Longest step of the flux as a fraction of its time constant. Behind a blocking suppression eddy currents alone
+/// carry the flux with a time constant down to 0.05 ms; a step of three of them diverges.
 const FLUX_STEP_SHARE: f64 = 0.25;
-/// A flux that moves by less stands still, V: a microvolt of the source.
+/// Rate of the flux below which it counts as constant, V: a microvolt of the source.
 const STILL_V: f64 = 1e-6;
 
-/// Seconds of rig time on each level.
+/// Rig time on each level, s.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Levels {
-    /// Pressed on a stop.
+    /// Armature pressed on a stop.
     pub held_s: f64,
-    /// Five states integrated.
+    /// All five states integrated.
     pub moving_s: f64,
 }
 
-/// A relay somewhere between its stops.
+/// State of a relay's motion on one of the two levels.
 #[derive(Debug, Clone)]
 pub struct Motion {
     model: Model,
@@ -53,12 +54,12 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Starts at `t_s` without current, on the backstop, or on the seat where a weld holds it; a
+    /// Starts at `t_s` without current, on the backstop, or on the seat where a weld holds the armature; a
     /// `stuck` armature never moves.
     pub fn new(model: Model, t_s: f64, drive: Drive, stuck: bool, seated: bool) -> Self {
         let mut state = model.at_rest(0.0);
         if seated {
-            state[X] = model.places.seat;
+            state[X] = model.stops.seat;
             model.pressed(&mut state);
         }
         let solver = Solver::new(&model, &drive, t_s, state, RTOL);
@@ -72,44 +73,44 @@ impl Motion {
         }
     }
 
-    /// Rig time spent on each level.
+    /// Returns the rig time on each level.
     pub fn levels(&self) -> Levels {
         self.levels
     }
 
-    /// Coil resistance at 23 C of the relay that moves, ohm; of a broken coil, before it broke.
+    /// Returns the coil resistance at 23 C, ohm; of an open coil, the value before it broke.
     pub fn reference_ohm(&self) -> f64 {
         self.model.parameters().R23
     }
 
-    /// Whether a contact or stop is touched now.
+    /// Checks whether a contact or stop is touched now.
     pub fn touches(&self, kind: Kind) -> bool {
-        self.model.places.overlap(kind, &self.solver.state) > 0.0
+        self.model.stops.overlap(kind, &self.solver.state) > 0.0
     }
 
-    /// At one of the stops: pressed on it, or hopping within a fiftieth of the travel.
+    /// Checks whether the armature is at a stop: pressed on it, or within a fiftieth of the travel.
     pub fn at_a_stop(&self) -> bool {
-        let (x, travel) = (self.solver.state[X], self.model.places.seat);
+        let (x, travel) = (self.solver.state[X], self.model.stops.seat);
         x < 0.02 * travel || x > 0.98 * travel
     }
 
-    /// Coil current into `volts` of a source, or into the clamp, A.
+    /// Returns the coil current into a source of `volts`, or into the suppression, A.
     pub fn current(&self, volts: f64) -> f64 {
         let rate = self.flux_rate(&self.solver.state);
         match self.drive {
             Drive::Source { .. } => (volts - rate) / self.model.ohm(),
-            Drive::Clamp { .. } => self.model.current_at(&self.solver.state, rate).max(0.0),
+            Drive::Suppression { .. } => self.model.current_at(&self.solver.state, rate).max(0.0),
         }
     }
 
-    /// Another drive, or another temperature of the copper, from now on.
+    /// Changes the drive and the coil resistance from now on.
     pub fn set(&mut self, drive: Drive, ohm: f64) {
         self.drive = drive;
         self.model.set_ohm(ohm);
         self.solver.drive_changed(&self.model, &drive);
     }
 
-    /// Goes on to `until_s` or to the first event before it.
+    /// Advances to `until_s`, or to the first event before it.
     pub fn advance(&mut self, until_s: f64) -> Option<Event> {
         loop {
             let from_s = self.solver.t_s;
@@ -124,7 +125,7 @@ impl Motion {
             let goal = until_s.min(from_s + LOOK_S);
             let event = self.solver.advance(&self.model, &self.drive, goal);
             self.levels.moving_s += self.solver.t_s - from_s;
-            let event = event.expect("a specimen inside its ranges does not run away");
+            let event = event.expect("the state of a specimen within its ranges does not diverge");
             if event.is_some() {
                 return event;
             }
@@ -132,7 +133,7 @@ impl Motion {
         }
     }
 
-    /// Armature and leaf are where the flux would hold them.
+    /// Checks whether armature and leaf are in equilibrium with the flux.
     fn is_calm(&self) -> bool {
         let now = &self.solver.state;
         if now[V].abs() > CALM_M_PER_S || now[W].abs() > CALM_M_PER_S {
@@ -148,8 +149,8 @@ impl Motion {
             .resting_flux_rate(self.solver.t_s, s, &self.drive)
     }
 
-    /// Only the flux moves, to `until_s` or until the armature is about to let go: a step at whose end
-    /// the push would be gone is not taken.
+    /// Integrates the flux alone, to `until_s` or until the armature is about to leave its stop; rejects a step
+    /// at whose end the force on the stop would vanish.
     fn hold(&mut self, until_s: f64) {
         self.press(self.solver.state);
         while self.solver.t_s < until_s {
@@ -174,7 +175,7 @@ impl Motion {
         }
     }
 
-    /// Armature and leaf take their place under a flux; the push on the stop, N.
+    /// Sets armature and leaf to equilibrium under a flux; returns the force on the stop, N.
     fn press(&mut self, mut s: State) -> f64 {
         let push = self.model.pressed(&mut s);
         s[V] = 0.0;
@@ -183,7 +184,7 @@ impl Motion {
         push
     }
 
-    /// Mean rate of the flux over a step, by the classical method of order 4.
+    /// Returns the mean rate of the flux over a step, by the classical Runge-Kutta method of order 4.
     fn mean_rate(&self, s: &State, first: f64, h: f64) -> f64 {
         let at = |rate: f64, part: f64| {
             let mut s = *s;

@@ -1,11 +1,11 @@
-//! What a relay has shown: the last full-voltage operation and release, and its contact closures.
+//! Results of one relay: the last full-voltage operation and release, and its contact closures.
 
-use super::drawn::Drawn;
+use super::values::RelayValues;
 use crate::world::probes::Contact;
 
-/// Full voltage begins at this share of nominal.
+/// Least voltage that counts as full, as a fraction of nominal.
 const FULL: f64 = 0.98;
-/// No voltage ends at this share of nominal.
+/// Highest voltage that counts as off, as a fraction of nominal.
 const NONE: f64 = 0.05;
 
 /// Closures of one contact.
@@ -17,7 +17,7 @@ struct Closures {
     count: u32,
 }
 
-/// A timed switching of one contact.
+/// Time and bounce of one switching of a contact.
 #[derive(Debug, Clone, Copy, Default)]
 struct Timing {
     start_us: Option<f64>,
@@ -27,18 +27,18 @@ struct Timing {
     following: bool,
 }
 
-/// Record of one relay on the probes.
+/// Results of one relay on the probes.
 #[derive(Debug, Clone)]
-pub struct Record {
+pub struct RelayRecord {
     nominal_v: f64,
     closures: [Closures; 2],
     timing: [Timing; 2],
     operations: u64,
 }
 
-impl Record {
-    /// Nothing seen yet.
-    pub fn new(drawn: &Drawn) -> Self {
+impl RelayRecord {
+    /// Creates a record without results.
+    pub fn new(drawn: &RelayValues) -> Self {
         Self {
             nominal_v: drawn.nominal_v,
             closures: Default::default(),
@@ -47,41 +47,41 @@ impl Record {
         }
     }
 
-    /// Resistance of the present closure, milliohm.
+    /// Returns the resistance of the present closure, milliohm.
     pub fn contact_mohm(&self, contact: Contact) -> f64 {
         self.closures[contact as usize].now_mohm
     }
 
-    /// Time of the last full-voltage make of this contact, ms: operate for NO, release for NC.
+    /// Returns the time of the last full-voltage make of this contact, ms: operate for NO, release for NC.
     pub fn time_ms(&self, contact: Contact) -> Option<f64> {
         self.timing[contact as usize].time_ms
     }
 
-    /// Full-voltage operations: drive on to first make of NO.
+    /// Returns the number of full-voltage operations, drive on to first make of NO.
     pub fn operations(&self) -> u64 {
         self.operations
     }
 
-    /// Open time after that make, ms.
+    /// Returns the open time after that make, ms.
     pub fn bounce_ms(&self, contact: Contact) -> Option<f64> {
         let timing = &self.timing[contact as usize];
         timing.time_ms.map(|_| timing.bounce_us / 1000.0)
     }
 
-    /// Mean over the closures on which the source was on, milliohm.
+    /// Returns the mean over the closures with source current, milliohm.
     pub fn mean_mohm(&self, contact: Contact) -> Option<f64> {
         let c = &self.closures[contact as usize];
         (c.count > 0).then(|| c.sum_mohm / f64::from(c.count))
     }
 
-    /// A contact has closed anew with this resistance.
+    /// Records a new closure of a contact with this resistance.
     pub(super) fn close(&mut self, contact: Contact, mohm: f64) {
         let c = &mut self.closures[contact as usize];
         c.now_mohm = mohm;
         c.counted = false;
     }
 
-    /// The source flows through a contact.
+    /// Records that the current of the source flows through a contact.
     pub(super) fn source_on(&mut self, contact: Contact) {
         let c = &mut self.closures[contact as usize];
         if !c.counted {
@@ -91,7 +91,7 @@ impl Record {
         }
     }
 
-    /// The supply has stepped; `still` tells that the armature was at an end.
+    /// Records a step of the supply; `still` means that the armature was at a stop.
     pub(super) fn supply_step(&mut self, t_us: f64, old_v: f64, new_v: f64, still: bool) {
         let (full, none) = (FULL * self.nominal_v, NONE * self.nominal_v);
         if (new_v - old_v).abs() < 0.02 * self.nominal_v {
@@ -104,7 +104,7 @@ impl Record {
         nc.start_us = (still && old_v >= full && new_v <= none).then_some(t_us);
     }
 
-    /// First make of a contact after the armature has crossed.
+    /// Records the first make of a contact after the armature has crossed.
     pub(super) fn make(&mut self, contact: Contact, t_us: f64) {
         let timing = &mut self.timing[contact as usize];
         timing.following = timing.start_us.is_some();
@@ -116,7 +116,7 @@ impl Record {
         }
     }
 
-    /// A contact opens or closes: bounce, as long as the supply that made it stays.
+    /// Records an opening or closing; it counts as bounce while the supply stays constant.
     pub(super) fn moved(&mut self, contact: Contact, t_us: f64, closed: bool) {
         let timing = &mut self.timing[contact as usize];
         if !timing.following {

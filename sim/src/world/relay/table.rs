@@ -1,6 +1,6 @@
-//! The tables of the world file that describe relays: lot, relay, defects.
+//! Tables of the world file that describe relays: lot, relay, defects.
 //!
-//! `config/sim.toml` explains each key beside its value.
+//! `config/sim.toml` describes each key beside its value.
 
 use serde::Deserialize;
 
@@ -8,7 +8,7 @@ use super::lumped::Parameters;
 use crate::world::table::table;
 
 table!(
-    /// How parts of the lot scatter.
+    /// Scatter of the parts of a lot.
     LotTable {
         nominal_v: f64, nominal_coil_ohm: f64,
         operate_v_mean: f64, operate_v_sd: f64, release_v_mean: f64, release_v_sd: f64,
@@ -23,7 +23,7 @@ table!(
     }
 );
 table!(
-    /// The relay that every specimen is bent from, its heat, its bounce lists.
+    /// Default relay that the fit adjusts, its heat stores, its bounce lists.
     RelayTable {
         lumped: Parameters,
         copper_zero_c: f64, coil_heat_j_per_k: f64, body_heat_j_per_k: f64,

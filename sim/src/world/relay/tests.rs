@@ -1,4 +1,4 @@
-//! Laws of the relay and scatter of the lot.
+//! Tests of the relay model and of the scatter of the lot.
 
 #![allow(clippy::unwrap_used)]
 
@@ -7,13 +7,13 @@ mod contacts;
 mod drawn;
 mod transients;
 
-use super::drawn::{ContactFilm, Scale};
+use super::values::{ContactFilm, Scale};
 use super::*;
 use crate::config::read_world;
 use crate::world::draw::Subject;
 use crate::world::tests::config_dir;
 
-/// The default world without any scatter.
+/// Returns the default world without scatter.
 fn still_world() -> WorldTable {
     let mut world = read_world(&config_dir(), None).unwrap();
     world.lot.threshold_scatter_sd_mv = 0.0;
@@ -21,19 +21,19 @@ fn still_world() -> WorldTable {
     world
 }
 
-/// The same with copper that does not warm: a ramp of half a second moves pickup by 1.7 mV otherwise.
+/// Removes the heating of the copper, which moves pickup by 1.7 mV on a ramp of half a second.
 fn cool(mut world: WorldTable) -> WorldTable {
     world.relay.coil_heat_j_per_k = 1e9;
     world
 }
 
-/// The relay of the reference figures: pickup 7.8835 V, release 2.3429 V.
+/// Creates the relay of the reference figures: pickup 7.8835 V, release 2.3429 V.
 fn reference_relay(world: &WorldTable) -> Relay {
     let scale = Scale {
         nominal_v: 12.0,
         nominal_coil_ohm: 400.0,
     };
-    let mut specimen = Drawn::of_lot(world, scale, 1, 0);
+    let mut specimen = RelayValues::of_lot(world, scale, 1, 0);
     specimen.defect = None;
     specimen.coil_ohm = 400.0;
     specimen.operate_v = 7.883_477_479_837_58;
@@ -55,7 +55,7 @@ fn reference_relay(world: &WorldTable) -> Relay {
     )
 }
 
-/// First time at or before `t_us` at which a contact reaches a state.
+/// Returns the first instant up to `t_us` at which a contact reaches a state.
 fn first(relay: &mut Relay, t_us: f64, contact: Contact, closed: bool) -> Option<f64> {
     while let Some(change) = relay.advance(t_us) {
         if change.contact == contact && change.closed == closed {

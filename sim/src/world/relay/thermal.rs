@@ -2,7 +2,7 @@
 
 use super::table::RelayTable;
 
-/// Two heat stores above an ambient, kelvin above it.
+/// Two heat stores; temperatures in kelvin above the ambient.
 #[derive(Debug, Clone)]
 pub struct Thermal {
     coil: f64,
@@ -13,7 +13,7 @@ pub struct Thermal {
 }
 
 impl Thermal {
-    /// Both stores `above_k` above the ambient.
+    /// Creates both stores `above_k` above the ambient.
     pub fn new(table: &RelayTable, above_k: f64) -> Self {
         let (to_body, to_air) = (
             1.0 / table.coil_to_body_k_per_w,
@@ -39,12 +39,12 @@ impl Thermal {
         }
     }
 
-    /// Kelvin of the winding above the ambient.
+    /// Returns the temperature of the winding above the ambient, kelvin.
     pub fn coil_k(&self) -> f64 {
         self.coil
     }
 
-    /// `dt_s` seconds of constant power.
+    /// Advances by `dt_s` seconds at constant power.
     pub fn advance(&mut self, dt_s: f64, watts: f64) {
         let still = self.rise_k_per_w.map(|r| r * watts);
         let (x, y) = (self.coil - still[0], self.body - still[1]);

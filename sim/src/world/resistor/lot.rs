@@ -1,4 +1,4 @@
-//! A lot of dummies.
+//! A lot of resistor dummies.
 
 use super::{Defect, Resistor, ResistorTable};
 use crate::world::defect;
@@ -7,10 +7,10 @@ use crate::world::probes::Pins;
 use crate::world::specimen::Arrival;
 use crate::world::table::WorldTable;
 
-/// A piece of wire has at least so much, ohm; the board divides by it.
+/// Least resistance of a dummy, ohm; the board divides by it.
 const LEAST_OHM: f64 = 1e-3;
 
-/// Dummies of the world file.
+/// Lot of dummies of the world file.
 #[derive(Debug, Clone)]
 pub struct Lot {
     table: ResistorTable,
@@ -18,7 +18,7 @@ pub struct Lot {
 }
 
 impl Lot {
-    /// The dummies of a world.
+    /// Creates the lot of a world.
     pub fn new(world: &WorldTable) -> Self {
         Self {
             table: world.resistor.clone(),
@@ -26,7 +26,7 @@ impl Lot {
         }
     }
 
-    /// The lot part with this place under a seed.
+    /// Returns the lot part at an index under a seed.
     pub fn part(&self, seed: u64, index: u64, arrival: &Arrival) -> Resistor {
         let table = &self.table;
         let mut draw = Draw::new(seed, Subject::LotPart, index);
@@ -45,14 +45,14 @@ impl Lot {
         if let Some(pin) = arrival.dirty_pin {
             part.pins.lose(pin);
         }
-        if arrival.turned {
-            part.pins = Pins::TURNED;
-            part.defect = Some(Defect::Turned);
+        if arrival.misoriented {
+            part.pins = Pins::MISORIENTED;
+            part.defect = Some(Defect::Misoriented);
         }
         part
     }
 
-    /// Resistance of a part with a defect, ohm.
+    /// Draws the resistance of a part with a defect, ohm.
     fn spoilt_ohm(&self, defect: Defect, good_ohm: f64, draw: &mut Draw) -> f64 {
         match defect {
             Defect::Open => f64::INFINITY,
@@ -64,7 +64,7 @@ impl Lot {
                     false => good_ohm / factor,
                 }
             }
-            Defect::Turned => good_ohm,
+            Defect::Misoriented => good_ohm,
         }
     }
 }

@@ -1,52 +1,52 @@
-//! A dummy of relay size for a check of the fixture: one metal-film resistor of known value between the coil pins.
+//! A dummy of relay size that checks the fixture: one metal-film resistor of known value between the coil pins.
 //!
-//! The body is that of a relay and goes through the feeder as one. All five pins are there, each a plain post, so force
-//! and sense probe meet on metal at every one and the Kelvin test finds all five good. Common, NO and NC are blind: no
-//! wire leads to them, so no contact ever closes. The resistor follows a supply at once; it keeps the temperature that
-//! the part had in the magazine, as it warms by few kelvin and 25 ppm of each.
+//! The body has the shape of a relay, and the feeder handles it as one. All five pins are present and plain, so
+//! force and sense probe touch metal at every pin and the Kelvin test passes. Common, NO and NC are blind: no
+//! wire leads to them, so no contact ever closes. The current follows a supply at once. The resistor keeps the
+//! temperature that it had in the magazine, since it warms by few kelvin at 25 ppm each.
 
 mod lot;
 
 use serde::Deserialize;
 
 use super::probes::{Change, Pins, Supply};
-use super::specimen::{OnProbes, REFERENCE_C};
+use super::specimen::{ProbeInterface, REFERENCE_C};
 use crate::truth::PartTruth;
 use crate::world::table::table;
 pub use lot::Lot;
 
 table!(
-    /// Dummies of a lot: value, scatter, defects.
+    /// Value, scatter and defects of a lot of dummies.
     ResistorTable {
         nominal_ohm: f64, tolerance_sd_pct: f64, tcr_ppm_per_k: f64,
         defects_pct: f64, short_ohm: [f64; 2], wrong_value_factor: [f64; 2],
     }
 );
 
-/// What can be wrong with a dummy.
+/// Defect of a dummy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Defect {
-    /// No way through.
+    /// No connection between the pins.
     Open,
-    /// Hardly more than a piece of wire.
+    /// Resistance of a short piece of wire.
     Short,
-    /// Another value of the series.
+    /// Another value of the resistor series.
     WrongValue,
-    /// Lies in the nest the wrong way round.
-    Turned,
+    /// Misoriented in the nest.
+    Misoriented,
 }
 
 impl Defect {
-    /// What a lot draws; a dummy is turned only where a fault asks for it.
+    /// Defects that a lot draws; only a fault makes a dummy misoriented.
     pub const OF_A_LOT: &'static [Self] = &[Self::Open, Self::Short, Self::WrongValue];
 
-    /// Name in the truth.
+    /// Returns the name in the truth file.
     pub fn name(self) -> &'static str {
         match self {
             Self::Open => "open",
             Self::Short => "short",
             Self::WrongValue => "wrong_value",
-            Self::Turned => "turned",
+            Self::Misoriented => "turned",
         }
     }
 }
@@ -54,7 +54,7 @@ impl Defect {
 /// A dummy on the probes.
 #[derive(Debug, Clone)]
 pub struct Resistor {
-    /// At [`REFERENCE_C`], infinite when open.
+    /// Resistance at [`REFERENCE_C`], ohm; infinite when open.
     resistance_ohm: f64,
     tcr_per_k: f64,
     celsius: f64,
@@ -63,7 +63,7 @@ pub struct Resistor {
     supply_v: f64,
 }
 
-impl OnProbes for Resistor {
+impl ProbeInterface for Resistor {
     fn pins(&self) -> Pins {
         self.pins
     }
@@ -76,7 +76,7 @@ impl OnProbes for Resistor {
         self.supply_v / self.input_ohm()
     }
 
-    /// Without inductance no current flows into a clamp.
+    /// Without inductance no current flows into the suppression.
     fn drive(&mut self, _t_us: f64, supply: Supply) {
         self.supply_v = supply.volts();
     }

@@ -1,4 +1,4 @@
-//! What a lot of dummies draws and what the probes find on one.
+//! Tests of the values that a lot of dummies draws, and of one dummy on the probes.
 #![allow(clippy::unwrap_used)]
 
 use super::*;
@@ -8,7 +8,7 @@ use crate::world::probes::Contact;
 use crate::world::specimen::Arrival;
 use crate::world::tests::config_dir;
 
-/// Out of a magazine at this temperature.
+/// Returns the arrival from a magazine at this temperature.
 fn arrival(track_c: f64) -> Arrival {
     Arrival {
         t_us: 0.0,
@@ -16,7 +16,7 @@ fn arrival(track_c: f64) -> Arrival {
         ambient_c: track_c,
         draw: Draw::new(1, Subject::LotOperations, 0),
         dirty_pin: None,
-        turned: false,
+        misoriented: false,
     }
 }
 
@@ -24,7 +24,7 @@ fn lot() -> Lot {
     Lot::new(&read_world(&config_dir(), None).unwrap())
 }
 
-/// The first part with a defect, or the first without one.
+/// Returns the first part with this defect, or the first without one.
 fn first(defect: Option<Defect>) -> Resistor {
     let lot = lot();
     let mut parts = (0..600).map(|i| lot.part(7, i, &arrival(REFERENCE_C)));
@@ -51,7 +51,7 @@ fn the_lot_scatters_about_its_nominal_value() {
 }
 
 #[test]
-fn every_kind_of_defect_is_equally_frequent_and_far_off() {
+fn defects_are_equally_frequent_and_far_off() {
     let lot = lot();
     let parts: Vec<Resistor> = (0..1200)
         .map(|i| lot.part(7, i, &arrival(REFERENCE_C)))
@@ -70,7 +70,7 @@ fn every_kind_of_defect_is_equally_frequent_and_far_off() {
                 Defect::WrongValue => {
                     (255.0..330.0).contains(&ohm) || (460.0..595.0).contains(&ohm)
                 }
-                Defect::Turned => false,
+                Defect::Misoriented => false,
             };
             assert!(fits, "{kind:?}: {ohm} ohm");
         }
@@ -85,7 +85,12 @@ fn the_current_follows_the_supply_at_once() {
         assert_eq!(part.input_a(), volts / part.input_ohm());
         assert_eq!(part.advance(1e6), None);
     }
-    part.drive(1e6, Supply::Off { clamp_v: 60.0 });
+    part.drive(
+        1e6,
+        Supply::Off {
+            suppression_v: 60.0,
+        },
+    );
     assert_eq!(part.input_a(), 0.0);
 }
 
@@ -115,9 +120,9 @@ fn blind_pins_are_there_and_no_contact_closes() {
 }
 
 #[test]
-fn a_turned_part_meets_the_probes_as_a_turned_relay() {
+fn a_misoriented_dummy_matches_a_misoriented_relay() {
     let arrival = Arrival {
-        turned: true,
+        misoriented: true,
         ..arrival(REFERENCE_C)
     };
     let part = lot().part(7, 0, &arrival);

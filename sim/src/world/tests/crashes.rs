@@ -1,8 +1,8 @@
-//! Which strokes make bodies touch, and which do not although they look like it.
+//! Strokes that make bodies crash, and strokes that only seem to.
 
 use super::hand::{Hand, options};
 
-/// These two are among the bodies that touched.
+/// Asserts that these two bodies have crashed.
 fn assert_touched(hand: &Hand, one: &str, other: &str) {
     let crashes = hand.world.crashes();
     let of = |crash: &String| crash.contains(one) && crash.contains(other);
@@ -14,7 +14,7 @@ fn assert_untouched(hand: &Hand) {
 }
 
 #[test]
-fn the_pusher_against_raised_probes_is_a_crash() {
+fn the_pusher_crashes_into_raised_probes() {
     let mut hand = Hand::new(options(false));
     hand.set("probe_lift", true);
     hand.wait(300.0);
@@ -24,7 +24,7 @@ fn the_pusher_against_raised_probes_is_a_crash() {
 }
 
 #[test]
-fn fingers_that_come_down_on_an_extended_pusher_crash() {
+fn descending_fingers_crash_into_an_extended_pusher() {
     let mut hand = Hand::new(options(false));
     hand.set("axis_servo_on", true);
     hand.axis(0);
@@ -36,7 +36,7 @@ fn fingers_that_come_down_on_an_extended_pusher_crash() {
 }
 
 #[test]
-fn an_axis_that_leaves_the_nest_with_z_down_crashes_into_a_bracket() {
+fn an_axis_move_with_z_down_hits_a_bracket() {
     let mut hand = Hand::new(options(false));
     hand.set("axis_servo_on", true);
     hand.axis(0);
@@ -48,7 +48,7 @@ fn an_axis_that_leaves_the_nest_with_z_down_crashes_into_a_bracket() {
     assert_touched(&hand, "gripper_palm", "nest_sensor_bracket_left");
 }
 
-/// A part in closed jaws that the closed fingers hold too.
+/// Returns a rig with a part that jaws and fingers both hold.
 fn gripped_in_jaws() -> Hand {
     let mut hand = Hand::new(options(false));
     hand.feed();
@@ -66,7 +66,7 @@ fn gripped_in_jaws() -> Hand {
 }
 
 #[test]
-fn z_that_is_raised_while_jaws_and_fingers_hold_the_part_crashes() {
+fn raising_z_while_the_jaws_hold_the_part_crashes() {
     let mut hand = gripped_in_jaws();
     hand.set("sort_z_lower", false);
     hand.wait(400.0);
@@ -74,18 +74,18 @@ fn z_that_is_raised_while_jaws_and_fingers_hold_the_part_crashes() {
 }
 
 #[test]
-fn when_every_valve_falls_off_fingers_slide_off_the_part_and_the_jaws_keep_it() {
+fn without_valves_fingers_slide_off_and_jaws_hold() {
     let mut hand = gripped_in_jaws();
     for point in ["clamp_close", "gripper_close", "sort_z_lower"] {
         hand.set(point, false);
     }
     hand.wait(500.0);
     assert_untouched(&hand);
-    assert!(hand.sees("nest_present") && hand.sees("sort_z_up") && !hand.sees("gripper_part"));
+    assert!(hand.is_on("nest_present") && hand.is_on("sort_z_up") && !hand.is_on("gripper_part"));
 }
 
 #[test]
-fn a_part_that_is_pushed_into_an_occupied_nest_crashes_into_the_one_there() {
+fn a_part_pushed_into_an_occupied_nest_crashes() {
     let mut hand = Hand::new(options(false));
     for _ in 0..2 {
         hand.pulse("escapement_release", 300.0);
@@ -97,7 +97,7 @@ fn a_part_that_is_pushed_into_an_occupied_nest_crashes_into_the_one_there() {
 }
 
 #[test]
-fn fingers_that_leave_their_part_in_the_nest_slide_off_without_a_crash() {
+fn fingers_that_leave_their_part_do_not_crash() {
     let mut o = options(false);
     o.faults = vec![("part_stays".into(), 1.0)];
     let mut hand = Hand::new(o);
@@ -112,6 +112,6 @@ fn fingers_that_leave_their_part_in_the_nest_slide_off_without_a_crash() {
     hand.pulse("clamp_open", 200.0);
     hand.set("sort_z_lower", false);
     hand.wait(400.0);
-    assert!(hand.sees("nest_present") && hand.sees("sort_z_up"));
+    assert!(hand.is_on("nest_present") && hand.is_on("sort_z_up"));
     assert_untouched(&hand);
 }

@@ -1,9 +1,9 @@
-//! Whoever stands at the terminals: outputs set and inputs read by name.
+//! Manual control of the terminals: a test sets outputs and reads inputs by name.
 
 use super::*;
 use crate::config::{RigFile, read_rig};
 
-/// A hand on the terminals: commands by name, time in milliseconds.
+/// Controls the terminals by name; time in milliseconds.
 pub(super) struct Hand {
     pub(super) world: World,
     pub(super) rig: RigFile,
@@ -45,7 +45,7 @@ impl Hand {
         self.set(point, false);
     }
 
-    pub(super) fn sees(&mut self, point: &str) -> bool {
+    pub(super) fn is_on(&mut self, point: &str) -> bool {
         let terminal = self.rig.digital_in[point].clone();
         let high = self.world.digital_in(&terminal.module) >> terminal.channel & 1 == 1;
         high != terminal.active_low
@@ -55,7 +55,7 @@ impl Hand {
         self.world.analog_out("ao_level", supply_v / 1.5);
     }
 
-    pub(super) fn reads(&mut self, point: &str) -> f64 {
+    pub(super) fn value(&mut self, point: &str) -> f64 {
         let t = self.rig.analog_in[point].clone();
         self.world.analog_in(&t.module, t.channel) / t.gain
     }
@@ -73,50 +73,50 @@ impl Hand {
             self.set(name, point >> i & 1 == 1);
         }
         self.pulse("axis_drive", 900.0);
-        assert!(self.sees("axis_in_position"));
+        assert!(self.is_on("axis_in_position"));
     }
 
-    /// Magazine to nest, clamped, probes up.
+    /// Feeds a part from the magazine to the nest, clamped, probes up.
     pub(super) fn feed(&mut self) {
         self.pulse("escapement_release", 300.0);
-        assert!(self.sees("pocket_present"));
+        assert!(self.is_on("pocket_present"));
         self.pulse("pusher_extend", 500.0);
-        assert!(self.sees("nest_present") && !self.sees("pocket_present"));
+        assert!(self.is_on("nest_present") && !self.is_on("pocket_present"));
         self.wait(500.0);
         self.pulse("clamp_close", 200.0);
-        assert!(self.sees("jaw_left_closed") && self.sees("jaw_right_closed"));
+        assert!(self.is_on("jaw_left_closed") && self.is_on("jaw_right_closed"));
         self.set("probe_lift", true);
         self.wait(250.0);
-        assert!(self.sees("probe_up") && self.sees("probe_chain"));
+        assert!(self.is_on("probe_up") && self.is_on("probe_chain"));
     }
 
-    /// Nest to bin, axis back at the nest.
+    /// Sorts the part from the nest into a bin; returns the axis to the nest.
     pub(super) fn sort(&mut self, point: u8) {
         self.set("axis_servo_on", true);
         self.axis(0);
         self.set("sort_z_lower", true);
         self.wait(400.0);
         self.pulse("gripper_close", 200.0);
-        assert!(self.sees("gripper_part"));
+        assert!(self.is_on("gripper_part"));
         self.set("probe_lift", false);
         self.wait(250.0);
         self.pulse("clamp_open", 200.0);
         self.set("sort_z_lower", false);
         self.wait(400.0);
-        assert!(!self.sees("nest_present") && self.sees("sort_z_up"));
+        assert!(!self.is_on("nest_present") && self.is_on("sort_z_up"));
         self.axis(point);
         self.pulse("gripper_release", 500.0);
         self.axis(0);
     }
 }
 
-pub(super) fn options(golden: bool) -> WorldOptions {
+pub(super) fn options(reference_parts: bool) -> WorldOptions {
     WorldOptions {
         config_dir: config_dir(),
         seed: 3,
         recipe: "jzc-22f-012".into(),
         parts: Some(3),
-        golden,
+        reference_parts,
         ..WorldOptions::default()
     }
 }

@@ -1,10 +1,10 @@
-//! The line by hand: terminals in, terminals out.
+//! Tests of the line under manual control of its terminals.
 
 use super::hand::{Hand, options};
 use super::*;
 use crate::config::read_world;
 
-/// Terminal of the beam over a bin.
+/// Returns the terminal of the beam of a bin.
 fn beam(hand: &Hand, bin: &str) -> (String, u8) {
     let name = &hand.rig.bins.iter().find(|b| b.name == bin).unwrap().beam;
     let t = &hand.rig.digital_in[name];
@@ -12,11 +12,11 @@ fn beam(hand: &Hand, bin: &str) -> (String, u8) {
 }
 
 #[test]
-fn a_part_goes_by_hand_from_the_magazine_through_a_timed_test_into_its_bin() {
+fn a_part_passes_magazine_timed_test_and_bin() {
     let mut hand = Hand::new(options(false));
     hand.feed();
     hand.set("kelvin_test", true);
-    assert!(hand.sees("kelvin_com") && hand.sees("kelvin_no") && hand.sees("nc_closed"));
+    assert!(hand.is_on("kelvin_com") && hand.is_on("kelvin_no") && hand.is_on("nc_closed"));
     hand.level(12.0);
     hand.set("select_no", true);
     hand.set("arm", true);
@@ -25,21 +25,21 @@ fn a_part_goes_by_hand_from_the_magazine_through_a_timed_test_into_its_bin() {
     let before_1 = hand.gate_ms("gate_1");
     hand.set("coil_drive", true);
     hand.wait(40.0);
-    assert!(hand.sees("latch") && hand.sees("no_closed") && !hand.sees("nc_closed"));
-    assert!((hand.reads("coil_voltage") - 12.0).abs() < 1e-9);
-    assert!((hand.reads("coil_current") - 0.03).abs() < 0.002);
+    assert!(hand.is_on("latch") && hand.is_on("no_closed") && !hand.is_on("nc_closed"));
+    assert!((hand.value("coil_voltage") - 12.0).abs() < 1e-9);
+    assert!((hand.value("coil_current") - 0.03).abs() < 0.002);
     let operate = hand.gate_ms("gate_0") - before;
     let bounce = hand.gate_ms("gate_1") - before_1 - operate;
     hand.set("source_on", true);
     hand.wait(10.0);
-    let plus = hand.reads("contact_drop");
+    let plus = hand.value("contact_drop");
     hand.set("source_reverse", true);
     hand.wait(10.0);
-    let mohm = (plus - hand.reads("contact_drop")) / 2.0 * 1000.0;
+    let mohm = (plus - hand.value("contact_drop")) / 2.0 * 1000.0;
     hand.set("source_on", false);
     hand.set("coil_drive", false);
     hand.wait(50.0);
-    assert!(hand.sees("nc_closed") && !hand.sees("no_closed"));
+    assert!(hand.is_on("nc_closed") && !hand.is_on("no_closed"));
     hand.sort(4);
     let (module, channel) = beam(&hand, "voltage");
     assert_eq!(hand.world.edges(&module, channel), 1);
@@ -61,7 +61,7 @@ fn a_part_goes_by_hand_from_the_magazine_through_a_timed_test_into_its_bin() {
 }
 
 #[test]
-fn golden_parts_come_first_and_are_not_in_the_truth() {
+fn reference_parts_come_first_and_leave_no_truth() {
     let mut hand = Hand::new(options(true));
     for _ in 0..5 {
         hand.feed();
@@ -73,19 +73,19 @@ fn golden_parts_come_first_and_are_not_in_the_truth() {
 }
 
 #[test]
-fn the_source_goes_off_two_milliseconds_before_the_drive_changes() {
+fn the_source_switches_off_before_the_drive_changes() {
     let mut hand = Hand::new(options(false));
     hand.feed();
     hand.set("source_on", true);
     hand.wait(10.0);
-    assert!((hand.reads("contact_current") - 1.0).abs() < 0.0011);
+    assert!((hand.value("contact_current") - 1.0).abs() < 0.0011);
     hand.level(12.0);
     hand.set("coil_drive", true);
     hand.wait(1.9);
-    assert_eq!(hand.reads("contact_current"), 0.0);
-    assert_eq!(hand.reads("coil_voltage"), 0.0);
+    assert_eq!(hand.value("contact_current"), 0.0);
+    assert_eq!(hand.value("coil_voltage"), 0.0);
     hand.wait(0.2);
-    assert!((hand.reads("coil_voltage") - 12.0).abs() < 1e-9);
+    assert!((hand.value("coil_voltage") - 12.0).abs() < 1e-9);
 }
 
 #[test]
@@ -94,12 +94,12 @@ fn nothing_is_driven_without_the_probe_up_chain() {
     hand.level(12.0);
     hand.set("coil_drive", true);
     hand.wait(10.0);
-    assert_eq!(hand.reads("coil_voltage"), 0.0);
-    assert!((hand.reads("supply_voltage") - 12.0).abs() < 1e-9);
+    assert_eq!(hand.value("coil_voltage"), 0.0);
+    assert!((hand.value("supply_voltage") - 12.0).abs() < 1e-9);
 }
 
 #[test]
-fn arm_on_the_reference_contact_gives_a_pulse_of_one_millisecond_on_both_gates() {
+fn arm_on_the_reference_pulses_both_gates() {
     let mut hand = Hand::new(options(false));
     hand.set("reference_contact", true);
     hand.pulse("arm", 5.0);
@@ -110,7 +110,7 @@ fn arm_on_the_reference_contact_gives_a_pulse_of_one_millisecond_on_both_gates()
 }
 
 #[test]
-fn a_ramp_starts_the_window_when_the_supply_has_moved_fifty_millivolts() {
+fn a_ramp_opens_the_window_after_fifty_millivolts() {
     let mut hand = Hand::new(options(false));
     hand.level(5.0);
     hand.set("ramp_mode", true);
@@ -118,26 +118,28 @@ fn a_ramp_starts_the_window_when_the_supply_has_moved_fifty_millivolts() {
     hand.set("arm", true);
     hand.world.analog_out("ao_fine", 0.049 / 1.5);
     hand.wait(1.0);
-    assert!(!hand.sees("window"));
+    assert!(!hand.is_on("window"));
     hand.world.analog_out("ao_fine", 0.051 / 1.5);
-    assert!(hand.sees("window"));
+    assert!(hand.is_on("window"));
 }
 
 #[test]
-fn without_air_the_pusher_returns_and_the_clamp_stays() {
+fn without_air_the_pusher_returns_and_the_jaws_hold() {
     let mut o = options(false);
     o.faults = vec![("air".into(), 3.0)];
     let mut hand = Hand::new(o);
     hand.pulse("clamp_close", 300.0);
     hand.set("pusher_extend", true);
     hand.wait(1000.0);
-    assert!(hand.sees("pusher_extended"));
+    assert!(hand.is_on("pusher_extended"));
     hand.wait(2500.0);
-    assert!(!hand.sees("air_ok") && hand.sees("pusher_retracted") && hand.sees("jaw_left_closed"));
+    assert!(
+        !hand.is_on("air_ok") && hand.is_on("pusher_retracted") && hand.is_on("jaw_left_closed")
+    );
 }
 
 #[test]
-fn a_double_part_darkens_the_beam_twice_and_a_fallen_one_lands_nowhere() {
+fn double_part_darkens_twice_and_fallen_part_lands_nowhere() {
     let mut o = options(false);
     o.faults = vec![("double_part".into(), 1.0), ("fall".into(), 2.0)];
     let mut hand = Hand::new(o);
@@ -153,16 +155,16 @@ fn a_double_part_darkens_the_beam_twice_and_a_fallen_one_lands_nowhere() {
 }
 
 #[test]
-fn a_jammed_pusher_goes_through_at_the_second_stroke() {
+fn a_jammed_pusher_succeeds_at_the_second_stroke() {
     let mut o = options(false);
     o.faults = vec![("jam_pusher".into(), 1.0)];
     let mut hand = Hand::new(o);
     hand.pulse("escapement_release", 300.0);
     hand.pulse("pusher_extend", 800.0);
-    assert!(!hand.sees("pusher_extended") && !hand.sees("nest_present"));
+    assert!(!hand.is_on("pusher_extended") && !hand.is_on("nest_present"));
     hand.wait(800.0);
     hand.pulse("pusher_extend", 800.0);
-    assert!(hand.sees("nest_present"));
+    assert!(hand.is_on("nest_present"));
     assert_eq!(hand.world.crashes(), Vec::<String>::new());
 }
 
@@ -183,7 +185,7 @@ fn the_same_seed_and_stimuli_give_the_same_world() {
 }
 
 #[test]
-fn an_unknown_key_of_a_world_file_is_named_with_file_and_line() {
+fn an_unknown_world_key_names_file_and_line() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("world.toml");
     std::fs::write(&path, "[lot]\noperate_v_mean = 7.7\noperate_v_men = 7.8\n").unwrap();
@@ -201,7 +203,7 @@ fn an_unknown_key_of_a_world_file_is_named_with_file_and_line() {
 }
 
 #[test]
-fn a_timed_release_counts_from_drive_off_to_the_first_make_of_nc() {
+fn a_timed_release_ends_with_the_first_nc_make() {
     let mut hand = Hand::new(options(false));
     hand.feed();
     hand.level(12.0);
@@ -234,7 +236,7 @@ fn a_falling_ramp_latches_on_the_break_of_no() {
     hand.wait(1.0);
     let before = hand.gate_ms("gate_0");
     let mut volts = 4.0;
-    while !hand.sees("latch") {
+    while !hand.is_on("latch") {
         volts -= 0.0015;
         assert!(volts > 0.5, "no release");
         hand.level(volts);
@@ -244,12 +246,12 @@ fn a_falling_ramp_latches_on_the_break_of_no() {
     let truth = hand.world.truth()[0]["release_voltage_v"].as_f64().unwrap();
     assert!(
         (seen - truth).abs() < 0.12,
-        "lag and temperature: {seen} against {truth}"
+        "overshoot and temperature: {seen} against {truth}"
     );
 }
 
 #[test]
-fn an_emf_that_drifts_moves_the_drop_of_a_closed_contact_and_not_that_of_the_reference() {
+fn a_drifting_emf_moves_contact_drop_but_not_reference() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("world.toml");
     std::fs::write(&path, "[board]\nemf_drift_uv_per_s = 5000.0\n").unwrap();
@@ -258,12 +260,12 @@ fn an_emf_that_drifts_moves_the_drop_of_a_closed_contact_and_not_that_of_the_ref
         ..options(false)
     });
     hand.feed();
-    let first = hand.reads("contact_drop");
+    let first = hand.value("contact_drop");
     hand.wait(100.0);
-    let moved = hand.reads("contact_drop") - first;
+    let moved = hand.value("contact_drop") - first;
     assert!((moved - 0.0005).abs() < 1e-12, "{moved}");
     hand.set("reference_contact", true);
-    let first = hand.reads("contact_drop");
+    let first = hand.value("contact_drop");
     hand.wait(100.0);
-    assert_eq!(hand.reads("contact_drop"), first);
+    assert_eq!(hand.value("contact_drop"), first);
 }

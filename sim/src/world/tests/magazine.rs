@@ -1,4 +1,4 @@
-//! The magazine that a person empties and loads for another lot.
+//! Tests of the magazine that an operator empties and refills.
 
 use super::*;
 use crate::config::read_world;
@@ -11,14 +11,14 @@ fn loaded(parts: u64) -> Magazine {
         seed: 1,
         recipe: "jzc-22f-012".into(),
         parts: Some(parts),
-        golden: true,
+        reference_parts: true,
         ..WorldOptions::default()
     };
     let world = read_world(&config_dir(), None).unwrap();
     Magazine::load(&options, &world, &WorldFaults::default(), 23.0, 23.0).unwrap()
 }
 
-/// Place in the lot of every part that comes out, none of golden ones, and its coil.
+/// Empties the magazine; returns the number in the lot (`None` for a reference part) and the coil of every part.
 fn emptied(magazine: &mut Magazine) -> Vec<(Option<u64>, f64)> {
     let mut faults = WorldFaults::default();
     let parts = std::iter::from_fn(|| magazine.take(0, &mut faults));
@@ -27,25 +27,25 @@ fn emptied(magazine: &mut Magazine) -> Vec<(Option<u64>, f64)> {
 }
 
 #[test]
-fn a_magazine_that_is_filled_anew_gives_the_golden_parts_again_and_other_parts_of_the_lot() {
+fn a_refilled_magazine_repeats_only_the_reference_parts() {
     let mut first = loaded(2);
     let one = emptied(&mut first);
     let mut second = loaded(3).in_place_of(&first);
     assert!(second.waiting() > 3);
     let two = emptied(&mut second);
-    let golden = |parts: &[(Option<u64>, f64)]| -> Vec<f64> {
-        let golden = parts.iter().filter(|(number, _)| number.is_none());
-        golden.map(|(_, coil)| *coil).collect()
+    let reference_parts = |parts: &[(Option<u64>, f64)]| -> Vec<f64> {
+        let reference_parts = parts.iter().filter(|(number, _)| number.is_none());
+        reference_parts.map(|(_, coil)| *coil).collect()
     };
-    assert_eq!(golden(&one), golden(&two));
-    assert_eq!(golden(&one).len() + 2, one.len());
+    assert_eq!(reference_parts(&one), reference_parts(&two));
+    assert_eq!(reference_parts(&one).len() + 2, one.len());
     let numbers: Vec<u64> = two.iter().filter_map(|(number, _)| *number).collect();
-    assert_eq!(numbers, [3, 4, 5], "none of them comes twice");
+    assert_eq!(numbers, [3, 4, 5], "no lot part repeats");
     assert_eq!(second.waiting(), 0);
 }
 
 #[test]
-fn on_another_day_the_golden_parts_are_the_same_bodies_with_other_temperatures() {
+fn another_day_changes_only_temperatures_of_reference_parts() {
     let on = |day: Option<f64>| {
         let asked: Vec<_> = day
             .map(|it| ("noise_seed".into(), it))
@@ -57,7 +57,7 @@ fn on_another_day_the_golden_parts_are_the_same_bodies_with_other_temperatures()
         let Specimen::Relay(relay) = part.specimen else {
             unreachable!("a recipe for relays")
         };
-        (relay.drawn().operate_v, relay.drawn().offset_k)
+        (relay.values().operate_v, relay.values().offset_k)
     };
     let (bodies, kelvin): (Vec<f64>, Vec<f64>) =
         [on(None), on(Some(2.0)), on(Some(3.0))].into_iter().unzip();
@@ -70,7 +70,7 @@ fn on_another_day_the_golden_parts_are_the_same_bodies_with_other_temperatures()
 }
 
 #[test]
-fn the_magazine_gives_the_relays_that_it_always_gave() {
+fn a_seed_gives_the_recorded_relays() {
     let recorded = [
         393.939_916_647_943_96,
         396.990_396_147_178_33,

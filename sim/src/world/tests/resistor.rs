@@ -1,9 +1,9 @@
-//! Dummies that hold a resistor, on the line by hand.
+//! Tests of resistor dummies on the line under manual control.
 
 use super::hand::{Hand, options};
 use super::*;
 
-/// A folder of settings with one recipe, `dummy`, of this kind.
+/// Creates a configuration folder with one recipe, `dummy`, of this kind.
 fn folder(kind: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     for file in ["rig.toml", "sim.toml", "scene.toml", "golden.toml"] {
@@ -18,7 +18,7 @@ fn folder(kind: &str) -> tempfile::TempDir {
     folder
 }
 
-/// Puts three dummies in the magazine and asks for golden parts, which do not exist.
+/// Returns options for three dummies and for reference parts, which this kind does not have.
 fn dummies(folder: &tempfile::TempDir) -> WorldOptions {
     WorldOptions {
         config_dir: folder.path().to_path_buf(),
@@ -28,29 +28,29 @@ fn dummies(folder: &tempfile::TempDir) -> WorldOptions {
 }
 
 #[test]
-fn a_dummy_goes_through_the_line_and_shows_its_resistance() {
+fn a_dummy_passes_the_line_and_shows_its_resistance() {
     let folder = folder("resistor");
     let mut hand = Hand::new(dummies(&folder));
     hand.feed();
     hand.set("kelvin_test", true);
     let pins = ["coil_a", "coil_b", "com", "no", "nc"];
-    assert!(pins.iter().all(|pin| hand.sees(&format!("kelvin_{pin}"))));
+    assert!(pins.iter().all(|pin| hand.is_on(&format!("kelvin_{pin}"))));
     hand.set("kelvin_test", false);
     hand.level(2.5);
     hand.set("coil_drive", true);
     hand.wait(1.0);
-    let (volts, amperes) = (hand.reads("coil_voltage"), hand.reads("coil_current_fine"));
+    let (volts, amperes) = (hand.value("coil_voltage"), hand.value("coil_current_fine"));
     assert!((volts - 2.5).abs() < 1e-9, "{volts} V");
     for contact in ["no_closed", "nc_closed"] {
-        assert!(!hand.sees(contact), "{contact}");
+        assert!(!hand.is_on(contact), "{contact}");
     }
     hand.set("source_on", true);
     hand.wait(20.0);
-    assert_eq!(hand.reads("contact_current"), 0.0);
+    assert_eq!(hand.value("contact_current"), 0.0);
     hand.set("source_on", false);
     hand.set("coil_drive", false);
     hand.wait(1.0);
-    assert_eq!(hand.reads("coil_current"), 0.0);
+    assert_eq!(hand.value("coil_current"), 0.0);
     hand.sort(2);
     let truth = &hand.world.truth()[0];
     let ohm = truth["resistance_ohm"].as_f64().unwrap();
@@ -62,7 +62,7 @@ fn a_dummy_goes_through_the_line_and_shows_its_resistance() {
 }
 
 #[test]
-fn a_short_runs_into_the_limit_of_the_supply() {
+fn a_short_reaches_the_current_limit_of_the_supply() {
     let folder = folder("resistor");
     let world = folder.path().join("world.toml");
     let short = "[resistor]\nnominal_ohm = 1.0\ndefects_pct = 0.0\n";
@@ -75,13 +75,13 @@ fn a_short_runs_into_the_limit_of_the_supply() {
     hand.level(2.5);
     hand.set("coil_drive", true);
     hand.wait(1.0);
-    let (volts, amperes) = (hand.reads("coil_voltage"), hand.reads("coil_current"));
+    let (volts, amperes) = (hand.value("coil_voltage"), hand.value("coil_current"));
     assert!((volts - 0.15).abs() < 0.002, "{volts} V");
     assert!(amperes >= 0.05, "{amperes} A");
 }
 
 #[test]
-fn the_magazine_is_filled_with_another_kind() {
+fn a_refill_may_change_the_kind_of_part() {
     let folder = folder("resistor");
     let relays = folder.path().join("recipes/jzc-22f-012.toml");
     std::fs::copy(config_dir().join("recipes/jzc-22f-012.toml"), relays).unwrap();
@@ -91,7 +91,7 @@ fn the_magazine_is_filled_with_another_kind() {
     });
     hand.feed();
     hand.sort(2);
-    hand.world.fill(&dummies(&folder)).unwrap();
+    hand.world.refill(&dummies(&folder)).unwrap();
     hand.feed();
     let truth = hand.world.truth();
     assert!(truth[0].get("resistance_ohm").is_none() && truth[0]["operate_voltage_v"].is_f64());

@@ -232,7 +232,7 @@ fn whose_turn<'a>(
 }
 
 fn name(body: &BodyTruth) -> String {
-    let kind = match (body.clung, body.golden) {
+    let kind = match (body.clung, body.is_reference) {
         (true, _) => "second body",
         (false, true) => "golden part",
         (false, false) => "part",

@@ -40,7 +40,7 @@ fn row(
 
 fn body(path: &[(u64, Place)], defect: Option<&'static str>) -> BodyTruth {
     BodyTruth {
-        golden: false,
+        is_reference: false,
         clung: false,
         path: path
             .iter()

@@ -1,26 +1,26 @@
-//! What stands at the coil: a source, or a clamp after switch-off.
+//! Drive of the coil: a source, or the suppression after switch-off.
 
-/// One smooth piece of what stands at the coil.
+/// One smooth section of the drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Drive {
-    /// A source of `volts` at `since_s`, from then on with a constant slope.
+    /// A source with `volts` at `since_s` and a constant slope from then on.
     Source {
-        /// Volts at the beginning.
+        /// Voltage at the start, V.
         volts: f64,
-        /// Volts per second.
+        /// Slope, V/s.
         slope: f64,
-        /// Beginning, s.
+        /// Start, s.
         since_s: f64,
     },
-    /// Nothing but a clamp that holds so many volts while current flows.
-    Clamp {
-        /// Diode or zener voltage.
+    /// No source; the suppression holds this voltage while current flows.
+    Suppression {
+        /// Voltage of the diode or zener, V.
         volts: f64,
     },
 }
 
 impl Drive {
-    /// A source that stands still.
+    /// Creates a source of constant voltage.
     pub fn still(volts: f64) -> Self {
         Self::Source {
             volts,
@@ -30,16 +30,16 @@ impl Drive {
     }
 }
 
-/// Coil voltage over time: linear between points, held before the first and after the last. Two
-/// points at one instant are a step.
+/// Coil voltage over time: linear between points, constant before the first and after the last. Two points at one
+/// instant form a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Waveform(Vec<[f64; 2]>);
 
 impl Waveform {
-    /// From points of (seconds, volts).
+    /// Creates a waveform from points of (seconds, volts).
     ///
     /// # Errors
-    /// Index of the first point that is not finite or lies before its predecessor; 0 without points.
+    /// Returns the index of the first point that is not finite or precedes its predecessor; 0 for an empty list.
     pub fn new(points: Vec<[f64; 2]>) -> Result<Self, usize> {
         let finite = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
         if points.is_empty() {
@@ -54,7 +54,7 @@ impl Waveform {
         }
     }
 
-    /// The piece that holds at an instant, and where it ends.
+    /// Returns the section at an instant, and the end of that section in seconds.
     pub fn piece(&self, t_s: f64) -> (Drive, f64) {
         let next = self.0.partition_point(|p| p[0] <= t_s);
         let end = self.0.get(next).map_or(f64::INFINITY, |p| p[0]);

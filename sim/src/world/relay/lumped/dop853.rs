@@ -1,15 +1,15 @@
-//! One step of the explicit Runge-Kutta method of order 8 by Dormand and Prince, with the error
-//! estimate of orders 5 and 3.
+//! One step of the explicit Runge-Kutta method of order 8 by Dormand and Prince, with error estimates of orders 5
+//! and 3.
 //!
 //! Coefficients: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), II.5.
-//! The fast motions of a relay swing rather than decay and have to be resolved anyway, so an
-//! explicit method of high order beats every implicit one here.
+//! The fast motions of a relay oscillate rather than decay, and the steps must resolve them anyway, so an
+//! explicit method of high order is cheaper than an implicit one.
 
 #![allow(clippy::excessive_precision)] // as printed in the book
 
 use super::State;
 
-/// Instants of the stages as shares of the step; the first stage is the known slope.
+/// Instants of the stages as fractions of the step; the first stage is the known slope.
 const C: [f64; 10] = [
     0.526001519587677318785587544488e-1,
     0.789002279381515978178381316732e-1,
@@ -103,7 +103,7 @@ const B: [f64; 8] = [
     2.01365400804030348374776537501e-1,
     4.47106157277725905176885569043e-2,
 ];
-/// What the weights of order 5 lack, same stages.
+/// Differences between the weights of orders 8 and 5, for the same stages.
 const E5: [f64; 8] = [
     0.1312004499419488073250102996e-1,
     -0.1225156446376204440720569753e1,
@@ -121,15 +121,15 @@ const B3: [f64; 3] = [
     0.220588235294117647058823529412e-1,
 ];
 
-/// Evaluations that a step costs; the slope at its start is known.
+/// Number of evaluations per step; the slope at the start is known.
 pub const EVALUATIONS: u64 = 11;
 
-/// A step that was tried.
+/// Result of a trial step.
 #[derive(Debug, Clone, Copy)]
-pub struct Tried {
-    /// State at its end.
+pub struct TrialStep {
+    /// State at the end of the step.
     pub state: State,
-    /// Error against what is tolerated, 1 is just right.
+    /// Error relative to the tolerance; up to 1 is acceptable.
     pub error: f64,
 }
 
@@ -144,8 +144,8 @@ fn blend<const N: usize>(weights: &[f64; N], slopes: [&State; N]) -> State {
     sum
 }
 
-/// The state after `h` along weighted slopes. The latest slope comes last, so that nothing waits
-/// for it but one product and one sum.
+/// Returns the state after `h` along weighted slopes. The latest slope comes last, so that only one product and
+/// one sum wait for it.
 #[inline]
 fn along<const N: usize>(from: &State, h: f64, weights: &[f64; N], slopes: [&State; N]) -> State {
     let mut to = *from;
@@ -158,8 +158,8 @@ fn along<const N: usize>(from: &State, h: f64, weights: &[f64; N], slopes: [&Sta
     to
 }
 
-/// Tries a step of `h` seconds from `s` at `t`, where the slope is `k1`; `scale` is the error
-/// that each state may make, as an absolute and a relative part.
+/// Takes a trial step of `h` seconds from `s` at `t` with slope `k1`; `scale` is the permitted error of each
+/// state, absolute and relative.
 #[inline]
 pub fn step(
     f: impl Fn(f64, &State) -> State,
@@ -167,7 +167,7 @@ pub fn step(
     s: &State,
     k1: &State,
     scale: &Tolerance,
-) -> Tried {
+) -> TrialStep {
     let at = |i: usize| t + C[i] * h;
     let k2 = f(at(0), &along(s, h, &A2, [k1]));
     let k3 = f(at(1), &along(s, h, &A3, [k1, &k2]));
@@ -191,20 +191,20 @@ pub fn step(
     let slope = blend(&B, last);
     let state = along(s, h, &[1.0], [&slope]);
     let low = blend(&B3, [k1, &k9, &k12]);
-    Tried {
+    TrialStep {
         state,
         error: scale.error(h, s, &state, &blend(&E5, last), &slope, &low),
     }
 }
 
-/// What a step may get wrong: `relative` of the state, and of a size that is natural to each.
+/// Permitted error of a step: a fraction of the state and of its natural size.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerance {
-    /// Share of the state.
+    /// Fraction of the state.
     pub relative: f64,
 }
 
-/// Natural sizes of the states: V s, m, m/s, m, m/s.
+/// Natural sizes of the five states: V s, m, m/s, m, m/s.
 const SIZE: State = [1e-2, 1e-5, 1e-1, 1e-5, 1e-1];
 
 impl Tolerance {
@@ -230,7 +230,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_stages_lie_where_their_weights_say() {
+    fn each_stage_instant_is_the_sum_of_its_weights() {
         let sums = [
             A2.iter().sum::<f64>(),
             A3.iter().sum(),
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn halving_the_step_divides_the_error_of_a_swing_by_two_to_the_ninth() {
+    fn halving_the_step_divides_the_error_by_512() {
         let swing = |_: f64, s: &State| [0.0, s[2], -s[1] - s[1].powi(3), 0.0, 0.0];
         let from = [0.0, 1.0, 0.0, 0.0, 0.0];
         let any = Tolerance { relative: 1.0 };

@@ -12,11 +12,11 @@
 //! m_c w' = leaf + NC - NO                                          leaf = k_l (x + d0 - y) + c_l (v - w)
 //! ```
 //!
-//! In reading order: [`parameters`], [`stop`] (a contact that yields), [`modes`] (what is engaged),
-//! [`coil`] (what drives), [`model`] (the equations), [`statics`] (where it stands still),
-//! [`dop853`] (one step), [`solver`] (from event to event), [`outcome`] (what it showed).
+//! In reading order: [`parameters`], [`stop`] (a compliant contact), [`modes`] (engaged stops), [`coil`] (the
+//! drive), [`model`] (the equations), [`statics`] (equilibrium and thresholds), [`dop853`] (one step), [`solver`]
+//! (from event to event), [`outcome`] (results of a transient).
 //!
-//! Left out: remanence, distributed eddy currents, higher modes of the leaf, arc, gravity.
+//! The model omits remanence, distributed eddy currents, higher modes of the leaf, arc and gravity.
 
 pub mod coil;
 pub mod dop853;
@@ -37,7 +37,7 @@ pub use outcome::Outcome;
 pub use parameters::Parameters;
 pub use solver::{Event, SolveError, Solver};
 
-/// The five states, in the order of the constants below; SI units.
+/// The five states in SI units, in the order of the constants below.
 pub type State = [f64; 5];
 /// Flux linkage.
 pub const LAMBDA: usize = 0;
@@ -50,42 +50,42 @@ pub const Y: usize = 3;
 /// Its speed.
 pub const W: usize = 4;
 
-/// A transient: its events and what they cost.
+/// Result of a transient: its events and the cost of the integration.
 #[derive(Debug, Clone)]
 pub struct Transient {
-    /// Changes of the modes, in order.
+    /// Changes of the modes, in order of time.
     pub events: Vec<Event>,
     /// State at the end.
     pub state: State,
-    /// Evaluations of the equations.
+    /// Number of evaluations of the equations.
     pub evaluations: u64,
-    /// Steps, rejected ones included.
+    /// Number of steps, rejected ones included.
     pub steps: u64,
 }
 
-/// What drives the coil over a whole transient.
+/// Drive of the coil over a whole transient.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Excitation {
     /// A source.
     Source(Waveform),
-    /// Switched off into a clamp of so many volts.
-    Clamp(f64),
+    /// Switched off into a suppression of this voltage, V.
+    Suppression(f64),
 }
 
 impl Excitation {
     fn piece(&self, t_s: f64) -> (Drive, f64) {
         match self {
             Self::Source(waveform) => waveform.piece(t_s),
-            Self::Clamp(volts) => (Drive::Clamp { volts: *volts }, f64::INFINITY),
+            Self::Suppression(volts) => (Drive::Suppression { volts: *volts }, f64::INFINITY),
         }
     }
 }
 
 impl Model {
-    /// Integrates from `start` at 0 to `end_s`; `relative` is the tolerance of a step.
+    /// Integrates from `start` at 0 to `end_s`; `relative` is the relative tolerance of a step.
     ///
     /// # Errors
-    /// The state runs away, or the work has no end.
+    /// Fails when the state diverges, or the number of evaluations reaches its limit.
     pub fn transient(
         &self,
         start: State,

@@ -1,12 +1,12 @@
-//! The equations of motion, with everything that does not change worked out beforehand.
+//! The equations of motion, with precomputed constants.
 
 use super::coil::Drive;
-use super::modes::{Kind, Modes, Places};
+use super::modes::{Kind, Modes, StopPositions};
 use super::parameters::Parameters;
 use super::stop::Stop;
 use super::{LAMBDA, State, X};
 
-/// A relay ready to be integrated.
+/// A relay model that is ready for integration.
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(super) p: Parameters,
@@ -17,14 +17,14 @@ pub struct Model {
     eddy: f64,
     per_phis: f64,
     per_mass: [f64; 2],
-    /// Where its stops stand.
-    pub places: Places,
+    /// Positions of its stops.
+    pub stops: StopPositions,
     pub(super) stop: Stop,
     pub(super) contact: Stop,
 }
 
 impl Model {
-    /// From its parameters.
+    /// Creates the model from its parameters.
     pub fn new(p: &Parameters) -> Self {
         let ohm = p.coil_ohm();
         let per_turns2 = 1.0 / (p.N * p.N);
@@ -37,7 +37,7 @@ impl Model {
             per_phis: 1.0 / p.phis,
             per_mass: [1.0 / p.m_a, 1.0 / p.m_c],
             eddy: 1.0 / (1.0 + ohm * p.k_ec * per_turns2),
-            places: Places { seat: p.X, no: p.G },
+            stops: StopPositions { seat: p.X, no: p.G },
             stop: Stop {
                 k: p.k_s,
                 chi: p.chi_s,
@@ -49,29 +49,29 @@ impl Model {
         }
     }
 
-    /// The parameters it was made from.
+    /// Returns the parameters of the model.
     pub fn parameters(&self) -> &Parameters {
         &self.p
     }
 
-    /// Coil resistance at the temperature of the copper, ohm.
+    /// Returns the coil resistance at the temperature of the copper, ohm.
     pub fn ohm(&self) -> f64 {
         self.ohm
     }
 
-    /// Another temperature of the copper, as its resistance in ohm.
+    /// Changes the temperature of the copper, given as the coil resistance in ohm.
     pub fn set_ohm(&mut self, ohm: f64) {
         self.ohm = ohm;
         self.eddy = 1.0 / (1.0 + ohm * self.p.k_ec * self.per_turns2);
     }
 
-    /// Permeance of the gap in units of pole area: `mu0 A + Pf g`.
+    /// Returns the permeance of the gap in units of pole area: `mu0 A + Pf g`.
     #[inline]
     pub(super) fn spread(&self, gap: f64) -> f64 {
         self.mu_a + self.p.Pf * gap
     }
 
-    /// Reluctance at a flux and a gap, 1/H. Not a number at and beyond saturation.
+    /// Returns the reluctance at a flux and a gap, 1/H; NaN at and beyond saturation.
     #[inline]
     pub(super) fn reluctance(&self, phi: f64, gap: f64) -> f64 {
         let rest = 1.0 - phi.abs() / self.p.phis;
@@ -81,20 +81,20 @@ impl Model {
         self.p.Rr + self.p.Rc0 / rest + gap / self.spread(gap)
     }
 
-    /// Pull on the armature, N.
+    /// Returns the pull on the armature, N.
     #[inline]
     pub(super) fn pull(&self, phi: f64, gap: f64) -> f64 {
         let spread = self.spread(gap);
         0.5 * phi * phi * self.mu_a / (spread * spread)
     }
 
-    /// Ampere turns that the flux needs, per turn squared: the current if nothing changed, A.
+    /// Returns the coil current that a constant flux needs, A.
     #[inline]
     fn still_current(&self, s: &State) -> f64 {
         s[LAMBDA] * self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]) * self.per_turns2
     }
 
-    /// Rate of the flux linkage, V.
+    /// Returns the rate of the flux linkage, V.
     #[inline]
     fn flux_rate(&self, t_s: f64, current: f64, modes: Modes, drive: &Drive) -> f64 {
         match *drive {
@@ -103,49 +103,50 @@ impl Model {
                 slope,
                 since_s,
             } => (volts + slope * (t_s - since_s) - self.ohm * current) * self.eddy,
-            Drive::Clamp { volts } => match modes.is(Kind::CoilBlocked) {
+            Drive::Suppression { volts } => match modes.is_engaged(Kind::CoilBlocked) {
                 true => self.blocked_rate(current),
                 false => (-volts - self.ohm * current) * self.eddy,
             },
         }
     }
 
-    /// Rate of the flux linkage when eddy currents alone carry it.
+    /// Returns the rate of the flux linkage when eddy currents alone carry it, V.
     #[inline]
     fn blocked_rate(&self, current: f64) -> f64 {
         -current * self.p.N * self.p.N / self.p.k_ec
     }
 
-    /// Rate of the flux linkage of an armature that rests, V: no flag, the clamp by its own rule.
+    /// Returns the rate of the flux linkage of a resting armature, V; decides without a flag whether the
+    /// suppression conducts.
     pub fn resting_flux_rate(&self, t_s: f64, s: &State, drive: &Drive) -> f64 {
         let current = self.still_current(s);
         let conducting = self.flux_rate(t_s, current, Modes::default(), drive);
         match drive {
             Drive::Source { .. } => conducting,
-            Drive::Clamp { .. } => conducting.max(self.blocked_rate(current)),
+            Drive::Suppression { .. } => conducting.max(self.blocked_rate(current)),
         }
     }
 
-    /// Time constant of the flux linkage of an armature that rests and whose flux moves at a rate, s:
-    /// winding and eddy currents together, or eddy currents alone while the clamp blocks.
+    /// Returns the time constant of the flux linkage of a resting armature, s: of winding and eddy currents
+    /// together, or of eddy currents alone while the suppression blocks.
     pub fn flux_time_s(&self, s: &State, flux_rate: f64, drive: &Drive) -> f64 {
         let reluctance = self.reluctance(s[LAMBDA] / self.p.N, self.p.X - s[X]);
         let eddy = self.p.k_ec / reluctance;
         let blocked = self.blocked_rate(self.still_current(s));
         match drive {
-            Drive::Clamp { .. } if flux_rate <= blocked => eddy,
-            Drive::Source { .. } | Drive::Clamp { .. } => {
+            Drive::Suppression { .. } if flux_rate <= blocked => eddy,
+            Drive::Source { .. } | Drive::Suppression { .. } => {
                 eddy + self.p.N * self.p.N / (self.ohm * reluctance)
             }
         }
     }
 
-    /// Coil current while the flux linkage moves at a rate, A.
+    /// Returns the coil current at a rate of the flux linkage, A.
     pub fn current_at(&self, s: &State, flux_rate: f64) -> f64 {
         self.still_current(s) + self.p.k_ec * self.per_turns2 * flux_rate
     }
 
-    /// Rates of the five states.
+    /// Returns the rates of the five states.
     #[inline]
     pub fn rates(&self, t_s: f64, s: &State, modes: Modes, drive: &Drive) -> State {
         let p = &self.p;
@@ -160,16 +161,16 @@ impl Model {
         let leaf = p.k_l * (x + p.d0 - y) + p.c_l * (v - w);
         let mut load = p.F_r0 + p.k_r * x + p.c_a * v + leaf;
         let mut tip = leaf;
-        if modes.is(Kind::Backstop) {
+        if modes.is_engaged(Kind::Backstop) {
             load -= self.stop.push(-x, -v);
         }
-        if modes.is(Kind::Seat) {
+        if modes.is_engaged(Kind::Seat) {
             load += self.stop.push(x - p.X, v);
         }
-        if modes.is(Kind::Nc) {
+        if modes.is_engaged(Kind::Nc) {
             tip += self.contact.push(-y, -w);
         }
-        if modes.is(Kind::No) {
+        if modes.is_engaged(Kind::No) {
             tip -= self.contact.push(y - p.G, w);
         }
         let across = phi * per_spread;
@@ -179,24 +180,24 @@ impl Model {
         [flux, v, armature * per_armature, w, tip * per_tip]
     }
 
-    /// The gap function of a kind: above zero asks for its flag.
+    /// Returns the gap function of a kind; a value above zero sets its flag.
     #[inline]
     pub fn gap(&self, kind: Kind, s: &State, drive: &Drive) -> f64 {
         match (kind, drive) {
             (Kind::CoilBlocked, Drive::Source { .. }) => -1.0,
-            (Kind::CoilBlocked, Drive::Clamp { volts }) => {
+            (Kind::CoilBlocked, Drive::Suppression { volts }) => {
                 let current = self.still_current(s);
                 self.blocked_rate(current) - (-volts - self.ohm * current) * self.eddy
             }
-            _ => self.places.overlap(kind, s),
+            _ => self.stops.overlap(kind, s),
         }
     }
 
-    /// The flags that a state asks for.
+    /// Returns the flags that belong to a state.
     pub fn modes(&self, s: &State, drive: &Drive) -> Modes {
         let mut modes = Modes::default();
         for kind in Kind::TOUCHING.into_iter().chain([Kind::CoilBlocked]) {
-            modes.put(kind, self.gap(kind, s, drive) > 0.0);
+            modes.set(kind, self.gap(kind, s, drive) > 0.0);
         }
         modes
     }

@@ -1,30 +1,30 @@
-//! Which of the unilateral parts are engaged: a mode flag each, and the gap function that decides.
+//! Modes of the unilateral elements: a flag for each, and the gap function that sets it.
 //!
-//! The right-hand side goes by the flag, never by the sign of the gap; an event is the sign of a
-//! gap function that no longer agrees with its flag. So rounding at a root cannot chatter.
+//! The right-hand side uses the flag, never the sign of the gap function. An event occurs when that sign no
+//! longer matches the flag, so rounding near a root cannot cause chatter.
 
 use super::{State, V, W, X, Y};
 
-/// A part that is engaged or not.
+/// An element that is either engaged or free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// The armature on its rest stop.
+    /// Armature on its rest stop.
     Backstop,
-    /// The armature on the pole.
+    /// Armature on the pole.
     Seat,
-    /// The normally closed contact.
+    /// Normally closed contact.
     Nc,
-    /// The normally open contact.
+    /// Normally open contact.
     No,
-    /// The clamp of a coil that was switched off has stopped conducting.
+    /// Suppression that has stopped conducting after the coil was switched off.
     CoilBlocked,
 }
 
 impl Kind {
-    /// The four that touch.
+    /// The four mechanical contacts and stops.
     pub const TOUCHING: [Kind; 4] = [Kind::Backstop, Kind::Seat, Kind::Nc, Kind::No];
 
-    /// Name in files.
+    /// Returns the name in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Backstop => "backstop",
@@ -41,29 +41,29 @@ impl Kind {
 pub struct Modes([bool; 5]);
 
 impl Modes {
-    /// Whether a kind is engaged.
+    /// Checks whether a kind is engaged.
     #[inline]
-    pub fn is(self, kind: Kind) -> bool {
+    pub fn is_engaged(self, kind: Kind) -> bool {
         self.0[kind as usize]
     }
 
-    /// Engages or releases a kind.
-    pub fn put(&mut self, kind: Kind, on: bool) {
+    /// Sets or clears the flag of a kind.
+    pub fn set(&mut self, kind: Kind, on: bool) {
         self.0[kind as usize] = on;
     }
 }
 
-/// Where the four stops stand, m.
+/// Positions of the stops, m.
 #[derive(Debug, Clone, Copy)]
-pub struct Places {
-    /// Travel of the armature.
+pub struct StopPositions {
+    /// Seat: travel of the armature.
     pub seat: f64,
-    /// The fixed NO contact.
+    /// Fixed NO contact.
     pub no: f64,
 }
 
-impl Places {
-    /// Overlap at a stop: above zero while the bodies press.
+impl StopPositions {
+    /// Returns the overlap at a stop, m; above zero while the bodies press.
     #[inline]
     pub fn overlap(self, kind: Kind, s: &State) -> f64 {
         match kind {
@@ -75,7 +75,7 @@ impl Places {
         }
     }
 
-    /// Rate of that overlap, m/s.
+    /// Returns the rate of that overlap, m/s.
     #[inline]
     pub fn rate(self, kind: Kind, s: &State) -> f64 {
         match kind {

@@ -1,10 +1,10 @@
-//! What a transient shows: the figures that are read off its events.
+//! Results of a transient, derived from its events.
 
 use super::modes::Kind;
 use super::solver::Event;
 use super::{V, W};
 
-/// Figures of one transient, seconds and metres per second; `None` where it did not happen.
+/// Results of one transient, seconds and metres per second; `None` for an event that did not happen.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
     /// First opening of NC.
@@ -21,11 +21,11 @@ pub struct Outcome {
     pub no_last_change: Option<f64>,
     /// Last change of NC.
     pub nc_last_change: Option<f64>,
-    /// Closings of NO.
+    /// Number of closings of NO.
     pub no_makes: u32,
-    /// Closings of NC.
+    /// Number of closings of NC.
     pub nc_makes: u32,
-    /// The coil current is first cut off by the clamp.
+    /// Instant at which the suppression first stops conducting.
     pub coil_blocked_first: Option<f64>,
     /// Speed of the contact at the first closing of NO.
     pub no_first_make_speed: Option<f64>,
@@ -34,7 +34,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Reads a list of events.
+    /// Derives the results from a list of events.
     pub fn of(events: &[Event]) -> Self {
         let of = |kind: Kind| events.iter().filter(move |e| e.kind == kind);
         let first = |kind: Kind, on: bool| of(kind).find(|e| e.on == on);
@@ -56,7 +56,7 @@ impl Outcome {
         }
     }
 
-    /// Time that a contact is open between its first closing and its last change, s.
+    /// Returns the open time of a contact between its first closing and its last change, s.
     pub fn open_s(events: &[Event], contact: Kind) -> f64 {
         let mut own = events
             .iter()

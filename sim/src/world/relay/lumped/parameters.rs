@@ -1,32 +1,32 @@
-//! The numbers of one relay, in SI units.
+//! Parameters of one relay, in SI units.
 
 use serde::Deserialize;
 
 macro_rules! parameters {
     ($($(#[$doc:meta])* $name:ident = $value:expr, $rule:ident;)*) => {
-        /// Numbers of a relay; names as in the equations of [`super`], all coordinates reduced to the
-        /// pole face. The default is the measure of this project: 12 V, 400 ohm, one changeover contact.
+        /// Parameters of a relay with the names of the equations in [`super`]; all coordinates refer to the pole
+        /// face. The default is the reference relay of this project: 12 V, 400 ohm, one changeover contact.
         #[allow(non_snake_case)] // the names of the equations and of the files that carry them
         #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct Parameters { $($(#[$doc])* pub $name: f64),* }
 
         impl Parameters {
-            /// Name of every parameter, in order.
+            /// Names of all parameters, in order.
             pub const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
 
-            /// A parameter by its name.
+            /// Returns a parameter by its name.
             pub fn get(&self, name: &str) -> Option<f64> {
                 match name { $(stringify!($name) => Some(self.$name),)* _ => None }
             }
 
-            /// Puts another value under a name; false if there is no such name.
+            /// Sets a parameter by its name; returns false for an unknown name.
             pub fn set(&mut self, name: &str, value: f64) -> bool {
                 match name { $(stringify!($name) => self.$name = value,)* _ => return false }
                 true
             }
 
-            /// The first parameter outside its range: its name, and what it may be.
+            /// Returns the name and the permitted range of the first parameter outside its range.
             pub fn fault(&self) -> Option<(&'static str, &'static str)> {
                 let found = [$((stringify!($name), self.$name, Rule::$rule)),*];
                 found.into_iter().find(|(_, value, rule)| !rule.admits(*value)).map(|(name, _, rule)| (name, rule.text()))
@@ -48,9 +48,9 @@ parameters! {
     R23 = 400.0, Positive;
     /// Temperature of the copper, degrees Celsius.
     T = 23.0, Finite;
-    /// Rise of the resistance per kelvin, as a share of that at 23 C (copper: 1 / 257.5).
+    /// Temperature coefficient of the resistance relative to 23 C, 1/K (copper: 1 / 257.5).
     alpha23 = 1.0 / 257.5, NotNegative;
-    /// Eddy currents as one shorted turn, siemens.
+    /// Conductance of the eddy currents as one shorted turn, siemens.
     k_ec = 2500.0, Positive;
     /// Area of the pole face, m2.
     A = 25e-6, Positive;
@@ -60,7 +60,7 @@ parameters! {
     Rr = 2.2e6, NotNegative;
     /// Reluctance of the core without saturation, 1/H.
     Rc0 = 1e6, NotNegative;
-    /// Flux of full saturation, Wb.
+    /// Saturation flux, Wb.
     phis = 3e-5, Positive;
     /// Mass of the armature, kg.
     m_a = 0.9e-3, Positive;
@@ -72,9 +72,9 @@ parameters! {
     k_r = 250.0, NotNegative;
     /// Viscous drag of the armature, N s/m.
     c_a = 0.03, NotNegative;
-    /// Backstop and seat, N/m^1.5.
+    /// Stiffness of backstop and seat, N/m^1.5.
     k_s = 1e10, Positive;
-    /// Loss of backstop and seat, s/m.
+    /// Loss coefficient of backstop and seat, s/m.
     chi_s = 6.0, NotNegative;
     /// Mass of the moving contact, kg.
     m_c = 0.12e-3, Positive;
@@ -82,24 +82,24 @@ parameters! {
     k_l = 1500.0, Positive;
     /// Damping of the leaf, N s/m.
     c_l = 0.025, NotNegative;
-    /// Leaf against armature at the backstop, m; below zero it presses on NC.
+    /// Offset of the leaf from the armature at the backstop, m; below zero it presses on NC.
     d0 = -0.08e-3, Finite;
-    /// Distance of the two fixed contacts, m.
+    /// Distance between the two fixed contacts, m.
     G = 0.33e-3, Positive;
-    /// Both fixed contacts, N/m^1.5.
+    /// Stiffness of both fixed contacts, N/m^1.5.
     k_c = 1e8, Positive;
-    /// Loss of both contacts, s/m.
+    /// Loss coefficient of both contacts, s/m.
     chi_c = 4.0, NotNegative;
 }
 
 impl Parameters {
-    /// Coil resistance at the temperature of the copper, ohm.
+    /// Returns the coil resistance at the temperature of the copper, ohm.
     pub fn coil_ohm(&self) -> f64 {
         self.R23 * (1.0 + self.alpha23 * (self.T - 23.0))
     }
 }
 
-/// What a parameter may be.
+/// Permitted range of a parameter.
 #[derive(Clone, Copy)]
 enum Rule {
     Positive,

@@ -1,80 +1,80 @@
-//! From event to event: steps with error control, cut exactly where a mode changes.
+//! Event-driven integration: steps with error control that end exactly where a mode changes.
 //!
-//! - The flags stand still within a step. After it, every gap function is compared with its flag.
-//! - A change is located by taking the step again with a trial length (Illinois secant), so the
-//!   instant has the full order of the method; of several changes the earliest counts.
-//! - Two changes inside one step leave no trace in the signs. The overlap of a stop and its rate at
-//!   both ends give a cubic; where its turning point comes near the touch, the step ends there.
-//! - After a change the next step is short.
+//! - The flags are constant within a step. After the step the solver compares every gap function with its flag.
+//! - To locate a change it repeats the step with trial lengths (Illinois secant), so the instant has the full
+//!   order of the method. The earliest of several changes counts.
+//! - Two changes within one step leave the signs unchanged. A cubic through the overlap of a stop and its rate at
+//!   both ends reveals them: where its turning point comes near the touch, the step ends there.
+//! - The step after a change is short.
 
 use super::State;
 use super::coil::Drive;
-use super::dop853::{EVALUATIONS, Tolerance, Tried, step};
+use super::dop853::{EVALUATIONS, Tolerance, TrialStep, step};
 use super::model::Model;
 use super::modes::{Kind, Modes};
 
-/// A mode has changed.
+/// A change of a mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
     /// Instant, s.
     pub t_s: f64,
-    /// Which.
+    /// Element whose mode changes.
     pub kind: Kind,
-    /// Engaged from now on.
+    /// True when the element engages, false when it becomes free.
     pub on: bool,
     /// The state at that instant.
     pub state: State,
 }
 
-/// The integration cannot go on.
+/// Reason why the integration cannot continue.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SolveError {
-    /// No step is short enough.
-    #[error("at {t_s} s no step is short enough: the state runs away")]
+    /// Even the shortest step exceeds the tolerance.
+    #[error("at {t_s} s the shortest step exceeds the tolerance: the state diverges")]
     Runaway {
-        /// Where, s.
+        /// Instant, s.
         t_s: f64,
     },
-    /// More work than any relay needs.
+    /// The number of evaluations reaches its limit.
     #[error("at {t_s} s the limit of {evaluations} evaluations is reached")]
     Endless {
-        /// Where, s.
+        /// Instant, s.
         t_s: f64,
-        /// So many were made.
+        /// Number of evaluations so far.
         evaluations: u64,
     },
 }
 
-/// First step, and the longest after an event, s: the contacts swing once in 50 us and longer.
+/// First step, and longest step after an event, s; the contacts oscillate with periods from 50 us.
 const SHORT_S: f64 = 1e-6;
-/// Longest step, s: no drive is still for the flux for longer than a few time constants.
+/// Longest step, s: a few time constants of the flux.
 const LONG_S: f64 = 2e-3;
-/// Below this no step makes sense, s: rounding of the instant itself.
-const NOTHING_S: f64 = 1e-17;
-/// A turning point this near to the start of a step has been looked at, s.
+/// Shortest useful step, s: the rounding of the instant itself.
+const SHORTEST_S: f64 = 1e-17;
+/// Distance from the start of a step within which a turning point counts as checked, s.
 const NEAR_S: f64 = 1e-9;
-/// Give up after so many evaluations: a second of chatter.
-const ENDLESS: u64 = 400_000_000;
+/// Limit of the number of evaluations: a second of chatter.
+const EVALUATION_LIMIT: u64 = 400_000_000;
 
-/// A relay on its way.
+/// An integration in progress.
 #[derive(Debug, Clone)]
 pub struct Solver {
-    /// Now, s.
+    /// Present instant, s.
     pub t_s: f64,
-    /// State now.
+    /// Present state.
     pub state: State,
-    /// Flags now.
+    /// Present flags.
     pub modes: Modes,
-    /// Evaluations of the equations so far.
+    /// Number of evaluations of the equations so far.
     pub evaluations: u64,
-    /// Steps so far.
+    /// Number of steps so far.
     pub steps: u64,
     tolerance: Tolerance,
     h: f64,
 }
 
 impl Solver {
-    /// Starts in a state; `relative` is the error that a step may make, as a share of the state.
+    /// Starts in a state; `relative` is the permitted error of a step as a fraction of the state.
     pub fn new(model: &Model, drive: &Drive, t_s: f64, state: State, relative: f64) -> Self {
         Self {
             t_s,
@@ -87,16 +87,16 @@ impl Solver {
         }
     }
 
-    /// Another drive from now on: the clamp's flag is read anew.
+    /// Applies a changed drive: recomputes the flag of the suppression.
     pub fn drive_changed(&mut self, model: &Model, drive: &Drive) {
         let blocked = model.gap(Kind::CoilBlocked, &self.state, drive) > 0.0;
-        self.modes.put(Kind::CoilBlocked, blocked);
+        self.modes.set(Kind::CoilBlocked, blocked);
     }
 
-    /// Goes on to `until_s`, or to the first event before it.
+    /// Advances to `until_s`, or to the first event before it.
     ///
     /// # Errors
-    /// The state runs away, or the work has no end.
+    /// Fails when the state diverges, or the number of evaluations reaches its limit.
     pub fn advance(
         &mut self,
         model: &Model,
@@ -112,7 +112,7 @@ impl Solver {
             if tried.error.is_nan() || tried.error > 1.0 {
                 continue;
             }
-            let (h, state) = self.past_a_graze(model, drive, &slope, h, tried.state);
+            let (h, state) = self.cut_at_graze(model, drive, &slope, h, tried.state);
             if let Some((h, state, kind)) = self.first_change(model, drive, &slope, h, state) {
                 return Ok(Some(self.change(h, state, kind)));
             }
@@ -129,14 +129,14 @@ impl Solver {
     }
 
     #[inline]
-    fn attempt(&mut self, model: &Model, drive: &Drive, slope: &State, h: f64) -> Tried {
+    fn attempt(&mut self, model: &Model, drive: &Drive, slope: &State, h: f64) -> TrialStep {
         self.evaluations += EVALUATIONS;
         let modes = self.modes;
         let f = |t: f64, s: &State| model.rates(t, s, modes, drive);
         step(f, [self.t_s, h], &self.state, slope, &self.tolerance)
     }
 
-    /// Length of the next step from the error of this one.
+    /// Sets the length of the next step from the error of this one.
     fn control(&mut self, error: f64, h: f64) -> Result<(), SolveError> {
         self.steps += 1;
         let factor = match error.is_nan() {
@@ -149,10 +149,10 @@ impl Solver {
         } else {
             h * factor
         };
-        if self.h < NOTHING_S || self.t_s + self.h == self.t_s {
+        if self.h < SHORTEST_S || self.t_s + self.h == self.t_s {
             return Err(SolveError::Runaway { t_s: self.t_s });
         }
-        if self.evaluations > ENDLESS {
+        if self.evaluations > EVALUATION_LIMIT {
             return Err(SolveError::Endless {
                 t_s: self.t_s,
                 evaluations: self.evaluations,
@@ -162,10 +162,10 @@ impl Solver {
     }
 
     fn change(&mut self, h: f64, state: State, kind: Kind) -> Event {
-        let on = !self.modes.is(kind);
+        let on = !self.modes.is_engaged(kind);
         self.t_s += h;
         self.state = state;
-        self.modes.put(kind, on);
+        self.modes.set(kind, on);
         self.h = self.h.min(SHORT_S);
         Event {
             t_s: self.t_s,
@@ -175,8 +175,8 @@ impl Solver {
         }
     }
 
-    /// Ends the step at the turning point of an overlap that comes near a touch inside it.
-    fn past_a_graze(
+    /// Ends the step at a turning point where an overlap comes near a touch.
+    fn cut_at_graze(
         &mut self,
         model: &Model,
         drive: &Drive,
@@ -186,11 +186,15 @@ impl Solver {
     ) -> (f64, State) {
         let mut best = (h, state);
         for kind in Kind::TOUCHING {
-            let side = if self.modes.is(kind) { 1.0 } else { -1.0 };
+            let side = if self.modes.is_engaged(kind) {
+                1.0
+            } else {
+                -1.0
+            };
             let of = |s: &State| {
                 (
-                    side * model.places.overlap(kind, s),
-                    side * model.places.rate(kind, s),
+                    side * model.stops.overlap(kind, s),
+                    side * model.stops.rate(kind, s),
                 )
             };
             let ((from, falls), (to, rises)) = (of(&self.state), of(&state));
@@ -206,7 +210,7 @@ impl Solver {
         best
     }
 
-    /// The earliest change of a flag within a step, with the state there.
+    /// Returns the earliest change of a flag within a step, with the state there.
     fn first_change(
         &mut self,
         model: &Model,
@@ -218,7 +222,7 @@ impl Solver {
         let mut first = None;
         let (mut h, mut state) = (h, state);
         for kind in Kind::TOUCHING.into_iter().chain([Kind::CoilBlocked]) {
-            if (model.gap(kind, &state, drive) > 0.0) != self.modes.is(kind) {
+            if (model.gap(kind, &state, drive) > 0.0) != self.modes.is_engaged(kind) {
                 (h, state) = self.locate(model, drive, slope, kind, h, state);
                 first = Some((h, state, kind));
             }
@@ -226,7 +230,7 @@ impl Solver {
         first
     }
 
-    /// Length of the step at whose end the gap of a kind vanishes; it has changed sign at `h`.
+    /// Returns the step length at which the gap function of a kind vanishes; its sign has changed at `h`.
     fn locate(
         &mut self,
         model: &Model,
@@ -236,7 +240,11 @@ impl Solver {
         h: f64,
         state: State,
     ) -> (f64, State) {
-        let side = if self.modes.is(kind) { 1.0 } else { -1.0 };
+        let side = if self.modes.is_engaged(kind) {
+            1.0
+        } else {
+            -1.0
+        };
         let gap = |s: &State| side * model.gap(kind, s, drive);
         let (mut lo, mut low) = (0.0, gap(&self.state).max(0.0));
         let (mut hi, mut high) = (h, gap(&state));
@@ -266,13 +274,13 @@ impl Solver {
     }
 }
 
-/// How exactly an instant can and need be known, s.
+/// Returns the accuracy to which an instant is located, s.
 fn exact(t_s: f64) -> f64 {
     1e-15 + 4.0 * f64::EPSILON * t_s
 }
 
-/// Where the cubic through value and slope at 0 and 1 is least, and how much it is there; the
-/// slope is below zero at 0 and above zero at 1.
+/// Returns position and value of the minimum of the cubic through value and slope at 0 and 1; the slope is
+/// negative at 0 and positive at 1.
 fn turning_point([from, falls]: [f64; 2], [to, rises]: [f64; 2]) -> (f64, f64) {
     let c2 = 3.0 * (to - from) - 2.0 * falls - rises;
     let c3 = 2.0 * (from - to) + falls + rises;

@@ -1,18 +1,18 @@
-//! Where the relay stands still, and the voltages at which it stops doing so.
+//! Static equilibrium of the relay, and the threshold voltages at which it ends.
 //!
-//! The voltage that balances the load at a travel `x` is `V = (R / N) phi Rel(phi, g)` with
-//! `phi = sqrt(2 F / mu A) D(g)`. A slowly moved voltage carries the armature along until `V` turns:
-//! a fold. Pickup folds where the NC contact lets go, release where the seat lets go. Both folds lie
-//! within 1e-9 m of the kink of the load, so each is found as the root of `d ln V` along the overlap
-//! of the contact (or seat) that lets go, where it is well conditioned.
+//! The voltage that balances the load at a travel `x` is `V = (R / N) phi Rel(phi, g)` with `phi = sqrt(2 F / mu
+//! A) D(g)`. As the voltage changes slowly, the armature follows until `V` reverses: a fold. The pickup fold is
+//! where the NC contact opens, the release fold where the armature leaves the seat. Both lie within 1e-9 m of the
+//! kink of the load, so the solver finds each as the root of `d ln V` along the overlap of that contact (or
+//! seat), where the problem is well conditioned.
 
 use super::model::Model;
 use super::{State, X, Y};
 
-/// A point of the quasi-static balance.
+/// One point of the quasi-static equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Balance {
-    /// Voltage at the temperature of the copper.
+    /// Voltage at the temperature of the copper, V.
     pub volts: f64,
     /// Current, A.
     pub amperes: f64,
@@ -22,7 +22,7 @@ pub struct Balance {
     pub newtons: f64,
 }
 
-/// Travel and load along a branch of the balance, with their rates along the branch.
+/// Travel and load along a branch of the equilibrium, with their rates along that branch.
 struct Load {
     x: f64,
     x_rate: f64,
@@ -31,7 +31,7 @@ struct Load {
 }
 
 impl Model {
-    /// Balance at a travel and load.
+    /// Returns the equilibrium at a travel and load.
     fn balance(&self, x: f64, newtons: f64) -> Balance {
         let gap = self.p.X - x;
         let phi = self.flux_of(newtons, gap);
@@ -48,7 +48,7 @@ impl Model {
         (2.0 * newtons.max(0.0) / self.mu_a).sqrt() * self.spread(gap)
     }
 
-    /// Rate of `ln V` along a branch.
+    /// Returns the rate of `ln V` along a branch.
     fn steepness(&self, load: &Load) -> f64 {
         let gap = self.p.X - load.x;
         let phi = self.flux_of(load.newtons, gap);
@@ -60,7 +60,7 @@ impl Model {
         phi_rate + (saturating + opening) / self.reluctance(phi, gap)
     }
 
-    /// Spring and leaf at a travel, the leaf pressing on NC with so much overlap.
+    /// Returns the load of spring and leaf while the leaf presses on NC with this overlap.
     fn load_on_nc(&self, depth: f64) -> Load {
         let p = &self.p;
         let force = p.k_c * depth.powf(1.5);
@@ -75,7 +75,7 @@ impl Model {
         }
     }
 
-    /// Spring, leaf on NO and seat, the armature `depth` into the seat.
+    /// Returns the load of spring, leaf on NO and seat, with the armature `depth` into the seat.
     fn load_on_seat(&self, depth: f64) -> Load {
         let p = &self.p;
         let x = p.X + depth;
@@ -88,7 +88,7 @@ impl Model {
         }
     }
 
-    /// Force of the leaf on NO at a travel, and its rate with the travel.
+    /// Returns the force of the leaf on NO at a travel, and its rate with the travel.
     fn leaf_on_no(&self, x: f64) -> (f64, f64) {
         let p = &self.p;
         let depth = self.leaf_overlap(x + p.d0 - p.G, 0.0);
@@ -101,8 +101,8 @@ impl Model {
         (p.k_c * depth.powf(1.5), rate)
     }
 
-    /// Overlap at a contact when the leaf is bent so far beyond the touch: `k_c d^1.5 + k_l d = k_l bent`. It is sought
-    /// from the one that is known; 0 or below: none is.
+    /// Returns the overlap at a contact when the leaf is bent by `bent` beyond the touch: `k_c d^1.5 + k_l d =
+    /// k_l bent`. The search starts at `known`; 0 or less means no start value.
     fn leaf_overlap(&self, bent: f64, known: f64) -> f64 {
         let p = &self.p;
         if bent <= 0.0 {
@@ -125,7 +125,7 @@ impl Model {
         depth
     }
 
-    /// Quasi-static pickup: the first fold met from rest.
+    /// Returns the quasi-static pickup: the first fold from rest.
     pub fn pickup(&self) -> Balance {
         let deepest = self.leaf_overlap(-self.p.d0, 0.0);
         let depth = root(deepest, |depth| self.steepness(&self.load_on_nc(depth)));
@@ -133,15 +133,15 @@ impl Model {
         self.balance(load.x, load.newtons)
     }
 
-    /// Pickup with rigid contacts, where the fold is a corner.
+    /// Returns the pickup with rigid contacts, where the fold is a corner.
     pub fn pickup_rigid(&self) -> Balance {
         let x = (-self.p.d0).max(0.0);
         self.balance(x, self.p.F_r0 + self.p.k_r * x)
     }
 
-    /// Quasi-static release: the fold at which the seat lets go. Where the load gives way faster than
-    /// the magnet, the armature follows the voltage for a while and the fold lies before the seat;
-    /// then the greatest travel at which the balance turns counts.
+    /// Returns the quasi-static release: the fold at which the armature leaves the seat. Where the load falls
+    /// faster than the pull, the armature follows the voltage for a while and the fold lies before the seat; then
+    /// the greatest travel at which the equilibrium reverses counts.
     pub fn release(&self) -> Balance {
         let deepest = self.stop.depth(1e3);
         let depth = root(deepest, |depth| -self.steepness(&self.load_on_seat(depth)));
@@ -149,15 +149,15 @@ impl Model {
         self.balance(load.x, load.newtons)
     }
 
-    /// Release with rigid contacts and a rigid seat.
+    /// Returns the release with rigid contacts and a rigid seat.
     pub fn release_rigid(&self) -> Balance {
         let p = &self.p;
         let force = (p.k_l * (p.X + p.d0 - p.G)).max(0.0);
         self.balance(p.X, p.F_r0 + p.k_r * p.X + force)
     }
 
-    /// Highest voltage of the balance beyond the first fold, contacts rigid in their place: above
-    /// [`Self::pickup`] the armature hangs there on its way.
+    /// Returns the highest equilibrium voltage beyond the first fold, with rigid contacts; if it exceeds
+    /// [`Self::pickup`], the armature hangs there on its way.
     pub fn second_hump(&self) -> Balance {
         let p = &self.p;
         let touch = p.G - p.d0;
@@ -174,13 +174,13 @@ impl Model {
         at(0.5 * (low + high))
     }
 
-    /// Flux linkage per ampere for small currents with the armature open, or seated, H.
+    /// Returns the flux linkage per ampere for small currents with the armature open or seated, H.
     pub fn inductance(&self, seated: bool) -> f64 {
         let gap = if seated { 0.0 } else { self.p.X };
         self.p.N * self.p.N / self.reluctance(0.0, gap)
     }
 
-    /// Flux that a current keeps up at a gap, Wb: `phi Rel(phi, g) = N i` in closed form.
+    /// Returns the flux that a current sustains at a gap, Wb: `phi Rel(phi, g) = N i` in closed form.
     fn flux_at(&self, amperes: f64, gap: f64) -> f64 {
         let turns = self.p.N * amperes.abs();
         let linear = self.p.Rr + gap / self.spread(gap);
@@ -190,17 +190,17 @@ impl Model {
         phi.copysign(amperes)
     }
 
-    /// At rest on the backstop with so many volts at the coil, which must be below pickup.
+    /// Returns the state at rest on the backstop at this coil voltage, which must be below pickup.
     pub fn at_rest(&self, volts: f64) -> State {
         self.settled(volts, 0.0)
     }
 
-    /// Seated with so many volts at the coil, which must hold it.
+    /// Returns the seated state at this coil voltage, which must hold the armature.
     pub fn sealed(&self, volts: f64) -> State {
         self.settled(volts, self.p.X)
     }
 
-    /// Pressed on one of the stops: travel, leaf and flux settle in turn.
+    /// Iterates travel, leaf and flux of an armature on a stop to equilibrium.
     fn settled(&self, volts: f64, from: f64) -> State {
         let mut s = [0.0, from, 0.0, 0.0, 0.0];
         for _ in 0..200 {
@@ -214,8 +214,8 @@ impl Model {
         s
     }
 
-    /// Sets travel and leaf of an armature that lies on a stop under the flux of the state; the push
-    /// on that stop in N, below zero where the stop would have to pull.
+    /// Sets travel and leaf of an armature on a stop under the flux of the state; returns the force on that stop,
+    /// N, negative where the stop would have to pull.
     pub fn pressed(&self, s: &mut State) -> f64 {
         let p = &self.p;
         let seated = s[X] > 0.5 * p.X;
@@ -232,7 +232,7 @@ impl Model {
             let free = self.pull(s[0] / p.N, p.X - s[X]) - p.F_r0 - p.k_r * s[X] - leaf;
             push = if seated { free } else { -free };
             let known = if seated { s[X] - p.X } else { -s[X] };
-            let depth = self.stop.nearer(known, push);
+            let depth = self.stop.refine(known, push);
             s[X] = if seated { p.X + depth } else { -depth };
             if (s[X] - before).abs() <= 1e-15 * p.X {
                 break;
@@ -242,8 +242,8 @@ impl Model {
     }
 }
 
-/// Root of a function that is above zero at 0 and falls, between 0 and `high`, by the logarithm; 0 if
-/// it is never above zero.
+/// Returns the root of a falling function that is positive at 0, between 0 and `high`, searched on a logarithmic
+/// scale; 0 if it is never positive.
 fn root(high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (mut low, mut high) = (high * 1e-18, high);
     if f(low) <= 0.0 {

@@ -1,20 +1,20 @@
-//! A stop that yields: Hertz spring with the loss of Hunt and Crossley.
+//! A compliant stop: Hertz spring with the loss of Hunt and Crossley.
 //!
-//! `F = k d^1.5 (1 + chi d')` while the bodies overlap by `d`, never a pull. The force grows from
-//! nothing at touch-down, so the motion stays smooth enough for a method of high order. The loss
-//! gives a rebound speed `v_o` in closed form: `chi v_i - ln(1 + chi v_i) = -chi v_o - ln(1 - chi v_o)`.
+//! `F = k d^1.5 (1 + chi d')` while the bodies overlap by `d`; the force is never a pull. It grows from zero at
+//! the touch, so the motion is smooth enough for a method of high order. The rebound speed `v_o` has the closed
+//! form `chi v_i - ln(1 + chi v_i) = -chi v_o - ln(1 - chi v_o)`.
 
 /// Stiffness and loss of a stop.
 #[derive(Debug, Clone, Copy)]
 pub struct Stop {
-    /// N/m^1.5.
+    /// Stiffness, N/m^1.5.
     pub k: f64,
-    /// s/m.
+    /// Loss coefficient, s/m.
     pub chi: f64,
 }
 
 impl Stop {
-    /// Push at an overlap `depth` in m that grows with `speed` in m/s; none without overlap.
+    /// Returns the force at an overlap `depth` in m that grows with `speed` in m/s; zero without overlap.
     #[inline]
     pub fn push(self, depth: f64, speed: f64) -> f64 {
         if depth <= 0.0 {
@@ -24,23 +24,23 @@ impl Stop {
         self.k * depth * depth.sqrt() * loss
     }
 
-    /// Overlap under which it carries a resting force in N, m.
+    /// Returns the overlap that carries a static force in N, m.
     pub fn depth(self, force: f64) -> f64 {
         (force.max(0.0) / self.k).cbrt().powi(2)
     }
 
-    /// The same from an overlap that is nearly it, by one step of Newton's method: off by the square of what it was.
+    /// Refines a nearby overlap by one step of Newton's method; the error becomes its square.
     #[inline]
-    pub fn nearer(self, known: f64, force: f64) -> f64 {
+    pub fn refine(self, known: f64, force: f64) -> f64 {
         let next = known / 3.0 + force / (1.5 * self.k * known.sqrt());
         match known > 0.0 && force > 0.0 && next < 4.0 * known {
             true => next,
-            // Far from it, or no overlap at all.
+            // The start value is far off, or there is no overlap.
             false => self.depth(force),
         }
     }
 
-    /// Slope of the resting force, N/m.
+    /// Returns the slope of the static force, N/m.
     pub fn stiffness(self, depth: f64) -> f64 {
         1.5 * self.k * depth.max(0.0).sqrt()
     }

@@ -1,11 +1,11 @@
-//! Copper and current of the coil.
+//! Tests of coil temperature and coil current.
 
 use super::*;
 
 #[test]
 fn thresholds_and_resistance_follow_the_copper() {
     let world = still_world();
-    let specimen = reference_relay(&world).drawn().clone();
+    let specimen = reference_relay(&world).values().clone();
     let draw = Draw::new(1, Subject::LotOperations, 0);
     let mut relay = Relay::new(specimen, &world, draw, 0.0, 60.0, 60.0);
     assert!(
@@ -34,21 +34,21 @@ fn a_held_coil_warms_as_two_heat_stores_do() {
 }
 
 #[test]
-fn a_relay_that_was_operated_and_released_carries_the_current_of_its_coil_again() {
+fn a_released_relay_carries_full_coil_current_again() {
     let world = read_world(&config_dir(), None).unwrap();
     let scale = Scale {
         nominal_v: 12.0,
         nominal_coil_ohm: 400.0,
     };
     for i in 0..300 {
-        let specimen = Drawn::of_lot(&world, scale, 3, i);
+        let specimen = RelayValues::of_lot(&world, scale, 3, i);
         if specimen.coil_ohm.is_infinite() {
             continue;
         }
         let draw = Draw::new(3, Subject::LotOperations, i);
         let mut relay = Relay::new(specimen, &world, draw, 0.0, 23.0, 23.0);
         let off = Supply::Off {
-            clamp_v: world.board.zener_v,
+            suppression_v: world.board.zener_v,
         };
         let (mut t, mut steps) = (0.0, Vec::new());
         for (supply, ms) in [

@@ -1,4 +1,4 @@
-//! Order of the contacts, and the bounce that the record keeps.
+//! Tests of the order of contacts, and of the recorded bounce.
 
 use super::*;
 
@@ -13,31 +13,42 @@ fn nc_opens_before_no_makes_and_no_before_nc() {
 }
 
 #[test]
-fn a_pulse_that_ends_too_early_lets_nc_close_again_and_never_makes_no() {
+fn a_short_pulse_recloses_nc_and_never_makes_no() {
     let world = still_world();
     let mut relay = reference_relay(&world);
     relay.drive(0.0, Supply::Volts(12.0));
     assert!(first(&mut relay, 2_900.0, Contact::Nc, false).is_some());
     while relay.advance(2_900.0).is_some() {}
-    relay.drive(2_900.0, Supply::Off { clamp_v: 60.0 });
+    relay.drive(
+        2_900.0,
+        Supply::Off {
+            suppression_v: 60.0,
+        },
+    );
     assert!(first(&mut relay, 60_000.0, Contact::Nc, true).is_some());
     assert!(first(&mut relay, 60_000.0, Contact::No, true).is_none());
 }
 
 #[test]
-fn the_record_holds_the_bounce_as_it_happened() {
+fn the_record_holds_the_actual_bounce() {
     let world = still_world();
     let mut relay = reference_relay(&world);
-    let drawn: f64 = relay.drawn().bounce_no_us.iter().skip(1).step_by(2).sum();
+    let drawn: f64 = relay.values().bounce_no_us.iter().skip(1).step_by(2).sum();
     relay.drive(0.0, Supply::Volts(12.0));
     while relay.advance(40_000.0).is_some() {}
     assert!((relay.record.bounce_ms(Contact::No).unwrap() - drawn / 1000.0).abs() < 1e-6);
     assert!((relay.record.time_ms(Contact::No).unwrap() - 4.7308).abs() < 0.001);
 }
 
-/// A release at `at_us`: open time of NC after its first make, and the last change after that make, both microseconds.
+/// Releases at `at_us`; returns open time of NC after its first make, and its last change after that make,
+/// microseconds.
 fn released(relay: &mut Relay, at_us: f64) -> (f64, f64) {
-    relay.drive(at_us, Supply::Off { clamp_v: 60.0 });
+    relay.drive(
+        at_us,
+        Supply::Off {
+            suppression_v: 60.0,
+        },
+    );
     let (mut open_us, mut last_us) = (0.0, 0.0);
     let (mut since, mut made_us) = (None, None);
     while let Some(change) = relay.advance(at_us + 70_000.0) {
@@ -54,9 +65,9 @@ fn released(relay: &mut Relay, at_us: f64) -> (f64, f64) {
 }
 
 #[test]
-fn the_record_holds_openings_that_come_after_the_bounce_list_has_ended() {
+fn the_record_holds_openings_after_the_bounce_list() {
     let world = still_world();
-    let reference = reference_relay(&world).drawn().clone();
+    let reference = reference_relay(&world).values().clone();
     let mut latest_us = 0.0_f64;
     for step in 0..24 {
         let mut specimen = reference.clone();

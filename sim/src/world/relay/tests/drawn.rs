@@ -1,10 +1,10 @@
-//! The relays of a lot as the table of the world draws them.
+//! Tests of the relays that a lot draws from the world file.
 
 use super::*;
-use crate::world::relay::fit::Pace;
+use crate::world::relay::fit::TimeOrigin;
 
 #[test]
-fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
+fn a_specimen_shows_its_drawn_thresholds_and_times() {
     use crate::world::relay::lumped::Model;
     let world = still_world();
     for (nominal_v, nominal_coil_ohm) in [(12.0, 400.0), (9.0, 225.0)] {
@@ -12,11 +12,11 @@ fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
             nominal_v,
             nominal_coil_ohm,
         };
-        let lot = (0..650).map(|i| Drawn::of_lot(&world, scale, 7, i));
+        let lot = (0..650).map(|i| RelayValues::of_lot(&world, scale, 7, i));
         let (good, bad): (Vec<_>, Vec<_>) = lot.partition(|s| s.defect.is_none());
         for part in good.iter().take(6).chain(&bad) {
-            let wanted = part.wanted(&world);
-            let model = Model::new(&wanted.fit(&world.relay.lumped));
+            let fit_target = part.fit_target(&world);
+            let model = Model::new(&fit_target.fit(&world.relay.lumped));
             let what = format!("part {} {:?}", part.index, part.defect);
             let near = |found: f64, drawn: f64, within: f64| {
                 assert!(
@@ -26,35 +26,35 @@ fn a_drawn_specimen_moves_with_the_thresholds_and_times_that_were_drawn() {
             };
             near(model.pickup().volts, part.operate_v, 1e-9);
             near(model.release().volts, part.release_v, 1e-9);
-            // A defect is drawn without regard to the times that a relay with such springs can have: they come as near as they can.
-            let sound = part.defect.is_none() && part.pace == Pace::Drawn;
-            if sound || part.pace == Pace::Hinge {
-                near(wanted.operate_s(&model) * 1e3, part.operate_ms, 1e-3);
+            // The draw of a defect ignores which times such springs permit; the fit comes as near as it can.
+            let sound = part.defect.is_none() && part.time_origin == TimeOrigin::Lot;
+            if sound || part.time_origin == TimeOrigin::Hinge {
+                near(fit_target.operate_s(&model) * 1e3, part.operate_ms, 1e-3);
             }
-            if sound || part.pace == Pace::Iron {
-                near(wanted.release_s(&model) * 1e3, part.release_ms, 1e-3);
+            if sound || part.time_origin == TimeOrigin::Iron {
+                near(fit_target.release_s(&model) * 1e3, part.release_ms, 1e-3);
             }
         }
     }
 }
 
 #[test]
-fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
+fn the_lot_follows_the_table_and_contains_every_defect() {
     let world = read_world(&config_dir(), None).unwrap();
     let scale = Scale {
         nominal_v: 12.0,
         nominal_coil_ohm: 400.0,
     };
-    let lot: Vec<Drawn> = (0..2600)
-        .map(|i| Drawn::of_lot(&world, scale, 7, i))
+    let lot: Vec<RelayValues> = (0..2600)
+        .map(|i| RelayValues::of_lot(&world, scale, 7, i))
         .collect();
-    let good: Vec<&Drawn> = lot.iter().filter(|s| s.defect.is_none()).collect();
+    let good: Vec<&RelayValues> = lot.iter().filter(|s| s.defect.is_none()).collect();
     assert_eq!(lot.len() - good.len(), 104, "4 % of 2600");
     for &kind in Defect::ALL {
         let count = lot.iter().filter(|s| s.defect == Some(kind)).count();
         assert_eq!(count, 8, "{kind:?}");
     }
-    let moments = |f: fn(&Drawn) -> f64| {
+    let moments = |f: fn(&RelayValues) -> f64| {
         let n = good.len() as f64;
         let mean = good.iter().map(|s| f(s)).sum::<f64>() / n;
         (
@@ -63,7 +63,7 @@ fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
         )
     };
     for (f, mean, sd) in [
-        ((|s| s.operate_v) as fn(&Drawn) -> f64, 7.88, 0.26),
+        ((|s| s.operate_v) as fn(&RelayValues) -> f64, 7.88, 0.26),
         (|s| s.release_v, 2.35, 0.10),
         (|s| s.coil_ohm, 400.0, 6.0),
         (|s| s.operate_ms, 4.7, 0.25),
@@ -78,14 +78,14 @@ fn the_lot_scatters_as_the_table_says_and_every_defect_is_in_it() {
 }
 
 #[test]
-fn a_seed_draws_the_relays_that_it_always_drew() {
+fn a_seed_draws_the_recorded_relays() {
     let world = read_world(&config_dir(), None).unwrap();
     let drawn = |seed, index, nominal_v, nominal_coil_ohm| {
         let scale = Scale {
             nominal_v,
             nominal_coil_ohm,
         };
-        Drawn::of_lot(&world, scale, seed, index)
+        RelayValues::of_lot(&world, scale, seed, index)
     };
     let near = |found: &[f64], recorded: &[f64]| {
         assert_eq!(found.len(), recorded.len());

@@ -1,8 +1,8 @@
-//! Instants of operation and release against the reference transients.
+//! Tests of operate and release instants against reference transients.
 
 use super::*;
 
-/// Ramps from `from_v` at `v_per_s` in steps of 20 us; the voltage at the first change.
+/// Ramps from `from_v` at `v_per_s` in steps of 20 us; returns the voltage at the first change.
 fn ramp(
     relay: &mut Relay,
     t0_us: f64,
@@ -24,7 +24,7 @@ fn ramp(
 }
 
 #[test]
-fn operate_time_follows_the_step_voltage_as_the_reference_transients_do() {
+fn operate_time_follows_the_step_voltage() {
     let world = still_world();
     for (volts, expected_ms) in [(9.0, 8.001_395), (12.0, 4.730_797), (16.0, 3.423_619)] {
         let mut relay = reference_relay(&world);
@@ -38,7 +38,7 @@ fn operate_time_follows_the_step_voltage_as_the_reference_transients_do() {
 }
 
 #[test]
-fn a_rising_ramp_makes_no_as_late_as_the_reference_transients() {
+fn a_rising_ramp_makes_no_with_the_reference_overshoot() {
     let world = cool(still_world());
     for (rate, expected_v) in [
         (2.0, 7.918_685),
@@ -58,7 +58,7 @@ fn a_rising_ramp_makes_no_as_late_as_the_reference_transients() {
 }
 
 #[test]
-fn a_falling_ramp_opens_no_as_late_as_the_reference_transients() {
+fn a_falling_ramp_opens_no_with_the_reference_overshoot() {
     let world = cool(still_world());
     for (rate, expected_v) in [
         (2.0, 2.307_529),
@@ -81,7 +81,7 @@ fn a_falling_ramp_opens_no_as_late_as_the_reference_transients() {
 }
 
 #[test]
-fn a_step_just_above_the_threshold_operates_late_but_surely() {
+fn a_step_just_above_the_threshold_operates_late() {
     let world = still_world();
     let ms = |above: f64| {
         let mut relay = reference_relay(&world);
@@ -98,13 +98,13 @@ fn a_step_just_above_the_threshold_operates_late_but_surely() {
 }
 
 #[test]
-fn switch_off_into_the_zener_is_quick_and_into_a_diode_slow() {
+fn a_zener_releases_quickly_and_a_diode_slowly() {
     let world = still_world();
-    let release = |clamp_v: f64| {
+    let release = |suppression_v: f64| {
         let mut relay = reference_relay(&world);
         relay.drive(0.0, Supply::Volts(12.0));
         while relay.advance(100_000.0).is_some() {}
-        relay.drive(100_000.0, Supply::Off { clamp_v });
+        relay.drive(100_000.0, Supply::Off { suppression_v });
         let open = first(&mut relay, 150_000.0, Contact::No, false).unwrap();
         let make = first(&mut relay, 150_000.0, Contact::Nc, true).unwrap();
         ((open - 1e5) / 1000.0, (make - 1e5) / 1000.0)

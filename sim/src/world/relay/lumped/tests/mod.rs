@@ -1,5 +1,5 @@
-//! Facts about the five-state model. Figures with many digits were computed with this model's
-//! equations by other programs, at two tolerances each.
+//! Tests of the five-state model. Other programs computed the figures with many digits from the same equations,
+//! at two tolerances each.
 #![allow(clippy::unwrap_used)]
 
 mod hard;
@@ -9,7 +9,7 @@ mod twin;
 
 use super::*;
 
-/// Tolerance that keeps events to 1e-11 s.
+/// Relative tolerance that keeps events to 1e-11 s.
 const FINE: f64 = 1e-10;
 
 fn relay(changed: &[(&str, f64)]) -> Model {
@@ -28,7 +28,7 @@ fn ramp(points: &[[f64; 2]]) -> Excitation {
     Excitation::Source(Waveform::new(points.to_vec()).unwrap())
 }
 
-/// From rest under an excitation.
+/// Integrates from rest under an excitation.
 fn from_rest(model: &Model, excitation: &Excitation, end_s: f64) -> Transient {
     model
         .transient(model.at_rest(0.0), excitation, end_s, FINE)
@@ -39,10 +39,15 @@ fn outcome(model: &Model, excitation: &Excitation, end_s: f64) -> Outcome {
     Outcome::of(&from_rest(model, excitation, end_s).events)
 }
 
-/// Switched off from 12 V into a clamp.
-fn switched_off(model: &Model, clamp_v: f64, end_s: f64) -> Transient {
+/// Integrates from 12 V, switched off into a suppression.
+fn switched_off(model: &Model, suppression_v: f64, end_s: f64) -> Transient {
     model
-        .transient(model.sealed(12.0), &Excitation::Clamp(clamp_v), end_s, FINE)
+        .transient(
+            model.sealed(12.0),
+            &Excitation::Suppression(suppression_v),
+            end_s,
+            FINE,
+        )
         .unwrap()
 }
 

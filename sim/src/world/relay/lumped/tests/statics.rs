@@ -1,4 +1,4 @@
-//! Thresholds and states at rest, to twelve digits.
+//! Tests of thresholds and equilibrium states, to twelve digits.
 
 use super::*;
 
@@ -38,7 +38,7 @@ fn rigid_contacts_have_their_folds_in_closed_form() {
 }
 
 #[test]
-fn inductance_open_and_seated() {
+fn inductance_matches_reference_open_and_seated() {
     let model = relay(&[]);
     same(model.inductance(false), 0.673601548725847);
     same(model.inductance(true), 3.403125);
@@ -66,7 +66,7 @@ fn at_rest_and_sealed_nothing_moves() {
 }
 
 #[test]
-fn a_hung_armature_has_a_second_hump_above_the_first_fold() {
+fn a_hung_armature_has_a_higher_second_hump() {
     let model = relay(&[("k_l", 12_000.0), ("d0", -0.01e-3), ("G", 0.30e-3)]);
     near(Some(model.pickup().volts), 8.4098, 5e-5);
     near(Some(model.second_hump().volts), 9.7065, 5e-5);
@@ -75,7 +75,7 @@ fn a_hung_armature_has_a_second_hump_above_the_first_fold() {
 }
 
 #[test]
-fn a_stop_gives_back_the_speed_that_the_closed_form_says() {
+fn a_stop_returns_the_closed_form_rebound_speed() {
     for (chi_v, expected) in [
         (0.25, 0.85685),
         (1.0, 0.59362),

@@ -1,4 +1,4 @@
-//! Steps, ramps and switch-off of the default relay.
+//! Tests of steps, ramps and switch-off of the default relay.
 
 use super::*;
 
@@ -30,7 +30,7 @@ const OPERATIONS: [(f64, f64, f64, f64, f64, u32); 3] = [
     ),
 ];
 
-/// Clamp, NO open, NC make, current gone, last change of NC, makes.
+/// Suppression, NO open, NC make, current gone, last change of NC, makes.
 const RELEASES: [(f64, f64, f64, f64, f64, u32); 3] = [
     (
         60.0,
@@ -90,32 +90,32 @@ fn a_step_just_above_pickup_makes_three_times() {
 #[test]
 fn switch_off_releases_at_the_instants_of_the_reference() {
     let model = relay(&[]);
-    for (clamp_v, open, make, dead, last, makes) in RELEASES {
-        let seen = Outcome::of(&switched_off(&model, clamp_v, 0.018).events);
+    for (suppression_v, open, make, dead, last, makes) in RELEASES {
+        let seen = Outcome::of(&switched_off(&model, suppression_v, 0.018).events);
         near(seen.no_first_open, open, 1e-10);
         near(seen.nc_first_make, make, 1e-10);
         near(seen.coil_blocked_first, dead, 1e-10);
         near(seen.nc_last_change, last, 1e-8);
-        assert_eq!(seen.nc_makes, makes, "{clamp_v} V");
+        assert_eq!(seen.nc_makes, makes, "{suppression_v} V");
     }
 }
 
 #[test]
-fn with_a_plain_diode_the_moving_armature_keeps_the_current_flowing() {
+fn with_a_diode_the_moving_armature_sustains_the_current() {
     let model = relay(&[]);
     let seen = Outcome::of(&switched_off(&model, 0.7, 0.018).events);
     assert!(
         seen.coil_blocked_first > seen.nc_first_make,
-        "the armature is home before the current ends"
+        "the armature is at the backstop before the current ends"
     );
     assert!(
         seen.nc_first_make.unwrap() > 0.008,
-        "a sheet says 8 ms: with a diode every part fails"
+        "a data sheet allows 8 ms: with a diode every part fails"
     );
 }
 
 #[test]
-fn a_rising_ramp_breaks_nc_and_makes_no_late_by_its_rate() {
+fn overshoot_of_a_rising_ramp_grows_with_its_rate() {
     let model = relay(&[]);
     for (rate, no_v, nc_v) in [
         (10.0, 8.021303878, 7.912623278),
@@ -131,7 +131,7 @@ fn a_rising_ramp_breaks_nc_and_makes_no_late_by_its_rate() {
 }
 
 #[test]
-fn a_falling_ramp_opens_no_late_by_its_rate() {
+fn overshoot_of_a_falling_ramp_grows_with_its_rate() {
     let model = relay(&[]);
     for (rate, volts) in [
         (10.0, 2.193789072),
@@ -153,7 +153,7 @@ fn a_falling_ramp_opens_no_late_by_its_rate() {
 }
 
 #[test]
-fn a_looser_tolerance_moves_first_events_by_less_than_a_nanosecond() {
+fn a_looser_tolerance_moves_events_below_a_nanosecond() {
     let model = relay(&[]);
     let start = model.at_rest(0.0);
     let fine = model.transient(start, &step(12.0), 0.008, 1e-12).unwrap();

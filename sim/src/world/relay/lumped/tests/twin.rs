@@ -1,5 +1,5 @@
-//! The same equations written down once more, plainly: forces by the sign of the gap, Runge and
-//! Kutta's method with a fixed step, events by a straight line. Slow, and independent.
+//! A second, independent implementation of the same equations: forces by the sign of the gap, Runge-Kutta with a
+//! fixed step, events by linear interpolation. It is slow and simple.
 
 use super::*;
 
@@ -37,7 +37,7 @@ impl Twin {
         std::array::from_fn(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]))
     }
 
-    /// Instants at which NO changes after a step to `volts` from rest.
+    /// Returns the instants at which NO changes after a step to `volts` from rest.
     fn changes_of_no(&self, volts: f64, start: State, end_s: f64, h: f64) -> Vec<f64> {
         let (mut s, mut changes) = (start, Vec::new());
         for i in 0..(end_s / h) as usize {
@@ -53,7 +53,7 @@ impl Twin {
 }
 
 #[test]
-fn a_plain_method_of_fixed_steps_sees_the_same_bounces() {
+fn a_fixed_step_method_finds_the_same_bounces() {
     for changed in [
         &[][..],
         &[("F_r0", 0.2), ("m_a", 1.2e-3)],

@@ -1,35 +1,35 @@
-//! What two bodies may do: nothing, or press into each other so deep and by certain actuators.
+//! Permitted depth of a pair of bodies, by the actuators that press them together.
 
 use super::body::Body;
 use super::scene::{Rule, Scene};
 use crate::world::posture::ACTUATORS;
 
-/// What two bodies may do.
+/// Limits of a pair of bodies.
 #[derive(Debug, Clone)]
-pub struct Meeting {
-    /// Places in the list of bodies.
+pub struct PairLimits {
+    /// Indices in the list of bodies.
     pub pair: (usize, usize),
-    /// Actuators that move them against each other.
+    /// Actuators that move the two bodies relative to each other.
     by: [bool; 8],
-    /// Depth that is no crash, mm, by whatever moves.
+    /// Permitted depth for any actuator, mm.
     depth_mm: f64,
-    /// Depth that is no crash by these actuators, mm.
+    /// Permitted depth for these actuators, mm.
     deeper: Option<(f64, [bool; 8])>,
 }
 
-impl Meeting {
-    /// Something that moved brings them against each other.
+impl PairLimits {
+    /// Checks whether a moved actuator moves the two bodies relative to each other.
     pub fn is_moved(&self, moved: &[bool; 8]) -> bool {
         (0..ACTUATORS.len()).any(|n| self.by[n] && moved[n])
     }
 
-    /// How deep they may be in each other while these actuators move, mm. `slack`: nothing pulls them apart but springs.
+    /// Returns the permitted depth while these actuators move, mm; `slack`: only springs pull them apart.
     pub fn allowed(&self, moved: &[bool; 8], slack: bool) -> f64 {
         let Some((deeper_mm, by)) = &self.deeper else {
             return self.depth_mm;
         };
         let foreign = (0..ACTUATORS.len()).any(|n| moved[n] && self.by[n] && !by[n]);
-        // Springs alone pull a grip apart without harm: it slides.
+        // A grip slides without damage when only springs pull it apart.
         if foreign && !slack {
             self.depth_mm
         } else {
@@ -38,8 +38,9 @@ impl Meeting {
     }
 }
 
-/// What a pair may do; none where nothing moves them against each other, or where they run in each other.
-pub fn meeting(scene: &Scene, bodies: &[Body], pair: (usize, usize)) -> Option<Meeting> {
+/// Returns the limits of a pair; `None` when no actuator moves them relative to each other, or the scene ignores
+/// them.
+pub fn pair_limits(scene: &Scene, bodies: &[Body], pair: (usize, usize)) -> Option<PairLimits> {
     let (a, b) = (&bodies[pair.0], &bodies[pair.1]);
     if a.moves == b.moves {
         return None;
@@ -55,7 +56,7 @@ pub fn meeting(scene: &Scene, bodies: &[Body], pair: (usize, usize)) -> Option<M
             (touch_mm, Some((it.depth_mm.unwrap_or(touch_mm), by)))
         }
     };
-    Some(Meeting {
+    Some(PairLimits {
         pair,
         by: std::array::from_fn(|n| a.moves[n] != b.moves[n]),
         depth_mm,

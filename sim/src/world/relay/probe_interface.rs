@@ -1,12 +1,12 @@
-//! A relay as the probes find it, and its truth.
+//! Implements the probe interface for a relay, and its truth.
 
 use super::Relay;
 use super::defect::Defect;
 use crate::truth::PartTruth;
 use crate::world::probes::{Change, Contact, Pins, Supply};
-use crate::world::specimen::OnProbes;
+use crate::world::specimen::ProbeInterface;
 
-impl OnProbes for Relay {
+impl ProbeInterface for Relay {
     fn pins(&self) -> Pins {
         self.drawn.pins
     }

@@ -1,7 +1,7 @@
-//! What one particular module does that its data sheet does not tell: errors, cadence, latency.
+//! Individual errors, conversion rates and latency of one module, beyond its data sheet.
 //!
-//! Errors are drawn once per module from the seed, rectangular within the maker's half width, on a
-//! stream named by the module, so that another module more or less changes nothing for the others.
+//! The seed draws the errors once per module, uniformly within the maker's limits. The stream carries the name of
+//! the module, so that adding or removing a module changes nothing for the others.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -9,38 +9,38 @@ use rand_distr::StandardNormal;
 
 use crate::config::DeviceWorld;
 
-/// Fewest microseconds a module takes to answer, whatever the draw says.
+/// Shortest latency of a module, microseconds, whatever the draw.
 const QUICKEST_US: f64 = 100.0;
 
-/// Errors, cadence and latency of one module.
+/// Individual errors, conversion rates and latency of one module.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Habit {
+pub struct Tolerances {
     /// Mean time from the request's CR to the reply's first character, microseconds.
     pub latency_us: f64,
-    /// Its standard deviation from transaction to transaction, microseconds.
+    /// Standard deviation of the latency between transactions, microseconds.
     pub latency_sd_us: f64,
-    /// Relative error of an analog input.
+    /// Relative gain error of an analog input.
     pub ai_gain: f64,
-    /// Offset of an analog input, fraction of full scale.
+    /// Offset error of an analog input, fraction of full scale.
     pub ai_offset: f64,
-    /// Noise of one conversion, standard deviation in steps of the converter.
+    /// Noise of one conversion, standard deviation in converter steps.
     pub ai_noise_lsb: f64,
-    /// Relative error of an analog output.
+    /// Relative gain error of an analog output.
     pub ao_gain: f64,
-    /// Offset of an analog output, volts.
+    /// Offset error of an analog output, volts.
     pub ao_offset_v: f64,
-    /// Relative error of a slew rate.
+    /// Relative error of the slew rate.
     pub ao_slope: f64,
-    /// Time between two refreshes of an output that ramps, microseconds.
+    /// Interval between two refreshes of a ramping output, microseconds.
     pub ao_refresh_us: u64,
-    /// Conversions a second, all channels together, fast mode.
+    /// Conversions per second in fast mode, all channels together.
     pub fast_per_s: f64,
-    /// The same in normal mode.
+    /// Conversions per second in normal mode, all channels together.
     pub normal_per_s: f64,
 }
 
-impl Habit {
-    /// A module without errors that answers after exactly `latency_us`.
+impl Tolerances {
+    /// Creates a module without errors that answers after exactly `latency_us`.
     pub fn exact(latency_us: f64) -> Self {
         Self {
             latency_us,
@@ -57,7 +57,7 @@ impl Habit {
         }
     }
 
-    /// Draws the errors of one module.
+    /// Draws the individual errors of one module.
     pub fn draw(world: &DeviceWorld, rng: &mut ChaCha8Rng) -> Self {
         let mut within = |half_width: f64| half_width * (2.0 * rng.random::<f64>() - 1.0);
         Self {
@@ -75,7 +75,7 @@ impl Habit {
         }
     }
 
-    /// Latency of the next transaction, microseconds.
+    /// Draws the latency of the next transaction, microseconds.
     pub fn next_latency_us(&self, rng: &mut ChaCha8Rng) -> u64 {
         let scatter: f64 = rng.sample(StandardNormal);
         let latency = self.latency_us + self.latency_sd_us * scatter;
@@ -83,15 +83,15 @@ impl Habit {
     }
 }
 
-/// The random stream of `seed` that belongs to `name` alone.
+/// Returns the random stream of `seed` that belongs to `name`.
 pub fn stream(seed: u64, name: &str) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream(fingerprint(name));
+    rng.set_stream(fnv1a(name));
     rng
 }
 
-/// FNV-1a over the name, 64 bit: stable from build to build.
-fn fingerprint(name: &str) -> u64 {
+/// Hashes a name by 64-bit FNV-1a, which is stable across builds.
+fn fnv1a(name: &str) -> u64 {
     name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })
@@ -111,12 +111,14 @@ mod tests {
 
     #[test]
     fn latency_never_falls_below_a_tenth_of_a_millisecond() {
-        let habit = Habit {
+        let tolerances = Tolerances {
             latency_sd_us: 5_000.0,
-            ..Habit::exact(2_000.0)
+            ..Tolerances::exact(2_000.0)
         };
         let mut rng = stream(3, "m");
-        let least = (0..1000).map(|_| habit.next_latency_us(&mut rng)).min();
+        let least = (0..1000)
+            .map(|_| tolerances.next_latency_us(&mut rng))
+            .min();
         assert_eq!(least, Some(100));
     }
 }

@@ -1,20 +1,20 @@
-//! What every module has: address, configuration word, name, firmware, INIT* terminal, watchdog,
-//! EEPROM, and the commands that belong to them.
+//! Common part of every module: address, configuration word, name, firmware, INIT* terminal, watchdog, EEPROM,
+//! and their commands.
 //!
 //! | request | reply |
 //! |---|---|
 //! | `$AA2` | `!AATTCCFF` as stored |
 //! | `$AA5` | `!AAS`, S = 1 on the first read after a reset (not I-7080) |
-//! | `$AAF`, `$AAM`, `~AAO(name)` | firmware, name, new name of up to 6 characters |
+//! | `$AAF`, `$AAM`, `~AAO(name)` | read firmware, read name, write name of up to 6 characters |
 //! | `$AAI` | `!AA0` when INIT* is grounded, else `!AA1` |
 //! | `%AANNTTCCFF` | `!NN`; baud and checksum bit need INIT* and take effect at the next power-on |
 //! | `~AA0`..`~AA3` | host watchdog |
-//! | `~AARD`, `~AARDVV` | response delay, newer modules only |
-//! | `~AATnn`, `~AAI` | soft INIT, newer modules: `~AAI` opens a window of nn seconds for `%` to change the line |
+//! | `~AARD`, `~AARDVV` | read, write response delay; newer modules only |
+//! | `~AATnn`, `~AAI` | soft INIT, newer modules: for nn seconds after `~AAI`, `%` may change baud and checksum |
 //! | `$AAP` | `!AA0`: DCON, newer modules |
 //!
-//! With INIT* grounded at power-on a module answers at address 00 (and at its own) without checksum;
-//! its replies carry the stored address.
+//! A module with INIT* grounded at power-on answers at address 00 (and at its own) without checksum; its replies
+//! contain the stored address.
 
 use super::setting;
 use super::watchdog::Watchdog;
@@ -22,7 +22,7 @@ use crate::dcon::{self, Answer, Request};
 use crate::error::SimError;
 use crate::terminal::ModuleSpec;
 
-/// Bit of FF that turns the checksum on.
+/// Bit of FF that enables the checksum.
 const CHECKSUM: u8 = 0x40;
 
 /// Longest response delay, milliseconds.
@@ -31,10 +31,10 @@ const LONGEST_DELAY_MS: u8 = 30;
 /// Baud rates in the order of their codes, from 03.
 const BAUDS: [u32; 8] = [1200, 2400, 4800, 9600, 19200, 38400, 57600, 115_200];
 
-/// Rate of a module with INIT* grounded, whatever it has stored.
+/// Baud rate of a module with INIT* grounded, whatever rate it stores.
 const INIT_BAUD: u32 = 9_600;
 
-/// How the line talks to a module that is commissioned for it.
+/// Settings of the line that its modules are configured for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Commissioning {
     /// Baud rate of the line.
@@ -45,10 +45,10 @@ pub struct Commissioning {
     pub host_watchdog_ms: f64,
 }
 
-/// The part of a module that does not depend on its family.
+/// Registers and commands that every family shares.
 #[derive(Debug, Clone)]
-pub struct Plate {
-    /// Stored address; the one on the line unless INIT* is grounded.
+pub struct ModuleBase {
+    /// Stored address, valid on the line unless INIT* is grounded.
     pub address: u8,
     /// Type code TT.
     pub type_code: u8,
@@ -64,7 +64,7 @@ pub struct Plate {
     firmware: String,
     newer: bool,
     response_delay_ms: u8,
-    /// Length of the window of soft INIT, 0 to 60 s; 0 at power-on.
+    /// Duration of the soft INIT window, 0 to 60 s; 0 at power-on.
     soft_init_s: u8,
     soft_init_until_us: u64,
     init_grounded: bool,
@@ -73,8 +73,8 @@ pub struct Plate {
     reset_unread: bool,
 }
 
-impl Plate {
-    /// Reads what is common from the module's table; type code and the family's bits of FF given.
+impl ModuleBase {
+    /// Reads the common keys of the module's table, for a given type code and the family's bits of FF.
     pub fn new(
         spec: &ModuleSpec,
         line: Commissioning,
@@ -103,17 +103,17 @@ impl Plate {
         })
     }
 
-    /// Answers at this address.
+    /// Checks whether the module answers at this address.
     pub fn hears_at(&self, address: u8) -> bool {
         address == self.address || (self.init_grounded && address == 0)
     }
 
-    /// Requests and replies carry a checksum.
+    /// Checks whether requests and replies carry a checksum.
     pub fn uses_checksum(&self) -> bool {
         self.checksum_running && !self.init_grounded
     }
 
-    /// Bits per second at which it listens and answers.
+    /// Returns the bits per second at which the module listens and answers.
     pub fn baud(&self) -> u32 {
         if self.init_grounded {
             INIT_BAUD
@@ -122,17 +122,17 @@ impl Plate {
         }
     }
 
-    /// Its firmware knows the commands of newer modules.
+    /// Checks whether the firmware knows the commands of newer modules.
     pub fn is_newer(&self) -> bool {
         self.newer
     }
 
-    /// Added to every reply time, microseconds.
+    /// Returns the delay added to every reply, microseconds.
     pub fn response_delay_us(&self) -> u64 {
         u64::from(self.response_delay_ms) * 1_000
     }
 
-    /// The module restarted: `$AA5` shows it, and what needed a power cycle now counts.
+    /// Notes a restart: `$AA5` reports it, and settings that need a power cycle take effect.
     pub fn power_cycled(&mut self) {
         self.reset_unread = true;
         self.soft_init_s = 0;
@@ -141,13 +141,13 @@ impl Plate {
         self.baud_running = BAUDS[usize::from(self.baud_code) - 3];
     }
 
-    /// Poses as another product (a fault): other name, type 00.
+    /// Simulates another product (a fault): other name, type 00.
     pub fn pose_as(&mut self, name: &str) {
         self.name = name.into();
         self.type_code = 0;
     }
 
-    /// Commands that every module knows. `fits` says whether the family takes a type and format.
+    /// Carries out commands that every module knows; `fits` checks a type and format for the family.
     pub fn answer(
         &mut self,
         request: &Request<'_>,
@@ -165,7 +165,7 @@ impl Plate {
             (b'$', b"M") => dcon::done_with(address, &self.name),
             (b'$', b"I") => dcon::done_hex(address, u64::from(!self.init_grounded), 1),
             (b'$', b"P") if self.newer => dcon::done_hex(address, 0, 1),
-            // Modbus is not simulated: DCON may be chosen again, and nothing else.
+            // Modbus is not simulated: the module accepts DCON only.
             (b'$', b"P0") if self.newer && self.init_grounded => dcon::done(address),
             (b'$', [b'P', b'0' | b'1']) if self.newer => dcon::refused(address),
             (b'%', body) => self.configure(body, now_us, fits),
@@ -265,7 +265,7 @@ impl Plate {
     }
 }
 
-/// CC of a baud rate.
+/// Returns the CC code of a baud rate.
 fn baud_code(baud: u32) -> Option<u8> {
     let place = BAUDS.iter().position(|known| *known == baud)?;
     u8::try_from(place).ok().map(|place| place + 3)
@@ -276,7 +276,7 @@ fn name(spec: &ModuleSpec) -> Result<String, SimError> {
     Ok(setting::text(spec, "name")?.unwrap_or(printed).into())
 }
 
-/// `watchdog = true` takes the time-out of the plant, a table brings its own.
+/// Reads `watchdog`: `true` uses the time-out of the plant, a table brings its own.
 fn watchdog(spec: &ModuleSpec, plant_ms: f64) -> Result<Watchdog, SimError> {
     let tenths_of = |seconds: f64| (seconds * 10.0).round().clamp(1.0, 255.0) as u8;
     let plant_tenths = tenths_of(plant_ms / 1e3);

@@ -1,4 +1,4 @@
-//! Stands in for the bodies in a program that is built without the feature `bodies`: nothing is seen to touch.
+//! Replaces the bodies in a program without the feature `bodies`: detects no crash.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -6,28 +6,28 @@ use std::path::Path;
 use super::posture::Posture;
 use crate::config::ConfigError;
 
-/// False: this program does not look for bodies that touch.
+/// False: this program does not detect crashes.
 pub const WATCHED: bool = false;
 
-/// No body.
+/// Empty replacement of the bodies.
 #[derive(Debug, Clone)]
 pub struct Bodies;
 
 impl Bodies {
-    /// Reads nothing.
+    /// Returns the replacement without reading a file.
     ///
     /// # Errors
-    /// None.
+    /// Never fails.
     pub fn read(_dir: &Path, _recipe: &str) -> Result<Self, ConfigError> {
         Ok(Self)
     }
 
-    /// Stroke of an actuator, mm: 0, so that a posture never changes.
+    /// Returns 0 mm for every actuator, so that a posture never changes.
     pub fn stroke_mm(&self, _actuator: usize) -> f64 {
         0.0
     }
 
-    /// Finds no pair.
+    /// Returns no crash.
     pub fn watch(
         &self,
         _from: &Posture,

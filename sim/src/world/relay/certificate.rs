@@ -1,13 +1,13 @@
-//! Parts with a certificate and the nominal values of a recipe, as their files say.
+//! Reads the certificates of reference parts, and the nominal values of a recipe.
 
 use std::path::Path;
 
 use serde::Deserialize;
 
-use super::drawn::Scale;
+use super::values::Scale;
 use crate::config::{ConfigError, content, read_text};
 
-/// A certified value with its standard uncertainty.
+/// A certified value with its standard uncertainty, in the unit of the value.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub struct Certified {
     /// Value at 23 C.
@@ -16,15 +16,15 @@ pub struct Certified {
     pub u: f64,
 }
 
-/// Certificate of one golden part.
+/// Certificate of one reference part.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Certificate {
     nominal_v: f64,
-    /// Operate threshold.
+    /// Operate threshold, V.
     pub operate_voltage_v: Certified,
-    /// Release threshold.
+    /// Release threshold, V.
     pub release_voltage_v: Certified,
-    /// Coil resistance.
+    /// Coil resistance, ohm.
     pub coil_resistance_ohm: Certified,
 }
 
@@ -45,11 +45,11 @@ struct RecipePart {
     nominal_coil_ohm: f64,
 }
 
-/// Certificates of the golden parts for a nominal voltage, in order of the file.
+/// Reads the certificates for a nominal voltage, in the order of the file.
 ///
 /// # Errors
-/// The file cannot be read or is no list of certificates.
-pub fn read_golden(dir: &Path, nominal_v: f64) -> Result<Vec<Certificate>, ConfigError> {
+/// Fails when the file cannot be read or is not a list of certificates.
+pub fn read_certificates(dir: &Path, nominal_v: f64) -> Result<Vec<Certificate>, ConfigError> {
     let path = dir.join("golden.toml");
     let text = read_text(&path)?;
     let file: GoldenFile = toml::from_str(&text).map_err(|e| content(&path, &text, &e))?;
@@ -60,10 +60,10 @@ pub fn read_golden(dir: &Path, nominal_v: f64) -> Result<Vec<Certificate>, Confi
         .collect())
 }
 
-/// Nominal volts and ohms of a recipe.
+/// Reads the nominal volts and ohms of a recipe.
 ///
 /// # Errors
-/// There is no such recipe, or it lacks its part.
+/// Fails when the recipe does not exist or lacks the nominal values.
 pub fn read_scale(dir: &Path, recipe: &str) -> Result<Scale, ConfigError> {
     let path = dir.join("recipes").join(format!("{recipe}.toml"));
     let text = read_text(&path)?;

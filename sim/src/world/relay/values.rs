@@ -1,8 +1,8 @@
-//! One relay as it really is, drawn from the lot or made to a certificate.
+//! True values of one relay, drawn from the lot or set by a certificate.
 
+use super::certificate::Certificate;
 use super::defect::Defect;
-use super::fit::{Pace, Wanted};
-use super::golden::Certificate;
+use super::fit::{FitTarget, TimeOrigin};
 use super::table::LotTable;
 use crate::world::defect;
 use crate::world::draw::{Draw, Subject};
@@ -12,19 +12,19 @@ use crate::world::table::WorldTable;
 /// Resistance of one contact, milliohm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactFilm {
-    /// Scatters about its median from closure to closure.
+    /// Scatters about a median from closure to closure.
     Steady {
-        /// Middle of the closures.
+        /// Median over the closures, milliohm.
         median_mohm: f64,
-        /// Deviation of the logarithm.
+        /// Standard deviation of the logarithm.
         ln_sd: f64,
     },
-    /// Every closure anywhere in the range.
+    /// Uniform over the range at every closure, milliohm.
     Unstable([f64; 2]),
 }
 
 impl ContactFilm {
-    /// Resistance of the next closure, milliohm.
+    /// Draws the resistance of the next closure, milliohm.
     pub fn close(self, draw: &mut Draw) -> f64 {
         match self {
             Self::Steady { median_mohm, ln_sd } => draw.lognormal(median_mohm, ln_sd),
@@ -33,16 +33,16 @@ impl ContactFilm {
     }
 }
 
-/// A relay with its true values. Thresholds and coil at 23 C.
+/// True values of a relay; thresholds and coil at 23 C.
 #[derive(Debug, Clone)]
-pub struct Drawn {
-    /// Place in the lot, or in the list of certificates.
+pub struct RelayValues {
+    /// Index in the lot, or in the list of certificates.
     pub index: u64,
-    /// Has a certificate and is not part of the lot.
-    pub golden: bool,
-    /// What is wrong with it.
+    /// Marks a reference part: it has a certificate and does not belong to the lot.
+    pub is_reference: bool,
+    /// Defect, if any.
     pub defect: Option<Defect>,
-    /// Nominal coil voltage.
+    /// Nominal coil voltage, V.
     pub nominal_v: f64,
     /// Volts of this coil per volt of the 12 V part.
     pub volt_scale: f64,
@@ -50,45 +50,45 @@ pub struct Drawn {
     pub ohm_scale: f64,
     /// Turns of this coil per turn of the 12 V part.
     pub turns: f64,
-    /// Where its times come from.
-    pub pace: Pace,
-    /// Winding, infinite when open.
+    /// Origin of its operate time and release time.
+    pub time_origin: TimeOrigin,
+    /// Winding resistance, ohm; infinite when open.
     pub coil_ohm: f64,
-    /// Quasi-static operate threshold.
+    /// Quasi-static operate threshold, V.
     pub operate_v: f64,
-    /// Quasi-static release threshold.
+    /// Quasi-static release threshold, V.
     pub release_v: f64,
-    /// Drive on to first make of NO at nominal voltage.
+    /// Time from drive on to first make of NO at nominal voltage, ms.
     pub operate_ms: f64,
-    /// Drive off from nominal voltage to first make of NC, into the zener.
+    /// Time from drive off to first make of NC, from nominal voltage into the zener, ms.
     pub release_ms: f64,
-    /// Bounce of NO, microseconds closed, open, closed ...
+    /// Bounce of NO: microseconds closed, open, closed ...
     pub bounce_no_us: Vec<f64>,
-    /// Bounce of NC.
+    /// Bounce of NC, in the same form.
     pub bounce_nc_us: Vec<f64>,
-    /// NO contact.
+    /// Resistance of the NO contact.
     pub film_no: ContactFilm,
-    /// NC contact.
+    /// Resistance of the NC contact.
     pub film_nc: ContactFilm,
-    /// Part minus track temperature.
+    /// Temperature of the part minus that of the track, kelvin.
     pub offset_k: f64,
     /// Thermal EMF in the contact circuit, volts.
     pub emf_v: f64,
-    /// Pins that meet probes.
+    /// Pins that touch their probes.
     pub pins: Pins,
 }
 
-/// Scale of a recipe against the 12 V part.
+/// Scale of a recipe relative to the 12 V part.
 #[derive(Debug, Clone, Copy)]
 pub struct Scale {
-    /// Nominal coil voltage of the recipe.
+    /// Nominal coil voltage of the recipe, V.
     pub nominal_v: f64,
-    /// Nominal coil resistance of the recipe.
+    /// Nominal coil resistance of the recipe, ohm.
     pub nominal_coil_ohm: f64,
 }
 
-impl Drawn {
-    /// The part at a place of the lot.
+impl RelayValues {
+    /// Draws the part at an index of the lot.
     pub fn of_lot(world: &WorldTable, scale: Scale, seed: u64, index: u64) -> Self {
         let mut draw = Draw::new(seed, Subject::LotPart, index);
         let mut part = Self::good(world, scale, &mut draw);
@@ -100,7 +100,7 @@ impl Drawn {
         part
     }
 
-    /// A part with a certificate: certified values with their uncertainty, the rest typical.
+    /// Draws a reference part: certified values within their uncertainty, all other values typical.
     pub fn of_certificate(
         world: &WorldTable,
         scale: Scale,
@@ -108,10 +108,10 @@ impl Drawn {
         index: u64,
         paper: &Certificate,
     ) -> Self {
-        let mut draw = Draw::new(seed, Subject::GoldenPart, index);
+        let mut draw = Draw::new(seed, Subject::ReferencePart, index);
         let mut part = Self::good(world, scale, &mut draw);
         part.index = index;
-        part.golden = true;
+        part.is_reference = true;
         part.operate_v = draw.normal(paper.operate_voltage_v.value, paper.operate_voltage_v.u);
         part.release_v = draw.normal(paper.release_voltage_v.value, paper.release_voltage_v.u);
         part.coil_ohm = draw.normal(paper.coil_resistance_ohm.value, paper.coil_resistance_ohm.u);
@@ -128,13 +128,13 @@ impl Drawn {
         let slowness = follows * operate + own * draw.normal(0.0, 1.0);
         Self {
             index: 0,
-            golden: false,
+            is_reference: false,
             defect: None,
             nominal_v: scale.nominal_v,
             volt_scale,
             ohm_scale,
             turns: ohm_scale / volt_scale,
-            pace: Pace::Drawn,
+            time_origin: TimeOrigin::Lot,
             coil_ohm: ohm_scale * draw.normal(lot.coil_ohm_mean, lot.coil_ohm_sd),
             operate_v: volt_scale * (lot.operate_v_mean + lot.operate_v_sd * operate),
             release_v: volt_scale * draw.normal(lot.release_v_mean, lot.release_v_sd),
@@ -165,7 +165,7 @@ impl Drawn {
                 let left = draw.between(table.shorted_turns_coil_factor);
                 self.coil_ohm = self.nominal_ohm(world) * left;
                 self.turns *= left;
-                self.pace = Pace::Follows;
+                self.time_origin = TimeOrigin::Follows;
             }
             Defect::WrongCoil => self.rewind(draw.between(table.wrong_coil_factor), world),
             Defect::WeakSpring => {
@@ -178,11 +178,11 @@ impl Drawn {
             }
             Defect::Slow if draw.uniform() < 0.5 => {
                 self.operate_ms = draw.between(table.slow_operate_ms);
-                self.pace = Pace::Hinge;
+                self.time_origin = TimeOrigin::Hinge;
             }
             Defect::Slow => {
                 self.release_ms = draw.between(table.slow_release_ms);
-                self.pace = Pace::Iron;
+                self.time_origin = TimeOrigin::Iron;
             }
             Defect::Bouncing if draw.uniform() < 0.5 => {
                 self.bounce_no_us =
@@ -209,26 +209,26 @@ impl Drawn {
             Defect::UnstableContact => {
                 self.spoil_contact(ContactFilm::Unstable(table.unstable_contact_mohm), draw);
             }
-            Defect::Turned => self.turn(),
+            Defect::Misoriented => self.misorient(),
             Defect::MissingPin => self.pins.lose(draw.below(5) as usize),
         }
     }
 
-    /// The wrong way round.
-    pub fn turn(&mut self) {
-        self.defect = Some(Defect::Turned);
-        self.pins = Pins::TURNED;
+    /// Makes the part misoriented.
+    pub fn misorient(&mut self) {
+        self.defect = Some(Defect::Misoriented);
+        self.pins = Pins::MISORIENTED;
     }
 
     fn nominal_ohm(&self, world: &WorldTable) -> f64 {
         self.ohm_scale * world.lot.nominal_coil_ohm
     }
 
-    /// Another winding of the same power: volts go with the root of the ohms.
+    /// Changes the winding at constant power: volts scale with the root of the ohms.
     fn rewind(&mut self, factor: f64, world: &WorldTable) {
         self.coil_ohm = self.nominal_ohm(world) * factor;
         self.turns *= factor.sqrt();
-        self.pace = Pace::Follows;
+        self.time_origin = TimeOrigin::Follows;
         self.operate_v *= factor.sqrt();
         self.release_v *= factor.sqrt();
     }
@@ -240,10 +240,10 @@ impl Drawn {
         }
     }
 
-    /// What a relay has to show to be the one drawn; a coil without a way through is as wound.
-    pub fn wanted(&self, world: &WorldTable) -> Wanted {
+    /// Returns the results that a relay with these values shows; an open coil counts as wound.
+    pub fn fit_target(&self, world: &WorldTable) -> FitTarget {
         let wound = self.nominal_ohm(world);
-        Wanted {
+        FitTarget {
             coil_ohm: if self.coil_ohm.is_finite() {
                 self.coil_ohm
             } else {
@@ -254,12 +254,12 @@ impl Drawn {
             seconds: [self.operate_ms * 1e-3, self.release_ms * 1e-3],
             nominal_v: self.nominal_v,
             zener_v: world.board.zener_v,
-            pace: self.pace,
+            time_origin: self.time_origin,
         }
     }
 }
 
-/// A bounce pattern stretched to a total open time, milliseconds.
+/// Stretches a bounce pattern to a total open time, milliseconds.
 fn bounce(pattern: &[f64], open_ms: f64) -> Vec<f64> {
     let open: f64 = pattern.iter().skip(1).step_by(2).sum();
     let stretch = open_ms.max(0.0) * 1000.0 / open.max(1.0);
