@@ -1,12 +1,12 @@
-//! Which bodies a stroke takes along, and which parts are in the space meanwhile.
+//! The bodies that a stroke carries along, and the parts in the space during it.
 //!
-//! - A part in the pocket is before the pusher as soon as the pusher moves or may have moved.
-//! - The pusher going forward takes the part before it along. Going back it leaves the part where it is: the part stays a body for everyone
-//!   else, but the pusher cannot run into what it is leaving behind.
-//! - The gripper takes its part wherever its carriers go. A closed gripper that is down at the
-//!   nest takes the part in the nest along, whatever the ledger calls it.
-//! - A released escapement lets a part run from the mouth into the pocket. Until it holds again
-//!   one may be anywhere on that way.
+//! - A part in the pocket is in front of the pusher as soon as the pusher moves or may have moved.
+//! - The pusher carries the part in front of it forward. Going back it leaves the part where it is: the part remains
+//!   an obstacle for all other bodies, but the pusher cannot hit the part that it leaves.
+//! - The gripper takes its part wherever its carriers go. A closed gripper that is down at the nest takes the part in
+//!   the nest along, even if the ledger places it in the nest.
+//! - A released escapement lets a part run from the mouth into the pocket. Until it holds again a part may be anywhere
+//!   on that way.
 //! - Bodies on the same moving actuator are one tool and are not tested against each other.
 
 use super::actuator::Actuator;
@@ -16,10 +16,10 @@ use super::scene::Scene;
 use super::situation::Situation;
 use super::space::Cast;
 
-/// The part's roles during one stroke.
+/// The roles of the part during one stroke.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Company {
-    /// Roles that are in the space.
+    /// Roles present in the space.
     pub cast: Cast,
     /// Role that moves with the stroke.
     pub taken: Option<Role>,
@@ -27,7 +27,7 @@ pub(super) struct Company {
     pub left: Option<Role>,
 }
 
-/// Sorts the parts of `situation` into roles for `stroke`.
+/// Assigns the parts of `situation` to roles for `stroke`.
 pub(super) fn company(scene: &Scene, situation: &Situation, stroke: &Stroke) -> Company {
     let parts = situation.parts;
     let released = scene.span_mm(Actuator::Escapement, situation).1 > 0.0;
@@ -60,7 +60,7 @@ impl Company {
         self.cast[role.index()]
     }
 
-    /// The part changes its role for this stroke.
+    /// Moves the part to another role for this stroke.
     fn recast(&mut self, from: Role, to: Role) {
         self.cast[from.index()] = false;
         self.cast[to.index()] = true;
@@ -73,7 +73,7 @@ impl Company {
         }
     }
 
-    /// Where the pusher may have left its rest end, the part in the pocket may be on its way.
+    /// Adds the pocket's part in front of the pusher when the pusher may have left its rest end.
     fn put_before_pusher(&mut self) {
         if self.has(Role::Pocket) && !self.has(Role::Pusher) {
             self.recast(Role::Pocket, Role::Pusher);
@@ -97,7 +97,7 @@ impl Company {
     }
 }
 
-/// Closed, all the way down, at the nest.
+/// Returns true when the gripper is closed and fully down at the nest.
 fn holds_nest_part(scene: &Scene, situation: &Situation) -> bool {
     let axis = scene.span_mm(Actuator::SortAxis, situation);
     let down = scene.span_mm(Actuator::SortZ, situation);

@@ -1,17 +1,15 @@
-//! The room a body takes when it may be anywhere in a span.
+//! The room of a body that may be anywhere in a span.
 //!
-//! A body B rides on actuators, each known only as a span of its stroke. Its offset then lies in
-//! the axis-parallel box S that holds the sum of the spans, and the room it may take is
-//! B + S = { b + s }. That room is covered, piece by piece, by the box bounds(piece) + S:
-//! each b of a piece lies in bounds(piece) and each s in S, so b + s lies in the cover. For an
-//! upright block the cover *is* B + S; for a cylinder it is the block around it, never less.
-//! Where S is a single point the true shape is used, moved.
+//! A body B rides on actuators, each with a span of possible positions. Its offset then lies in the axis-parallel box
+//! S that holds the sum of the spans, and its room is B + S = { b + s }. The box bounds(piece) + S covers that room
+//! piece by piece: each b of a piece lies in bounds(piece) and each s in S, so b + s lies in the cover. For an upright
+//! block the cover *is* B + S; for a cylinder it is the block around it, never less. Where S is a single point the
+//! room is the true shape, moved.
 
 use lpm::{Pose, Shape};
 use std::borrow::Cow;
 
-/// Covers are widened by so much, mm, so that the rounding of their sums (below 1e-11 mm within
-/// 1e4 mm) can never make them too small.
+/// Added to every cover, mm, so that rounding of the sums (below 1e-11 mm within 1e4 mm) never makes it too small.
 const ROUNDING_MM: f64 = 1e-9;
 
 /// Axis-parallel box of offsets, mm.
@@ -22,13 +20,13 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
-    /// No offset at all.
+    /// The zero offset.
     pub const NONE: Offsets = Offsets {
         low: [0.0; 3],
         high: [0.0; 3],
     };
 
-    /// The box around the way from `low_mm` to `high_mm` along `direction`.
+    /// Returns the box around the way from `low_mm` to `high_mm` along `direction`.
     pub fn along(direction: [f64; 3], low_mm: f64, high_mm: f64) -> Offsets {
         let ends = |i: usize| (direction[i] * low_mm, direction[i] * high_mm);
         Offsets {
@@ -37,7 +35,7 @@ impl Offsets {
         }
     }
 
-    /// All sums of an offset of each.
+    /// Returns the box of all sums of an offset of each.
     pub fn plus(self, other: Offsets) -> Offsets {
         Offsets {
             low: sum(self.low, other.low),
@@ -45,13 +43,13 @@ impl Offsets {
         }
     }
 
-    /// True when nothing is left open.
+    /// Returns true when exactly one offset is possible.
     pub fn is_point(&self) -> bool {
         self.low == self.high
     }
 }
 
-/// The room of `shape` at `pose` under all `offsets`, as a shape and where it stands.
+/// Returns the room of `shape` at `pose` under all `offsets`, as a shape and its pose.
 pub(super) fn room<'a>(shape: &'a Shape, pose: &Pose, offsets: &Offsets) -> (Cow<'a, Shape>, Pose) {
     if offsets.is_point() {
         return (
@@ -109,7 +107,7 @@ fn collect(
     covers.push((Pose::at(centre), Shape::Block { half }));
 }
 
-/// A rotation as a matrix, row by row.
+/// A rotation matrix, row by row.
 struct Turn([[f64; 3]; 3]);
 
 impl Turn {
@@ -148,7 +146,7 @@ impl Turn {
         }))
     }
 
-    /// Half extents, along x, y and z, of a block of these half extents when it is turned.
+    /// Returns the half extents along x, y and z of the rotated block with half extents `half`.
     fn bounds(&self, half: [f64; 3]) -> [f64; 3] {
         self.0
             .map(|row| row[0].abs() * half[0] + row[1].abs() * half[1] + row[2].abs() * half[2])

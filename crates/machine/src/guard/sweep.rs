@@ -1,12 +1,11 @@
 //! One stroke swept through the space.
 //!
-//! Every body that moves with the stroke is swept, in its true shape, along the whole way and
-//! asked of the collision core against the room that every other body may take. A mover that also
-//! rides on an actuator of unknown position is swept as the cover of its own room. So, for every
-//! real combination of positions that the situation allows, the real bodies lie inside what was
-//! tested: a cleared stroke is clear for all of them.
+//! Sweeps every body that moves with the stroke, in its true shape, along the whole way, and tests it in the collision
+//! core against the rooms of all other bodies. For a mover that also rides on an actuator of unknown position it
+//! sweeps the cover of its room. So, for every combination of positions that the situation allows, the real bodies lie
+//! inside the tested ones: a cleared stroke is clear for all of them.
 //!
-//! What the mover may do to each other body is named here; the core applies it.
+//! This module decides what the mover may do to each other body; the core applies it.
 
 use super::carried::{Company, company};
 use super::motion::Stroke;
@@ -29,25 +28,25 @@ pub(super) struct Finding {
     pub margin_mm: f64,
     pub at_fraction: f64,
     pub at: [f64; 3],
-    /// Where the stroke was swept from and where the margin is reached, mm; `None` when the start is
-    /// unknown or within the margin.
+    /// Start of the sweep and position at which the margin is reached, mm; `None` when the start is unknown or within
+    /// the margin.
     pub clear_way_mm: Option<(f64, f64)>,
 }
 
-/// A body on its way.
+/// A body and its way.
 struct Travel<'a> {
     number: usize,
     shape: Cow<'a, Shape>,
-    /// The same taken apart beforehand, where its place beside the stroke is known.
+    /// The shape decomposed in advance, if its offset from the other actuators is known.
     ready: Option<&'a Mover>,
     pose: Pose,
-    /// Where it may be on the actuators that do not move.
+    /// Offsets that the resting actuators allow.
     unsure: Offsets,
     from: [f64; 3],
     to: [f64; 3],
 }
 
-/// Sweeps `stroke` from where `situation` has its actuator; `Ok(None)` is proof that it is clear.
+/// Sweeps `stroke` from the position in `situation`; `Ok(None)` proves that it is clear.
 pub(super) fn sweep(
     scene: &Scene,
     space: &mut Space,
@@ -74,8 +73,8 @@ pub(super) fn sweep(
     Ok(first.map(|first| finding(space, stroke, span.0 == span.1, way, first)))
 }
 
-/// Least distance of `stroke` to the bodies that it must keep apart from, mm; nothing beyond `range_mm`. Those that may
-/// touch do not count.
+/// Returns the least distance of `stroke` to the bodies that it must not touch, mm; `None` beyond `range_mm`. Bodies
+/// that may touch do not count.
 pub(super) fn least_mm(
     scene: &Scene,
     space: &mut Space,
@@ -109,7 +108,7 @@ pub(super) fn least_mm(
     Ok(all.min_by(f64::total_cmp))
 }
 
-/// From the far end of what is known to the target; both ends of the span when the target lies in it.
+/// Returns the way from the far end of the span to the target; the whole span when the target lies in it.
 fn way((low, high): (f64, f64), to_mm: f64) -> (f64, f64) {
     if to_mm >= high {
         (low, to_mm)
@@ -163,7 +162,7 @@ fn travels<'a>(
     .collect()
 }
 
-/// What `travel` may do to every body in the space; those that move with it are ignored.
+/// Returns the permission of `travel` towards every body in the space; ignores those that move with it.
 fn permissions(
     scene: &Scene,
     space: &Space,
@@ -187,7 +186,7 @@ fn permissions(
 }
 
 impl<'a> Travel<'a> {
-    /// The room of the body, less a depth off its faces, on its way.
+    /// Returns the room of the body, shrunk by a depth, on its way.
     fn passing(&self, depth_mm: f64) -> Result<Passing<'a>, Flaw> {
         let (mover, pose) = match self.ready {
             Some(ready) if depth_mm == 0.0 => {

@@ -1,10 +1,10 @@
-//! How much room a motion leaves, told before it is made.
+//! The clearance of a motion, computed before the motion.
 
 use super::*;
 
 const FAR_MM: f64 = 25.0;
 
-/// The same scene, asking for `margin_mm` between all bodies that no rule names.
+/// Builds the same scene with `margin_mm` between all bodies that no rule names.
 fn strict(margin_mm: f64) -> Result<Guard, GuardError> {
     let mut settings = scene_settings();
     settings.guard.default_margin_mm = margin_mm;
@@ -18,7 +18,7 @@ fn the_room_that_is_told_is_the_margin_at_which_the_motion_is_refused() {
     let told = guard().clearance_mm(&extend, &nowhere, FAR_MM).unwrap();
     assert!((told - 1.0).abs() < 1e-6, "the rail is 1 mm away: {told}");
     assert!(strict(told - 0.01).is_ok());
-    // Building tries every stroke.
+    // Building the guard tries every stroke.
     let refused = strict(told + 0.01).map(|_| ()).unwrap_err();
     assert!(refused.to_string().contains("pusher"), "{refused}");
 }

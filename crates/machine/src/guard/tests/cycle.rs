@@ -1,4 +1,4 @@
-//! What must pass: the normal cycle, stroke by stroke.
+//! The guard clears the normal cycle, stroke by stroke.
 
 use super::*;
 use Actuator::*;
@@ -60,7 +60,7 @@ fn the_probes_rise_to_the_clamped_part() {
     );
 }
 
-/// In the middle of a test: clamped, probed, the pocket filling behind it.
+/// The middle of a test: nest closed, probes up, the pocket filling behind it.
 fn under_test() -> Situation {
     rest()
         .clamped()

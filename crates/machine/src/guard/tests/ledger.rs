@@ -1,4 +1,4 @@
-//! The guard gives the same answer however it is asked.
+//! The guard gives the same answer to equal questions, and its offers hold.
 
 use super::*;
 

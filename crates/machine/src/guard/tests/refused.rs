@@ -1,4 +1,4 @@
-//! What must be refused, and that the refusal tells a mechanic what to do.
+//! The guard refuses dangerous motions and tells a mechanic the remedy.
 
 use super::*;
 use Actuator::*;
@@ -245,7 +245,7 @@ fn motions_that_begin_together_are_checked_against_each_other() {
         }
         blocked(Motion::group(&pair), &rest());
     }
-    // Even where both ends are clear: the axis leaves before z is up.
+    // Although both ends are clear: the axis leaves before z is up.
     let down = rest().with(SortZ, at(40.0));
     blocked(
         Motion::group(&[stroke(SortZ, 0.0), stroke(SortAxis, 150.0)]),

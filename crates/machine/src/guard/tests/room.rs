@@ -1,4 +1,4 @@
-//! A body lies in the room that is kept for it.
+//! A body lies in the room that the guard computes for it.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! A scene that cannot be guarded is refused with its place in the file.
+//! The guard rejects a bad scene and names the place in the file.
 
 use super::*;
 
