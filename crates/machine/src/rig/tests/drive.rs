@@ -1,4 +1,4 @@
-//! What is put out, and what it takes to move something.
+//! Output values, and the clearance that a motion needs.
 
 use super::{text, wiring};
 use crate::guard::{Actuator, Guard, GuardSettings, Motion, PartSize, Position, Situation, Stroke};

@@ -1,4 +1,4 @@
-//! What is asked, and what is then known.
+//! The commands that read points, and the image of their answers.
 
 use super::{motion, text, wiring};
 use crate::rig::image::{Image, Unexpected};
@@ -23,18 +23,18 @@ fn counter(wiring: &Wiring, name: &str) -> GatedCounter {
     wiring.gated_counter(name).unwrap()
 }
 
-/// What reads one analog input, and what reads one counter.
+/// Returns the commands that read one analog input and one counter.
 fn reads(wiring: &Wiring, point: Point) -> Command {
     wiring.reads(&[point])[0].1
 }
 
-/// The requests that read these points.
+/// Returns the requests that read these points.
 fn texts(wiring: &Wiring, points: &[Point]) -> Vec<String> {
     let reads = wiring.reads(points);
     reads.iter().map(|(_, command)| text(command)).collect()
 }
 
-/// The module on `line` answers `reply` to `command` at `at`.
+/// Feeds the answer `reply` to `command` of a module on `line` into the image at `at`.
 fn answer(
     image: &mut Image,
     line: LineId,
