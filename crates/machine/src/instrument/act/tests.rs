@@ -1,4 +1,4 @@
-//! The runner carries acts out one after the other and says where the time went.
+//! The runner carries out acts in order and accounts for the time.
 #![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut};
@@ -11,7 +11,7 @@ fn done(at: RigTime) -> JobDone {
     JobDone { at, trouble: None }
 }
 
-/// A shop that has read everything once, analog and counters included.
+/// A test shop that has read every point once, analog and counters included.
 fn read_once() -> Shop {
     let mut shop = Shop::at_rest();
     for (point, volts) in [
@@ -27,7 +27,7 @@ fn read_once() -> Shop {
     shop
 }
 
-/// One word to the board.
+/// Writes one word to the board.
 fn armed(shop: &Shop) -> Act {
     Act::Set(vec![(shop.points.output(DigitalOut::Arm), true)])
 }
@@ -230,8 +230,8 @@ fn until_asks_again_as_long_as_the_point_is_inactive_then_keeps_that_it_came() {
     assert_eq!(runner.spent().ramp, Span::ms(30));
 }
 
-/// The latch is seen at the second poll, `poll_ms` after the first, and the ramp is sent `sent_ms` after that; when, in ms
-/// after the mark, a wait of 40 ms since it is over.
+/// Polls every `poll_ms`, so that the second poll shows the latch, and starts the ramp `sent_ms` later; returns the
+/// time in ms after the mark at which a 40 ms wait since the mark ends.
 fn ramp_behind_an_event(poll_ms: u64, sent_ms: u64) -> u64 {
     let mut shop = read_once();
     let mut acts = until(&shop, Span::ms(200));
