@@ -1,4 +1,4 @@
-//! One part at a time from the track into the pocket, and into a nest that is free in every respect.
+//! The feed moves one part at a time from the track into the pocket, and only into a free nest.
 
 use super::Shop;
 use super::device;
@@ -13,7 +13,7 @@ fn step(feed: Feed, shop: &mut Shop, wanted: bool) -> Feed {
     feed.step(&mut shop.turn(), NestId::FIRST, wanted, true)
 }
 
-/// A part waits in the pocket, escapement closed.
+/// Makes a shop with a part in the pocket and the escapement closed.
 fn ready() -> (Feed, Shop) {
     let mut shop = Shop::at_rest();
     shop.ledger.enter_pocket();
@@ -172,7 +172,7 @@ fn golden_parts_come_first_in_the_order_of_the_magazine() {
     assert_eq!(shop.golden.len(), 4);
 }
 
-/// The escapement was opened for the given time and nothing has come; it closes again.
+/// A shop whose escapement was open for the given time without a part; it closes again.
 fn called_in_vain(shop: &mut Shop, attempt: u8) -> Feed {
     let since = shop.now;
     shop.now = since + Span::ms(1501);

@@ -1,4 +1,4 @@
-//! What a run before left inside is where it was, or farther on, or told.
+//! A part left by an earlier run is in its place, farther on, or reported.
 
 use super::Shop;
 use crate::dut::em_relay::bins;
@@ -9,7 +9,7 @@ use crate::handling::recovery::{Recovery, Seen};
 use crate::handling::trouble::Trouble;
 use crate::rig::point::DigitalIn;
 
-/// Pocket, nest, gripper as bits.
+/// Makes a set of places from pocket, nest and gripper as bits.
 fn left(places: u8) -> Inside {
     Inside {
         pocket: places & 1 != 0,
@@ -27,8 +27,8 @@ fn seen(places: u8) -> Seen {
     }
 }
 
-/// Most parts that can be accounted for, over every way to say which seen part is which left one: one of the pocket
-/// may be anywhere, one of nest or gripper in either.
+/// Returns the greatest number of parts accounted for, over all assignments of sensed parts to left ones: one from the
+/// pocket may be anywhere, one from nest or gripper in either.
 fn accounted(left: u8, seen: u8) -> usize {
     let may = |part: usize, place: usize| part == 0 || place > 0;
     let of = |places: u8| (0..3).filter(move |bit| places & (1 << bit) != 0);

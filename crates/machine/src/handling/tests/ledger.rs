@@ -132,7 +132,7 @@ fn a_part_is_in_exactly_one_place_from_pocket_to_bin() {
     assert!(ledger.balances() && ledger.inside() == 0);
 }
 
-/// Sockets filled by hand; the first one holds a golden part.
+/// Makes a ledger with sockets filled by hand; the first holds a reference part.
 fn filled(sockets: u16) -> Ledger {
     let mut ledger = Ledger::default();
     for socket in 0..sockets {
@@ -152,7 +152,7 @@ fn sockets_filled_by_hand_are_judged_together_and_unloaded_by_list() {
         assert_eq!(part.ordinal, u64::from(socket) + 1);
         part.bin = Some(bins[usize::from(socket) % 3]);
     }
-    // The list of a person goes by bins, not by sockets.
+    // A person unloads by bins, not by sockets.
     let mut list: Vec<(Bin, u16)> = (0..8).map(|n| (bins[usize::from(n) % 3], n)).collect();
     list.sort();
     for (taken, (bin, socket)) in (1..).zip(list) {

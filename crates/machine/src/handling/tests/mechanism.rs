@@ -1,4 +1,4 @@
-//! What is known of an actuator, and what is not.
+//! The known position of an actuator.
 
 use super::Shop;
 use super::shop::{LENGTH_MM, TIMEOUT};
@@ -22,7 +22,7 @@ fn arrived(shop: &Shop, movement: Move) -> bool {
     shop.mechanism.has_arrived(movement, shop.now, &shop.image)
 }
 
-/// Each motion with its actuator and the end it goes to.
+/// Each motion with its actuator and its end.
 const MOTIONS: [(Move, Actuator, f64); 13] = [
     (Move::EscapementRelease, Actuator::Escapement, 12.0),
     (Move::EscapementHold, Actuator::Escapement, 0.0),
@@ -65,7 +65,7 @@ fn an_actuator_under_way_is_anywhere_between_where_it_was_and_where_it_goes() {
         to_mm: 60.0,
     };
     assert_eq!(position(&shop, Actuator::Pusher), under_way);
-    // Its rest sensor may still be covered: the motion counts, not the sensor.
+    // Its rest sensor may still be on: the motion counts, not the sensor.
     shop.after(8);
     shop.mechanism.update(shop.now, &shop.image);
     assert_eq!(position(&shop, Actuator::Pusher), under_way);
@@ -125,12 +125,12 @@ fn a_reading_from_before_the_motion_does_not_show_its_end() {
     assert!(arrived(&shop, Move::PusherRetract));
 }
 
-/// Trouble that an update finds.
+/// Returns the troubles of an update.
 fn seen(shop: &mut Shop) -> Vec<Trouble> {
     shop.mechanism.update(shop.now, &shop.image).trouble
 }
 
-/// The stroke goes back and forth once more, and fails again.
+/// The stroke runs back and forth once more, and fails again.
 fn second_try(shop: &mut Shop, movement: Move, back: Move, first: &[Trouble]) -> Vec<Trouble> {
     assert_eq!(first[0], Trouble::Retried(movement, TIMEOUT));
     shop.mechanism.driven(back, shop.now, &shop.image);

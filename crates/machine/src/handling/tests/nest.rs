@@ -1,4 +1,4 @@
-//! The nest takes a part, has it tested and hands it to the gripper, never letting it loose in between.
+//! The nest takes a part, tests it and hands it to the gripper, and never releases it in between.
 
 use super::{Shop, context, device};
 use crate::dut::em_relay::points::DigitalOut;
@@ -13,7 +13,7 @@ use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Second};
 
-/// The nest with what stands beside it.
+/// A nest with its surroundings.
 struct Nest {
     shop: Shop,
     sort: Sort,
@@ -21,7 +21,7 @@ struct Nest {
 }
 
 impl Nest {
-    /// A part was just pushed in; the pusher is still there, the axis waits over the nest.
+    /// Makes a nest with a part just pushed in; the pusher is still there, the axis waits over the nest.
     fn loaded(golden: Option<String>) -> Self {
         let mut shop = Shop::at_rest();
         shop.carried_out(Move::AxisTo(AxisStation::Nest));
@@ -59,7 +59,7 @@ impl Nest {
         &self.shop.wants.rig.motions
     }
 
-    /// Up to the first job of the test.
+    /// Steps up to the first job of the test.
     fn testing(&mut self) -> NestState {
         let state = self.step(NestState::Empty, None);
         assert_eq!(self.motions(), [Move::ClampClose]);
@@ -73,7 +73,7 @@ impl Nest {
         self.step(state, None)
     }
 
-    /// The test ends in trouble 40 ms after it began.
+    /// Fails a job 40 ms after the start of the test.
     fn judged(&mut self) -> NestState {
         let state = self.testing();
         self.fails(state)
@@ -85,20 +85,20 @@ impl Nest {
             at: self.shop.now,
             trouble: Some("measure 05: silent".into()),
         };
-        // The first one ends the stage, the second one the switching off that follows.
+        // The first failure ends the stage, the second the switching off after it.
         let state = self.step(state, Some(failed.clone()));
         assert!(matches!(state, NestState::Testing(_)));
         self.step(state, Some(failed))
     }
 
-    /// The open fingers have come down around the part.
+    /// Lowers the open fingers around the part.
     fn fingers_around(&mut self) {
         self.shop.carried_out(Move::SortDown);
         self.sort = Sort::AtPart;
     }
 }
 
-/// The first job of a test.
+/// Returns the first job of a test.
 fn pins() -> NestJob {
     NestJob {
         nest: NestId::FIRST,
@@ -181,7 +181,7 @@ fn a_judged_part_stays_clamped_until_the_gripper_has_it() {
     assert!(matches!(state, NestState::Lifting));
 }
 
-/// Takes the part up and out of the nest.
+/// Lifts the part out of the nest.
 fn lift(nest: &mut Nest) -> NestState {
     let state = nest.judged();
     nest.fingers_around();

@@ -1,4 +1,4 @@
-//! Homing in an order that can be proved clear; parts are where they are seen.
+//! Homing moves in an order that is provably clear, and takes parts to be where the sensors show them.
 
 use super::Shop;
 use crate::handling::ledger::{Kind, Ledger};
@@ -19,7 +19,7 @@ const ORDER: [Move; 7] = [
     Move::AxisTo(AxisStation::Nest),
 ];
 
-/// Everything stands at its far end.
+/// Puts every actuator at its far end.
 fn nothing_home() -> Shop {
     let mut shop = Shop::at_rest();
     for movement in [
@@ -36,7 +36,7 @@ fn nothing_home() -> Shop {
     shop
 }
 
-/// Carries everything out that homing asks for; what was driven, in order.
+/// Carries out all commands of homing; returns the motions in order.
 fn carried_out(shop: &mut Shop) -> Vec<Move> {
     let mut recovery = Recovery::default();
     let mut driven = Vec::new();
@@ -156,7 +156,7 @@ fn a_part_that_nobody_knows_is_found_and_fingers_that_hold_one_stay_closed() {
     }
 }
 
-/// Every combination of what the ledger says and what is seen.
+/// Every combination of ledger and sensors.
 #[test]
 fn after_homing_the_ledger_says_what_the_sensors_say_whatever_it_said_before() {
     for before in 0..8_u8 {

@@ -1,4 +1,4 @@
-//! A part is let go only over its bin, when it is recorded, and its beam must see it: once.
+//! The sorter releases a part only over its bin and after its record, and its beam must count it once.
 
 use super::Shop;
 use crate::dut::em_relay::bins;
@@ -24,7 +24,7 @@ fn beam(shop: &mut Shop, bin: Bin, count: u16) {
     shop.beam(point, count);
 }
 
-/// The gripper holds a part for `bin`, z is up.
+/// Makes a sorter whose gripper holds a part for `bin`, with z up.
 fn loaded(bin: Bin) -> Shop {
     let mut shop = Shop::at_rest();
     shop.ledger.enter_pocket();
@@ -38,7 +38,7 @@ fn loaded(bin: Bin) -> Shop {
     shop
 }
 
-/// Over the bin, and its beam has been read after that.
+/// Moves over the bin and reads its beam afterwards.
 fn over(bin: Bin, count: u16) -> (Sort, Shop) {
     let mut shop = loaded(bin);
     let sort = step(Sort::Loaded, &mut shop, false);
@@ -51,7 +51,7 @@ fn over(bin: Bin, count: u16) -> (Sort, Shop) {
     (sort, shop)
 }
 
-/// The fingers have opened and the part falls.
+/// Opens the fingers; the part falls.
 fn falling(bin: Bin, count: u16) -> (Sort, Shop) {
     let (sort, mut shop) = over(bin, count);
     shop.recorded = 1;
@@ -62,7 +62,7 @@ fn falling(bin: Bin, count: u16) -> (Sort, Shop) {
     (sort, shop)
 }
 
-/// The guard has cleared the opening of the fingers.
+/// Drives the opening of the fingers after the guard's clearance.
 fn let_go(sort: Sort, shop: &mut Shop) -> Sort {
     assert!(matches!(sort, Sort::LettingGo(..)), "{sort:?}");
     let sort = sort.driven(Move::GripperOpen, &mut shop.ledger, shop.now);
@@ -282,7 +282,7 @@ fn a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told() {
     assert!(shop.ledger.balances());
 }
 
-/// The fingers were to open, and then everything went safe: their sensor goes on showing the part.
+/// The opening of the fingers is requested, then all outputs go safe: the sensor still shows the part.
 fn never_opened() -> Shop {
     let (sort, mut shop) = over(Bin::PASS, 3);
     shop.recorded = 1;
@@ -292,7 +292,7 @@ fn never_opened() -> Shop {
     shop
 }
 
-/// Nothing came by the beam in time.
+/// Lets the time pass without a count of the beam.
 fn time_is_over(shop: &mut Shop) {
     let since = shop.ledger.fall().map(|it| it.since).unwrap();
     shop.now = RigTime(since.0 + 1_500_001);

@@ -1,4 +1,4 @@
-//! The feed: eight states, eleven inputs.
+//! The graph of the feed: eight states, eleven inputs.
 
 use super::{Graph, SEEN, show, truths};
 use crate::handling::feed::{Feed, TRIES};
@@ -20,7 +20,7 @@ fn name(feed: Feed) -> String {
     }
 }
 
-/// Every state; a release began `ago` before now.
+/// Returns every state; a release began `ago` before now.
 fn states(shop: &Shop, ago: Span) -> Vec<Feed> {
     let since = units::RigTime(shop.now.0 - ago.0);
     let mut states = vec![
@@ -37,7 +37,7 @@ fn states(shop: &Shop, ago: Span) -> Vec<Feed> {
     states
 }
 
-/// What the ledger must hold in a state: a part in the pocket while the feed has it there.
+/// Returns the ledger content that a state requires: a part in the pocket while the feed has one.
 fn holds(feed: Feed) -> bool {
     matches!(feed, Feed::Holding | Feed::Ready | Feed::Pushing)
 }
@@ -78,7 +78,7 @@ fn the_feed_is_the_drawing() {
             let ago = if late { Span::ms(1501) } else { Span::ms(1500) };
             for feed in states(&shop, ago) {
                 for [wanted, push, nest, found] in truths() {
-                    // A part that is pushed comes into an empty nest: that is what the pusher waited for.
+                    // The pusher waits for an empty nest, so the nest is empty during a push.
                     let nest = nest && feed != Feed::Pushing;
                     shop.ledger = ledger(feed, nest, found);
                     let next = feed.step(&mut shop.turn(), NestId::FIRST, wanted, push);
@@ -92,7 +92,7 @@ fn the_feed_is_the_drawing() {
     graph.is_told_by(FACTS, include_str!("../feed.rs"));
 }
 
-/// From, to, and the test that walks there.
+/// From, to, and the test of this edge.
 const FACTS: &[(&str, &str, &str)] = &[
     (
         "Empty",

@@ -1,4 +1,4 @@
-//! The nest: eight states, ten inputs.
+//! The graph of the nest: eight states, ten inputs.
 
 use super::{Graph, SEEN, show, truths};
 use crate::dut::device::TestOrder;
@@ -24,7 +24,7 @@ const STATES: [&str; 9] = [
     "Lifting",
 ];
 
-/// The state of this name; a test that is over has only its switching off before it.
+/// Returns the state with this name; a finished test has only its switching off left.
 fn state(name: &str, shop: &Shop, device: &Device) -> NestState {
     match name {
         "Empty" => NestState::Empty,
@@ -76,7 +76,7 @@ fn name(state: &NestState) -> &'static str {
     }
 }
 
-/// A part is in the nest in every state but the first, where it may be; it is judged before it is gripped.
+/// A part is in the nest in every state except the first, where it may be; it has its verdict before it is gripped.
 fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
     let mut ledger = Ledger::default();
     if part || from != "Empty" {
@@ -152,7 +152,7 @@ fn the_nest_is_the_drawing() {
     graph.is_told_by(FACTS, include_str!("../nest.rs"));
 }
 
-/// From, to, and the test that walks there.
+/// From, to, and the test of this edge.
 const FACTS: &[(&str, &str, &str)] = &[
     (
         "Empty",

@@ -1,4 +1,4 @@
-//! The sorter: nine states, eleven inputs, and what falls.
+//! The graph of the sorter: nine states, eleven inputs, and the fall.
 
 use super::{Graph, SEEN, Seen, show, truths};
 use crate::handling::ledger::Ledger;
@@ -26,7 +26,7 @@ fn name(sort: Sort) -> &'static str {
     }
 }
 
-/// Every state, and the point of the axis that it has to do with.
+/// Returns every state, with its station of the axis.
 fn states(shop: &Shop) -> [(Sort, AxisStation); 9] {
     let over = RigTime(shop.now.0 - 500);
     let bin = AxisStation::Bin(Bin::PASS);
@@ -43,7 +43,7 @@ fn states(shop: &Shop) -> [(Sort, AxisStation); 9] {
     ]
 }
 
-/// A part is in the gripper from `Loaded` to `LettingGo`; one that was let go may fall, since long or not.
+/// A part is in the gripper from `Loaded` to `LettingGo`; a released one may be falling, for a short or a long time.
 fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
     let mut ledger = Ledger::default();
     let mut lift = || {
@@ -120,7 +120,7 @@ fn the_sorter_is_the_drawing() {
     graph.is_told_by(FACTS, include_str!("../sort.rs"));
 }
 
-/// From, to, and the test that walks there.
+/// From, to, and the test of this edge.
 const FACTS: &[(&str, &str, &str)] = &[
     (
         "Returning",
