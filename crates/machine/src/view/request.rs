@@ -1,24 +1,24 @@
-//! An order on its way to the station, with the way back for its answer.
+//! An order on its way to the station, with the channel for its answer.
 
 use super::order::{By, NotTaken, Order};
 use std::fmt;
 
-/// What an order comes to.
+/// Outcome of an order.
 pub type Answer = Result<(), NotTaken>;
 
 /// An order on its way to the station.
 pub struct OrderRequest {
-    /// What is wanted.
+    /// The order.
     pub order: Order,
-    /// Who wants it.
+    /// The person who gives it.
     pub by: By,
-    /// It is not to be taken, for this reason; it comes for the audit alone.
+    /// Reason for a refusal decided before the station; the request then serves the audit trail only.
     pub denied: Option<String>,
     way_back: Box<dyn FnOnce(Answer) + Send>,
 }
 
 impl OrderRequest {
-    /// An order whose answer goes to `way_back`. A request that is dropped drops it unanswered.
+    /// Makes a request that sends its answer to `way_back`. A dropped request sends no answer.
     pub fn new(order: Order, by: By, way_back: impl FnOnce(Answer) + Send + 'static) -> Self {
         Self {
             order,
@@ -28,7 +28,7 @@ impl OrderRequest {
         }
     }
 
-    /// An order that is not to be taken and comes for the audit alone; nobody waits for its answer.
+    /// Makes a request that is refused already and serves the audit trail only; it sends no answer.
     pub fn denied(order: Order, by: By, why: String) -> Self {
         Self {
             denied: Some(why),
@@ -36,7 +36,7 @@ impl OrderRequest {
         }
     }
 
-    /// Answers; a screen that has gone away misses nothing that it could use.
+    /// Sends the answer; does nothing if the page has gone away.
     pub fn say(self, answer: Answer) {
         (self.way_back)(answer);
     }
