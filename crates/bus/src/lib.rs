@@ -38,10 +38,10 @@
 //! 2. It writes the request. The reply must be complete within wire(request) + wire(longest reply) + allowance.
 //! 3. It rests for the turnaround (two characters). A byte during the rest shows a second sender: the line rejects the
 //!    reply.
-//! 4. After a time-out or damage it resynchronises. It asks the module for its name: the `!AA` reply proves that nothing
-//!    older is on its way. Without that reply the line must fall silent for the longest reply time and the grace for late
-//!    replies, and for a second every reply that fits an outstanding one needs a confirmation: `>` replies carry no
-//!    address, and a late one looks like the next.
+//! 4. After a time-out or damage it resynchronises. It asks the module for its name: the `!AA` reply proves that no
+//!    older reply is on its way. Without it the line must fall silent for the longest reply time and the grace for
+//!    late replies, and for a second every reply that fits an outstanding one needs a confirmation: `>` replies carry
+//!    no address, and a late one looks like the next.
 //! 5. It reads twice from an address on probation, whose replies were damaged: a checksum misses one error in 256.
 //! 6. It repeats only commands that change nothing, at most as often as the request allows.
 //! 7. Before it writes a setting to an EEPROM it reads it, and skips the write if the module has it already.

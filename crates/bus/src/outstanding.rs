@@ -40,7 +40,7 @@ impl OutstandingReplies {
     pub(super) fn add(&mut self, command: Command, now: RigTime) {
         self.0.retain(|(_, until)| *until > now);
         let latest = self.0.last().map(|(_, until)| *until);
-        assert!(latest <= Some(now + HORIZON), "times out of order");
+        assert!(latest <= Some(now + HORIZON), "replies added out of order");
         assert!(
             self.0.len() < MOST_OUTSTANDING,
             "too many outstanding replies"
@@ -50,32 +50,32 @@ impl OutstandingReplies {
 
     /// Returns the question that asks a module for its name: if possible one that is not outstanding.
     pub(super) fn question(&self, to: Address) -> Command {
-        let mut questions = QUESTIONS.into_iter().map(|asked| asked.to(to));
+        let mut questions = QUESTIONS.into_iter().map(|question| question.to(to));
         questions
-            .find(|asked| !self.contains(asked))
+            .find(|question| !self.contains(question))
             .unwrap_or_else(|| question(to))
     }
 
     /// Returns true when the reply to `command` may be on its way.
     pub(super) fn contains(&self, command: &Command) -> bool {
-        self.0.iter().any(|(owed, _)| owed == command)
+        self.0.iter().any(|(request, _)| request == command)
     }
 
     /// Removes the requests that `frame` proves answered: if it names `module`, the oldest that it fits and all older
     /// ones of that module. Returns false when it names another module or fits no outstanding request.
     pub(super) fn settle(&mut self, module: Address, frame: &[u8], with_checksum: bool) -> bool {
-        let asked = |owed: &Command| owed.address() == Some(module);
-        let answered = |owed: &Command| asked(owed) && fits(owed, frame, with_checksum);
-        let Some(oldest) = self.0.iter().position(|(owed, _)| answered(owed)) else {
+        let asked = |request: &Command| request.address() == Some(module);
+        let answered = |request: &Command| asked(request) && fits(request, frame, with_checksum);
+        let Some(oldest) = self.0.iter().position(|(request, _)| answered(request)) else {
             return false;
         };
         if !names(module, frame) {
             return false;
         }
         let (before, mut place) = (self.0.len(), 0);
-        self.0.retain(|(owed, _)| {
+        self.0.retain(|(request, _)| {
             place += 1;
-            place > oldest + 1 || !asked(owed)
+            place > oldest + 1 || !asked(request)
         });
         assert!(self.0.len() < before, "nothing was settled");
         true
@@ -84,13 +84,13 @@ impl OutstandingReplies {
     /// Returns true when `frame` fits an outstanding reply.
     pub(super) fn could_be(&self, frame: &[u8], with_checksum: bool, now: RigTime) -> bool {
         let mut open = self.0.iter().filter(|(_, until)| *until > now);
-        open.any(|(owed, _)| fits(owed, frame, with_checksum))
+        open.any(|(request, _)| fits(request, frame, with_checksum))
     }
 }
 
-/// Returns true when `frame` is a reply to `owed` or its refusal.
-fn fits(owed: &Command, frame: &[u8], with_checksum: bool) -> bool {
-    match owed.decode(frame, with_checksum) {
+/// Returns true when `frame` is a reply to `request` or its refusal.
+fn fits(request: &Command, frame: &[u8], with_checksum: bool) -> bool {
+    match request.decode(frame, with_checksum) {
         Ok(_) => true,
         Err(reason) => reason.is_answer(),
     }

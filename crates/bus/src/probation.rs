@@ -2,10 +2,10 @@
 //!
 //! Two modules at one address, a bad plug or a motor near the cable damage replies. Form and checksum reveal most of
 //! the damage, but an eight-bit checksum misses one in 256. So visible damage serves as a warning: after a damaged
-//! reply the address is on probation until [`PROBATION_ANSWERS`] whole answers in a row. During probation the line reads twice
-//! and accepts equal answers. For noisy or moving quantities it reads a third time and accepts the middle answer
-//! ([`dcon::Command::believed`]). It rejects what changes faster, which the request may retry. An undisturbed line
-//! costs nothing.
+//! reply the address is on probation until [`PROBATION_ANSWERS`] whole answers in a row. During probation the line
+//! reads twice and accepts equal answers. For noisy or moving quantities it reads a third time and accepts the middle
+//! answer ([`dcon::Command::believed`]). It rejects readings that change faster; the request may retry them. Without
+//! damage a line never reads twice.
 //!
 //! Residual risk: let a share c of an address's replies be damaged such that a share p of them passes, and a share d
 //! of all its replies be visibly damaged. Then c p (1 - d)^100 readings are false and accepted before the probation
@@ -40,7 +40,7 @@ impl Probation {
         self.0[usize::from(module)] = PROBATION_ANSWERS;
     }
 
-    /// Counts a whole answer, confirmed if it had to be.
+    /// Counts a whole answer towards the end of the probation.
     pub(super) fn count_whole(&mut self, Address(module): Address) {
         let left = &mut self.0[usize::from(module)];
         assert!(

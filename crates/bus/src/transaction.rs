@@ -29,7 +29,7 @@ impl From<io::Error> for Trouble {
     }
 }
 
-/// Returns true when the module understood the question: it replied or refused.
+/// Returns true when the module understood the request: it replied or refused.
 fn is_answer(result: &Result<Reply, Trouble>) -> bool {
     match result {
         Ok(_) => true,
@@ -102,7 +102,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Transaction<'_, P> {
         }
     }
 
-    /// Asks once, and runs the resynchronisation unless the module answered.
+    /// Sends the request once, and resynchronises unless the module answered.
     async fn attempt(
         &mut self,
         command: &Command,
@@ -156,7 +156,11 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Transaction<'_, P> {
                 .attempt(command, address, request, frame, times)
                 .await?;
             answers.push(next);
-            assert_eq!(answers.len(), heard.len() + 1, "an answer unheard");
+            assert_eq!(
+                answers.len(),
+                heard.len() + 1,
+                "answers and frames differ in number"
+            );
             assert!(answers.len() <= 3, "more than three answers");
             let apart_ms = self.now().since(begun).0.div_ceil(1_000);
             if let Some(place) = command.believed(&answers, apart_ms) {

@@ -10,7 +10,7 @@ mod traffic;
 pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
 pub use mimic::{Mimic, MimicBody};
 pub use motion::{MotionView, RefusedView, StrokeView};
-pub use order::{Answered, By, LOT_ORDERS, NotTaken, ORDERS, Order};
+pub use order::{AnsweredOrder, By, LOT_ORDERS, ORDERS, Order, OrderRefusal};
 pub use request::{Answer, OrderRequest};
 pub use traffic::{LineTraffic, Message};
 

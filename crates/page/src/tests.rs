@@ -21,7 +21,7 @@ use axum::Router;
 use axum::body::{Body, to_bytes};
 use axum::http::{Request, StatusCode};
 use machine::view::{
-    LastPart, LineTraffic, Message, Mimic, MimicBody, NotTaken, OrderRequest, View,
+    LastPart, LineTraffic, Message, Mimic, MimicBody, OrderRefusal, OrderRequest, View,
 };
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -159,7 +159,7 @@ async fn controller(
             }
             "jog" | "mode" | "step" | "shelve" | "hold_lot" | "release_lot" | "close_lot"
             | "replaced" => Ok(()),
-            _other => Err(NotTaken {
+            _other => Err(OrderRefusal {
                 en: "not in this state".into(),
                 zh: "当前状态不允许".into(),
             }),

@@ -10,7 +10,7 @@ use machine::station::annunciator::Standing;
 use machine::station::orders::shelf_minutes;
 use machine::station::trouble::Alarm;
 use machine::station::wants::{Checked, Ending};
-use machine::view::Answered;
+use machine::view::AnsweredOrder;
 
 /// Alarms after which a lot takes no run before somebody releases it.
 const HOLDS: [&str; 2] = ["golden_check_failed", "lot_discard_limit"];
@@ -112,7 +112,7 @@ impl Diary {
     }
 
     /// An order was answered; what it does to alarms is kept with them.
-    pub fn ordered(&self, it: &Answered, at_us: i64) -> Vec<Row> {
+    pub fn ordered(&self, it: &AnsweredOrder, at_us: i64) -> Vec<Row> {
         let by = &it.by;
         let mut rows = vec![Row::Order(OrderRecord {
             lot: self.lot.clone(),
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn an_acknowledgement_is_kept_with_who_gave_it_and_one_that_was_refused_changes_no_alarm() {
-        let asked = |refused: Option<&str>| Answered {
+        let asked = |refused: Option<&str>| AnsweredOrder {
             order: machine::view::Order {
                 order: "acknowledge".into(),
                 alarm: Some("door_open".into()),

@@ -8,7 +8,7 @@ use history::{
     Store, is_lot_name,
 };
 use machine::dut::Recipe;
-use machine::view::NotTaken;
+use machine::view::OrderRefusal;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -79,7 +79,7 @@ pub enum NotAdmitted {
 
 impl NotAdmitted {
     /// The same for a person at a screen.
-    pub fn at_the_screen(&self) -> NotTaken {
+    pub fn at_the_screen(&self) -> OrderRefusal {
         let (en, zh) = match self {
             Self::Name { .. } => (
                 format!("the name of a lot has {LOT_NAME}"),
@@ -114,7 +114,7 @@ impl NotAdmitted {
                 (self.to_string(), format!("无法开始批次：{self}"))
             }
         };
-        NotTaken { en, zh }
+        OrderRefusal { en, zh }
     }
 }
 

@@ -226,7 +226,7 @@ impl<'a> Recorder<'a> {
             }
             Event::Inside(inside, uses) => {
                 self.aside = Some((inside, uses));
-                if inside.is_hard_to_tell() {
+                if inside.needs_record() {
                     rows.extend(self.aside());
                 }
             }

@@ -15,7 +15,7 @@ use crate::cli::rig::RigArgs;
 use crate::cli::run::{RunArgs, gate};
 use config::Plant;
 use history::{Archive, Decision, Identity, Store};
-use machine::view::{By, NotTaken, Order, OrderRequest};
+use machine::view::{By, Order, OrderRefusal, OrderRequest};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use tokio::sync::{mpsc, oneshot};
@@ -117,7 +117,7 @@ impl Office {
 
     /// Noted before the station hears of it, for a run that is left ends at once. Refused while what was taken before
     /// has not begun yet.
-    fn expect(&self, next: Option<Next>) -> Result<(), NotTaken> {
+    fn expect(&self, next: Option<Next>) -> Result<(), OrderRefusal> {
         let mut desk = self.desk();
         if desk.next.is_some() {
             return Err(not_now());
@@ -127,7 +127,7 @@ impl Office {
     }
 
     /// The lot of a `start`, once the gates have been asked.
-    async fn admitted(&self, order: &Order) -> Result<Next, NotTaken> {
+    async fn admitted(&self, order: &Order) -> Result<Next, OrderRefusal> {
         let args = RunArgs {
             rig: self.0.rig.clone(),
             lot: order.lot.clone().unwrap_or_default(),
@@ -166,7 +166,7 @@ impl Office {
     }
 
     /// Refused, and so told to the audit.
-    fn refuse(&self, asked: OrderRequest, why: NotTaken) {
+    fn refuse(&self, asked: OrderRequest, why: OrderRefusal) {
         let (order, by) = (asked.order.clone(), asked.by.clone());
         self.pass(OrderRequest::denied(order, by, why.en.clone()));
         asked.say(Err(why));
@@ -206,7 +206,7 @@ fn is_about_lots(order: &Order) -> bool {
     start || machine::view::LOT_ORDERS.contains(&order.order.as_str())
 }
 
-fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), NotTaken> {
+fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), OrderRefusal> {
     if decision == Decision::Hold {
         held(order)?;
     }
@@ -231,7 +231,7 @@ fn decided(db: &Path, order: &Order, by: &By, decision: Decision) -> Result<(), 
 }
 
 /// A lot is held for a reason.
-fn held(order: &Order) -> Result<(), NotTaken> {
+fn held(order: &Order) -> Result<(), OrderRefusal> {
     let reason = order.reason.as_deref().unwrap_or_default();
     if reason.trim().is_empty() {
         return Err(refused(
@@ -242,7 +242,7 @@ fn held(order: &Order) -> Result<(), NotTaken> {
     Ok(())
 }
 
-fn replaced(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), NotTaken> {
+fn replaced(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), OrderRefusal> {
     let name = order.counter.as_deref().unwrap_or_default();
     let at_us = jiff::Timestamp::now().as_microsecond();
     let write = |mut store: Store| {
@@ -264,24 +264,24 @@ fn replaced(db: &Path, order: &Order, by: &By, simulated: bool) -> Result<(), No
 }
 
 async fn beside<T: Send + 'static>(
-    work: impl FnOnce() -> Result<T, NotTaken> + Send + 'static,
-) -> Result<T, NotTaken> {
+    work: impl FnOnce() -> Result<T, OrderRefusal> + Send + 'static,
+) -> Result<T, OrderRefusal> {
     let done = tokio::task::spawn_blocking(work).await;
     done.unwrap_or_else(|error| Err(trouble(&error)))
 }
 
-fn refused(en: &str, zh: &str) -> NotTaken {
-    NotTaken {
+fn refused(en: &str, zh: &str) -> OrderRefusal {
+    OrderRefusal {
         en: en.into(),
         zh: zh.into(),
     }
 }
 
-fn trouble(error: &dyn std::fmt::Display) -> NotTaken {
+fn trouble(error: &dyn std::fmt::Display) -> OrderRefusal {
     refused(&error.to_string(), &format!("出错：{error}"))
 }
 
-fn not_now() -> NotTaken {
+fn not_now() -> OrderRefusal {
     refused(
         "the rig changes from one lot to another; try again",
         "设备正在切换批次；请重试",

@@ -4,14 +4,14 @@ use super::{Cycle, Event, publish};
 use machine::handling::moves::Move;
 use machine::station::orders::{Order, Refused};
 use machine::station::wants::Wants;
-use machine::view::{self, Answered, By, NotTaken, OrderRequest};
+use machine::view::{self, AnsweredOrder, By, OrderRefusal, OrderRequest};
 use units::RigTime;
 
 /// Origin of what is ordered with a button at the machine.
 pub const PANEL: &str = "panel";
 
-fn not_taken(why: Refused) -> NotTaken {
-    NotTaken {
+fn not_taken(why: Refused) -> OrderRefusal {
+    OrderRefusal {
         en: why.en,
         zh: why.zh,
     }
@@ -50,7 +50,7 @@ impl Cycle {
     /// Buttons at the machine have no screen to answer to: the audit hears of them.
     pub(super) fn pressed(&self, wants: &mut Wants, now: RigTime) {
         for (command, answer) in wants.pressed.drain(..) {
-            let answered = Answered {
+            let answered = AnsweredOrder {
                 order: view::Order {
                     order: command.name().to_owned(),
                     ..view::Order::default()
@@ -67,7 +67,7 @@ impl Cycle {
 
     /// Answers whoever asked, and tells the audit.
     fn say(&self, asked: OrderRequest, answer: Result<(), Refused>, now: RigTime) {
-        let answered = Answered {
+        let answered = AnsweredOrder {
             order: asked.order.clone(),
             by: asked.by.clone(),
             refused: answer.as_ref().err().map(|why| why.en.clone()),

@@ -8,7 +8,7 @@ use machine::station::annunciator::Standing;
 use machine::station::packml;
 use machine::station::trouble::Alarm;
 use machine::station::wants::Checked;
-use machine::view::Answered;
+use machine::view::AnsweredOrder;
 use units::RigTime;
 
 /// What a run leaves for the history, in the order it happened.
@@ -33,7 +33,7 @@ pub enum Event {
     /// A golden check has come out.
     Checked(Checked, RigTime),
     /// An order was answered.
-    Ordered(Box<Answered>, RigTime),
+    Ordered(Box<AnsweredOrder>, RigTime),
     /// A part has moved on inside: what the next run has to look for, and the uses of what wears since the start.
     Inside(Inside, Uses),
     /// The lot itself began.

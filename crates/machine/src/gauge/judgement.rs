@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_number_is_void_and_never_passes() {
+    fn nan_is_void_and_never_passes() {
         let rule = Rule::GuardBand;
         assert_eq!(
             judge(&reading(f64::NAN, 0.01), &high(9.0), rule),

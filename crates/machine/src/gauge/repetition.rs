@@ -10,7 +10,7 @@ use super::budget::{Budget, COVERAGE_FACTOR, Reading, Term};
 /// Meaning of the mean of several readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpokenOf {
-    /// A property of the part: a threshold, the coil. Its readings scatter as the random terms say, or more.
+    /// A property of the part: a threshold, the coil. Its readings scatter by the random terms of the budget, or more.
     Part,
     /// Any single operation, to which the limit applies: times and bounce. It deviates from the mean as much as the
     /// readings do, and no random term bounds that.
@@ -96,7 +96,7 @@ mod tests {
     const ALL: [SpokenOf; 3] = [SpokenOf::Part, SpokenOf::Operation, SpokenOf::Closures];
 
     #[test]
-    fn repetition_helps_only_against_what_is_random() {
+    fn repetition_reduces_only_random_terms() {
         for of in ALL {
             assert_eq!(combined(&[1.0; 4], of), 5.0);
             assert_eq!(combined(&[1.0], of), 73f64.sqrt());
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_property_that_scatters_as_promised_is_doubted_no_more() {
+    fn expected_scatter_adds_no_uncertainty() {
         // Standard deviation 6.9 of 8.
         let apart = [1.0, 13.0, 1.0, 13.0];
         assert_eq!(combined(&apart, SpokenOf::Part), 5.0);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_part_scatters_is_in_the_uncertainty_of_its_mean() {
+    fn excess_scatter_adds_to_the_uncertainty_of_the_mean() {
         // Standard deviation 100; Student's t of two degrees of freedom is 4.53.
         let apart = [900.0, 1000.0, 1100.0];
         let promised_2 = 9.0 + 64.0 / 3.0;
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_of_a_bounce_covers_every_operation_it_was_made_of() {
+    fn the_uncertainty_of_a_mean_bounce_covers_every_operation() {
         let apart = [1680.0, 1750.0, 1790.0, 1960.0];
         let mean = mean(&readings(&apart), SpokenOf::Operation).expect("readings");
         let furthest = apart.map(|it| (it - mean.value).abs());
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn few_readings_are_widened_as_far_as_student_says() {
+    fn few_readings_are_widened_by_students_t() {
         assert_eq!(student(1), 6.985);
         assert_eq!(student(10), 1.14);
         // GUM, table G.2: 2.13 with 20, 2.05 with 50 degrees of freedom.

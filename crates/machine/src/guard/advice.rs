@@ -11,7 +11,7 @@ use super::refusal::words;
 use super::scene::Scene;
 use super::situation::Situation;
 use super::space::Space;
-use super::sweep::Finding;
+use super::sweep::FirstContact;
 
 /// Returns the remedy in words for a mechanic.
 pub(super) fn advice(
@@ -19,7 +19,7 @@ pub(super) fn advice(
     space: &mut Space,
     situation: &Situation,
     motion: &Motion,
-    finding: &Finding,
+    finding: &FirstContact,
 ) -> String {
     let mut helps =
         |tried: &Situation| judge(scene, space, motion, tried).is_ok_and(|found| found.is_none());
@@ -52,7 +52,7 @@ pub(super) fn advice(
 }
 
 /// Returns every actuator that the motion does not use, carriers of the two bodies first.
-fn by_relevance(scene: &Scene, motion: &Motion, finding: &Finding) -> Vec<Actuator> {
+fn by_relevance(scene: &Scene, motion: &Motion, finding: &FirstContact) -> Vec<Actuator> {
     let blocker = finding
         .blocker
         .map(|number| scene.rides(number))

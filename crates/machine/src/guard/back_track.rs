@@ -8,7 +8,7 @@ use super::motion::Motion;
 use super::scene::Scene;
 use super::situation::Situation;
 use super::space::Space;
-use super::sweep::Finding;
+use super::sweep::FirstContact;
 
 /// Distance of the offer before the contact, mm: the resolution of the axis's point table.
 const BEFORE_MM: f64 = 0.01;
@@ -18,7 +18,7 @@ pub(super) fn last_clear_mm(
     scene: &Scene,
     space: &mut Space,
     situation: &Situation,
-    finding: &Finding,
+    finding: &FirstContact,
 ) -> Option<f64> {
     let (from, reached) = finding.clear_way_mm?;
     if (reached - from).abs() <= BEFORE_MM {

@@ -14,13 +14,13 @@ use super::motion::Stroke;
 use super::part::Role;
 use super::scene::Scene;
 use super::situation::Situation;
-use super::space::Cast;
+use super::space::PresentRoles;
 
 /// The roles of the part during one stroke.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Company {
+pub(super) struct PartRoles {
     /// Roles present in the space.
-    pub cast: Cast,
+    pub present: PresentRoles,
     /// Role that moves with the stroke.
     pub taken: Option<Role>,
     /// Role that the stroke leaves behind.
@@ -28,12 +28,12 @@ pub(super) struct Company {
 }
 
 /// Assigns the parts of `situation` to roles for `stroke`.
-pub(super) fn company(scene: &Scene, situation: &Situation, stroke: &Stroke) -> Company {
+pub(super) fn part_roles(scene: &Scene, situation: &Situation, stroke: &Stroke) -> PartRoles {
     let parts = situation.parts;
     let released = scene.span_mm(Actuator::Escapement, situation).1 > 0.0;
     let pusher = scene.span_mm(Actuator::Pusher, situation);
-    let mut company = Company {
-        cast: [
+    let mut part_roles = PartRoles {
+        present: [
             released,
             parts.pocket,
             parts.on_pusher,
@@ -44,31 +44,33 @@ pub(super) fn company(scene: &Scene, situation: &Situation, stroke: &Stroke) -> 
         left: None,
     };
     if pusher.0 <= 0.0 && (pusher.1 > 0.0 || stroke.actuator == Actuator::Pusher) {
-        company.put_before_pusher();
+        part_roles.put_before_pusher();
     }
     match stroke.actuator {
-        Actuator::Escapement => company.feeding(stroke.to_mm > 0.0),
-        Actuator::Pusher => company.pushing(stroke.to_mm > pusher.0),
-        Actuator::SortAxis | Actuator::SortZ => company.carrying(holds_nest_part(scene, situation)),
+        Actuator::Escapement => part_roles.feeding(stroke.to_mm > 0.0),
+        Actuator::Pusher => part_roles.pushing(stroke.to_mm > pusher.0),
+        Actuator::SortAxis | Actuator::SortZ => {
+            part_roles.carrying(holds_nest_part(scene, situation))
+        }
         Actuator::JawLeft | Actuator::JawRight | Actuator::ProbeLift | Actuator::Gripper => {}
     }
-    company
+    part_roles
 }
 
-impl Company {
+impl PartRoles {
     fn has(&self, role: Role) -> bool {
-        self.cast[role.index()]
+        self.present[role.index()]
     }
 
     /// Moves the part to another role for this stroke.
     fn recast(&mut self, from: Role, to: Role) {
-        self.cast[from.index()] = false;
-        self.cast[to.index()] = true;
+        self.present[from.index()] = false;
+        self.present[to.index()] = true;
     }
 
     fn feeding(&mut self, releasing: bool) {
         if releasing {
-            self.cast[Role::Feed.index()] = true;
+            self.present[Role::Feed.index()] = true;
             self.taken = Some(Role::Feed);
         }
     }

@@ -8,7 +8,7 @@ use super::refusal::Refusal;
 use super::scene::Scene;
 use super::situation::Situation;
 use super::space::Space;
-use super::sweep::{Finding, sweep};
+use super::sweep::{FirstContact, sweep};
 
 /// Returns the first contact of `motion`, if there is one.
 ///
@@ -19,7 +19,7 @@ pub(super) fn judge(
     space: &mut Space,
     motion: &Motion,
     situation: &Situation,
-) -> Result<Option<Finding>, Refusal> {
+) -> Result<Option<FirstContact>, Refusal> {
     check_numbers(scene, motion, situation)?;
     for stroke in motion.strokes() {
         let meanwhile = with_others_under_way(scene, motion, situation, stroke.actuator);

@@ -13,8 +13,8 @@
 //!
 //! **Rules.**
 //! 1. Any two bodies keep the default margin, unless a pair rule says otherwise.
-//! 2. An actuator in motion or in doubt occupies its whole span, and one of unknown position its whole stroke. So motions
-//!    that overlap in time are checked against each other's swept room: for every other motion a mover is
+//! 2. An actuator in motion or in doubt occupies its whole span, and one of unknown position its whole stroke. So
+//!    motions that overlap in time are checked against each other's swept room: for every other motion a mover is
 //!    [`Between`](Position::Between).
 //! 3. A mover of unknown start is swept from the far end of its span.
 //! 4. The guard refuses NaN, a position off its stroke, and a part without size.
@@ -66,7 +66,7 @@ pub use situation::{PartPlaces, PartSize, Situation};
 use memory::{Memory, Question};
 use scene::Scene;
 use space::Space;
-use sweep::Finding;
+use sweep::FirstContact;
 
 /// Returns the ids of the part in a scene, one for each place.
 pub fn part_names() -> [&'static str; 5] {
@@ -156,7 +156,7 @@ impl Guard {
 
     fn refusal(
         &self,
-        finding: &Finding,
+        finding: &FirstContact,
         last_clear_mm: Option<f64>,
         would_help: String,
     ) -> Refusal {

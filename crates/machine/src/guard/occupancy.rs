@@ -60,7 +60,7 @@ pub(super) fn room<'a>(shape: &'a Shape, pose: &Pose, offsets: &Offsets) -> (Cow
     let mut covers = Vec::new();
     collect(
         shape,
-        &Turn::of(pose.rotation),
+        &Rotation::of(pose.rotation),
         [0.0; 3],
         offsets,
         &mut covers,
@@ -70,7 +70,7 @@ pub(super) fn room<'a>(shape: &'a Shape, pose: &Pose, offsets: &Offsets) -> (Cow
 
 fn collect(
     shape: &Shape,
-    turn: &Turn,
+    turn: &Rotation,
     at: [f64; 3],
     offsets: &Offsets,
     covers: &mut Vec<(Pose, Shape)>,
@@ -78,7 +78,7 @@ fn collect(
     let half = match shape {
         Shape::Compound(parts) => {
             for (pose, part) in parts {
-                let inner = turn.after(&Turn::of(pose.rotation));
+                let inner = turn.after(&Rotation::of(pose.rotation));
                 collect(
                     part,
                     &inner,
@@ -108,13 +108,13 @@ fn collect(
 }
 
 /// A rotation matrix, row by row.
-struct Turn([[f64; 3]; 3]);
+struct Rotation([[f64; 3]; 3]);
 
-impl Turn {
-    fn of(rotation: [f64; 4]) -> Turn {
+impl Rotation {
+    fn of(rotation: [f64; 4]) -> Rotation {
         let [w, x, y, z] = rotation;
         let s = 2.0 / (w * w + x * x + y * y + z * z);
-        Turn([
+        Rotation([
             [
                 1.0 - s * (y * y + z * z),
                 s * (x * y - w * z),
@@ -138,10 +138,10 @@ impl Turn {
             .map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
     }
 
-    fn after(&self, inner: &Turn) -> Turn {
+    fn after(&self, inner: &Rotation) -> Rotation {
         let column = |j: usize| self.apply([inner.0[0][j], inner.0[1][j], inner.0[2][j]]);
         let columns = [column(0), column(1), column(2)];
-        Turn(std::array::from_fn(|i| {
+        Rotation(std::array::from_fn(|i| {
             std::array::from_fn(|j| columns[j][i])
         }))
     }

@@ -19,7 +19,7 @@ struct Occupant {
 }
 
 /// Roles of the part that are present, by [`Role::index`].
-pub(super) type Cast = [bool; 5];
+pub(super) type PresentRoles = [bool; 5];
 
 #[derive(Debug, Clone)]
 pub(super) struct Space {
@@ -65,12 +65,12 @@ impl Space {
             .map(|(number, _)| number)
     }
 
-    /// Moves tooling and parts to the positions of `situation` and `cast`.
+    /// Moves tooling and parts to the positions of `situation` and `present`.
     pub fn follow(
         &mut self,
         scene: &Scene,
         situation: &Situation,
-        cast: &Cast,
+        present: &PresentRoles,
     ) -> Result<(), Flaw> {
         for (number, body) in scene
             .bodies
@@ -83,7 +83,7 @@ impl Space {
         }
         for role in Role::ALL {
             let number = scene.number_of(role);
-            if !cast[role.index()] {
+            if !present[role.index()] {
                 self.take_out(number);
                 continue;
             }

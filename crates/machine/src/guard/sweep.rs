@@ -7,7 +7,7 @@
 //!
 //! This module decides what the mover may do to each other body; the core applies it.
 
-use super::carried::{Company, company};
+use super::carried::{PartRoles, part_roles};
 use super::motion::Stroke;
 use super::occupancy::{Offsets, room, scaled, sum};
 use super::part::{Role, shape_of};
@@ -19,7 +19,7 @@ use std::borrow::Cow;
 
 /// The first contact of a stroke.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Finding {
+pub(super) struct FirstContact {
     pub stroke: Stroke,
     /// Body numbers; `None` when the core could not decide.
     pub mover: usize,
@@ -52,16 +52,16 @@ pub(super) fn sweep(
     space: &mut Space,
     situation: &Situation,
     stroke: &Stroke,
-) -> Result<Option<Finding>, Flaw> {
-    let company = company(scene, situation, stroke);
-    space.follow(scene, situation, &company.cast)?;
+) -> Result<Option<FirstContact>, Flaw> {
+    let part_roles = part_roles(scene, situation, stroke);
+    space.follow(scene, situation, &part_roles.present)?;
     let span = scene.span_mm(stroke.actuator, situation);
     let way = way(span, stroke.to_mm);
-    let travels = travels(scene, situation, stroke, &company, way);
+    let travels = travels(scene, situation, stroke, &part_roles, way);
     let moving: Vec<usize> = travels.iter().map(|travel| travel.number).collect();
     let mut first: Option<(usize, Forbidden)> = None;
     for travel in &travels {
-        let permissions = permissions(scene, space, stroke, travel, &moving, &company);
+        let permissions = permissions(scene, space, stroke, travel, &moving, &part_roles);
         let model = space.model();
         let found = model.first_forbidden(&permissions, |depth_mm| travel.passing(depth_mm))?;
         if let Some(found) = found
@@ -82,13 +82,13 @@ pub(super) fn least_mm(
     stroke: &Stroke,
     range_mm: f64,
 ) -> Result<Option<f64>, Flaw> {
-    let company = company(scene, situation, stroke);
-    space.follow(scene, situation, &company.cast)?;
+    let part_roles = part_roles(scene, situation, stroke);
+    space.follow(scene, situation, &part_roles.present)?;
     let way = way(scene.span_mm(stroke.actuator, situation), stroke.to_mm);
-    let travels = travels(scene, situation, stroke, &company, way);
+    let travels = travels(scene, situation, stroke, &part_roles, way);
     let moving: Vec<usize> = travels.iter().map(|travel| travel.number).collect();
     let all = travels.iter().filter_map(|travel| {
-        let permissions = permissions(scene, space, stroke, travel, &moving, &company);
+        let permissions = permissions(scene, space, stroke, travel, &moving, &part_roles);
         let apart = |permission: &Permission| matches!(permission, Permission::Forbidden { .. });
         let ignore: Vec<ElementKey> = permissions
             .iter()
@@ -123,12 +123,12 @@ fn travels<'a>(
     scene: &'a Scene,
     situation: &Situation,
     stroke: &Stroke,
-    company: &Company,
+    part_roles: &PartRoles,
     way: (f64, f64),
 ) -> Vec<Travel<'a>> {
     let tooling = scene.bodies.iter().enumerate();
     let tooling = tooling.map(|(number, body)| (number, Cow::Borrowed(&body.shape), body.pose));
-    let part = company.taken.map(|role| {
+    let part = part_roles.taken.map(|role| {
         let shape = shape_of(&situation.part_size, &scene.policy);
         (
             scene.number_of(role),
@@ -169,9 +169,9 @@ fn permissions(
     stroke: &Stroke,
     travel: &Travel<'_>,
     moving: &[usize],
-    company: &Company,
+    part_roles: &PartRoles,
 ) -> Vec<(ElementKey, Permission)> {
-    let left = company.left.map(|role| scene.number_of(role));
+    let left = part_roles.left.map(|role| scene.number_of(role));
     let permission = |number: usize| {
         if moving.contains(&number) || left == Some(number) {
             return Permission::Ignored;
@@ -213,14 +213,14 @@ fn finding(
     start_known: bool,
     way: (f64, f64),
     (mover, found): (usize, Forbidden),
-) -> Finding {
+) -> FirstContact {
     let at_fraction = if start_known {
         found.contact.t_stop
     } else {
         0.0
     };
     let reached = way.0 + at_fraction * (way.1 - way.0);
-    Finding {
+    FirstContact {
         stroke: *stroke,
         mover,
         blocker: space.number_of(found.contact.blocker),

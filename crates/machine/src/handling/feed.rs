@@ -51,7 +51,7 @@ impl Feed {
     /// `nest`.
     pub fn step(self, turn: &mut Turn, nest: NestId, wanted: bool, push: bool) -> Feed {
         match self {
-            Feed::Empty if wanted && turn.seen(DigitalIn::PocketPresent, true) => {
+            Feed::Empty if wanted && turn.shows(DigitalIn::PocketPresent, true) => {
                 // A part left by an earlier run is fed like any other.
                 turn.ledger.enter_pocket();
                 Feed::Ready
@@ -60,7 +60,7 @@ impl Feed {
             Feed::Empty => Feed::Empty,
             Feed::Releasing { since, attempt } => releasing(turn, since, attempt),
             Feed::Closing { attempts } if turn.arrived(Move::EscapementHold) => {
-                if attempts < TRIES && wanted && !turn.seen(DigitalIn::PocketPresent, true) {
+                if attempts < TRIES && wanted && !turn.shows(DigitalIn::PocketPresent, true) {
                     release(turn, attempts + 1)
                 } else {
                     Feed::Empty
@@ -95,7 +95,7 @@ fn release(turn: &mut Turn, attempt: u8) -> Feed {
 }
 
 fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
-    if turn.seen(DigitalIn::PocketPresent, true)
+    if turn.shows(DigitalIn::PocketPresent, true)
         && turn.image.input_at(DigitalIn::PocketPresent) > Some(since)
     {
         turn.ledger.enter_pocket();
@@ -106,8 +106,8 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
         return Feed::Releasing { since, attempt };
     }
     turn.drive(Move::EscapementHold);
-    turn.tell(
-        match (attempt < TRIES, turn.seen(DigitalIn::TrackLevel, true)) {
+    turn.report(
+        match (attempt < TRIES, turn.shows(DigitalIn::TrackLevel, true)) {
             (true, _) => Trouble::Retried(Move::EscapementRelease, ARRIVES),
             (false, true) => Trouble::NoPart,
             (false, false) => Trouble::MagazineEmpty,
@@ -129,7 +129,7 @@ fn pushed(turn: &mut Turn, nest: NestId) -> Feed {
             Feed::Retracting
         }
         Some(false) => {
-            turn.tell(Trouble::NestEmpty);
+            turn.report(Trouble::NestEmpty);
             Feed::Pushing
         }
         None => Feed::Pushing,

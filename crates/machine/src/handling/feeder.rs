@@ -94,20 +94,20 @@ impl Feeder {
     /// Notes that every output is safe and every motion has ended.
     pub fn cut_off(&mut self, ledger: &Ledger) {
         self.releasing |= matches!(self.feed, Feed::Releasing { .. } | Feed::Closing { .. });
-        self.stand_still(ledger);
+        self.reset_states(ledger);
     }
 
     /// Resumes the sequence after homing, from the parts inside.
-    pub fn take_up(&mut self, ledger: &Ledger) {
+    pub fn resume(&mut self, ledger: &Ledger) {
         self.releasing = false;
         self.last_left = None;
-        self.stand_still(ledger);
+        self.reset_states(ledger);
         if ledger.holds(Place::Gripper) {
             self.sort = Sort::Loaded;
         }
     }
 
-    fn stand_still(&mut self, ledger: &Ledger) {
+    fn reset_states(&mut self, ledger: &Ledger) {
         self.feed = match ledger.holds(Place::Pocket) {
             true => Feed::Ready,
             false => Feed::Empty,
@@ -171,7 +171,7 @@ impl Feeder {
     }
 
     /// Returns true when neither feed nor sorter moves a part.
-    pub fn is_empty_handed(&self) -> bool {
+    pub fn moves_no_part(&self) -> bool {
         let sort = matches!(self.sort, Sort::Returning | Sort::OverNest | Sort::Opening);
         sort && self.feed_rests()
     }

@@ -6,7 +6,7 @@
 
 use super::ledger::Ledger;
 use super::place::Place;
-use super::recovery::Seen;
+use super::recovery::SensedParts;
 use super::trouble::Trouble;
 use crate::rig::bin::Bin;
 
@@ -36,13 +36,13 @@ impl Inside {
 
     /// Returns true for hand-overs that sensors cannot reconstruct later: a falling part, and a lifted part whose old
     /// place the next one has taken.
-    pub fn is_hard_to_tell(self) -> bool {
+    pub fn needs_record(self) -> bool {
         self.falling.is_some() || self.gripper && self.nest
     }
 
     /// Returns a trouble for each part that is neither in its old place nor in a place it can have reached since.
-    pub fn missing(self, seen: &Seen) -> Vec<Trouble> {
-        let Seen {
+    pub fn missing(self, seen: &SensedParts) -> Vec<Trouble> {
+        let SensedParts {
             mut pocket,
             mut nest,
             mut gripper,
@@ -74,7 +74,7 @@ impl Inside {
     }
 }
 
-/// Uses up a sensor's signal, which accounts for one part.
+/// Returns true for a sensor that shows a part, and clears it: a signal accounts for one part.
 fn claim(seen: &mut bool) -> bool {
     std::mem::take(seen)
 }

@@ -95,7 +95,7 @@ impl Ledger {
     }
 
     /// Returns the parts that a new run has to look for.
-    pub fn to_look_for(&self) -> Inside {
+    pub fn parts_to_find(&self) -> Inside {
         if self.left == Inside::default() {
             Inside::of(self)
         } else {
@@ -257,7 +257,7 @@ impl Ledger {
     }
 
     /// Moves the falling part back to the fingers: it sticks to them, or they never opened.
-    pub fn keep_hold(&mut self) {
+    pub fn return_to_gripper(&mut self) {
         self.fall = None;
         self.hand_over(Place::Falling, Place::Gripper);
     }
@@ -277,7 +277,7 @@ impl Ledger {
     }
 
     /// Returns the number of parts that entered and belong to this run.
-    pub fn own(&self) -> u64 {
+    pub fn own_parts(&self) -> u64 {
         self.came_in - self.found
     }
 

@@ -50,7 +50,7 @@ struct Again {
 
 /// Results of an update.
 #[derive(Debug, Default)]
-pub struct Found {
+pub struct MechanismUpdate {
     /// Trouble.
     pub trouble: Vec<Trouble>,
     /// Motions of a repeated stroke.
@@ -140,7 +140,7 @@ impl Mechanism {
 
     /// Returns true for a deviation that no alarm explains yet: a sensor differs, or a motion has used half of its
     /// time-out. It causes the restart check.
-    pub fn is_suspicious(&self, now: RigTime) -> bool {
+    pub fn needs_restart_check(&self, now: RigTime) -> bool {
         let slow = |underway: &Underway| {
             let limit = self.timeout_of(underway.movement);
             now.since(underway.since).0 > limit.0 / 2
@@ -221,8 +221,8 @@ impl Mechanism {
     }
 
     /// Notes arrivals; repeats a late stroke or reports it.
-    pub fn update(&mut self, now: RigTime, image: &Image) -> Found {
-        let mut found = Found::default();
+    pub fn update(&mut self, now: RigTime, image: &Image) -> MechanismUpdate {
+        let mut found = MechanismUpdate::default();
         for underway in std::mem::take(&mut self.underway) {
             if self.is_there(&underway, now, image) {
                 self.arrived(underway.movement, &mut found);
@@ -252,7 +252,7 @@ impl Mechanism {
     }
 
     /// Continues a repeated stroke after its return to rest; watches any other actuator at its new end.
-    fn arrived(&mut self, movement: Move, found: &mut Found) {
+    fn arrived(&mut self, movement: Move, found: &mut MechanismUpdate) {
         match self.again.iter().find(|again| again.back == movement) {
             Some(again) => found.motions.push(again.movement),
             None => {
@@ -262,7 +262,7 @@ impl Mechanism {
         }
     }
 
-    fn late(&mut self, underway: Underway, found: &mut Found) {
+    fn late(&mut self, underway: Underway, found: &mut MechanismUpdate) {
         let movement = underway.movement;
         let limit = self.timeout_of(movement);
         let tried = self.tried.iter().filter(|one| **one == movement).count();

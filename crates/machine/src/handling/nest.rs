@@ -139,7 +139,7 @@ impl Nest {
                 NestState::Lifting
             }),
             NestState::Lifting => (turn.arrived(Move::SortUp)
-                && turn.seen(DigitalIn::NestPresent, false))
+                && turn.shows(DigitalIn::NestPresent, false))
             .then(|| lifted(self.id, turn, context)),
         }
     }
@@ -203,8 +203,8 @@ fn testing(
         Progress::Doing(Doing::Wait(until)) => turn.rig.wake_at = Some(until),
         Progress::Doing(Doing::Busy | Doing::Done | Doing::Trouble(_)) => {}
         Progress::Judged => {
-            if let Some(again) = worth_another(id, turn, test) {
-                turn.tell(again);
+            if let Some(again) = repeat_reason(id, turn, test) {
+                turn.report(again);
                 *test = context.terms.begin(test.number() + 1, turn.now);
                 return testing(id, turn, context, test, None);
             }
@@ -216,7 +216,7 @@ fn testing(
 }
 
 /// Returns the trouble to report before another test of a void reference part; `None` when there is no further test.
-fn worth_another(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
+fn repeat_reason(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
     let Kind::Golden(serial) = &turn.ledger.part(Place::Nest(id))?.kind else {
         return None;
     };

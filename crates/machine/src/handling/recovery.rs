@@ -71,7 +71,7 @@ impl Recovery {
     pub fn step(&mut self, turn: &mut Turn, releasing: bool) -> bool {
         match self.stage {
             Stage::Looking => {
-                if Seen::of(turn).is_some() {
+                if SensedParts::of(turn).is_some() {
                     turn.rig.outputs.push((DigitalOut::AxisReset, true));
                     self.stage = Stage::Drive(turn.now);
                 }
@@ -79,7 +79,7 @@ impl Recovery {
             Stage::Drive(since) => self.drive(turn, since),
             Stage::Up if !turn.arrived(Move::SortUp) => self.ask(turn, Move::SortUp),
             Stage::Up => {
-                if let Some(seen) = Seen::of(turn) {
+                if let Some(seen) = SensedParts::of(turn) {
                     pushed(turn, &seen);
                     reconcile(turn.ledger, &seen, releasing, turn.trouble);
                     self.leave_gripped(turn.ledger);
@@ -115,8 +115,8 @@ impl Recovery {
         let looked = turn.image.input_at(DigitalIn::AxisAlarm) >= Some(taken);
         if turn.now < taken {
             turn.rig.wake_at = Some(taken);
-        } else if looked && turn.seen(DigitalIn::AxisAlarm, true) {
-            turn.tell(Trouble::AxisDrive);
+        } else if looked && turn.shows(DigitalIn::AxisAlarm, true) {
+            turn.report(Trouble::AxisDrive);
         } else if looked {
             turn.rig.outputs.push((DigitalOut::AxisReset, false));
             turn.rig.outputs.push((DigitalOut::AxisServoOn, true));
@@ -155,7 +155,7 @@ impl Recovery {
 
 /// Places in which sensors show a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Seen {
+pub struct SensedParts {
     /// In the pocket.
     pub pocket: bool,
     /// In the nest.
@@ -164,7 +164,7 @@ pub struct Seen {
     pub gripper: bool,
 }
 
-impl Seen {
+impl SensedParts {
     fn of(turn: &Turn) -> Option<Self> {
         Some(Self {
             pocket: turn.input(DigitalIn::PocketPresent)?,
@@ -176,7 +176,7 @@ impl Seen {
 
 /// Moves a part from pocket to nest that the pusher delivered before the cut-off: the part in the nest is this one,
 /// not one that slid from the fingers.
-fn pushed(turn: &mut Turn, seen: &Seen) {
+fn pushed(turn: &mut Turn, seen: &SensedParts) {
     let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
     if gone && !turn.ledger.holds(Place::NEST) && seen.nest {
         let golden = match turn.ledger.is_pocket_found() {
@@ -188,7 +188,12 @@ fn pushed(turn: &mut Turn, seen: &Seen) {
 }
 
 /// Brings the ledger in line with the sensors, with z up. Interrupts the parts in nest and gripper.
-pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, trouble: &mut Vec<Trouble>) {
+pub fn reconcile(
+    ledger: &mut Ledger,
+    seen: &SensedParts,
+    releasing: bool,
+    trouble: &mut Vec<Trouble>,
+) {
     trouble.extend(std::mem::take(&mut ledger.left).missing(seen));
     hand_over(ledger, seen);
     let places = [
@@ -218,10 +223,10 @@ pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, trouble: &mu
 }
 
 /// Moves parts in the ledger that advanced before the cut-off, were set down again, or never left the fingers.
-fn hand_over(ledger: &mut Ledger, seen: &Seen) {
+fn hand_over(ledger: &mut Ledger, seen: &SensedParts) {
     let may_be_held = ledger.fall().is_some_and(|it| !it.has_left);
     if may_be_held && seen.gripper {
-        ledger.keep_hold();
+        ledger.return_to_gripper();
     }
     let (nest, gripper) = (ledger.holds(Place::NEST), ledger.holds(Place::Gripper));
     if nest && !gripper && !seen.nest && seen.gripper {

@@ -122,7 +122,7 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
     let stay = Sort::OverBin(bin, since);
     let beam = table.beam(bin);
     // A beam that stays dark shows a full chute.
-    if turn.ledger.fall().is_some() || turn.seen(beam, true) {
+    if turn.ledger.fall().is_some() || turn.shows(beam, true) {
         return stay;
     }
     turn.rig.beam = Some(beam);
@@ -144,15 +144,15 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
 
 /// Returns over the nest once the fingers are open and empty.
 fn opened(turn: &mut Turn) -> Sort {
-    if turn.seen(DigitalIn::GripperPart, false) {
+    if turn.shows(DigitalIn::GripperPart, false) {
         turn.drive(Move::AxisTo(AxisStation::Nest));
         return Sort::Returning;
     }
     let falling = turn.ledger.fall();
     let sticks = falling.is_some_and(|it| it.seen.is_none() && turn.now.since(it.since) > STICKS);
-    if sticks && turn.seen(DigitalIn::GripperPart, true) {
-        turn.ledger.keep_hold();
-        turn.tell(Trouble::Sticks);
+    if sticks && turn.shows(DigitalIn::GripperPart, true) {
+        turn.ledger.return_to_gripper();
+        turn.report(Trouble::Sticks);
     }
     Sort::Opening
 }
@@ -160,7 +160,7 @@ fn opened(turn: &mut Turn) -> Sort {
 /// Watches the beam for the falling part, even while the sequence is stopped.
 pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     let now = turn.now;
-    let seen_empty = turn.seen(DigitalIn::GripperPart, false);
+    let seen_empty = turn.shows(DigitalIn::GripperPart, false);
     let Some(falling) = turn.ledger.fall_mut() else {
         return;
     };
@@ -181,7 +181,7 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
         }
         Some((_, 1)) => {}
         Some((_, several)) if several > 1 => {
-            turn.tell(Trouble::Beam(bin, several));
+            turn.report(Trouble::Beam(bin, several));
             landed(turn, bin);
         }
         Some(_) | None if now.since(since) > FALL => overdue(turn, bin),
@@ -195,11 +195,11 @@ fn overdue(turn: &mut Turn, bin: Bin) {
     let falling = turn.ledger.fall();
     if falling.is_some_and(|it| it.has_left) {
         turn.ledger.lose(Place::Falling);
-        turn.tell(Trouble::Beam(bin, 0));
-    } else if turn.seen(DigitalIn::GripperPart, true)
+        turn.report(Trouble::Beam(bin, 0));
+    } else if turn.shows(DigitalIn::GripperPart, true)
         && !turn.mechanism.is_moving(Move::GripperOpen)
     {
-        turn.ledger.keep_hold();
+        turn.ledger.return_to_gripper();
     }
 }
 

@@ -42,7 +42,7 @@ impl Turn<'_> {
     }
 
     /// Reports a trouble.
-    pub fn tell(&mut self, trouble: Trouble) {
+    pub fn report(&mut self, trouble: Trouble) {
         self.trouble.push(trouble);
     }
 
@@ -57,14 +57,14 @@ impl Turn<'_> {
     }
 
     /// Returns true when the sensor's value is valid and equals `state`.
-    pub fn seen(&self, point: impl Into<DigitalInput>, state: bool) -> bool {
+    pub fn shows(&self, point: impl Into<DigitalInput>, state: bool) -> bool {
         self.input(point) == Some(state)
     }
 
     /// Returns true when the pusher may push a part into the nest.
     pub fn nest_is_free(&self, nest: NestId) -> bool {
         !self.ledger.holds(Place::Nest(nest))
-            && self.seen(DigitalIn::NestPresent, false)
+            && self.shows(DigitalIn::NestPresent, false)
             && self.arrived(Move::ClampOpen)
             && self.arrived(Move::ProbesDown)
             && self.arrived(Move::SortUp)

@@ -51,7 +51,7 @@ pub struct Commands {
     pub beam: Option<DigitalInput>,
     /// True while an actuator deviates unexplained: the cycle then asks the modules whether one has restarted (restart
     /// check).
-    pub suspicious: bool,
+    pub restart_check: bool,
     /// True to set all outputs to their safe values immediately.
     pub safe: bool,
     /// True to discard failed writes and verify every module again.

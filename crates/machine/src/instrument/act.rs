@@ -143,7 +143,7 @@ pub struct Spent {
     pub conversion: Span,
     /// Time for contact events, on ramps and timed operations.
     pub ramp: Span,
-    /// Time of the same acts on a bus without delay: settling, conversions and events alone.
+    /// Time that the test would take on a bus without delay: settling, conversions and events alone.
     pub bound: Span,
 }
 
@@ -169,7 +169,7 @@ pub struct Runner {
     mark: RigTime,
     /// Time since the mark on a bus without delay.
     since_mark: Span,
-    /// Time of the last look at the awaited point that did not show it.
+    /// Time of the last read in which the awaited point was inactive.
     looked: Option<RigTime>,
     /// Earliest time at which the marked event may have happened.
     marked_from: RigTime,

@@ -2,8 +2,8 @@
 //!
 //! Holds analog samples and counts as read, the values commanded to sources and to the traced outputs of a kind, and
 //! words of inputs. A bit signal has one sample at each change and one at the last look before it, so that a poll of
-//! many milliseconds takes two samples. A test keeps its first [`MOST`] samples; a test of the default recipe has some
-//! 150.
+//! many milliseconds takes two samples. A test keeps its first [`MAX_SAMPLES`] samples; one of the default recipe has
+//! some 150.
 
 use crate::rig::point::{AnalogOutput, DigitalOutput, Quantity};
 use crate::rig::sample::{CountSample, Quality, Sample};
@@ -11,7 +11,7 @@ use crate::rig::wiring::Wiring;
 use units::{RigTime, Volt};
 
 /// Most samples of one test, all signals together.
-pub const MOST: usize = 1_000;
+pub const MAX_SAMPLES: usize = 1_000;
 
 /// A signal of the trace, as its point declares it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +70,7 @@ impl Signal {
 
 /// One sample of one signal.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
+pub struct TraceSample {
     /// The signal.
     pub signal: Signal,
     /// Time of the request; for an output the time of its answer.
@@ -82,19 +82,19 @@ pub struct Look {
 /// All samples of a test, in order of arrival.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trace {
-    looks: Vec<Look>,
+    samples: Vec<TraceSample>,
 }
 
 impl Trace {
     /// Returns the samples in order of arrival.
-    pub fn looks(&self) -> &[Look] {
-        &self.looks
+    pub fn samples(&self) -> &[TraceSample] {
+        &self.samples
     }
 
     /// Appends the trace of the next stage.
     pub fn append(&mut self, other: Self) {
-        for look in other.looks {
-            self.see(look.signal, look.at, look.value);
+        for sample in other.samples {
+            self.add(sample.signal, sample.at, sample.value);
         }
     }
 
@@ -102,7 +102,7 @@ impl Trace {
     pub(super) fn asked(&mut self, wiring: &Wiring, to: &[(AnalogOutput, Volt)], at: RigTime) {
         for (output, volts) in to {
             let signal = Signal::source(wiring.source_name(*output));
-            self.see(signal, at, volts.0);
+            self.add(signal, at, volts.0);
         }
     }
 
@@ -111,7 +111,7 @@ impl Trace {
         for (output, on) in to {
             let switch = wiring.switch(*output);
             if switch.traced {
-                self.see(Signal::bits(switch.name), at, f64::from(u8::from(*on)));
+                self.add(Signal::bits(switch.name), at, f64::from(u8::from(*on)));
             }
         }
     }
@@ -120,7 +120,7 @@ impl Trace {
     pub(super) fn word(&mut self, name: &'static str, states: &[bool], at: RigTime) {
         let bits = states.iter().rev();
         let word = bits.fold(0_u32, |word, bit| word << 1 | u32::from(*bit));
-        self.see(Signal::bits(name), at, f64::from(word));
+        self.add(Signal::bits(name), at, f64::from(word));
     }
 
     /// Adds one analog sample; a masked-out channel has none.
@@ -129,23 +129,23 @@ impl Trace {
             return;
         }
         let value = sample.good().unwrap_or(f64::NAN);
-        self.see(Signal::input(quantity), sample.origin.at, value);
+        self.add(Signal::input(quantity), sample.origin.at, value);
     }
 
     /// Adds a count, unless the trace has it already.
     pub(super) fn count(&mut self, name: &'static str, count: &CountSample) {
         let (signal, at) = (Signal::count(name), count.origin.at);
-        let mut before = self.looks.iter().rev();
-        let is_known = before.any(|look| look.signal == signal && look.at == at);
+        let mut before = self.samples.iter().rev();
+        let is_known = before.any(|it| it.signal == signal && it.at == at);
         if !is_known {
-            self.see(signal, at, f64::from(count.count));
+            self.add(signal, at, f64::from(count.count));
         }
     }
 
-    fn see(&mut self, signal: Signal, at: RigTime, value: f64) {
+    fn add(&mut self, signal: Signal, at: RigTime, value: f64) {
         if signal.stands {
-            let looks = self.looks.iter_mut().rev();
-            let mut before = looks.filter(|look| look.signal == signal);
+            let samples = self.samples.iter_mut().rev();
+            let mut before = samples.filter(|it| it.signal == signal);
             if let (Some(last), Some(earlier)) = (before.next(), before.next())
                 && last.value == value
                 && earlier.value == value
@@ -154,8 +154,8 @@ impl Trace {
                 return;
             }
         }
-        if self.looks.len() < MOST {
-            self.looks.push(Look { signal, at, value });
+        if self.samples.len() < MAX_SAMPLES {
+            self.samples.push(TraceSample { signal, at, value });
         }
     }
 }

@@ -14,7 +14,7 @@
 //! | `~AA4`, modules with outputs | the safe value |
 //! | `$AA5`, not the 7080 | anything: reading it clears the flag, so that a later reset shows |
 
-use super::judge::Judge;
+use super::comparison::Comparison;
 use super::model::Terminals;
 use super::wiring::{Module, ModuleId, Wiring};
 use dcon::{Address, Command, Common, Digital, Reply, Stored};
@@ -91,23 +91,25 @@ fn read_safe(module: &Module) -> Command {
 
 /// Compares an answer with the wiring; returns the difference, or `None` when they agree.
 pub fn judge(wiring: &Wiring, check: &Check, reply: &Reply) -> Option<Mismatch> {
-    let judge = Judge {
+    let comparison = Comparison {
         wiring,
         module: wiring.module(check.module),
     };
     match reply {
-        Reply::Config { config, .. } => judge.config(*config),
-        Reply::Text(name) => judge.name(name.as_str()),
-        Reply::Byte(byte) if check.command == dcon::AnalogIn::ReadMask.to(judge.module.address) => {
-            judge.mask(*byte)
+        Reply::Config { config, .. } => comparison.config(*config),
+        Reply::Text(name) => comparison.name(name.as_str()),
+        Reply::Byte(byte)
+            if check.command == dcon::AnalogIn::ReadMask.to(comparison.module.address) =>
+        {
+            comparison.mask(*byte)
         }
-        Reply::Byte(status) => judge.status(*status),
+        Reply::Byte(status) => comparison.status(*status),
         Reply::Watchdog {
             enabled,
             timeout_tenths,
-        } => judge.watchdog(*enabled, *timeout_tenths),
-        Reply::Level(level) => judge.safe_level(*level),
-        Reply::Bits(bits) => judge.safe_bits(bits.word()),
+        } => comparison.watchdog(*enabled, *timeout_tenths),
+        Reply::Level(level) => comparison.safe_level(*level),
+        Reply::Bits(bits) => comparison.safe_bits(bits.word()),
         Reply::Flag(_)
         | Reply::Sent
         | Reply::Accepted

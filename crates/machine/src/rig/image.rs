@@ -17,7 +17,7 @@ use units::{RigTime, Span};
 pub enum Unexpected {
     /// The wiring has no module at this address.
     #[error("line {line}: an answer from address {address}, where no module is wired")]
-    Stranger {
+    UnknownAddress {
         /// Name of the line.
         line: String,
         /// The requested address.
@@ -90,7 +90,7 @@ impl Image {
             return Ok(());
         };
         let Some(module) = self.wiring.at(line, address) else {
-            return Err(Unexpected::Stranger {
+            return Err(Unexpected::UnknownAddress {
                 line: self.wiring.line(line).name.clone(),
                 address,
             });

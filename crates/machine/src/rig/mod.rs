@@ -15,11 +15,11 @@
 pub mod axis;
 pub mod bin;
 pub mod commission;
+mod comparison;
 mod declared;
 pub mod drive;
 pub mod fault;
 pub mod image;
-mod judge;
 pub mod level;
 pub mod model;
 mod modules;

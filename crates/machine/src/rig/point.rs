@@ -18,11 +18,11 @@ macro_rules! points {
         }
 
         impl $kind {
-            /// Every point of this kind, in the order of declaration.
+            /// All points, in the order of declaration.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
             /// Number of points; [`Self::index`] is below it.
             pub const COUNT: usize = Self::ALL.len();
-            /// Every name, in the order of [`Self::ALL`].
+            /// All names, in the order of [`Self::ALL`].
             pub const NAMES: &'static [&'static str] = &[$($name),+];
 
             /// Returns the name in `config/rig.toml`.
@@ -157,7 +157,7 @@ macro_rules! handles {
         impl $handle {
             /// Makes the handle of a table index.
             pub(super) fn at(index: usize) -> Self {
-                assert!(index < usize::from(u16::MAX), "no rig has so many points");
+                assert!(index < usize::from(u16::MAX), "more points than an index can count");
                 Self(index as u16)
             }
 

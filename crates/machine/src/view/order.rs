@@ -75,7 +75,7 @@ pub struct By {
 
 /// An order with its outcome, for the audit trail.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Answered {
+pub struct AnsweredOrder {
     /// The order.
     pub order: Order,
     /// The person who gave it.
@@ -86,9 +86,9 @@ pub struct Answered {
 
 /// Reason why the station refuses an order.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct NotTaken {
-    /// English.
+pub struct OrderRefusal {
+    /// Text in English.
     pub en: String,
-    /// Chinese.
+    /// Text in Chinese.
     pub zh: String,
 }

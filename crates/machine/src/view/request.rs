@@ -1,10 +1,10 @@
 //! An order on its way to the station, with the channel for its answer.
 
-use super::order::{By, NotTaken, Order};
+use super::order::{By, Order, OrderRefusal};
 use std::fmt;
 
 /// Outcome of an order.
-pub type Answer = Result<(), NotTaken>;
+pub type Answer = Result<(), OrderRefusal>;
 
 /// An order on its way to the station.
 pub struct OrderRequest {

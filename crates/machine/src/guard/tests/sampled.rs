@@ -96,7 +96,7 @@ fn too_near(settings: &GuardSettings, all: &[Boxed], actuator: Actuator) -> Opti
 }
 
 #[test]
-fn a_cleared_motion_is_clear_at_every_pose_that_is_looked_at() {
+fn a_cleared_motion_is_clear_at_every_sampled_pose() {
     let settings = scene_settings();
     let bodies = boxed(&settings);
     let mut guard = guard();

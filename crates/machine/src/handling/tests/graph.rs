@@ -84,20 +84,20 @@ fn truths<const N: usize>() -> impl Iterator<Item = [bool; N]> {
 
 /// Sensors of an actuator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Seen {
+enum SensedEnd {
     Rest,
     Far,
     Between,
 }
 
-const SEEN: [Seen; 3] = [Seen::Rest, Seen::Far, Seen::Between];
+const SEEN: [SensedEnd; 3] = [SensedEnd::Rest, SensedEnd::Far, SensedEnd::Between];
 
 /// Sets the sensors of an actuator.
-fn show(shop: &mut Shop, rest: &[DigitalIn], far: &[DigitalIn], seen: Seen) {
+fn show(shop: &mut Shop, rest: &[DigitalIn], far: &[DigitalIn], seen: SensedEnd) {
     for point in rest {
-        shop.set(*point, seen == Seen::Rest);
+        shop.set(*point, seen == SensedEnd::Rest);
     }
     for point in far {
-        shop.set(*point, seen == Seen::Far);
+        shop.set(*point, seen == SensedEnd::Far);
     }
 }

@@ -118,7 +118,7 @@ fn an_empty_nest_asks_for_nothing() {
 }
 
 #[test]
-fn the_test_begins_with_the_pins_once_the_probes_are_up() {
+fn with_probes_up_the_test_begins_with_the_pins() {
     let mut nest = Nest::loaded(None);
     let state = nest.testing();
     assert!(matches!(state, NestState::Testing(_)));
@@ -128,7 +128,7 @@ fn the_test_begins_with_the_pins_once_the_probes_are_up() {
 }
 
 #[test]
-fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
+fn a_failed_job_sends_the_part_to_retest() {
     let mut nest = Nest::loaded(None);
     let state = nest.judged();
     assert!(matches!(state, NestState::Judged));
@@ -144,8 +144,7 @@ fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
 }
 
 #[test]
-fn a_golden_part_that_could_not_be_judged_is_tested_three_times_and_ends_in_retest_under_its_serial()
- {
+fn a_void_reference_part_is_tested_three_times() {
     let mut nest = Nest::loaded(Some("G-12-1".into()));
     let mut state = nest.judged();
     for tests in 1..3 {
@@ -161,7 +160,7 @@ fn a_golden_part_that_could_not_be_judged_is_tested_three_times_and_ends_in_rete
 }
 
 #[test]
-fn a_judged_part_stays_clamped_until_the_gripper_has_it() {
+fn the_nest_holds_a_judged_part_until_gripped() {
     let mut nest = Nest::loaded(None);
     let state = nest.judged();
     let state = nest.step(state, None);
@@ -195,7 +194,7 @@ fn lift(nest: &mut Nest) -> NestState {
 }
 
 #[test]
-fn the_part_changes_hands_when_z_is_up_and_the_nest_is_seen_empty() {
+fn the_gripper_owns_the_part_once_z_is_up() {
     let mut nest = Nest::loaded(None);
     let state = lift(&mut nest);
     let state = nest.step(state, None);
@@ -210,7 +209,7 @@ fn the_part_changes_hands_when_z_is_up_and_the_nest_is_seen_empty() {
 }
 
 #[test]
-fn the_first_part_has_no_cycle_and_the_next_counts_from_it() {
+fn the_cycle_time_begins_with_the_second_part() {
     for (before_ms, cycle) in [(None, None), (Some(500), Some(0.5))] {
         let mut nest = Nest::loaded(None);
         let state = lift(&mut nest);
@@ -225,7 +224,7 @@ fn the_first_part_has_no_cycle_and_the_next_counts_from_it() {
 }
 
 #[test]
-fn a_part_that_was_interrupted_is_clamped_and_not_tested() {
+fn an_interrupted_part_is_clamped_and_not_tested() {
     let mut nest = Nest::loaded(None);
     let part = nest.shop.ledger.part_mut(Place::NEST).unwrap();
     part.interrupted = Some("emergency_stop".into());

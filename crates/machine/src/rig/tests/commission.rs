@@ -38,7 +38,7 @@ fn a_module_as_wired_passes() {
 }
 
 #[test]
-fn a_module_that_is_not_as_wired_is_named_with_line_and_address() {
+fn a_mismatch_names_line_and_address() {
     for (asked, reply, message) in [
         (
             "$052",

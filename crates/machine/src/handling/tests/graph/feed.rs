@@ -94,94 +94,78 @@ fn the_feed_is_the_drawing() {
 
 /// From, to, and the test of this edge.
 const FACTS: &[(&str, &str, &str)] = &[
-    (
-        "Empty",
-        "Releasing1",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
-    ),
+    ("Empty", "Releasing1", "a_part_gets_its_number_in_the_nest"),
     (
         "Releasing1",
         "Holding",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
+        "a_part_gets_its_number_in_the_nest",
     ),
-    (
-        "Holding",
-        "Ready",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
-    ),
+    ("Holding", "Ready", "a_part_gets_its_number_in_the_nest"),
     (
         "Ready",
         "Pushing",
-        "the_pusher_starts_only_into_a_nest_that_is_free_in_every_respect",
+        "the_pusher_starts_only_into_a_free_nest",
     ),
     (
         "Pushing",
         "Retracting",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
+        "a_part_gets_its_number_in_the_nest",
     ),
     (
         "Pushing",
         "Pushing",
         "a_pusher_at_an_empty_nest_is_an_alarm",
     ),
-    (
-        "Retracting",
-        "Empty",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
-    ),
-    (
-        "Empty",
-        "Ready",
-        "a_part_left_in_the_pocket_is_fed_before_another_is_let_in",
-    ),
+    ("Retracting", "Empty", "a_part_gets_its_number_in_the_nest"),
+    ("Empty", "Ready", "a_part_in_the_pocket_is_fed_first"),
     (
         "Releasing1",
         "Closing1",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Closing1",
         "Releasing2",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Releasing2",
         "Closing2",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Closing2",
         "Releasing3",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Releasing3",
         "Closing3",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Closing3",
         "Empty",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Releasing2",
         "Holding",
-        "a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls",
+        "a_late_or_unwanted_part_ends_the_attempts",
     ),
     (
         "Releasing3",
         "Holding",
-        "a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls",
+        "a_late_or_unwanted_part_ends_the_attempts",
     ),
     (
         "Closing1",
         "Empty",
-        "a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls",
+        "a_late_or_unwanted_part_ends_the_attempts",
     ),
     (
         "Closing2",
         "Empty",
-        "a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls",
+        "a_late_or_unwanted_part_ends_the_attempts",
     ),
 ];

@@ -157,46 +157,38 @@ const FACTS: &[(&str, &str, &str)] = &[
     (
         "Empty",
         "Clamping",
-        "the_test_begins_with_the_pins_once_the_probes_are_up",
+        "with_probes_up_the_test_begins_with_the_pins",
     ),
     (
         "Clamping",
         "Probing",
-        "the_test_begins_with_the_pins_once_the_probes_are_up",
+        "with_probes_up_the_test_begins_with_the_pins",
     ),
     (
         "Probing",
         "Testing",
-        "the_test_begins_with_the_pins_once_the_probes_are_up",
+        "with_probes_up_the_test_begins_with_the_pins",
     ),
-    (
-        "Testing",
-        "Judged",
-        "a_failed_job_voids_the_part_under_test_and_sends_it_to_retest",
-    ),
+    ("Testing", "Judged", "a_failed_job_sends_the_part_to_retest"),
     (
         "Clamping",
         "Judged",
-        "a_part_that_was_interrupted_is_clamped_and_not_tested",
+        "an_interrupted_part_is_clamped_and_not_tested",
     ),
     (
         "Judged",
         "Gripping",
-        "a_judged_part_stays_clamped_until_the_gripper_has_it",
+        "the_nest_holds_a_judged_part_until_gripped",
     ),
     (
         "Gripping",
         "Unclamping",
-        "a_judged_part_stays_clamped_until_the_gripper_has_it",
+        "the_nest_holds_a_judged_part_until_gripped",
     ),
     (
         "Unclamping",
         "Lifting",
-        "a_judged_part_stays_clamped_until_the_gripper_has_it",
+        "the_nest_holds_a_judged_part_until_gripped",
     ),
-    (
-        "Lifting",
-        "Empty",
-        "the_part_changes_hands_when_z_is_up_and_the_nest_is_seen_empty",
-    ),
+    ("Lifting", "Empty", "the_gripper_owns_the_part_once_z_is_up"),
 ];

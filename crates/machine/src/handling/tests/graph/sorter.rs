@@ -1,6 +1,6 @@
 //! The graph of the sorter: nine states, eleven inputs, and the fall.
 
-use super::{Graph, SEEN, Seen, show, truths};
+use super::{Graph, SEEN, SensedEnd, show, truths};
 use crate::handling::ledger::Ledger;
 use crate::handling::moves::Move;
 use crate::handling::place::{NestId, Place};
@@ -86,7 +86,7 @@ fn the_sorter_is_the_drawing() {
                 show(&mut shop, &[DigitalIn::SortZUp], &[DigitalIn::SortZDown], z);
                 shop.set(DigitalIn::AxisInPosition, axis);
                 shop.set(DigitalIn::PusherRetracted, pusher);
-                shop.set(DigitalIn::GripperOpen, gripper == Seen::Rest);
+                shop.set(DigitalIn::GripperOpen, gripper == SensedEnd::Rest);
                 shop.set(DigitalIn::GripperPart, part);
                 shop.set(table.beam(Bin::PASS), dark);
                 shop.after(1);
@@ -122,49 +122,33 @@ fn the_sorter_is_the_drawing() {
 
 /// From, to, and the test of this edge.
 const FACTS: &[(&str, &str, &str)] = &[
-    (
-        "Returning",
-        "OverNest",
-        "z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open",
-    ),
-    (
-        "OverNest",
-        "Lowering",
-        "z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open",
-    ),
+    ("Returning", "OverNest", "z_comes_down_only_during_a_test"),
+    ("OverNest", "Lowering", "z_comes_down_only_during_a_test"),
     (
         "Lowering",
         "AtPart",
-        "the_fingers_stand_around_the_part_once_z_is_down",
+        "the_fingers_surround_the_part_once_z_is_down",
     ),
     (
         "Loaded",
         "Carrying",
-        "a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest",
+        "an_unjudged_part_is_carried_to_retest",
     ),
     (
         "Carrying",
         "OverBin",
-        "a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest",
+        "an_unjudged_part_is_carried_to_retest",
     ),
-    (
-        "OverBin",
-        "LettingGo",
-        "a_part_is_let_go_only_when_its_record_is_durable",
-    ),
+    ("OverBin", "LettingGo", "a_release_needs_a_durable_record"),
     (
         "LettingGo",
         "Opening",
-        "a_part_is_in_the_fingers_until_their_opening_is_driven",
+        "the_fingers_own_the_part_until_they_open",
     ),
     (
         "Opening",
         "Returning",
-        "open_fingers_go_back_when_they_are_seen_empty",
+        "open_fingers_return_only_when_empty",
     ),
-    (
-        "Opening",
-        "Opening",
-        "a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told",
-    ),
+    ("Opening", "Opening", "a_sticking_part_is_reported_and_kept"),
 ];

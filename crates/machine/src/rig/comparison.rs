@@ -8,12 +8,12 @@ use super::wiring::{Module, Wiring};
 use dcon::{BaudCode, Common, Config, DataFormat, FormatByte, Level};
 
 /// The wiring of one module, for comparison with its answers.
-pub(super) struct Judge<'a> {
+pub(super) struct Comparison<'a> {
     pub(super) wiring: &'a Wiring,
     pub(super) module: &'a Module,
 }
 
-impl Judge<'_> {
+impl Comparison<'_> {
     fn mismatch(
         &self,
         what: &'static str,
