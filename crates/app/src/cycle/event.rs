@@ -2,7 +2,7 @@
 
 use machine::dut::Calibration;
 use machine::handling::inside::Inside;
-use machine::handling::wants::{Interrupted, Judged, Landed, Left};
+use machine::handling::wants::{Interrupted, Judged, Landed, NestExit};
 use machine::handling::wear::Uses;
 use machine::station::annunciator::Standing;
 use machine::station::packml;
@@ -21,7 +21,7 @@ pub enum Event {
     /// Its beam saw it.
     Landed(Landed),
     /// It left the nest.
-    Left(Left),
+    Left(NestExit),
     /// A judged part goes to retest all the same.
     Interrupted(Interrupted),
     /// An alarm was raised.

@@ -65,7 +65,7 @@ enum Held {
     Numbered(Part),
 }
 
-/// Places and counts.
+/// The part in each place, and the counts of parts.
 #[derive(Debug, Clone, Default)]
 pub struct Ledger {
     places: BTreeMap<Place, Held>,

@@ -194,7 +194,7 @@ impl Mechanism {
         let key = movement.actuator_key();
         self.underway
             .retain(|underway| underway.movement.actuator_key() != key);
-        self.watch.left(key);
+        self.watch.remove(key);
         self.uses.probe_touches += u64::from(movement == Move::ProbesUp);
         self.uses.jaw_closings += u64::from(movement == Move::ClampClose);
         match self
@@ -257,7 +257,7 @@ impl Mechanism {
             Some(again) => found.motions.push(again.movement),
             None => {
                 self.again.retain(|again| again.movement != movement);
-                self.watch.stands(movement);
+                self.watch.add(movement);
             }
         }
     }

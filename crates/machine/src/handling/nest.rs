@@ -12,7 +12,7 @@ use super::place::{NestId, Place};
 use super::sort::Sort;
 use super::trouble::Trouble;
 use super::turn::Turn;
-use super::wants::{Judged, Left, NestDone, NestJob};
+use super::wants::{Judged, NestDone, NestExit, NestJob};
 use crate::dut::Device;
 use crate::dut::device::TestOrder;
 use crate::dut::procedure::{Procedure, Progress};
@@ -220,7 +220,7 @@ fn repeat_reason(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
     let Kind::Golden(serial) = &turn.ledger.part(Place::Nest(id))?.kind else {
         return None;
     };
-    // While overshoots are being learned, a complete test proves nothing either, and nothing more is needed.
+    // A complete test is inconclusive while overshoots are learned, but needs no repetition.
     let why = test.why_void()?;
     (test.number() < GOLDEN_TESTS).then(|| Trouble::GoldenRepeated(serial.clone(), why.to_string()))
 }
@@ -253,7 +253,7 @@ fn lifted(id: NestId, turn: &mut Turn, context: NestContext) -> NestState {
         let cycle = context
             .last_left
             .map(|before| Second(turn.now.since(before).as_seconds()));
-        turn.parts.left.push(Left {
+        turn.parts.left.push(NestExit {
             ordinal: part.ordinal,
             cycle,
         });

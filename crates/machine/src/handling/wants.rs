@@ -68,7 +68,7 @@ pub struct PartEvents {
     /// Judged parts interrupted on their way to the bin.
     pub interrupted: Vec<Interrupted>,
     /// Parts that left a nest in this turn.
-    pub left: Vec<Left>,
+    pub left: Vec<NestExit>,
     /// Parts confirmed in this turn.
     pub landed: Vec<Landed>,
 }
@@ -123,7 +123,7 @@ pub struct Landed {
 
 /// A part that has left the nest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Left {
+pub struct NestExit {
     /// Ordinal of the part.
     pub ordinal: u64,
     /// Time since the previous part left; `None` for the first.

@@ -24,14 +24,14 @@ struct Stand {
 pub struct Watch {
     stands: Vec<Stand>,
     bounces: u64,
-    /// Time of the axis drive's reset; its earlier alarm is being handled already.
+    /// Time of the axis drive's reset; an alarm before it is already being handled.
     drive_reset: Option<RigTime>,
 }
 
 impl Watch {
     /// Adds an actuator that has reached the end of `movement`.
-    pub fn stands(&mut self, movement: Move) {
-        self.left(movement.actuator_key());
+    pub fn add(&mut self, movement: Move) {
+        self.remove(movement.actuator_key());
         assert!(
             self.stands.len() < 7,
             "more resting actuators than actuators"
@@ -44,7 +44,7 @@ impl Watch {
     }
 
     /// Removes an actuator that begins a motion.
-    pub fn left(&mut self, key: &str) {
+    pub fn remove(&mut self, key: &str) {
         self.stands
             .retain(|stand| stand.movement.actuator_key() != key);
     }

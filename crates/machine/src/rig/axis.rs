@@ -115,7 +115,7 @@ impl AxisTable {
         bins: &BTreeMap<String, BinSettings>,
         input: impl Fn(&str) -> Option<DigitalInput>,
     ) -> Result<Self, Fault> {
-        let mut taken = Taken::default();
+        let mut taken = PointsInUse::default();
         let nest = taken.station("nest", axis)?;
         let park = taken.station("park", axis)?;
         for needed in [Bin::PASS, Bin::RETEST] {
@@ -135,12 +135,12 @@ impl AxisTable {
 
 /// Numbers, positions and beams in use, each with its key.
 #[derive(Default)]
-struct Taken {
+struct PointsInUse {
     points: Vec<(AxisPoint, String)>,
     beams: Vec<(DigitalInput, String)>,
 }
 
-impl Taken {
+impl PointsInUse {
     fn station(
         &mut self,
         name: &str,

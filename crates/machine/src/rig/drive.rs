@@ -78,7 +78,7 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Makes outputs that are all at their safe value and due.
+    /// Makes outputs at their safe values, all due to be written.
     pub fn new(wiring: Arc<Wiring>) -> Self {
         let safe = |module| {
             Some(Output {

@@ -44,7 +44,7 @@ impl Wiring {
         let declared = Declared { settings, fixtures };
         let quantities = declared.quantities();
         check_units(&settings.analog_in, &quantities)?;
-        let mut terminals = TerminalBook {
+        let mut terminals = TerminalsInUse {
             modules: &modules,
             taken: BTreeMap::new(),
         };
@@ -122,12 +122,12 @@ struct Place {
 }
 
 /// Terminals in use, each with the key of its point.
-struct TerminalBook<'a> {
+struct TerminalsInUse<'a> {
     modules: &'a [Module],
     taken: BTreeMap<(usize, Terminals, u8), String>,
 }
 
-impl TerminalBook<'_> {
+impl TerminalsInUse<'_> {
     /// Reserves the terminal of `key`, or returns why it cannot.
     fn take(
         &mut self,

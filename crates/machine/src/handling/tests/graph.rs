@@ -24,7 +24,7 @@ struct Graph {
 }
 
 impl Graph {
-    /// One step from a state to another, with its commands.
+    /// Adds a step from one state to another, with its commands.
     fn add(&mut self, from: &str, to: &str, asked: &Asked) {
         self.steps += 1;
         let motions = asked.rig.motions.iter().map(|movement| named(*movement));
@@ -36,19 +36,19 @@ impl Graph {
         }
     }
 
-    /// Compares with the drawing, and checks that every combination was tried.
-    fn is(&self, name: &str, drawn: &str, steps: u64) {
+    /// Compares the transitions with the drawing, and checks that every combination was tried.
+    fn assert_drawn(&self, name: &str, drawn: &str, steps: u64) {
         let edges: String = self.edges.iter().map(String::as_str).collect();
         let dot = format!("digraph {name} {{\n{edges}}}\n");
         assert_eq!(self.steps, steps, "{name}: combinations tried");
         assert!(
             dot == drawn,
-            "{name}.dot is now another drawing; read the difference and keep it:\n{dot}"
+            "{name}.dot differs from the drawing; review the difference and update the file:\n{dot}"
         );
     }
 
     /// Checks that each edge names a test, and that this folder has that test.
-    fn is_told_by(&self, facts: &[(&str, &str, &str)], tests: &str) {
+    fn assert_tests(&self, facts: &[(&str, &str, &str)], tests: &str) {
         for (from, to, fact) in facts {
             let edge = format!("  {from} -> {to} [");
             assert!(

@@ -88,8 +88,8 @@ fn the_feed_is_the_drawing() {
             }
         }
     }
-    graph.is("feed", include_str!("../golden/feed.dot"), 64 * 3 * 11 * 16);
-    graph.is_told_by(FACTS, include_str!("../feed.rs"));
+    graph.assert_drawn("feed", include_str!("../golden/feed.dot"), 64 * 3 * 11 * 16);
+    graph.assert_tests(FACTS, include_str!("../feed.rs"));
 }
 
 /// From, to, and the test of this edge.

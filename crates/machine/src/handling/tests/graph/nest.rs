@@ -148,8 +148,8 @@ fn the_nest_is_the_drawing() {
             }
         }
     }
-    graph.is("nest", include_str!("../golden/nest.dot"), 81 * 4 * 9 * 32);
-    graph.is_told_by(FACTS, include_str!("../nest.rs"));
+    graph.assert_drawn("nest", include_str!("../golden/nest.dot"), 81 * 4 * 9 * 32);
+    graph.assert_tests(FACTS, include_str!("../nest.rs"));
 }
 
 /// From, to, and the test of this edge.

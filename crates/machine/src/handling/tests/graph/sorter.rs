@@ -112,12 +112,12 @@ fn the_sorter_is_the_drawing() {
             }
         }
     }
-    graph.is(
+    graph.assert_drawn(
         "sorter",
         include_str!("../golden/sorter.dot"),
         9 * 9 * 16 * 64 + 9 * 16 * 32,
     );
-    graph.is_told_by(FACTS, include_str!("../sort.rs"));
+    graph.assert_tests(FACTS, include_str!("../sort.rs"));
 }
 
 /// From, to, and the test of this edge.
