@@ -173,7 +173,7 @@ fn a_part_missing_from_its_socket_is_lost() {
 }
 
 #[test]
-#[should_panic(expected = "unloaded before it was judged")]
+#[should_panic(expected = "unloaded before its verdict")]
 fn no_part_leaves_its_socket_unjudged() {
     filled(2).unload_socket(1);
 }
