@@ -1,4 +1,4 @@
-//! The remedy for a refused motion: found by trying, so that it holds.
+//! The remedy for a refused motion, found by trial: the guard clears the motion after it.
 //!
 //! Tries each change alone, in this order: each carrier of the blocker or the mover to rest, each other actuator to
 //! rest, the same to their other ends, each part removed. The first change that clears the motion is the advice.

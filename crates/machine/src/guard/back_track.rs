@@ -1,6 +1,6 @@
 //! The last clear pose of a refused stroke, at which it may stop or to which it may return.
 //!
-//! Found by trying, as the advice is: the guard clears every pose offered here. A pose that just reaches the margin is
+//! Found by trial, as the remedy is: the guard clears every pose offered here. A pose that just reaches the margin is
 //! not clear, so the offer lies a little before it.
 
 use super::judge::judge;

@@ -51,7 +51,7 @@ struct Again {
 /// Results of an update.
 #[derive(Debug, Default)]
 pub struct MechanismUpdate {
-    /// Trouble.
+    /// Troubles found.
     pub trouble: Vec<Trouble>,
     /// Motions of a repeated stroke.
     pub motions: Vec<Move>,
