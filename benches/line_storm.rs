@@ -74,7 +74,7 @@ fn expected(n: f64, faults: &[&str]) {
     let (_, q) = passing(AnalogIn::ReadAll(FORM), 32);
     let c = chance(faults, "clash");
     let calm: f64 = SEEN.iter().map(|name| 1.0 - chance(faults, name)).product();
-    let in_sight = calm.powi(i32::from(bus::PROBATION));
+    let in_sight = calm.powi(i32::from(bus::PROBATION_ANSWERS));
     println!("two modules at one address, two characters apart at most:");
     println!(
         "  p, share that passes for another value {p:.2e} (in step 1/41, 8 bits 1/256: 9.5e-5)"

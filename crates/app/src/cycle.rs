@@ -133,7 +133,7 @@ impl Cycle {
             patience: Patience::new(&wiring),
             wiring,
             pace,
-            inside: station.ledger().to_look_for(),
+            inside: station.ledger().parts_to_find(),
             station,
             guard,
             links,
@@ -367,7 +367,7 @@ impl Cycle {
                 self.bus_alarm.get_or_insert(Alarm::bus(&needs.to_string()));
             }
         }
-        self.traffic.suspect(wants.rig.suspicious);
+        self.traffic.suspect(wants.rig.restart_check);
         self.traffic
             .watch_beam(wants.rig.beam.map(|beam| self.wiring.read_events(beam)));
         let is_job = wants.rig.job.is_some();

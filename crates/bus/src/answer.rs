@@ -1,117 +1,116 @@
-//! What goes into a line and what comes out of it.
+//! The request that a line takes, the answer that it returns, and the reasons why there is no reply.
 
 use super::PortError;
 use dcon::{Command, Reply, ReplyError};
 use thiserror::Error;
 use units::{RigTime, Span};
 
-/// One command to be carried out.
+/// A command for the line to carry out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {
-    /// Comes back in the answer.
+    /// Number chosen by the caller; the answer repeats it.
     pub ticket: u64,
-    /// What to send.
+    /// The command to send.
     pub command: Command,
-    /// Most tries, the first included; commands that change something have one whatever this says.
+    /// Most tries, the first included, at least 1. A command that changes something is sent once, whatever this says.
     pub tries: u8,
 }
 
-/// What became of a request.
+/// The outcome of a request.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// Of the request.
+    /// Ticket of the request.
     pub ticket: u64,
-    /// Of the request.
+    /// Command of the request.
     pub command: Command,
-    /// The reply, or why there is none.
+    /// The decoded reply, or why there is none.
     pub outcome: Result<Reply, LineError>,
-    /// The characters heard, CR left off; empty when none were.
+    /// Characters received, without CR; empty when none came.
     pub raw: String,
-    /// When the first character of the last try was sent.
+    /// Time at which the first character of the last try was sent.
     pub asked_at: RigTime,
-    /// When the reply was whole, or given up.
+    /// Time at which the reply was complete, or the line gave it up.
     pub answered_at: RigTime,
-    /// At least 1.
+    /// Number of tries, at least 1.
     pub tries_used: u8,
 }
 
-/// Why a transaction brought no reply that can be believed. Each says line, module, command and cause in one sentence:
-/// alarms and screens show nothing else.
+/// Why a transaction brought no valid reply. Each message names line, module, command and cause in one sentence,
+/// because alarms and pages show only the message.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum LineError {
-    /// Nothing, or no end, in time.
+    /// No complete reply arrived in time.
     #[error("line {line}, {command}: no whole reply within {} ms", limit.0 as f64 / 1000.0)]
     TimeOut {
         /// Name of the line.
         line: String,
-        /// What was asked.
+        /// Command that was sent.
         command: Command,
-        /// Time that the reply had.
+        /// Time allowed for the reply.
         limit: Span,
     },
-    /// The module declined, or what came is no reply to this command.
+    /// The module declined, or the bytes are no reply to this command.
     #[error("line {line}, {command}: {reason}")]
     Reply {
         /// Name of the line.
         line: String,
-        /// What was asked.
+        /// Command that was sent.
         command: Command,
-        /// What is the matter with it.
+        /// Defect of the reply, or the module's refusal.
         reason: ReplyError,
     },
-    /// The request came back: the converter does not mute its receiver while it sends.
-    #[error("line {line}, {command}: the line echoes the request")]
+    /// The line received its own request: the converter does not mute its receiver while it sends.
+    #[error("line {line}, {command}: the line received its own request (echo)")]
     Echo {
         /// Name of the line.
         line: String,
-        /// What was asked.
+        /// Command that was sent.
         command: Command,
     },
-    /// Characters followed the reply: two modules at one address, or a late neighbour. Neither is believed.
-    #[error("line {line}, {command}: more characters behind the reply")]
+    /// Characters followed the reply: two modules share the address, or another module replied late. The line rejects
+    /// both.
+    #[error("line {line}, {command}: more characters follow the reply")]
     SecondReply {
         /// Name of the line.
         line: String,
-        /// What was asked.
+        /// Command that was sent.
         command: Command,
     },
-    /// A module that was given up may have said this; the one that was asked did not confirm it.
-    #[error(
-        "line {line}, {command}: not believed, a late reply of another question may be on the line"
-    )]
+    /// An earlier, timed-out request may have caused this reply, and the module did not confirm it.
+    #[error("line {line}, {command}: reply rejected, it may be a late reply to an earlier request")]
     OutOfStep {
-        /// Name of the line.
+        /// Command that was sent.
         line: String,
         /// What was asked.
         command: Command,
     },
-    /// A reply of this address was damaged before; asked again, the module said something else each time. Two modules at
-    /// one address, a disturbed line, or a quantity that changes faster than it is asked.
+    /// After a damaged reply from this address, the repeated reads disagree: two modules share the address, the line
+    /// is disturbed, or the quantity changes faster than the line reads it.
     #[error(
-        "line {line}, {command}: not believed, another value when asked again after damaged replies"
+        "line {line}, {command}: reply rejected, repeated reads disagree after damaged replies"
     )]
     Contradicted {
-        /// Name of the line.
+        /// Command that was sent.
         line: String,
         /// What was asked.
         command: Command,
     },
-    /// Somebody talks without being asked, and does not stop. Nothing was sent.
-    #[error("line {line}, {command}: not sent, the line does not fall silent")]
+    /// A module sends unasked and does not stop; the line sent nothing.
+    #[error("line {line}, {command}: not sent, the line never falls silent")]
     NeverSilent {
         /// Name of the line.
         line: String,
-        /// What should have been asked.
+        /// Command that was not sent.
         command: Command,
     },
-    /// There is no port.
+    /// The port is lost or never opened.
     #[error("line {line}, {command}: port lost: {reason}")]
     PortLost {
         /// Name of the line.
         line: String,
-        /// What was, or should have been, asked.
+        /// Command that was sent, or was to be sent.
         command: Command,
-        /// Why it cannot be used; names its path.
+        /// Why the port is unusable; names its path.
         reason: PortError,
     },
 }

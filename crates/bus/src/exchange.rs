@@ -1,4 +1,4 @@
-//! The bytes of one exchange: out, in until CR or the deadline, and silence.
+//! The bytes of one exchange: write, read until CR or the deadline, wait for silence.
 
 use super::trace::Direction;
 use super::{LineLog, Pace};
@@ -11,24 +11,24 @@ use tokio::io::{AsyncRead, AsyncReadExt, AsyncWrite, AsyncWriteExt, ReadBuf};
 use tokio::time::Sleep;
 use units::{RigTime, Span};
 
-/// A frame as it comes in, possibly in pieces.
+/// A frame, received in one or several pieces.
 #[derive(Debug)]
 pub(super) struct Frame {
     bytes: [u8; FRAME_LIMIT],
     length: usize,
 }
 
-/// How listening for a reply ended.
+/// How the wait for a reply ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Heard {
-    /// Up to its CR and nothing behind.
+pub(super) enum FrameEnd {
+    /// The frame ended with CR, and nothing followed.
     Whole,
-    /// A CR, and more behind it.
+    /// The frame ended with CR, and more bytes followed.
     More,
-    /// More characters than any frame has.
+    /// More characters arrived than any frame has.
     TooLong,
-    /// The deadline, first.
-    Nothing,
+    /// The deadline passed first.
+    TimedOut,
 }
 
 impl Frame {
@@ -44,23 +44,26 @@ impl Frame {
     }
 
     pub(super) fn bytes(&self) -> &[u8] {
-        debug_assert!(self.length <= FRAME_LIMIT, "a frame beyond its end");
+        debug_assert!(
+            self.length <= FRAME_LIMIT,
+            "the frame is longer than its buffer"
+        );
         &self.bytes[..self.length]
     }
 
-    /// Takes a piece in; none while the frame is not at an end.
-    fn push(&mut self, piece: &[u8]) -> Option<Heard> {
+    /// Appends `piece`; returns `None` while the frame is incomplete.
+    fn push(&mut self, piece: &[u8]) -> Option<FrameEnd> {
         for (at, byte) in piece.iter().enumerate() {
             let Some(slot) = self.bytes.get_mut(self.length) else {
-                return Some(Heard::TooLong);
+                return Some(FrameEnd::TooLong);
             };
             *slot = *byte;
             self.length += 1;
             if *byte == b'\r' {
                 return Some(if at + 1 == piece.len() {
-                    Heard::Whole
+                    FrameEnd::Whole
                 } else {
-                    Heard::More
+                    FrameEnd::More
                 });
             }
         }
@@ -68,25 +71,25 @@ impl Frame {
     }
 }
 
-/// What came of asking a module to name itself.
+/// The outcome of a request for a module's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Named {
-    /// The module has answered, and nothing came behind.
+pub(super) struct Identification {
+    /// The module answered.
     pub(super) by_module: bool,
-    /// Something else was heard.
+    /// Bytes other than the module's answer arrived.
     pub(super) strays: bool,
-    /// When the last character was heard; when it was asked, if none.
+    /// Time of the last character received; of the request if none came.
     pub(super) last_heard: RigTime,
 }
 
-/// How waiting for silence ended.
+/// How the wait for silence ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Quiet {
-    /// Nothing was heard for long enough.
+pub(super) enum SilenceEnd {
+    /// The line was silent for long enough.
     Silent,
-    /// The module has said who it is; what came before is accounted for.
+    /// The module answered with its name, which accounts for everything received before.
     Named,
-    /// Somebody talks on.
+    /// Bytes kept arriving until the limit.
     Noisy,
 }
 
@@ -98,23 +101,23 @@ pub(super) struct Exchange<'a, P> {
 }
 
 impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
-    /// Writes `request` and listens until a frame is whole or `deadline` has come. What was heard is in `frame`.
+    /// Writes `request` and reads until a frame is complete or `deadline` passes; `frame` holds the bytes received.
     pub(super) async fn ask(
         &mut self,
         request: &[u8],
         deadline: RigTime,
         frame: &mut Frame,
-    ) -> io::Result<Heard> {
+    ) -> io::Result<FrameEnd> {
         assert!(!request.is_empty(), "an empty request");
         frame.clear();
         let mut timer = pin!(self.pace.sleep(deadline));
         if !self.write(request, timer.as_mut()).await? {
-            return Ok(Heard::Nothing);
+            return Ok(FrameEnd::TimedOut);
         }
         let mut piece = [0; 2 * FRAME_LIMIT];
         let heard = loop {
             let Some(count) = self.piece(&mut piece, timer.as_mut()).await? else {
-                break Heard::Nothing;
+                break FrameEnd::TimedOut;
             };
             if let Some(heard) = frame.push(&piece[..count]) {
                 break heard;
@@ -126,19 +129,21 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         Ok(heard)
     }
 
-    /// Sends `question`, whose reply names its module, and listens until `in_step` says of a frame that it is the one
-    /// waited for, or `deadline`.
+    /// Sends `question`, whose reply names its module, and reads until `in_step` accepts a frame or `deadline` passes.
     pub(super) async fn name(
         &mut self,
         question: &Command,
         with_checksum: bool,
         deadline: RigTime,
         mut in_step: impl FnMut(&[u8]) -> bool,
-    ) -> io::Result<Named> {
-        assert!(question.address().is_some(), "nobody to name itself");
+    ) -> io::Result<Identification> {
+        assert!(
+            question.address().is_some(),
+            "a broadcast cannot ask for a name"
+        );
         let mut request = Vec::with_capacity(8);
         question.encode(with_checksum, &mut request);
-        let mut named = Named {
+        let mut named = Identification {
             by_module: false,
             strays: false,
             last_heard: self.pace.now(),
@@ -177,13 +182,13 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         Ok(named)
     }
 
-    /// Writes and listens to nobody.
-    pub(super) async fn tell(&mut self, request: &[u8], deadline: RigTime) -> io::Result<()> {
+    /// Writes a broadcast, which has no reply.
+    pub(super) async fn broadcast(&mut self, request: &[u8], deadline: RigTime) -> io::Result<()> {
         let timer = pin!(self.pace.sleep(deadline));
         self.write(request, timer).await.map(|_| ())
     }
 
-    /// False when the port does not take the bytes in time.
+    /// Writes `bytes`; returns false when the port does not take them in time.
     async fn write(&mut self, bytes: &[u8], timer: Pin<&mut Sleep>) -> io::Result<bool> {
         self.note(Direction::Sent, bytes);
         tokio::select! {
@@ -193,10 +198,10 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         }
     }
 
-    /// Characters as they come; none when `timer` has fired and nothing is waiting.
+    /// Reads the next bytes; returns `None` when `timer` has fired and no byte is waiting.
     ///
-    /// A host that was kept from running wakes with its timer fired *and* the reply in the buffer of the port. Such a
-    /// module was not silent: before it is given up the reactor is asked once more, which takes no time.
+    /// A host that the scheduler kept from running wakes with its timer fired *and* the reply in the buffer of the
+    /// port. The module was not silent, so this polls the reactor once more before giving up, which takes no time.
     async fn piece(
         &mut self,
         piece: &mut [u8],
@@ -214,18 +219,21 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
                 self.read_now(piece).await?
             }
         };
-        assert!(count.is_none_or(|count| count <= piece.len()), "overrun");
+        assert!(
+            count.is_none_or(|count| count <= piece.len()),
+            "read beyond the buffer"
+        );
         match count {
             Some(0) => Err(io::ErrorKind::UnexpectedEof.into()),
             count => Ok(count),
         }
     }
 
-    /// Throws away what has come in, without waiting for more. Returns the number of bytes.
+    /// Discards the bytes received so far without waiting for more; returns their number.
     pub(super) async fn discard(&mut self) -> io::Result<usize> {
         let mut piece = [0; 2 * FRAME_LIMIT];
         let mut total = 0;
-        // A babbling neighbour could fill the buffer as fast as it is emptied.
+        // A module that sends without pause could fill the buffer as fast as this empties it.
         for _ in 0..FRAME_LIMIT {
             let count = match self.read_now(&mut piece).await? {
                 None => break,
@@ -238,7 +246,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
         Ok(total)
     }
 
-    /// None when nothing is waiting.
+    /// Returns `None` when no byte is waiting.
     async fn read_now(&mut self, piece: &mut [u8]) -> io::Result<Option<usize>> {
         let port = &mut *self.port;
         let read = poll_fn(|context| {
@@ -249,39 +257,39 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Exchange<'_, P> {
                 Poll::Pending => Ok(None),
             })
         });
-        // Outside the cooperative budget: there, pending may mean no more than "let others go first".
+        // Outside tokio's cooperative budget: within it, `Pending` may only mean that other tasks run first.
         tokio::task::unconstrained(read).await
     }
 
-    /// Waits until nothing has been heard for `silence` since `last_heard`, or `in_step` says of a frame that it is the
-    /// one waited for, until `limit` at the latest.
+    /// Waits until nothing has arrived for `silence` since `last_heard`, or `in_step` accepts a frame; gives up at
+    /// `limit`.
     pub(super) async fn silence(
         &mut self,
         silence: Span,
         last_heard: RigTime,
         limit: RigTime,
         mut in_step: impl FnMut(&[u8]) -> bool,
-    ) -> io::Result<Quiet> {
+    ) -> io::Result<SilenceEnd> {
         let mut frame = Frame::new();
         let mut piece = [0; 2 * FRAME_LIMIT];
         let mut until = last_heard + silence;
         while until <= limit {
             let timer = pin!(self.pace.sleep(until));
             let Some(count) = self.piece(&mut piece, timer).await? else {
-                return Ok(Quiet::Silent);
+                return Ok(SilenceEnd::Silent);
             };
             self.note(Direction::Stray, &piece[..count]);
             until = self.pace.now() + silence;
             for byte in &piece[..count] {
                 if frame.push(std::slice::from_ref(byte)).is_some() {
                     if in_step(frame.bytes()) {
-                        return Ok(Quiet::Named);
+                        return Ok(SilenceEnd::Named);
                     }
                     frame.clear();
                 }
             }
         }
-        Ok(Quiet::Noisy)
+        Ok(SilenceEnd::Noisy)
     }
 
     fn note(&self, direction: Direction, bytes: &[u8]) {

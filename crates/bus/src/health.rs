@@ -1,11 +1,11 @@
-//! How the modules of a line are doing: counts and latencies since the start.
+//! Transaction counts and latencies of each module since the start.
 
 use super::LineError;
 use dcon::{Address, Reply, ReplyError};
 use std::collections::BTreeMap;
 use units::Span;
 
-/// Latencies in classes of a quarter octave: a percentile is right within 19 %.
+/// Latencies in classes of a quarter octave: a percentile is at most 19 % too high.
 #[derive(Debug, Clone)]
 pub struct Histogram {
     classes: [u32; Histogram::CLASSES],
@@ -22,7 +22,7 @@ impl Default for Histogram {
 }
 
 impl Histogram {
-    /// Up to 2^24 us, 16 s; longer ones fall into the last class.
+    /// Covers 2^24 us (16 s); the last class also holds longer ones.
     const CLASSES: usize = 96;
 
     pub(super) fn add(&mut self, latency: Span) {
@@ -32,9 +32,13 @@ impl Histogram {
         self.total += 1;
     }
 
-    /// Upper edge of the class that holds the share `share` (0 to 1) of all; none before the first.
+    /// Returns the upper edge of the class that contains the percentile `share` (0 to 1); `None` while the histogram
+    /// is empty.
     pub fn percentile(&self, share: f64) -> Option<Span> {
-        assert!((0.0..=1.0).contains(&share), "no share: {share}");
+        assert!(
+            (0.0..=1.0).contains(&share),
+            "a percentile between 0 and 1, not {share}"
+        );
         let wanted = (self.total as f64 * share).ceil().max(1.0) as u64;
         let mut seen = 0u64;
         let class = self.classes.iter().position(|count| {
@@ -45,42 +49,42 @@ impl Histogram {
     }
 }
 
-/// One module.
+/// Counts and latencies of one module.
 #[derive(Debug, Clone, Default)]
 pub struct ModuleHealth {
-    /// Tries, repeats included.
+    /// Tries, repetitions included.
     pub transactions: u64,
-    /// Tries without a whole reply in time.
+    /// Tries without a complete reply in time.
     pub time_outs: u64,
-    /// Replies whose characters did not add up.
+    /// Replies with a wrong checksum.
     pub checksum_errors: u64,
-    /// Replies that were wrong in another way.
+    /// Replies with any other defect.
     pub other_errors: u64,
-    /// Answers that said no.
+    /// Replies in which the module refused the command.
     pub refusals: u64,
-    /// Reset status found set: power-on and resets by the module's own watchdog.
+    /// Times that the reset status was set: power-on, or reset by the module's own watchdog.
     pub resets: u64,
-    /// From the end of the request to the beginning of the reply; wire time left out.
+    /// Time from the end of the request to the start of the reply, without wire time.
     pub latency: Histogram,
 }
 
-/// The modules of a line by address.
+/// Health of the modules of a line, by address.
 #[derive(Debug, Clone, Default)]
 pub struct Health {
     modules: BTreeMap<Address, ModuleHealth>,
-    /// Times that the port was lost.
+    /// Times that the line lost its port.
     pub ports_lost: u64,
 }
 
 impl Health {
-    /// In order of addresses; only modules that were asked.
+    /// Yields the modules that received a request, in order of address.
     pub fn modules(&self) -> impl Iterator<Item = (Address, &ModuleHealth)> {
         self.modules
             .iter()
             .map(|(address, health)| (*address, health))
     }
 
-    /// None when the module was never asked.
+    /// Returns `None` when the module never received a request.
     pub fn module(&self, address: Address) -> Option<&ModuleHealth> {
         self.modules.get(&address)
     }

@@ -1,24 +1,66 @@
-//! A line of modules: one transaction at a time, in bounded time, and never a neighbour's answer.
+//! A serial line of DCON modules: one transaction at a time, in bounded time, and never another module's reply.
 //!
-//! One task owns one port ([`run`]). A request goes in, exactly one [`Answer`] comes out, in the same order. A transaction:
+//! One task owns one port ([`run`]). Each [`Request`] gets exactly one [`Answer`], in order.
 //!
-//! 1. What lies in the input is thrown away: it belongs to nobody.
-//! 2. The request is written. The reply has wire(request) + wire(longest reply) + allowance to arrive whole.
-//! 3. The line rests for the turnaround (two characters). A byte in that time means that somebody else is
-//!    talking, and the reply is not believed.
-//! 4. After a time-out or any damage the module is asked to name itself: its `!AA` reply proves that nothing older is
-//!    on its way. If it does not, the line must fall silent for the longest reply time and the grace for late
-//!    replies, and for a second whatever could be the reply that is owed needs a confirmation (`owing.rs`): `>`
-//!    replies carry no address, and a late one must not be taken for the next.
-//! 5. An address whose reply was damaged is heard twice for a while (`trust.rs`): where checksums fail, one in 256 passes.
-//! 6. Only commands that change nothing are repeated, and at most as often as the request allows.
-//! 7. What writes a setting to the EEPROM asks for it first, and is not sent when it stands already.
+//! ```
+//! use bus::{LineSettings, Pace, Request, run};
+//! use dcon::{Address, Counter, Reply, UpTo};
+//! use tokio::io::{AsyncReadExt, AsyncWriteExt, duplex};
+//! use tokio::sync::mpsc;
 //!
-//! Troubles: a line that never falls silent answers [`LineError::NeverSilent`]; a lost port answers
-//! [`LineError::PortLost`] at the pace of a silent module, and is reopened with back-off.
+//! # #[tokio::main(flavor = "current_thread")]
+//! # async fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let (port, mut module) = duplex(64);
+//! let (ask, requests) = mpsc::channel(1);
+//! let (answers, mut replies) = mpsc::channel(1);
+//! let settings = LineSettings::new("measure", 115_200);
+//! tokio::spawn(run(port, settings, Pace::real(), requests, answers));
 //!
-//! `pace.rs` is the only place that knows how rig time maps to the timers; `wire.rs` how long characters take;
-//! `trace.rs` keeps the last bytes, `recorded.rs` writes them down; `health.rs` counts.
+//! let command = Counter::Read(UpTo::new(0).ok_or("counter 0")?).to(Address(3));
+//! ask.send(Request { ticket: 7, command, tries: 2 }).await?;
+//!
+//! // The module's side: a request with its checksum comes in, the count 30 goes out.
+//! let mut heard = [0; 7];
+//! module.read_exact(&mut heard).await?;
+//! assert_eq!(&heard, b"#030B6\r");
+//! module.write_all(b">0000001ED4\r").await?;
+//!
+//! let answer = replies.recv().await.ok_or("no answer")?;
+//! assert_eq!(answer.ticket, 7);
+//! assert_eq!(answer.outcome, Ok(Reply::Count(30)));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # A transaction
+//!
+//! 1. The line discards the bytes that wait in the input, as no request asked for them.
+//! 2. It writes the request. The reply must be complete within wire(request) + wire(longest reply) + allowance.
+//! 3. It rests for the turnaround (two characters). A byte during the rest shows a second sender: the line rejects the
+//!    reply.
+//! 4. After a time-out or damage it resynchronises. It asks the module for its name: the `!AA` reply proves that no
+//!    older reply is on its way. Without it the line must fall silent for the longest reply time and the grace for
+//!    late replies, and for a second every reply that fits an outstanding one needs a confirmation: `>` replies carry
+//!    no address, and a late one looks like the next.
+//! 5. It reads twice from an address on probation, whose replies were damaged: a checksum misses one error in 256.
+//! 6. It repeats only commands that change nothing, at most as often as the request allows.
+//! 7. Before it writes a setting to an EEPROM it reads it, and skips the write if the module has it already.
+//!
+//! A line that never falls silent answers [`LineError::NeverSilent`]. A lost port answers [`LineError::PortLost`] after
+//! the time of a silent module, and is reopened with back-off.
+//!
+//! # Map
+//!
+//! | file | idea |
+//! |---|---|
+//! | `line.rs` | the task: tries, repetitions, reopening |
+//! | `transaction.rs`, `exchange.rs` | one transaction; its bytes |
+//! | `outstanding.rs` | replies that may still arrive |
+//! | `probation.rs` | addresses whose replies need confirmation |
+//! | `pace.rs` | rig time on tokio's timers, real or virtual |
+//! | `settings.rs`, `wire.rs` | time-outs and the time of characters |
+//! | `trace.rs`, `recorded.rs`, `health.rs`, `log.rs` | the last bytes, their text format, counts by module |
+//! | `port.rs`, `raw.rs` | serial ports; single frames for tools |
 
 mod answer;
 mod exchange;
@@ -26,15 +68,15 @@ mod health;
 mod line;
 mod log;
 mod meaning;
-mod owing;
+mod outstanding;
 mod pace;
 mod port;
+mod probation;
 mod raw;
 mod recorded;
 mod settings;
-mod talk;
 mod trace;
-mod trust;
+mod transaction;
 mod wire;
 
 #[cfg(test)]
@@ -47,9 +89,9 @@ pub use log::LineLog;
 pub use meaning::Meaning;
 pub use pace::Pace;
 pub use port::{PortError, SerialPorts, open_serial};
+pub use probation::PROBATION_ANSWERS;
 pub use raw::{RawReply, send_raw};
 pub use recorded::{Recorded, RecordedError, arrow, escaped, unescaped};
 pub use settings::{LineSettings, longest_transaction};
 pub use trace::{Direction, Entry, Trace};
-pub use trust::PROBATION;
 pub use wire::Wire;

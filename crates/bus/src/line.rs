@@ -1,27 +1,27 @@
-//! The task of a line: requests in, answers out, one at a time and in order.
+//! The task of a line: takes requests and returns answers, one at a time and in order.
 
 use super::exchange::{Exchange, Frame};
-use super::owing::Owing;
-use super::talk::{Talk, Times, Trouble};
-use super::trust::Trust;
+use super::outstanding::OutstandingReplies;
+use super::probation::Probation;
+use super::transaction::{Times, Transaction, Trouble};
 use super::{Answer, LineError, LineSettings, Pace, PortError, Request};
 use dcon::{Command, Common, FRAME_LIMIT, Reply};
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::sync::mpsc;
 use units::{RigTime, Span};
 
-/// Where a line gets its port from, at the start and after it was lost.
+/// Source of a line's port, at the start and after a loss.
 pub trait Ports {
-    /// A byte stream to the modules.
+    /// Byte stream to the modules.
     type Port: AsyncRead + AsyncWrite + Unpin;
-    /// Opens it anew. Called at most once per back-off time.
+    /// Opens the port anew. The line calls it at most once per back-off time.
     fn open(&mut self) -> impl Future<Output = Result<Self::Port, PortError>> + Send;
 }
 
 /// A ready-made stream, which cannot be opened twice.
-struct Given<P>(Option<P>);
+struct SinglePort<P>(Option<P>);
 
-impl<P: AsyncRead + AsyncWrite + Unpin + Send> Ports for Given<P> {
+impl<P: AsyncRead + AsyncWrite + Unpin + Send> Ports for SinglePort<P> {
     type Port = P;
 
     async fn open(&mut self) -> Result<P, PortError> {
@@ -29,7 +29,7 @@ impl<P: AsyncRead + AsyncWrite + Unpin + Send> Ports for Given<P> {
     }
 }
 
-/// Serves requests over `port` until one of the channels closes. A request is always answered.
+/// Serves requests over `port` until one of the channels closes. Every request gets an answer.
 pub async fn run<P: AsyncRead + AsyncWrite + Unpin + Send>(
     port: P,
     settings: LineSettings,
@@ -37,10 +37,10 @@ pub async fn run<P: AsyncRead + AsyncWrite + Unpin + Send>(
     requests: mpsc::Receiver<Request>,
     answers: mpsc::Sender<Answer>,
 ) {
-    run_reopening(Given(Some(port)), settings, pace, requests, answers).await;
+    run_reopening(SinglePort(Some(port)), settings, pace, requests, answers).await;
 }
 
-/// As [`run`], with a source of ports: the first is opened at the first request.
+/// Serves requests as [`run`] does, with ports that it opens itself: the first at the first request.
 pub async fn run_reopening<O: Ports>(
     ports: O,
     settings: LineSettings,
@@ -57,16 +57,22 @@ pub async fn run_reopening<O: Ports>(
         request: Vec::with_capacity(24),
         frame: Frame::new(),
         silent: true,
-        owing: Owing::default(),
-        trust: Trust::default(),
+        outstanding: OutstandingReplies::default(),
+        probation: Probation::default(),
         reopen_at: RigTime(0),
         backoff,
         lost_because: PortError::Gone,
     };
     while let Some(request) = requests.recv().await {
         let answer = line.serve(request).await;
-        assert_eq!(answer.ticket, request.ticket, "the answer to another one");
-        assert_eq!(answer.command, request.command, "another was asked");
+        assert_eq!(
+            answer.ticket, request.ticket,
+            "the answer has another ticket"
+        );
+        assert_eq!(
+            answer.command, request.command,
+            "the answer has another command"
+        );
         if answers.send(answer).await.is_err() {
             return;
         }
@@ -82,14 +88,14 @@ struct Line<O: Ports> {
     frame: Frame,
     /// False after trouble, until the line has been silent for long enough.
     silent: bool,
-    owing: Owing,
-    trust: Trust,
+    outstanding: OutstandingReplies,
+    probation: Probation,
     reopen_at: RigTime,
     backoff: Span,
     lost_because: PortError,
 }
 
-/// One try: when it was asked, when it was answered, and what came of it.
+/// One try: start, end and outcome.
 struct Try {
     asked_at: RigTime,
     answered_at: RigTime,
@@ -97,8 +103,8 @@ struct Try {
 }
 
 impl<O: Ports> Line<O> {
-    /// A setting that stands already is not written again: the EEPROM of a module wears. Where the module does not
-    /// know the question, it is written.
+    /// Writes a setting only if the module does not have it already, because the EEPROM of a module wears. Writes it
+    /// too if the module cannot report it.
     async fn serve(&mut self, asked: Request) -> Answer {
         let Some(setting) = asked.command.setting() else {
             return self.asked(asked).await;
@@ -128,8 +134,15 @@ impl<O: Ports> Line<O> {
         let command = asked.command;
         self.request.clear();
         command.encode(self.settings.checksum, &mut self.request);
-        assert_eq!(self.request.last(), Some(&b'\r'), "a request without end");
-        assert!(self.request.len() <= FRAME_LIMIT, "a request too long");
+        assert_eq!(
+            self.request.last(),
+            Some(&b'\r'),
+            "the request does not end with CR"
+        );
+        assert!(
+            self.request.len() <= FRAME_LIMIT,
+            "the request is longer than a frame"
+        );
         let mut tries_used = 0u8;
         let last = loop {
             tries_used += 1;
@@ -147,7 +160,7 @@ impl<O: Ports> Line<O> {
             answered_at,
             outcome,
         } = last;
-        assert!(answered_at >= asked_at, "answered before it was asked");
+        assert!(answered_at >= asked_at, "the answer precedes its request");
         assert!(
             tries_used == 1 || tries_used <= asked.tries,
             "asked more often than allowed"
@@ -186,22 +199,24 @@ impl<O: Ports> Line<O> {
         let Some(port) = &mut self.port else {
             return Err(Trouble::NoPort);
         };
-        let mut talk = Talk {
+        let mut transaction = Transaction {
             exchange: Exchange {
                 port,
                 pace: self.pace,
                 log: &self.settings.log,
             },
             settings: &self.settings,
-            owing: &mut self.owing,
-            trust: &mut self.trust,
+            outstanding: &mut self.outstanding,
+            probation: &mut self.probation,
             silent: &mut self.silent,
         };
-        talk.transact(command, &self.request, &mut self.frame, times)
+        transaction
+            .transact(command, &self.request, &mut self.frame, times)
             .await
     }
 
-    /// Makes sure of a port. Without one a request takes as long as with a silent module, so that nobody spins.
+    /// Opens the port if there is none. Without a port a request takes as long as with a silent module, so that no
+    /// caller spins.
     async fn reopened(&mut self, command: &Command) -> Result<(), Trouble> {
         if self.port.is_some() {
             return Ok(());
@@ -222,13 +237,13 @@ impl<O: Ports> Line<O> {
         Err(Trouble::NoPort)
     }
 
-    /// The port is of no use any more; it is opened again after the back-off, which doubles until something works.
+    /// Drops the port. The line reopens it after the back-off, which doubles until a transaction succeeds.
     fn lost(&mut self, reason: PortError) {
         self.port = None;
         self.lost_because = reason;
         self.reopen_at = self.pace.now() + self.backoff;
         let longest = Span::ms(self.settings.reopen_longest_ms);
-        assert!(self.backoff > Span(0), "a port opened without rest");
+        assert!(self.backoff > Span(0), "the back-off is zero");
         self.backoff = (self.backoff + self.backoff).min(longest);
     }
 
@@ -277,7 +292,7 @@ impl<O: Ports> Line<O> {
     }
 }
 
-/// Only reads, and only when the line may do better next time.
+/// Returns true for a read whose failure a repetition may cure.
 fn may_repeat(command: &Command, outcome: &Result<Reply, LineError>) -> bool {
     command.repeatable()
         && match outcome {

@@ -1,9 +1,9 @@
-//! Trace and health of a line, shared between the task that fills them and whoever shows them.
+//! Trace and health of a line, shared between the line's task and its readers.
 
 use super::{Health, Trace};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A handle; clones show the same records. Locked for the time of one entry, never across a wait.
+/// A shared handle: clones refer to the same records. Holds its lock for one entry, never across an await.
 #[derive(Debug, Clone, Default)]
 pub struct LineLog(Arc<Mutex<Records>>);
 
@@ -14,7 +14,7 @@ pub(super) struct Records {
 }
 
 impl LineLog {
-    /// Keeps the last `entries` pieces of traffic.
+    /// Makes a log that keeps the last `entries` pieces of traffic.
     pub fn with_trace(entries: usize) -> Self {
         Self(Arc::new(Mutex::new(Records {
             trace: Trace::with_capacity(entries),
@@ -22,23 +22,23 @@ impl LineLog {
         })))
     }
 
-    /// A copy of the last traffic.
+    /// Returns a copy of the last traffic.
     pub fn trace(&self) -> Trace {
         self.records().trace.clone()
     }
 
-    /// Of all bytes so far; see [`Trace::fingerprint`].
+    /// Returns the fingerprint of all bytes so far; see [`Trace::fingerprint`].
     pub fn fingerprint(&self) -> u64 {
         self.records().trace.fingerprint()
     }
 
-    /// A copy of the counts.
+    /// Returns a copy of the counts.
     pub fn health(&self) -> Health {
         self.records().health.clone()
     }
 
     pub(super) fn records(&self) -> MutexGuard<'_, Records> {
-        // Records are plain counts: what a panicking holder left is still good.
+        // Records are plain counts, valid even after the holder of the lock panicked.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,8 +1,8 @@
 //! Rig time and the timers below it.
 //!
-//! Real pace runs with the wall clock. Virtual pace runs under tokio's paused clock: time jumps to the next
-//! deadline whenever every task waits. Tokio's timers have a grain of one millisecond, far too coarse for characters of
-//! 87 us; so in virtual pace *one microsecond of the rig is one millisecond of tokio*. Only this file knows.
+//! Real pace follows the wall clock. Virtual pace runs under tokio's paused clock: time jumps to the next deadline as
+//! soon as every task waits. Tokio's timers have a grain of one millisecond, too coarse for characters of 87 us; so in
+//! virtual pace *one microsecond of the rig is one millisecond of tokio*. Only this file knows the factor.
 
 use std::time::Duration;
 use tokio::time::{Instant, Sleep};
@@ -15,13 +15,13 @@ pub struct Pace {
     is_virtual: bool,
 }
 
-/// The end of a real rest is slept on the thread: tokio's timer may be so late.
+/// The last part of a real rest sleeps on the thread, because tokio's timer may be this late.
 const FINE: Span = Span(2_000);
-/// A virtual clock that is held back stands this long at a time: half a frame of a screen.
+/// Rig time between two pauses of a virtual clock that is held to the wall clock: half a frame of a screen.
 const HOLD: Span = Span(10_000);
 
 impl Pace {
-    /// Wall-clock pace; rig time 0 is now.
+    /// Returns a clock that follows the wall clock; its time 0 is now.
     pub fn real() -> Self {
         Self {
             began: Instant::now(),
@@ -29,7 +29,7 @@ impl Pace {
         }
     }
 
-    /// Virtual pace; rig time 0 is now. For a current-thread runtime whose clock is paused.
+    /// Returns a virtual clock; its time 0 is now. Needs a current-thread runtime with a paused clock.
     pub fn virtual_time() -> Self {
         Self {
             began: Instant::now(),
@@ -37,12 +37,12 @@ impl Pace {
         }
     }
 
-    /// True in virtual pace.
+    /// Returns true for virtual pace.
     pub fn is_virtual(&self) -> bool {
         self.is_virtual
     }
 
-    /// Microseconds since the pace was made.
+    /// Returns the microseconds since the clock was made.
     pub fn now(&self) -> RigTime {
         let elapsed = self.began.elapsed();
         RigTime(if self.is_virtual {
@@ -52,7 +52,7 @@ impl Pace {
         } as u64)
     }
 
-    /// A timer that ends at `until`, not earlier; in real pace up to two milliseconds later.
+    /// Returns a timer that fires at `until` or, in real pace, up to two milliseconds later; never earlier.
     pub fn sleep(&self, until: RigTime) -> Sleep {
         let since_began = if self.is_virtual {
             Duration::from_millis(until.0)
@@ -62,14 +62,15 @@ impl Pace {
         tokio::time::sleep_until(self.began + since_began)
     }
 
-    /// Waits until `until`; at once when it has passed.
+    /// Waits until `until`; returns at once if it has passed.
     pub async fn sleep_until(&self, until: RigTime) {
         if self.now() < until {
             self.sleep(until).await;
         }
     }
 
-    /// As [`Pace::sleep_until`], true to some 0.1 ms in real pace: the last two milliseconds keep the thread. For turnarounds.
+    /// Waits as [`Pace::sleep_until`] does, in real pace accurate to about 0.1 ms because the last two milliseconds
+    /// block the thread. For turnarounds.
     pub async fn rest_until(&self, until: RigTime) {
         if self.is_virtual {
             return self.sleep_until(until).await;
@@ -83,10 +84,13 @@ impl Pace {
         }
     }
 
-    /// Keeps virtual time from passing faster than `speed` times the wall clock, for ever. Time lost on a busy machine is
-    /// not made up for: the rig gets slow there, never late.
+    /// Keeps virtual time from passing faster than `speed` times the wall clock; never returns. A busy machine slows
+    /// the rig down, and the clock does not catch up afterwards.
     pub async fn hold_back(self, speed: f64) {
-        assert!(speed > 0.0 && speed.is_finite(), "a clock that stands");
+        assert!(
+            speed > 0.0 && speed.is_finite(),
+            "the speed is not positive and finite"
+        );
         let wall = Duration::from_micros(HOLD.0).div_f64(speed);
         loop {
             let began = std::time::Instant::now();

@@ -1,4 +1,4 @@
-//! Opening serial ports, with errors that say what to do.
+//! Opens serial ports, with errors that name the remedy.
 
 use super::Ports;
 use std::io;
@@ -8,49 +8,49 @@ use tokio_serial::{
     DataBits, ErrorKind, FlowControl, Parity, SerialPortBuilderExt, SerialStream, StopBits,
 };
 
-/// Why there is no port to talk through.
+/// Why the line has no usable port.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PortError {
-    /// No such device.
+    /// The device does not exist.
     #[error("serial port {path} does not exist")]
     Missing {
-        /// As configured.
+        /// Path as configured.
         path: String,
     },
-    /// Another program holds it.
+    /// Another program holds the port.
     #[error("serial port {path} is taken by another program")]
     Taken {
-        /// As configured.
+        /// Path as configured.
         path: String,
     },
-    /// The user may not open it.
+    /// The user has no permission to open the port.
     #[error("no permission to open serial port {path}")]
     Denied {
-        /// As configured.
+        /// Path as configured.
         path: String,
     },
-    /// It is there but is no serial port, or refuses 8N1 at this rate.
+    /// The device exists but is no serial port, or refuses 8N1 at this rate.
     #[error("serial port {path} cannot be used at {baud} baud: {reason}")]
     Unusable {
-        /// As configured.
+        /// Path as configured.
         path: String,
-        /// As configured.
+        /// Rate as configured, bits per second.
         baud: u32,
-        /// As the system says.
+        /// Reason from the operating system.
         reason: String,
     },
-    /// It was open, and ended.
+    /// The port was open and failed.
     #[error("the port went away: {kind}")]
     Broken {
-        /// As the system says; unexpected end when the other side closed it.
+        /// Error from the operating system; `UnexpectedEof` when the other side closed the port.
         kind: io::ErrorKind,
     },
-    /// A stream that was handed over ready-made cannot be opened a second time.
+    /// A ready-made stream ended; it cannot be opened a second time.
     #[error("the stream ended and cannot be opened again")]
     Gone,
 }
 
-/// Opens `path` as 8N1 without flow control, for this program alone. Must run inside a tokio runtime with I/O.
+/// Opens `path` as 8N1 without flow control, for this program alone. Panics outside a tokio runtime with I/O.
 pub fn open_serial(path: &str, baud: u32) -> Result<SerialStream, PortError> {
     tokio_serial::new(path, baud)
         .data_bits(DataBits::Eight)
@@ -59,16 +59,16 @@ pub fn open_serial(path: &str, baud: u32) -> Result<SerialStream, PortError> {
         .flow_control(FlowControl::None)
         .exclusive(true)
         .open_native_async()
-        .map_err(|error| told(path, baud, &error))
+        .map_err(|error| port_error(path, baud, &error))
 }
 
-fn told(path: &str, baud: u32, error: &tokio_serial::Error) -> PortError {
+fn port_error(path: &str, baud: u32, error: &tokio_serial::Error) -> PortError {
     let exists = Path::new(path).exists();
     let path = path.to_owned();
     match error.kind {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Denied { path },
         _ if !exists => PortError::Missing { path },
-        // Both the terminal's exclusive mode and the file lock are reported as this.
+        // The system reports both the terminal's exclusive mode and the file lock as this.
         ErrorKind::NoDevice => PortError::Taken { path },
         ErrorKind::InvalidInput | ErrorKind::Unknown | ErrorKind::Io(_) => PortError::Unusable {
             path,
@@ -78,10 +78,10 @@ fn told(path: &str, baud: u32, error: &tokio_serial::Error) -> PortError {
     }
 }
 
-/// A serial port by path: opened at the first request, and again after it was lost.
+/// A serial port by path: opened at the first request, and again after a loss.
 #[derive(Debug, Clone)]
 pub struct SerialPorts {
-    /// Device, or a link to it.
+    /// Path of the device or of a link to it.
     pub path: String,
     /// Bits per second.
     pub baud: u32,

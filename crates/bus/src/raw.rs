@@ -1,27 +1,27 @@
-//! One text over a line, for tools: nothing is known of the command, so nothing is repeated and nothing is believed.
+//! Sends one raw frame, for tools: the line does not know the command, so it repeats and checks nothing.
 
-use super::exchange::{Exchange, Frame, Heard};
+use super::exchange::{Exchange, Frame, FrameEnd};
 use super::{LineSettings, Pace};
 use dcon::FRAME_LIMIT;
 use std::io;
 use tokio::io::{AsyncRead, AsyncWrite};
 use units::Span;
 
-/// What came back.
+/// The bytes received.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RawReply {
-    /// The bytes, CR included; empty when there were none in time.
+    /// Bytes of the frame, CR included; empty when none came in time.
     pub bytes: Vec<u8>,
-    /// More was heard behind.
+    /// True when more bytes followed the frame.
     pub more: bool,
-    /// From the first character sent to the last heard, or to the time-out.
+    /// Time from the first character sent to the last received, or to the time-out.
     pub taken: Span,
 }
 
-/// Sends `request`, CR included, and waits for a frame as long as the slowest module may take.
+/// Sends `request`, which includes its CR, and waits for a frame as long as the slowest module may take.
 ///
 /// # Errors
-/// The port's own.
+/// Returns the error of the port.
 pub async fn send_raw<P: AsyncRead + AsyncWrite + Unpin>(
     port: &mut P,
     settings: &LineSettings,
@@ -41,7 +41,7 @@ pub async fn send_raw<P: AsyncRead + AsyncWrite + Unpin>(
     let behind = exchange.discard().await?;
     Ok(RawReply {
         bytes: frame.bytes().to_vec(),
-        more: behind > 0 || matches!(heard, Heard::More | Heard::TooLong),
+        more: behind > 0 || matches!(heard, FrameEnd::More | FrameEnd::TooLong),
         taken,
     })
 }

@@ -1,4 +1,4 @@
-//! A trace as text, written beside an alarm and read back by `bus monitor` and by tests.
+//! A trace as text: a file stored with an alarm, which `bus monitor` and tests read back.
 //!
 //! ```text
 //! # line motion 115200 checksum
@@ -6,24 +6,24 @@
 //! 1207904 < >0F0034\r
 //! 1207990 ~ \x00U
 //! ```
-//! Microseconds of rig time; `>` sent, `<` heard as a reply, `~` heard and thrown away. Bytes that are no printable
-//! character are written as `\r` or `\xNN`, the backslash as `\\`.
+//! Each row starts with the rig time in microseconds; `>` marks bytes sent, `<` a reply, `~` discarded bytes.
+//! Non-printable bytes are written as `\r` or `\xNN`, the backslash as `\\`.
 
 use super::trace::{Direction, Entry, Trace};
 use std::fmt::Write;
 use thiserror::Error;
 use units::RigTime;
 
-/// Traffic of a line with what is needed to understand it.
+/// Traffic of a line with the settings needed to decode it.
 #[derive(Debug, Clone)]
 pub struct Recorded {
     /// Name of the line, one word.
     pub line: String,
     /// Bits per second.
     pub baud: u32,
-    /// Frames carry checksums.
+    /// True when frames carry checksums.
     pub checksum: bool,
-    /// Oldest first.
+    /// Entries, oldest first.
     pub entries: Vec<Entry>,
 }
 
@@ -33,14 +33,14 @@ pub struct Recorded {
 pub struct RecordedError {
     /// Row of the text, from 1.
     pub row: usize,
-    /// The row.
+    /// Text of the row.
     pub found: String,
-    /// What it should be.
+    /// Format that the row should have.
     pub expected: &'static str,
 }
 
 impl Recorded {
-    /// The last traffic of a line.
+    /// Copies the entries of `trace`.
     pub fn of(trace: &Trace, line: &str, baud: u32, checksum: bool) -> Self {
         Self {
             line: line.to_owned(),
@@ -50,7 +50,7 @@ impl Recorded {
         }
     }
 
-    /// As above.
+    /// Writes the text format of this module.
     pub fn text(&self) -> String {
         let checksum = if self.checksum { "checksum" } else { "plain" };
         let mut out = format!("# line {} {} {checksum}\n", self.line, self.baud);
@@ -61,7 +61,7 @@ impl Recorded {
         out
     }
 
-    /// Back from text.
+    /// Reads the text format of this module.
     pub fn parse(text: &str) -> Result<Self, RecordedError> {
         let mut rows = text.lines().enumerate();
         let head = rows.next().map_or("", |(_, row)| row);
@@ -115,7 +115,7 @@ fn entry(row: &str) -> Option<Entry> {
     Entry::new(RigTime(at.parse().ok()?), direction, &unescaped(bytes)?)
 }
 
-/// The sign of a direction in a trace.
+/// Returns the sign of a direction in the text format.
 pub fn arrow(direction: Direction) -> char {
     match direction {
         Direction::Sent => '>',
@@ -124,7 +124,7 @@ pub fn arrow(direction: Direction) -> char {
     }
 }
 
-/// Bytes as they are written in a trace.
+/// Escapes bytes as the text format does.
 pub fn escaped(bytes: &[u8]) -> String {
     let mut out = String::with_capacity(bytes.len() + 2);
     for byte in bytes {
@@ -140,7 +140,7 @@ pub fn escaped(bytes: &[u8]) -> String {
     out
 }
 
-/// Back from [`escaped`]; none where it is not written so.
+/// Reverses [`escaped`]; returns `None` for a malformed escape.
 pub fn unescaped(text: &str) -> Option<Vec<u8>> {
     let mut bytes = text.bytes();
     let mut out = Vec::with_capacity(text.len());

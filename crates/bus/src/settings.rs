@@ -1,39 +1,39 @@
-//! What a line must be told, and how long it may take.
+//! Settings of a line, and the time-outs that follow from them.
 
-use super::owing::question;
+use super::outstanding::question;
 use super::{LineLog, Wire};
 use dcon::{Address, Command, Common};
 use units::Span;
 
-/// Settings of one line. Every time is a length, in the unit its name ends in.
+/// Settings of one line. A field that is a time has its unit as suffix.
 #[derive(Debug, Clone)]
 pub struct LineSettings {
     /// Name of the line, as in the wiring.
     pub name: String,
     /// Bits per second, 8N1.
     pub baud: u32,
-    /// Frames carry checksums. Without them a damaged digit is believed.
+    /// True when frames carry checksums. Without them a damaged digit passes unnoticed.
     pub checksum: bool,
-    /// What a module may think before it answers; modules take 2 ms, `~AARD` up to 30.
+    /// Time a digital module may take to start its reply; modules take 2 ms, for `~AARD` up to 30.
     pub digital_allowance_ms: u64,
-    /// The same for analog inputs, which may be in a conversion.
+    /// Time an analog input may take, as it may be in the middle of a conversion.
     pub analog_allowance_ms: u64,
-    /// The same where a module writes its EEPROM or changes its configuration.
+    /// Time a module may take that writes its EEPROM or changes its configuration.
     pub store_allowance_ms: u64,
-    /// Grace beyond the time-out in which a late reply may still begin; added to the silence after trouble.
+    /// Time after the time-out in which a late reply may still begin; part of the silence required after trouble.
     pub late_reply_ms: u64,
     /// Rest between a reply and the next request, in characters.
     pub turnaround_characters: u8,
-    /// First wait before a lost port is opened again; doubles with each failure.
+    /// Wait before the first attempt to reopen a lost port; doubles with each failure.
     pub reopen_first_ms: u64,
-    /// Longest such wait.
+    /// Longest wait between two attempts to reopen the port.
     pub reopen_longest_ms: u64,
-    /// Where bytes and counts are kept; shared with whoever shows them.
+    /// Trace and counts of the line, shared with their readers.
     pub log: LineLog,
 }
 
 impl LineSettings {
-    /// With the usual times, an 8N1 line with checksum.
+    /// Returns the usual times, 8N1 with checksum.
     pub fn new(name: &str, baud: u32) -> Self {
         Self {
             name: name.to_owned(),
@@ -50,22 +50,22 @@ impl LineSettings {
         }
     }
 
-    /// Time of characters on this line.
+    /// Returns the speed of the line.
     pub fn wire(&self) -> Wire {
         Wire { baud: self.baud }
     }
 
-    /// Rest between frames.
+    /// Returns the rest between frames.
     pub fn turnaround(&self) -> Span {
         self.wire().time(usize::from(self.turnaround_characters))
     }
 
-    /// From the first character of the request to the last moment at which the reply may be whole.
+    /// Returns the time from the first character of the request to the latest end of the reply.
     pub fn time_out(&self, command: &Command) -> Span {
         self.request_time(command) + self.reply_limit(command)
     }
 
-    /// The same for a request whose length is known.
+    /// Returns the time-out for a request of known length.
     pub(super) fn time_out_of(&self, command: &Command, request_characters: usize) -> Span {
         self.wire().time(request_characters) + self.reply_limit(command)
     }
@@ -74,18 +74,18 @@ impl LineSettings {
         self.longest_reply_time(command) + Span::ms(self.allowance_ms(command))
     }
 
-    /// How long the line must have been silent after trouble.
+    /// Returns the silence that the line requires after trouble with `command`.
     pub fn silence(&self, command: &Command) -> Span {
         self.longest_reply_time(command) + Span::ms(self.late_reply_ms)
     }
 
-    /// How long a module is asked who it is, after trouble with `command`: once at least, and for as long as the
-    /// silence would last.
-    pub(super) fn step_limit(&self, command: &Command, address: Address) -> Span {
+    /// Returns how long the line asks a module for its name after trouble with `command`: as long as the required
+    /// silence, and at least one time-out.
+    pub(super) fn resynchronisation_limit(&self, command: &Command, address: Address) -> Span {
         self.silence(command).max(self.time_out(&question(address)))
     }
 
-    /// Time of the request on the wire.
+    /// Returns the time of the request on the wire.
     pub fn request_time(&self, command: &Command) -> Span {
         let mut request = Vec::with_capacity(24);
         command.encode(self.checksum, &mut request);
@@ -108,15 +108,15 @@ impl LineSettings {
     }
 }
 
-/// The longest that one try of any of `commands` can hold the line, given up or believed only after it was said
-/// again: two answers at the last moment (or three that are prompt), then the way back into step and a silence that is
-/// broken once. What writes a setting asks for it first. A request that allows several tries may take as many times this.
-/// Zero for no commands.
+/// Returns the longest time that one try of any of `commands` can occupy the line; zero for no commands. The worst
+/// case is a reply that needs confirmation: two answers at the last moment (or three prompt ones), then the restart
+/// check and a required silence that is broken once. A command that writes a setting reads it first. A request with
+/// several tries may take this time for each.
 pub fn longest_transaction(settings: &LineSettings, commands: &[Command]) -> Span {
     let one = |command: &Command| match command.address() {
         Some(address) => {
             let asked = settings.time_out(command) + settings.turnaround();
-            let step = settings.step_limit(command, address) + settings.turnaround();
+            let step = settings.resynchronisation_limit(command, address) + settings.turnaround();
             asked + asked + step + settings.silence(command)
         }
         None => settings.request_time(command) + settings.turnaround(),

@@ -1,4 +1,4 @@
-//! A line against scripted modules in virtual time: nothing here waits in earnest.
+//! Runs a line against scripted modules in virtual time.
 
 #![allow(clippy::unwrap_used)]
 
@@ -11,15 +11,15 @@ use units::{RigTime, Span};
 
 mod late_host;
 mod ports;
+mod probation;
 mod records;
 mod replay;
 mod steps;
-mod trust;
 
-/// One piece of what the modules say: microseconds after the request was heard, and the bytes.
+/// One piece of a module's reply: microseconds after the request arrived, and the bytes.
 type Say = (u64, &'static [u8]);
 
-/// `>0000001E` with its checksum, and another count.
+/// The reply `>0000001E` with its checksum; below, another count.
 const THIRTY: &[u8] = b">0000001ED4\r";
 const NINE: &[u8] = b">00000009C7\r";
 
@@ -45,8 +45,8 @@ fn in_virtual_time<F: Future>(test: F) -> F::Output {
         .block_on(test)
 }
 
-/// Answers the n-th request with the n-th entry of `script`, and says nothing afterwards. Asked who is there it says
-/// so once it has said everything else; that is neither scripted nor counted.
+/// Answers the n-th request with the n-th entry of `script`, and nothing afterwards. Answers a request for its name
+/// after all other bytes; `script` and the returned requests do not contain those.
 async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) -> Vec<String> {
     let mut asked = Vec::new();
     let mut script = script.into_iter();
@@ -66,7 +66,7 @@ async fn modules(mut stream: DuplexStream, pace: Pace, script: Vec<Vec<Say>>) ->
     asked
 }
 
-/// What a module says of itself, if that is what was asked: configuration word, version or name.
+/// Returns the reply to a request for a name, with configuration word, version or name; `None` for other requests.
 fn named(request: &str) -> Option<String> {
     let address = request.strip_prefix('$')?.get(..2)?;
     let told = match (request.len(), request.as_bytes().get(3)?) {
@@ -91,7 +91,7 @@ async fn next_request(stream: &mut DuplexStream) -> Option<String> {
     }
 }
 
-/// Sends `requests` one after the other; gives the answers and what the modules heard.
+/// Sends `requests` one after the other; returns the answers and the requests that the modules received.
 async fn played(
     settings: LineSettings,
     script: Vec<Vec<Say>>,
@@ -122,7 +122,7 @@ async fn played(
 }
 
 #[test]
-fn a_reply_in_time_is_answered_with_its_text_and_times() {
+fn a_reply_in_time_carries_its_text_and_times() {
     let (got, asked) = in_virtual_time(played(
         settings(),
         vec![vec![(3_000, THIRTY)]],
@@ -150,10 +150,10 @@ fn a_reply_may_come_in_pieces() {
 }
 
 #[test]
-fn a_late_reply_is_never_taken_for_the_next_one() {
+fn a_late_reply_never_counts_for_the_next_request() {
     let limit = settings().time_out(&count()).0;
     let grace = settings().silence(&count()).0;
-    // At every hundredth of the time from the deadline to the end of the grace.
+    // At every hundredth of the time from the deadline to the end of the required silence.
     for late in (0..100).map(|part| limit + 1 + part * (grace - 2) / 100) {
         let script = vec![vec![(late, THIRTY)], vec![(2_000, NINE)]];
         let (got, asked) =
@@ -169,7 +169,7 @@ fn a_late_reply_is_never_taken_for_the_next_one() {
 }
 
 #[test]
-fn a_silent_module_is_given_up_on_time_and_tried_as_often_as_allowed() {
+fn a_silent_module_times_out_after_every_allowed_try() {
     let (got, asked) = in_virtual_time(played(settings(), vec![], &[(count(), 3)]));
     assert_eq!(got[0].tries_used, 3);
     assert_eq!(asked.len(), 3);
@@ -197,7 +197,7 @@ fn a_damaged_reply_to_a_read_is_asked_for_again() {
 }
 
 #[test]
-fn a_write_is_sent_once_whatever_becomes_of_its_reply() {
+fn a_write_is_sent_only_once() {
     for say in [
         vec![],
         vec![(2_000, b">3F\r" as &[u8])],
@@ -210,7 +210,7 @@ fn a_write_is_sent_once_whatever_becomes_of_its_reply() {
 }
 
 #[test]
-fn a_refusal_is_neither_repeated_nor_followed_by_a_silence() {
+fn a_refusal_causes_neither_a_repetition_nor_a_silence() {
     let script = vec![
         vec![(2_000, b"?03A3\r" as &[u8])],
         vec![(2_000, b"?03A2\r")],
@@ -245,12 +245,12 @@ fn a_refusal_is_neither_repeated_nor_followed_by_a_silence() {
         got[2].asked_at,
         got[1].answered_at + settings().turnaround()
     );
-    // After the damage the count is heard twice.
+    // After the damage the line reads the count twice.
     assert_eq!(asked.len(), 4);
 }
 
 #[test]
-fn two_modules_at_one_address_are_both_disbelieved() {
+fn replies_of_two_modules_at_one_address_are_rejected() {
     let turnaround = settings().turnaround().0;
     let at_once: Vec<Say> = vec![(2_000, b">0000001ED4\r>00000009C7\r")];
     let soon: Vec<Say> = vec![(2_000, THIRTY), (2_000 + turnaround - 1, NINE)];
@@ -270,7 +270,7 @@ fn two_modules_at_one_address_are_both_disbelieved() {
 }
 
 #[test]
-fn an_echo_is_called_by_its_name() {
+fn an_echo_is_reported_as_an_echo() {
     let (got, _) = in_virtual_time(played(
         settings(),
         vec![vec![(0, b"#030B6\r")]],
@@ -302,7 +302,7 @@ fn more_characters_than_a_frame_has_are_dropped() {
 }
 
 #[test]
-fn a_line_that_never_falls_silent_is_not_talked_into() {
+fn a_line_that_never_falls_silent_gets_no_request() {
     let babble: Vec<Say> = (1..60).map(|turn| (turn * 5_000, b"U" as &[u8])).collect();
     let mut script = vec![babble];
     script.extend(vec![vec![(2_000, NINE)]; 9]);
@@ -312,7 +312,7 @@ fn a_line_that_never_falls_silent_is_not_talked_into() {
         .iter()
         .filter(|a| matches!(a.outcome, Err(LineError::NeverSilent { .. })))
         .count();
-    // After the babble each of the others is asked twice.
+    // After the babble the line asks each of the others twice.
     assert!(unasked > 0 && asked.len() < 2 * (10 - unasked), "{asked:?}");
     for pair in got.windows(2) {
         assert!(
@@ -355,7 +355,7 @@ fn requests_are_answered_in_order_one_turnaround_apart() {
 }
 
 #[test]
-fn without_checksum_the_same_line_speaks_plain() {
+fn a_line_without_checksum_sends_plain_frames() {
     let mut settings = settings();
     settings.checksum = false;
     let read = Digital::ReadAll.to(Address(4));

@@ -4,30 +4,30 @@ use dcon::FRAME_LIMIT;
 use std::collections::VecDeque;
 use units::RigTime;
 
-/// Which way bytes went.
+/// Direction of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// From us.
+    /// Sent by the line.
     Sent,
-    /// Taken as a reply, or as the beginning of one.
+    /// Received as a reply, or as the start of one.
     Heard,
-    /// Heard when nothing was asked, and thrown away.
+    /// Received unasked, and discarded.
     Stray,
 }
 
-/// A piece of traffic: at most one frame.
+/// A piece of traffic, at most one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Entry {
-    /// When it was written, or when it had been heard.
+    /// Time at which the bytes were sent, or were received.
     pub at: RigTime,
-    /// Which way.
+    /// Direction of the bytes.
     pub direction: Direction,
     bytes: [u8; FRAME_LIMIT],
     length: u8,
 }
 
 impl Entry {
-    /// None when there are more bytes than a frame has.
+    /// Returns `None` for more bytes than a frame has.
     pub fn new(at: RigTime, direction: Direction, bytes: &[u8]) -> Option<Self> {
         let mut entry = Self {
             at,
@@ -39,13 +39,13 @@ impl Entry {
         Some(entry)
     }
 
-    /// The bytes, CR included.
+    /// Returns the bytes, CR included.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[..usize::from(self.length)]
     }
 }
 
-/// A bounded ring of entries, and a fingerprint of all bytes that ever passed.
+/// A bounded ring of entries, and a fingerprint of all bytes so far.
 #[derive(Debug, Clone)]
 pub struct Trace {
     ring: VecDeque<Entry>,
@@ -55,16 +55,16 @@ pub struct Trace {
 }
 
 impl Default for Trace {
-    /// A thousand entries: some seconds of a busy line.
+    /// Returns a trace of a thousand entries, some seconds of a busy line.
     fn default() -> Self {
         Self::with_capacity(1000)
     }
 }
 
 impl Trace {
-    /// Keeps the last `capacity` entries.
+    /// Returns a trace that keeps the last `capacity` entries.
     pub fn with_capacity(capacity: usize) -> Self {
-        // Start value of FNV-1a, 64 bit.
+        // Offset basis of FNV-1a, 64 bit.
         Self {
             ring: VecDeque::new(),
             capacity,
@@ -93,17 +93,17 @@ impl Trace {
         self.bytes += bytes.len() as u64;
     }
 
-    /// Oldest first.
+    /// Yields the entries, oldest first.
     pub fn entries(&self) -> impl Iterator<Item = &Entry> {
         self.ring.iter()
     }
 
-    /// Equal for equal bytes in equal order and direction, times left out.
+    /// Returns a hash of all bytes with their order and direction, without times.
     pub fn fingerprint(&self) -> u64 {
         self.fingerprint
     }
 
-    /// All bytes that ever passed.
+    /// Returns the number of bytes so far.
     pub fn byte_count(&self) -> u64 {
         self.bytes
     }

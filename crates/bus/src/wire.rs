@@ -1,11 +1,11 @@
-//! How long characters take on the wire.
+//! Time of characters on the wire.
 
 use units::Span;
 
-/// Bits of a character: start, eight data, stop.
+/// Bits of a character: one start, eight data, one stop.
 const BITS: u64 = 10;
 
-/// The speed of a line.
+/// Speed of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wire {
     /// Bits per second; zero counts as one.
@@ -13,7 +13,7 @@ pub struct Wire {
 }
 
 impl Wire {
-    /// Time of `characters`, rounded up to the microsecond.
+    /// Returns the time of `characters`, rounded up to the microsecond.
     pub fn time(self, characters: usize) -> Span {
         Span((characters as u64 * BITS * 1_000_000).div_ceil(u64::from(self.baud.max(1))))
     }

@@ -8,8 +8,8 @@
 //!    of the steps since the last number, the first one since 0.
 //!
 //! So a sample takes 2 to 12 bytes (gaps below nine hours, changes below 2^47 steps), some 4 in a test of the
-//! default recipe; a part takes at most 12 kB, since no more than [`MOST`](machine::instrument::trace::MOST)
-//! looks of a test are kept.
+//! default recipe; a part takes at most 12 kB, since a trace keeps no more than
+//! [`MAX_SAMPLES`](machine::instrument::trace::MAX_SAMPLES) of a test.
 
 use super::Moment;
 use super::error::{Doing, HistoryError, Result};
@@ -186,7 +186,7 @@ impl Archive {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use machine::instrument::trace::MOST;
+    use machine::instrument::trace::MAX_SAMPLES;
 
     /// Bytes of a sample at the most: a gap below 2^35 us and a change of less than 2^47 steps.
     const WORST: usize = 5 + 7;
@@ -240,7 +240,7 @@ mod tests {
             (2 * nine_hours_us, Some(far)),
         ]));
         assert!(bytes.len() <= 3 * WORST, "{} bytes", bytes.len());
-        const { assert!(MOST * WORST <= 12_000) };
+        const { assert!(MAX_SAMPLES * WORST <= 12_000) };
     }
 
     #[test]

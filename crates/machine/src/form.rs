@@ -1,18 +1,18 @@
-//! What a configuration file may hold, as data: one description serves the check, the JSON schema
-//! and the tables of `config/README.md`.
+//! The shape of a configuration file, as data: the check, the JSON schema and the tables of `config/README.md` use the
+//! same description.
 
-/// What a value must look like.
+/// Shape of a value.
 #[derive(Debug, Clone, Copy)]
 pub enum Form {
-    /// Any text that is not empty.
+    /// Text, not empty.
     Text,
     /// One of these words.
     Choice(&'static [&'static str]),
-    /// Hexadecimal text, upper case, of exactly so many digits.
+    /// Hexadecimal text, upper case, with this number of digits.
     Hex(usize),
     /// A finite number.
     Number(Range),
-    /// A whole number, both ends allowed.
+    /// A whole number in a range that includes both ends.
     Whole {
         /// Unit, empty for a count.
         unit: &'static str,
@@ -23,39 +23,39 @@ pub enum Form {
     },
     /// One of these whole numbers.
     Listed(&'static [i64]),
-    /// `true` or `false`.
+    /// A boolean, `true` or `false`.
     Flag,
-    /// A list of exactly so many numbers.
+    /// A list with this number of numbers.
     Numbers(usize, Range),
     /// A table with these keys.
     Table(&'static [Key]),
-    /// A table of entries with free names (lower case, digits, underscore), all of one form.
+    /// A table of entries with free names (lower case, digits, underscore), all of one shape.
     Named(&'static Form),
-    /// The same, with these names among them.
+    /// A table of entries with free names, among them these, all of one shape.
     NamedWith(&'static [&'static str], &'static Form),
-    /// A table with exactly these names, all of one form.
+    /// A table with exactly these names, all of one shape.
     Each(&'static [&'static str], &'static Form),
     /// A table of points.
     Points(Points),
-    /// A list of entries of one form.
+    /// A list of entries of one shape.
     List(&'static Form),
 }
 
-/// A table of points of the rig, all of one form.
+/// A table of points of the rig, all of one shape.
 #[derive(Debug, Clone, Copy)]
 pub struct Points {
-    /// Those that every rig has.
+    /// Names that every rig has.
     pub must: &'static [&'static str],
-    /// Those that a rig may lack.
+    /// Names that a rig may lack.
     pub may: fn() -> Vec<&'static str>,
-    /// Whether the file itself may name others.
+    /// True when the file may add further names.
     pub free: bool,
-    /// What each entry must look like.
+    /// Shape of each entry.
     pub entry: &'static Form,
 }
 
 impl Points {
-    /// Every name but the free ones.
+    /// Returns every name except the free ones.
     pub fn names(&self) -> Vec<&'static str> {
         let must = self.must.iter().copied();
         must.chain((self.may)()).collect()
@@ -65,32 +65,32 @@ impl Points {
 /// The range of a number.
 #[derive(Debug, Clone, Copy)]
 pub struct Range {
-    /// Unit as in the key's name; empty for a pure number.
+    /// Unit, as in the key's name; empty for a pure number.
     pub unit: &'static str,
     /// Lower end.
     pub low: f64,
-    /// Upper end, allowed itself.
+    /// Upper end, included.
     pub high: f64,
-    /// Whether the lower end itself is allowed.
+    /// True when the range includes the lower end.
     pub low_allowed: bool,
 }
 
 /// One key of a table.
 #[derive(Debug, Clone, Copy)]
 pub struct Key {
-    /// Its name in the file.
+    /// Name in the file.
     pub name: &'static str,
-    /// Whether it may be left out.
+    /// True when the file may omit it.
     pub optional: bool,
-    /// What its value must look like.
+    /// Shape of its value.
     pub form: Form,
-    /// Which part of the program reads it.
+    /// Part of the program that reads it.
     pub reader: &'static str,
-    /// What it means.
+    /// Meaning of the key, for the schema and the tables.
     pub meaning: &'static str,
 }
 
-/// A number from `low` to `high`, both allowed.
+/// Returns the shape of a number from `low` to `high`, both included.
 pub const fn from_to(low: f64, high: f64, unit: &'static str) -> Form {
     Form::Number(Range {
         unit,
@@ -100,7 +100,7 @@ pub const fn from_to(low: f64, high: f64, unit: &'static str) -> Form {
     })
 }
 
-/// A number above zero, up to `high`.
+/// Returns the shape of a number above zero, up to `high`.
 pub const fn above_zero(high: f64, unit: &'static str) -> Form {
     Form::Number(Range {
         unit,
@@ -110,12 +110,12 @@ pub const fn above_zero(high: f64, unit: &'static str) -> Form {
     })
 }
 
-/// A whole number from `low` to `high`.
+/// Returns the shape of a whole number from `low` to `high`.
 pub const fn whole(low: i64, high: i64, unit: &'static str) -> Form {
     Form::Whole { unit, low, high }
 }
 
-/// A key that must be there.
+/// Returns a key that the file must have.
 pub const fn key(
     name: &'static str,
     form: Form,
@@ -131,7 +131,7 @@ pub const fn key(
     }
 }
 
-/// A key that may be left out.
+/// Returns a key that the file may omit.
 pub const fn optional(
     name: &'static str,
     form: Form,
@@ -148,7 +148,7 @@ pub const fn optional(
 }
 
 impl Form {
-    /// What is expected, in words that complete "expected ...".
+    /// Returns the words that complete "expected ..." in a message.
     pub fn expected(&self) -> String {
         match self {
             Self::Text => "text".to_owned(),
@@ -176,7 +176,7 @@ impl Form {
         }
     }
 
-    /// Whether the value is a table.
+    /// Returns true when the value is a table.
     pub fn is_table(&self) -> bool {
         match self {
             Self::Table(_)
@@ -198,7 +198,7 @@ impl Form {
 }
 
 impl Range {
-    /// Whether the value is finite and inside.
+    /// Returns true when `value` is finite and in the range.
     pub fn holds(&self, value: f64) -> bool {
         let above = if self.low_allowed {
             value >= self.low
@@ -208,7 +208,7 @@ impl Range {
         value.is_finite() && above && value <= self.high
     }
 
-    /// The range in words.
+    /// Returns the range in words.
     pub fn expected(&self) -> String {
         let from = if self.low_allowed { "from" } else { "above" };
         let to = if self.low_allowed { "to" } else { "up to" };
@@ -229,7 +229,7 @@ fn of(unit: &str) -> String {
     }
 }
 
-/// Words in quotation marks, joined by commas and a final "or".
+/// Returns words in quotation marks, joined by commas and a final "or".
 pub fn one_of(words: &[&str]) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     match quoted.split_last() {

@@ -1,4 +1,4 @@
-//! What a screen may know: plain serialisable types, filled by the cycle and the recorder.
+//! The state that pages show, as plain serialisable types, filled by the cycle and the recorder.
 
 mod machine;
 mod mimic;
@@ -10,7 +10,7 @@ mod traffic;
 pub use machine::{ActuatorView, Button, Machine, Reaction, Token};
 pub use mimic::{Mimic, MimicBody};
 pub use motion::{MotionView, RefusedView, StrokeView};
-pub use order::{Answered, By, LOT_ORDERS, ORDERS, Order};
+pub use order::{AnsweredOrder, By, LOT_ORDERS, ORDERS, Order};
 pub use request::{Answer, OrderRequest};
 pub use traffic::{LineTraffic, Message};
 
@@ -19,16 +19,16 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use texts::Args;
 
-/// The whole view.
+/// The whole state shown on the page.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct View {
-    /// When the turn that is shown was published, by the wall clock whatever the pace: microseconds since 1970 UTC.
+    /// Wall-clock time at which the cycle published this view, at any pace: microseconds since 1970 UTC.
     pub at_us: i64,
-    /// The rig is simulated.
+    /// True when the rig is simulated.
     pub simulated: bool,
-    /// Lot under way, or the last one; empty before the first.
+    /// The current lot, or else the last one; empty before the first.
     pub lot: String,
-    /// A lot is under way: what is stopped goes on with it.
+    /// True while a lot is open; a stopped lot continues with the next start.
     pub under_way: bool,
     /// Recipe of the lot.
     pub recipe: String,
@@ -40,13 +40,13 @@ pub struct View {
     pub stage: Option<&'static str>,
     /// Parts of the lot judged so far.
     pub judged: u64,
-    /// Parts wanted; none for an endless lot.
+    /// Parts wanted; `None` for an endless lot.
     pub count: Option<u64>,
     /// Parts between pocket and beam.
     pub inside: u64,
-    /// Parts that came in, golden parts included.
+    /// Parts that entered, reference parts included.
     pub came_in: u64,
-    /// Parts a beam confirmed, golden parts included.
+    /// Parts that a beam confirmed, reference parts included.
     pub went_out: u64,
     /// Confirmed parts of the lot by bin.
     pub bins: BTreeMap<String, u64>,
@@ -54,15 +54,15 @@ pub struct View {
     pub verdicts: BTreeMap<String, u64>,
     /// Parts per hour of rig time since the lot began.
     pub parts_per_hour: Option<f64>,
-    /// The last verdict, kept until the next.
+    /// The last judged part.
     pub last: Option<LastPart>,
     /// The last twenty parts judged, oldest first.
     pub recent: Vec<RecentPart>,
-    /// Limits of the recipe by parameter, low and high; null where there is none.
+    /// Limits of the recipe by parameter, low and high; null for an open side.
     pub limits: BTreeMap<String, [Option<f64>; 2]>,
-    /// Alarms that stand, first-out first, then in order of coming.
+    /// Active alarms: first-out first, then in order of occurrence.
     pub alarms: Vec<AlarmLine>,
-    /// How the lines and their modules are doing, since the start.
+    /// Lines and their modules, counted since the start.
     pub lines: Vec<LineView>,
     /// Outer machine, buttons, mechanism, signals.
     pub machine: Machine,
@@ -83,14 +83,14 @@ pub struct RunEnd {
     pub cause_text: Option<String>,
 }
 
-/// A part in the strip of the last ones.
+/// A part in the list of the last ones.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct RecentPart {
     /// Number in the lot.
     pub seq: u64,
     /// `pass`, `fail`, `void`.
     pub verdict: String,
-    /// Bin it goes to.
+    /// Bin of the part.
     pub bin: String,
 }
 
@@ -101,11 +101,11 @@ pub struct LastPart {
     pub seq: u64,
     /// `pass`, `fail`, `void`.
     pub verdict: String,
-    /// Bin it goes to.
+    /// Bin of the part.
     pub bin: String,
-    /// Why, worst first.
+    /// Reasons for the verdict, worst first.
     pub reasons: Vec<String>,
-    /// Their codes, in the same order.
+    /// Codes of the reasons, in the same order.
     pub reason_codes: Vec<Reason>,
     /// Results by parameter.
     pub values: BTreeMap<String, f64>,
@@ -113,10 +113,10 @@ pub struct LastPart {
     pub uncertainty: BTreeMap<String, f64>,
 }
 
-/// An alarm on a screen.
+/// An alarm as pages show it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct AlarmLine {
-    /// Short name.
+    /// Code of the alarm.
     pub code: String,
     /// Arguments of its text by name.
     pub args: Args,
@@ -126,52 +126,52 @@ pub struct AlarmLine {
     pub text_zh: String,
     /// `unacknowledged`, `acknowledged`, `returned`.
     pub state: String,
-    /// It began the trouble.
+    /// True for the first alarm of a sequence.
     pub first_out: bool,
-    /// How often it came since it was last normal.
+    /// Occurrences since the alarm was last normal.
     pub count: u32,
-    /// When it came first, microseconds since 1970 UTC; null when a run before left it.
+    /// Time of the first occurrence, microseconds since 1970 UTC; null when an earlier run left the alarm.
     pub raised_at_us: Option<i64>,
-    /// Not shown now.
+    /// True while a shelved alarm is hidden.
     pub shelved: bool,
-    /// What it stops: `abort`, `hold`, `suspend`, `nothing`.
+    /// Reaction of the station: `abort`, `hold`, `suspend`, `nothing`.
     pub stops: String,
-    /// Why, what follows, what to do, English.
+    /// Cause, consequence and action, English.
     pub help_en: [String; 3],
-    /// The same, Chinese.
+    /// Cause, consequence and action, Chinese.
     pub help_zh: [String; 3],
 }
 
 /// A line of modules.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct LineView {
-    /// As wired.
+    /// Name in the wiring.
     pub name: String,
     /// Transactions that found no port.
     pub ports_lost: u64,
-    /// In order of addresses.
+    /// Modules in order of address.
     pub modules: Vec<ModuleView>,
 }
 
-/// How a module is doing: counts since the start.
+/// Health of a module, counted since the start.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct ModuleView {
     /// Two hexadecimal digits, as on the module.
     pub address: String,
-    /// Tries, repeats included.
+    /// Tries, repetitions included.
     pub transactions: u64,
-    /// Latency without wire time that half of the replies keep, right within 19 %.
+    /// Median latency without wire time, at most 19 % too high.
     pub p50_ms: Option<f64>,
-    /// The same for 99 of a hundred.
+    /// 99th percentile of the latency, at most 19 % too high.
     pub p99_ms: Option<f64>,
-    /// Tries without a whole reply in time.
+    /// Tries without a complete reply in time.
     pub time_outs: u64,
-    /// Replies whose characters did not add up.
+    /// Replies with a wrong checksum.
     pub checksum_errors: u64,
-    /// Replies that were wrong in another way.
+    /// Replies with any other defect.
     pub other_errors: u64,
-    /// Answers that said no.
+    /// Replies in which the module refused the command.
     pub refusals: u64,
-    /// Reset status found set.
+    /// Times that the reset status was set.
     pub resets: u64,
 }

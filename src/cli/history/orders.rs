@@ -10,10 +10,10 @@ use std::io::Write;
 pub(super) struct OrdersArgs {
     #[command(flatten)]
     runs: RunArgs,
-    /// Answered at this time or later (RFC 3339)
+    /// AnsweredOrder at this time or later (RFC 3339)
     #[arg(long, value_name = "TIME")]
     since: Option<Moment>,
-    /// Answered before this time (RFC 3339)
+    /// AnsweredOrder before this time (RFC 3339)
     #[arg(long, value_name = "TIME")]
     until: Option<Moment>,
     /// Only this person

@@ -4,7 +4,7 @@ use super::{Cycle, Event, publish};
 use machine::handling::moves::Move;
 use machine::station::orders::{Order, Refused};
 use machine::station::wants::Wants;
-use machine::view::{self, Answered, By, OrderRequest};
+use machine::view::{self, AnsweredOrder, By, OrderRequest};
 use texts::Lang;
 use units::RigTime;
 
@@ -47,7 +47,7 @@ impl Cycle {
     /// Buttons at the machine have no screen to answer to: the audit hears of them.
     pub(super) fn pressed(&self, wants: &mut Wants, now: RigTime) {
         for (command, answer) in wants.pressed.drain(..) {
-            let answered = Answered {
+            let answered = AnsweredOrder {
                 order: view::Order {
                     order: command.name().to_owned(),
                     ..view::Order::default()
@@ -65,7 +65,7 @@ impl Cycle {
     /// Answers whoever asked, and tells the audit.
     fn say(&self, asked: OrderRequest, answer: Result<(), Refused>, now: RigTime) {
         let said = answer.map_err(|why| why.message());
-        let answered = Answered {
+        let answered = AnsweredOrder {
             order: asked.order.clone(),
             by: asked.by.clone(),
             refused: said.as_ref().err().map(|why| why.say(Lang::En)),

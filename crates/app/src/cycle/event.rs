@@ -2,13 +2,13 @@
 
 use machine::dut::Calibration;
 use machine::handling::inside::Inside;
-use machine::handling::wants::{Interrupted, Judged, Landed, Left};
+use machine::handling::wants::{Interrupted, Judged, Landed, NestExit};
 use machine::handling::wear::Uses;
 use machine::station::annunciator::Standing;
 use machine::station::packml;
 use machine::station::trouble::Alarm;
 use machine::station::wants::Checked;
-use machine::view::Answered;
+use machine::view::AnsweredOrder;
 use units::RigTime;
 
 /// What a run leaves for the history, in the order it happened.
@@ -21,7 +21,7 @@ pub enum Event {
     /// Its beam saw it.
     Landed(Landed),
     /// It left the nest.
-    Left(Left),
+    Left(NestExit),
     /// A judged part goes to retest all the same.
     Interrupted(Interrupted),
     /// An alarm was raised.
@@ -33,7 +33,7 @@ pub enum Event {
     /// A golden check has come out.
     Checked(Checked, RigTime),
     /// An order was answered.
-    Ordered(Box<Answered>, RigTime),
+    Ordered(Box<AnsweredOrder>, RigTime),
     /// A part has moved on inside: what the next run has to look for, and the uses of what wears since the start.
     Inside(Inside, Uses),
     /// The lot itself began.

@@ -35,7 +35,7 @@ impl Cycle {
             let standing = self.station.annunciator().standing().to_vec();
             self.tell(Event::Standing(standing, now));
         }
-        let inside = self.station.ledger().to_look_for();
+        let inside = self.station.ledger().parts_to_find();
         let moved = std::mem::replace(&mut self.inside, inside) != inside;
         if moved || wants.record.ending.is_some() {
             self.tell(Event::Inside(inside, self.station.uses()));

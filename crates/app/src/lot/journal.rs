@@ -12,7 +12,7 @@ use machine::station::catalogue::AlarmCode;
 use machine::station::orders::shelf_minutes;
 use machine::station::trouble::Alarm;
 use machine::station::wants::{Checked, Ending};
-use machine::view::Answered;
+use machine::view::AnsweredOrder;
 use texts::Lang;
 
 /// Alarms after which a lot takes no run before somebody releases it.
@@ -117,7 +117,7 @@ impl Journal {
     }
 
     /// An order was answered; what it does to alarms is kept with them.
-    pub fn ordered(&self, it: &Answered, at_us: i64) -> Vec<Row> {
+    pub fn ordered(&self, it: &AnsweredOrder, at_us: i64) -> Vec<Row> {
         let by = &it.by;
         let mut rows = vec![Row::Order(OrderRecord {
             lot: self.lot.clone(),
@@ -279,7 +279,7 @@ mod tests {
 
     #[test]
     fn an_acknowledgement_is_kept_with_who_gave_it_and_one_that_was_refused_changes_no_alarm() {
-        let asked = |refused: Option<&str>| Answered {
+        let asked = |refused: Option<&str>| AnsweredOrder {
             order: machine::view::Order {
                 order: "acknowledge".into(),
                 alarm: Some("door_open".into()),

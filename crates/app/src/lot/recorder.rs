@@ -127,7 +127,7 @@ impl Recorder {
             }
             Event::Inside(inside, uses) => {
                 self.aside = Some((*inside, *uses));
-                if inside.is_hard_to_tell() {
+                if inside.needs_record() {
                     self.take_aside();
                 }
             }

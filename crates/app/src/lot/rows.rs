@@ -56,7 +56,7 @@ pub fn part(context: &LotContext, judged: &Judged, golden: u64) -> PartRecord {
 /// What the test saw, a curve per signal, in the order the signals were first looked at.
 fn curves(trace: &Trace, at: impl Fn(RigTime) -> i64) -> Vec<CurveRecord> {
     let mut curves: Vec<CurveRecord> = Vec::new();
-    for look in trace.looks() {
+    for look in trace.samples() {
         let sample = (at(look.at), Some(look.value).filter(|it| it.is_finite()));
         let name = look.signal.name;
         match curves.iter_mut().find(|curve| curve.signal == name) {

@@ -1,21 +1,21 @@
-//! The peer of a busy line: a client that knows nothing, sends a request, reads up to the CR, waits for two characters on the
-//! clock and sends the next. What it lacks of the bound is lost by the simulated modules, the pseudo-terminal and this
-//! machine, whoever the host is.
+//! The peer of a busy line: a bare client that sends a request, reads up to the CR, waits for two characters and sends
+//! the next. Its distance from the bound is due to the simulated modules, the pseudo-terminal and this machine, so any
+//! host has it.
 
 use bus::Wire;
 use std::io::{self, Read, Write};
 use std::time::{Duration, Instant};
 
 /// Longest wait for a reply.
-const PATIENCE: Duration = Duration::from_secs(2);
+const TIME_OUT: Duration = Duration::from_secs(2);
 
-/// A wait ends up to this much late when it is slept; the rest of it is spent looking at the clock.
+/// A sleep may end this late; the rest of the wait spins on the clock.
 const LATE: Duration = Duration::from_micros(150);
 
-/// Sends each of `requests` and reads its reply; gives the time from the first question to the last.
+/// Sends each of `requests` and reads its reply; returns the time from the first request to the last.
 pub fn asked(path: &str, wire: Wire, requests: &[Vec<u8>]) -> io::Result<Duration> {
     let mut port = tokio_serial::new(path, wire.baud)
-        .timeout(PATIENCE)
+        .timeout(TIME_OUT)
         .open_native()?;
     let rest = Duration::from_micros(wire.time(2).0);
     let begun = Instant::now();

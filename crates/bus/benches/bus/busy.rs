@@ -1,10 +1,10 @@
-//! How busy a line is kept: time of wire and module over the time that passes, on a pseudo-terminal, against the paced
-//! simulated modules, with a request always waiting.
+//! Utilisation of a line: time of wire and module over elapsed time, on a pseudo-terminal with the paced simulated
+//! modules and a request always waiting.
 //!
-//! After each reply the line rests two characters. No host can do better than that, and how much it costs depends on
-//! the length of the frames: so each workload stands beside the share that this rest alone leaves (`bound`), and beside
-//! what a client that does nothing else reaches over the same pseudo-terminal in the same run (`peer`). A bar above the
-//! bound is out of reach of the workload, whoever the host is; one above the peer is out of reach of this machine.
+//! After each reply the line rests two characters. No host can avoid this rest, and its cost depends on the length of
+//! the frames: so each workload is shown with the utilisation that the rest alone allows (`bound`), and with that of a
+//! bare client on the same pseudo-terminal in the same run (`peer`). No host reaches a bar above the bound; none on
+//! this machine reaches a bar above the peer.
 
 use super::bare;
 use bus::{Answer, LineSettings, Pace, Request, SerialPorts, Wire};
@@ -20,9 +20,9 @@ use units::{RigTime, Span};
 
 /// Latency of a simulated module.
 const LATENCY: Span = Span::ms(2);
-/// The bars of the house.
+/// Targets: baud rate and least utilisation.
 const BARS: [(u32, f64); 2] = [(9_600, 0.95), (115_200, 0.87)];
-/// Each row is measured over about so much time of its line.
+/// Time of the line that each row measures, approximately.
 const MEASURED: Span = Span::ms(6_000);
 
 const VOLTS: InputForm = InputForm::eight(DataFormat::Engineering, TypeCode(0x08));
@@ -40,7 +40,7 @@ address = 3
 model = "I-7080"
 "#;
 
-/// Commands that are asked in turn.
+/// Commands that the line sends in turn.
 struct Workload {
     name: &'static str,
     commands: Vec<Command>,
@@ -82,23 +82,23 @@ fn workloads() -> Vec<Workload> {
     ]
 }
 
-/// What was measured of a workload at one rate.
+/// The measurement of a workload at one rate.
 struct Row {
     asked: usize,
-    /// Characters of request and reply, mean.
+    /// Mean characters of request and reply.
     characters: f64,
-    /// Of wire and module in the time that passed.
+    /// Utilisation: time of wire and module over elapsed time.
     share: f64,
-    /// The same if nothing but the rest of two characters came between.
+    /// Utilisation if only the rest of two characters came between.
     bound: f64,
-    /// What a bare client reaches.
+    /// Utilisation of a bare client.
     peer: f64,
-    /// From question to question, microseconds, sorted.
+    /// Times between requests, microseconds, sorted.
     each_us: Vec<u64>,
 }
 
 /// Prints every workload at every rate.
-pub fn tell() {
+pub fn print() {
     println!(
         "line kept busy, no checksum, modules of 2 ms, pseudo-terminal; bound: nothing but a rest of two characters, \
          peer: a bare client that spins"
@@ -190,7 +190,7 @@ fn row(
         .map(|pair| pair[1].since(pair[0]).0)
         .collect();
     let elapsed = times[count - 1].since(times[0]).0;
-    // The last answer has no question behind it.
+    // No request follows the last answer.
     let characters: Vec<usize> = answers[..count - 1].iter().map(characters).collect();
     let needed: u64 = characters
         .iter()
@@ -208,7 +208,7 @@ fn row(
     })
 }
 
-/// Of request and reply, each with its CR.
+/// Returns the characters of request and reply, each with its CR.
 fn characters(answer: &Answer) -> usize {
     written(&answer.command).len() + answer.raw.len() + 1
 }
@@ -219,7 +219,7 @@ fn written(command: &Command) -> Vec<u8> {
     request
 }
 
-/// Asks `commands` in turn until `count` have been answered; the next request always waits.
+/// Sends `commands` in turn until `count` have been answered; the next request always waits.
 async fn asked(ports: SerialPorts, commands: &[Command], count: usize) -> Vec<Answer> {
     let mut settings = LineSettings::new("bench", ports.baud);
     settings.checksum = false;

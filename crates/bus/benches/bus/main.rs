@@ -1,5 +1,5 @@
-//! `cargo bench -p bus`: how fast the parser is and whether it allocates, how much of the time a line keeps busy
-//! against the paced simulated modules, and ten million random frames.
+//! `cargo bench -p bus`: speed and allocations of the parser, utilisation of a line with the paced simulated modules,
+//! and ten million random frames.
 
 #![allow(missing_docs)]
 
@@ -18,11 +18,11 @@ use std::time::Instant;
 #[global_allocator]
 static ALLOC: divan::AllocProfiler = divan::AllocProfiler::system();
 
-/// Random frames, each to every kind of command and to the reading of requests.
+/// Number of random frames; each is decoded as a reply, and one in eight is read as a request.
 const FUZZED: u64 = 10_000_000;
 
 fn main() {
-    busy::tell();
+    busy::print();
     fuzz();
     divan::main();
 }
@@ -99,7 +99,7 @@ fn fuzz() {
         frame.push(b'\r');
         let ask = asks[(turn % asks.len() as u64) as usize];
         taken += u64::from(black_box(ask.decode(&frame, checksum)).is_ok());
-        // Reading a request tries every command; one frame in eight keeps the whole within minutes.
+        // Reading a request tries every command, so one frame in eight keeps the run within minutes.
         if turn % 8 == 0 {
             read += black_box(dcon::readings(&frame[..frame.len() - 1])).len() as u64;
         }

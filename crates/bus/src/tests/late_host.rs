@@ -1,4 +1,4 @@
-//! A busy host: it wakes late, and its clock goes on between two lines of code. Neither makes a module silent.
+//! A busy host wakes late, and its clock advances between two lines of code. Neither makes a module silent.
 
 use super::*;
 use std::io;
@@ -6,8 +6,8 @@ use std::pin::Pin;
 use std::task::{Context, Poll};
 use tokio::io::{AsyncRead, AsyncWrite, ReadBuf};
 
-/// A port in front of a host that sleeps until `wakes_at`: the reply lies in its buffer long since, and the reactor
-/// notices it when it is asked the next time after that.
+/// A port of a host that sleeps until `wakes_at`: the reply has long been in its buffer, and the reactor notices it at
+/// the first poll after the wake-up.
 struct Unnoticed {
     pace: Pace,
     wakes_at: RigTime,
@@ -51,7 +51,7 @@ impl AsyncWrite for Unnoticed {
     }
 }
 
-/// One question through `port`.
+/// Sends one request through `port`.
 async fn asked<P: AsyncRead + AsyncWrite + Unpin + Send>(
     port: P,
     pace: Pace,
@@ -74,7 +74,7 @@ async fn asked<P: AsyncRead + AsyncWrite + Unpin + Send>(
 }
 
 #[test]
-fn a_reply_that_waited_while_the_host_slept_is_heard() {
+fn a_reply_that_waited_for_the_host_counts() {
     let limit = settings().time_out(&count());
     let answer = |reply| {
         in_virtual_time(async move {
@@ -98,7 +98,7 @@ fn a_reply_that_waited_while_the_host_slept_is_heard() {
 }
 
 #[test]
-fn a_silent_module_is_asked_its_name_in_real_time_too() {
+fn a_silent_module_must_name_itself_in_real_time() {
     let asked_for_its_name = tokio::runtime::Builder::new_current_thread()
         .enable_time()
         .build()

@@ -1,9 +1,9 @@
-//! Ports that are missing, taken, or go away, and a real terminal.
+//! Ports that are missing, taken or lost, and a real terminal.
 
 use super::*;
 
 #[test]
-fn a_closed_stream_is_a_lost_port_at_the_pace_of_a_silent_module() {
+fn a_closed_stream_takes_the_time_of_a_silent_module() {
     let (got, pace) = in_virtual_time(async {
         let pace = Pace::virtual_time();
         let (ours, theirs) = duplex(64);
@@ -57,7 +57,7 @@ impl Ports for Flaky {
             next_request(&mut theirs).await;
             pace.sleep_until(pace.now() + Span(2_000)).await;
             let _ = theirs.write_all(THIRTY).await;
-            // One more is heard and then the port is gone.
+            // After the next request the port closes.
             next_request(&mut theirs).await;
         });
         Ok(ours)
@@ -112,7 +112,7 @@ fn a_lost_port_is_opened_again_after_its_back_off() {
 }
 
 #[tokio::test]
-async fn a_missing_port_says_its_path() {
+async fn the_error_of_a_missing_port_names_its_path() {
     let error = open_serial("/dev/there-is-none", 115_200).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -125,7 +125,7 @@ async fn a_missing_port_says_its_path() {
 }
 
 #[tokio::test]
-async fn a_line_runs_over_a_terminal_at_real_pace_and_keeps_it_for_itself() {
+async fn a_line_holds_its_terminal_exclusively_at_real_pace() {
     let (mut device, slave) = tokio_serial::SerialStream::pair().unwrap();
     let path = tokio_serial::SerialPort::name(&slave).unwrap();
     drop(slave);
@@ -137,7 +137,7 @@ async fn a_line_runs_over_a_terminal_at_real_pace_and_keeps_it_for_itself() {
 
     let (ask, to_line) = mpsc::channel(1);
     let (from_line, mut answers) = mpsc::channel(1);
-    // What is asked here is no matter of time; a busy machine may let the device wait.
+    // This test is not about time; on a busy machine the device may be late.
     let patient = LineSettings {
         digital_allowance_ms: 5000,
         ..settings()

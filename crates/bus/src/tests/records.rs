@@ -1,4 +1,4 @@
-//! What a line keeps about itself: trace, health, bounds, time.
+//! The records of a line: trace, health, bounds, time.
 
 use super::*;
 
@@ -33,7 +33,7 @@ fn health_counts_each_module_and_each_kind_of_trouble() {
 }
 
 #[test]
-fn equal_traffic_has_an_equal_fingerprint_and_other_traffic_another() {
+fn fingerprints_agree_only_for_equal_traffic() {
     let fingerprint = |reply: &'static [u8]| {
         let settings = settings();
         let log = settings.log.clone();
@@ -69,8 +69,8 @@ fn the_longest_transaction_is_that_of_the_slowest_command() {
     let settings = settings();
     let both = longest_transaction(&settings, &[count(), write(), Command::HostOk]);
     assert_eq!(both, longest_transaction(&settings, &[count()]));
-    // 7 + 12 characters, 30 ms and a rest of two characters three times: asked, asked again, asked who is there; then
-    // 12 characters of silence and 30 ms.
+    // 7 + 12 characters, 30 ms and a rest of two characters three times (request, repetition, resynchronisation);
+    // then 12 characters of silence and 30 ms.
     let wire = |characters| settings.wire().time(characters).0;
     assert_eq!(
         both.0,

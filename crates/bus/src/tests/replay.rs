@@ -1,9 +1,9 @@
-//! A recorded trace played to the line again: the same bytes at the same distances give the same conclusions.
+//! Replays a recorded trace to the line: the same bytes at the same distances give the same conclusions.
 
 use super::*;
 use dcon::understand;
 
-/// Plays the modules' side of `recorded`: after each request, what was heard after it, as long after it.
+/// Plays the modules' side of `recorded`: after each request, the bytes recorded after it, with the same delay.
 async fn play(mut stream: DuplexStream, pace: Pace, recorded: Recorded) -> (bool, DuplexStream) {
     let mut entries = recorded.entries.into_iter().peekable();
     let mut same = true;
@@ -19,11 +19,11 @@ async fn play(mut stream: DuplexStream, pace: Pace, recorded: Recorded) -> (bool
             let _ = stream.write_all(said.bytes()).await;
         }
     }
-    // Handed back, so that the port stays open until the last conclusion.
+    // Returned so that the port stays open until the last conclusion.
     (same, stream)
 }
 
-/// A lot of trouble in one trace: good replies, silence with a late reply, damage, noise, a refusal.
+/// Many kinds of trouble in one trace: good replies, silence with a late reply, damage, noise, a refusal.
 fn troubled() -> (Vec<(Command, u8)>, Vec<Vec<Say>>) {
     let asks = vec![
         (count(), 1),
@@ -57,7 +57,7 @@ fn conclusions(answers: &[Answer]) -> Vec<(Result<Reply, LineError>, String, u8)
 }
 
 #[test]
-fn a_recorded_trace_played_again_leads_to_the_same_conclusions() {
+fn a_replayed_trace_leads_to_the_same_conclusions() {
     let (asks, script) = troubled();
     let first = settings();
     let log = first.log.clone();
@@ -98,7 +98,7 @@ fn a_recorded_trace_played_again_leads_to_the_same_conclusions() {
 }
 
 #[test]
-fn a_trace_as_text_comes_back_byte_for_byte_and_says_what_was_meant() {
+fn a_trace_as_text_parses_back_byte_for_byte() {
     let (asks, script) = troubled();
     let settings = settings();
     let log = settings.log.clone();

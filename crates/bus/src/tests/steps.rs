@@ -1,10 +1,10 @@
-//! A line stays in step: whatever comes late is never taken for the answer to a later question.
+//! A line in step: it never takes a late reply for the answer to a later request.
 
 use super::*;
 
-/// Module 03, which serves one request after the other and says its first count `late` after it was asked, and
-/// module 05, whose counts come in 2 ms. Counts tell their module: 03 says 30, 05 says 9. `dead`: requests to 05 that
-/// get no answer.
+/// Module 03, which serves its requests in order and sends its first count after `late` microseconds, and module 05,
+/// whose counts take 2 ms. The count tells the module: 03 replies 30, 05 replies 9. `dead`: number of requests to 05
+/// without an answer.
 async fn neighbours(mut stream: DuplexStream, pace: Pace, late: u64, dead: usize) {
     let (slow_in, mut slow_out) = mpsc::unbounded_channel::<String>();
     let (say_in, mut say_out) = mpsc::unbounded_channel::<Vec<u8>>();
@@ -47,7 +47,7 @@ fn neighbour() -> Command {
     Counter::Read(UpTo::new(0).unwrap()).to(Address(5))
 }
 
-/// One question to the slow module, then questions to the fast one for half a second.
+/// Sends one request to the slow module, then requests to the fast one for half a second.
 fn answers(late: u64, dead: usize) -> Vec<Answer> {
     in_virtual_time(async {
         let pace = Pace::virtual_time();
@@ -76,7 +76,7 @@ fn answers(late: u64, dead: usize) -> Vec<Answer> {
 }
 
 #[test]
-fn a_reply_as_late_as_it_likes_is_never_taken_for_its_neighbours() {
+fn a_late_reply_never_counts_for_another_module() {
     for late in (1..90).map(|step| step * 4_937) {
         let got = answers(late, 0);
         let limit = settings().time_out(&count()).0;
@@ -96,7 +96,7 @@ fn a_reply_as_late_as_it_likes_is_never_taken_for_its_neighbours() {
 }
 
 #[test]
-fn a_late_reply_does_not_stand_in_for_one_that_was_lost() {
+fn a_late_reply_never_replaces_a_lost_one() {
     for late in (1..90).map(|step| step * 4_937) {
         for answer in &answers(late, 3)[1..] {
             assert_ne!(

@@ -1,30 +1,30 @@
-//! Uncertainty budget of one result (GUM, ISO/IEC Guide 98-3): named standard uncertainties, added
-//! in quadrature because every term here comes from an instrument or effect of its own.
+//! Uncertainty budget of one result (GUM, ISO/IEC Guide 98-3): named standard uncertainties, added in quadrature
+//! because each comes from an independent instrument or effect.
 
 use serde::Serialize;
 use units::Unit;
 
-/// Coverage factor of every expanded uncertainty that leaves the program.
+/// Coverage factor of every expanded uncertainty in rows, files and pages.
 pub const COVERAGE_FACTOR: f64 = 2.0;
 
-/// Half width of a rectangular distribution to its standard uncertainty (GUM 4.3.7).
+/// Returns the standard uncertainty of a rectangular distribution with this half width (GUM 4.3.7).
 pub fn rectangular(half_width: f64) -> f64 {
     half_width / 3f64.sqrt()
 }
 
-/// Standard uncertainty of a quantity read in steps of `step` (GUM F.2.2.1).
+/// Returns the standard uncertainty of a quantity read in steps of `step` (GUM F.2.2.1).
 pub fn resolution(step: f64) -> f64 {
     step / 12f64.sqrt()
 }
 
-/// One source of doubt, in the unit of the result.
+/// One source of uncertainty.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Term {
-    /// What is in doubt: `coil temperature`, `slope`.
+    /// Name of the source: `coil temperature`, `slope`.
     pub source: &'static str,
     /// Standard uncertainty in the unit of the result.
     pub u: f64,
-    /// Drawn anew at each repetition, so that averaging helps against it.
+    /// True when the error varies between repetitions, so that averaging reduces it.
     pub random: bool,
 }
 
@@ -34,7 +34,7 @@ pub struct Term {
 pub struct Budget(pub Vec<Term>);
 
 impl Budget {
-    /// Adds a term that stays the same however often one repeats; its sign does not matter.
+    /// Adds a term that repetition does not reduce; ignores the sign of `u`.
     pub fn with(mut self, source: &'static str, u: f64) -> Self {
         self.0.push(Term {
             source,
@@ -44,7 +44,7 @@ impl Budget {
         self
     }
 
-    /// Adds a term that is drawn anew at each repetition.
+    /// Adds a term that varies between repetitions; ignores the sign of `u`.
     pub fn with_random(mut self, source: &'static str, u: f64) -> Self {
         self.0.push(Term {
             source,
@@ -54,17 +54,17 @@ impl Budget {
         self
     }
 
-    /// Combined standard uncertainty.
+    /// Returns the combined standard uncertainty of all terms.
     pub fn combined(&self) -> f64 {
         root_sum(self.0.iter())
     }
 
-    /// Standard uncertainty of what is drawn anew at each repetition.
+    /// Returns the combined standard uncertainty of the terms that vary between repetitions.
     pub fn random(&self) -> f64 {
         root_sum(self.0.iter().filter(|term| term.random))
     }
 
-    /// Expanded uncertainty, k = 2.
+    /// Returns the expanded uncertainty, k = 2.
     pub fn expanded(&self) -> f64 {
         COVERAGE_FACTOR * self.combined()
     }
@@ -81,17 +81,17 @@ pub struct Reading {
     pub value: f64,
     /// Unit of the value and of every term of the budget.
     pub unit: Unit,
-    /// Where its doubt comes from.
+    /// Sources of its uncertainty.
     pub budget: Budget,
 }
 
 impl Reading {
-    /// Expanded uncertainty, k = 2.
+    /// Returns the expanded uncertainty, k = 2.
     pub fn expanded(&self) -> f64 {
         self.budget.expanded()
     }
 
-    /// False when value or uncertainty is not a finite number: such a reading is void.
+    /// Returns false when value or uncertainty is not a finite number; such a reading is void.
     pub fn is_usable(&self) -> bool {
         self.value.is_finite() && self.expanded().is_finite()
     }

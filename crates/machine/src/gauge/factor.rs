@@ -1,19 +1,19 @@
-//! A calibration factor and how well it is known.
+//! A calibration factor with its uncertainty.
 
 use serde::{Deserialize, Serialize};
 use units::Unit;
 
-/// A factor and how well it is known.
+/// A calibration factor with its uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Value in the unit its field names.
+    /// Value in the unit named by its field.
     pub value: f64,
     /// Standard uncertainty in the same unit.
     pub u: f64,
 }
 
 impl Factor {
-    /// A value with its standard uncertainty.
+    /// Makes a factor from a value and its standard uncertainty.
     pub fn new(value: f64, u: f64) -> Self {
         Self { value, u }
     }

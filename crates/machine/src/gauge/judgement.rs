@@ -1,39 +1,39 @@
-//! One result against its limit, with a guard band.
+//! Judges one result against its limit, with a guard band.
 //!
-//! Rule `guard_band` (ISO 14253-1, ILAC-G8 with w = U): pass when the value lies inside the limit by at least U, fail when
-//! it lies outside by at least U, conditional in between. Rule `simple` judges the bare value. A result that is not usable
-//! is void, never pass.
+//! Rule `guard_band` (ISO 14253-1, ILAC-G8 with w = U): pass when the value lies inside the limit by at least U, fail
+//! when it lies outside by at least U, conditional in between. Rule `simple` compares the value alone. A result
+//! without a usable number is void and never passes.
 
 use super::budget::Reading;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use units::Unit;
 
-/// Limits of one characteristic, inclusive; a missing side is not judged.
+/// Limits of one characteristic, inclusive; `None` leaves a side open.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
     /// Unit of both sides.
     pub unit: Unit,
-    /// Least good value.
+    /// Least acceptable value.
     pub low: Option<f64>,
-    /// Greatest good value.
+    /// Greatest acceptable value.
     pub high: Option<f64>,
 }
 
 impl Limit {
-    /// True when neither side is judged.
+    /// Returns true when both sides are open.
     pub fn is_open(&self) -> bool {
         self.low.is_none() && self.high.is_none()
     }
 }
 
-/// How the uncertainty enters a decision.
+/// Use of the uncertainty in a decision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Rule {
-    /// The limit is moved inwards by the expanded uncertainty (k = 2).
+    /// Moves the limit inwards by the expanded uncertainty (k = 2).
     GuardBand,
-    /// The bare value is compared.
+    /// Compares the value alone.
     Simple,
 }
 
@@ -48,7 +48,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// `low` or `high`, as in rows.
+    /// Returns `low` or `high`, as in rows.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Low => "low",
@@ -56,7 +56,7 @@ impl Side {
         }
     }
 
-    /// The side of this name.
+    /// Returns the side with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         [Self::Low, Self::High]
             .into_iter()
@@ -70,26 +70,29 @@ impl fmt::Display for Side {
     }
 }
 
-/// One result against its limit.
+/// Judgement of one result against its limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Judgement {
-    /// Proven inside.
+    /// Inside the limit, beyond doubt under the rule.
     Pass,
-    /// Proven outside.
+    /// Outside the limit, beyond doubt under the rule.
     Fail(Side),
-    /// Within U of the limit: to be measured again by the slow strategy.
+    /// Within U of the limit: needs the confirmation measurement.
     Conditional(Side),
     /// No usable number.
     Void,
 }
 
-/// Judges one result by its limit; without a limit every usable result passes.
+/// Judges one result by its limit; an open limit passes every usable result.
 ///
 /// # Panics
-/// When both are not in the same unit.
+/// Panics when reading and limit have different units.
 pub fn judge(reading: &Reading, limit: &Limit, rule: Rule) -> Judgement {
-    assert_eq!(reading.unit, limit.unit, "judged in another unit");
+    assert_eq!(
+        reading.unit, limit.unit,
+        "reading and limit have different units"
+    );
     if !reading.is_usable() {
         return Judgement::Void;
     }
@@ -168,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    #[should_panic(expected = "judged in another unit")]
+    #[should_panic(expected = "reading and limit have different units")]
     fn a_result_is_never_judged_in_another_unit() {
         let limit = Limit {
             unit: Unit::Milliohm,
@@ -178,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_number_is_void_and_never_passes() {
+    fn nan_is_void_and_never_passes() {
         let rule = Rule::GuardBand;
         assert_eq!(
             judge(&reading(f64::NAN, 0.01), &high(9.0), rule),

@@ -1,7 +1,7 @@
-//! Metrology that every kind of device shares: readings, budgets of uncertainty, means of repetitions, limits.
+//! Metrology for every kind of device: readings, uncertainty budgets, means of repetitions, limits.
 //!
-//! Every result is a [`Reading`]: a value with a [`Budget`] of standard uncertainties after the GUM. Nothing here knows a
-//! part, a bus, a clock or a sequence.
+//! Every result is a [`Reading`]: a value with a [`Budget`] of standard uncertainties after the GUM. This module knows
+//! no part, bus, clock or sequence.
 
 pub mod budget;
 pub mod factor;

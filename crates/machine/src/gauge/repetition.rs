@@ -1,38 +1,38 @@
-//! Several readings of one part, and what their mean does not know.
+//! The mean of several readings of one part, and its uncertainty.
 //!
-//! What is promised to be drawn anew at each reading shrinks with the root of their number. How far the readings really lie
-//! apart is a term of its own (type A, GUM 4.2), as far as nobody has promised it, and what it leaves open hangs on what
-//! the mean is taken for ([`SpokenOf`]). Few readings tell their scatter badly: it is widened to Student's t, so that
-//! twice the standard uncertainty covers as much as with many (GUM G.3).
+//! Averaging n readings divides the random terms of the budget by the root of n. If the readings scatter more than
+//! those terms explain, the excess is a term of its own (type A, GUM 4.2); [`SpokenOf`] decides what the mean stands
+//! for and so how large the term is. A standard deviation of few readings is widened to Student's t, so that k = 2
+//! covers as much as with many (GUM G.3).
 
 use super::budget::{Budget, COVERAGE_FACTOR, Reading, Term};
 
-/// What a row with a mean of several readings speaks of.
+/// Meaning of the mean of several readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpokenOf {
-    /// A property of the part, about which its operations scatter as promised, or more: a threshold, the coil.
+    /// A property of the part: a threshold, the coil. Its readings scatter by the random terms of the budget, or more.
     Part,
-    /// Any one operation, of which a limit speaks too: times and bounce. It lies as far from the mean as those that were
-    /// read lie apart, and nobody promises how far.
+    /// Any single operation, to which the limit applies: times and bounce. It deviates from the mean as much as the
+    /// readings do, and no random term bounds that.
     Operation,
-    /// The closures that were read, and no other: contacts.
+    /// Exactly the closures that were measured: contacts.
     Closures,
 }
 
-/// Student's t that covers 95.45 % with 1, 2, ... degrees of freedom (GUM, table G.2).
+/// Student's t for 95.45 % coverage with 1, 2, ... degrees of freedom (GUM, table G.2).
 const STUDENT: [f64; 10] = [13.97, 4.53, 3.31, 2.87, 2.65, 2.52, 2.43, 2.37, 2.32, 2.28];
 
-/// What a standard deviation of so many degrees of freedom is widened by. Beyond the table t falls to 2 as one over
-/// their number, within a hundredth.
+/// Returns the factor that widens a standard deviation with `freedom` degrees of freedom. Beyond the table t - 2 falls
+/// with the reciprocal of `freedom`, accurate to a hundredth.
 fn student(freedom: usize) -> f64 {
     let listed = STUDENT.get(freedom.saturating_sub(1)).copied();
     listed.map_or(1.0 + 1.4 / freedom as f64, |t| t / COVERAGE_FACTOR)
 }
 
-/// Mean of repetitions; `None` without one. The terms are those of the first.
+/// Returns the mean of repetitions, with the terms of the first; `None` for no repetitions.
 ///
 /// # Panics
-/// When they are not in the same unit.
+/// Panics when the readings have different units.
 pub fn mean(repetitions: &[Reading], of: SpokenOf) -> Option<Reading> {
     let (first, more) = repetitions.split_first()?;
     if more.is_empty() {
@@ -96,7 +96,7 @@ mod tests {
     const ALL: [SpokenOf; 3] = [SpokenOf::Part, SpokenOf::Operation, SpokenOf::Closures];
 
     #[test]
-    fn repetition_helps_only_against_what_is_random() {
+    fn repetition_reduces_only_random_terms() {
         for of in ALL {
             assert_eq!(combined(&[1.0; 4], of), 5.0);
             assert_eq!(combined(&[1.0], of), 73f64.sqrt());
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn a_property_that_scatters_as_promised_is_doubted_no_more() {
+    fn expected_scatter_adds_no_uncertainty() {
         // Standard deviation 6.9 of 8.
         let apart = [1.0, 13.0, 1.0, 13.0];
         assert_eq!(combined(&apart, SpokenOf::Part), 5.0);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_part_scatters_is_in_the_uncertainty_of_its_mean() {
+    fn excess_scatter_adds_to_the_uncertainty_of_the_mean() {
         // Standard deviation 100; Student's t of two degrees of freedom is 4.53.
         let apart = [900.0, 1000.0, 1100.0];
         let promised_2 = 9.0 + 64.0 / 3.0;
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn the_mean_of_a_bounce_covers_every_operation_it_was_made_of() {
+    fn the_uncertainty_of_a_mean_bounce_covers_every_operation() {
         let apart = [1680.0, 1750.0, 1790.0, 1960.0];
         let mean = mean(&readings(&apart), SpokenOf::Operation).expect("readings");
         let furthest = apart.map(|it| (it - mean.value).abs());
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn few_readings_are_widened_as_far_as_student_says() {
+    fn few_readings_are_widened_by_students_t() {
         assert_eq!(student(1), 6.985);
         assert_eq!(student(10), 1.14);
         // GUM, table G.2: 2.13 with 20, 2.05 with 50 degrees of freedom.

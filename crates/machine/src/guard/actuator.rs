@@ -1,6 +1,6 @@
-//! The eight actuators of the rig and what is known of where they stand.
+//! The eight actuators of the rig and their known positions.
 //!
-//! A stroke is counted in mm from the actuator's rest end (`At(0.0)`): escapement holding, pusher
+//! Strokes count in mm from the actuator's rest end (`At(0.0)`): escapement holding, pusher
 //! retracted, jaws open, probes down, axis at the nest, sort z up, gripper open.
 
 use serde::Deserialize;
@@ -14,10 +14,10 @@ pub enum Actuator {
     Escapement,
     /// Brings the part from the pocket to the nest.
     Pusher,
-    /// The clamp's jaw on the +y side; a scene may also call it `clamp_left`.
+    /// The nest's jaw on the +y side; a scene may also call it `clamp_left`.
     #[serde(alias = "clamp_left")]
     JawLeft,
-    /// The clamp's jaw on the -y side, or `clamp_right`.
+    /// The nest's jaw on the -y side; a scene may also call it `clamp_right`.
     #[serde(alias = "clamp_right")]
     JawRight,
     /// Lifts the Kelvin pin block to the relay's pins.
@@ -43,10 +43,10 @@ impl Actuator {
         Actuator::Gripper,
     ];
 
-    /// What a scene may also call a jaw.
+    /// Other ids that a scene may give the jaws.
     pub const OTHER_NAMES: [&'static str; 2] = ["clamp_left", "clamp_right"];
 
-    /// The id in `scene.toml`.
+    /// Returns the id in `scene.toml`.
     pub const fn name(self) -> &'static str {
         match self {
             Actuator::Escapement => "escapement",
@@ -60,17 +60,17 @@ impl Actuator {
         }
     }
 
-    /// The ids of all actuators, in the order of [`Actuator::ALL`].
+    /// Returns the ids of all actuators, in the order of [`Actuator::ALL`].
     pub fn names() -> [&'static str; 8] {
         Self::ALL.map(Actuator::name)
     }
 
-    /// The actuator with this id.
+    /// Returns the actuator with this id.
     pub fn from_name(name: &str) -> Option<Actuator> {
         Self::ALL.into_iter().find(|a| a.name() == name)
     }
 
-    /// Place in [`Actuator::ALL`] and in every table kept per actuator.
+    /// Returns the index in [`Actuator::ALL`] and in every table by actuator.
     pub(super) const fn index(self) -> usize {
         self as usize
     }
@@ -82,12 +82,12 @@ impl fmt::Display for Actuator {
     }
 }
 
-/// What is known of an actuator, in mm of its stroke.
+/// Known position of an actuator, mm of its stroke.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Position {
-    /// Standing here, confirmed by a sensor or the drive.
+    /// At rest here, confirmed by a sensor or the drive.
     At(f64),
-    /// Moving, or somewhere unknown: its bodies occupy the whole span.
+    /// Moving or not exactly known: its bodies occupy the whole span.
     Between {
         /// Low end of the span.
         from_mm: f64,
@@ -97,7 +97,7 @@ pub enum Position {
 }
 
 impl Position {
-    /// Low and high end in mm, in order.
+    /// Returns the low and high end, mm.
     pub fn span_mm(self) -> (f64, f64) {
         match self {
             Position::At(mm) => (mm, mm),
@@ -105,7 +105,7 @@ impl Position {
         }
     }
 
-    /// The smallest span that holds this position and the point `mm`.
+    /// Returns the smallest span that holds this position and the point `mm`.
     pub fn reaching(self, mm: f64) -> Position {
         let (low, high) = self.span_mm();
         if low == mm && high == mm {

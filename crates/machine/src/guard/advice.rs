@@ -1,8 +1,7 @@
-//! What would make a refused motion possible: found by trying, so that it is true.
+//! The remedy for a refused motion, found by trial: the guard clears the motion after it.
 //!
-//! Tried in this order, each alone: every actuator that carries the blocker or the mover brought
-//! to rest, then any other one to rest, then the same to their other ends, then each part taken
-//! out. The first that clears the motion is the advice.
+//! Tries each change alone, in this order: each carrier of the blocker or the mover to rest, each other actuator to
+//! rest, the same to their other ends, each part removed. The first change that clears the motion is the advice.
 
 use super::actuator::{Actuator, Position};
 use super::judge::judge;
@@ -12,15 +11,15 @@ use super::refusal::words;
 use super::scene::Scene;
 use super::situation::Situation;
 use super::space::Space;
-use super::sweep::Finding;
+use super::sweep::FirstContact;
 
-/// Words for a mechanic.
+/// Returns the remedy in words for a mechanic.
 pub(super) fn advice(
     scene: &Scene,
     space: &mut Space,
     situation: &Situation,
     motion: &Motion,
-    finding: &Finding,
+    finding: &FirstContact,
 ) -> String {
     let mut helps =
         |tried: &Situation| judge(scene, space, motion, tried).is_ok_and(|found| found.is_none());
@@ -52,8 +51,8 @@ pub(super) fn advice(
         .to_owned()
 }
 
-/// Every actuator that the motion leaves alone, the ones concerned first.
-fn by_relevance(scene: &Scene, motion: &Motion, finding: &Finding) -> Vec<Actuator> {
+/// Returns every actuator that the motion does not use, carriers of the two bodies first.
+fn by_relevance(scene: &Scene, motion: &Motion, finding: &FirstContact) -> Vec<Actuator> {
     let blocker = finding
         .blocker
         .map(|number| scene.rides(number))

@@ -1,4 +1,4 @@
-//! The actuators' axes from the settings: each actuator once, unit directions, real strokes.
+//! The actuators' axes from the settings; checks that each occurs once, with a unit direction and a stroke.
 
 use super::actuator::Actuator;
 use super::build::finite;
@@ -6,10 +6,10 @@ use super::error::GuardError;
 use super::scene::{Axis, carriers};
 use super::settings::ActuatorSettings;
 
-/// How far from 1 the length of an axis may be: three decimals typed by hand.
+/// Greatest deviation of an axis from length 1: three decimals typed by hand.
 const UNIT_TOLERANCE: f64 = 1e-3;
 
-/// By [`Actuator::index`].
+/// Returns the axes by [`Actuator::index`].
 pub(super) fn axes_of(settings: &[ActuatorSettings]) -> Result<[Axis; 8], GuardError> {
     let mut axes = Vec::with_capacity(Actuator::ALL.len());
     for actuator in Actuator::ALL {

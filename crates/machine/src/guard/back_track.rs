@@ -1,25 +1,24 @@
-//! The last clear pose of a refused stroke: where it may stop, or be taken back to.
+//! The last clear pose of a refused stroke, at which it may stop or to which it may return.
 //!
-//! Found by trying, like the advice: what is offered, the guard clears. A pose in which the margin
-//! is just reached is not clear, so the offer stands a little before it.
+//! Found by trial, as the remedy is: the guard clears every pose offered here. A pose that just reaches the margin is
+//! not clear, so the offer lies a little before it.
 
 use super::judge::judge;
 use super::motion::Motion;
 use super::scene::Scene;
 use super::situation::Situation;
 use super::space::Space;
-use super::sweep::Finding;
+use super::sweep::FirstContact;
 
-/// How far before the contact the offer stands, mm: what a point table of the axis can tell apart.
+/// Distance of the offer before the contact, mm: the resolution of the axis's point table.
 const BEFORE_MM: f64 = 0.01;
 
-/// Position in mm of the stroke; `None` when the start itself is not clear, not known, or nearer
-/// than [`BEFORE_MM`].
+/// Returns the position in mm of the stroke; `None` when the start is blocked, unknown, or nearer than [`BEFORE_MM`].
 pub(super) fn last_clear_mm(
     scene: &Scene,
     space: &mut Space,
     situation: &Situation,
-    finding: &Finding,
+    finding: &FirstContact,
 ) -> Option<f64> {
     let (from, reached) = finding.clear_way_mm?;
     if (reached - from).abs() <= BEFORE_MM {

@@ -1,4 +1,4 @@
-//! The bodies from the settings: shapes that are bodies, and who carries them.
+//! Makes the bodies of the scene from the settings, with their carriers.
 
 use super::actuator::Actuator;
 use super::error::GuardError;
@@ -7,7 +7,7 @@ use super::scene::{Axis, Body, Ride, carriers};
 use super::settings::{GuardSettings, Kind, Piece, PoseSettings};
 use lpm::{Mover, Pose, Shape};
 
-/// In the order of the file.
+/// Returns the bodies in the order of the file.
 pub(super) fn bodies_of(
     settings: &GuardSettings,
     axes: &[Axis; 8],
@@ -55,7 +55,7 @@ pub(super) fn bodies_of(
     Ok(bodies)
 }
 
-/// What carries a part in each role, by [`Role::index`].
+/// Returns the carriers of a part in each role, by [`Role::index`].
 pub(super) fn part_rides(axes: &[Axis; 8]) -> Result<[Vec<Ride>; 5], GuardError> {
     let mut rides: [Vec<Ride>; 5] = Default::default();
     for role in Role::ALL {

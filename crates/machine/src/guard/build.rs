@@ -1,4 +1,4 @@
-//! From the settings to the scene, refusing whatever would make an answer meaningless.
+//! Builds the scene from the settings and rejects settings that would make an answer meaningless.
 
 use super::axes::axes_of;
 use super::bodies::{bodies_of, part_rides};
@@ -8,7 +8,7 @@ use super::rules::Rules;
 use super::scene::Scene;
 use super::settings::{GuardSettings, Policy};
 
-/// Checks and resolves everything in `settings`.
+/// Checks and resolves the settings.
 pub(super) fn scene_of(settings: &GuardSettings) -> Result<Scene, GuardError> {
     if let Some(unit) = settings.units.as_ref().filter(|unit| *unit != "mm") {
         return Err(GuardError::Unit {
@@ -61,7 +61,7 @@ fn check_policy(policy: &Policy) -> Result<(), GuardError> {
     Ok(())
 }
 
-/// Refuses the first of `numbers` that is NaN or infinite.
+/// Rejects the first of `numbers` that is NaN or infinite.
 pub(super) fn finite(path: &str, numbers: &[f64]) -> Result<(), GuardError> {
     match numbers.iter().position(|number| !number.is_finite()) {
         None => Ok(()),
@@ -76,7 +76,7 @@ pub(super) fn finite(path: &str, numbers: &[f64]) -> Result<(), GuardError> {
 fn check_names(ids: &[String], settings: &GuardSettings) -> Result<(), GuardError> {
     for (index, id) in ids.iter().enumerate() {
         if let Some(first) = ids[..index].iter().position(|earlier| earlier == id) {
-            // The later one is to blame, unless it is a role of the part.
+            // The error names the later of two equal ids, unless that is a role of the part.
             let blamed = if index < settings.elements.len() {
                 index
             } else {

@@ -1,12 +1,12 @@
-//! Which bodies a stroke takes along, and which parts are in the space meanwhile.
+//! The bodies that a stroke carries along, and the parts in the space during it.
 //!
-//! - A part in the pocket is before the pusher as soon as the pusher moves or may have moved.
-//! - The pusher going forward takes the part before it along. Going back it leaves the part where it is: the part stays a body for everyone
-//!   else, but the pusher cannot run into what it is leaving behind.
-//! - The gripper takes its part wherever its carriers go. A closed gripper that is down at the
-//!   nest takes the part in the nest along, whatever the ledger calls it.
-//! - A released escapement lets a part run from the mouth into the pocket. Until it holds again
-//!   one may be anywhere on that way.
+//! - A part in the pocket is in front of the pusher as soon as the pusher moves or may have moved.
+//! - The pusher carries the part in front of it forward. Going back it leaves the part where it is: the part remains
+//!   an obstacle for all other bodies, but the pusher cannot hit the part that it leaves.
+//! - The gripper takes its part wherever its carriers go. A closed gripper that is down at the nest takes the part in
+//!   the nest along, even if the ledger places it in the nest.
+//! - A released escapement lets a part run from the mouth into the pocket. Until it holds again a part may be anywhere
+//!   on that way.
 //! - Bodies on the same moving actuator are one tool and are not tested against each other.
 
 use super::actuator::Actuator;
@@ -14,26 +14,26 @@ use super::motion::Stroke;
 use super::part::Role;
 use super::scene::Scene;
 use super::situation::Situation;
-use super::space::Cast;
+use super::space::PresentRoles;
 
-/// The part's roles during one stroke.
+/// The roles of the part during one stroke.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Company {
-    /// Roles that are in the space.
-    pub cast: Cast,
+pub(super) struct PartRoles {
+    /// Roles present in the space.
+    pub present: PresentRoles,
     /// Role that moves with the stroke.
     pub taken: Option<Role>,
     /// Role that the stroke leaves behind.
     pub left: Option<Role>,
 }
 
-/// Sorts the parts of `situation` into roles for `stroke`.
-pub(super) fn company(scene: &Scene, situation: &Situation, stroke: &Stroke) -> Company {
+/// Assigns the parts of `situation` to roles for `stroke`.
+pub(super) fn part_roles(scene: &Scene, situation: &Situation, stroke: &Stroke) -> PartRoles {
     let parts = situation.parts;
     let released = scene.span_mm(Actuator::Escapement, situation).1 > 0.0;
     let pusher = scene.span_mm(Actuator::Pusher, situation);
-    let mut company = Company {
-        cast: [
+    let mut part_roles = PartRoles {
+        present: [
             released,
             parts.pocket,
             parts.on_pusher,
@@ -44,36 +44,38 @@ pub(super) fn company(scene: &Scene, situation: &Situation, stroke: &Stroke) -> 
         left: None,
     };
     if pusher.0 <= 0.0 && (pusher.1 > 0.0 || stroke.actuator == Actuator::Pusher) {
-        company.put_before_pusher();
+        part_roles.put_before_pusher();
     }
     match stroke.actuator {
-        Actuator::Escapement => company.feeding(stroke.to_mm > 0.0),
-        Actuator::Pusher => company.pushing(stroke.to_mm > pusher.0),
-        Actuator::SortAxis | Actuator::SortZ => company.carrying(holds_nest_part(scene, situation)),
+        Actuator::Escapement => part_roles.feeding(stroke.to_mm > 0.0),
+        Actuator::Pusher => part_roles.pushing(stroke.to_mm > pusher.0),
+        Actuator::SortAxis | Actuator::SortZ => {
+            part_roles.carrying(holds_nest_part(scene, situation))
+        }
         Actuator::JawLeft | Actuator::JawRight | Actuator::ProbeLift | Actuator::Gripper => {}
     }
-    company
+    part_roles
 }
 
-impl Company {
+impl PartRoles {
     fn has(&self, role: Role) -> bool {
-        self.cast[role.index()]
+        self.present[role.index()]
     }
 
-    /// The part changes its role for this stroke.
+    /// Moves the part to another role for this stroke.
     fn recast(&mut self, from: Role, to: Role) {
-        self.cast[from.index()] = false;
-        self.cast[to.index()] = true;
+        self.present[from.index()] = false;
+        self.present[to.index()] = true;
     }
 
     fn feeding(&mut self, releasing: bool) {
         if releasing {
-            self.cast[Role::Feed.index()] = true;
+            self.present[Role::Feed.index()] = true;
             self.taken = Some(Role::Feed);
         }
     }
 
-    /// Where the pusher may have left its rest end, the part in the pocket may be on its way.
+    /// Adds the pocket's part in front of the pusher when the pusher may have left its rest end.
     fn put_before_pusher(&mut self) {
         if self.has(Role::Pocket) && !self.has(Role::Pusher) {
             self.recast(Role::Pocket, Role::Pusher);
@@ -97,7 +99,7 @@ impl Company {
     }
 }
 
-/// Closed, all the way down, at the nest.
+/// Returns true when the gripper is closed and fully down at the nest.
 fn holds_nest_part(scene: &Scene, situation: &Situation) -> bool {
     let axis = scene.span_mm(Actuator::SortAxis, situation);
     let down = scene.span_mm(Actuator::SortZ, situation);

@@ -1,25 +1,25 @@
-//! The scene as a drawing: every body's silhouettes and what carries it.
+//! The scene as a drawing: silhouettes of every body, and the actuators that carry it.
 
 use super::part::{Role, shape_of};
 use super::scene::Ride;
 use super::{Actuator, Guard, PartSize};
 use lpm::{Pose, Shape, View, outlines};
 
-/// A body in its place with all actuators at rest.
+/// A body in its place, with all actuators at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
-    /// As in the scene; a part is `part_pocket`, `part_pusher`, `part_nest` or `part_gripper`.
+    /// Id in the scene; for a part `part_pocket`, `part_pusher`, `part_nest` or `part_gripper`.
     pub id: String,
-    /// Actuators that carry it, and the way it goes for each millimetre of theirs.
+    /// Actuators that carry it, each with the body's displacement per millimetre of stroke.
     pub rides: Vec<(Actuator, [f64; 3])>,
-    /// Polygons from above, x and y in mm.
+    /// Silhouettes from above, x and y in mm.
     pub above: Vec<Vec<[f64; 2]>>,
-    /// Polygons from the front, x and z in mm.
+    /// Silhouettes from the front, x and z in mm.
     pub front: Vec<Vec<[f64; 2]>>,
 }
 
 impl Guard {
-    /// Every body of the scene, then a part of this size in each place it may have.
+    /// Returns every body of the scene, then a part of this size in each of its places.
     #[must_use]
     pub fn drawing(&self, size: &PartSize) -> Vec<Drawn> {
         let bodies = self.scene.bodies.iter();

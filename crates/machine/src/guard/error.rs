@@ -1,10 +1,10 @@
-//! Why a scene cannot be guarded.
+//! Why the guard rejects a scene.
 
 use super::actuator::Actuator;
 use super::refusal::Refusal;
 use lpm::Flaw;
 
-/// What is wrong with `scene.toml`; `path` is the place in the file.
+/// An error in `scene.toml`; `path` is the place in the file.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum GuardError {
     /// A number out of range.
@@ -12,18 +12,18 @@ pub enum GuardError {
     Number {
         /// Place in the file.
         path: String,
-        /// What stands there.
+        /// Number found.
         found: f64,
-        /// What may stand there.
+        /// Range expected.
         expected: &'static str,
     },
-    /// Lengths in another unit.
+    /// A unit other than mm.
     #[error("units: found \"{found}\", expected \"mm\"")]
     Unit {
-        /// What stands there.
+        /// Unit found.
         found: String,
     },
-    /// A body without the member that its kind needs, or with one it does not have.
+    /// A body that lacks a member of its kind, or has one of another kind.
     #[error("{path}: a {kind} needs {expected} and no other size")]
     Member {
         /// Place in the file.
@@ -33,51 +33,51 @@ pub enum GuardError {
         /// The missing member.
         expected: &'static str,
     },
-    /// A size or pose that is no body.
+    /// A size or pose that makes no valid body.
     #[error("{path}: not a body")]
     Body {
         /// Place in the file.
         path: String,
-        /// What is wrong with it.
+        /// Defect of the body.
         #[source]
         flaw: Flaw,
     },
-    /// Two bodies of one name, or the name of a part's role.
+    /// Two bodies with one id, or an id that a role of the part has.
     #[error("{path}: the id \"{id}\" is taken, expected one of its own")]
     Duplicate {
         /// Place in the file.
         path: String,
-        /// The name.
+        /// The id.
         id: String,
     },
-    /// A name that no body has.
+    /// An id that no body has.
     #[error("{path}: no body is called \"{found}\"")]
     UnknownBody {
         /// Place in the file.
         path: String,
-        /// The name.
+        /// The id.
         found: String,
     },
-    /// Not every actuator is there exactly once.
+    /// An actuator that the file does not describe exactly once.
     #[error("actuator: {actuator} is described {times} times, expected once")]
     ActuatorCount {
-        /// Which.
+        /// The actuator.
         actuator: Actuator,
-        /// How often.
+        /// Number of descriptions.
         times: usize,
     },
-    /// `rides` goes round in a circle.
+    /// `rides` forms a circle.
     #[error("actuator {actuator}: rides on itself through others")]
     Circle {
-        /// Where it was noticed.
+        /// An actuator of the circle.
         actuator: Actuator,
     },
-    /// With everything else at rest and no part anywhere, an actuator cannot make its stroke.
+    /// In the empty rig at rest an actuator cannot make its stroke.
     #[error("actuator {actuator}: its own stroke is not free in an empty rig")]
     StrokeBlocked {
-        /// Which.
+        /// The actuator.
         actuator: Actuator,
-        /// By what.
+        /// The refusal of its stroke.
         #[source]
         refusal: Box<Refusal>,
     },

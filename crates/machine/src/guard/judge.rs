@@ -1,7 +1,6 @@
-//! A whole motion judged: the numbers first, then stroke by stroke.
+//! Judges a whole motion: checks the numbers, then sweeps stroke by stroke.
 //!
-//! The strokes of a group run in no known order, so while one is swept every other member of the
-//! group occupies its whole way.
+//! The strokes of a group run in unknown order, so during the sweep of one every other member occupies its whole way.
 
 use super::actuator::{Actuator, Position};
 use super::motion::Motion;
@@ -9,18 +8,18 @@ use super::refusal::Refusal;
 use super::scene::Scene;
 use super::situation::Situation;
 use super::space::Space;
-use super::sweep::{Finding, sweep};
+use super::sweep::{FirstContact, sweep};
 
-/// The first contact of `motion`, if there is one.
+/// Returns the first contact of `motion`, if there is one.
 ///
 /// # Errors
-/// A position off its stroke, NaN included, or a part size that is none.
+/// Refuses a position off its stroke, NaN included, and an invalid part size.
 pub(super) fn judge(
     scene: &Scene,
     space: &mut Space,
     motion: &Motion,
     situation: &Situation,
-) -> Result<Option<Finding>, Refusal> {
+) -> Result<Option<FirstContact>, Refusal> {
     check_numbers(scene, motion, situation)?;
     for stroke in motion.strokes() {
         let meanwhile = with_others_under_way(scene, motion, situation, stroke.actuator);
@@ -58,7 +57,7 @@ fn check_numbers(scene: &Scene, motion: &Motion, situation: &Situation) -> Resul
     Ok(())
 }
 
-/// Both ends as they were given; NaN stays NaN, which lies on no stroke.
+/// Returns both ends as given; NaN stays NaN and lies on no stroke.
 fn ends(position: Position) -> [f64; 2] {
     match position {
         Position::At(mm) => [mm, mm],
@@ -66,7 +65,7 @@ fn ends(position: Position) -> [f64; 2] {
     }
 }
 
-/// The situation of one stroke of a group: every other member occupies its whole way.
+/// Returns the situation of one stroke of a group, with every other member on its whole way.
 pub(super) fn with_others_under_way(
     scene: &Scene,
     motion: &Motion,

@@ -1,8 +1,7 @@
-//! Answers already given.
+//! Memory of the guard's earlier answers.
 //!
-//! Sensors report ends and the station repeats itself, so a lot asks the same few hundred
-//! questions over and over. An answer is kept under every bit that it depends on (the scene is
-//! fixed), so a remembered answer is the answer.
+//! Sensors report ends and the station repeats its cycle, so a lot repeats the same few hundred questions. The key of
+//! an answer has every bit that the answer depends on (the scene is fixed), so a remembered answer equals a fresh one.
 
 use super::actuator::{Actuator, Position};
 use super::motion::Motion;
@@ -10,14 +9,13 @@ use super::refusal::Refusal;
 use super::situation::Situation;
 use std::collections::HashMap;
 
-/// Questions kept, at about 400 bytes each; beyond it the memory starts anew.
+/// Most answers kept, at about 400 bytes each; the memory clears itself when it is full.
 const LIMIT: usize = 4096;
 
-/// The bits of a motion and a situation.
+/// The bits of a motion and a situation: the key of an answer.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct Question {
-    /// Per actuator: what is known of it (0 nothing, 1 `At`, 2 `Between`), its numbers, whether
-    /// it is wanted somewhere and where.
+    /// By actuator: kind of position (0 unknown, 1 `At`, 2 `Between`), its two numbers, and the target if it moves.
     actuators: [(u8, u64, u64, Option<u64>); 8],
     parts: super::situation::PartPlaces,
     size: [u64; 4],

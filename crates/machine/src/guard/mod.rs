@@ -1,34 +1,32 @@
-//! The collision guard: nothing on the rig moves without its word.
+//! The collision guard: no actuator of the rig moves without its clearance.
 //!
-//! **Question.** A [`Motion`] (one actuator, or several on one valve) in a [`Situation`]: what is
-//! known of every actuator, where parts are, how big they are. **Answer.** [`Cleared`], which only
-//! this module can make and which the drive asks for, or a [`Refusal`] with both bodies, the
-//! distance, the place, the last clear pose to stop at or to come back to, and what would help.
+//! **Input.** A [`Motion`] (one actuator, or several on one valve) in a [`Situation`]: known positions of all
+//! actuators, places of the parts, and their size. **Output.** [`Cleared`], which only this module can make and which
+//! the drive demands, or a [`Refusal`] with both bodies, their distance, the place, the last clear pose, and a remedy.
 //!
 //! **Bodies.** Fixed elements, tooling that rides on actuators (sort z rides on the axis, the
 //! gripper on sort z) and the part, pins included, in each of its places; all from `scene.toml`.
 //!
-//! **How a situation is told.** Strokes count from the rest end. A jaw or finger that a part has
-//! stopped is `At` its full stroke. A moving actuator is `Between` where it was and where it goes
-//! until its end sensor has spoken. A part being pushed is `on_pusher`; a gripped one stays `nest`
-//! until the jaws are open.
+//! **Coordinates of a situation.** Strokes count from the rest end. A jaw or finger stopped by a part is `At` its full
+//! stroke. A moving actuator is `Between` its start and its target until the end sensor responds. A part being pushed
+//! is `on_pusher`; a gripped one remains `nest` until the jaws are open.
 //!
 //! **Rules.**
 //! 1. Any two bodies keep the default margin, unless a pair rule says otherwise.
-//! 2. An actuator that is not known to stand occupies its whole span, and one of which nothing is
-//!    known its whole stroke. So motions that overlap in time are checked against each other's
-//!    swept room: a mover is [`Between`](Position::Between) for everyone else.
-//! 3. A mover of unknown start is swept from the far end of what is known.
-//! 4. NaN, a position off its stroke, a part without size: refused.
+//! 2. An actuator in motion or in doubt occupies its whole span, and one of unknown position its whole stroke. So
+//!    motions that overlap in time are checked against each other's swept room: for every other motion a mover is
+//!    [`Between`](Position::Between).
+//! 3. A mover of unknown start is swept from the far end of its span.
+//! 4. The guard refuses NaN, a position off its stroke, and a part without size.
 //!
-//! **Why a cleared motion is clear.** For every combination of true positions that the situation
-//! allows, each standing body lies in its room (`occupancy`) and each moving one in the sweep of
-//! its room (`sweep`); the core proves that the sweep stays further than the margin from the
-//! rooms. The tests sample poses and look themselves.
+//! **Why a cleared motion is clear.** For every combination of true positions that the situation allows, each resting
+//! body lies in its room (`occupancy`) and each moving one in the sweep of its room (`sweep`); the collision core
+//! proves that sweep and rooms stay further apart than the margin. The tests check this independently at sampled
+//! poses.
 //!
-//! **Not handled.** Time: a body is never assumed to be out of the way already. Two actuators of
-//! unknown position that occupy the same room block each other; a person has to jog one of them.
-//! Parts that lie where no sensor says there is one.
+//! **Not handled.** Time: the guard never assumes that a body has moved out of the way already. Two actuators of
+//! unknown position that occupy the same room block each other; a person has to jog one of them. Parts in places
+//! without a sensor.
 
 mod actuator;
 mod advice;
@@ -68,14 +66,14 @@ pub use situation::{PartPlaces, PartSize, Situation};
 use memory::{Memory, Question};
 use scene::Scene;
 use space::Space;
-use sweep::Finding;
+use sweep::FirstContact;
 
-/// What a scene calls the part, by where it is.
+/// Returns the ids of the part in a scene, one for each place.
 pub fn part_names() -> [&'static str; 5] {
     part::Role::ALL.map(part::Role::id)
 }
 
-/// The guard of one rig.
+/// The collision guard of one rig.
 #[derive(Debug, Clone)]
 pub struct Guard {
     scene: Scene,
@@ -84,10 +82,10 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// Resolves the scene and tries every actuator's stroke in the empty rig at rest.
+    /// Resolves the scene and checks that every actuator has its stroke free in the empty rig at rest.
     ///
     /// # Errors
-    /// [`GuardError`] with the place in `scene.toml`.
+    /// Returns a [`GuardError`] that names the place in `scene.toml`.
     pub fn build(settings: &GuardSettings) -> Result<Guard, GuardError> {
         let scene = build::scene_of(settings)?;
         let space = Space::of(&scene).map_err(|flaw| GuardError::Body {
@@ -103,11 +101,11 @@ impl Guard {
         Ok(guard)
     }
 
-    /// Whether `motion` may be driven in `situation`. The same question gets the same answer; a
-    /// repeated one is answered from memory.
+    /// Clears `motion` in `situation` or refuses it. Equal inputs give equal results; repeated ones come from a
+    /// memory.
     ///
     /// # Errors
-    /// [`Refusal`]: an answer, to be shown and obeyed.
+    /// Returns the [`Refusal`]. It is a normal result; show it and do not move.
     pub fn clear(&mut self, motion: &Motion, situation: &Situation) -> Result<Cleared, Refusal> {
         let question = Question::of(motion, situation);
         let answer = match self.memory.answer(&question) {
@@ -121,8 +119,8 @@ impl Guard {
         answer.map(|()| Cleared::new(*motion))
     }
 
-    /// Least distance in mm, up to `range_mm`, that `motion` leaves to whatever it must keep away from; nothing beyond,
-    /// and nothing for a motion that would be refused.
+    /// Returns the least distance in mm that `motion` keeps from the bodies that it must not touch; `None` beyond
+    /// `range_mm` and for a motion that [`Guard::clear`] refuses.
     pub fn clearance_mm(
         &mut self,
         motion: &Motion,
@@ -139,7 +137,7 @@ impl Guard {
         least.min_by(f64::total_cmp)
     }
 
-    /// Low and high end of an actuator's stroke, mm.
+    /// Returns the low and high end of an actuator's stroke, mm.
     pub fn stroke_mm(&self, actuator: Actuator) -> (f64, f64) {
         self.scene.axis(actuator).stroke_mm
     }
@@ -158,7 +156,7 @@ impl Guard {
 
     fn refusal(
         &self,
-        finding: &Finding,
+        finding: &FirstContact,
         last_clear_mm: Option<f64>,
         would_help: String,
     ) -> Refusal {
@@ -179,7 +177,7 @@ impl Guard {
     }
 
     fn try_every_stroke(&mut self) -> Result<(), GuardError> {
-        // A part that is nowhere: only its size must be a size.
+        // A part in no place: only its size must be valid.
         let nowhere = PartSize {
             body_mm: [1.0; 3],
             pin_length_mm: 0.0,

@@ -1,30 +1,30 @@
-//! What the station wants to move, and the proof that it may.
+//! The motion that the station requests, and the proof that it is clear.
 
 use super::actuator::Actuator;
 
-/// One actuator's way: from where it stands to `to_mm` of its stroke.
+/// One actuator's way to `to_mm` of its stroke.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stroke {
-    /// Who moves.
+    /// The actuator that moves.
     pub actuator: Actuator,
-    /// Where to, in mm from the rest end.
+    /// Target, mm from the rest end.
     pub to_mm: f64,
 }
 
-/// A wanted motion of one actuator, or of several that one valve drives together (the two jaws).
+/// A motion of one actuator, or of several that one valve drives together (the two jaws).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motion {
     targets: [Option<f64>; 8],
 }
 
 impl Motion {
-    /// One actuator to `to_mm` of its stroke.
+    /// Makes a motion of one actuator to `to_mm` of its stroke.
     pub fn to(actuator: Actuator, to_mm: f64) -> Motion {
         Motion::group(&[Stroke { actuator, to_mm }])
     }
 
-    /// Several actuators at once, in no known order and at no known pace. Of two strokes of the
-    /// same actuator the later one counts.
+    /// Makes a motion of several actuators at once, in unknown order and at unknown speed. Of two strokes of the same
+    /// actuator the later one counts.
     pub fn group(strokes: &[Stroke]) -> Motion {
         let mut targets = [None; 8];
         for stroke in strokes {
@@ -33,7 +33,7 @@ impl Motion {
         Motion { targets }
     }
 
-    /// The strokes, in the order of [`Actuator::ALL`].
+    /// Yields the strokes in the order of [`Actuator::ALL`].
     pub fn strokes(&self) -> impl Iterator<Item = Stroke> + '_ {
         Actuator::ALL.into_iter().filter_map(|actuator| {
             self.target_mm(actuator)
@@ -41,14 +41,14 @@ impl Motion {
         })
     }
 
-    /// Where this motion brings `actuator`, in mm; `None` when it leaves it alone.
+    /// Returns the target of `actuator`, mm; `None` when it does not move.
     pub fn target_mm(&self, actuator: Actuator) -> Option<f64> {
         self.targets[actuator.index()]
     }
 }
 
-/// A motion that the guard has cleared for the situation it was asked in. Only
-/// [`Guard::clear`](super::Guard::clear) makes one, and it is used up by driving it.
+/// A motion that the guard cleared for one situation. Only [`Guard::clear`](super::Guard::clear) makes one, and
+/// driving it consumes it.
 #[derive(Debug, PartialEq)]
 pub struct Cleared {
     motion: Motion,
@@ -59,7 +59,7 @@ impl Cleared {
         Cleared { motion }
     }
 
-    /// The motion that may be driven.
+    /// Returns the cleared motion.
     pub fn motion(&self) -> &Motion {
         &self.motion
     }

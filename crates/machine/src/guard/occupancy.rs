@@ -1,17 +1,15 @@
-//! The room a body takes when it may be anywhere in a span.
+//! The room of a body that may be anywhere in a span.
 //!
-//! A body B rides on actuators, each known only as a span of its stroke. Its offset then lies in
-//! the axis-parallel box S that holds the sum of the spans, and the room it may take is
-//! B + S = { b + s }. That room is covered, piece by piece, by the box bounds(piece) + S:
-//! each b of a piece lies in bounds(piece) and each s in S, so b + s lies in the cover. For an
-//! upright block the cover *is* B + S; for a cylinder it is the block around it, never less.
-//! Where S is a single point the true shape is used, moved.
+//! A body B rides on actuators, each with a span of possible positions. Its offset then lies in the axis-parallel box
+//! S that holds the sum of the spans, and its room is B + S = { b + s }. The box bounds(piece) + S covers that room
+//! piece by piece: each b of a piece lies in bounds(piece) and each s in S, so b + s lies in the cover. For an upright
+//! block the cover *is* B + S; for a cylinder it is the block around it, never less. Where S is a single point the
+//! room is the true shape, moved.
 
 use lpm::{Pose, Shape};
 use std::borrow::Cow;
 
-/// Covers are widened by so much, mm, so that the rounding of their sums (below 1e-11 mm within
-/// 1e4 mm) can never make them too small.
+/// Added to every cover, mm, so that rounding of the sums (below 1e-11 mm within 1e4 mm) never makes it too small.
 const ROUNDING_MM: f64 = 1e-9;
 
 /// Axis-parallel box of offsets, mm.
@@ -22,13 +20,13 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
-    /// No offset at all.
+    /// The zero offset.
     pub const NONE: Offsets = Offsets {
         low: [0.0; 3],
         high: [0.0; 3],
     };
 
-    /// The box around the way from `low_mm` to `high_mm` along `direction`.
+    /// Returns the box around the way from `low_mm` to `high_mm` along `direction`.
     pub fn along(direction: [f64; 3], low_mm: f64, high_mm: f64) -> Offsets {
         let ends = |i: usize| (direction[i] * low_mm, direction[i] * high_mm);
         Offsets {
@@ -37,7 +35,7 @@ impl Offsets {
         }
     }
 
-    /// All sums of an offset of each.
+    /// Returns the box of all sums of an offset of each.
     pub fn plus(self, other: Offsets) -> Offsets {
         Offsets {
             low: sum(self.low, other.low),
@@ -45,13 +43,13 @@ impl Offsets {
         }
     }
 
-    /// True when nothing is left open.
+    /// Returns true when exactly one offset is possible.
     pub fn is_point(&self) -> bool {
         self.low == self.high
     }
 }
 
-/// The room of `shape` at `pose` under all `offsets`, as a shape and where it stands.
+/// Returns the room of `shape` at `pose` under all `offsets`, as a shape and its pose.
 pub(super) fn room<'a>(shape: &'a Shape, pose: &Pose, offsets: &Offsets) -> (Cow<'a, Shape>, Pose) {
     if offsets.is_point() {
         return (
@@ -62,7 +60,7 @@ pub(super) fn room<'a>(shape: &'a Shape, pose: &Pose, offsets: &Offsets) -> (Cow
     let mut covers = Vec::new();
     collect(
         shape,
-        &Turn::of(pose.rotation),
+        &Rotation::of(pose.rotation),
         [0.0; 3],
         offsets,
         &mut covers,
@@ -72,7 +70,7 @@ pub(super) fn room<'a>(shape: &'a Shape, pose: &Pose, offsets: &Offsets) -> (Cow
 
 fn collect(
     shape: &Shape,
-    turn: &Turn,
+    turn: &Rotation,
     at: [f64; 3],
     offsets: &Offsets,
     covers: &mut Vec<(Pose, Shape)>,
@@ -80,7 +78,7 @@ fn collect(
     let half = match shape {
         Shape::Compound(parts) => {
             for (pose, part) in parts {
-                let inner = turn.after(&Turn::of(pose.rotation));
+                let inner = turn.after(&Rotation::of(pose.rotation));
                 collect(
                     part,
                     &inner,
@@ -109,14 +107,14 @@ fn collect(
     covers.push((Pose::at(centre), Shape::Block { half }));
 }
 
-/// A rotation as a matrix, row by row.
-struct Turn([[f64; 3]; 3]);
+/// A rotation matrix, row by row.
+struct Rotation([[f64; 3]; 3]);
 
-impl Turn {
-    fn of(rotation: [f64; 4]) -> Turn {
+impl Rotation {
+    fn of(rotation: [f64; 4]) -> Rotation {
         let [w, x, y, z] = rotation;
         let s = 2.0 / (w * w + x * x + y * y + z * z);
-        Turn([
+        Rotation([
             [
                 1.0 - s * (y * y + z * z),
                 s * (x * y - w * z),
@@ -140,15 +138,15 @@ impl Turn {
             .map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
     }
 
-    fn after(&self, inner: &Turn) -> Turn {
+    fn after(&self, inner: &Rotation) -> Rotation {
         let column = |j: usize| self.apply([inner.0[0][j], inner.0[1][j], inner.0[2][j]]);
         let columns = [column(0), column(1), column(2)];
-        Turn(std::array::from_fn(|i| {
+        Rotation(std::array::from_fn(|i| {
             std::array::from_fn(|j| columns[j][i])
         }))
     }
 
-    /// Half extents, along x, y and z, of a block of these half extents when it is turned.
+    /// Returns the half extents along x, y and z of the rotated block with half extents `half`.
     fn bounds(&self, half: [f64; 3]) -> [f64; 3] {
         self.0
             .map(|row| row[0].abs() * half[0] + row[1].abs() * half[1] + row[2].abs() * half[2])

@@ -1,15 +1,14 @@
-//! The part as a body: its shape from the recipe and the five roles it plays in the space.
+//! The part as a body: its shape from the recipe, and its five roles in the space.
 //!
-//! The shape is the body's block and, below it, one block around all pins (they stand at least
-//! `pin_inset_mm` inside the outline): the pin layout of a recipe needs no drawing. Its frame has
-//! the origin in the middle of the lower rear (-x) edge of the body, the edge that the pusher and
-//! the track locate.
+//! The shape is the body's block and, below it, one block around all pins (at least `pin_inset_mm` inside the
+//! outline), so that the guard needs no drawing of a recipe's pins. The origin of its frame is the middle of the lower
+//! rear (-x) edge of the body, which the pusher and the track locate.
 
 use super::settings::Policy;
 use super::situation::PartSize;
 use lpm::{Pose, Shape};
 
-/// Where a part is decides what may touch it, so each role has its own body id.
+/// Place of the part; each role has its own body id because the place decides what may touch it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
     /// Released by the escapement, on its way into the pocket.
@@ -48,7 +47,7 @@ impl Role {
     }
 }
 
-/// Body and pins of a part of this size.
+/// Returns the shape of a part of this size, body and pins.
 pub(super) fn shape_of(size: &PartSize, policy: &Policy) -> Shape {
     let [x, y, z] = size.body_mm;
     let body = (

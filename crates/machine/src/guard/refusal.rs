@@ -1,53 +1,52 @@
-//! Why a motion is not allowed, in numbers and in words that a mechanic can use.
+//! Why the guard refuses a motion, in numbers and in words for a mechanic.
 
 use super::actuator::Actuator;
 use super::motion::Stroke;
 use std::fmt;
 
-/// The answer "no". It is an answer, not an error of the program.
+/// Refusal of a motion: a normal result, not a program error.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Refusal {
     /// Two bodies would come too near.
     Blocked(Box<Blocked>),
-    /// A wanted or reported position lies outside the actuator's stroke, or is no number.
+    /// A position lies outside the actuator's stroke, or is NaN.
     OutOfStroke {
-        /// Whose position.
+        /// The actuator.
         actuator: Actuator,
-        /// The position, mm.
+        /// The invalid position, mm.
         found_mm: f64,
         /// Low and high end of the stroke, mm.
         stroke_mm: (f64, f64),
     },
-    /// The part has no size that a body can have.
+    /// The part's size is invalid.
     PartSize {
         /// Body and pin length as given, mm.
         found_mm: [f64; 4],
     },
 }
 
-/// Which bodies would come too near, where, and what would make the motion possible.
+/// Two bodies that would come too near, the place, and the remedy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Blocked {
-    /// The stroke that is refused.
+    /// The refused stroke.
     pub stroke: Stroke,
-    /// Body that would move, an id of the scene or of a part (`part_nest`).
+    /// The body that moves: an id of the scene or of a part (`part_nest`).
     pub mover: String,
-    /// Body in its way.
+    /// The body in its way.
     pub blocker: String,
-    /// Least distance the two would have during the motion, mm; 0 when they would meet.
+    /// Least distance of the two during the motion, mm; 0 when they meet.
     pub distance_mm: f64,
     /// Distance they must exceed, mm; 0 where they may touch.
     pub margin_mm: f64,
     /// Fraction of the motion at which the margin is reached, 0 to 1; 0 when the start is unknown.
     pub at_fraction: f64,
-    /// Where, mm.
+    /// Place of the contact, mm.
     pub at: [f64; 3],
-    /// The last clear pose, mm: the guard clears this stroke up to here and no further than a
-    /// hundredth of a millimetre more. The offer of back-tracking: an actuator that can stop on its
-    /// way may go here, one that was stopped beyond may come back to here. `None` when the start is not
-    /// clear or not known.
+    /// The last clear pose, mm of the stroke: the guard clears the stroke up to here, and to at most a hundredth of a
+    /// millimetre more. An actuator that can stop on its way may move here, and one that stopped beyond may back-track
+    /// to here. `None` when the start is blocked or unknown.
     pub last_clear_mm: Option<f64>,
-    /// What would make the motion possible: "raise sort z".
+    /// Action that would make the motion possible: "raise sort z".
     pub would_help: String,
 }
 
@@ -113,7 +112,7 @@ impl Blocked {
     }
 }
 
-/// An id as it is spoken on the shop floor.
+/// Returns the words of the shop floor for an id.
 pub(super) fn words(id: &str) -> String {
     match id {
         "part_feed" => "the part coming from the magazine".to_owned(),

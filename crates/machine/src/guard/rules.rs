@@ -1,19 +1,19 @@
-//! Which two bodies have which permission, as a table: one look-up per pair, no search at run time. What a
-//! permission means is the core's.
+//! The permission of each pair of bodies, as a table with one look-up per pair. The collision core defines the
+//! permissions.
 
 use super::actuator::Actuator;
 use super::error::GuardError;
 use super::settings::{GuardSettings, PairRule, PairSettings};
 use lpm::Permission;
 
-/// What a pair may do, and while which actuators move, if not always.
+/// Permission of a pair, and the actuators whose motion it is limited to, if any.
 #[derive(Debug, Clone, Copy)]
 struct Allowed {
     permission: Permission,
     by: Option<[bool; 8]>,
 }
 
-/// The table; bodies are numbered as in the scene.
+/// The table, by body number of the scene.
 #[derive(Debug, Clone)]
 pub(super) struct Rules {
     allowed: Vec<Allowed>,
@@ -22,7 +22,7 @@ pub(super) struct Rules {
 }
 
 impl Rules {
-    /// Lays the pairs of `settings` over the default margin, in their order.
+    /// Applies the pairs of `settings`, in order, over the default margin.
     pub fn of(settings: &GuardSettings, ids: &[String]) -> Result<Rules, GuardError> {
         let default = Allowed {
             permission: Permission::Forbidden {
@@ -53,7 +53,7 @@ impl Rules {
         self.table[a * self.bodies + b] = (self.allowed.len() - 1) as u16;
     }
 
-    /// What `mover` may do to `other` while `actuator` moves it.
+    /// Returns the permission of `mover` towards `other` while `actuator` moves it.
     pub fn permission(&self, mover: usize, other: usize, actuator: Actuator) -> Permission {
         let allowed = &self.allowed[self.table[mover * self.bodies + other] as usize];
         match allowed.by {

@@ -1,4 +1,4 @@
-//! The scene resolved: every body with its shape, its place at rest and the actuators it rides on.
+//! The resolved scene: every body with its shape, its rest pose and the actuators it rides on.
 
 use super::actuator::{Actuator, Position};
 use super::error::GuardError;
@@ -14,15 +14,14 @@ use lpm::{Mover, Pose, Shape};
 pub(super) struct Axis {
     /// Unit vector of the stroke.
     pub direction: [f64; 3],
-    /// Low and high end of the stroke, mm; 0 lies within.
+    /// Low and high end of the stroke, mm; the stroke includes 0.
     pub stroke_mm: (f64, f64),
     pub rides: Option<Actuator>,
     pub to_rest: String,
     pub to_end: String,
 }
 
-/// One actuator that carries a body, with the body's own direction (an opposed finger goes
-/// against the axis).
+/// An actuator that carries a body, with the body's own direction (an opposed finger moves against the axis).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ride {
     pub actuator: Actuator,
@@ -34,11 +33,11 @@ pub(super) struct Ride {
 pub(super) struct Body {
     pub id: String,
     pub shape: Shape,
-    /// The shape taken apart, for sweeps in its true form.
+    /// The shape decomposed, for sweeps in its true form.
     pub mover: Mover,
-    /// With all actuators at rest.
+    /// Pose with all actuators at rest.
     pub pose: Pose,
-    /// Empty for a fixed element.
+    /// Actuators that carry it; empty for a fixed element.
     pub rides: Vec<Ride>,
 }
 
@@ -48,7 +47,7 @@ pub(super) struct Body {
 pub(super) struct Scene {
     pub policy: Policy,
     pub bodies: Vec<Body>,
-    /// By [`Role::index`].
+    /// Actuators that carry the part, by [`Role::index`].
     pub part_rides: [Vec<Ride>; 5],
     pub axes: [Axis; 8],
     pub rules: Rules,
@@ -59,7 +58,7 @@ impl Scene {
         &self.axes[actuator.index()]
     }
 
-    /// Elements and roles of the part together.
+    /// Returns the number of elements and roles of the part together.
     pub fn count(&self) -> usize {
         self.bodies.len() + Role::ALL.len()
     }
@@ -75,7 +74,7 @@ impl Scene {
         }
     }
 
-    /// What carries body `number`, the nearest carrier first; part roles included.
+    /// Returns the carriers of body `number`, the nearest first; includes the roles of the part.
     pub fn rides(&self, number: usize) -> &[Ride] {
         match self.bodies.get(number) {
             Some(body) => &body.rides,
@@ -83,7 +82,7 @@ impl Scene {
         }
     }
 
-    /// Where a part in `role` stands with all actuators at rest.
+    /// Returns the pose of a part in `role` with all actuators at rest.
     pub fn part_pose(&self, role: Role) -> Pose {
         let policy = &self.policy;
         Pose::at(match role {
@@ -97,19 +96,19 @@ impl Scene {
         })
     }
 
-    /// From the magazine's mouth to the pocket.
+    /// Returns the vector from the magazine's mouth to the pocket.
     pub fn feed_way(&self) -> [f64; 3] {
         sum(self.policy.pocket, scaled(self.policy.mouth, -1.0))
     }
 
-    /// Low and high end of what is known of `actuator`, mm: its whole stroke when nothing is.
+    /// Returns the low and high end of `actuator`'s possible positions, mm: its whole stroke when unknown.
     pub fn span_mm(&self, actuator: Actuator, situation: &Situation) -> (f64, f64) {
         situation
             .position(actuator)
             .map_or(self.axis(actuator).stroke_mm, Position::span_mm)
     }
 
-    /// Where a body on `rides` may be, relative to its place at rest; `except` does not count.
+    /// Returns the offsets from the rest pose that `rides` allow, `except` left out.
     pub fn offsets(
         &self,
         rides: &[Ride],
@@ -126,10 +125,10 @@ impl Scene {
     }
 }
 
-/// `actuator` and everything that carries it.
+/// Returns `actuator` and everything that carries it.
 ///
 /// # Errors
-/// [`GuardError::Circle`].
+/// Returns [`GuardError::Circle`] when an actuator rides on itself.
 pub(super) fn carriers(axes: &[Axis; 8], actuator: Actuator) -> Result<Vec<Ride>, GuardError> {
     let mut rides = Vec::new();
     let mut next = Some(actuator);

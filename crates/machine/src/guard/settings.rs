@@ -1,18 +1,18 @@
-//! `config/scene.toml` as the guard reads it. The text is read elsewhere; this is its shape.
+//! The guard's part of `config/scene.toml`, as types; another module parses the text.
 //!
-//! Elements are written where they stand with **every actuator at its rest end** (stroke 0). All
-//! lengths are mm, x along the line with the nest at 0, y across, z up from the baseplate's top.
+//! An element's pose is the one with **every actuator at its rest end** (stroke 0). All lengths are mm, x along the
+//! line with the nest at 0, y across, z up from the baseplate's top.
 
 use super::actuator::Actuator;
 use serde::Deserialize;
 
-/// The whole file. `movers` and `mate` belong to other readers and are not looked into.
+/// The whole file. Other readers check `movers` and `mate`.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GuardSettings {
     /// Must be `"mm"` when present.
     pub units: Option<String>,
-    /// Margins that hold everywhere, and the places of the part.
+    /// Default margins and the places of the part.
     pub guard: Policy,
     /// Fixed parts and tooling.
     pub elements: Vec<Element>,
@@ -33,17 +33,17 @@ pub struct GuardSettings {
 pub struct Policy {
     /// Distance that any two bodies without a pair rule must exceed, mm, >= 0.
     pub default_margin_mm: f64,
-    /// How far a part may be pressed into what it rests on or is pushed by, mm: flatness and
-    /// mould seams, not a stroke. Used by `may_touch` pairs without `depth_mm`.
+    /// How far a part may be pressed into its support or its pusher, mm: covers flatness and mould seams. Default
+    /// depth of `may_touch` pairs.
     pub touch_depth_mm: f64,
-    /// The pins stand at least so far inside the outline of the body, mm.
+    /// Least distance of the pins from the outline of the body, mm.
     pub pin_inset_mm: f64,
-    /// Where the next part of the magazine waits. A place is the middle of the lower rear (-x)
-    /// edge of the part's body.
+    /// Waiting place of the magazine's next part, mm. A place is the middle of the lower rear (-x) edge of the part's
+    /// body.
     pub mouth: [f64; 3],
-    /// Where a part stands in the pocket, touching the retracted pusher.
+    /// Place of a part in the pocket, touching the retracted pusher.
     pub pocket: [f64; 3],
-    /// Where it stands in the nest.
+    /// Place of a part in the nest.
     pub nest: [f64; 3],
 }
 
@@ -55,36 +55,36 @@ pub struct Element {
     pub id: String,
     /// Form of the body.
     pub kind: Kind,
-    /// Half extents of a block.
+    /// Half extents of a block, mm.
     pub half: Option<[f64; 3]>,
-    /// Of a cylinder.
+    /// Radius of a cylinder, mm.
     pub radius: Option<f64>,
-    /// Of a cylinder, along its own z.
+    /// Height of a cylinder along its own z, mm.
     pub height: Option<f64>,
-    /// Of a compound.
+    /// Pieces of a compound.
     pub parts: Option<Vec<Piece>>,
-    /// Where it stands with all actuators at rest.
+    /// Pose with all actuators at rest.
     #[serde(default)]
     pub pose: PoseSettings,
-    /// The actuator that carries it; without one it is fixed.
+    /// Actuator that carries it; none for a fixed element.
     pub rides: Option<Actuator>,
 }
 
-/// A part of a compound.
+/// A piece of a compound.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Piece {
     /// Form of the body.
     pub kind: Kind,
-    /// Half extents of a block.
+    /// Half extents of a block, mm.
     pub half: Option<[f64; 3]>,
-    /// Of a cylinder.
+    /// Radius of a cylinder, mm.
     pub radius: Option<f64>,
-    /// Of a cylinder, along its own z.
+    /// Height of a cylinder along its own z, mm.
     pub height: Option<f64>,
-    /// Of a compound.
+    /// Pieces of a compound.
     pub parts: Option<Vec<Piece>>,
-    /// Place in the compound.
+    /// Pose in the compound.
     #[serde(default)]
     pub pose: PoseSettings,
 }
@@ -93,11 +93,11 @@ pub struct Piece {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
-    /// `half`
+    /// A box; takes `half`.
     Block,
-    /// `radius`, `height`
+    /// A cylinder; takes `radius` and `height`.
     Cylinder,
-    /// `parts`
+    /// A union of pieces; takes `parts`.
     Compound,
 }
 
@@ -105,9 +105,9 @@ pub enum Kind {
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct PoseSettings {
-    /// mm.
+    /// Position, mm.
     pub position: [f64; 3],
-    /// `[w, x, y, z]`, normalised on reading.
+    /// Rotation `[w, x, y, z]`, normalised on reading.
     pub rotation: [f64; 4],
 }
 
@@ -124,23 +124,22 @@ impl Default for PoseSettings {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ActuatorSettings {
-    /// Which.
+    /// The actuator.
     pub id: Actuator,
     /// Direction of the stroke, unit length.
     pub axis: [f64; 3],
     /// Length of the stroke, mm, > 0.
     pub stroke_mm: Option<f64>,
-    /// In place of `stroke_mm`: the points of a slide, mm; its stroke is from the least to the
-    /// greatest.
+    /// Positions of a slide, mm, instead of `stroke_mm`; the stroke runs from the least to the greatest.
     pub points_mm: Option<Vec<f64>>,
     /// The actuator that carries this one.
     pub rides: Option<Actuator>,
-    /// Elements that ride on this actuator but move against its axis (the other finger).
+    /// Elements on this actuator that move against its axis (the other finger).
     #[serde(default)]
     pub opposed: Vec<String>,
-    /// What a mechanic does to bring it to its rest end, as an order; said in refusals.
+    /// Instruction to a mechanic that brings the actuator to its rest end, as shown in refusals.
     pub to_rest: Option<String>,
-    /// The same for the other end.
+    /// Instruction to a mechanic that brings the actuator to its other end.
     pub to_end: Option<String>,
 }
 
@@ -148,29 +147,28 @@ pub struct ActuatorSettings {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PairSettings {
-    /// A body; a trailing `*` stands for any ending.
+    /// Id of a body; a trailing `*` matches any ending.
     pub a: String,
-    /// The other body, likewise.
+    /// Id of the other body, with the same wildcard.
     pub b: String,
-    /// What the two may do.
+    /// Permission of the pair.
     pub rule: PairRule,
-    /// Margin of a forbidden pair; the default margin without it. mm, >= 0.
+    /// Margin of a forbidden pair, mm, >= 0; the default margin if absent.
     pub margin_mm: Option<f64>,
-    /// How far a `may_touch` pair may press into each other, mm, >= 0.
+    /// How far a `may_touch` pair may press into each other, mm, >= 0; `touch_depth_mm` if absent.
     pub depth_mm: Option<f64>,
-    /// The rule holds only while one of these actuators moves; otherwise the pair is forbidden
-    /// within the default margin.
+    /// Actuators during whose motion the rule holds; at other times the pair is forbidden within the default margin.
     pub by: Option<Vec<Actuator>>,
 }
 
-/// What two bodies may do.
+/// Permission of a pair of bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PairRule {
-    /// Must stay further apart than the margin.
+    /// The two stay further apart than the margin.
     Forbidden,
-    /// May touch and press by the depth, not interpenetrate.
+    /// The two may touch and press by the depth, not interpenetrate.
     MayTouch,
-    /// Never tested: parts of one mechanism that are made to run in each other.
+    /// The pair is never tested: parts of one mechanism that run in each other.
     Ignore,
 }

@@ -1,22 +1,21 @@
-//! What the guard must be told: where every actuator stands and where parts are.
+//! The situation that the guard judges: positions of the actuators and places of the parts.
 
 use super::actuator::{Actuator, Position};
 
-/// Where there is a part at this moment. One part may be named in one place only; two places mean
-/// two parts.
+/// Places that hold a part now. A part belongs in one place only; two places mean two parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct PartPlaces {
-    /// Waiting in the pocket.
+    /// Waits in the pocket.
     pub pocket: bool,
-    /// In front of the pusher, somewhere between pocket and nest.
+    /// Is in front of the pusher, between pocket and nest.
     pub on_pusher: bool,
-    /// Standing in the nest. Name it here, not in the gripper, until the jaws are open.
+    /// Is in the nest. A gripped part stays here, not in the gripper, until the jaws are open.
     pub nest: bool,
-    /// Held by the gripper.
+    /// Hangs in the gripper.
     pub gripper: bool,
 }
 
-/// Size of the part being made, from the recipe.
+/// Size of the part under test, from the recipe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PartSize {
     /// Body along x, y and z, mm, > 0.
@@ -26,25 +25,25 @@ pub struct PartSize {
 }
 
 impl PartSize {
-    /// Finite, body > 0, pins >= 0.
+    /// Returns true for finite sizes with body > 0 and pins >= 0.
     pub(super) fn is_sane(&self) -> bool {
         let body = self.body_mm.iter().all(|mm| mm.is_finite() && *mm > 0.0);
         body && self.pin_length_mm.is_finite() && self.pin_length_mm >= 0.0
     }
 }
 
-/// Everything a decision depends on beside the scene.
+/// Everything beside the scene that decides a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Situation {
     positions: [Option<Position>; 8],
-    /// Where parts are.
+    /// Places that hold a part.
     pub parts: PartPlaces,
-    /// How big they are.
+    /// Size of those parts.
     pub part_size: PartSize,
 }
 
 impl Situation {
-    /// Nothing known of any actuator: each occupies its whole stroke until told otherwise.
+    /// Returns a situation in which no position is known: each actuator occupies its whole stroke.
     pub fn unknown(part_size: PartSize) -> Situation {
         Situation {
             positions: [None; 8],
@@ -53,7 +52,7 @@ impl Situation {
         }
     }
 
-    /// Every actuator at its rest end, no part anywhere.
+    /// Returns a situation with every actuator at its rest end and no part.
     pub fn at_rest(part_size: PartSize) -> Situation {
         Situation {
             positions: [Some(Position::At(0.0)); 8],
@@ -61,24 +60,24 @@ impl Situation {
         }
     }
 
-    /// The same with `actuator` at `position`.
+    /// Returns the situation with `actuator` at `position`.
     #[must_use]
     pub fn with(mut self, actuator: Actuator, position: Position) -> Situation {
         self.set(actuator, position);
         self
     }
 
-    /// Says where `actuator` is.
+    /// Sets the position of `actuator`.
     pub fn set(&mut self, actuator: Actuator, position: Position) {
         self.positions[actuator.index()] = Some(position);
     }
 
-    /// Says that nothing is known of `actuator`.
+    /// Marks the position of `actuator` as unknown.
     pub fn forget(&mut self, actuator: Actuator) {
         self.positions[actuator.index()] = None;
     }
 
-    /// What is known of `actuator`; `None` is nothing.
+    /// Returns the position of `actuator`; `None` when unknown.
     pub fn position(&self, actuator: Actuator) -> Option<Position> {
         self.positions[actuator.index()]
     }

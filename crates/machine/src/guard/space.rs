@@ -1,7 +1,7 @@
-//! The room that everything takes at this moment, kept in the collision core.
+//! The room that every body may occupy now, kept in the collision core.
 //!
-//! Fixed elements are inserted once. Tooling and parts are inserted object by object and replaced
-//! only when what is known of them has changed; the rest of the model stays as it is.
+//! Fixed elements enter the model once. Tooling and parts are replaced one by one, only when their possible positions
+//! change.
 
 use super::occupancy::{Offsets, room};
 use super::part::{Role, shape_of};
@@ -9,7 +9,7 @@ use super::scene::Scene;
 use super::situation::{PartSize, Situation};
 use lpm::{ElementKey, Flaw, Model, Pose, Shape};
 
-/// What decides a body's room; equal stamps mean equal rooms.
+/// Inputs of a body's room; equal stamps mean equal rooms.
 type Stamp = (Offsets, Option<PartSize>);
 
 #[derive(Debug, Clone)]
@@ -18,8 +18,8 @@ struct Occupant {
     stamp: Stamp,
 }
 
-/// Which roles of the part are played, by [`Role::index`].
-pub(super) type Cast = [bool; 5];
+/// Roles of the part that are present, by [`Role::index`].
+pub(super) type PresentRoles = [bool; 5];
 
 #[derive(Debug, Clone)]
 pub(super) struct Space {
@@ -28,7 +28,7 @@ pub(super) struct Space {
 }
 
 impl Space {
-    /// Only the fixed elements; the rest comes with the first situation.
+    /// Makes a space with the fixed elements only; the first situation adds the rest.
     pub fn of(scene: &Scene) -> Result<Space, Flaw> {
         let mut space = Space {
             model: Model::new(),
@@ -52,25 +52,25 @@ impl Space {
         &self.model
     }
 
-    /// Every body in the space with its key.
+    /// Yields every body in the space with its key.
     pub fn occupants(&self) -> impl Iterator<Item = (usize, ElementKey)> + '_ {
         let numbered = self.occupants.iter().enumerate();
         numbered.filter_map(|(number, occupant)| occupant.as_ref().map(|o| (number, o.key)))
     }
 
-    /// The body behind a key; `None` when the core blames no element.
+    /// Returns the body of a key; `None` when the core names no element.
     pub fn number_of(&self, key: ElementKey) -> Option<usize> {
         self.occupants()
             .find(|(_, known)| *known == key)
             .map(|(number, _)| number)
     }
 
-    /// Brings tooling and parts to where `situation` and `cast` say.
+    /// Moves tooling and parts to the positions of `situation` and `present`.
     pub fn follow(
         &mut self,
         scene: &Scene,
         situation: &Situation,
-        cast: &Cast,
+        present: &PresentRoles,
     ) -> Result<(), Flaw> {
         for (number, body) in scene
             .bodies
@@ -83,7 +83,7 @@ impl Space {
         }
         for role in Role::ALL {
             let number = scene.number_of(role);
-            if !cast[role.index()] {
+            if !present[role.index()] {
                 self.take_out(number);
                 continue;
             }
@@ -130,7 +130,7 @@ impl Space {
     }
 }
 
-/// A released part may be anywhere from the magazine's mouth to the pocket.
+/// Returns the offsets of a part; a released one may be anywhere from the magazine's mouth to the pocket.
 fn part_offsets(scene: &Scene, role: Role, situation: &Situation) -> Offsets {
     match role {
         Role::Feed => Offsets::along(scene.feed_way(), 0.0, 1.0),

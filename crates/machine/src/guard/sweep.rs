@@ -1,14 +1,13 @@
 //! One stroke swept through the space.
 //!
-//! Every body that moves with the stroke is swept, in its true shape, along the whole way and
-//! asked of the collision core against the room that every other body may take. A mover that also
-//! rides on an actuator of unknown position is swept as the cover of its own room. So, for every
-//! real combination of positions that the situation allows, the real bodies lie inside what was
-//! tested: a cleared stroke is clear for all of them.
+//! Sweeps every body that moves with the stroke, in its true shape, along the whole way, and tests it in the collision
+//! core against the rooms of all other bodies. For a mover that also rides on an actuator of unknown position it
+//! sweeps the cover of its room. So, for every combination of positions that the situation allows, the real bodies lie
+//! inside the tested ones: a cleared stroke is clear for all of them.
 //!
-//! What the mover may do to each other body is named here; the core applies it.
+//! This module decides what the mover may do to each other body; the core applies it.
 
-use super::carried::{Company, company};
+use super::carried::{PartRoles, part_roles};
 use super::motion::Stroke;
 use super::occupancy::{Offsets, room, scaled, sum};
 use super::part::{Role, shape_of};
@@ -20,7 +19,7 @@ use std::borrow::Cow;
 
 /// The first contact of a stroke.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Finding {
+pub(super) struct FirstContact {
     pub stroke: Stroke,
     /// Body numbers; `None` when the core could not decide.
     pub mover: usize,
@@ -29,40 +28,40 @@ pub(super) struct Finding {
     pub margin_mm: f64,
     pub at_fraction: f64,
     pub at: [f64; 3],
-    /// Where the stroke was swept from and where the margin is reached, mm; `None` when the start is
-    /// unknown or within the margin.
+    /// Start of the sweep and position at which the margin is reached, mm; `None` when the start is unknown or within
+    /// the margin.
     pub clear_way_mm: Option<(f64, f64)>,
 }
 
-/// A body on its way.
+/// A body and its way.
 struct Travel<'a> {
     number: usize,
     shape: Cow<'a, Shape>,
-    /// The same taken apart beforehand, where its place beside the stroke is known.
+    /// The shape decomposed in advance, if its offset from the other actuators is known.
     ready: Option<&'a Mover>,
     pose: Pose,
-    /// Where it may be on the actuators that do not move.
+    /// Offsets that the resting actuators allow.
     unsure: Offsets,
     from: [f64; 3],
     to: [f64; 3],
 }
 
-/// Sweeps `stroke` from where `situation` has its actuator; `Ok(None)` is proof that it is clear.
+/// Sweeps `stroke` from the position in `situation`; `Ok(None)` proves that it is clear.
 pub(super) fn sweep(
     scene: &Scene,
     space: &mut Space,
     situation: &Situation,
     stroke: &Stroke,
-) -> Result<Option<Finding>, Flaw> {
-    let company = company(scene, situation, stroke);
-    space.follow(scene, situation, &company.cast)?;
+) -> Result<Option<FirstContact>, Flaw> {
+    let part_roles = part_roles(scene, situation, stroke);
+    space.follow(scene, situation, &part_roles.present)?;
     let span = scene.span_mm(stroke.actuator, situation);
     let way = way(span, stroke.to_mm);
-    let travels = travels(scene, situation, stroke, &company, way);
+    let travels = travels(scene, situation, stroke, &part_roles, way);
     let moving: Vec<usize> = travels.iter().map(|travel| travel.number).collect();
     let mut first: Option<(usize, Forbidden)> = None;
     for travel in &travels {
-        let permissions = permissions(scene, space, stroke, travel, &moving, &company);
+        let permissions = permissions(scene, space, stroke, travel, &moving, &part_roles);
         let model = space.model();
         let found = model.first_forbidden(&permissions, |depth_mm| travel.passing(depth_mm))?;
         if let Some(found) = found
@@ -74,8 +73,8 @@ pub(super) fn sweep(
     Ok(first.map(|first| finding(space, stroke, span.0 == span.1, way, first)))
 }
 
-/// Least distance of `stroke` to the bodies that it must keep apart from, mm; nothing beyond `range_mm`. Those that may
-/// touch do not count.
+/// Returns the least distance of `stroke` to the bodies that it must not touch, mm; `None` beyond `range_mm`. Bodies
+/// that may touch do not count.
 pub(super) fn least_mm(
     scene: &Scene,
     space: &mut Space,
@@ -83,13 +82,13 @@ pub(super) fn least_mm(
     stroke: &Stroke,
     range_mm: f64,
 ) -> Result<Option<f64>, Flaw> {
-    let company = company(scene, situation, stroke);
-    space.follow(scene, situation, &company.cast)?;
+    let part_roles = part_roles(scene, situation, stroke);
+    space.follow(scene, situation, &part_roles.present)?;
     let way = way(scene.span_mm(stroke.actuator, situation), stroke.to_mm);
-    let travels = travels(scene, situation, stroke, &company, way);
+    let travels = travels(scene, situation, stroke, &part_roles, way);
     let moving: Vec<usize> = travels.iter().map(|travel| travel.number).collect();
     let all = travels.iter().filter_map(|travel| {
-        let permissions = permissions(scene, space, stroke, travel, &moving, &company);
+        let permissions = permissions(scene, space, stroke, travel, &moving, &part_roles);
         let apart = |permission: &Permission| matches!(permission, Permission::Forbidden { .. });
         let ignore: Vec<ElementKey> = permissions
             .iter()
@@ -109,7 +108,7 @@ pub(super) fn least_mm(
     Ok(all.min_by(f64::total_cmp))
 }
 
-/// From the far end of what is known to the target; both ends of the span when the target lies in it.
+/// Returns the way from the far end of the span to the target; the whole span when the target lies in it.
 fn way((low, high): (f64, f64), to_mm: f64) -> (f64, f64) {
     if to_mm >= high {
         (low, to_mm)
@@ -124,12 +123,12 @@ fn travels<'a>(
     scene: &'a Scene,
     situation: &Situation,
     stroke: &Stroke,
-    company: &Company,
+    part_roles: &PartRoles,
     way: (f64, f64),
 ) -> Vec<Travel<'a>> {
     let tooling = scene.bodies.iter().enumerate();
     let tooling = tooling.map(|(number, body)| (number, Cow::Borrowed(&body.shape), body.pose));
-    let part = company.taken.map(|role| {
+    let part = part_roles.taken.map(|role| {
         let shape = shape_of(&situation.part_size, &scene.policy);
         (
             scene.number_of(role),
@@ -163,16 +162,16 @@ fn travels<'a>(
     .collect()
 }
 
-/// What `travel` may do to every body in the space; those that move with it are ignored.
+/// Returns the permission of `travel` towards every body in the space; ignores those that move with it.
 fn permissions(
     scene: &Scene,
     space: &Space,
     stroke: &Stroke,
     travel: &Travel<'_>,
     moving: &[usize],
-    company: &Company,
+    part_roles: &PartRoles,
 ) -> Vec<(ElementKey, Permission)> {
-    let left = company.left.map(|role| scene.number_of(role));
+    let left = part_roles.left.map(|role| scene.number_of(role));
     let permission = |number: usize| {
         if moving.contains(&number) || left == Some(number) {
             return Permission::Ignored;
@@ -187,7 +186,7 @@ fn permissions(
 }
 
 impl<'a> Travel<'a> {
-    /// The room of the body, less a depth off its faces, on its way.
+    /// Returns the room of the body, shrunk by a depth, on its way.
     fn passing(&self, depth_mm: f64) -> Result<Passing<'a>, Flaw> {
         let (mover, pose) = match self.ready {
             Some(ready) if depth_mm == 0.0 => {
@@ -214,14 +213,14 @@ fn finding(
     start_known: bool,
     way: (f64, f64),
     (mover, found): (usize, Forbidden),
-) -> Finding {
+) -> FirstContact {
     let at_fraction = if start_known {
         found.contact.t_stop
     } else {
         0.0
     };
     let reached = way.0 + at_fraction * (way.1 - way.0);
-    Finding {
+    FirstContact {
         stroke: *stroke,
         mover,
         blocker: space.number_of(found.contact.blocker),

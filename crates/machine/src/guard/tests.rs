@@ -1,4 +1,4 @@
-//! Facts about the machine, on the real `config/scene.toml`.
+//! Tests of the guard on the real `config/scene.toml`.
 
 #![allow(clippy::unwrap_used)]
 
@@ -22,7 +22,7 @@ fn guard() -> Guard {
     Guard::build(&scene_settings()).unwrap()
 }
 
-/// A JZC-22F.
+/// Size of a JZC-22F.
 fn jzc_22f() -> PartSize {
     PartSize {
         body_mm: [22.5, 16.5, 16.5],

@@ -1,11 +1,11 @@
-//! Feed: one part from the magazine track into the pocket, and from the pocket into the nest.
+//! The feed: moves one part from the magazine track into the pocket, and from there into the nest.
 //!
 //! ```text
 //! empty -> releasing -> holding -> ready -> pushing -> retracting -> empty
-//!              \-> closing -> empty (nothing came: tried again, then the line waits for parts)
+//!              \-> closing -> empty (no part came: retry, then the line waits for parts)
 //! ```
-//! The pocket fills while the part before is tested. The pusher starts only when the nest is empty, the
-//! jaws are open, the probes down and the gripper up; the guard checks the same in millimetres.
+//! The pocket fills during the test of the previous part. The pusher starts only when the nest is empty, the jaws are
+//! open, the probes down and the gripper up; the guard checks the same with the real geometry.
 
 use super::moves::Move;
 use super::place::NestId;
@@ -14,45 +14,45 @@ use super::turn::Turn;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Span};
 
-/// A part needs at most this long from the escapement to the pocket sensor.
+/// Longest time of a part from the escapement to the pocket sensor.
 const ARRIVES: Span = Span::ms(1500);
-/// The escapement is worked so often before the magazine counts as empty.
+/// Escapement strokes without a part after which the magazine counts as empty.
 pub const TRIES: u8 = 3;
 
-/// Where the feed stands.
+/// State of the feed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Feed {
     /// No part in the pocket.
     Empty,
     /// Escapement open, a part is coming.
     Releasing {
-        /// When it was opened.
+        /// Time of the opening.
         since: RigTime,
-        /// 1 for the first time.
+        /// Number of the attempt, from 1.
         attempt: u8,
     },
-    /// Nothing came; the escapement closes before it opens again.
+    /// No part came; the escapement closes before the next attempt.
     Closing {
-        /// Times it was opened for nothing.
+        /// Attempts so far.
         attempts: u8,
     },
     /// The part is in the pocket, the escapement closes.
     Holding,
     /// A part waits in the pocket.
     Ready,
-    /// Pusher on its way to the nest.
+    /// The pusher moves to the nest.
     Pushing,
-    /// Part delivered, pusher on its way back.
+    /// The part is in the nest; the pusher returns.
     Retracting,
 }
 
 impl Feed {
-    /// One turn. `wanted`: a further part may enter the pocket; `push`: the one that waits there may
-    /// go to `nest`.
+    /// Steps the feed once. `wanted`: another part may enter the pocket; `push`: the part in the pocket may go to
+    /// `nest`.
     pub fn step(self, turn: &mut Turn, nest: NestId, wanted: bool, push: bool) -> Feed {
         match self {
-            Feed::Empty if wanted && turn.seen(DigitalIn::PocketPresent, true) => {
-                // Left there by the run before: it is fed like any other.
+            Feed::Empty if wanted && turn.shows(DigitalIn::PocketPresent, true) => {
+                // A part left by an earlier run is fed like any other.
                 turn.ledger.enter_pocket();
                 Feed::Ready
             }
@@ -60,7 +60,7 @@ impl Feed {
             Feed::Empty => Feed::Empty,
             Feed::Releasing { since, attempt } => releasing(turn, since, attempt),
             Feed::Closing { attempts } if turn.arrived(Move::EscapementHold) => {
-                if attempts < TRIES && wanted && !turn.seen(DigitalIn::PocketPresent, true) {
+                if attempts < TRIES && wanted && !turn.shows(DigitalIn::PocketPresent, true) {
                     release(turn, attempts + 1)
                 } else {
                     Feed::Empty
@@ -83,7 +83,10 @@ impl Feed {
 }
 
 fn release(turn: &mut Turn, attempt: u8) -> Feed {
-    assert!((1..=TRIES).contains(&attempt), "called {attempt} times");
+    assert!(
+        (1..=TRIES).contains(&attempt),
+        "escapement attempt {attempt}"
+    );
     turn.drive(Move::EscapementRelease);
     Feed::Releasing {
         since: turn.now,
@@ -92,7 +95,7 @@ fn release(turn: &mut Turn, attempt: u8) -> Feed {
 }
 
 fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
-    if turn.seen(DigitalIn::PocketPresent, true)
+    if turn.shows(DigitalIn::PocketPresent, true)
         && turn.image.input_at(DigitalIn::PocketPresent) > Some(since)
     {
         turn.ledger.enter_pocket();
@@ -103,8 +106,8 @@ fn releasing(turn: &mut Turn, since: RigTime, attempt: u8) -> Feed {
         return Feed::Releasing { since, attempt };
     }
     turn.drive(Move::EscapementHold);
-    turn.tell(
-        match (attempt < TRIES, turn.seen(DigitalIn::TrackLevel, true)) {
+    turn.report(
+        match (attempt < TRIES, turn.shows(DigitalIn::TrackLevel, true)) {
             (true, _) => Trouble::Retried(Move::EscapementRelease, ARRIVES),
             (false, true) => Trouble::NoPart,
             (false, false) => Trouble::MagazineEmpty,
@@ -126,7 +129,7 @@ fn pushed(turn: &mut Turn, nest: NestId) -> Feed {
             Feed::Retracting
         }
         Some(false) => {
-            turn.tell(Trouble::NestEmpty);
+            turn.report(Trouble::NestEmpty);
             Feed::Pushing
         }
         None => Feed::Pushing,

@@ -1,6 +1,6 @@
-//! Feeder: pocket, nests, gripper and bins, each stepped once per turn.
+//! The feeder: steps pocket, nests, gripper and bins once per turn.
 //!
-//! The sorter goes first and the feed last, so that a place is free before the next part is sent there.
+//! Steps the sorter first and the feed last, so that a place is free before the next part moves there.
 
 use super::feed::Feed;
 use super::ledger::Ledger;
@@ -17,7 +17,7 @@ use crate::rig::bin::Bin;
 use crate::rig::point::DigitalInput;
 use units::RigTime;
 
-/// What may begin in a turn.
+/// Actions that may begin in a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Permits {
     /// Further parts may leave the magazine.
@@ -26,20 +26,20 @@ pub struct Permits {
     pub push: bool,
 }
 
-/// Where feed, nests and sorter stand.
+/// States of feed, nests and sorter.
 #[derive(Debug)]
 pub struct Feeder {
     table: AxisTable,
     feed: Feed,
     nests: Vec<Nest>,
     sort: Sort,
-    /// The escapement may have let a part through when the sequence was cut off.
+    /// True when the escapement may have let a part through before the sequence was cut off.
     releasing: bool,
     last_left: Option<RigTime>,
 }
 
 impl Feeder {
-    /// One nest, nothing known of parts yet.
+    /// Makes a feeder with one nest and an empty ledger.
     pub fn new(table: AxisTable) -> Self {
         Self {
             table,
@@ -51,7 +51,7 @@ impl Feeder {
         }
     }
 
-    /// One turn; true when a nest has taken up a new part.
+    /// Steps once; returns true when a nest has received a new part.
     pub fn step(
         &mut self,
         turn: &mut Turn,
@@ -74,40 +74,40 @@ impl Feeder {
             nest.step(turn, context);
             is_new |= was_empty && !matches!(nest.state, NestState::Empty);
         }
-        assert!(job.is_none(), "the job of a nest that is not there");
+        assert!(job.is_none(), "a job done for a nest that does not exist");
         assert!(!self.nests.is_empty(), "a feeder without a nest");
         let free = self.nests[0].id;
         self.feed = self.feed.step(turn, free, permits.release, permits.push);
         is_new
     }
 
-    /// Watches the part that is falling; goes on whatever else has stopped.
+    /// Watches the beam for the falling part, even while the sequence is stopped.
     pub fn confirm(&self, turn: &mut Turn) {
         sort::confirm(turn, &self.table);
     }
 
-    /// A motion was cleared and driven: fingers that open let their part go.
+    /// Notes that a cleared motion was driven: opening fingers release their part.
     pub fn driven(&mut self, movement: Move, ledger: &mut Ledger, now: RigTime) {
         self.sort = self.sort.driven(movement, ledger, now);
     }
 
-    /// Every output has gone safe: nothing is under way any more.
+    /// Notes that every output is safe and every motion has ended.
     pub fn cut_off(&mut self, ledger: &Ledger) {
         self.releasing |= matches!(self.feed, Feed::Releasing { .. } | Feed::Closing { .. });
-        self.stand_still(ledger);
+        self.reset_states(ledger);
     }
 
-    /// The sequence goes on after a homing, from the parts that are inside.
-    pub fn take_up(&mut self, ledger: &Ledger) {
+    /// Resumes the sequence after homing, from the parts inside.
+    pub fn resume(&mut self, ledger: &Ledger) {
         self.releasing = false;
         self.last_left = None;
-        self.stand_still(ledger);
+        self.reset_states(ledger);
         if ledger.holds(Place::Gripper) {
             self.sort = Sort::Loaded;
         }
     }
 
-    fn stand_still(&mut self, ledger: &Ledger) {
+    fn reset_states(&mut self, ledger: &Ledger) {
         self.feed = match ledger.holds(Place::Pocket) {
             true => Feed::Ready,
             false => Feed::Empty,
@@ -118,37 +118,37 @@ impl Feeder {
         self.sort = Sort::Returning;
     }
 
-    /// The escapement may have let a part through when the sequence was cut off.
+    /// Returns true when the escapement may have let a part through before the sequence was cut off.
     pub fn is_releasing(&self) -> bool {
         self.releasing
     }
 
-    /// Where the feed stands.
+    /// Returns the state of the feed.
     pub fn feed(&self) -> Feed {
         self.feed
     }
 
-    /// The nests.
+    /// Returns the nests.
     pub fn nests(&self) -> &[Nest] {
         &self.nests
     }
 
-    /// Where the sorter stands.
+    /// Returns the state of the sorter.
     pub fn sort(&self) -> Sort {
         self.sort
     }
 
-    /// The test under way.
+    /// Returns the running test.
     pub fn test(&self) -> Option<&Procedure> {
         self.nests.iter().find_map(Nest::test)
     }
 
-    /// The beam in the chute of each bin, in the order of the line.
+    /// Yields the beam in the chute of each bin, in the order of the line.
     pub fn beams(&self) -> impl Iterator<Item = (Bin, DigitalInput)> + '_ {
         self.table.bins().map(|bin| (bin, self.table.beam(bin)))
     }
 
-    /// Parts where the guard has to expect them.
+    /// Returns the places of parts for the guard.
     pub fn part_places(&self, ledger: &Ledger) -> PartPlaces {
         let pushing = self.feed == Feed::Pushing;
         let lifts = |nest: &Nest| matches!(nest.state, NestState::Lifting);
@@ -162,7 +162,7 @@ impl Feeder {
         }
     }
 
-    /// Every part stands where it may wait; `bin_full`: one may wait over its bin.
+    /// Returns true when every part is in a waiting position; `bin_full`: a part may wait over its bin.
     pub fn is_at_rest(&self, bin_full: bool) -> bool {
         let rests = |nest: &Nest| matches!(nest.state, NestState::Empty | NestState::Judged);
         let over_bin = matches!(self.sort, Sort::OverBin(..)) && bin_full;
@@ -170,8 +170,8 @@ impl Feeder {
         self.nests.iter().all(rests) && sort && self.feed_rests()
     }
 
-    /// Neither feed nor sorter has a part on its way.
-    pub fn is_empty_handed(&self) -> bool {
+    /// Returns true when neither feed nor sorter moves a part.
+    pub fn moves_no_part(&self) -> bool {
         let sort = matches!(self.sort, Sort::Returning | Sort::OverNest | Sort::Opening);
         sort && self.feed_rests()
     }

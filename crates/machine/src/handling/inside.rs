@@ -1,16 +1,16 @@
-//! What the next run has to know of the parts inside: a program that is killed tells nobody what became of them.
+//! Parts left inside by an earlier run, of whose end a killed program leaves no record.
 //!
-//! Whoever comes next looks at its first homing, z being up: each part left inside is where it was, or farther on, or
-//! it is told. A part that was let go and that no beam had confirmed is told in any case, unless the fingers hold it
-//! still. Sensors alone say where parts are; what is known from before moves nothing.
+//! The next run looks for them at its first homing, with z up: a part left inside is in its old place or farther on,
+//! or the run reports it missing. It always reports a part that was released without a confirmation by its beam,
+//! unless the fingers still hold it. Only sensors decide where parts are; the earlier record never causes a motion.
 
 use super::ledger::Ledger;
 use super::place::Place;
-use super::recovery::Seen;
+use super::recovery::SensedParts;
 use super::trouble::Trouble;
 use crate::rig::bin::Bin;
 
-/// Places that held a part when they were written down last.
+/// Places that held a part at the last record.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Inside {
     /// The pocket.
@@ -19,12 +19,12 @@ pub struct Inside {
     pub nest: bool,
     /// The gripper.
     pub gripper: bool,
-    /// A part had been let go over this bin, and its beam had not confirmed it.
+    /// Bin over which a part was released without a confirmation by its beam.
     pub falling: Option<Bin>,
 }
 
 impl Inside {
-    /// As the ledger has it.
+    /// Returns the occupied places of the ledger.
     pub fn of(ledger: &Ledger) -> Self {
         Self {
             pocket: ledger.holds(Place::Pocket),
@@ -34,15 +34,15 @@ impl Inside {
         }
     }
 
-    /// Hand-overs that sensors cannot tell of later: a part that falls, and one that was lifted when the next one has
-    /// taken its place.
-    pub fn is_hard_to_tell(self) -> bool {
+    /// Returns true for hand-overs that sensors cannot reconstruct later: a falling part, and a lifted part whose old
+    /// place the next one has taken.
+    pub fn needs_record(self) -> bool {
         self.falling.is_some() || self.gripper && self.nest
     }
 
-    /// Parts that are not seen where they were left, nor where they could have got to since.
-    pub fn missing(self, seen: &Seen) -> Vec<Trouble> {
-        let Seen {
+    /// Returns a trouble for each part that is neither in its old place nor in a place it can have reached since.
+    pub fn missing(self, seen: &SensedParts) -> Vec<Trouble> {
+        let SensedParts {
             mut pocket,
             mut nest,
             mut gripper,
@@ -52,7 +52,7 @@ impl Inside {
         let held = self.gripper && claim(&mut gripper);
         let stayed = self.nest && (claim(&mut nest) || claim(&mut gripper));
         let waits = self.pocket && (claim(&mut pocket) || claim(&mut nest) || claim(&mut gripper));
-        // Jaws keep a part from which the fingers have slid off.
+        // The jaws keep a part when the fingers slide off.
         let set_down = self.gripper && !held && claim(&mut nest);
         let gone = [
             (Place::Gripper, self.gripper && !held && !set_down),
@@ -63,7 +63,10 @@ impl Inside {
         let left = [self.pocket, self.nest, self.gripper, self.falling.is_some()];
         let seen_again = [held, stayed, waits, set_down, never_opened];
         let count = |these: &[bool]| these.iter().filter(|it| **it).count();
-        assert!(count(&seen_again) <= count(&left), "one part seen as two");
+        assert!(
+            count(&seen_again) <= count(&left),
+            "one sensor accounts for two parts"
+        );
         fell.map(Trouble::FallUnseen)
             .into_iter()
             .chain(gone.map(|(place, _)| Trouble::Gone(place)))
@@ -71,7 +74,7 @@ impl Inside {
     }
 }
 
-/// What is seen once accounts for one part.
+/// Returns true for a sensor that shows a part, and clears it: a signal accounts for one part.
 fn claim(seen: &mut bool) -> bool {
     std::mem::take(seen)
 }

@@ -1,9 +1,10 @@
-//! The part ledger: which part is in which place, from magazine or hand to a bin.
+//! The part ledger: the place of every part, from the magazine or an operator's hand to a bin.
 //!
-//! A place hands its part over; it never copies one. `in = out + inside + lost` at every instant.
+//! Places hand parts over and never copy them. `in = out + inside + lost` holds at every instant.
 //!
-//! An opening of the fingers that was driven may still not come: the module that should open them has tripped. So a
-//! part that was let go is lost only when the fingers were seen empty; one that they still show is theirs again.
+//! The fingers may stay closed although their opening was driven, when the output module has tripped. So a released
+//! part counts as lost only after the sensor shows empty fingers; a part that the sensor still shows is back in the
+//! fingers.
 
 use super::inside::Inside;
 use super::place::{NestId, Place};
@@ -11,13 +12,13 @@ use crate::rig::bin::Bin;
 use std::collections::BTreeMap;
 use units::{RigTime, Second};
 
-/// Why a part that nobody knows is not tested.
+/// Reason why a part found inside is not tested.
 const FOUND: &str = "found inside at the reset";
 
-/// What a part is to the lot.
+/// Role of a part in the lot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Kind {
-    /// A golden part, by its serial.
+    /// A reference part, with its serial number.
     Golden(String),
     /// A part of the lot, by the order in which it entered the nest, from 1.
     Lot(u64),
@@ -26,36 +27,36 @@ pub enum Kind {
 /// A part inside the machine, from nest to bin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// Who it is.
+    /// Role and number of the part.
     pub kind: Kind,
-    /// Number over all parts of the run, golden parts included, from 1: order of the records.
+    /// Number over all parts of the run, reference parts included, from 1; the order of the records.
     pub ordinal: u64,
-    /// Where it belongs, once judged.
+    /// Bin of the part, after its verdict.
     pub bin: Option<Bin>,
-    /// Time from probes up to verdict.
+    /// Time from probes up to the verdict.
     pub test: Option<Second>,
-    /// When its probes arrived.
+    /// Time at which its probes arrived.
     pub probed_at: Option<RigTime>,
-    /// Why it is not tested (any more) but discharged to retest.
+    /// Reason why it goes to retest without a (complete) test.
     pub interrupted: Option<String>,
 }
 
-/// How the part in [`Place::Falling`] falls; it is on its way down once it [has left](Self::has_left) the fingers.
+/// The fall of the part in [`Place::Falling`]; it begins when the part [has left](Self::has_left) the fingers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fall {
-    /// Bin it was let go over.
+    /// Bin under the fingers at the release.
     pub bin: Bin,
-    /// When the opening of the fingers was driven.
+    /// Time at which the opening of the fingers was driven.
     pub since: RigTime,
-    /// The fingers were seen empty since: until then they may hold it still.
+    /// True once the sensor has shown empty fingers; until then they may still hold the part.
     pub has_left: bool,
-    /// Count of the bin's beam before.
+    /// Count of the bin's beam before the release.
     pub beam_before: u32,
-    /// When the beam had first counted it.
+    /// Time of the beam's first count.
     pub seen: Option<RigTime>,
 }
 
-/// What a place holds.
+/// Content of a place.
 #[derive(Debug, Clone)]
 enum Held {
     /// A part without a number yet; `found`: it does not belong to this run.
@@ -64,28 +65,28 @@ enum Held {
     Numbered(Part),
 }
 
-/// Places and counts.
+/// The part in each place, and the counts of parts.
 #[derive(Debug, Clone, Default)]
 pub struct Ledger {
     places: BTreeMap<Place, Held>,
-    /// There while a part is in [`Place::Falling`].
+    /// Present while a part is in [`Place::Falling`].
     fall: Option<Fall>,
-    /// Parts that came into the pocket or a socket.
+    /// Parts that entered the pocket or a socket.
     pub came_in: u64,
-    /// Parts that a beam confirmed, or a person took out.
+    /// Parts that a beam confirmed or a person took out.
     pub went_out: u64,
-    /// Parts that are declared lost by an alarm.
+    /// Parts that an alarm declared lost.
     pub lost: u64,
-    /// Parts that belong to no run; they are part of `came_in`.
+    /// Parts that belong to no run; `came_in` includes them.
     pub found: u64,
-    /// What a run before left inside, until somebody has looked.
+    /// Parts left by an earlier run, until homing has looked for them.
     pub left: Inside,
     numbered: u64,
     lot_numbered: u64,
 }
 
 impl Ledger {
-    /// Nothing is known but what a run before left inside.
+    /// Makes an empty ledger, except for the parts left by an earlier run.
     pub fn after(left: Inside) -> Self {
         Self {
             left,
@@ -93,8 +94,8 @@ impl Ledger {
         }
     }
 
-    /// What a run has to look for that begins now.
-    pub fn to_look_for(&self) -> Inside {
+    /// Returns the parts that a new run has to look for.
+    pub fn parts_to_find(&self) -> Inside {
         if self.left == Inside::default() {
             Inside::of(self)
         } else {
@@ -102,12 +103,12 @@ impl Ledger {
         }
     }
 
-    /// Whether a part is there.
+    /// Returns true when the place holds a part.
     pub fn holds(&self, place: Place) -> bool {
         self.places.contains_key(&place)
     }
 
-    /// The part that is there; `None` as long as it has no number, too.
+    /// Returns the part in the place; `None` without a part or without its number.
     pub fn part(&self, place: Place) -> Option<&Part> {
         match self.places.get(&place)? {
             Held::Numbered(part) => Some(part),
@@ -115,7 +116,7 @@ impl Ledger {
         }
     }
 
-    /// The same, to write down what becomes of it.
+    /// Returns the part in the place for changes.
     pub fn part_mut(&mut self, place: Place) -> Option<&mut Part> {
         match self.places.get_mut(&place)? {
             Held::Numbered(part) => Some(part),
@@ -123,12 +124,12 @@ impl Ledger {
         }
     }
 
-    /// Every place that holds a part, with the part once it has a number.
+    /// Yields every occupied place, with the part once it has a number.
     pub fn each(&self) -> impl Iterator<Item = (Place, Option<&Part>)> {
         self.places.keys().map(|place| (*place, self.part(*place)))
     }
 
-    /// Parts that jaws or fingers hold.
+    /// Yields the parts in jaws or fingers, for changes.
     pub fn held_mut(&mut self) -> impl Iterator<Item = &mut Part> {
         let held = |place: &Place| match place {
             Place::Nest(_) | Place::Gripper => true,
@@ -141,7 +142,7 @@ impl Ledger {
         })
     }
 
-    /// The part of the pocket does not belong to this run.
+    /// Returns true when the part in the pocket does not belong to this run.
     pub fn is_pocket_found(&self) -> bool {
         match self.places.get(&Place::Pocket) {
             Some(Held::Unnumbered { found }) => *found,
@@ -149,63 +150,63 @@ impl Ledger {
         }
     }
 
-    /// How the part falls that was let go last, until its beam has seen it.
+    /// Returns the fall of the last released part, until its beam has counted it.
     pub fn fall(&self) -> Option<&Fall> {
         self.fall.as_ref()
     }
 
-    /// The same, to write down what is seen of it.
+    /// Returns the fall of the last released part for changes.
     pub fn fall_mut(&mut self) -> Option<&mut Fall> {
         self.fall.as_mut()
     }
 
-    /// Parts between magazine and beam.
+    /// Returns the number of parts between magazine and beam.
     pub fn inside(&self) -> u64 {
         self.places.len() as u64
     }
 
-    /// `in = out + inside + lost`.
+    /// Returns true when `in = out + inside + lost`.
     pub fn balances(&self) -> bool {
         self.came_in == self.went_out + self.inside() + self.lost
     }
 
-    /// A part has come into the empty pocket.
+    /// Adds a part to the empty pocket.
     pub fn enter_pocket(&mut self) {
         self.came_in += 1;
         self.put(Place::Pocket, Held::Unnumbered { found: false });
     }
 
-    /// The part of the pocket is now in the nest and gets its number; `golden` names a golden part.
+    /// Moves the part from the pocket to the nest and numbers it; `golden`: serial number of a reference part.
     pub fn enter_nest(&mut self, nest: NestId, golden: Option<String>) {
         let found = self.is_pocket_found();
         assert!(
             !(found && golden.is_some()),
-            "a found part is no golden one"
+            "a found part cannot be a reference part"
         );
         self.take(Place::Pocket);
         let part = self.number(golden, found.then(|| FOUND.to_owned()));
         self.put(Place::Nest(nest), Held::Numbered(part));
     }
 
-    /// A person has put a part into an empty socket; `golden` names a golden part.
+    /// Adds a part that a person put into an empty socket; `golden`: serial number of a reference part.
     pub fn fill_socket(&mut self, socket: u16, golden: Option<String>) {
         self.came_in += 1;
         let part = self.number(golden, None);
         self.put(Place::Socket(socket), Held::Numbered(part));
     }
 
-    /// A person has taken the judged part out of a socket and put it into its bin.
+    /// Removes the judged part that a person took out of a socket and put into its bin.
     pub fn unload_socket(&mut self, socket: u16) -> Part {
         let Held::Numbered(part) = self.take(Place::Socket(socket)) else {
             panic!("a part without a number in socket {socket}");
         };
-        assert!(part.bin.is_some(), "unloaded before it was judged");
+        assert!(part.bin.is_some(), "unloaded before its verdict");
         self.went_out += 1;
         self.check();
         part
     }
 
-    /// A part that nobody knows is in the empty place.
+    /// Adds a part of unknown origin to the empty place.
     pub fn find(&mut self, place: Place) {
         self.came_in += 1;
         self.found += 1;
@@ -218,7 +219,7 @@ impl Ledger {
         self.put(place, held);
     }
 
-    /// The part of a place, if there is one, is nowhere; true when there was one.
+    /// Declares the part of a place lost; returns false for an empty place.
     pub fn lose(&mut self, place: Place) -> bool {
         let gone = self.places.remove(&place).is_some();
         self.lost += u64::from(gone);
@@ -229,19 +230,19 @@ impl Ledger {
         gone
     }
 
-    /// The part of the nest is now in the gripper.
+    /// Moves the part from the nest to the gripper.
     pub fn lift(&mut self, nest: NestId) {
         self.hand_over(Place::Nest(nest), Place::Gripper);
     }
 
-    /// The part of the gripper lies in the nest again.
+    /// Moves the part from the gripper back to the nest.
     pub fn set_down(&mut self, nest: NestId) {
         self.hand_over(Place::Gripper, Place::Nest(nest));
     }
 
-    /// The gripper has let its part go over `bin`; an empty one lets none fall.
+    /// Moves the gripper's part to its fall into `bin`; does nothing for an empty gripper.
     pub fn drop_over(&mut self, bin: Bin, since: RigTime, beam_before: u32) {
-        assert!(self.fall.is_none(), "two parts on their way down");
+        assert!(self.fall.is_none(), "two parts fall at once");
         if !self.holds(Place::Gripper) {
             return;
         }
@@ -255,32 +256,32 @@ impl Ledger {
         self.hand_over(Place::Gripper, Place::Falling);
     }
 
-    /// The part that was to fall is still in the fingers: it sticks to them, or they never opened.
-    pub fn keep_hold(&mut self) {
+    /// Moves the falling part back to the fingers: it sticks to them, or they never opened.
+    pub fn return_to_gripper(&mut self) {
         self.fall = None;
         self.hand_over(Place::Falling, Place::Gripper);
     }
 
-    /// The beam saw the falling part, if there is one.
+    /// Removes the falling part, if any, after its beam has counted it.
     pub fn land(&mut self) -> Option<Part> {
         if !self.holds(Place::Falling) {
             return None;
         }
         self.fall = None;
         let Held::Numbered(part) = self.take(Place::Falling) else {
-            panic!("a part without a number was let go");
+            panic!("a part without a number was released");
         };
         self.went_out += 1;
         self.check();
         Some(part)
     }
 
-    /// Parts of the run's own that came in.
-    pub fn own(&self) -> u64 {
+    /// Returns the number of parts that entered and belong to this run.
+    pub fn own_parts(&self) -> u64 {
         self.came_in - self.found
     }
 
-    /// Parts of the lot that have entered a nest.
+    /// Returns the number of parts of the lot that have entered a nest.
     pub fn lot_parts(&self) -> u64 {
         self.lot_numbered
     }
@@ -326,6 +327,10 @@ impl Ledger {
     fn check(&self) {
         assert!(self.balances(), "a part is in two places or in none");
         let falls = self.holds(Place::Falling);
-        assert_eq!(falls, self.fall.is_some(), "a fall without its part");
+        assert_eq!(
+            falls,
+            self.fall.is_some(),
+            "the fall and its part do not match"
+        );
     }
 }

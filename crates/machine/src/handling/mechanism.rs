@@ -1,11 +1,10 @@
-//! What is known of the mechanism: end sensors, motions under way, and the situation for the guard.
+//! The state of the mechanism: end sensors, motions in progress, and the situation for the guard.
 //!
-//! An actuator is at an end only while its sensors say so and no motion of it is under way; otherwise
-//! it may be anywhere on the way, or on its whole stroke. Sensors older than [`SENSOR_AGE`] say nothing.
+//! An actuator is at an end only while its sensors show that end and it does not move; otherwise it may be anywhere on
+//! its way, or on its whole stroke. A sensor value older than [`SENSOR_AGE`] counts as unknown.
 //!
-//! Trouble seen here: a stroke that does not arrive in time (a work stroke is tried once more, back and forth
-//! again), an actuator that leaves the end where it stood, both end sensors on at once, the drive's alarm. A
-//! sensor that flickers for less than [`DEBOUNCE`] is believed to bounce and counted.
+//! Detects a stroke that arrives late (a failed work stroke is repeated once, back and forth), an actuator that leaves
+//! its end, both end sensors on at once, and the drive's alarm. A signal shorter than [`DEBOUNCE`] counts as a bounce.
 
 use super::moves::{Move, Strokes};
 use super::trouble::Trouble;
@@ -17,16 +16,16 @@ use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Span};
 
-/// Oldest sensor reading that is believed.
+/// Greatest age of a valid sensor value.
 pub const SENSOR_AGE: Span = Span::ms(400);
-/// After the start edge the drive needs this long to take "in position" away.
+/// Time from the start edge until the drive withdraws "in position".
 const AXIS_REACTS: Span = Span::ms(15);
-/// A sensor must show trouble for so long: longer than two scans and the bounce of a reed contact.
+/// Time that a sensor must show a fault: longer than two scans and the bounce of a reed contact.
 pub const DEBOUNCE: Span = Span::ms(60);
-/// A work stroke is tried again so often for one part.
+/// Repetitions of a failed work stroke per part.
 const RETRIES: u8 = 1;
 
-/// A motion that was driven and has not arrived.
+/// A driven motion that has not arrived yet.
 #[derive(Debug, Clone, Copy)]
 struct Underway {
     movement: Move,
@@ -35,39 +34,39 @@ struct Underway {
 }
 
 impl Underway {
-    /// Every sensor of its end was asked for at `since` or later.
+    /// Returns true when every sensor of its end was read at `since` or later.
     fn was_looked_at(&self, since: RigTime, image: &Image) -> bool {
         let mut arrival = self.movement.arrival().iter();
         arrival.all(|(point, _)| image.input_at(*point).is_some_and(|at| at >= since))
     }
 }
 
-/// A work stroke that failed and is being tried again: back to rest, then forth.
+/// A failed work stroke under repetition: back to rest, then forth.
 #[derive(Debug, Clone, Copy)]
 struct Again {
     movement: Move,
     back: Move,
 }
 
-/// What an update has found.
+/// Results of an update.
 #[derive(Debug, Default)]
-pub struct Found {
-    /// Trouble.
+pub struct MechanismUpdate {
+    /// Troubles found.
     pub trouble: Vec<Trouble>,
-    /// Motions of a second try.
+    /// Motions of a repeated stroke.
     pub motions: Vec<Move>,
 }
 
-/// Sensors and motions.
+/// End sensors and motions in progress.
 #[derive(Debug)]
 pub struct Mechanism {
     strokes: Strokes,
     timeout: Vec<(&'static str, Span)>,
     underway: Vec<Underway>,
-    /// Asked for and not released yet.
+    /// Motions requested and not driven yet.
     waiting: Vec<Move>,
     again: Vec<Again>,
-    /// Work strokes tried again for the part now in hand.
+    /// Work strokes already repeated for the current part.
     tried: Vec<Move>,
     watch: Watch,
     strokes_made: Vec<(&'static str, u64)>,
@@ -77,7 +76,7 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
-    /// Nothing known, nothing under way.
+    /// Makes a mechanism with unknown positions and no motion.
     pub fn new(strokes: Strokes, timeout: Vec<(&'static str, Span)>, part_size: PartSize) -> Self {
         Self {
             strokes,
@@ -94,12 +93,12 @@ impl Mechanism {
         }
     }
 
-    /// Lengths of the strokes.
+    /// Returns the lengths of the strokes.
     pub fn strokes(&self) -> &Strokes {
         &self.strokes
     }
 
-    /// True when every sensor of the end of `movement` says so and it is not under way.
+    /// Returns true when every sensor of the end of `movement` shows it and the motion is over.
     pub fn has_arrived(&self, movement: Move, now: RigTime, image: &Image) -> bool {
         if self.is_moving(movement) {
             return false;
@@ -118,7 +117,7 @@ impl Mechanism {
             .all(|(point, state)| image.input(*point, now, SENSOR_AGE) == Some(*state))
     }
 
-    /// True from the moment a motion of the same actuator was driven until it arrives.
+    /// Returns true from the drive of a motion of the same actuator until its arrival.
     pub fn is_moving(&self, movement: Move) -> bool {
         let key = movement.actuator_key();
         let same = |other: &Move| other.actuator_key() == key;
@@ -129,19 +128,19 @@ impl Mechanism {
             || self.again.iter().any(|again| same(&again.movement))
     }
 
-    /// The motion under way on an actuator.
+    /// Yields the motions in progress.
     pub fn moving(&self) -> impl Iterator<Item = Move> + '_ {
         self.underway.iter().map(|underway| underway.movement)
     }
 
-    /// Some actuator may have left its end, or its sensor bounces: within [`DEBOUNCE`] it is known.
+    /// Returns true while an actuator may have left its end or its sensor may bounce; [`DEBOUNCE`] decides.
     pub fn is_in_doubt(&self) -> bool {
         self.watch.is_in_doubt()
     }
 
-    /// Something is not where it should be, and no alarm names a cause yet: a sensor differs, or a motion has taken half of
-    /// its time-out.
-    pub fn is_suspicious(&self, now: RigTime) -> bool {
+    /// Returns true for a deviation that no alarm explains yet: a sensor differs, or a motion has used half of its
+    /// time-out. It causes the restart check.
+    pub fn needs_restart_check(&self, now: RigTime) -> bool {
         let slow = |underway: &Underway| {
             let limit = self.timeout_of(underway.movement);
             now.since(underway.since).0 > limit.0 / 2
@@ -149,13 +148,13 @@ impl Mechanism {
         self.is_in_doubt() || self.underway.iter().any(slow)
     }
 
-    /// Motions that wait for a step, or until no sensor is in doubt; none of their actuators counts as arrived.
+    /// Marks motions as waiting for a step or for certain sensors; their actuators do not count as arrived.
     pub fn keep_waiting(&mut self, movements: &[Move]) {
         self.waiting.clear();
         self.waiting.extend_from_slice(movements);
     }
 
-    /// Every output has gone safe: nothing that was under way or stood counts any more.
+    /// Forgets motions and positions, because every output has gone safe.
     pub fn forget(&mut self) {
         self.underway.clear();
         self.waiting.clear();
@@ -165,17 +164,17 @@ impl Mechanism {
         self.axis_at = None;
     }
 
-    /// The drive of the axis has been reset, and is watched from then on.
+    /// Notes the reset of the axis drive, from which on the drive is watched.
     pub fn drive_reset(&mut self, at: RigTime) {
         self.watch.drive_reset(at);
     }
 
-    /// A new part: its strokes may be tried again.
+    /// Allows the repetition of each stroke again, for a new part.
     pub fn new_part(&mut self) {
         self.tried.clear();
     }
 
-    /// Strokes by actuator and flickers of end sensors since the start.
+    /// Returns strokes by actuator and sensor bounces since the start.
     pub fn wear(&self) -> Vec<(&'static str, u64)> {
         let strokes = self.strokes_made.iter().copied();
         strokes
@@ -184,18 +183,18 @@ impl Mechanism {
             .collect()
     }
 
-    /// Uses of what wears since the start.
+    /// Returns the wear counts since the start.
     pub fn uses(&self) -> Uses {
         self.uses
     }
 
-    /// A motion was driven.
+    /// Notes that a motion was driven.
     pub fn driven(&mut self, movement: Move, now: RigTime, image: &Image) {
         let from = self.positions(now, image);
         let key = movement.actuator_key();
         self.underway
             .retain(|underway| underway.movement.actuator_key() != key);
-        self.watch.left(key);
+        self.watch.remove(key);
         self.uses.probe_touches += u64::from(movement == Move::ProbesUp);
         self.uses.jaw_closings += u64::from(movement == Move::ClampClose);
         match self
@@ -212,15 +211,18 @@ impl Mechanism {
             from,
         });
         let actuators = Actuator::ALL.len();
-        assert!(self.underway.len() < actuators, "one actuator moves twice");
+        assert!(
+            self.underway.len() < actuators,
+            "two motions of one actuator"
+        );
         if let Some(station) = movement.station() {
             self.axis_at = Some(station);
         }
     }
 
-    /// Takes note of arrivals; an actuator that takes too long is tried again or an alarm.
-    pub fn update(&mut self, now: RigTime, image: &Image) -> Found {
-        let mut found = Found::default();
+    /// Notes arrivals; repeats a late stroke or reports it.
+    pub fn update(&mut self, now: RigTime, image: &Image) -> MechanismUpdate {
+        let mut found = MechanismUpdate::default();
         for underway in std::mem::take(&mut self.underway) {
             if self.is_there(&underway, now, image) {
                 self.arrived(underway.movement, &mut found);
@@ -242,25 +244,25 @@ impl Mechanism {
             && self.sensed(underway.movement, now, image)
     }
 
-    /// A look that was asked for after the time-out has not shown the end: where replies are late, the look before it may
-    /// be older than the stroke took.
+    /// Returns true when a sensor value requested after the time-out does not show the end. On a slow line the value
+    /// before it may be older than the stroke.
     fn is_late(&self, underway: &Underway, image: &Image) -> bool {
         let limit = self.timeout_of(underway.movement);
         underway.was_looked_at(underway.since + limit, image)
     }
 
-    /// Back at rest for a second try: forth again. Anything else stands now and is watched.
-    fn arrived(&mut self, movement: Move, found: &mut Found) {
+    /// Continues a repeated stroke after its return to rest; watches any other actuator at its new end.
+    fn arrived(&mut self, movement: Move, found: &mut MechanismUpdate) {
         match self.again.iter().find(|again| again.back == movement) {
             Some(again) => found.motions.push(again.movement),
             None => {
                 self.again.retain(|again| again.movement != movement);
-                self.watch.stands(movement);
+                self.watch.add(movement);
             }
         }
     }
 
-    fn late(&mut self, underway: Underway, found: &mut Found) {
+    fn late(&mut self, underway: Underway, found: &mut MechanismUpdate) {
         let movement = underway.movement;
         let limit = self.timeout_of(movement);
         let tried = self.tried.iter().filter(|one| **one == movement).count();
@@ -293,7 +295,7 @@ impl Mechanism {
         Actuator::ALL.map(|actuator| self.position(actuator, now, image))
     }
 
-    /// What is known of one actuator.
+    /// Returns the known position of one actuator.
     pub fn position(&self, actuator: Actuator, now: RigTime, image: &Image) -> Position {
         for underway in &self.underway {
             if let Some(to_mm) = underway.movement.motion(&self.strokes).target_mm(actuator) {
@@ -338,7 +340,7 @@ impl Mechanism {
         }
     }
 
-    /// The situation as the guard wants it.
+    /// Returns the situation for the guard.
     pub fn situation(&self, parts: PartPlaces, now: RigTime, image: &Image) -> Situation {
         let mut situation = Situation::unknown(self.part_size);
         for actuator in Actuator::ALL {

@@ -1,19 +1,19 @@
-//! How parts get to the instruments and into bins.
+//! Brings parts to the instruments and into bins.
 //!
-//! Signals: end sensors of every actuator, part sensors of pocket, nest and gripper, a beam in the chute of each bin. A
-//! sensor is believed for [`mechanism::SENSOR_AGE`]; what was not read is unknown, never a guess.
+//! Signals: end sensors of every actuator, part sensors of pocket, nest and gripper, a beam in the chute of each bin.
+//! A sensor value is valid for [`mechanism::SENSOR_AGE`]; an unread one is unknown, never guessed.
 //!
-//! Normal sequence: [`feed`] lets one part into the pocket and pushes it into the nest, [`nest`] clamps it, has it
-//! tested and hands it to the fingers, [`sort`] carries it to its bin, lets it go and waits for the beam. The three
-//! overlap; [`feeder`] steps them once per turn, and the [`ledger`] holds which part is in which [`place`].
+//! Normal sequence: [`feed`] lets one part into the pocket and pushes it into the nest; [`nest`] holds and tests it
+//! and hands it to the fingers; [`sort`] carries it to its bin, releases it and waits for the beam. The three overlap;
+//! [`feeder`] steps them once per turn, and the [`ledger`] knows the part in each [`place`].
 //!
-//! Troubles ([`trouble`]): a stroke that does not arrive ([`mechanism`]) or an actuator that leaves its end (`watch`),
-//! a part that does not come, sticks or falls; each with its place, none with a text.
+//! Troubles ([`trouble`]): a late stroke ([`mechanism`]), an actuator that leaves its end (`watch`), a part that does
+//! not come, sticks or falls. A trouble names its place and has no text.
 //!
-//! After a restart: [`recovery`] brings every actuator to rest and compares the ledger with the sensors; [`inside`] is
-//! what a run before left.
+//! After a restart: [`recovery`] brings every actuator to rest and compares the ledger with the sensors; [`inside`]
+//! holds the parts left by an earlier run.
 //!
-//! Not handled here: what stops at which trouble, orders, gates of the lot. The station does that, with alarms.
+//! Not handled here: reactions to troubles, orders, gates of the lot. The station handles them, with alarms.
 
 pub mod feed;
 pub mod feeder;

@@ -1,11 +1,11 @@
-//! The motions of the machine by their names on the shop floor, and how each shows that it has arrived.
+//! The motions of the machine by their shop-floor names, and the sensors that show their end.
 
 use crate::guard::{Actuator, Motion, Position, Stroke};
 use crate::rig::axis::AxisStation;
 use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 
-/// One motion that a station may want.
+/// One motion of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Move {
     /// Escapement lets one part into the pocket.
@@ -16,9 +16,9 @@ pub enum Move {
     PusherExtend,
     /// Pusher goes back.
     PusherRetract,
-    /// Both jaws close.
+    /// Both jaws of the nest close.
     ClampClose,
-    /// Both jaws open.
+    /// Both jaws of the nest open.
     ClampOpen,
     /// Probes up to the pins.
     ProbesUp,
@@ -39,14 +39,14 @@ pub enum Move {
 /// Lengths of all strokes, mm, in the order of [`Actuator::ALL`], and x of the axis points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strokes {
-    /// Stroke of each actuator; the entry of the sort axis is not used.
+    /// Stroke of each actuator; the entry of the sort axis is unused.
     pub length_mm: [f64; 8],
-    /// x of each point of the sort axis.
+    /// Position of each point of the sort axis, mm.
     pub axis_mm: Vec<(AxisStation, f64)>,
 }
 
 impl Strokes {
-    /// Full stroke of an actuator.
+    /// Returns the full stroke of an actuator, mm.
     pub fn of(&self, actuator: Actuator) -> f64 {
         Actuator::ALL
             .iter()
@@ -54,7 +54,7 @@ impl Strokes {
             .map_or(f64::NAN, |index| self.length_mm[index])
     }
 
-    /// x of a point; NaN for one that is not in the table, which the guard refuses.
+    /// Returns the position of a station, mm; NaN for one outside the table, which the guard refuses.
     pub fn axis(&self, station: AxisStation) -> f64 {
         self.axis_mm
             .iter()
@@ -62,7 +62,7 @@ impl Strokes {
             .map_or(f64::NAN, |(_, x)| *x)
     }
 
-    /// Span of the whole axis.
+    /// Returns the span of the whole axis.
     pub fn axis_span(&self) -> Position {
         let xs = self.axis_mm.iter().map(|(_, x)| *x);
         Position::Between {
@@ -73,7 +73,7 @@ impl Strokes {
 }
 
 impl Move {
-    /// The motion as the guard and the drive know it.
+    /// Returns the motion in the terms of guard and drive.
     pub fn motion(self, strokes: &Strokes) -> Motion {
         let full = |actuator| Motion::to(actuator, strokes.of(actuator));
         let rest = |actuator| Motion::to(actuator, 0.0);
@@ -102,7 +102,7 @@ impl Move {
         }
     }
 
-    /// Sensors that show the end of the motion, each with the state it then has.
+    /// Returns the sensors that show the end of the motion, each with its state there.
     pub fn arrival(self) -> &'static [(DigitalIn, bool)] {
         match self {
             Move::EscapementRelease => &[(DigitalIn::EscapementHold, false)],
@@ -139,8 +139,8 @@ impl Move {
         }
     }
 
-    /// The rest stroke that frees the actuator for a second try. None where going back would let a part go
-    /// in the wrong place, and for strokes that go to rest themselves.
+    /// Returns the stroke to rest that frees the actuator for a repetition; `None` for strokes to rest and where the
+    /// return would release a part in the wrong place.
     pub fn way_back(self) -> Option<Move> {
         match self {
             Move::EscapementRelease => Some(Move::EscapementHold),
@@ -159,7 +159,7 @@ impl Move {
         }
     }
 
-    /// Sensors of the other end; both ends on at once is a broken sensor.
+    /// Returns the sensors of the other end; a sensor is broken when both ends are on.
     pub fn other_end(self) -> &'static [DigitalIn] {
         match self {
             Move::PusherExtend => &[DigitalIn::PusherRetracted],
@@ -178,7 +178,7 @@ impl Move {
         }
     }
 
-    /// The point of the sort axis that it goes to.
+    /// Returns the target station of the sort axis.
     pub fn station(self) -> Option<AxisStation> {
         match self {
             Move::AxisTo(station) => Some(station),

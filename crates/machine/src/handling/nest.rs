@@ -1,10 +1,10 @@
-//! Nest: clamp the part, bring the probes, test it, hand it to the gripper.
+//! The nest: holds a part between its jaws, raises the probes, tests the part, hands it to the gripper.
 //!
 //! ```text
 //! empty -> clamping -> probing -> testing -> judged -> gripping -> unclamping -> lifting -> empty
 //! ```
-//! Jaws close while the pusher goes back; probes rise only after it is back. The fingers close while the
-//! probes go down, the jaws open only when both are done, and the part changes hands when z is up.
+//! The jaws close while the pusher returns; the probes rise only after it has returned. The fingers close while the
+//! probes go down, the jaws open only after both, and the gripper owns the part once z is up.
 
 use super::ledger::Kind;
 use super::moves::Move;
@@ -12,7 +12,7 @@ use super::place::{NestId, Place};
 use super::sort::Sort;
 use super::trouble::Trouble;
 use super::turn::Turn;
-use super::wants::{Judged, Left, NestDone, NestJob};
+use super::wants::{Judged, NestDone, NestExit, NestJob};
 use crate::dut::Device;
 use crate::dut::device::TestOrder;
 use crate::dut::procedure::{Procedure, Progress};
@@ -21,53 +21,53 @@ use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Second};
 
-/// A golden part that could not be judged is tested so often in all: what it teaches holds for every part after it, and
-/// one reset status that was lost, or one reply refused, is no reason to calibrate anew.
+/// Most tests of a void reference part. Its result affects every later part, and one lost reset status or one refused
+/// reply should not force a new calibration.
 const GOLDEN_TESTS: u8 = 3;
 
-/// Where a nest stands.
+/// State of a nest.
 #[derive(Debug)]
 pub enum NestState {
     /// No part, jaws open, probes down.
     Empty,
-    /// Jaws close, pusher goes back.
+    /// The jaws close, the pusher returns.
     Clamping,
-    /// Probes rise.
+    /// The probes rise.
     Probing,
     /// The part is under test.
     Testing(Procedure),
-    /// Judged; waits for the gripper.
+    /// The part has its verdict and waits for the gripper.
     Judged,
-    /// Fingers close, probes go down.
+    /// The fingers close, the probes go down.
     Gripping,
-    /// Jaws open.
+    /// The jaws open.
     Unclamping,
-    /// The part goes up with z.
+    /// The part rises with z.
     Lifting,
 }
 
 /// One nest.
 #[derive(Debug)]
 pub struct Nest {
-    /// Which one.
+    /// Number of the nest.
     pub id: NestId,
-    /// Where it stands.
+    /// State of the nest.
     pub state: NestState,
 }
 
-/// What the part in the nest is tested by.
+/// Conditions of the test in a nest.
 #[derive(Debug, Clone, Copy)]
 pub struct TestTerms<'a> {
-    /// The kind under test: recipe, calibration and what parts have taught.
+    /// Kind under test: recipe, calibration and the values learned from parts.
     pub device: &'a Device,
-    /// Every result is a mean of the slow strategy.
+    /// True when every result is a mean of confirmation measurements.
     pub thorough: bool,
-    /// Serial number of the part, when it is a golden one that teaches.
+    /// Serial number of a reference part whose test calibrates.
     pub teaching: Option<&'a str>,
 }
 
 impl TestTerms<'_> {
-    /// Begins the test with this number of the part in the nest.
+    /// Begins test `number` of the part in the nest.
     fn begin(&self, number: u8, now: RigTime) -> Procedure {
         let order = TestOrder {
             thorough: self.thorough,
@@ -78,20 +78,20 @@ impl TestTerms<'_> {
     }
 }
 
-/// What a nest needs beside the turn.
+/// Inputs of a nest beside the turn.
 pub struct NestContext<'a> {
-    /// Answer to the job of this nest, once.
+    /// Completion of the nest's job, once.
     pub done: Option<JobDone>,
-    /// What to test by.
+    /// Conditions of the test.
     pub terms: TestTerms<'a>,
     /// State of the sorter.
     pub sort: &'a mut Sort,
-    /// When the part before left the nest.
+    /// Time at which the previous part left the nest.
     pub last_left: &'a mut Option<RigTime>,
 }
 
 impl Nest {
-    /// An empty one.
+    /// Makes an empty nest.
     pub fn new(id: NestId) -> Self {
         Self {
             id,
@@ -99,14 +99,14 @@ impl Nest {
         }
     }
 
-    /// One turn.
+    /// Steps the nest once.
     pub fn step(&mut self, turn: &mut Turn, context: NestContext) {
         if let Some(next) = self.next(turn, context) {
             self.state = next;
         }
     }
 
-    /// The state that follows, when it is another one.
+    /// Returns the next state, if it changes.
     fn next(&mut self, turn: &mut Turn, mut context: NestContext) -> Option<NestState> {
         match &mut self.state {
             NestState::Empty => turn.ledger.holds(Place::Nest(self.id)).then(|| {
@@ -139,12 +139,12 @@ impl Nest {
                 NestState::Lifting
             }),
             NestState::Lifting => (turn.arrived(Move::SortUp)
-                && turn.seen(DigitalIn::NestPresent, false))
+                && turn.shows(DigitalIn::NestPresent, false))
             .then(|| lifted(self.id, turn, context)),
         }
     }
 
-    /// The test under way, for screens.
+    /// Returns the running test, for the page.
     pub fn test(&self) -> Option<&Procedure> {
         match &self.state {
             NestState::Testing(test) => Some(test),
@@ -159,7 +159,7 @@ impl Nest {
     }
 }
 
-/// A part that was interrupted is not tested; it goes on to retest, with a row when it has none yet.
+/// Starts the test. An interrupted part goes to retest without one, with a row if it has none yet.
 fn clamped(id: NestId, turn: &mut Turn) -> NestState {
     let part = turn.ledger.part_mut(Place::Nest(id));
     let interrupted = part.as_ref().and_then(|part| part.interrupted.clone());
@@ -187,7 +187,7 @@ fn begin(id: NestId, turn: &mut Turn, context: &NestContext) -> NestState {
     NestState::Testing(test)
 }
 
-/// True when the part is judged.
+/// Advances the test; returns true when the part has its verdict.
 fn testing(
     id: NestId,
     turn: &mut Turn,
@@ -203,8 +203,8 @@ fn testing(
         Progress::Doing(Doing::Wait(until)) => turn.rig.wake_at = Some(until),
         Progress::Doing(Doing::Busy | Doing::Done | Doing::Trouble(_)) => {}
         Progress::Judged => {
-            if let Some(again) = worth_another(id, turn, test) {
-                turn.tell(again);
+            if let Some(again) = repeat_reason(id, turn, test) {
+                turn.report(again);
                 *test = context.terms.begin(test.number() + 1, turn.now);
                 return testing(id, turn, context, test, None);
             }
@@ -215,12 +215,12 @@ fn testing(
     false
 }
 
-/// What to tell before a golden part is tested again, if it is.
-fn worth_another(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
+/// Returns the trouble to report before another test of a void reference part; `None` when there is no further test.
+fn repeat_reason(id: NestId, turn: &Turn, test: &Procedure) -> Option<Trouble> {
     let Kind::Golden(serial) = &turn.ledger.part(Place::Nest(id))?.kind else {
         return None;
     };
-    // What ran to its end proves nothing either while the lags are being taught, and is all that is wanted.
+    // A complete test is inconclusive while overshoots are learned, but needs no repetition.
     let why = test.why_void()?;
     (test.number() < GOLDEN_TESTS).then(|| Trouble::GoldenRepeated(serial.clone(), why.to_string()))
 }
@@ -230,7 +230,7 @@ fn judged(id: NestId, turn: &mut Turn, test: &mut Procedure) {
     let judgements = test.judgements();
     let now = turn.now;
     let Some(part) = turn.ledger.part_mut(Place::Nest(id)) else {
-        panic!("a part was judged that is not in its nest");
+        panic!("the judged part is not in its nest");
     };
     part.test = part.probed_at.map(|at| Second(now.since(at).as_seconds()));
     part.bin = Some(match part.kind {
@@ -253,18 +253,18 @@ fn lifted(id: NestId, turn: &mut Turn, context: NestContext) -> NestState {
         let cycle = context
             .last_left
             .map(|before| Second(turn.now.since(before).as_seconds()));
-        turn.parts.left.push(Left {
+        turn.parts.left.push(NestExit {
             ordinal: part.ordinal,
             cycle,
         });
     }
     let before = context.last_left.replace(turn.now);
-    assert!(before <= Some(turn.now), "the part before left later");
+    assert!(before <= Some(turn.now), "the previous part left later");
     context.sort.carry();
     NestState::Empty
 }
 
-/// The answer to the job of this nest; another nest's answer stays for that one.
+/// Takes the completion of this nest's job; leaves that of another nest.
 pub(super) fn answer_for(id: NestId, job: &mut Option<NestDone>) -> Option<JobDone> {
     job.take_if(|job| job.nest == id).map(|job| job.done)
 }

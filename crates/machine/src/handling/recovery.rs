@@ -1,17 +1,16 @@
-//! Homing and recovery from any position: after power-up, a crash, a jam, an emergency stop.
+//! Homing and recovery from any position: after power-up, crash, jam or emergency stop.
 //!
-//! 1. The drive of the axis is reset and its servo switched on; nothing has moved yet.
-//! 2. z up, before anything else moves near the nest.
-//! 3. The ledger is compared with what the sensors show: parts are where they are seen. A part that the
-//!    ledger does not know is *found*, one that nobody sees is *lost*; both are told. So is one that a run
-//!    before [left inside](super::inside).
-//! 4. Every other actuator goes to its rest end, one at a time. A motion that the guard refuses waits
-//!    until the others are home; when all that are left are refused, that is an alarm. Fingers that hold
-//!    a part stay closed.
-//! 5. What was inside is discharged to retest by the ordinary sequence (feed, clamp without a test, sort).
+//! 1. Resets the drive of the axis and switches its servo on, before any motion.
+//! 2. Raises z, before anything else moves near the nest.
+//! 3. Compares the ledger with the sensors: parts are where the sensors show them. A part unknown to the ledger is
+//!    *found*, a part that no sensor shows is *lost*; both are reported. So is a missing part of those that an earlier
+//!    run [left inside](super::inside).
+//! 4. Brings every other actuator to rest, one at a time. A motion that the guard refuses waits until the others are
+//!    home; an alarm follows when only refused ones remain. Fingers that hold a part stay closed.
+//! 5. The ordinary sequence (feed, nest without a test, sort) then discharges the parts inside to retest.
 //!
-//! Never a move from an assumed position: safe outputs made the station forget where the axis stood, and
-//! an actuator without an end sensor on occupies its whole stroke for the guard.
+//! Homing never moves from an assumed position: safe outputs invalidate the position of the axis, and for the guard an
+//! actuator without an active end sensor occupies its whole stroke.
 
 use super::ledger::Ledger;
 use super::moves::Move;
@@ -23,7 +22,7 @@ use crate::rig::point::{DigitalIn, DigitalOut};
 use std::collections::VecDeque;
 use units::{RigTime, Span};
 
-/// After z.
+/// Order of the motions after z.
 const ORDER: [Move; 6] = [
     Move::ProbesDown,
     Move::PusherRetract,
@@ -33,21 +32,21 @@ const ORDER: [Move; 6] = [
     Move::AxisTo(AxisStation::Nest),
 ];
 
-/// The drive takes its reset within this time.
+/// Time for the drive to accept its reset.
 const DRIVE_RESET: Span = Span::ms(50);
 
-/// How far it has come.
+/// Progress of homing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Stage {
-    /// Sensors of the parts are not all read yet.
+    /// Waiting for the first values of all part sensors.
     Looking,
-    /// Reset of the drive since then.
+    /// Resetting the drive, since this time.
     Drive(RigTime),
     Up,
     Home,
 }
 
-/// Homing under way.
+/// State of homing.
 #[derive(Debug, Clone)]
 pub struct Recovery {
     stage: Stage,
@@ -68,11 +67,11 @@ impl Default for Recovery {
 }
 
 impl Recovery {
-    /// One turn; true when everything is home. `releasing`: the escapement may have let a part through.
+    /// Steps once; returns true when everything is home. `releasing`: the escapement may have let a part through.
     pub fn step(&mut self, turn: &mut Turn, releasing: bool) -> bool {
         match self.stage {
             Stage::Looking => {
-                if Seen::of(turn).is_some() {
+                if SensedParts::of(turn).is_some() {
                     turn.rig.outputs.push((DigitalOut::AxisReset, true));
                     self.stage = Stage::Drive(turn.now);
                 }
@@ -80,7 +79,7 @@ impl Recovery {
             Stage::Drive(since) => self.drive(turn, since),
             Stage::Up if !turn.arrived(Move::SortUp) => self.ask(turn, Move::SortUp),
             Stage::Up => {
-                if let Some(seen) = Seen::of(turn) {
+                if let Some(seen) = SensedParts::of(turn) {
                     pushed(turn, &seen);
                     reconcile(turn.ledger, &seen, releasing, turn.trouble);
                     self.leave_gripped(turn.ledger);
@@ -92,32 +91,32 @@ impl Recovery {
         false
     }
 
-    /// The reset of the drive ends in this turn.
+    /// Returns true when the reset of the drive ends in this turn.
     pub fn drive_reset(&self, now: RigTime) -> bool {
         matches!(self.stage, Stage::Drive(since) if now.since(since) >= DRIVE_RESET)
     }
 
-    /// The guard refused what was asked for; false when there is nothing else to try first.
+    /// Defers a motion that the guard refused; returns false when no other motion is left to try first.
     pub fn refused(&mut self, movement: Move) -> bool {
         if self.asked != Some(movement) || self.stage != Stage::Home {
             return false;
         }
         let first = self.left.front();
-        assert_eq!(first, Some(&movement), "homing asked for another one");
+        assert_eq!(first, Some(&movement), "homing requested another motion");
         self.asked = None;
         self.refused += 1;
         self.left.rotate_left(1);
         self.refused < self.left.len()
     }
 
-    /// A drive that has not taken its reset is told again: the axis would not move.
+    /// Repeats a reset that the drive has not accepted, without which the axis does not move.
     fn drive(&mut self, turn: &mut Turn, since: RigTime) {
         let taken = since + DRIVE_RESET;
         let looked = turn.image.input_at(DigitalIn::AxisAlarm) >= Some(taken);
         if turn.now < taken {
             turn.rig.wake_at = Some(taken);
-        } else if looked && turn.seen(DigitalIn::AxisAlarm, true) {
-            turn.tell(Trouble::AxisDrive);
+        } else if looked && turn.shows(DigitalIn::AxisAlarm, true) {
+            turn.report(Trouble::AxisDrive);
         } else if looked {
             turn.rig.outputs.push((DigitalOut::AxisReset, false));
             turn.rig.outputs.push((DigitalOut::AxisServoOn, true));
@@ -132,7 +131,7 @@ impl Recovery {
         }
     }
 
-    /// Fingers that hold a part stay closed, and the axis takes it to its bin from where it stands.
+    /// Leaves fingers closed that hold a part; the axis takes it to its bin from its present position.
     fn leave_gripped(&mut self, ledger: &Ledger) {
         if ledger.holds(Place::Gripper) {
             self.left
@@ -154,9 +153,9 @@ impl Recovery {
     }
 }
 
-/// Where parts are seen.
+/// Places in which sensors show a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Seen {
+pub struct SensedParts {
     /// In the pocket.
     pub pocket: bool,
     /// In the nest.
@@ -165,7 +164,7 @@ pub struct Seen {
     pub gripper: bool,
 }
 
-impl Seen {
+impl SensedParts {
     fn of(turn: &Turn) -> Option<Self> {
         Some(Self {
             pocket: turn.input(DigitalIn::PocketPresent)?,
@@ -175,9 +174,9 @@ impl Seen {
     }
 }
 
-/// The pusher had brought the part of the pocket when the sequence was cut off: it is the one in the nest, and not
-/// the one that the fingers have lost.
-fn pushed(turn: &mut Turn, seen: &Seen) {
+/// Moves a part from pocket to nest that the pusher delivered before the cut-off: the part in the nest is this one,
+/// not one that slid from the fingers.
+fn pushed(turn: &mut Turn, seen: &SensedParts) {
     let gone = turn.ledger.holds(Place::Pocket) && !seen.pocket;
     if gone && !turn.ledger.holds(Place::NEST) && seen.nest {
         let golden = match turn.ledger.is_pocket_found() {
@@ -188,8 +187,13 @@ fn pushed(turn: &mut Turn, seen: &Seen) {
     }
 }
 
-/// Brings the ledger to what is seen, z being up. Parts in nest and gripper are interrupted by this.
-pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, trouble: &mut Vec<Trouble>) {
+/// Brings the ledger in line with the sensors, with z up. Interrupts the parts in nest and gripper.
+pub fn reconcile(
+    ledger: &mut Ledger,
+    seen: &SensedParts,
+    releasing: bool,
+    trouble: &mut Vec<Trouble>,
+) {
     trouble.extend(std::mem::take(&mut ledger.left).missing(seen));
     hand_over(ledger, seen);
     let places = [
@@ -210,15 +214,19 @@ pub fn reconcile(ledger: &mut Ledger, seen: &Seen, releasing: bool, trouble: &mu
             }
             (true, true) | (false, false) => {}
         }
-        assert_eq!(ledger.holds(place), is_seen, "not what is seen");
+        assert_eq!(
+            ledger.holds(place),
+            is_seen,
+            "the ledger differs from the sensors"
+        );
     }
 }
 
-/// Parts that had moved on when the sequence was cut off, were set down again, or never let go.
-fn hand_over(ledger: &mut Ledger, seen: &Seen) {
+/// Moves parts in the ledger that advanced before the cut-off, were set down again, or never left the fingers.
+fn hand_over(ledger: &mut Ledger, seen: &SensedParts) {
     let may_be_held = ledger.fall().is_some_and(|it| !it.has_left);
     if may_be_held && seen.gripper {
-        ledger.keep_hold();
+        ledger.return_to_gripper();
     }
     let (nest, gripper) = (ledger.holds(Place::NEST), ledger.holds(Place::Gripper));
     if nest && !gripper && !seen.nest && seen.gripper {

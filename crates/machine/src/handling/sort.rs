@@ -1,13 +1,13 @@
-//! Sort: carry the part to its bin, let it go, see it pass the beam, come back over the nest.
+//! The sorter: carries the part to its bin, releases it, waits for the beam, returns over the nest.
 //!
 //! ```text
 //! returning -> over nest -> lowering -> at part -> (nest closes fingers, lifts) -> carrying
 //!           -> over bin -> letting go -> opening -> returning
 //! ```
-//! Open fingers that still show a part do not go back: it would be set down on the next one.
+//! Open fingers that still hold a part do not return, as they would set it down on the next one.
 //!
-//! A part is let go only when its rows are durable and the part before has passed its beam. z comes
-//! down early, during the test, once the pusher is back.
+//! Releases a part only when its rows are durable and the previous part has passed its beam. z comes down early,
+//! during the test, once the pusher has returned.
 
 use super::ledger::Ledger;
 use super::moves::Move;
@@ -20,40 +20,40 @@ use crate::rig::bin::Bin;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Span};
 
-/// From the opening of the gripper to the beam at the latest.
+/// Longest time from the opening of the gripper to the beam.
 const FALL: Span = Span::ms(1500);
 
-/// A part that the open fingers still show so long after they began to open sticks to them.
+/// Time after the opening of the fingers at which a part that they still show counts as sticking.
 const STICKS: Span = Span::ms(500);
 
-/// A second body that clings to the part follows it through the beam within this time.
+/// Longest time between a part and a second body clinging to it at the beam.
 const SECOND_BODY: Span = Span::ms(80);
 
-/// Where the sorter stands.
+/// State of the sorter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sort {
-    /// Axis on its way back to the nest, fingers open, z up.
+    /// The axis returns to the nest, fingers open, z up.
     Returning,
     /// Over the nest, z up.
     OverNest,
-    /// z goes down over the clamped part.
+    /// z goes down over the part in the nest.
     Lowering,
-    /// Down with open fingers around the part; the nest commands from here until the part is up.
+    /// Down, with open fingers around the part; the nest moves the gripper from here until the part is up.
     AtPart,
-    /// The part is up, the axis is to take it to its bin.
+    /// The part is up, ready for its way to the bin.
     Loaded,
-    /// Axis on its way to the bin.
+    /// The axis travels to the bin.
     Carrying(Bin),
-    /// Over the bin since this instant.
+    /// Over the bin since this time.
     OverBin(Bin, RigTime),
-    /// The fingers are to open; the part is theirs until the motion is driven. With the count of the beam before.
+    /// The opening of the fingers is requested; they own the part until it is driven. With the beam's count before.
     LettingGo(Bin, u32),
-    /// Fingers open.
+    /// The fingers open.
     Opening,
 }
 
 impl Sort {
-    /// One turn. `test_running`: the nest holds a clamped part, so z may come down.
+    /// Steps the sorter once. `test_running`: the nest holds the part, so z may come down.
     pub fn step(self, turn: &mut Turn, table: &AxisTable, test_running: bool) -> Sort {
         match self {
             Sort::Returning if turn.arrived(Move::AxisTo(AxisStation::Nest)) => Sort::OverNest,
@@ -94,12 +94,12 @@ impl Sort {
         }
     }
 
-    /// True when the open fingers stand around the part.
+    /// Returns true when the open fingers are around the part.
     pub fn is_at_part(&self, turn: &Turn) -> bool {
         *self == Sort::AtPart && turn.arrived(Move::SortDown) && turn.arrived(Move::GripperOpen)
     }
 
-    /// A motion was cleared and driven: fingers that open let their part go.
+    /// Notes that a cleared motion was driven: opening fingers release their part.
     pub fn driven(self, movement: Move, ledger: &mut Ledger, now: RigTime) -> Sort {
         match (self, movement) {
             (Sort::LettingGo(bin, before), Move::GripperOpen) => {
@@ -110,19 +110,19 @@ impl Sort {
         }
     }
 
-    /// The nest has handed its part over and z is up.
+    /// Takes over the part from the nest, with z up.
     pub fn carry(&mut self) {
         *self = Sort::Loaded;
     }
 }
 
-/// Lets the part go once its rows are durable and the beam's count before is known.
+/// Releases the part once its rows are durable and the beam's count is known.
 fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sort {
     assert!(since <= turn.now, "over the bin in the future");
     let stay = Sort::OverBin(bin, since);
     let beam = table.beam(bin);
-    // A beam that stays dark is a full chute.
-    if turn.ledger.fall().is_some() || turn.seen(beam, true) {
+    // A beam that stays dark shows a full chute.
+    if turn.ledger.fall().is_some() || turn.shows(beam, true) {
         return stay;
     }
     turn.rig.beam = Some(beam);
@@ -142,31 +142,31 @@ fn over_bin(turn: &mut Turn, table: &AxisTable, bin: Bin, since: RigTime) -> Sor
     Sort::LettingGo(bin, before)
 }
 
-/// Open fingers go back empty only.
+/// Returns over the nest once the fingers are open and empty.
 fn opened(turn: &mut Turn) -> Sort {
-    if turn.seen(DigitalIn::GripperPart, false) {
+    if turn.shows(DigitalIn::GripperPart, false) {
         turn.drive(Move::AxisTo(AxisStation::Nest));
         return Sort::Returning;
     }
     let falling = turn.ledger.fall();
     let sticks = falling.is_some_and(|it| it.seen.is_none() && turn.now.since(it.since) > STICKS);
-    if sticks && turn.seen(DigitalIn::GripperPart, true) {
-        turn.ledger.keep_hold();
-        turn.tell(Trouble::Sticks);
+    if sticks && turn.shows(DigitalIn::GripperPart, true) {
+        turn.ledger.return_to_gripper();
+        turn.report(Trouble::Sticks);
     }
     Sort::Opening
 }
 
-/// Watches the beam of the part that is falling; goes on whatever else has stopped.
+/// Watches the beam for the falling part, even while the sequence is stopped.
 pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     let now = turn.now;
-    let seen_empty = turn.seen(DigitalIn::GripperPart, false);
+    let seen_empty = turn.shows(DigitalIn::GripperPart, false);
     let Some(falling) = turn.ledger.fall_mut() else {
         return;
     };
     falling.has_left |= seen_empty;
     let (bin, since, before) = (falling.bin, falling.since, falling.beam_before);
-    assert!(since <= now, "let go in the future");
+    assert!(since <= now, "released in the future");
     let beam = table.beam(bin);
     turn.rig.beam = Some(beam);
     let count = turn
@@ -175,13 +175,13 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
         .filter(|count| count.origin.at > since)
         .map(|count| (count.origin.at, count.count));
     match count.map(|(at, count)| (at, count.wrapping_sub(before) & 0xFFFF)) {
-        // An older count knows nothing of what came after it.
+        // A count from before the first one has no information about a second body.
         Some((at, 1)) if at.since(*falling.seen.get_or_insert(at)) >= SECOND_BODY => {
             landed(turn, bin);
         }
         Some((_, 1)) => {}
         Some((_, several)) if several > 1 => {
-            turn.tell(Trouble::Beam(bin, several));
+            turn.report(Trouble::Beam(bin, several));
             landed(turn, bin);
         }
         Some(_) | None if now.since(since) > FALL => overdue(turn, bin),
@@ -189,17 +189,17 @@ pub fn confirm(turn: &mut Turn, table: &AxisTable) {
     }
 }
 
-/// The beam has seen nothing: what has left the fingers is lost, what they still show was never let go. Who cannot
-/// see them waits until they can be seen.
+/// Handles a part that the beam has not counted in time: lost if it has left the fingers, still held if the sensor
+/// shows it. Waits while that sensor is unknown.
 fn overdue(turn: &mut Turn, bin: Bin) {
     let falling = turn.ledger.fall();
     if falling.is_some_and(|it| it.has_left) {
         turn.ledger.lose(Place::Falling);
-        turn.tell(Trouble::Beam(bin, 0));
-    } else if turn.seen(DigitalIn::GripperPart, true)
+        turn.report(Trouble::Beam(bin, 0));
+    } else if turn.shows(DigitalIn::GripperPart, true)
         && !turn.mechanism.is_moving(Move::GripperOpen)
     {
-        turn.ledger.keep_hold();
+        turn.ledger.return_to_gripper();
     }
 }
 

@@ -1,20 +1,20 @@
-//! Trouble of feeder and mechanism, as data; the station makes an alarm of it, with its texts.
+//! Troubles of feeder and mechanism, as data; the station makes alarms of them, with texts.
 
 use super::moves::Move;
 use super::place::Place;
 use crate::rig::bin::Bin;
 use units::Span;
 
-/// What went wrong, and with what.
+/// A trouble and the things concerned.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Trouble {
-    /// A stroke did not show its end within its time, at the second try where there is one.
+    /// A stroke missed its end within this time, at the repetition if there is one.
     NotReached(Move, Span),
-    /// A stroke did not arrive in time and is tried once more.
+    /// A stroke missed its end within this time and is repeated.
     Retried(Move, Span),
-    /// An actuator left its end by itself.
+    /// An actuator left its end without a command.
     LeftEnd(Move),
-    /// Both ends of an actuator are seen at once.
+    /// Both end sensors of an actuator are on.
     BothEnds(Move),
     /// The drive of the sort axis has tripped.
     AxisDrive,
@@ -22,24 +22,24 @@ pub enum Trouble {
     NoPart,
     /// No part came, and none waits.
     MagazineEmpty,
-    /// The pusher is at a nest that shows no part.
+    /// The pusher is at a nest whose sensor shows no part.
     NestEmpty,
-    /// The beam of a bin counted so many parts where one was let go.
+    /// The beam of a bin counted this number of parts after one release.
     Beam(Bin, u32),
     /// A part that does not belong to this run.
     Found(Place),
-    /// A part that was there is nowhere.
+    /// A part has disappeared from its place.
     Lost(Place),
-    /// A part that a run before left there is nowhere.
+    /// A part left there by an earlier run has disappeared.
     Gone(Place),
-    /// A run before let a part go, and no beam had confirmed it.
+    /// An earlier run released a part over this bin without a confirmation by its beam.
     FallUnseen(Bin),
     /// The fingers lost their part.
     Dropped,
     /// The open fingers still hold their part.
     Sticks,
-    /// The part of a nest that the fingers should have taken is still there.
+    /// The fingers closed, but the part is still in the nest.
     Stuck,
-    /// A golden part is tested again: its serial, and why.
+    /// A reference part is tested again: serial number and reason.
     GoldenRepeated(String, String),
 }

@@ -1,4 +1,4 @@
-//! What a step machine sees of one turn, and what it may ask for.
+//! Inputs and outputs of the step machines in one turn.
 
 use super::ledger::Ledger;
 use super::mechanism::{Mechanism, SENSOR_AGE};
@@ -17,61 +17,61 @@ pub struct Turn<'a> {
     pub now: RigTime,
     /// Process image.
     pub image: &'a Image,
-    /// Sensors and motions.
+    /// End sensors and motions.
     pub mechanism: &'a Mechanism,
-    /// Where the parts are.
+    /// Places of the parts.
     pub ledger: &'a mut Ledger,
-    /// What this turn asks of the rig.
+    /// Commands of this turn to the rig.
     pub rig: &'a mut Commands,
-    /// What has happened to parts in this turn.
+    /// Events of parts in this turn.
     pub parts: &'a mut PartEvents,
-    /// Trouble seen in this turn.
+    /// Troubles of this turn.
     pub trouble: &'a mut Vec<Trouble>,
-    /// Golden parts still to come, in the order of the magazine.
+    /// Serial numbers of the reference parts to come, in the order of the magazine.
     pub golden: &'a mut VecDeque<String>,
     /// Ordinal up to which parts are durably recorded.
     pub recorded: u64,
-    /// The sequence goes to rest: nothing new begins.
+    /// True while the sequence goes to rest: no new action begins.
     pub resting: bool,
 }
 
 impl Turn<'_> {
-    /// Asks for a motion.
+    /// Requests a motion.
     pub fn drive(&mut self, movement: Move) {
         self.rig.motions.push(movement);
     }
 
-    /// Tells of trouble.
-    pub fn tell(&mut self, trouble: Trouble) {
+    /// Reports a trouble.
+    pub fn report(&mut self, trouble: Trouble) {
         self.trouble.push(trouble);
     }
 
-    /// True when the sensors show the end of the motion, nothing of it is under way or asked for.
+    /// Returns true when the sensors show the end of the motion, and it is neither in progress nor requested.
     pub fn arrived(&self, movement: Move) -> bool {
         self.mechanism.has_arrived(movement, self.now, self.image)
     }
 
-    /// A sensor, when it is fresh enough to be believed.
+    /// Returns the state of a sensor, if its value is valid.
     pub fn input(&self, point: impl Into<DigitalInput>) -> Option<bool> {
         self.image.input(point, self.now, SENSOR_AGE)
     }
 
-    /// True when the sensor is fresh and in this state.
-    pub fn seen(&self, point: impl Into<DigitalInput>, state: bool) -> bool {
+    /// Returns true when the sensor's value is valid and equals `state`.
+    pub fn shows(&self, point: impl Into<DigitalInput>, state: bool) -> bool {
         self.input(point) == Some(state)
     }
 
-    /// True when a part may be pushed into the nest.
+    /// Returns true when the pusher may push a part into the nest.
     pub fn nest_is_free(&self, nest: NestId) -> bool {
         !self.ledger.holds(Place::Nest(nest))
-            && self.seen(DigitalIn::NestPresent, false)
+            && self.shows(DigitalIn::NestPresent, false)
             && self.arrived(Move::ClampOpen)
             && self.arrived(Move::ProbesDown)
             && self.arrived(Move::SortUp)
             && self.arrived(Move::EscapementHold)
     }
 
-    /// Serial of the next part when it is a golden one.
+    /// Takes the serial number of the next part, if it is a reference part.
     pub fn next_golden(&mut self) -> Option<String> {
         self.golden.pop_front()
     }

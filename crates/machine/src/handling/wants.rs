@@ -1,4 +1,4 @@
-//! What a turn asks of the rig, and what it tells of parts.
+//! Commands of a turn to the rig, and events of its parts.
 
 use super::ledger::Part;
 use super::moves::Move;
@@ -9,65 +9,66 @@ use crate::rig::bin::Bin;
 use crate::rig::point::{DigitalInput, DigitalOut};
 use units::{RigTime, Second};
 
-/// Work for the measuring line on the part of one nest.
+/// A job for the measuring line on the part of one nest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NestJob {
-    /// Whose part is measured.
+    /// Nest of the measured part.
     pub nest: NestId,
-    /// What is to be done.
+    /// The job.
     pub job: Job,
 }
 
-/// Answer to a [`NestJob`].
+/// Completion of a [`NestJob`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NestDone {
-    /// The nest that asked.
+    /// Nest that requested the job.
     pub nest: NestId,
-    /// What became of its job.
+    /// Outcome of the job.
     pub done: JobDone,
 }
 
-/// A motion by hand, which the guard may refuse: then that is the answer to the order.
+/// A manual motion; a refusal by the guard becomes the answer to its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Jog {
-    /// What to move.
+    /// The motion.
     pub movement: Move,
-    /// Place of its order among the answers of the turn.
+    /// Index of its order among the answers of the turn.
     pub answer: usize,
 }
 
 /// Commands to the rig.
 #[derive(Debug, Default)]
 pub struct Commands {
-    /// Motions, each to pass the guard.
+    /// Motions to clear with the guard and drive.
     pub motions: Vec<Move>,
-    /// A motion by hand.
+    /// A manual motion.
     pub jog: Option<Jog>,
-    /// Plain outputs.
+    /// Digital outputs that move nothing, with their values.
     pub outputs: Vec<(DigitalOut, bool)>,
-    /// Work for the measuring line; one at a time.
+    /// Job for the measuring line; one at a time.
     pub job: Option<NestJob>,
-    /// Beam whose event counter is to be read with every scan.
+    /// Beam whose event counter every scan reads.
     pub beam: Option<DigitalInput>,
-    /// An actuator is not where it should be: before it is named, the modules are asked whether one has restarted.
-    pub suspicious: bool,
-    /// All outputs to their safe values, now.
+    /// True while an actuator deviates unexplained: the cycle then asks the modules whether one has restarted (restart
+    /// check).
+    pub restart_check: bool,
+    /// True to set all outputs to their safe values immediately.
     pub safe: bool,
-    /// Forget failed writes and verify every module again.
+    /// True to discard failed writes and verify every module again.
     pub verify: bool,
-    /// Next turn not later than this.
+    /// Latest time of the next turn.
     pub wake_at: Option<RigTime>,
 }
 
-/// What has happened to parts, for the record.
+/// Events of parts, for the record.
 #[derive(Debug, Default)]
 pub struct PartEvents {
     /// Parts judged in this turn.
     pub judged: Vec<Judged>,
-    /// Judged parts that were interrupted on their way to the bin.
+    /// Judged parts interrupted on their way to the bin.
     pub interrupted: Vec<Interrupted>,
     /// Parts that left a nest in this turn.
-    pub left: Vec<Left>,
+    pub left: Vec<NestExit>,
     /// Parts confirmed in this turn.
     pub landed: Vec<Landed>,
 }
@@ -75,20 +76,20 @@ pub struct PartEvents {
 /// A judged part on its way to the history.
 #[derive(Debug, Clone)]
 pub struct Judged {
-    /// Who it is, with test time and bin.
+    /// Role and numbers of the part, with test time and bin.
     pub part: Part,
-    /// What is said of it.
+    /// Verdict of the part.
     pub verdict: Verdict,
     /// Each result against its limit.
     pub judgements: Vec<(Characteristic, Judgement)>,
-    /// Results and the replies they came from.
+    /// Results, with the replies they came from.
     pub record: TestRecord,
-    /// When it was judged.
+    /// Time of the verdict.
     pub at: RigTime,
 }
 
 impl Judged {
-    /// A part that was not tested to the end.
+    /// Makes the record of a part whose test did not finish.
     pub fn interrupted(part: Part, why: &str, at: RigTime) -> Self {
         Self {
             part,
@@ -100,31 +101,31 @@ impl Judged {
     }
 }
 
-/// A judged part that goes to retest all the same.
+/// A judged part that goes to retest after an interruption.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Interrupted {
     /// Ordinal of the part.
     pub ordinal: u64,
-    /// Why.
+    /// Reason for the interruption.
     pub why: String,
 }
 
 /// A part whose beam has confirmed it.
 #[derive(Debug, Clone)]
 pub struct Landed {
-    /// Who it is.
+    /// Role and numbers of the part.
     pub part: Part,
-    /// Bin whose beam saw it.
+    /// Bin whose beam counted it.
     pub bin: Bin,
-    /// When.
+    /// Time of the count.
     pub at: RigTime,
 }
 
 /// A part that has left the nest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Left {
+pub struct NestExit {
     /// Ordinal of the part.
     pub ordinal: u64,
-    /// Since the part before left; `None` for the first.
+    /// Time since the previous part left; `None` for the first.
     pub cycle: Option<Second>,
 }

@@ -1,8 +1,8 @@
-//! Actuators that stand: each must go on showing the end where it stopped, and never both ends at once.
+//! Watches resting actuators: each must keep showing its end, and never both ends at once.
 //!
-//! A look that differs for less than [`DEBOUNCE`] is a bounce: counted, not believed; while it is not known which, no
-//! motion begins. A sensor that was not read says nothing here; that is trouble of its line. The drive of the axis is
-//! watched from its reset on.
+//! A deviation shorter than [`DEBOUNCE`] is a bounce: counted, without consequence. While a deviation is undecided, no
+//! motion begins. An unread sensor is no trouble here; its line reports it. The drive of the axis is watched after its
+//! reset.
 
 use super::mechanism::{DEBOUNCE, SENSOR_AGE};
 use super::moves::Move;
@@ -11,7 +11,7 @@ use crate::rig::image::Image;
 use crate::rig::point::DigitalIn;
 use units::RigTime;
 
-/// Where an actuator stopped.
+/// A resting actuator.
 #[derive(Debug, Clone, Copy)]
 struct Stand {
     movement: Move,
@@ -19,20 +19,23 @@ struct Stand {
     both_since: Option<RigTime>,
 }
 
-/// All that stand.
+/// All resting actuators.
 #[derive(Debug, Default)]
 pub struct Watch {
     stands: Vec<Stand>,
     bounces: u64,
-    /// When the drive of the axis was reset; an alarm that it showed before that is being dealt with.
+    /// Time of the axis drive's reset; an alarm before it is already being handled.
     drive_reset: Option<RigTime>,
 }
 
 impl Watch {
-    /// The end of a motion was seen.
-    pub fn stands(&mut self, movement: Move) {
-        self.left(movement.actuator_key());
-        assert!(self.stands.len() < 7, "more stand than there are actuators");
+    /// Adds an actuator that has reached the end of `movement`.
+    pub fn add(&mut self, movement: Move) {
+        self.remove(movement.actuator_key());
+        assert!(
+            self.stands.len() < 7,
+            "more resting actuators than actuators"
+        );
         self.stands.push(Stand {
             movement,
             left_since: None,
@@ -40,35 +43,35 @@ impl Watch {
         });
     }
 
-    /// An actuator is sent somewhere else.
-    pub fn left(&mut self, key: &str) {
+    /// Removes an actuator that begins a motion.
+    pub fn remove(&mut self, key: &str) {
         self.stands
             .retain(|stand| stand.movement.actuator_key() != key);
     }
 
-    /// Nothing stands.
+    /// Removes all actuators.
     pub fn forget(&mut self) {
         self.stands.clear();
         self.drive_reset = None;
     }
 
-    /// The drive of the axis has been reset, and is watched from then on.
+    /// Notes the reset of the axis drive, from which on the drive is watched.
     pub fn drive_reset(&mut self, at: RigTime) {
         self.drive_reset = Some(at);
     }
 
-    /// An end sensor differs from where its actuator stands, and it is not known yet whether that is a bounce.
+    /// Returns true while a deviation is undecided between fault and bounce.
     pub fn is_in_doubt(&self) -> bool {
         let mut stands = self.stands.iter();
         stands.any(|stand| stand.left_since.is_some() || stand.both_since.is_some())
     }
 
-    /// Flickers seen.
+    /// Returns the number of bounces.
     pub fn bounces(&self) -> u64 {
         self.bounces
     }
 
-    /// One look; what has been wrong for long enough is an alarm, and no longer watched.
+    /// Checks the sensors once; reports a deviation that has lasted long enough, and stops watching it.
     pub fn look(&mut self, now: RigTime, image: &Image) -> Vec<Trouble> {
         let seen = |point: DigitalIn| image.input(point, now, SENSOR_AGE);
         let mut trouble = Vec::new();
@@ -122,7 +125,7 @@ fn gone(movement: Move) -> Trouble {
     }
 }
 
-/// True once something has been so for the whole debounce time.
+/// Returns true once a state has lasted for the whole debounce time.
 fn lasts(since: &mut Option<RigTime>, is_so: bool, now: RigTime, bounces: &mut u64) -> bool {
     match (is_so, *since) {
         (true, Some(from)) => now.since(from) >= DEBOUNCE,

@@ -1,16 +1,16 @@
-//! Uses of what wears.
+//! Use counts of wearing parts.
 
-/// Uses so far.
+/// Counts since a start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Uses {
-    /// Times that the probes rose.
+    /// Upward strokes of the probes.
     pub probe_touches: u64,
-    /// Times that the jaws closed.
+    /// Closings of the jaws.
     pub jaw_closings: u64,
 }
 
 impl Uses {
-    /// Each with the name of its counter.
+    /// Returns each count with the name of its counter.
     pub fn each(&self) -> [(&'static str, u64); 2] {
         [
             ("probe_touches", self.probe_touches),
@@ -18,7 +18,7 @@ impl Uses {
         ]
     }
 
-    /// Both together.
+    /// Returns the sum of both.
     pub fn with(self, more: Self) -> Self {
         Self {
             probe_touches: self.probe_touches + more.probe_touches,

@@ -1,8 +1,8 @@
-//! What a test stage is made of: acts, each a few transactions of one line or one wait.
+//! Acts, of which a test stage is made: each is a few transactions of one line, or one wait.
 //!
-//! A stage writes its acts down as a list before it begins; [`Runner`] carries them out and keeps what
-//! was read. So the order of a test can be read, printed and replayed, and no stage ever holds the bus.
-//! Acts name wired points and know nothing of the device: which transactions they take is the wiring's.
+//! A stage lists its acts before it begins; [`Runner`] carries them out and keeps the readings. So the order of a test
+//! can be read, printed and replayed, and no stage ever occupies the bus. Acts name wired points and know nothing of
+//! the device; the wiring turns them into transactions.
 
 use super::readings::{Readings, Unread};
 use crate::rig::image::Image;
@@ -10,38 +10,39 @@ use crate::rig::point::{AnalogInput, AnalogOutput, DigitalInput, DigitalOutput, 
 use std::sync::Arc;
 use units::{RigTime, Span, Volt};
 
-/// What follows an awaited event is sent within so long after the last look that had not shown it yet: a poll, a reading,
-/// the write. Where a request is lost and asked again, or the line is slow, a ramp is sent later and ends later by as
-/// much; one that turns round has gone on meanwhile, and needs as long again to come back.
+/// Longest normal time from the last look that does not show an awaited event to the end of the write after it: a
+/// poll, a reading, the write. When a retry or a slow line delays the ramp, it ends later by the same delay; a ramp
+/// that reverses has run on meanwhile, and needs as long again to return.
 const PROMPT: Span = Span::ms(13);
 
-/// Digital inputs that are looked at together and kept as one signal: bit n is input n.
+/// Digital inputs read together and kept as one signal: bit n is input n.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Word {
     /// Name of the signal.
     pub name: &'static str,
-    /// The inputs; best all of one module, which is then one transaction.
+    /// The inputs; all of one module take one transaction.
     pub inputs: Vec<DigitalInput>,
 }
 
-/// What one act brings in.
+/// The points that one act reads.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Read {
-    /// Inputs that are looked at together.
+    /// Inputs read together.
     Word(Arc<Word>),
-    /// These points.
+    /// Single points.
     Points {
-        /// The points that are read.
+        /// Points to read.
         asked: Vec<Point>,
-        /// Points that are kept beside them as they last were.
+        /// Points kept with their last values.
         beside: Vec<Point>,
     },
-    /// Asks each module with outputs whether it has restarted since the last such read; a restart raises an alarm.
+    /// Restart check: asks each module with outputs whether it has restarted since the last such check; a restart
+    /// raises an alarm.
     Restarts,
 }
 
 impl Read {
-    /// Reads these points and keeps nothing else.
+    /// Reads these points and keeps no others.
     pub fn points(asked: impl IntoIterator<Item = Point>) -> Self {
         Self::Points {
             asked: asked.into_iter().collect(),
@@ -61,38 +62,38 @@ impl Read {
 /// One step of a stage.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Act {
-    /// Digital outputs, those of one module written together.
+    /// Sets digital outputs; those of one module in one write.
     Set(Vec<(DigitalOutput, bool)>),
-    /// Voltages asked of sources, in volts of the supply, written one after the other.
+    /// Sets sources to voltages, in volts of the supply, one after the other.
     Level(Vec<(AnalogOutput, Volt)>),
-    /// As [`Act::Level`], of sources that begin to ramp and are not waited for.
+    /// Starts ramps of sources to voltages, without waiting for their end.
     Ramp(Vec<(AnalogOutput, Volt)>),
-    /// One reading.
+    /// Reads points.
     Read(Read),
-    /// The converters of these inputs convert them and nothing else; only while a lot is prepared.
+    /// Enables only these inputs of their converters; only before a lot.
     Mask(Vec<AnalogInput>),
-    /// Remembers this instant for [`Act::WaitSinceMark`].
+    /// Stores the current time for [`Act::WaitSinceMark`].
     Mark,
-    /// Waits until so much time has passed since the mark.
+    /// Waits until this time has passed since the mark.
     WaitSinceMark(Span),
-    /// Waits as [`Act::WaitSinceMark`] does, for a ramp that was sent behind the mark: longer if that was late.
+    /// Waits as [`Act::WaitSinceMark`] does, for a ramp started after the mark; longer if the ramp started late.
     RampSinceMark(Span),
-    /// Waits so long after the previous act was answered.
+    /// Waits this long after the answer to the previous act.
     Wait(Span),
     /// Waits as [`Act::WaitSinceMark`] does, for a conversion that began after the mark.
     ConvertSinceMark(Span),
-    /// Reads a word until the point is active, or gives up; which of both is kept.
+    /// Reads a word until the point is active or the time is over; keeps which of the two happened.
     Until {
-        /// The input that is awaited.
+        /// The awaited input.
         point: DigitalInput,
-        /// Inputs that are kept with the last look.
+        /// Inputs kept from the last look.
         word: Arc<Word>,
         /// Longest wait.
         within: Span,
     },
 }
 
-/// Work for the lines.
+/// A task for the lines.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Job {
     /// See [`Act::Set`].
@@ -103,46 +104,46 @@ pub enum Job {
     Read(Vec<Point>),
     /// See [`Read::Restarts`].
     Restarts,
-    /// Channel masks of converters; only while a lot is prepared, never during a lot.
+    /// Sets channel masks of converters; only before a lot.
     Mask(Vec<AnalogInput>),
 }
 
-/// Answer to a [`Job`].
+/// Completion of a [`Job`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct JobDone {
-    /// When the last reply of the job was complete.
+    /// Time at which the last reply of the job was complete.
     pub at: RigTime,
-    /// Why it failed: line, address, command, how often.
+    /// Reason for a failure: line, address, command, number of tries.
     pub trouble: Option<String>,
 }
 
-/// What the runner asks of its surroundings.
+/// What the runner needs next from its caller.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Doing {
-    /// Start this job; answer with [`JobDone`].
+    /// Start this job; report it with [`JobDone`].
     Job(Job),
     /// A job is under way.
     Busy,
-    /// Nothing to do before this instant.
+    /// Nothing to do until this time.
     Wait(RigTime),
     /// All acts are done.
     Done,
-    /// A job failed; the stage cannot be judged.
+    /// A job failed; the stage cannot produce a result.
     Trouble(String),
 }
 
-/// Where the time of a test goes.
+/// Time of a test by purpose.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Spent {
-    /// Transactions.
+    /// Time of transactions.
     pub bus: Span,
-    /// Waiting for coil, armature, source and bounce to settle.
+    /// Time for coil, armature, source and bounce to settle.
     pub settling: Span,
-    /// Waiting for conversions.
+    /// Time for conversions.
     pub conversion: Span,
-    /// Waiting for contact events, on ramps and timed operations.
+    /// Time for contact events, on ramps and timed operations.
     pub ramp: Span,
-    /// The same acts on a bus that takes no time: settling, conversions and events alone.
+    /// Time that the test would take on a bus without delay: settling, conversions and events alone.
     pub bound: Span,
 }
 
@@ -166,21 +167,21 @@ pub struct Runner {
     began: RigTime,
     since: RigTime,
     mark: RigTime,
-    /// How long ago the mark would be on a bus that takes no time.
+    /// Time since the mark on a bus without delay.
     since_mark: Span,
-    /// Of the point that is waited for, or was: the last look that did not show it.
+    /// Time of the last read in which the awaited point was inactive.
     looked: Option<RigTime>,
-    /// From when on what was marked may have happened.
+    /// Earliest time at which the marked event may have happened.
     marked_from: RigTime,
-    /// By how much a ramp behind the mark was sent late.
+    /// Delay of the ramp started after the mark.
     late: Span,
     spent: Spent,
-    /// What was read so far.
+    /// Readings so far.
     pub readings: Readings,
 }
 
 impl Runner {
-    /// A runner that begins now.
+    /// Makes a runner that begins now.
     pub fn new(acts: Vec<Act>, now: RigTime) -> Self {
         let mut acts = acts.into_iter();
         let current = acts.next();
@@ -200,12 +201,12 @@ impl Runner {
         }
     }
 
-    /// True when nothing is left to do.
+    /// Returns true when no act is left.
     pub fn is_done(&self) -> bool {
         self.current.is_none() && !self.pending
     }
 
-    /// A runner that begins now and remembers what the one before it marked: a mark outlives its stage.
+    /// Makes a runner that begins now and takes over the mark of the runner `before`: a mark outlives its stage.
     pub fn after(acts: Vec<Act>, now: RigTime, before: &Runner) -> Self {
         let mut runner = Self::new(acts, now);
         runner.mark = before.mark;
@@ -214,7 +215,7 @@ impl Runner {
         runner
     }
 
-    /// Goes on as far as it can. `done` answers the job asked for before, once.
+    /// Advances as far as possible. `done` reports the requested job, once.
     pub fn step(&mut self, now: RigTime, done: Option<&JobDone>, image: &Image) -> Doing {
         if self.pending {
             let Some(done) = done else { return Doing::Busy };
@@ -280,7 +281,7 @@ impl Runner {
         Doing::Job(job)
     }
 
-    /// Where the time went so far.
+    /// Returns the time spent so far.
     pub fn spent(&self) -> Spent {
         self.spent
     }
@@ -326,7 +327,7 @@ impl Runner {
         self.began = self.since;
     }
 
-    /// Takes in what the finished job brought, and moves on unless a condition is still awaited.
+    /// Keeps the readings of the finished job, and moves on unless it still awaits a condition.
     fn keep(&mut self, image: &Image, now: RigTime) -> Result<(), Unread> {
         match self.current.clone() {
             Some(Act::Read(read)) => self.readings.take(&read, image, (now, self.since))?,
@@ -377,7 +378,7 @@ impl Runner {
 }
 
 impl Word {
-    /// What each input is, provided that all were just read.
+    /// Returns the state of each input, if all were read just now.
     pub(super) fn states(&self, image: &Image, now: RigTime) -> Option<Vec<bool>> {
         let inputs = self.inputs.iter();
         inputs.map(|it| image.answered_input(*it, now)).collect()

@@ -1,5 +1,5 @@
-//! Instruments as a procedure uses them: acts, their runner, what they have read, the trace of what was seen, and its
-//! curves as kept.
+//! Instruments as a procedure uses them: acts, their runner, their readings, and the trace of all samples, as recorded
+//! and as stored.
 
 pub mod act;
 pub mod curve;

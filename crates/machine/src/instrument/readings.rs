@@ -1,4 +1,4 @@
-//! What the acts of a stage have read, point by point, in the order it came.
+//! The readings of a stage, by point, in order of arrival.
 
 use super::act::{Read, Word};
 use super::trace::Trace;
@@ -8,19 +8,19 @@ use crate::rig::sample::{AnalogPoint, CountPoint, CountSample, Sample};
 use thiserror::Error;
 use units::RigTime;
 
-/// Everything a stage has read.
+/// All readings of a stage.
 #[derive(Debug, Clone, Default)]
 pub struct Readings {
     states: Vec<(DigitalInput, bool)>,
     samples: Vec<Sample>,
     counts: Vec<CountSample>,
-    /// Outcomes of [`Act::Until`](super::act::Act::Until).
+    /// Outcomes of [`Act::Until`](super::act::Act::Until): true when the point became active.
     pub seen: Vec<bool>,
-    /// All of it sample by sample, and what was asked of the outputs.
+    /// All samples, and the values commanded to outputs and sources.
     pub trace: Trace,
 }
 
-/// Why a finished reading says nothing.
+/// Why a finished job gives no reading.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub(super) enum Unread {
     /// A point has no value.
@@ -32,23 +32,23 @@ pub(super) enum Unread {
 }
 
 impl Readings {
-    /// States of a digital input.
+    /// Yields the states of a digital input.
     pub fn states(&self, point: DigitalInput) -> impl Iterator<Item = bool> {
         let here = self.states.iter().filter(move |(it, _)| *it == point);
         here.map(|(_, state)| *state)
     }
 
-    /// Samples of an analog input.
+    /// Yields the samples of an analog input.
     pub fn analog(&self, point: AnalogInput) -> impl Iterator<Item = &Sample> {
         self.samples_of(AnalogPoint::Input(point))
     }
 
-    /// Samples of a thermometer.
+    /// Yields the samples of a thermometer.
     pub fn temperatures(&self, point: Thermometer) -> impl Iterator<Item = &Sample> {
         self.samples_of(AnalogPoint::Temperature(point))
     }
 
-    /// Counts of a gated counter.
+    /// Yields the counts of a gated counter.
     pub fn counts(&self, point: GatedCounter) -> impl Iterator<Item = &CountSample> {
         let here = move |it: &&CountSample| it.point == CountPoint::Gate(point);
         self.counts.iter().filter(here)
@@ -58,10 +58,10 @@ impl Readings {
         self.samples.iter().filter(move |it| it.point == point)
     }
 
-    /// Keeps what a finished reading brought. `at`: now, and when its last reply was complete.
+    /// Keeps the values of a finished job. `at`: the current time, and the time of its last reply.
     ///
     /// # Errors
-    /// A point that has no value, by its name.
+    /// Returns the name of a point that has no value.
     pub(super) fn take(
         &mut self,
         read: &Read,

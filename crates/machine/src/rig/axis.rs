@@ -1,7 +1,7 @@
-//! The point table of the sort axis: the nest, a place to park, and a bin at every other point.
+//! The point table of the sort axis: the nest, a parking place, and a bin at every other point.
 //!
-//! The slide knows eight points, chosen by three outputs; it goes there on a rising edge of
-//! `axis_drive`. Positions are relative to the nest, along the line.
+//! The slide has eight points, selected by three outputs; it travels on a rising edge of `axis_drive`. Positions are
+//! relative to the nest, along the line.
 
 use super::bin::Bin;
 use super::fault::Fault;
@@ -14,14 +14,14 @@ use std::collections::BTreeMap;
 pub enum AxisStation {
     /// Over the nest.
     Nest,
-    /// Out of the way of the nest.
+    /// Clear of the nest.
     Park,
     /// Over the chute of a bin.
     Bin(Bin),
 }
 
 impl AxisStation {
-    /// Its key in `config/rig.toml`: `axis.park`, `bin.pass`.
+    /// Returns the key in `config/rig.toml`: `axis.park`, `bin.pass`.
     pub fn key(self) -> String {
         match self {
             Self::Nest => "axis.nest".to_owned(),
@@ -31,7 +31,7 @@ impl AxisStation {
     }
 }
 
-/// A point of the slide's own table.
+/// A point of the slide's point table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisPoint {
     /// Number on the point bits, 0 to 7.
@@ -53,15 +53,15 @@ struct Chute {
 pub struct AxisTable {
     nest: AxisPoint,
     park: AxisPoint,
-    /// In the order of the line.
+    /// Chutes in the order of the line.
     chutes: Vec<Chute>,
 }
 
 impl AxisTable {
-    /// The point of a station.
+    /// Returns the point of a station.
     ///
     /// # Panics
-    /// For a bin that the rig does not have.
+    /// Panics for a bin that the rig lacks.
     pub fn point(&self, station: AxisStation) -> AxisPoint {
         match station {
             AxisStation::Nest => self.nest,
@@ -70,38 +70,38 @@ impl AxisTable {
         }
     }
 
-    /// The beam in the chute of a bin.
+    /// Returns the beam in the chute of a bin.
     ///
     /// # Panics
-    /// For a bin that the rig does not have.
+    /// Panics for a bin that the rig lacks.
     pub fn beam(&self, bin: Bin) -> DigitalInput {
         self.chute(bin).beam
     }
 
-    /// The bins of this rig, in the order of the line.
+    /// Yields the bins of this rig, in the order of the line.
     pub fn bins(&self) -> impl Iterator<Item = Bin> + '_ {
         self.chutes.iter().map(|chute| chute.bin)
     }
 
-    /// Whether the rig has this bin.
+    /// Returns true when the rig has this bin.
     pub fn has(&self, bin: Bin) -> bool {
         self.bins().any(|known| known == bin)
     }
 
-    /// The station at a position, within a micrometre; `None` between stations.
+    /// Returns the station at a position, within a micrometre; `None` between stations.
     pub fn station_at(&self, x_mm: f64) -> Option<AxisStation> {
         self.stations()
             .find(|station| (self.point(*station).x_mm - x_mm).abs() < 1e-3)
     }
 
-    /// Every station.
+    /// Yields every station.
     pub fn stations(&self) -> impl Iterator<Item = AxisStation> + '_ {
         [AxisStation::Nest, AxisStation::Park]
             .into_iter()
             .chain(self.bins().map(AxisStation::Bin))
     }
 
-    /// A recipe that needs a bin which is not there was refused before anything moved.
+    /// Loading a recipe checks its bins, so the rig has this bin.
     fn chute(&self, bin: Bin) -> &Chute {
         let found = self.chutes.iter().find(|chute| chute.bin == bin);
         match found {
@@ -115,7 +115,7 @@ impl AxisTable {
         bins: &BTreeMap<String, BinSettings>,
         input: impl Fn(&str) -> Option<DigitalInput>,
     ) -> Result<Self, Fault> {
-        let mut taken = Taken::default();
+        let mut taken = PointsInUse::default();
         let nest = taken.station("nest", axis)?;
         let park = taken.station("park", axis)?;
         for needed in [Bin::PASS, Bin::RETEST] {
@@ -133,14 +133,14 @@ impl AxisTable {
     }
 }
 
-/// Numbers, positions and beams already given away, with the key that has them.
+/// Numbers, positions and beams in use, each with its key.
 #[derive(Default)]
-struct Taken {
+struct PointsInUse {
     points: Vec<(AxisPoint, String)>,
     beams: Vec<(DigitalInput, String)>,
 }
 
-impl Taken {
+impl PointsInUse {
     fn station(
         &mut self,
         name: &str,

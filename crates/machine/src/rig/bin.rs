@@ -1,14 +1,14 @@
-//! The name of a bin: where a part ends.
+//! The name of a bin, in which a part ends up.
 //!
-//! Bins are data: `[bin]` of `config/rig.toml` says which ones a rig has, a kind of device which ones it needs. The
-//! machine itself knows two: one for good parts, one for those that are not judged.
+//! Bins are data: `[bin]` of `config/rig.toml` lists the bins of a rig, and a kind of device lists the bins it needs.
+//! The machine itself needs two: for good parts and for void parts.
 
 use std::fmt;
 
 /// A bin by its name, 1 to 15 characters of a to z, 0 to 9 and underscore.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Bin {
-    /// The name, zeros behind it.
+    /// The name, padded with zeros.
     bytes: [u8; Self::LONGEST],
     length: u8,
 }
@@ -16,15 +16,15 @@ pub struct Bin {
 impl Bin {
     /// Characters of the longest name.
     pub const LONGEST: usize = 15;
-    /// Good parts.
+    /// Bin for good parts.
     pub const PASS: Self = Self::named("pass");
-    /// Parts that are not judged.
+    /// Bin for void parts.
     pub const RETEST: Self = Self::named("retest");
 
-    /// The bin of a name that stands in the program.
+    /// Returns the bin with a constant name.
     ///
     /// # Panics
-    /// A name that [`Self::from_name`] refuses, while compiling where it stands in a constant.
+    /// Panics for a name that [`Self::from_name`] refuses; in a constant that is a compile error.
     pub const fn named(name: &str) -> Self {
         match Self::from_name(name) {
             Some(bin) => bin,
@@ -32,7 +32,7 @@ impl Bin {
         }
     }
 
-    /// The bin of this name; `None` for a text that cannot name one.
+    /// Returns the bin with this name; `None` for an invalid name.
     pub const fn from_name(name: &str) -> Option<Self> {
         let text = name.as_bytes();
         if text.is_empty() || text.len() > Self::LONGEST {
@@ -51,10 +51,10 @@ impl Bin {
         Some(Self { bytes, length })
     }
 
-    /// The name used in files, rows and messages.
+    /// Returns the name used in files, rows and messages.
     pub fn name(&self) -> &str {
         let text = std::str::from_utf8(&self.bytes[..usize::from(self.length)]);
-        debug_assert!(text.is_ok(), "only ASCII gets into a name");
+        debug_assert!(text.is_ok(), "a name is ASCII");
         text.unwrap_or_default()
     }
 }

@@ -1,35 +1,35 @@
-//! Is this the rig of the file? What is asked of every module at start, and what it must answer.
+//! Checks that the modules on the lines are those of the file: the requests to every module at start, and the required
+//! answers.
 //!
-//! Everything here reads. A difference is a [`Mismatch`] that names line, address, module, found and expected;
-//! what would set it right ([`Mismatch::remedy`]) writes to the module's EEPROM and is for set-up and `calibrate`,
-//! never for a lot.
+//! All requests are reads. A difference is a [`Mismatch`] that names line, address, module, found and expected value.
+//! Its [`Mismatch::remedy`] writes to the module's EEPROM; set-up and `calibrate` use it, a lot never does.
 //!
-//! | asked | must be |
+//! | request | must be |
 //! |---|---|
-//! | `$AA2` | type code, baud, check sum; notation, fast mode and slew code where the model has them |
-//! | `$AAM` | not the name of another model (a name of the owner's own says nothing) |
+//! | `$AA2` | type code, baud, checksum; notation, fast mode and slew code where the model has them |
+//! | `$AAM` | not the name of another model (a name given by the owner passes) |
 //! | `$AA6` of a 7017 | the channel mask |
 //! | `~AA0`, modules with outputs | host watchdog not tripped |
 //! | `~AA2`, modules with outputs | host watchdog as wired, with `host_watchdog_ms` |
 //! | `~AA4`, modules with outputs | the safe value |
 //! | `$AA5`, not the 7080 | anything: reading it clears the flag, so that a later reset shows |
 
-use super::judge::Judge;
+use super::comparison::Comparison;
 use super::model::Terminals;
 use super::wiring::{Module, ModuleId, Wiring};
 use dcon::{Address, Command, Common, Digital, Reply, Stored};
 use thiserror::Error;
 
-/// One question to one module.
+/// One request to one module.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Check {
-    /// The module.
+    /// The addressed module.
     pub module: ModuleId,
-    /// The question.
+    /// The request.
     pub command: Command,
 }
 
-/// A module that is not as wired.
+/// A module that differs from the wiring.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error(
     "line {line}, address {address}, module {module}: {what}: found {found}, expected {expected}"
@@ -41,17 +41,17 @@ pub struct Mismatch {
     pub address: Address,
     /// Name of the module.
     pub module: String,
-    /// What differs; `wrong module type at address` when it is another kind of module.
+    /// The differing setting; `wrong module type at address` for another model.
     pub what: &'static str,
-    /// What the module said.
+    /// Value from the module.
     pub found: String,
-    /// What the wiring says.
+    /// Value of the wiring.
     pub expected: String,
-    /// The command that would set it right, where one can. Writes EEPROM.
+    /// Command that corrects it, if there is one. Writes EEPROM.
     pub remedy: Option<Command>,
 }
 
-/// Every question to every module, line by line.
+/// Returns every request to every module, line by line.
 pub fn verification(wiring: &Wiring) -> Vec<Check> {
     let questions = |id: ModuleId| {
         let module = wiring.module(id);
@@ -89,25 +89,27 @@ fn read_safe(module: &Module) -> Command {
     }
 }
 
-/// Compares an answer with the wiring: the difference, or `None` when the module is as wired.
+/// Compares an answer with the wiring; returns the difference, or `None` when they agree.
 pub fn judge(wiring: &Wiring, check: &Check, reply: &Reply) -> Option<Mismatch> {
-    let judge = Judge {
+    let comparison = Comparison {
         wiring,
         module: wiring.module(check.module),
     };
     match reply {
-        Reply::Config { config, .. } => judge.config(*config),
-        Reply::Text(name) => judge.name(name.as_str()),
-        Reply::Byte(byte) if check.command == dcon::AnalogIn::ReadMask.to(judge.module.address) => {
-            judge.mask(*byte)
+        Reply::Config { config, .. } => comparison.config(*config),
+        Reply::Text(name) => comparison.name(name.as_str()),
+        Reply::Byte(byte)
+            if check.command == dcon::AnalogIn::ReadMask.to(comparison.module.address) =>
+        {
+            comparison.mask(*byte)
         }
-        Reply::Byte(status) => judge.status(*status),
+        Reply::Byte(status) => comparison.status(*status),
         Reply::Watchdog {
             enabled,
             timeout_tenths,
-        } => judge.watchdog(*enabled, *timeout_tenths),
-        Reply::Level(level) => judge.safe_level(*level),
-        Reply::Bits(bits) => judge.safe_bits(bits.word()),
+        } => comparison.watchdog(*enabled, *timeout_tenths),
+        Reply::Level(level) => comparison.safe_level(*level),
+        Reply::Bits(bits) => comparison.safe_bits(bits.word()),
         Reply::Flag(_)
         | Reply::Sent
         | Reply::Accepted

@@ -1,16 +1,16 @@
-//! Which points this rig has: those of the machine, those that kinds of device declare and the file wires, the beams
-//! that bins name. Their order here is their place in the tables of the wiring.
+//! The points of this rig: those of the machine, those that kinds of device declare and the file wires, and the beams
+//! that bins name. Their order here is their index in the tables of the wiring.
 
 use super::fault::Fault;
 use super::point::{DigitalIn, DigitalInput, DigitalOut, Fixture, Quantity, Switch};
 use super::settings::RigSettings;
 
-/// The digital inputs of this rig in the order of the wiring: machine, fixtures, beams.
+/// Digital inputs of this rig in the order of the wiring: machine, fixtures, beams.
 pub(super) struct InputNames {
     pub names: Vec<String>,
-    /// How many belong to the machine and the fixtures.
+    /// Number of inputs of the machine and the fixtures.
     pub before_beams: usize,
-    /// Those of the fixtures that this rig lacks.
+    /// Declared inputs that this rig lacks.
     lacks: Vec<&'static str>,
 }
 
@@ -31,13 +31,13 @@ impl InputNames {
         }
     }
 
-    /// Handle of a beam: an input that neither the machine nor a fixture has for its own.
+    /// Returns the handle of a beam: an input of neither the machine nor a fixture.
     pub(super) fn beam(&self, name: &str) -> Option<DigitalInput> {
         let at = self.names.iter().position(|known| known == name)?;
         (at >= self.before_beams).then_some(DigitalInput::at(at))
     }
 
-    /// No other name may stand in the file.
+    /// Checks that the file has no other names.
     pub(super) fn check(&self, settings: &RigSettings) -> Result<(), Fault> {
         let mut others = settings.digital_in.keys();
         let Some(name) = others.find(|name| !self.names.contains(name)) else {
@@ -49,7 +49,7 @@ impl InputNames {
     }
 }
 
-/// Adds the names that are wired, each once.
+/// Adds the wired names, each once.
 fn add_wired<'a>(
     names: &mut Vec<String>,
     settings: &RigSettings,
@@ -62,7 +62,7 @@ fn add_wired<'a>(
     }
 }
 
-/// What the kinds of device declare and this rig has, each name once.
+/// Points that kinds of device declare and this rig has, each name once.
 pub(super) struct Declared<'a> {
     pub settings: &'a RigSettings,
     pub fixtures: &'a [Fixture],
@@ -110,7 +110,7 @@ impl Declared<'_> {
     }
 }
 
-/// The first of each name: two kinds may declare the same point.
+/// Keeps the first of each name, because two kinds may declare the same point.
 fn once<T: Copy>(points: impl Iterator<Item = T>, name: impl Fn(T) -> &'static str) -> Vec<T> {
     let mut all: Vec<T> = Vec::new();
     for point in points {

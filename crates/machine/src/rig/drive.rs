@@ -1,12 +1,12 @@
-//! The output image: what every output should be, and the writes that make it so.
+//! The output image: the value of every output, and the writes that bring it about.
 //!
-//! - Writes are absolute: all outputs of a module in one command, so a lost one is repaired by sending the next.
-//! - An output that moves something is switched only by [`Outputs::apply`], with a motion that the guard has
-//!   cleared. [`Outputs::everything_safe`] is the one exception: it brings about what the host watchdog and the
-//!   hard emergency stop bring about too.
-//! - The sort axis travels on a rising edge of `axis_drive`: one write with the point bits and the drive low, a
-//!   second with the drive high. The drive stays high until the next travel.
-//! - What was sent but not confirmed stays open ([`Outputs::settled`]); [`Outputs::failed`] makes it due again.
+//! - Writes are absolute: one command sets all outputs of a module, so the next one repairs a lost one.
+//! - Only [`Outputs::apply`], with a motion cleared by the guard, switches an output that moves something.
+//!   [`Outputs::everything_safe`] is the one exception: it has the same effect as the host watchdog and the hard
+//!   emergency stop.
+//! - The sort axis travels on a rising edge of `axis_drive`: one write with the point bits and the drive low, a second
+//!   with the drive high. The drive stays high until the next travel.
+//! - An unconfirmed write stays open ([`Outputs::settled`]); [`Outputs::failed`] makes it due again.
 
 use super::axis::AxisStation;
 use super::level::{Correction, SupplyError, nearest_level};
@@ -18,44 +18,44 @@ use std::sync::Arc;
 use thiserror::Error;
 use units::Volt;
 
-/// Why an output was not switched.
+/// Why an output keeps its value.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DriveError {
-    /// The output moves something: only a cleared motion may switch it.
+    /// The output moves something and needs a cleared motion.
     #[error("{point} moves something and needs a cleared motion")]
     NeedsClearance {
         /// The output.
         point: DigitalOut,
     },
-    /// One valve drives both jaws, and the motion names one, or sends them apart.
+    /// The motion names one jaw, or moves the jaws apart; one valve drives both.
     #[error("one valve drives both jaws: the motion must move both the same way")]
     LoneJaw,
-    /// The axis can only go to the points of its table.
+    /// The axis has no point at the target.
     #[error("the sort axis has no point at {x_mm} mm")]
     NoSuchStation {
-        /// The wanted position.
+        /// The target, mm.
         x_mm: f64,
     },
 }
 
-/// A write that is due.
+/// A write to send.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Write {
     /// The line to send it on.
     pub line: LineId,
-    /// The module it is for; to be given to [`Outputs::confirmed`] or [`Outputs::failed`].
+    /// The addressed module; the caller passes it to [`Outputs::confirmed`] or [`Outputs::failed`].
     pub module: ModuleId,
     /// The command.
     pub command: Command,
 }
 
-/// What a module should put out.
+/// Output values of a module.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Image {
     /// Digital outputs, bit n = channel n.
     Bits {
         word: u16,
-        /// A word to be written before `word`: makes a rising edge.
+        /// A word to write before `word`, which makes a rising edge.
         before: Option<u16>,
         width: Width,
     },
@@ -70,7 +70,7 @@ struct Output {
     in_flight: u32,
 }
 
-/// What every output should be.
+/// Values of all outputs.
 #[derive(Debug, Clone)]
 pub struct Outputs {
     wiring: Arc<Wiring>,
@@ -78,7 +78,7 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Everything at its safe value, and everything due.
+    /// Makes outputs at their safe values, all due to be written.
     pub fn new(wiring: Arc<Wiring>) -> Self {
         let safe = |module| {
             Some(Output {
@@ -94,7 +94,7 @@ impl Outputs {
     /// Switches an output that moves nothing.
     ///
     /// # Errors
-    /// [`DriveError::NeedsClearance`] for an output that does, whichever way it is switched.
+    /// Returns [`DriveError::NeedsClearance`] for an output that moves something, in either direction.
     pub fn set(&mut self, point: impl Into<DigitalOutput>, on: bool) -> Result<(), DriveError> {
         let point = point.into();
         match point.of_machine().filter(|known| known.moves()) {
@@ -109,7 +109,7 @@ impl Outputs {
     /// Drives a cleared motion.
     ///
     /// # Errors
-    /// A motion that the valves or the point table cannot make; nothing is changed.
+    /// Returns an error for a motion that valves or point table cannot make, and changes nothing.
     pub fn apply(&mut self, cleared: Cleared) -> Result<(), DriveError> {
         let motion = cleared.motion();
         let to_work = |actuator| motion.target_mm(actuator).map(|to_mm| to_mm > 0.0);
@@ -134,7 +134,7 @@ impl Outputs {
         Ok(())
     }
 
-    /// The coils of one actuator, towards its working end or its rest end.
+    /// Switches the coils of one actuator, towards its working end or its rest end.
     fn stroke(&mut self, actuator: Actuator, work: bool) {
         match actuator {
             Actuator::Escapement => self.switch(DigitalOut::EscapementRelease, work),
@@ -162,7 +162,7 @@ impl Outputs {
         self.prepare_edge(self.wiring.digital_out(DigitalOut::AxisDrive).module);
     }
 
-    /// Before the next write of the module that starts the axis: the same with the drive low.
+    /// Inserts, before the next write of the module that starts the axis, the same write with the drive low.
     fn prepare_edge(&mut self, module: ModuleId) {
         let drive = self.wiring.digital_out(DigitalOut::AxisDrive);
         if drive.module != module {
@@ -206,11 +206,11 @@ impl Outputs {
         }
     }
 
-    /// Sets one of the outputs whose sum is a supply. `supply` is its share, V at the supply; the result is what it
-    /// will really be: the nearest step.
+    /// Sets one of the outputs that add up to a supply. `supply`: its share, V at the supply. Returns the share that
+    /// the nearest step gives.
     ///
     /// # Errors
-    /// A voltage that the output cannot give; nothing is changed.
+    /// Returns an error for a voltage beyond the output, and changes nothing.
     pub fn set_supply(
         &mut self,
         point: AnalogOutput,
@@ -228,7 +228,7 @@ impl Outputs {
         Ok(really)
     }
 
-    /// Every output to its safe value, at once and without asking the guard.
+    /// Sets every output to its safe value, at once and without the guard.
     pub fn everything_safe(&mut self) {
         for module in self.wiring.module_ids() {
             if let (Some(output), Some(image)) = (
@@ -241,7 +241,7 @@ impl Outputs {
         }
     }
 
-    /// The writes that are due, by line and address; they are then in flight.
+    /// Returns the due writes by line and address, and marks them as in flight.
     pub fn writes(&mut self) -> Vec<Write> {
         let mut writes = Vec::new();
         for module in self.wiring.module_ids() {
@@ -262,20 +262,20 @@ impl Outputs {
         writes
     }
 
-    /// A write to this module was accepted.
+    /// Marks the write to this module as accepted.
     pub fn confirmed(&mut self, module: ModuleId) {
         if let Some(output) = &mut self.modules[module.0] {
             output.in_flight = output.in_flight.saturating_sub(1);
         }
     }
 
-    /// A write to this module was not confirmed.
+    /// Marks the write to this module as lost.
     pub fn failed(&mut self, module: ModuleId) {
         self.confirmed(module);
         self.refresh(module);
     }
 
-    /// Makes the outputs of a module due again, edge of the axis drive included: after a lost write or a reset.
+    /// Makes the outputs of a module due again, with the edge of the axis drive: after a lost write or a reset.
     pub fn refresh(&mut self, module: ModuleId) {
         if let Some(output) = &mut self.modules[module.0] {
             output.due = true;
@@ -283,17 +283,17 @@ impl Outputs {
         self.prepare_edge(module);
     }
 
-    /// Whether everything wanted of a module was sent and confirmed. True for modules without outputs.
+    /// Returns true when every output of a module is sent and confirmed, or the module has none.
     pub fn settled(&self, module: ModuleId) -> bool {
         self.modules[module.0].is_none_or(|output| !output.due && output.in_flight == 0)
     }
 
-    /// Whether everything wanted of every module was sent and confirmed.
+    /// Returns true when every output of every module is sent and confirmed.
     pub fn all_settled(&self) -> bool {
         self.wiring.module_ids().all(|module| self.settled(module))
     }
 
-    /// What an output should be.
+    /// Returns the commanded value of an output.
     pub fn is_on(&self, point: impl Into<DigitalOutput>) -> bool {
         let terminal = self.wiring.digital_out(point);
         match self.modules[terminal.module.0].map(|output| output.image) {
@@ -328,7 +328,7 @@ impl Output {
     }
 }
 
-/// The safe value of a module's outputs; `None` when it has none.
+/// Returns the safe value of a module's outputs; `None` when it has none.
 fn safe_image(wiring: &Wiring, module: ModuleId) -> Option<Image> {
     let module = wiring.module(module);
     if let Some(form) = module.output_form() {

@@ -1,8 +1,8 @@
-//! What is wrong with a setting in the light of the others.
+//! A setting that contradicts the other settings or the machine.
 
 use thiserror::Error;
 
-/// A setting that cannot be accepted; whoever read the file adds its name and line.
+/// A rejected setting; the reader of the file adds file name and line.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{key}: found {found}, expected {expected}")]
 pub struct Fault {
@@ -10,16 +10,16 @@ pub struct Fault {
     pub key: String,
     /// The value, in words.
     pub found: String,
-    /// What would have been accepted.
+    /// Values that would be accepted.
     pub expected: String,
-    /// Path of the setting it clashes with, when there is one.
+    /// Path of the conflicting setting, if any.
     pub other: Option<String>,
-    /// Of a name that nothing has: those that would have been known.
+    /// For an unknown name: the known ones.
     pub known: Vec<String>,
 }
 
 impl Fault {
-    /// A setting that is wrong whatever the others say.
+    /// Makes the fault of a setting that is wrong by itself.
     pub fn new(key: impl Into<String>, found: impl ToString, expected: impl Into<String>) -> Self {
         Self {
             key: key.into(),
@@ -30,7 +30,7 @@ impl Fault {
         }
     }
 
-    /// A name that nothing has.
+    /// Makes the fault of an unknown name.
     pub fn unknown(key: impl Into<String>, known: Vec<String>) -> Self {
         let expected = format!("one of {}", known.join(", "));
         Self {
@@ -39,7 +39,7 @@ impl Fault {
         }
     }
 
-    /// The same, naming the setting it clashes with.
+    /// Adds the path of the conflicting setting.
     pub fn against(self, other: impl Into<String>) -> Self {
         Self {
             other: Some(other.into()),

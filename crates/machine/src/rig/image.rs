@@ -1,8 +1,8 @@
-//! The process image: the last thing each module said, and when.
+//! The process image: the last values of each module, with their times.
 //!
-//! Nothing in it is a guess. A point that was never read, or was read too long ago, has no value; after
-//! [`Image::forget`] (module silent or reset) it has none until it is read again. Times are those at which the
-//! module was asked, so that an age is never understated.
+//! It contains no guesses. A point that was never read, or was read too long ago, has no value; after
+//! [`Image::forget`] (module silent or reset) a point has none until the next read. Times are those of the request, so
+//! that no age is understated.
 
 use super::point::{AnalogInput, DigitalIn, DigitalInput, GatedCounter, Thermometer};
 use super::sample::{AnalogPoint, CountPoint, CountSample, Origin, Quality, Sample};
@@ -12,35 +12,35 @@ use std::sync::Arc;
 use thiserror::Error;
 use units::{RigTime, Span};
 
-/// An answer that does not belong to this rig.
+/// An answer that does not fit this rig.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Unexpected {
-    /// No module of the wiring has this address.
+    /// The wiring has no module at this address.
     #[error("line {line}: an answer from address {address}, where no module is wired")]
-    Stranger {
+    UnknownAddress {
         /// Name of the line.
         line: String,
-        /// The address asked.
+        /// The requested address.
         address: Address,
     },
-    /// A decoded reply that cannot be one to this command.
+    /// The decoded reply does not fit its command.
     #[error("line {line}, address {address}: the reply does not belong to its command")]
     WrongReply {
         /// Name of the line.
         line: String,
-        /// The address asked.
+        /// The requested address.
         address: Address,
     },
 }
 
-/// Bits of a digital module and when they were asked for.
+/// Bits of a digital module, with the time of their request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Word {
     bits: u16,
     at: RigTime,
 }
 
-/// What is known of the rig.
+/// All known values of the rig.
 #[derive(Debug, Clone)]
 pub struct Image {
     wiring: Arc<Wiring>,
@@ -54,7 +54,7 @@ pub struct Image {
 }
 
 impl Image {
-    /// Nothing is known yet.
+    /// Makes an image without values.
     pub fn new(wiring: Arc<Wiring>) -> Self {
         let modules = wiring.modules.len();
         Self {
@@ -69,15 +69,15 @@ impl Image {
         }
     }
 
-    /// The rig that this is the image of.
+    /// Returns the wiring of the rig.
     pub fn wiring(&self) -> &Wiring {
         &self.wiring
     }
 
-    /// Takes in a good reply. `at` is when the module was asked. Replies that carry no process value are ignored.
+    /// Stores a valid reply; `at`: time of the request. Ignores replies without process values.
     ///
     /// # Errors
-    /// [`Unexpected`], and nothing is changed.
+    /// Returns [`Unexpected`], and changes nothing.
     pub fn accept(
         &mut self,
         line: LineId,
@@ -90,7 +90,7 @@ impl Image {
             return Ok(());
         };
         let Some(module) = self.wiring.at(line, address) else {
-            return Err(Unexpected::Stranger {
+            return Err(Unexpected::UnknownAddress {
                 line: self.wiring.line(line).name.clone(),
                 address,
             });
@@ -111,7 +111,7 @@ impl Image {
         })
     }
 
-    /// Puts a reply where it belongs; false when it cannot be a reply to this command.
+    /// Stores the reply; returns false when it does not fit its command.
     fn file(&mut self, arrival: &Arrival<'_>, reply: &Reply) -> bool {
         use dcon::AnalogIn::{ReadAll, ReadAllHex, ReadOne};
         match (&arrival.command, reply) {
@@ -219,7 +219,7 @@ impl Image {
         }
     }
 
-    /// Drops everything known of a module: it is silent, or was reset.
+    /// Drops all values of a module, which is silent or was reset.
     pub fn forget(&mut self, module: ModuleId) {
         self.words[module.0] = None;
         self.levels[module.0] = None;
@@ -231,13 +231,14 @@ impl Image {
         }
     }
 
-    /// Modules that reported a reset (`$AA5` = 1) since the last call: their outputs are at the power-on value.
+    /// Returns the modules that reported a reset (`$AA5` = 1) since the last call; their outputs have the power-on
+    /// value.
     pub fn take_resets(&mut self) -> Vec<ModuleId> {
         std::mem::take(&mut self.resets)
     }
 
-    /// State of an input that was just asked for: as [`Image::input`], no older than a transaction of its line may
-    /// take at worst.
+    /// Returns the state of an input just requested: as [`Image::input`], no older than the longest transaction of its
+    /// line.
     pub fn answered_input(&self, point: impl Into<DigitalInput>, now: RigTime) -> Option<bool> {
         let point = point.into();
         let line = self
@@ -247,7 +248,7 @@ impl Image {
         self.input(point, now, self.wiring.answer_max_age(line))
     }
 
-    /// A digital input, if it was asked for at most `max_age` ago.
+    /// Returns the state of a digital input, if its request is at most `max_age` old.
     pub fn input(
         &self,
         point: impl Into<DigitalInput>,
@@ -261,62 +262,62 @@ impl Image {
         fresh.then(|| terminal.read(model.input_bits(word.bits)))
     }
 
-    /// The emergency-stop contact; unknown from the age on at which it counts as open.
+    /// Returns the state of the emergency-stop contact; `None` from the age at which it counts as open.
     pub fn emergency_stop_ok(&self, now: RigTime) -> Option<bool> {
         let max_age = self.wiring.emergency_stop_max_age();
         self.input(DigitalIn::EmergencyStopOk, now, max_age)
     }
 
-    /// Last instant at which the emergency-stop contact is known unless it is read again.
+    /// Returns the time at which the state of the emergency-stop contact expires without another read.
     pub fn emergency_stop_known_until(&self) -> Option<RigTime> {
         let asked = self.input_at(DigitalIn::EmergencyStopOk)?;
         Some(asked + self.wiring.emergency_stop_max_age())
     }
 
-    /// When a digital input was last asked for.
+    /// Returns the time of the last request for a digital input.
     pub fn input_at(&self, point: impl Into<DigitalInput>) -> Option<RigTime> {
         self.words[self.wiring.digital_in(point).module.0].map(|word| word.at)
     }
 
-    /// The bits that a digital module last answered, and when it was asked.
+    /// Returns the last bits of a digital module, and the time of their request.
     pub fn word(&self, module: ModuleId) -> Option<(u16, RigTime)> {
         self.words[module.0].map(|word| (word.bits, word.at))
     }
 
-    /// The last sample of an analog input, however old.
+    /// Returns the last sample of an analog input, of any age.
     pub fn analog(&self, point: AnalogInput) -> Option<&Sample> {
         self.analog[point.index()].as_ref()
     }
 
-    /// The last sample of an analog input, if it was asked for at `not_before` or later. May be out of range:
-    /// see [`Sample::good`].
+    /// Returns the last sample of an analog input, if its request came at `not_before` or later. It may be out of
+    /// range: see [`Sample::good`].
     pub fn fresh_analog(&self, point: AnalogInput, not_before: RigTime) -> Option<&Sample> {
         self.analog(point)
             .filter(|sample| sample.origin.at >= not_before)
     }
 
-    /// The last sample of a thermometer, however old.
+    /// Returns the last sample of a thermometer, of any age.
     pub fn temperature(&self, point: Thermometer) -> Option<&Sample> {
         self.temperatures[point.index()].as_ref()
     }
 
-    /// The last sample of a gated counter, however old.
+    /// Returns the last sample of a gated counter, of any age.
     pub fn counter(&self, point: GatedCounter) -> Option<&CountSample> {
         self.counters[point.index()].as_ref()
     }
 
-    /// The last count of events on a digital input, however old.
+    /// Returns the last event count of a digital input, of any age.
     pub fn events(&self, point: impl Into<DigitalInput>) -> Option<&CountSample> {
         self.events[point.into().index()].as_ref()
     }
 
-    /// Where an analog output last said it was, V at its terminal, and when it was asked.
+    /// Returns the last reported level of an analog output, V at its terminal, and the time of the request.
     pub fn level(&self, module: ModuleId) -> Option<(f64, RigTime)> {
         self.levels[module.0]
     }
 }
 
-/// A reply with its circumstances.
+/// A reply with its command and time.
 struct Arrival<'a> {
     line: LineId,
     module: ModuleId,
@@ -370,7 +371,7 @@ fn sample(
     }
 }
 
-/// Commands whose reply the image lives on; another kind of reply to them is a contradiction.
+/// Returns true for commands whose reply carries process values; another kind of reply to them is an error.
 fn carries_value(command: &Command) -> bool {
     matches!(
         command,

@@ -1,4 +1,4 @@
-//! From volts of the coil supply to the level of an analog output, with its calibration.
+//! Converts volts of the coil supply to the level of an analog output, with its calibration.
 
 use super::point::AnalogOutput;
 use super::wiring::{Module, Wiring};
@@ -9,21 +9,21 @@ use units::Volt;
 /// Calibration of an analog output: volts at the terminal = `gain` x level written + `offset_v`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Correction {
-    /// Near 1.
+    /// Gain, close to 1.
     pub gain: f64,
-    /// Near 0, V at the terminal.
+    /// Offset, close to 0, V at the terminal.
     pub offset_v: f64,
 }
 
 impl Correction {
-    /// Before any calibration.
+    /// No correction: the value before any calibration.
     pub const NONE: Self = Self {
         gain: 1.0,
         offset_v: 0.0,
     };
 }
 
-/// Why a share of a supply cannot be set.
+/// Why an output cannot give a share of a supply.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SupplyError {
     /// The module of this point has no analog output.
@@ -32,26 +32,26 @@ pub enum SupplyError {
         /// The output.
         point: &'static str,
     },
-    /// Outside the range of the output, or no number.
+    /// The share lies outside the range of the output, or is NaN.
     #[error("{point} cannot give {supply}")]
     Level {
         /// The output.
         point: &'static str,
-        /// The share asked for, V of the coil supply.
+        /// The share requested, V of the coil supply.
         supply: Volt,
-        /// What the module can do.
+        /// Limit of the module.
         source: LevelError,
     },
 }
 
-/// A level this little below zero (V at the terminal) is an offset that cannot be taken away: zero is written.
+/// Up to this far below zero (V at the terminal) a level is an offset that the output cannot remove; zero is written.
 const UNREACHABLE_OFFSET_V: f64 = 0.02;
 
 impl Wiring {
     /// Checks that a source can give this share of the supply, V at the supply.
     ///
     /// # Errors
-    /// Says what the source cannot give.
+    /// Returns the limit of the source.
     pub fn reaches(&self, point: AnalogOutput, supply: Volt) -> Result<(), SupplyError> {
         let terminal = self.analog_out(point);
         let (name, module) = (self.source_name(point), self.module(terminal.module));
@@ -59,7 +59,7 @@ impl Wiring {
     }
 }
 
-/// The level nearest to a share of the supply, and the share it really gives. `gain`: supply volts per terminal volt.
+/// Returns the level nearest to a share of the supply, and the share it gives. `gain`: supply volts per terminal volt.
 pub(super) fn nearest_level(
     point: &'static str,
     module: &Module,

@@ -1,24 +1,25 @@
-//! The rig as named points: nobody above this module knows an address.
+//! The rig as named points: no module above this one knows a module address.
 //!
-//! Read in this order:
-//! - [`point`]: what can be sensed, switched, set, measured, counted: a closed vocabulary of the machine, and what a kind of
-//!   device declares.
-//! - [`settings`], [`model`] and [`wiring`]: where each point is wired. The file is resolved and checked by
-//!   [`resolve`], `declared`, `modules`, [`axis`] (with each [`bin`]) and [`reaction`]; a [`fault::Fault`] says what does not fit.
-//! - [`commission`]: is the rig on the lines the rig of the file?
-//! - [`query`], [`sample`], [`image`]: what is asked, and what is known, since when.
-//! - [`drive`], [`level`]: what is put out; motion only as cleared by the guard.
+//! In reading order:
+//! - [`point`]: the points to sense, switch, set, measure and count: a closed list for the machine, and a list
+//!   declared by each kind of device.
+//! - [`settings`], [`model`] and [`wiring`]: the wiring of each point. [`resolve`], `declared`, `modules`, [`axis`]
+//!   (with each [`bin`]) and [`reaction`] resolve and check the file; a [`fault::Fault`] names a setting that does not
+//!   fit.
+//! - [`commission`]: checks that the modules on the lines are the modules of the file.
+//! - [`query`], [`sample`], [`image`]: commands that read points, and the values read, with their times.
+//! - [`drive`], [`level`]: output values; a motion only after the guard's clearance.
 //!
-//! Pure: times are arguments, commands are values; sending them is the business of the caller.
+//! Pure: times are arguments, commands are values; the caller sends them.
 
 pub mod axis;
 pub mod bin;
 pub mod commission;
+mod comparison;
 mod declared;
 pub mod drive;
 pub mod fault;
 pub mod image;
-mod judge;
 pub mod level;
 pub mod model;
 mod modules;

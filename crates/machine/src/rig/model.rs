@@ -1,4 +1,4 @@
-//! The module models this program can wire, and what their terminals are.
+//! The module models that the wiring supports, and their terminals.
 
 use dcon::Width;
 
@@ -77,24 +77,24 @@ impl Model {
         Self::I7080,
     ];
 
-    /// The names of [`Self::ALL`], as `config/rig.toml` writes them.
+    /// Names of [`Self::ALL`], as in `config/rig.toml`.
     pub const NAMES: &'static [&'static str] = &[
         "I-7017", "I-7017F", "I-7017R", "I-7021", "I-7021P", "I-7033", "I-7041", "I-7043",
         "I-7045", "I-7050", "I-7051", "I-7060", "I-7063", "I-7065", "I-7067", "I-7080",
     ];
 
-    /// The model of this name.
+    /// Returns the model with this name.
     pub fn from_name(name: &str) -> Option<Self> {
         let index = Self::NAMES.iter().position(|known| *known == name)?;
         Self::ALL.get(index).copied()
     }
 
-    /// The name in `config/rig.toml`; a module answers `$AAM` with it, less the `I-`.
+    /// Returns the name in `config/rig.toml`; a module answers `$AAM` with it, without the `I-`.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }
 
-    /// How many terminals of a kind it has; 0 when none.
+    /// Returns the number of terminals of a kind; 0 for none.
     pub fn channels(self, kind: Terminals) -> u8 {
         let count = |has: bool, channels: u8| if has { channels } else { 0 };
         match kind {
@@ -109,7 +109,7 @@ impl Model {
         }
     }
 
-    /// Digital inputs and outputs.
+    /// Returns the numbers of digital inputs and outputs.
     fn digital(self) -> (u8, u8) {
         match self {
             Self::I7041 => (14, 0),
@@ -130,13 +130,13 @@ impl Model {
         }
     }
 
-    /// Whether `type` may be this code: the ranges the rig can scale.
+    /// Returns true for a type code whose range the rig can scale.
     pub fn accepts_type(self, code: u8) -> bool {
         self.type_codes().contains(&code)
     }
 
-    /// The type codes that the rig can use with this model. Voltage inputs, 0 to 10 V outputs,
-    /// Pt100 ranges; a counter must count, not measure frequency.
+    /// Returns the type codes that the rig can use: voltage inputs, 0 to 10 V outputs, Pt100 ranges, counting (not
+    /// frequency).
     pub fn type_codes(self) -> &'static [u8] {
         match self {
             Self::I7017 | Self::I7017F | Self::I7017R => &[0x08, 0x09, 0x0A, 0x0B, 0x0C],
@@ -155,27 +155,27 @@ impl Model {
         }
     }
 
-    /// Whether its readings or settings have a data format.
+    /// Returns true when readings or settings have a data format.
     pub fn is_analog(self) -> bool {
         self.is_analog_in() || self.channels(Terminals::AnalogOut) > 0
     }
 
-    /// Whether it converts: its replies are slower than those of other modules.
+    /// Returns true for a converter, whose replies take longer than those of other modules.
     pub fn is_analog_in(self) -> bool {
         self.channels(Terminals::AnalogIn) > 0 || self.channels(Terminals::Temperature) > 0
     }
 
-    /// Whether it has outputs, and with them a host watchdog that matters.
+    /// Returns true for a module with outputs, whose host watchdog matters.
     pub fn has_outputs(self) -> bool {
         self.channels(Terminals::AnalogOut) > 0 || self.channels(Terminals::DigitalOut) > 0
     }
 
-    /// Whether its digital inputs count events (slow pulses, up to 100 a second).
+    /// Returns true when the digital inputs count events (slow pulses, up to 100 a second).
     pub fn counts_events(self) -> bool {
         self.channels(Terminals::DigitalIn) > 0
     }
 
-    /// Width of an absolute output write `@AA(data)`; `None` without digital outputs.
+    /// Returns the width of an absolute output write `@AA(data)`; `None` without digital outputs.
     pub fn write_width(self) -> Option<Width> {
         match self.digital().1 {
             0 => None,
@@ -185,7 +185,7 @@ impl Model {
         }
     }
 
-    /// The input bits in the two bytes of a digital reply: outputs come first where there are both.
+    /// Returns the input bits of a digital reply; where a module has both, the outputs come first.
     pub fn input_bits(self, word: u16) -> u16 {
         if self.digital().1 > 0 {
             word & 0x00FF
@@ -196,7 +196,7 @@ impl Model {
 }
 
 impl Terminals {
-    /// In words, for messages.
+    /// Returns the words for messages.
     pub fn words(self) -> &'static str {
         match self {
             Self::AnalogIn => "analog inputs",

@@ -1,4 +1,4 @@
-//! Modules from the settings: names, addresses, and the settings that a model needs or cannot have.
+//! Resolves modules from the settings: names, addresses, and exactly the settings of each model.
 
 use super::fault::Fault;
 use super::model::{Model, Terminals};
@@ -6,7 +6,7 @@ use super::settings::{ModuleSettings, RigSettings};
 use super::wiring::{Line, LineId, Module};
 use dcon::{Address, DataFormat, SlewCode, TypeCode, UpTo};
 
-/// Every module, sorted by line and address.
+/// Returns every module, sorted by line and address.
 pub(super) fn resolve_modules(
     settings: &RigSettings,
     lines: &[Line],
@@ -72,7 +72,7 @@ fn model(name: &str, settings: &ModuleSettings) -> Result<Model, Fault> {
     })
 }
 
-/// One module being read.
+/// The settings of one module under check.
 struct ModuleForm<'a> {
     key: String,
     model: Model,
@@ -84,7 +84,7 @@ impl ModuleForm<'_> {
         Fault::new(format!("{}.{key}", self.key), quoted(found), expected)
     }
 
-    /// A key that this model has no use for.
+    /// Returns the fault of a key that this model does not use.
     fn needless(&self, key: &str, found: impl ToString) -> Fault {
         let expected = format!("no such key: an {} has no {key}", self.model.name());
         Fault::new(format!("{}.{key}", self.key), found, expected)

@@ -1,14 +1,14 @@
-//! The vocabulary of points: everything the rig can sense, switch, set, measure or count.
+//! The points of the rig: everything that it can sense, switch, set, measure or count.
 //!
-//! A point is a name of the process ("pusher retracted"), never a terminal. Which module and channel
-//! carries it is wiring, found in `config/rig.toml`. Three sources name points:
+//! A point is a name of the process ("pusher retracted"), never a terminal; `config/rig.toml` wires it to a module and
+//! channel. Three sources name points:
 //! - the machine: safety, actuators, buttons, axis, lamps. A closed enum; every one must be wired.
 //! - the kinds of device under test: each declares a [`Fixture`]. A rig may lack them.
 //! - the bins: each names the digital input of its beam.
 //!
 //! The wiring resolves a name to a handle ([`DigitalInput`] and its like): an index into its table.
 
-/// Declares one vocabulary: an enum whose variants carry their name in `config/rig.toml`.
+/// Declares one closed list of points: an enum whose variants have their name in `config/rig.toml`.
 macro_rules! points {
     ($(#[$doc:meta])* $kind:ident { $($(#[$line:meta])* $variant:ident = $name:literal,)+ }) => {
         $(#[$doc])*
@@ -18,24 +18,24 @@ macro_rules! points {
         }
 
         impl $kind {
-            /// Every point of this kind, in the order of declaration.
+            /// All points, in the order of declaration.
             pub const ALL: &'static [Self] = &[$(Self::$variant),+];
-            /// How many there are; [`Self::index`] is below it.
+            /// Number of points; [`Self::index`] is below it.
             pub const COUNT: usize = Self::ALL.len();
-            /// Every name, in the order of [`Self::ALL`].
+            /// All names, in the order of [`Self::ALL`].
             pub const NAMES: &'static [&'static str] = &[$($name),+];
 
-            /// The name in `config/rig.toml`.
+            /// Returns the name in `config/rig.toml`.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name),+ }
             }
 
-            /// The point of this name; `None` when there is none.
+            /// Returns the point with this name; `None` when there is none.
             pub fn from_name(name: &str) -> Option<Self> {
                 Self::ALL.iter().copied().find(|point| point.name() == name)
             }
 
-            /// Position in [`Self::ALL`].
+            /// Returns the position in [`Self::ALL`].
             pub const fn index(self) -> usize {
                 self as usize
             }
@@ -53,7 +53,8 @@ pub(crate) use points;
 use thiserror::Error;
 
 points! {
-    /// Contacts and sensors of the machine; `true` means the named thing is so, whatever the polarity of the wire.
+    /// Contacts and sensors of the machine; `true` means that the named state holds, whatever the polarity of the
+    /// wire.
     DigitalIn {
         EmergencyStopOk = "emergency_stop_ok",
         DoorClosed = "door_closed",
@@ -107,29 +108,29 @@ points! {
     }
 }
 
-/// An output that a kind declares.
+/// A digital output declared by a kind of device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Switch {
-    /// Its name in `config/rig.toml`.
+    /// Name in `config/rig.toml`.
     pub name: &'static str,
-    /// Whether its changes belong to the trace of a test.
+    /// True when the trace of a test includes its changes.
     pub traced: bool,
 }
 
-/// What an analog input that a kind declares measures.
+/// An analog input declared by a kind of device.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantity {
-    /// Its name in `config/rig.toml`.
+    /// Name in `config/rig.toml`.
     pub name: &'static str,
-    /// Its unit, as `config/rig.toml` must state it: `V` or `A`.
+    /// Unit, which `config/rig.toml` must repeat: `V` or `A`.
     pub unit: &'static str,
-    /// Step that its values are kept in, in its unit: a tenth or less of a step of its converter.
+    /// Resolution of stored values in that unit: a tenth of a step of the converter, or less.
     pub step: f64,
-    /// Whether its channel must be enabled from the start: no act ever asks for its mask.
+    /// True when its channel must be enabled from the start, as no act sets its mask.
     pub enabled: bool,
 }
 
-/// The points that one kind of device declares. A rig may lack them; a recipe that needs one is then refused.
+/// The points that one kind of device declares. A rig may lack them; loading a recipe that needs a missing one fails.
 #[derive(Debug, Clone, Copy)]
 pub struct Fixture {
     /// Digital inputs.
@@ -154,13 +155,13 @@ macro_rules! handles {
         pub struct $handle(pub(super) u16);
 
         impl $handle {
-            /// The handle of a place in the table.
+            /// Makes the handle of a table index.
             pub(super) fn at(index: usize) -> Self {
-                assert!(index < usize::from(u16::MAX), "no rig has so many points");
+                assert!(index < usize::from(u16::MAX), "more points than an index can count");
                 Self(index as u16)
             }
 
-            /// Place in the table of the wiring that resolved it.
+            /// Returns the index in the table of the wiring that made the handle.
             pub fn index(self) -> usize {
                 self.0.into()
             }
@@ -197,13 +198,13 @@ impl From<DigitalOut> for DigitalOutput {
 }
 
 impl DigitalOutput {
-    /// The output of the machine that this is; `None` for one of a fixture.
+    /// Returns the machine's output with this handle; `None` for one of a fixture.
     pub fn of_machine(self) -> Option<DigitalOut> {
         DigitalOut::ALL.get(self.index()).copied()
     }
 }
 
-/// A point that is read.
+/// A point to read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Point {
     /// A digital input, with all others of its module.
@@ -217,10 +218,10 @@ pub enum Point {
 }
 
 impl DigitalOut {
-    /// Whether switching this output makes something move, so that only a cleared motion may do it.
+    /// Returns true when switching this output moves something, which needs a cleared motion.
     ///
-    /// `axis_servo_on` and `axis_reset` are not among them: the slide travels only on a rising
-    /// edge of `axis_drive`; servo on holds it where it is.
+    /// False for `axis_servo_on` and `axis_reset`: the slide travels only on a rising edge of `axis_drive`; servo on
+    /// holds it in place.
     pub const fn moves(self) -> bool {
         match self {
             Self::EscapementRelease
@@ -245,13 +246,13 @@ impl DigitalOut {
     }
 }
 
-/// A point that a test needs and the rig does not have.
+/// A point that a test needs and the rig lacks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("no [{section}].{name} in rig.toml")]
 pub struct MissingPoint {
-    /// Section of `config/rig.toml` where it would stand.
+    /// Section of `config/rig.toml` that would declare it.
     pub section: &'static str,
-    /// Name of the first point that is missing.
+    /// Name of the first missing point.
     pub name: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! Which command asks for which point.
+//! The commands that read points.
 
 use super::model::{Model, Terminals};
 use super::point::{AnalogInput, DigitalInput, GatedCounter, Point};
@@ -7,7 +7,7 @@ use dcon::{Channel, Command, DataFormat, Digital, InputForm, OutputForm, UpTo};
 use std::collections::BTreeSet;
 
 impl Module {
-    /// How its readings are printed; `None` unless it measures.
+    /// Returns the format of its readings; `None` unless it measures.
     pub fn input_form(&self) -> Option<InputForm> {
         let format = self.format?;
         if self.model.channels(Terminals::AnalogIn) > 0 {
@@ -19,7 +19,7 @@ impl Module {
         }
     }
 
-    /// How its levels are written; `None` unless it has an analog output.
+    /// Returns the format of its levels; `None` unless it has an analog output.
     pub fn output_form(&self) -> Option<OutputForm> {
         if self.model.channels(Terminals::AnalogOut) == 0 {
             return None;
@@ -32,7 +32,7 @@ impl Module {
         })
     }
 
-    /// The only enabled channel of an analog input module, when there is only one.
+    /// Returns the only enabled channel of an analog input module; `None` when several are.
     fn lone_channel(&self) -> Option<Channel> {
         let mask = self.mask?;
         if mask.count_ones() == 1 {
@@ -44,8 +44,8 @@ impl Module {
 }
 
 impl Wiring {
-    /// The read that refreshes what the image knows of a module: all inputs or outputs, all readings (the one
-    /// enabled channel, if only one is), the present level, counter 0.
+    /// Returns the read that refreshes a module's values in the image: all inputs or outputs, all readings (or the one
+    /// enabled channel), the present level, counter 0.
     pub fn poll(&self, module: ModuleId) -> Command {
         let module = self.module(module);
         if let Some(form) = module.input_form() {
@@ -67,8 +67,8 @@ impl Wiring {
         Digital::ReadPort.to(module.address)
     }
 
-    /// The transactions that read these points, in their order, each with its line: all inputs of a module in one,
-    /// several of its analog channels in one scan, everything else by itself.
+    /// Returns the transactions that read these points, in order, each with its line: one for all digital inputs of a
+    /// module, one scan for several of its analog channels, one for each other point.
     pub fn reads(&self, points: &[Point]) -> Vec<(LineId, Command)> {
         let mut asked: Vec<(ModuleId, Command)> = Vec::new();
         for point in points {
@@ -82,7 +82,7 @@ impl Wiring {
         asked.into_iter().map(sent).collect()
     }
 
-    /// What reads one point, while others are wanted beside it.
+    /// Returns the command that reads one point when the points `wanted` are read in the same job.
     fn read(&self, point: Point, wanted: &[Point]) -> (ModuleId, Command) {
         match point {
             Point::Input(input) => {
@@ -106,7 +106,7 @@ impl Wiring {
         }
     }
 
-    /// All enabled channels of a converter.
+    /// Returns the read of all enabled channels of a converter.
     fn scan(&self, module: ModuleId) -> Command {
         match self.module(module).input_form() {
             Some(form) => dcon::AnalogIn::ReadAll(form).to(self.module(module).address),
@@ -114,7 +114,7 @@ impl Wiring {
         }
     }
 
-    /// The writes after which the converters of these inputs convert them and nothing else. They write EEPROM.
+    /// Returns the writes that limit the converters of these inputs to exactly these channels. They write EEPROM.
     pub fn masks(&self, inputs: &[AnalogInput]) -> Vec<(LineId, Command)> {
         let modules: BTreeSet<ModuleId> =
             inputs.iter().map(|it| self.analog_in(*it).module).collect();
@@ -128,7 +128,7 @@ impl Wiring {
         modules.into_iter().map(write).collect()
     }
 
-    /// Channel mask of one converter while these inputs are converted and nothing else; 0 when it has none of them.
+    /// Returns the channel mask that limits one converter to these inputs; 0 when it has none of them.
     pub fn mask_of(&self, module: ModuleId, inputs: &[AnalogInput]) -> u8 {
         let here = inputs.iter().map(|input| self.analog_in(*input));
         let here = here.filter(|at| at.module == module);
@@ -141,7 +141,7 @@ impl Wiring {
         dcon::Counter::Read(number).to(self.module(terminal.module).address)
     }
 
-    /// Reads the event counter of a digital input.
+    /// Returns the read of a digital input's event counter.
     pub fn read_events(&self, point: impl Into<DigitalInput>) -> Command {
         let Terminal {
             module, channel, ..
@@ -149,7 +149,7 @@ impl Wiring {
         Digital::ReadEvents { channel }.to(self.module(module).address)
     }
 
-    /// Clears the event counter of a digital input. Prefer differences modulo 65536.
+    /// Returns the command that clears a digital input's event counter. Prefer differences modulo 65536.
     pub fn clear_events(&self, point: impl Into<DigitalInput>) -> Command {
         let Terminal {
             module, channel, ..

@@ -1,45 +1,45 @@
-//! How long the emergency-stop contact may go unnoticed: a number derived from the wiring.
+//! The worst-case reaction to the emergency-stop contact, derived from the wiring.
 //!
-//! The module that carries the contact is asked in every second transaction of its line, writes and beams
-//! notwithstanding. The contact opens, at worst, just after it was looked at. Then passes
+//! Every second transaction of the contact's line reads its module, whatever writes and beam counts wait. In the worst
+//! case the contact opens just after a read. The bound then adds up:
 //!
-//! - the rest of that poll: answered at the last moment, said again and confirmed by the name of its module, each at
-//!   the last moment, as after a module that was silent: its late reply could be taken for the contact's,
-//! - one other transaction, the longest of that line, failing: a first answer at the last moment, damage seen before,
-//!   so that it is asked again, time-out, the question to the silent module who is there, not answered either, and a
-//!   wait for silence, broken once by a late reply,
-//! - the poll that sees the contact open, as long as the one before. One that is not answered either holds the line
-//!   longer, and ends the same way: a contact not known for [`Wiring::emergency_stop_max_age`] counts as open, and
-//!   what is left of that poll passes before the first write,
+//! - the rest of that poll: answered at the last moment, repeated, and confirmed by the name of its module, each at
+//!   the last moment, as after a silent module, whose late reply could pass for the contact's,
+//! - one other transaction, the longest of that line, which fails: a first answer at the last moment, on probation and
+//!   therefore repeated, time-out, the request for the silent module's name, also unanswered, and a wait for silence
+//!   that a late reply breaks once,
+//! - the poll that reads the open contact, as long as the first. If it gets no answer it occupies the line longer,
+//!   with the same result: a contact older than [`Wiring::emergency_stop_max_age`] counts as open, and the rest of
+//!   that poll passes before the first write,
 //! - one write to each module of the line that has outputs, answered at the last moment,
 //!
-//! and a rest of two characters after each. A line without the contact begins its writes after the longest that one
-//! transaction of its own may take. A late reply is taken to begin at most one allowance after the
-//! time-out. Commands on this line have one try ([`Wiring::tries_on`]).
-//! Wire times are those of 8N1, ten bits a character; reads, host OK and event counters of a running lot are no
-//! longer than the frames assumed here.
+//! and a rest of two characters after each. A line without the contact begins its writes after the longest of its own
+//! transactions. A late reply begins at most one allowance after the time-out. Commands on this line have one try
+//! ([`Wiring::tries_on`]). Wire times are those of 8N1, ten bits a character; no frame of a running lot is longer than
+//! the frames assumed here.
 
 use super::fault::Fault;
 use super::point::DigitalOut;
 use super::wiring::{LineId, Wiring};
 use units::Span;
 
-/// Characters of the longest request sent while a lot runs: a level in percent, `#AA+ddd.dd` with check sum and CR.
+/// Characters of the longest request during a lot: a level in percent, `#AA+ddd.dd` with checksum and CR.
 const LONGEST_REQUEST: u64 = 13;
-/// Characters of the longest reply of a module without analog inputs: a counter or a level, with lead, CR and check sum.
+/// Characters of the longest reply of a module without analog inputs: a counter or a level, with lead, checksum and
+/// CR.
 const LONGEST_DIGITAL_REPLY: u64 = 12;
 /// Rest after a reply, characters.
 const TURNAROUND: u64 = 2;
-/// Characters of the longest reply at all: eight readings of seven characters, with lead, CR and check sum.
+/// Characters of the longest reply of any module: eight readings of seven characters, with lead, checksum and CR.
 const LONGEST_ANALOG_REPLY: u64 = 60;
 
 impl Wiring {
-    /// The line that carries the emergency-stop contact.
+    /// Returns the line with the emergency-stop contact.
     pub fn emergency_stop_line(&self) -> LineId {
         self.module(self.emergency_stop_module()).line
     }
 
-    /// Worst time from the opening of the emergency-stop contact to outputs written.
+    /// Returns the longest time from the opening of the emergency-stop contact to the last write.
     pub fn longest_reaction(&self) -> Span {
         let moved = DigitalOut::ALL.iter().filter(|point| point.moves());
         let lines = moved.map(|point| self.module(self.digital_out(*point).module).line);
@@ -47,7 +47,7 @@ impl Wiring {
         self.emergency_stop_max_age() + made_safe.unwrap_or_default()
     }
 
-    /// From the decision until every output of a line has been written.
+    /// Returns the time from the decision to the last write on a line.
     fn longest_writing(&self, line: LineId) -> Span {
         let busy = match line == self.emergency_stop_line() {
             true => Span(self.longest_failure(line).0 - self.confirmed(line).0),
@@ -59,31 +59,32 @@ impl Wiring {
         writes.fold(busy, |time, _| time + write)
     }
 
-    /// Age at which the emergency-stop contact no longer counts as known: by then the next answer must have come,
-    /// whatever befell the one transaction between.
+    /// Returns the age at which the state of the emergency-stop contact expires: the next answer must have come by
+    /// then, after any one transaction between.
     pub fn emergency_stop_max_age(&self) -> Span {
         let line = self.emergency_stop_line();
         self.confirmed(line) + self.longest_failure(line) + self.confirmed(line)
     }
 
-    /// Age at which an input that was asked for by name no longer counts as the answer to that question: read and
-    /// confirmed at the last moment.
+    /// Returns the age at which a requested input no longer counts as the answer to its request: read and confirmed at
+    /// the last moment.
     pub fn answer_max_age(&self, line: LineId) -> Span {
         self.confirmed(line)
     }
 
-    /// A read of a digital module, read again, and the name of its module, each at the last moment.
+    /// Returns the time of a read of a digital module, its repetition, and the name of its module, each at the last
+    /// moment.
     fn confirmed(&self, line: LineId) -> Span {
         let read = self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance());
         read + read + self.question(line)
     }
 
-    /// The question to a module who is there; its reply is no longer than a count.
+    /// Returns the time of the request for a module's name; its reply is no longer than a count.
     fn question(&self, line: LineId) -> Span {
         self.answered(line, LONGEST_DIGITAL_REPLY, self.digital_allowance())
     }
 
-    /// The longest that one failing transaction can hold a line.
+    /// Returns the longest time that one failing transaction occupies a line.
     fn longest_failure(&self, line: LineId) -> Span {
         let analog = self
             .modules_on(line)
@@ -103,7 +104,7 @@ impl Wiring {
         asked + asked + self.question(line) + silence
     }
 
-    /// A transaction of this line that is answered at the last moment, with the rest after it.
+    /// Returns the time of a transaction answered at the last moment, with the rest after it.
     fn answered(&self, line: LineId, reply: u64, allowance: Span) -> Span {
         self.wire(line, LONGEST_REQUEST + reply + TURNAROUND) + allowance
     }
@@ -116,7 +117,7 @@ impl Wiring {
         Span::seconds(self.bus.analog_allowance_ms / 1000.0)
     }
 
-    /// Time of so many characters on the wire, rounded up to the microsecond.
+    /// Returns the time of characters on the wire, rounded up to the microsecond.
     fn wire(&self, line: LineId, characters: u64) -> Span {
         const BITS_PER_CHARACTER: u64 = 10;
         Span(
@@ -125,7 +126,7 @@ impl Wiring {
     }
 }
 
-/// Refuses a wiring that cannot react as fast as the plant demands.
+/// Rejects a wiring whose reaction is slower than the plant accepts.
 pub(super) fn check_reaction(wiring: &Wiring) -> Result<(), Fault> {
     let accepted_ms = wiring.safety.estop_reaction_ms;
     let worst_ms = wiring.longest_reaction().as_seconds() * 1000.0;

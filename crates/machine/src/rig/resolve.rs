@@ -1,9 +1,9 @@
-//! From the settings of `config/rig.toml` to a checked [`Wiring`].
+//! Resolves the settings of `config/rig.toml` to a checked [`Wiring`].
 //!
-//! Checked here, because it takes more than one key to see it: that every point is one of the machine, one that a
-//! kind of device declares or the beam of a bin; that it names a module that exists, on a channel it has, of the kind the point needs; that no two points share a terminal and no
-//! two modules an address on one line; that a module has the settings its model needs and no others;
-//! that the axis has one point for each place; that the emergency stop acts in time.
+//! Checks what takes more than one key: every point is one of the machine, one that a kind of device declares, or the
+//! beam of a bin; it names an existing module, a channel of it, and terminals of the right kind; no two points share a
+//! terminal and no two modules an address on one line; a module has exactly the settings of its model; the axis has
+//! one point for each place; the emergency stop acts in time.
 
 use super::axis::AxisTable;
 use super::declared::{Declared, InputNames};
@@ -22,8 +22,8 @@ use std::collections::BTreeMap;
 use units::Span;
 
 impl Wiring {
-    /// Resolves all names and checks the whole; the first fault found is returned. `fixtures`: what the kinds of
-    /// device declare; the rig may lack any of it.
+    /// Resolves all names, checks the whole and returns the first fault. `fixtures`: points that the kinds of device
+    /// declare; the rig may lack any of them.
     pub fn resolve(settings: &RigSettings, fixtures: &[Fixture]) -> Result<Self, Fault> {
         let lines: Vec<Line> = settings
             .line
@@ -44,7 +44,7 @@ impl Wiring {
         let declared = Declared { settings, fixtures };
         let quantities = declared.quantities();
         check_units(&settings.analog_in, &quantities)?;
-        let mut terminals = TerminalBook {
+        let mut terminals = TerminalsInUse {
             modules: &modules,
             taken: BTreeMap::new(),
         };
@@ -106,7 +106,7 @@ impl Wiring {
                 && DigitalOut::ALL
                     .iter()
                     .all(|it| wiring.switch((*it).into()).name == it.name()),
-            "points of the machine stand first in their tables"
+            "points of the machine come first in their tables"
         );
         check_beams(&wiring, settings)?;
         check_masks(&wiring)?;
@@ -115,20 +115,20 @@ impl Wiring {
     }
 }
 
-/// A terminal that exists.
+/// A terminal of a module.
 struct Place {
     module: ModuleId,
     channel: Channel,
 }
 
-/// The terminals given away so far, with the key of the point that has them.
-struct TerminalBook<'a> {
+/// Terminals in use, each with the key of its point.
+struct TerminalsInUse<'a> {
     modules: &'a [Module],
     taken: BTreeMap<(usize, Terminals, u8), String>,
 }
 
-impl TerminalBook<'_> {
-    /// Gives `key` its terminal, or says why it cannot have it.
+impl TerminalsInUse<'_> {
+    /// Reserves the terminal of `key`, or returns why it cannot.
     fn take(
         &mut self,
         key: &str,
@@ -173,7 +173,7 @@ impl TerminalBook<'_> {
         })
     }
 
-    /// Gives each point of a section its terminal.
+    /// Reserves a terminal for each point of a section.
     fn wire<P: Clone, W: Wired>(
         &mut self,
         (section, kind): (&str, Terminals),
@@ -198,9 +198,9 @@ impl TerminalBook<'_> {
     }
 }
 
-/// Settings of a point that is wired to a terminal.
+/// Settings of a point on a terminal.
 trait Wired {
-    /// Name of the module, and channel.
+    /// Returns the name of the module, and the channel.
     fn at(&self) -> (&str, u8);
     fn gain(&self) -> f64 {
         1.0
@@ -237,7 +237,7 @@ impl Wired for AnalogOutSettings {
     }
 }
 
-/// Terminals of bits.
+/// Reserves the terminals of a section of digital points.
 fn digital<P>(
     points: Vec<(P, AnalogTerminal)>,
     active_low: impl Fn(&P) -> bool,
@@ -253,7 +253,7 @@ fn digital<P>(
     points.into_iter().map(terminal).collect()
 }
 
-/// Every quantity is wired in its own unit.
+/// Checks that each analog input has the unit of its quantity.
 fn check_units(
     wired: &BTreeMap<String, AnalogInSettings>,
     quantities: &[Quantity],
@@ -274,7 +274,7 @@ fn unwired(key: &str) -> Fault {
     Fault::new(key, "nothing", "a module and a channel")
 }
 
-/// Two lines cannot share a port.
+/// Checks that no two lines share a port.
 fn check_ports(lines: &[Line]) -> Result<(), Fault> {
     for (index, line) in lines.iter().enumerate() {
         if let Some(other) = lines[..index].iter().find(|other| other.port == line.port) {
@@ -289,7 +289,7 @@ fn check_ports(lines: &[Line]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// A beam is read by an event counter: a falling part is too quick for a scan.
+/// Checks that each beam is on an event counter, because a falling part is too quick for a scan.
 fn check_beams(wiring: &Wiring, settings: &RigSettings) -> Result<(), Fault> {
     for bin in wiring.axis.bins() {
         let beam = wiring.axis.beam(bin);
@@ -310,7 +310,7 @@ fn check_beams(wiring: &Wiring, settings: &RigSettings) -> Result<(), Fault> {
     Ok(())
 }
 
-/// A channel whose mask no act ever changes must be enabled from the start.
+/// Checks that a channel whose mask no act changes is enabled from the start.
 fn check_masks(wiring: &Wiring) -> Result<(), Fault> {
     for (point, at) in wiring.analog_in.iter().filter(|(point, _)| point.enabled) {
         let module = wiring.module(at.module);

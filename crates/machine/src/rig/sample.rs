@@ -1,4 +1,4 @@
-//! What came from the rig, with everything needed to trace it back to its bytes.
+//! Samples from the rig, each with the origin of its bytes.
 
 use super::point::{AnalogInput, DigitalInput, GatedCounter, Thermometer};
 use super::wiring::{LineId, ModuleId};
@@ -6,7 +6,7 @@ use dcon::{Channel, Command};
 use std::sync::Arc;
 use units::RigTime;
 
-/// Where a sample came from.
+/// Origin of a sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Origin {
     /// The line.
@@ -15,16 +15,16 @@ pub struct Origin {
     pub module: ModuleId,
     /// The channel, from 0.
     pub channel: Channel,
-    /// What was asked.
+    /// The command that read it.
     pub command: Command,
-    /// The reply as it came, lead included, check sum and CR excluded or not as the line hands it over.
+    /// The reply as received, lead included; checksum and CR only if the line passes them on.
     pub raw: Arc<str>,
-    /// When the module was asked: the conversion may be older by its conversion time, never newer than the reply.
+    /// Time of the request. The conversion may be older by its conversion time, and is never newer than the reply.
     pub at: RigTime,
 }
 
 impl Origin {
-    /// The request as sent, without check sum and end.
+    /// Returns the request as sent, without checksum and CR.
     pub fn request(&self) -> String {
         let mut bytes = Vec::new();
         self.command.encode(false, &mut bytes);
@@ -50,14 +50,14 @@ pub enum CountPoint {
     Events(DigitalInput),
 }
 
-/// Whether a reading is a number.
+/// Validity of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quality {
-    /// It is.
+    /// The reading is a number.
     Good,
     /// At or above the upper end of the range.
     OverRange,
-    /// At or below the lower end.
+    /// At or below the lower end of the range.
     UnderRange,
     /// The channel is disabled.
     Blank,
@@ -66,20 +66,20 @@ pub enum Quality {
 /// One analog reading.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
-    /// What was measured.
+    /// The measured point.
     pub point: AnalogPoint,
-    /// In the unit of the point (V, A, degrees Celsius), before correction; NaN unless the quality is good.
+    /// Value in the unit of the point (V, A, degrees Celsius), before correction; NaN unless the quality is good.
     pub value: f64,
     /// Volts at the terminal (degrees Celsius of a thermometer); NaN unless the quality is good.
     pub terminal_volts: f64,
-    /// Whether it is a number at all.
+    /// Validity of the value.
     pub quality: Quality,
-    /// Its bytes.
+    /// Origin of the value.
     pub origin: Origin,
 }
 
 impl Sample {
-    /// The value, when it is one.
+    /// Returns the value of a good sample.
     pub fn good(&self) -> Option<f64> {
         match self.quality {
             Quality::Good if self.value.is_finite() => Some(self.value),
@@ -88,19 +88,19 @@ impl Sample {
     }
 }
 
-/// One count.
+/// One reading of a counter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CountSample {
-    /// What was counted.
+    /// The counted point.
     pub point: CountPoint,
     /// The count.
     pub count: u32,
-    /// Its bytes.
+    /// Origin of the count.
     pub origin: Origin,
 }
 
 impl CountSample {
-    /// Counts since an earlier sample of the same point, across one wrap.
+    /// Returns the counts since an earlier sample of the same point, across at most one wrap.
     pub fn since(&self, earlier: &CountSample) -> u32 {
         let difference = self.count.wrapping_sub(earlier.count);
         match self.point {

@@ -1,6 +1,6 @@
-//! `config/rig.toml` as it stands in the file, before names are resolved to modules and channels.
+//! The text of `config/rig.toml` as types, before names are resolved to modules and channels.
 //!
-//! [`super::wiring::Wiring::resolve`] turns it into the wiring; nothing else should read it.
+//! [`super::wiring::Wiring::resolve`] turns it into the wiring; no other code needs it.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ pub struct RigSettings {
     pub line: BTreeMap<String, LineSettings>,
     /// Times and counts of every line.
     pub bus: BusSettings,
-    /// What the plant demands of the emergency stop.
+    /// Demands of the plant on the emergency stop.
     pub safety: SafetySettings,
     /// Modules by name.
     pub module: BTreeMap<String, ModuleSettings>,
@@ -32,7 +32,7 @@ pub struct RigSettings {
     pub digital_in: BTreeMap<String, DigitalInSettings>,
     /// Digital outputs by point name.
     pub digital_out: BTreeMap<String, ChannelSettings>,
-    /// Stroke supervision by actuator.
+    /// Longest strokes by actuator.
     pub actuator: BTreeMap<String, ActuatorSettings>,
     /// Stations of the sort axis that are not bins.
     pub axis: BTreeMap<String, StationSettings>,
@@ -47,38 +47,38 @@ pub struct LineSettings {
     pub port: String,
     /// Bits per second.
     pub baud: u32,
-    /// Whether the modules of this line check and send check sums.
+    /// True when the modules of this line use checksums.
     pub checksum: bool,
 }
 
-/// Times and counts that hold on every line.
+/// Times and counts common to all lines.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct BusSettings {
-    /// Reply time of a digital, counter or analog output module beyond the wire, ms.
+    /// Time that a digital, counter or analog output module may take to reply, ms, without wire time.
     pub digital_allowance_ms: f64,
-    /// The same of an analog input module, ms.
+    /// Time that an analog input module may take to reply, ms, without wire time.
     pub analog_allowance_ms: f64,
-    /// Attempts at a command that may be repeated.
+    /// Most tries of a repeatable command.
     pub tries: u8,
-    /// Period of host OK, ms.
+    /// Period of the host OK broadcast, ms.
     pub heartbeat_ms: f64,
-    /// Host watchdog of the output modules, ms; the modules count tenths of a second.
+    /// Time-out of the output modules' host watchdog, ms; the modules count tenths of a second.
     pub host_watchdog_ms: f64,
     /// Pause between two scans of the motion line, ms; 0 polls without rest.
     pub scan_period_ms: f64,
 }
 
-/// What the plant demands of the emergency stop.
+/// Demands of the plant on the emergency stop.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct SafetySettings {
-    /// Longest accepted time from the opening of the contact to outputs written, ms.
+    /// Longest accepted time from the opening of the contact to the last write, ms.
     pub estop_reaction_ms: f64,
 }
 
-/// One module as the file names it.
+/// One module of the file.
 #[derive(Debug, Clone, Deserialize)]
 pub struct ModuleSettings {
-    /// Name of its line.
+    /// Name of the line.
     pub line: String,
     /// Two hexadecimal digits.
     pub address: String,
@@ -95,7 +95,7 @@ pub struct ModuleSettings {
     pub mask: Option<String>,
     /// Slew code of an analog output module, one hexadecimal digit.
     pub slew: Option<String>,
-    /// Whether the host watchdog of this module must be on.
+    /// True when the host watchdog of this module must be on.
     pub watchdog: Option<bool>,
     /// Safe value of an analog output, V at its terminal.
     pub safe: Option<f64>,
@@ -125,7 +125,7 @@ pub struct AnalogOutSettings {
     pub gain: f64,
 }
 
-/// A point that is a module and a channel.
+/// A point with a module and a channel.
 #[derive(Debug, Clone, Deserialize)]
 pub struct ChannelSettings {
     /// Name of the module.
@@ -145,10 +145,10 @@ pub struct DigitalInSettings {
     pub active: String,
 }
 
-/// Supervision of an actuator.
+/// Supervision of an actuator's strokes.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 pub struct ActuatorSettings {
-    /// Longest stroke before it counts as trouble, ms.
+    /// Longest stroke before an alarm, ms.
     pub timeout_ms: f64,
 }
 

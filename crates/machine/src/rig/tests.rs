@@ -1,4 +1,4 @@
-//! Facts about points, samples, outputs and commissioning, on the default rig.
+//! Tests of points, samples, outputs and commissioning, on the default rig.
 #![allow(clippy::unwrap_used)]
 
 mod commission;
@@ -21,7 +21,7 @@ fn motion(wiring: &Wiring) -> LineId {
     wiring.line_named("motion").unwrap()
 }
 
-/// The request as it goes out on a line without check sum, CR left off.
+/// Returns the request as sent on a line without checksum, CR left off.
 fn text(command: &Command) -> String {
     let mut bytes = Vec::new();
     command.encode(false, &mut bytes);

@@ -1,8 +1,7 @@
-//! The rig as it is wired: every name of `config/rig.toml` resolved to line, module and channel.
+//! The wiring of the rig: every name of `config/rig.toml` resolved to line, module and channel.
 //!
-//! A [`Wiring`] exists only after all of it was checked (see [`super::resolve`]): every point has a
-//! terminal of its own on a module that has such terminals, no address is used twice on a line, and
-//! the reaction to the emergency stop is as short as the plant demands.
+//! Only a checked [`Wiring`] exists (see [`super::resolve`]): every point has its own terminal on a suitable module,
+//! no two modules of a line share an address, and the reaction to the emergency stop is as short as the plant demands.
 
 use super::axis::AxisTable;
 use super::model::Model;
@@ -26,26 +25,26 @@ pub struct ModuleId(pub usize);
 /// One RS-485 line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
-    /// Its name in the file.
+    /// Name in the file.
     pub name: String,
     /// Path of the serial port.
     pub port: String,
     /// Bits per second.
     pub baud: u32,
-    /// Whether its modules check and send check sums.
+    /// True when its modules use checksums.
     pub checksum: bool,
 }
 
-/// One module, as it must be found at start.
+/// One module, with the configuration that it must have at start.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Module {
-    /// Its name in the file.
+    /// Name in the file.
     pub name: String,
-    /// The line it hangs on.
+    /// Line of the module.
     pub line: LineId,
-    /// Its address on that line.
+    /// Address on that line.
     pub address: Address,
-    /// Its model.
+    /// Model of the module.
     pub model: Model,
     /// Type code TT of the configuration word.
     pub type_code: TypeCode,
@@ -57,7 +56,7 @@ pub struct Module {
     pub mask: Option<u8>,
     /// Slew code of an analog output module.
     pub slew: Option<SlewCode>,
-    /// Whether its host watchdog must be on.
+    /// True when the host watchdog must be on.
     pub watchdog: bool,
     /// Safe value of an analog output, V at the terminal.
     pub safe_volts: f64,
@@ -65,7 +64,7 @@ pub struct Module {
     pub safe_outputs: u16,
 }
 
-/// Where a digital point is wired.
+/// Terminal of a digital point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Terminal {
     /// The module.
@@ -77,18 +76,18 @@ pub struct Terminal {
 }
 
 impl Terminal {
-    /// The signal in a word of this module's bits.
+    /// Returns the signal in the bits of this module.
     pub fn read(self, bits: u16) -> bool {
         (bits & self.bit() != 0) != self.active_low
     }
 
-    /// The bit of this channel.
+    /// Returns the bit of this channel.
     pub fn bit(self) -> u16 {
         1 << self.channel.get()
     }
 }
 
-/// Where an analog point is wired.
+/// Terminal of an analog point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AnalogTerminal {
     /// The module.
@@ -100,14 +99,14 @@ pub struct AnalogTerminal {
     pub gain: f64,
 }
 
-/// Longest time a stroke may take.
+/// Longest times of the strokes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StrokeLimits {
     /// Escapement.
     pub escapement: Span,
     /// Feed pusher.
     pub pusher: Span,
-    /// Clamp, both jaws.
+    /// Both jaws of the nest.
     pub clamp: Span,
     /// Probe lift.
     pub probe_lift: Span,
@@ -119,7 +118,7 @@ pub struct StrokeLimits {
     pub axis: Span,
 }
 
-/// The whole rig, resolved and checked. Unchanging while the program runs.
+/// The resolved and checked rig; constant while the program runs.
 #[derive(Debug, Clone)]
 pub struct Wiring {
     /// Lines in alphabetical order.
@@ -128,41 +127,41 @@ pub struct Wiring {
     pub modules: Vec<Module>,
     /// Times and counts of every line.
     pub bus: BusSettings,
-    /// What the plant demands of the emergency stop.
+    /// Demands of the plant on the emergency stop.
     pub safety: SafetySettings,
     /// Longest strokes.
     pub strokes: StrokeLimits,
     /// Points of the sort axis and the bins at them.
     pub axis: AxisTable,
-    /// Inputs of the machine, of the fixtures, beams.
+    /// Inputs of the machine, then of the fixtures, then beams.
     pub(super) digital_in: Vec<(String, Terminal)>,
-    /// Outputs of the machine, of the fixtures.
+    /// Outputs of the machine, then of the fixtures.
     pub(super) digital_out: Vec<(Switch, Terminal)>,
     pub(super) analog_in: Vec<(Quantity, AnalogTerminal)>,
     pub(super) analog_out: Vec<(&'static str, AnalogTerminal)>,
     pub(super) temperature: Vec<(&'static str, AnalogTerminal)>,
     pub(super) counter: Vec<(&'static str, AnalogTerminal)>,
-    /// How many of the digital inputs belong to the machine and the fixtures: the beams come behind them.
+    /// Number of digital inputs before the beams: those of the machine and the fixtures.
     pub(super) before_beams: usize,
 }
 
-/// The place of a name in a table.
+/// Returns the index of a name in a table.
 fn named<'a>(mut names: impl Iterator<Item = &'a str>, name: &str) -> Option<usize> {
     names.position(|known| known == name)
 }
 
 impl Wiring {
-    /// A line by its index.
+    /// Returns the line with this index.
     pub fn line(&self, line: LineId) -> &Line {
         &self.lines[line.0]
     }
 
-    /// A module by its index.
+    /// Returns the module with this index.
     pub fn module(&self, module: ModuleId) -> &Module {
         &self.modules[module.0]
     }
 
-    /// A line by its name.
+    /// Returns the line with this name.
     pub fn line_named(&self, name: &str) -> Option<LineId> {
         self.lines
             .iter()
@@ -170,7 +169,7 @@ impl Wiring {
             .map(LineId)
     }
 
-    /// A module by its name.
+    /// Returns the module with this name.
     pub fn module_named(&self, name: &str) -> Option<ModuleId> {
         self.modules
             .iter()
@@ -178,119 +177,119 @@ impl Wiring {
             .map(ModuleId)
     }
 
-    /// The module at an address of a line.
+    /// Returns the module at an address of a line.
     pub fn at(&self, line: LineId, address: Address) -> Option<ModuleId> {
         let here = |module: &Module| module.line == line && module.address == address;
         self.modules.iter().position(here).map(ModuleId)
     }
 
-    /// Every line.
+    /// Yields every line.
     pub fn line_ids(&self) -> impl Iterator<Item = LineId> + use<> {
         (0..self.lines.len()).map(LineId)
     }
 
-    /// Every module.
+    /// Yields every module.
     pub fn module_ids(&self) -> impl Iterator<Item = ModuleId> + use<> {
         (0..self.modules.len()).map(ModuleId)
     }
 
-    /// The modules of a line, by address.
+    /// Yields the modules of a line, by address.
     pub fn modules_on(&self, line: LineId) -> impl Iterator<Item = ModuleId> {
         self.module_ids()
             .filter(move |module| self.module(*module).line == line)
     }
 
-    /// Where a digital input is wired.
+    /// Returns the terminal of a digital input.
     pub fn digital_in(&self, point: impl Into<DigitalInput>) -> Terminal {
         self.digital_in[point.into().index()].1
     }
 
-    /// Where a digital output is wired.
+    /// Returns the terminal of a digital output.
     pub fn digital_out(&self, point: impl Into<DigitalOutput>) -> Terminal {
         self.digital_out[point.into().index()].1
     }
 
-    /// Where an analog input is wired.
+    /// Returns the terminal of an analog input.
     pub fn analog_in(&self, point: AnalogInput) -> AnalogTerminal {
         self.analog_in[point.index()].1
     }
 
-    /// Where an analog output is wired.
+    /// Returns the terminal of an analog output.
     pub fn analog_out(&self, point: AnalogOutput) -> AnalogTerminal {
         self.analog_out[point.index()].1
     }
 
-    /// Where a thermometer is wired.
+    /// Returns the terminal of a thermometer.
     pub fn temperature(&self, point: Thermometer) -> AnalogTerminal {
         self.temperature[point.index()].1
     }
 
-    /// Where a counter is wired.
+    /// Returns the terminal of a counter.
     pub fn counter(&self, point: GatedCounter) -> AnalogTerminal {
         self.counter[point.index()].1
     }
 
-    /// What a kind declares of an output: its name, and whether it is traced.
+    /// Returns name and trace flag of an output.
     pub fn switch(&self, point: DigitalOutput) -> Switch {
         self.digital_out[point.index()].0
     }
 
-    /// What an analog input measures.
+    /// Returns the quantity of an analog input.
     pub fn quantity(&self, point: AnalogInput) -> Quantity {
         self.analog_in[point.index()].0
     }
 
-    /// Name of a digital input.
+    /// Returns the name of a digital input.
     pub fn input_name(&self, point: impl Into<DigitalInput>) -> &str {
         &self.digital_in[point.into().index()].0
     }
 
-    /// Name of a thermometer.
+    /// Returns the name of a thermometer.
     pub fn thermometer_name(&self, point: Thermometer) -> &'static str {
         self.temperature[point.index()].0
     }
 
-    /// Name of an analog output.
+    /// Returns the name of an analog output.
     pub fn source_name(&self, point: AnalogOutput) -> &'static str {
         self.analog_out[point.index()].0
     }
 
-    /// Name of a counter.
+    /// Returns the name of a counter.
     pub fn counter_name(&self, point: GatedCounter) -> &'static str {
         self.counter[point.index()].0
     }
 
-    /// The digital input of this name; `None` when the rig has none.
+    /// Returns the digital input with this name; `None` when the rig lacks it.
     pub fn digital_input(&self, name: &str) -> Option<DigitalInput> {
         named(self.digital_in.iter().map(|it| it.0.as_str()), name).map(DigitalInput::at)
     }
 
-    /// The digital output of this name.
+    /// Returns the digital output with this name; `None` when the rig lacks it.
     pub fn digital_output(&self, name: &str) -> Option<DigitalOutput> {
         named(self.digital_out.iter().map(|it| it.0.name), name).map(DigitalOutput::at)
     }
 
-    /// The analog input of this name.
+    /// Returns the analog input with this name; `None` when the rig lacks it.
     pub fn analog_input(&self, name: &str) -> Option<AnalogInput> {
         named(self.analog_in.iter().map(|it| it.0.name), name).map(AnalogInput::at)
     }
 
-    /// The analog output of this name.
+    /// Returns the analog output with this name; `None` when the rig lacks it.
     pub fn analog_output(&self, name: &str) -> Option<AnalogOutput> {
         named(self.analog_out.iter().map(|it| it.0), name).map(AnalogOutput::at)
     }
 
-    /// The thermometer of this name.
+    /// Returns the thermometer with this name; `None` when the rig lacks it.
     pub fn thermometer(&self, name: &str) -> Option<Thermometer> {
         named(self.temperature.iter().map(|it| it.0), name).map(Thermometer::at)
     }
 
-    /// The counter of this name.
+    /// Returns the counter with this name; `None` when the rig lacks it.
     pub fn gated_counter(&self, name: &str) -> Option<GatedCounter> {
         named(self.counter.iter().map(|it| it.0), name).map(GatedCounter::at)
     }
 
-    /// Every digital input with its name, as screens list them: fixtures, machine, beams.
+    /// Yields every digital input with its name, in the order of the page: fixtures, machine, beams.
     pub fn digital_inputs(&self) -> impl Iterator<Item = (&str, DigitalInput)> {
         let (machine, all) = (DigitalIn::COUNT, self.digital_in.len());
         (machine..self.before_beams)
@@ -299,7 +298,7 @@ impl Wiring {
             .map(|at| (self.digital_in[at].0.as_str(), DigitalInput::at(at)))
     }
 
-    /// Every digital output with its name, as screens list them: fixtures, machine.
+    /// Yields every digital output with its name, in the order of the page: fixtures, machine.
     pub fn digital_outputs(&self) -> impl Iterator<Item = (&'static str, DigitalOutput)> {
         let machine = DigitalOut::COUNT;
         (machine..self.digital_out.len())
@@ -307,7 +306,7 @@ impl Wiring {
             .map(|at| (self.digital_out[at].0.name, DigitalOutput::at(at)))
     }
 
-    /// Lines that carry points of a fixture: there measuring jobs go. In order, each once.
+    /// Returns the lines with points of a fixture, which take the measuring jobs; in order, each once.
     pub fn measuring_lines(&self) -> Vec<LineId> {
         let inputs = self.digital_in[DigitalIn::COUNT..self.before_beams].iter();
         let outputs = self.digital_out[DigitalOut::COUNT..].iter();
@@ -322,13 +321,13 @@ impl Wiring {
         lines.into_iter().collect()
     }
 
-    /// The module that carries the emergency-stop contact: every second transaction of its line.
+    /// Returns the module with the emergency-stop contact; every second transaction of its line reads it.
     pub fn emergency_stop_module(&self) -> ModuleId {
         self.digital_in(DigitalIn::EmergencyStopOk).module
     }
 
-    /// Attempts at a repeatable command. One on the line of the emergency stop, where a repetition
-    /// would delay the next look at the contact: there the next scan is the repetition.
+    /// Returns the most tries of a repeatable command: one on the line of the emergency stop, where a repetition would
+    /// delay the next read of the contact; there the next scan is the repetition.
     pub fn tries_on(&self, line: LineId) -> u8 {
         if self.module(self.emergency_stop_module()).line == line {
             1

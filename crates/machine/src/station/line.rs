@@ -126,6 +126,6 @@ impl Line {
         let waiting = ledger.holds(Place::Pocket) && (pocket || ledger.is_pocket_found());
         let mut judged = wants.record.parts.judged.iter();
         let durable = judged.all(|judged| judged.part.ordinal <= recorded);
-        empty && !waiting && durable && self.feeder.is_empty_handed()
+        empty && !waiting && durable && self.feeder.moves_no_part()
     }
 }

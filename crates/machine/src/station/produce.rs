@@ -51,6 +51,6 @@ impl Station {
     pub(super) fn wants_more(&self) -> bool {
         self.plan
             .count
-            .is_none_or(|count| self.line.ledger.own() < self.lot.golden_planned + count)
+            .is_none_or(|count| self.line.ledger.own_parts() < self.lot.golden_planned + count)
     }
 }

@@ -36,7 +36,7 @@ impl Station {
     ) {
         let mut found = self.line.mechanism.update(now, inputs.image);
         wants.rig.motions.extend(found.motions);
-        wants.rig.suspicious = self.line.mechanism.is_suspicious(now);
+        wants.rig.restart_check = self.line.mechanism.needs_restart_check(now);
         self.still_in_nest(now, inputs.image, &mut found.trouble);
         let mut there = self.safety(now, inputs.image);
         there.extend(stuck);

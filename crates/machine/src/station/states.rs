@@ -207,7 +207,7 @@ impl Station {
 
     /// The sequence goes on from the parts that are inside.
     fn take_up(&mut self, now: RigTime, wants: &mut Wants) {
-        self.line.feeder.take_up(&self.line.ledger);
+        self.line.feeder.resume(&self.line.ledger);
         if self.lot.gates.is_checking() {
             self.begin_check();
         }

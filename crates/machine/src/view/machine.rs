@@ -1,91 +1,92 @@
-//! The machine as a screen shows it: outer state with its buttons, actuators, places, signals, stops, wear.
+//! The machine as pages show it: PackML state with its buttons, actuators, places, signals, wear.
 
 use super::MotionView;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use texts::Message;
 
-/// Outer machine and what may be asked of it.
+/// The PackML state and everything that belongs to it on the page.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Machine {
     /// State by its PackML name, `Execute`.
     pub state: String,
     /// `production`, `maintenance`, `manual`.
     pub mode: String,
-    /// Every button, live or with the reason why not.
+    /// Every button, enabled or with the reason why not.
     pub buttons: Vec<Button>,
     /// Actuators in the order of the line.
     pub actuators: Vec<ActuatorView>,
-    /// Parts by place: `pocket`, `nest`, `gripper`, `falling`; a place without a part is not named.
+    /// Parts by place: `pocket`, `nest`, `gripper`, `falling`; empty places are absent.
     pub places: BTreeMap<String, Token>,
-    /// Digital inputs by name; null while not read or stale.
+    /// Digital inputs by name; null when unread or stale.
     pub inputs: BTreeMap<String, Option<bool>>,
-    /// Digital outputs by name, as asked for.
+    /// Commanded digital outputs by name.
     pub outputs: BTreeMap<String, bool>,
     /// Reaction to the emergency-stop input.
     pub reaction: Reaction,
-    /// Motions that may be jogged now, each as the guard judges it; empty while none may.
+    /// Motions that an operator may jog now, each with the guard's decision; empty while jogging is off.
     pub jogs: Vec<MotionView>,
-    /// The motion that the guard refused last; null once another one was driven.
+    /// The last motion that the guard refused; null after the next driven one.
     pub refused: Option<MotionView>,
-    /// Wall seconds that the cycle has spent in each phase of its turns since the start.
+    /// Wall time spent in each phase of the cycle since the start, seconds.
     pub phases_s: BTreeMap<String, f64>,
-    /// Strokes and touches since the start of the program, by name.
+    /// Strokes and contacts since the start of the program, by name.
     pub wear: BTreeMap<String, u64>,
-    /// Force contacts of the coil in series, ohm, mean over the last parts of the lot; null before the first.
+    /// Resistance of the two force contacts of the coil in series, ohm, mean over the last parts of the lot; null
+    /// before the first.
     pub probe_contact_ohm: Option<f64>,
 }
 
-/// One order that a button gives.
+/// One order that a button sends.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Button {
     /// Word of the order.
     pub order: String,
-    /// Motion, mode or alarm that goes with it, empty when none does.
+    /// Motion, mode or alarm of the order; empty without one.
     pub with: String,
-    /// It would be taken now.
+    /// True when the station would accept the order now.
     pub enabled: bool,
-    /// Why not, English; empty when enabled.
+    /// Reason for the refusal, English; empty when enabled.
     pub why_en: String,
-    /// Why not, Chinese; empty when enabled.
+    /// Reason for the refusal, Chinese; empty when enabled.
     pub why_zh: String,
     /// The same as code and arguments; null when enabled.
     pub why: Option<Message>,
 }
 
-/// Where an actuator is, as far as its sensors tell.
+/// Possible positions of an actuator, from its sensors.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ActuatorView {
     /// Name as in `config/scene.toml`.
     pub name: String,
-    /// Lowest position it may have, mm from its rest end.
+    /// Lowest possible position, mm from the rest end.
     pub from_mm: f64,
-    /// Highest; equal to `from_mm` when it is known to stand there.
+    /// Highest possible position, mm; equal to `from_mm` when the actuator is known to rest there.
     pub to_mm: f64,
-    /// A motion of it is under way.
+    /// True while it moves.
     pub moving: bool,
 }
 
 /// A part in a place.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Token {
-    /// `lot` or `golden`; `unnumbered` before the nest.
+    /// `lot` or `golden` (reference part); `unnumbered` before the nest.
     pub kind: String,
-    /// Number in the lot, or serial.
+    /// Number in the lot, or serial number.
     pub name: String,
-    /// Bin it belongs to, empty before it was judged.
+    /// Bin of the part; empty before its verdict.
     pub bin: String,
-    /// Why it is not tested, empty when nothing interrupted it.
+    /// Reason for the interrupted test; empty without one.
     pub interrupted: String,
 }
 
-/// Reaction to the emergency-stop input, milliseconds.
+/// Reaction time to the emergency-stop input, milliseconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Reaction {
     /// Worst case derived from `config/rig.toml`.
     pub bound_ms: f64,
-    /// What the plant accepts.
+    /// Longest reaction that the plant accepts.
     pub accepted_ms: f64,
-    /// Longest age of the emergency-stop input seen since the start.
+    /// Longest age of the emergency-stop input since the start.
     pub worst_age_ms: f64,
 }

@@ -1,23 +1,23 @@
-//! The machine as a picture: silhouettes to scale. Where the tooling stands now is in the view.
+//! The machine as a picture: silhouettes to scale. The view has the current positions.
 
 use serde::Serialize;
 
-/// What never changes during a run.
+/// The picture, constant during a run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Mimic {
-    /// In the order of the scene, a part in each of its places last.
+    /// Bodies in the order of the scene, then a part in each of its places.
     pub bodies: Vec<MimicBody>,
 }
 
-/// One body with all actuators at rest.
+/// One body, with all actuators at rest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MimicBody {
-    /// As in `scene.toml`; `part_nest` and the like for parts.
+    /// Id in `scene.toml`; `part_nest` and the like for parts.
     pub id: String,
-    /// Actuators by name, and the way in mm (x, y, z) for each millimetre of theirs.
+    /// Actuators that carry it, by name, each with the body's displacement in mm (x, y, z) per millimetre of stroke.
     pub rides: Vec<(String, [f64; 3])>,
-    /// Polygons seen from above, x and y in mm.
+    /// Silhouettes from above, x and y in mm.
     pub above: Vec<Vec<[f64; 2]>>,
-    /// Polygons seen from the front, x and z in mm.
+    /// Silhouettes from the front, x and z in mm.
     pub front: Vec<Vec<[f64; 2]>>,
 }

@@ -1,18 +1,17 @@
-//! A motion as the guard judged it: for a person, before it is jogged or after it was refused.
+//! The guard's decision on a motion: shown before a jog or after a refusal.
 
 use serde::Serialize;
 
 /// One motion of tooling.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct MotionView {
-    /// Name as in the order `jog`, or of a motion of the sequence.
+    /// Name in the order `jog`, or name of a motion of the sequence.
     pub motion: String,
-    /// Who would go where.
+    /// Ways of the actuators involved.
     pub strokes: Vec<StrokeView>,
-    /// Least distance on the way to anything that must be kept away from, mm; null beyond 25 mm and when
-    /// refused.
+    /// Least distance to the bodies that the motion must not touch, mm; null beyond 25 mm and for a refused motion.
     pub clearance_mm: Option<f64>,
-    /// Why not; null when it may be driven.
+    /// Reason for the refusal; null when the motion is clear.
     pub refused: Option<RefusedView>,
 }
 
@@ -21,27 +20,28 @@ pub struct MotionView {
 pub struct StrokeView {
     /// Name as in `config/scene.toml`.
     pub actuator: String,
-    /// Lowest and highest position it may stand at, mm from its rest end.
+    /// Lowest and highest possible position at the start, mm from the rest end.
     pub from_mm: [f64; 2],
-    /// Where to, mm.
+    /// Target, mm.
     pub to_mm: f64,
 }
 
-/// What stands in the way.
+/// Reason why the guard refuses the motion.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct RefusedView {
-    /// Body that would move; empty when the motion itself is none.
+    /// Body that would move; empty when the motion itself is invalid.
     pub mover: String,
-    /// Body in its way; empty like the mover.
+    /// Body in its way; empty when the motion itself is invalid.
     pub blocker: String,
-    /// Least distance the two would have, mm.
+    /// Least distance of the two during the motion, mm.
     pub distance_mm: f64,
     /// Distance they must exceed, mm.
     pub margin_mm: f64,
-    /// Where, mm.
+    /// Place of the contact, mm.
     pub at: [f64; 3],
-    /// How far the stroke is clear, mm from its rest end: the pose to go back to. None, if it is blocked where it begins.
+    /// How far the stroke is clear, mm from the rest end; an actuator beyond may come back to here. Null when it is
+    /// blocked at its start.
     pub last_clear_mm: Option<f64>,
-    /// The whole sentence, with what would help.
+    /// The whole sentence, with the remedy.
     pub text: String,
 }

@@ -1,8 +1,8 @@
-//! An order in words, as it comes from a screen or a script, and the words that are known.
+//! An order as a page or a script sends it, and the known order words.
 
 use serde::{Deserialize, Serialize};
 
-/// Every word that an order may have.
+/// Words of the orders that the station executes.
 pub const ORDERS: [&str; 16] = [
     "reset",
     "start",
@@ -22,64 +22,64 @@ pub const ORDERS: [&str; 16] = [
     "shelve",
 ];
 
-/// Words of orders about lots and what wears, which do not move the rig by themselves.
+/// Words of orders about lots and wear counters, which never move the rig.
 pub const LOT_ORDERS: [&str; 4] = ["hold_lot", "release_lot", "close_lot", "replaced"];
 
-/// An order; members that its word does not need are let pass.
+/// An order; the station ignores members that its word does not need.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Order {
     /// One of [`ORDERS`] or [`LOT_ORDERS`].
     pub order: String,
-    /// Of `mode`: `production`, `maintenance`, `manual`.
+    /// For `mode`: `production`, `maintenance`, `manual`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mode: Option<String>,
-    /// Of `jog`: `pusher_extend`, ...
+    /// For `jog`: `pusher_extend`, ...
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<String>,
-    /// Of `acknowledge` (without it: all) and `shelve`: code of the alarm.
+    /// For `acknowledge` (all alarms if absent) and `shelve`: code of the alarm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub alarm: Option<String>,
-    /// Of `shelve`, 1 to 480; 30 without it.
+    /// For `shelve`: minutes, 1 to 480; 30 if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minutes: Option<u32>,
-    /// Of `shelve` and `hold_lot`: why.
+    /// For `shelve` and `hold_lot`: the reason.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// Of `start` (without it: the lot under way goes on), `hold_lot`, `release_lot`, `close_lot`: name of the lot.
+    /// For `start` (continues the open lot if absent), `hold_lot`, `release_lot`, `close_lot`: name of the lot.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lot: Option<String>,
-    /// Of `start` with a lot: name of the recipe.
+    /// For `start` with a lot: name of the recipe.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recipe: Option<String>,
-    /// Of `start` with a lot: parts wanted; without it the lot goes on until it is ended.
+    /// For `start` with a lot: parts wanted; endless if absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub count: Option<u64>,
-    /// Of `start` with a lot: parts are tested again, to which this person has agreed.
+    /// For `start` with a lot: name of the person who agreed to test parts a second time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub retest: Option<String>,
-    /// Of `replaced`: name of the counter that begins anew.
+    /// For `replaced`: name of the counter to reset.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub counter: Option<String>,
 }
 
-/// Who orders, and from where.
+/// Person who gives an order, and place.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct By {
     /// Name at login.
     pub who: String,
     /// Role at login.
     pub role: String,
-    /// Address of the screen.
+    /// Network address of the browser or script.
     pub origin: String,
 }
 
-/// An order with its answer, for the audit.
+/// An order with its outcome, for the audit trail.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Answered {
-    /// What was ordered.
+pub struct AnsweredOrder {
+    /// The order.
     pub order: Order,
-    /// Who ordered it.
+    /// The person who gave it.
     pub by: By,
-    /// Why it was refused, English; none when it was taken.
+    /// Reason for the refusal, English; `None` for an accepted order.
     pub refused: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! An order on its way to the station, with the way back for its answer.
+//! An order on its way to the station, with the channel for its answer.
 
 use super::order::{By, Order};
 use std::fmt;
@@ -9,17 +9,17 @@ pub type Answer = Result<(), Message>;
 
 /// An order on its way to the station.
 pub struct OrderRequest {
-    /// What is wanted.
+    /// The order.
     pub order: Order,
-    /// Who wants it.
+    /// The person who gives it.
     pub by: By,
-    /// It is not to be taken, for this reason; it comes for the audit alone.
+    /// Reason for a refusal decided before the station; the request then serves the audit trail only.
     pub denied: Option<String>,
     way_back: Box<dyn FnOnce(Answer) + Send>,
 }
 
 impl OrderRequest {
-    /// An order whose answer goes to `way_back`. A request that is dropped drops it unanswered.
+    /// Makes a request that sends its answer to `way_back`. A dropped request sends no answer.
     pub fn new(order: Order, by: By, way_back: impl FnOnce(Answer) + Send + 'static) -> Self {
         Self {
             order,
@@ -29,7 +29,7 @@ impl OrderRequest {
         }
     }
 
-    /// An order that is not to be taken and comes for the audit alone; nobody waits for its answer.
+    /// Makes a request that is refused already and serves the audit trail only; it sends no answer.
     pub fn denied(order: Order, by: By, why: String) -> Self {
         Self {
             denied: Some(why),
@@ -37,7 +37,7 @@ impl OrderRequest {
         }
     }
 
-    /// Answers; a screen that has gone away misses nothing that it could use.
+    /// Sends the answer; does nothing if the page has gone away.
     pub fn say(self, answer: Answer) {
         (self.way_back)(answer);
     }

@@ -1,25 +1,25 @@
-//! The last traffic of the lines, message by message.
+//! The last traffic of the lines, frame by frame.
 
 use serde::Serialize;
 
-/// Of one line.
+/// Traffic of one line.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct LineTraffic {
-    /// As wired.
+    /// Name in the wiring.
     pub line: String,
-    /// Oldest first.
+    /// Frames, oldest first.
     pub entries: Vec<Message>,
 }
 
-/// What went over the wire at once.
+/// A piece of traffic, at most one frame.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Message {
     /// Rig time, microseconds since the run began.
     pub at_us: u64,
-    /// `>` sent, `<` heard, `~` heard and thrown away.
+    /// `>` sent, `<` reply, `~` discarded.
     pub way: String,
-    /// Its characters, those that cannot be printed as `\r` or `\xNN`.
+    /// Characters, non-printable ones as `\r` or `\xNN`.
     pub text: String,
-    /// What was asked and answered, in words; empty for a question.
+    /// Meaning of request and reply in words; empty for a request.
     pub meaning: String,
 }

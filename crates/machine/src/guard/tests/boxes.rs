@@ -1,6 +1,6 @@
-//! The scene read a second time, as plain boxes, to look at what the guard has cleared.
+//! Reads the scene a second time, as plain boxes, to check the motions that the guard clears.
 //!
-//! A cylinder is taken as the box inside it, so that nothing is called a crash that is none.
+//! Replaces a cylinder by the box inside it, so that no clear pose counts as a collision.
 
 #![allow(clippy::unwrap_used)]
 
@@ -42,7 +42,7 @@ pub(super) fn boxed(settings: &GuardSettings) -> Vec<Boxed> {
     settings.elements.iter().map(one).collect()
 }
 
-/// `lying`: turned from z onto x, the one turn that the scene uses.
+/// `lying`: rotated from z onto x, the only rotation in the scene.
 fn inner_boxes(piece: &Piece, at: [f64; 3], lying: bool, out: &mut Vec<([f64; 3], [f64; 3])>) {
     match piece.kind {
         Kind::Block => out.push((at, piece.half.unwrap())),
@@ -104,7 +104,7 @@ fn offset(
     std::array::from_fn(|i| carried[i] + sign * axis.axis[i] * mm[actuator as usize])
 }
 
-/// Everything in the space at these strokes, by id.
+/// Returns every body in the space at these strokes, by id.
 pub(super) fn placed(
     settings: &GuardSettings,
     bodies: &[Boxed],
@@ -159,7 +159,7 @@ pub(super) fn placed(
     all
 }
 
-/// How far two boxes are apart; negative: how deep they are in each other.
+/// Returns the distance of two boxes; negative for the depth of their overlap.
 pub(super) fn gap(a: &([f64; 3], [f64; 3]), b: &([f64; 3], [f64; 3])) -> f64 {
     let gaps: [f64; 3] = std::array::from_fn(|i| (a.0[i] - b.0[i]).abs() - a.1[i] - b.1[i]);
     let apart: f64 = gaps.iter().map(|g| g.max(0.0).powi(2)).sum();
@@ -170,7 +170,7 @@ pub(super) fn gap(a: &([f64; 3], [f64; 3]), b: &([f64; 3], [f64; 3])) -> f64 {
     }
 }
 
-/// Least gap that the pair rules allow; `None` where a pair is not tested.
+/// Returns the least gap that the pair rules allow; `None` for an untested pair.
 pub(super) fn least_gap(settings: &GuardSettings, a: &str, b: &str) -> Option<f64> {
     let fits = |pattern: &str, id: &str| match pattern.strip_suffix('*') {
         Some(stem) => id.starts_with(stem),

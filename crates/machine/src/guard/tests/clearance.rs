@@ -1,10 +1,10 @@
-//! How much room a motion leaves, told before it is made.
+//! The clearance of a motion, computed before the motion.
 
 use super::*;
 
 const FAR_MM: f64 = 25.0;
 
-/// The same scene, asking for `margin_mm` between all bodies that no rule names.
+/// Builds the same scene with `margin_mm` between all bodies that no rule names.
 fn strict(margin_mm: f64) -> Result<Guard, GuardError> {
     let mut settings = scene_settings();
     settings.guard.default_margin_mm = margin_mm;
@@ -12,19 +12,19 @@ fn strict(margin_mm: f64) -> Result<Guard, GuardError> {
 }
 
 #[test]
-fn the_room_that_is_told_is_the_margin_at_which_the_motion_is_refused() {
+fn the_clearance_is_the_margin_that_refuses_the_motion() {
     let extend = Motion::to(Actuator::Pusher, 60.0);
     let nowhere = Situation::at_rest(jzc_22f());
     let told = guard().clearance_mm(&extend, &nowhere, FAR_MM).unwrap();
     assert!((told - 1.0).abs() < 1e-6, "the rail is 1 mm away: {told}");
     assert!(strict(told - 0.01).is_ok());
-    // Building tries every stroke.
+    // Building the guard tries every stroke.
     let refused = strict(told + 0.01).map(|_| ()).unwrap_err();
     assert!(refused.to_string().contains("pusher"), "{refused}");
 }
 
 #[test]
-fn what_is_told_is_never_less_than_the_margin_and_a_refused_motion_is_told_nothing() {
+fn a_clearance_exceeds_the_margin_and_refusals_have_none() {
     let mut guard = guard();
     for actuator in Actuator::ALL {
         let (low, high) = guard.stroke_mm(actuator);
@@ -40,7 +40,7 @@ fn what_is_told_is_never_less_than_the_margin_and_a_refused_motion_is_told_nothi
 }
 
 #[test]
-fn beyond_the_range_nothing_is_told() {
+fn beyond_the_range_there_is_no_clearance() {
     let mut guard = guard();
     let up = Motion::to(Actuator::SortZ, 0.0);
     assert_eq!(guard.clearance_mm(&up, &rest(), 0.01), None);

@@ -1,4 +1,4 @@
-//! What must pass: the normal cycle, stroke by stroke.
+//! The guard clears the normal cycle, stroke by stroke.
 
 use super::*;
 use Actuator::*;
@@ -60,7 +60,7 @@ fn the_probes_rise_to_the_clamped_part() {
     );
 }
 
-/// In the middle of a test: clamped, probed, the pocket filling behind it.
+/// The middle of a test: nest closed, probes up, the pocket filling behind it.
 fn under_test() -> Situation {
     rest()
         .clamped()
@@ -69,7 +69,7 @@ fn under_test() -> Situation {
 }
 
 #[test]
-fn z_comes_down_over_the_clamped_part_while_the_pocket_fills() {
+fn z_comes_down_while_the_pocket_fills() {
     let filling = under_test().with(Escapement, moving(0.0, 16.0));
     passes(Motion::to(SortZ, 40.0), &filling);
     passes(
@@ -135,7 +135,7 @@ fn z_rises_with_the_part() {
 }
 
 #[test]
-fn the_axis_carries_the_part_to_every_bin_and_drops_it_and_returns() {
+fn the_axis_carries_the_part_to_every_bin() {
     for bin_mm in [75.0, 150.0, 190.0, 230.0, 270.0, 310.0, 350.0] {
         let held = rest().with(Gripper, at(7.0)).parts(|p| p.gripper = true);
         passes(Motion::to(SortAxis, bin_mm), &held);
@@ -152,7 +152,7 @@ fn the_axis_carries_the_part_to_every_bin_and_drops_it_and_returns() {
 }
 
 #[test]
-fn the_next_part_is_fed_and_tested_while_the_last_one_travels() {
+fn the_next_part_is_tested_while_the_last_travels() {
     let travelling = rest()
         .with(SortAxis, moving(0.0, 350.0))
         .with(Gripper, at(7.0))
@@ -176,7 +176,7 @@ fn the_axis_comes_back_over_a_part_under_test() {
 }
 
 #[test]
-fn everything_can_be_brought_home_when_only_one_thing_is_unknown() {
+fn one_unknown_actuator_does_not_block_homing() {
     for actuator in Actuator::ALL {
         let mut lost = rest();
         lost.forget(actuator);

@@ -1,9 +1,9 @@
-//! The guard gives the same answer however it is asked.
+//! The guard gives the same answer to equal questions, and its offers hold.
 
 use super::*;
 
 #[test]
-fn a_remembered_answer_is_the_answer() {
+fn a_remembered_answer_equals_the_first() {
     let mut guard = guard();
     let raised = rest()
         .with(Actuator::ProbeLift, at(12.0))
@@ -15,7 +15,7 @@ fn a_remembered_answer_is_the_answer() {
 }
 
 #[test]
-fn a_cleared_motion_is_the_one_that_was_asked_for() {
+fn clearing_returns_the_requested_motion() {
     let motion = clamp(8.0);
     let cleared = guard().clear(&motion, &rest()).unwrap();
     assert_eq!(*cleared.motion(), motion);
@@ -40,7 +40,7 @@ fn back_tracking_goes_to_a_pose_that_is_clear() {
 }
 
 #[test]
-fn whatever_a_refusal_offers_the_guard_clears() {
+fn the_guard_clears_what_a_refusal_offers() {
     let (mut offers, mut silent) = (0, 0);
     let mut guard = guard();
     for other in Actuator::ALL {
@@ -75,7 +75,7 @@ fn whatever_a_refusal_offers_the_guard_clears() {
 }
 
 #[test]
-fn nothing_is_offered_from_a_start_that_is_not_clear_or_not_known() {
+fn a_blocked_or_unknown_start_gets_no_offer() {
     let unknown = rest()
         .with(Actuator::Pusher, at(60.0))
         .with(Actuator::SortZ, moving(0.0, 40.0));
@@ -85,7 +85,7 @@ fn nothing_is_offered_from_a_start_that_is_not_clear_or_not_known() {
 }
 
 #[test]
-fn every_actuator_has_the_name_it_has_in_the_scene() {
+fn actuator_names_match_the_scene() {
     for actuator in Actuator::ALL {
         assert_eq!(Actuator::from_name(actuator.name()), Some(actuator));
     }

@@ -1,4 +1,4 @@
-//! What must be refused, and that the refusal tells a mechanic what to do.
+//! The guard refuses dangerous motions and tells a mechanic the remedy.
 
 use super::*;
 use Actuator::*;
@@ -20,7 +20,7 @@ fn the_pusher_does_not_shear_pins_on_raised_probes() {
 }
 
 #[test]
-fn the_pusher_does_not_go_to_raised_probes_even_without_a_part() {
+fn the_pusher_avoids_raised_probes_even_without_a_part() {
     let no = blocked(Motion::to(Pusher, 60.0), &rest().with(ProbeLift, at(12.0)));
     assert_eq!(
         (no.mover.as_str(), no.blocker.as_str()),
@@ -29,7 +29,7 @@ fn the_pusher_does_not_go_to_raised_probes_even_without_a_part() {
 }
 
 #[test]
-fn the_probes_do_not_rise_under_a_pusher_that_may_be_out() {
+fn the_probes_do_not_rise_under_an_unretracted_pusher() {
     for out in [at(60.0), moving(0.0, 60.0)] {
         let no = blocked(Motion::to(ProbeLift, 12.0), &rest().with(Pusher, out));
         assert_eq!(no.would_help, "would help: retract the pusher");
@@ -46,7 +46,7 @@ fn the_pusher_does_not_hit_a_lowered_gripper() {
 }
 
 #[test]
-fn the_axis_does_not_leave_with_z_not_up() {
+fn the_axis_does_not_leave_with_z_down() {
     for z in [at(40.0), at(5.0), moving(0.0, 40.0)] {
         for (from, to) in [
             (0.0, 75.0),
@@ -75,14 +75,14 @@ fn z_does_not_come_down_onto_an_extended_pusher() {
 }
 
 #[test]
-fn z_does_not_come_down_on_a_bin_or_while_the_axis_moves() {
+fn z_comes_down_neither_on_bins_nor_during_travel() {
     for x in [at(150.0), at(230.0), at(350.0), moving(0.0, 350.0)] {
         blocked(Motion::to(SortZ, 40.0), &rest().with(SortAxis, x));
     }
 }
 
 #[test]
-fn a_part_too_tall_for_the_z_travel_is_not_gripped() {
+fn a_part_too_tall_for_z_is_not_gripped() {
     let mut tall = rest().parts(|p| p.nest = true);
     tall.part_size.body_mm[2] = 22.0;
     let no = blocked(Motion::to(SortZ, 40.0), &tall);
@@ -94,7 +94,7 @@ fn a_part_too_tall_for_the_z_travel_is_not_gripped() {
 }
 
 #[test]
-fn pins_too_long_for_the_z_travel_do_not_pass_the_chutes() {
+fn pins_too_long_for_z_do_not_pass_the_chutes() {
     let mut long = rest().with(Gripper, at(7.0)).parts(|p| p.gripper = true);
     long.part_size.pin_length_mm = 7.0;
     let no = blocked(Motion::to(SortAxis, 150.0), &long);
@@ -136,7 +136,7 @@ fn no_part_is_let_in_behind_an_extended_pusher() {
 }
 
 #[test]
-fn the_jaws_do_not_close_on_a_part_that_is_still_being_pushed() {
+fn the_jaws_do_not_close_on_a_pushed_part() {
     let pushing = rest().with(Pusher, moving(0.0, 60.0));
     blocked(
         Motion::to(ProbeLift, 12.0),
@@ -213,7 +213,7 @@ fn a_carried_part_is_not_set_down_on_another() {
 }
 
 #[test]
-fn a_part_too_long_for_the_nest_is_not_pushed_in() {
+fn a_part_too_long_is_not_pushed_in() {
     let mut long = rest().parts(|p| p.pocket = true);
     long.part_size.body_mm[0] = 24.0;
     assert_eq!(
@@ -223,7 +223,7 @@ fn a_part_too_long_for_the_nest_is_not_pushed_in() {
 }
 
 #[test]
-fn both_fingers_close_inwards_and_stop_at_a_part_that_is_too_long() {
+fn both_fingers_stop_at_a_part_too_long() {
     let mut long = rest().with(SortZ, at(40.0)).parts(|p| p.nest = true);
     passes(Motion::to(Gripper, 7.0), &long);
     long.part_size.body_mm[0] = 25.5;
@@ -234,7 +234,7 @@ fn both_fingers_close_inwards_and_stop_at_a_part_that_is_too_long() {
 }
 
 #[test]
-fn motions_that_begin_together_are_checked_against_each_other() {
+fn motions_that_start_together_are_checked_mutually() {
     let stroke = |actuator, to_mm| Stroke { actuator, to_mm };
     for pair in [
         [stroke(Pusher, 60.0), stroke(SortZ, 40.0)],
@@ -245,7 +245,7 @@ fn motions_that_begin_together_are_checked_against_each_other() {
         }
         blocked(Motion::group(&pair), &rest());
     }
-    // Even where both ends are clear: the axis leaves before z is up.
+    // Although both ends are clear: the axis leaves before z is up.
     let down = rest().with(SortZ, at(40.0));
     blocked(
         Motion::group(&[stroke(SortZ, 0.0), stroke(SortAxis, 150.0)]),
@@ -254,7 +254,7 @@ fn motions_that_begin_together_are_checked_against_each_other() {
 }
 
 #[test]
-fn what_is_no_number_or_off_its_stroke_is_refused() {
+fn nan_and_positions_off_the_stroke_are_refused() {
     let off = |motion, situation: Situation| {
         let refusal = guard().clear(&motion, &situation).unwrap_err();
         assert!(matches!(refusal, Refusal::OutOfStroke { .. }), "{refusal}");
@@ -279,7 +279,7 @@ fn what_is_no_number_or_off_its_stroke_is_refused() {
 }
 
 #[test]
-fn nothing_known_clears_nothing_that_enters_the_nest() {
+fn unknown_positions_clear_nothing_into_the_nest() {
     let lost = Situation::unknown(jzc_22f());
     for motion in [
         Motion::to(Pusher, 60.0),

@@ -1,4 +1,4 @@
-//! A body lies in the room that is kept for it.
+//! A body lies in the room that the guard computes for it.
 
 use super::*;
 
@@ -22,7 +22,7 @@ fn extremes(shape: &Shape) -> Vec<[f64; 3]> {
         Shape::Compound(parts) => parts
             .iter()
             .flat_map(|(pose, part)| {
-                let turn = Turn::of(pose.rotation);
+                let turn = Rotation::of(pose.rotation);
                 extremes(part)
                     .into_iter()
                     .map(move |p| sum(pose.position, turn.apply(p)))
@@ -72,7 +72,7 @@ fn turned_pieces() -> Shape {
 }
 
 #[test]
-fn a_turned_body_lies_in_its_room_wherever_it_is_in_its_span() {
+fn a_rotated_body_lies_in_its_room() {
     let shape = turned_pieces();
     let pose = Pose {
         position: [100.0, 20.0, -7.0],
@@ -83,7 +83,7 @@ fn a_turned_body_lies_in_its_room_wherever_it_is_in_its_span() {
         high: [350.0, 0.0, 2.0],
     };
     let (cover, stand) = room(&shape, &pose, &offsets);
-    let turn = Turn::of(pose.rotation);
+    let turn = Rotation::of(pose.rotation);
     for point in extremes(&shape) {
         let at_rest = sum(pose.position, turn.apply(point));
         for offset in [offsets.low, offsets.high, [17.0, 0.0, -3.0]] {
@@ -97,7 +97,7 @@ fn a_turned_body_lies_in_its_room_wherever_it_is_in_its_span() {
 }
 
 #[test]
-fn a_body_that_stands_keeps_its_true_shape() {
+fn a_resting_body_keeps_its_true_shape() {
     let shape = Shape::Cylinder {
         radius: 2.0,
         height: 9.0,

@@ -1,6 +1,6 @@
-//! A cleared motion is clear: looked at pose by pose, with a reading of the scene of its own.
+//! Checks cleared motions pose by pose with an independent reading of the scene.
 //!
-//! Bodies are read as boxes, put where sampled strokes carry them and compared pair by pair.
+//! Reads bodies as boxes, moves them by sampled strokes and compares them pair by pair.
 
 #![allow(clippy::unwrap_used)]
 
@@ -9,11 +9,11 @@ use super::*;
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-/// Situations tried; each with one motion and `POSES` poses if it is cleared.
+/// Situations to try; each has one motion, and `POSES` poses if the guard clears it.
 const SITUATIONS: usize = 3000;
 const POSES: usize = 12;
 
-/// Draws from a seed, the same on every machine.
+/// Random numbers from a seed, the same on every machine.
 struct Dice(SplitMix64);
 
 impl Dice {
@@ -56,7 +56,7 @@ fn drawn(dice: &mut Dice, guard: &Guard) -> (Situation, Motion, Actuator) {
     )
 }
 
-/// Strokes that the situation and the motion allow at some time.
+/// Returns strokes that the situation and the motion allow at some time.
 fn pose(dice: &mut Dice, situation: &Situation, actuator: Actuator, target: f64) -> [f64; 8] {
     Actuator::ALL.map(|a| {
         let (low, high) = situation.position(a).unwrap().span_mm();
@@ -70,7 +70,7 @@ fn pose(dice: &mut Dice, situation: &Situation, actuator: Actuator, target: f64)
     })
 }
 
-/// The first pair that is too near, in words.
+/// Returns the first pair that is too near, in words.
 fn too_near(settings: &GuardSettings, all: &[Boxed], actuator: Actuator) -> Option<String> {
     let (movers, others): (Vec<_>, Vec<_>) = all
         .iter()
@@ -87,7 +87,7 @@ fn too_near(settings: &GuardSettings, all: &[Boxed], actuator: Actuator) -> Opti
             .iter()
             .flat_map(|a| other.boxes.iter().map(move |b| gap(a, b)));
         let found = pairs.fold(f64::INFINITY, f64::min);
-        // Sums of a few numbers below 1e3 mm are good to 1e-12 mm.
+        // Sums of a few numbers below 1e3 mm are accurate to 1e-12 mm.
         if found <= least - 1e-9 {
             return Some(format!("{} and {}: {found} mm", mover.id, other.id));
         }
@@ -96,7 +96,7 @@ fn too_near(settings: &GuardSettings, all: &[Boxed], actuator: Actuator) -> Opti
 }
 
 #[test]
-fn a_cleared_motion_is_clear_at_every_pose_that_is_looked_at() {
+fn a_cleared_motion_is_clear_at_every_sampled_pose() {
     let settings = scene_settings();
     let bodies = boxed(&settings);
     let mut guard = guard();
@@ -104,7 +104,7 @@ fn a_cleared_motion_is_clear_at_every_pose_that_is_looked_at() {
     let mut cleared = 0;
     for case in 0..SITUATIONS {
         let (situation, motion, actuator) = drawn(&mut dice, &guard);
-        // A pusher that retracts leaves its part behind, so the part is no longer "before" it.
+        // A retracting pusher leaves its part behind, so the part is no longer in front of it.
         let leaves = actuator == Actuator::Pusher && situation.parts.on_pusher;
         if leaves || guard.clear(&motion, &situation).is_err() {
             continue;

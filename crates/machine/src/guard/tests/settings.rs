@@ -1,4 +1,4 @@
-//! A scene that cannot be guarded is refused with its place in the file.
+//! The guard rejects a bad scene and names the place in the file.
 
 use super::*;
 
@@ -16,7 +16,7 @@ fn the_scene_of_the_rig_is_accepted() {
 }
 
 #[test]
-fn bad_scenes_are_named_by_their_place() {
+fn errors_of_bad_scenes_name_the_place() {
     type Change = fn(&mut GuardSettings);
     let cases: [(Change, &str); 12] = [
         (
@@ -74,7 +74,7 @@ fn bad_scenes_are_named_by_their_place() {
 }
 
 #[test]
-fn an_actuator_that_cannot_make_its_stroke_is_noticed_before_anything_moves() {
+fn a_blocked_stroke_is_found_before_anything_moves() {
     let message = flaw_of(|s| {
         let stop = s.elements.iter_mut().find(|e| e.id == "nest_stop").unwrap();
         stop.pose.position[0] = -20.0;
@@ -111,7 +111,7 @@ fn an_unknown_key_is_an_error_with_its_line() {
 }
 
 #[test]
-fn every_point_of_the_slide_is_one_that_the_guard_knows() {
+fn the_guard_knows_every_point_of_the_slide() {
     let rig: toml::Table = toml::from_str(include_str!("../../../../../config/rig.toml")).unwrap();
     let settings = scene_settings();
     let points = settings.actuator[Actuator::SortAxis.index()]
@@ -128,7 +128,7 @@ fn every_point_of_the_slide_is_one_that_the_guard_knows() {
 }
 
 #[test]
-fn every_name_that_a_scene_may_give_an_actuator_is_read_as_one() {
+fn every_alias_of_an_actuator_parses() {
     for name in Actuator::names().iter().chain(&Actuator::OTHER_NAMES) {
         let text = format!("id = \"{name}\"\naxis = [1.0, 0.0, 0.0]");
         let read: ActuatorSettings = toml::from_str(&text).unwrap();

@@ -1,4 +1,4 @@
-//! One part at a time from the track into the pocket, and into a nest that is free in every respect.
+//! The feed moves one part at a time from the track into the pocket, and only into a free nest.
 
 use super::Shop;
 use super::device;
@@ -13,7 +13,7 @@ fn step(feed: Feed, shop: &mut Shop, wanted: bool) -> Feed {
     feed.step(&mut shop.turn(), NestId::FIRST, wanted, true)
 }
 
-/// A part waits in the pocket, escapement closed.
+/// Makes a shop with a part in the pocket and the escapement closed.
 fn ready() -> (Feed, Shop) {
     let mut shop = Shop::at_rest();
     shop.ledger.enter_pocket();
@@ -23,7 +23,7 @@ fn ready() -> (Feed, Shop) {
 }
 
 #[test]
-fn a_part_goes_from_track_to_nest_and_gets_its_number_there() {
+fn a_part_gets_its_number_in_the_nest() {
     let mut shop = Shop::at_rest();
     let feed = step(Feed::Empty, &mut shop, true);
     assert_eq!(shop.wants.rig.motions, [Move::EscapementRelease]);
@@ -62,7 +62,7 @@ fn a_part_goes_from_track_to_nest_and_gets_its_number_there() {
 }
 
 #[test]
-fn no_part_is_released_when_none_is_wanted_or_the_pusher_is_not_back() {
+fn releasing_needs_demand_and_a_retracted_pusher() {
     let mut shop = Shop::at_rest();
     assert_eq!(step(Feed::Empty, &mut shop, false), Feed::Empty);
     shop.set(DigitalIn::PusherRetracted, false);
@@ -72,7 +72,7 @@ fn no_part_is_released_when_none_is_wanted_or_the_pusher_is_not_back() {
 }
 
 #[test]
-fn a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm() {
+fn an_absent_part_is_an_alarm_after_three_attempts() {
     for (track, code) in [(true, "part_not_arrived"), (false, "magazine_empty")] {
         let mut shop = Shop::at_rest();
         shop.set(DigitalIn::TrackLevel, track);
@@ -104,7 +104,7 @@ fn a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm() {
 }
 
 #[test]
-fn a_part_left_in_the_pocket_is_fed_before_another_is_let_in() {
+fn a_part_in_the_pocket_is_fed_first() {
     let mut shop = Shop::at_rest();
     shop.set(DigitalIn::PocketPresent, true);
     shop.scan();
@@ -114,7 +114,7 @@ fn a_part_left_in_the_pocket_is_fed_before_another_is_let_in() {
 }
 
 #[test]
-fn the_pusher_starts_only_into_a_nest_that_is_free_in_every_respect() {
+fn the_pusher_starts_only_into_a_free_nest() {
     let occupied: [(&str, &[(DigitalIn, bool)]); 6] = [
         ("part in the nest", &[(DigitalIn::NestPresent, true)]),
         ("left jaw closed", &[(DigitalIn::JawLeftOpen, false)]),
@@ -140,7 +140,7 @@ fn the_pusher_starts_only_into_a_nest_that_is_free_in_every_respect() {
 }
 
 #[test]
-fn the_ledger_keeps_a_second_part_out_of_the_nest_whatever_the_sensor_says() {
+fn the_ledger_keeps_a_second_part_out_of_the_nest() {
     let (feed, mut shop) = ready();
     shop.ledger.enter_nest(NestId::FIRST, None);
     shop.ledger.enter_pocket();
@@ -158,7 +158,7 @@ fn a_pusher_at_an_empty_nest_is_an_alarm() {
 }
 
 #[test]
-fn golden_parts_come_first_in_the_order_of_the_magazine() {
+fn reference_parts_come_first_in_magazine_order() {
     let (feed, mut shop) = ready();
     shop.golden = device().reference_serials().into();
     let feed = step(feed, &mut shop, true);
@@ -172,7 +172,7 @@ fn golden_parts_come_first_in_the_order_of_the_magazine() {
     assert_eq!(shop.golden.len(), 4);
 }
 
-/// The escapement was opened for the given time and nothing has come; it closes again.
+/// A shop whose escapement was open for the given time without a part; it closes again.
 fn called_in_vain(shop: &mut Shop, attempt: u8) -> Feed {
     let since = shop.now;
     shop.now = since + Span::ms(1501);
@@ -184,7 +184,7 @@ fn called_in_vain(shop: &mut Shop, attempt: u8) -> Feed {
 }
 
 #[test]
-fn a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls() {
+fn a_late_or_unwanted_part_ends_the_attempts() {
     for attempt in [1, 2] {
         let mut shop = Shop::at_rest();
         let closed = called_in_vain(&mut shop, attempt);

@@ -1,9 +1,9 @@
-//! Feed, nest and sorter, each stepped from every state under every combination of its small inputs; what follows
-//! upon what is compared with a drawing, `golden/{feed,nest,sorter}.dot`.
+//! Steps feed, nest and sorter from every state under every combination of their inputs and compares the transitions
+//! with a drawing, `golden/{feed,nest,sorter}.dot`.
 //!
-//! Inputs are those that the machine looks at: where each actuator is seen (one end, the other, neither), part
-//! sensors, what the ledger holds, permissions, and whether a deadline has passed. A state that stays is not drawn,
-//! unless it asks for something.
+//! Inputs are those that the machine reads: the sensors of each actuator (one end, the other, neither), part sensors,
+//! the ledger, permissions, and passed deadlines. The drawing omits a step that keeps its state, unless it commands
+//! something.
 
 mod feed;
 mod nest;
@@ -16,7 +16,7 @@ use crate::rig::point::DigitalIn;
 
 use std::collections::BTreeSet;
 
-/// What was seen to follow upon what.
+/// Transitions found.
 #[derive(Debug, Default)]
 struct Graph {
     edges: BTreeSet<String>,
@@ -24,7 +24,7 @@ struct Graph {
 }
 
 impl Graph {
-    /// One step from a state to another, and what it asked for.
+    /// Adds a step from one state to another, with its commands.
     fn add(&mut self, from: &str, to: &str, asked: &Asked) {
         self.steps += 1;
         let motions = asked.rig.motions.iter().map(|movement| named(*movement));
@@ -36,19 +36,19 @@ impl Graph {
         }
     }
 
-    /// Compares with the drawing, and looks that every combination was tried.
-    fn is(&self, name: &str, drawn: &str, steps: u64) {
+    /// Compares the transitions with the drawing, and checks that every combination was tried.
+    fn assert_drawn(&self, name: &str, drawn: &str, steps: u64) {
         let edges: String = self.edges.iter().map(String::as_str).collect();
         let dot = format!("digraph {name} {{\n{edges}}}\n");
         assert_eq!(self.steps, steps, "{name}: combinations tried");
         assert!(
             dot == drawn,
-            "{name}.dot is now another drawing; read the difference and keep it:\n{dot}"
+            "{name}.dot differs from the drawing; review the difference and update the file:\n{dot}"
         );
     }
 
-    /// Every edge is walked by one of the named facts, and each of these is a test of this folder.
-    fn is_told_by(&self, facts: &[(&str, &str, &str)], tests: &str) {
+    /// Checks that each edge names a test, and that this folder has that test.
+    fn assert_tests(&self, facts: &[(&str, &str, &str)], tests: &str) {
         for (from, to, fact) in facts {
             let edge = format!("  {from} -> {to} [");
             assert!(
@@ -69,7 +69,7 @@ impl Graph {
     }
 }
 
-/// A motion without the point of the axis, of which there are many.
+/// Returns the name of a motion, without the station of the axis, of which there are many.
 fn named(movement: Move) -> String {
     match movement {
         Move::AxisTo(_) => "AxisTo".to_owned(),
@@ -77,27 +77,27 @@ fn named(movement: Move) -> String {
     }
 }
 
-/// Every combination of `n` truths.
+/// Yields every combination of `n` booleans.
 fn truths<const N: usize>() -> impl Iterator<Item = [bool; N]> {
     (0..1_u32 << N).map(|bits| std::array::from_fn(|n| bits >> n & 1 == 1))
 }
 
-/// Where an actuator is seen.
+/// Sensors of an actuator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Seen {
+enum SensedEnd {
     Rest,
     Far,
     Between,
 }
 
-const SEEN: [Seen; 3] = [Seen::Rest, Seen::Far, Seen::Between];
+const SEEN: [SensedEnd; 3] = [SensedEnd::Rest, SensedEnd::Far, SensedEnd::Between];
 
-/// Puts the sensors of an actuator to where it is to be seen.
-fn show(shop: &mut Shop, rest: &[DigitalIn], far: &[DigitalIn], seen: Seen) {
+/// Sets the sensors of an actuator.
+fn show(shop: &mut Shop, rest: &[DigitalIn], far: &[DigitalIn], seen: SensedEnd) {
     for point in rest {
-        shop.set(*point, seen == Seen::Rest);
+        shop.set(*point, seen == SensedEnd::Rest);
     }
     for point in far {
-        shop.set(*point, seen == Seen::Far);
+        shop.set(*point, seen == SensedEnd::Far);
     }
 }

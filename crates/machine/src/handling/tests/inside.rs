@@ -1,15 +1,15 @@
-//! What a run before left inside is where it was, or farther on, or told.
+//! A part left by an earlier run is in its place, farther on, or reported.
 
 use super::Shop;
 use crate::dut::em_relay::bins;
 use crate::handling::inside::Inside;
 use crate::handling::ledger::Ledger;
 use crate::handling::place::{NestId, Place};
-use crate::handling::recovery::{Recovery, Seen};
+use crate::handling::recovery::{Recovery, SensedParts};
 use crate::handling::trouble::Trouble;
 use crate::rig::point::DigitalIn;
 
-/// Pocket, nest, gripper as bits.
+/// Makes a set of places from pocket, nest and gripper as bits.
 fn left(places: u8) -> Inside {
     Inside {
         pocket: places & 1 != 0,
@@ -19,16 +19,16 @@ fn left(places: u8) -> Inside {
     }
 }
 
-fn seen(places: u8) -> Seen {
-    Seen {
+fn seen(places: u8) -> SensedParts {
+    SensedParts {
         pocket: places & 1 != 0,
         nest: places & 2 != 0,
         gripper: places & 4 != 0,
     }
 }
 
-/// Most parts that can be accounted for, over every way to say which seen part is which left one: one of the pocket
-/// may be anywhere, one of nest or gripper in either.
+/// Returns the greatest number of parts accounted for, over all assignments of sensed parts to left ones: one from the
+/// pocket may be anywhere, one from nest or gripper in either.
 fn accounted(left: u8, seen: u8) -> usize {
     let may = |part: usize, place: usize| part == 0 || place > 0;
     let of = |places: u8| (0..3).filter(move |bit| places & (1 << bit) != 0);
@@ -44,7 +44,7 @@ fn accounted(left: u8, seen: u8) -> usize {
 }
 
 #[test]
-fn each_part_that_no_seen_one_can_be_is_told_once() {
+fn each_missing_part_is_reported_once() {
     for places in 0..8_u8 {
         for found in 0..8_u8 {
             let told = left(places).missing(&seen(found)).len();
@@ -55,7 +55,7 @@ fn each_part_that_no_seen_one_can_be_is_told_once() {
 }
 
 #[test]
-fn the_place_that_held_the_part_is_named() {
+fn the_report_names_the_place_of_the_part() {
     for (places, found, place) in [
         (0b100, 0, Place::Gripper),
         (0b110, 0b100, Place::Nest(NestId::FIRST)),
@@ -67,7 +67,7 @@ fn the_place_that_held_the_part_is_named() {
 }
 
 #[test]
-fn a_part_that_was_let_go_is_told_with_its_bin_unless_the_fingers_hold_it_still() {
+fn a_released_part_is_reported_unless_the_fingers_hold_it() {
     let falling = Inside {
         falling: Some(bins::COIL),
         ..left(0b010)
@@ -78,7 +78,7 @@ fn a_part_that_was_let_go_is_told_with_its_bin_unless_the_fingers_hold_it_still(
 }
 
 #[test]
-fn a_lifted_part_that_is_taken_away_is_told_wherever_the_two_behind_it_stand() {
+fn a_removed_lifted_part_is_always_reported() {
     let mut written = left(0b011);
     for (places, without_it) in [
         (0b011, 0b001),
@@ -87,7 +87,7 @@ fn a_lifted_part_that_is_taken_away_is_told_wherever_the_two_behind_it_stand() {
         (0b111, 0b011),
     ] {
         let now = left(places);
-        if now.is_hard_to_tell() {
+        if now.needs_record() {
             written = now;
         }
         let told = written.missing(&seen(without_it)).len();
@@ -96,13 +96,13 @@ fn a_lifted_part_that_is_taken_away_is_told_wherever_the_two_behind_it_stand() {
 }
 
 #[test]
-fn the_first_homing_tells_what_is_gone_and_the_second_one_does_not() {
+fn only_the_first_homing_reports_missing_parts() {
     let mut shop = Shop::at_rest();
     shop.ledger = Ledger::after(left(0b110));
     shop.set(DigitalIn::NestPresent, true);
     shop.scan();
     assert_eq!(
-        shop.ledger.to_look_for(),
+        shop.ledger.parts_to_find(),
         left(0b110),
         "still to be looked for"
     );
@@ -117,7 +117,7 @@ fn the_first_homing_tells_what_is_gone_and_the_second_one_does_not() {
     }
     assert_eq!(told, ["part_lost", "part_found"]);
     assert_eq!(
-        shop.ledger.to_look_for(),
+        shop.ledger.parts_to_find(),
         left(0b010),
         "the one that was found"
     );

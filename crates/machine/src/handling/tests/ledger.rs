@@ -15,7 +15,7 @@ fn with_part_in_gripper() -> Ledger {
 }
 
 #[test]
-fn four_parts_may_be_inside_at_once_one_in_each_place() {
+fn four_places_may_hold_four_parts() {
     let mut ledger = with_part_in_gripper();
     ledger.drop_over(Bin::PASS, RigTime(5), 3);
     ledger.enter_pocket();
@@ -34,7 +34,7 @@ fn four_parts_may_be_inside_at_once_one_in_each_place() {
 }
 
 #[test]
-fn parts_are_numbered_in_the_order_in_which_they_enter_the_nest() {
+fn parts_are_numbered_in_order_of_entering_the_nest() {
     let mut ledger = Ledger::default();
     let expected = [
         (Some("G-12-1"), Kind::Golden("G-12-1".into())),
@@ -57,7 +57,7 @@ fn parts_are_numbered_in_the_order_in_which_they_enter_the_nest() {
 }
 
 #[test]
-fn a_lost_part_is_counted_as_lost_and_never_as_binned() {
+fn a_lost_part_never_counts_as_binned() {
     let mut ledger = with_part_in_gripper();
     ledger.drop_over(bins::COIL, RigTime(0), 0);
     assert!(ledger.lose(Place::Falling) && ledger.fall().is_none());
@@ -82,7 +82,7 @@ fn an_empty_gripper_that_opens_lets_no_part_fall() {
 
 #[test]
 #[should_panic(expected = "a second part in the pocket")]
-fn two_parts_in_the_pocket_are_a_mistake_of_the_program() {
+fn a_second_part_in_the_pocket_panics() {
     let mut ledger = Ledger::default();
     ledger.enter_pocket();
     ledger.enter_pocket();
@@ -90,7 +90,7 @@ fn two_parts_in_the_pocket_are_a_mistake_of_the_program() {
 
 #[test]
 #[should_panic(expected = "a second part in the gripper")]
-fn two_parts_in_the_gripper_are_a_mistake_of_the_program() {
+fn a_second_part_in_the_gripper_panics() {
     let mut ledger = with_part_in_gripper();
     ledger.enter_pocket();
     ledger.enter_nest(NestId::FIRST, None);
@@ -114,7 +114,7 @@ fn an_empty_nest_hands_nothing_over() {
 }
 
 #[test]
-fn a_part_is_in_exactly_one_place_from_pocket_to_bin() {
+fn a_part_is_always_in_exactly_one_place() {
     let mut ledger = Ledger::default();
     ledger.enter_pocket();
     assert!(ledger.holds(Place::Pocket) && ledger.part(Place::Pocket).is_none());
@@ -125,14 +125,14 @@ fn a_part_is_in_exactly_one_place_from_pocket_to_bin() {
     ledger.set_down(NestId::FIRST);
     ledger.lift(NestId::FIRST);
     ledger.drop_over(Bin::PASS, RigTime(0), 0);
-    ledger.keep_hold();
+    ledger.return_to_gripper();
     assert_eq!(places(&ledger), [Place::Gripper]);
     ledger.drop_over(Bin::PASS, RigTime(0), 0);
     assert_eq!(ledger.land().map(|part| part.kind), Some(Kind::Lot(1)));
     assert!(ledger.balances() && ledger.inside() == 0);
 }
 
-/// Sockets filled by hand; the first one holds a golden part.
+/// Makes a ledger with sockets filled by hand; the first holds a reference part.
 fn filled(sockets: u16) -> Ledger {
     let mut ledger = Ledger::default();
     for socket in 0..sockets {
@@ -143,7 +143,7 @@ fn filled(sockets: u16) -> Ledger {
 }
 
 #[test]
-fn sockets_filled_by_hand_are_judged_together_and_unloaded_by_list() {
+fn sockets_are_judged_together_and_unloaded_by_list() {
     let mut ledger = filled(8);
     assert_eq!((ledger.inside(), ledger.lot_parts()), (8, 7));
     let bins = [Bin::PASS, bins::COIL, Bin::RETEST];
@@ -152,7 +152,7 @@ fn sockets_filled_by_hand_are_judged_together_and_unloaded_by_list() {
         assert_eq!(part.ordinal, u64::from(socket) + 1);
         part.bin = Some(bins[usize::from(socket) % 3]);
     }
-    // The list of a person goes by bins, not by sockets.
+    // A person unloads by bins, not by sockets.
     let mut list: Vec<(Bin, u16)> = (0..8).map(|n| (bins[usize::from(n) % 3], n)).collect();
     list.sort();
     for (taken, (bin, socket)) in (1..).zip(list) {
@@ -173,7 +173,7 @@ fn a_part_missing_from_its_socket_is_lost() {
 }
 
 #[test]
-#[should_panic(expected = "unloaded before it was judged")]
+#[should_panic(expected = "unloaded before its verdict")]
 fn no_part_leaves_its_socket_unjudged() {
     filled(2).unload_socket(1);
 }

@@ -1,4 +1,4 @@
-//! What is known of an actuator, and what is not.
+//! The known position of an actuator.
 
 use super::Shop;
 use super::shop::{LENGTH_MM, TIMEOUT};
@@ -22,7 +22,7 @@ fn arrived(shop: &Shop, movement: Move) -> bool {
     shop.mechanism.has_arrived(movement, shop.now, &shop.image)
 }
 
-/// Each motion with its actuator and the end it goes to.
+/// Each motion with its actuator and its end.
 const MOTIONS: [(Move, Actuator, f64); 13] = [
     (Move::EscapementRelease, Actuator::Escapement, 12.0),
     (Move::EscapementHold, Actuator::Escapement, 0.0),
@@ -40,7 +40,7 @@ const MOTIONS: [(Move, Actuator, f64); 13] = [
 ];
 
 #[test]
-fn a_motion_arrives_when_its_sensors_were_read_after_it_was_driven() {
+fn a_motion_arrives_only_with_newer_sensor_values() {
     for (movement, actuator, to_mm) in MOTIONS {
         let mut shop = Shop::at_rest();
         shop.mechanism.driven(movement, shop.now, &shop.image);
@@ -56,7 +56,7 @@ fn a_motion_arrives_when_its_sensors_were_read_after_it_was_driven() {
 }
 
 #[test]
-fn an_actuator_under_way_is_anywhere_between_where_it_was_and_where_it_goes() {
+fn a_moving_actuator_is_anywhere_on_its_way() {
     let mut shop = Shop::at_rest();
     shop.mechanism
         .driven(Move::PusherExtend, shop.now, &shop.image);
@@ -65,7 +65,7 @@ fn an_actuator_under_way_is_anywhere_between_where_it_was_and_where_it_goes() {
         to_mm: 60.0,
     };
     assert_eq!(position(&shop, Actuator::Pusher), under_way);
-    // Its rest sensor may still be covered: the motion counts, not the sensor.
+    // Its rest sensor may still be on: the motion counts, not the sensor.
     shop.after(8);
     shop.mechanism.update(shop.now, &shop.image);
     assert_eq!(position(&shop, Actuator::Pusher), under_way);
@@ -73,7 +73,7 @@ fn an_actuator_under_way_is_anywhere_between_where_it_was_and_where_it_goes() {
 }
 
 #[test]
-fn an_axis_under_way_spans_only_the_stations_it_passes() {
+fn a_moving_axis_spans_only_stations_on_its_way() {
     let mut shop = Shop::at_rest();
     shop.carried_out(TO_PASS);
     let coil = Move::AxisTo(AxisStation::Bin(bins::COIL));
@@ -87,7 +87,7 @@ fn an_axis_under_way_spans_only_the_stations_it_passes() {
 }
 
 #[test]
-fn an_axis_that_was_never_sent_anywhere_may_be_anywhere() {
+fn an_axis_without_a_travel_may_be_anywhere() {
     let mut shop = Shop::at_rest();
     let anywhere = Position::Between {
         from_mm: 0.0,
@@ -100,7 +100,7 @@ fn an_axis_that_was_never_sent_anywhere_may_be_anywhere() {
 }
 
 #[test]
-fn the_axis_is_not_believed_before_its_drive_can_have_reacted() {
+fn in_position_is_ignored_until_the_drive_reacts() {
     let mut shop = Shop::at_rest();
     shop.mechanism.driven(TO_PASS, shop.now, &shop.image);
     shop.after(14);
@@ -112,7 +112,7 @@ fn the_axis_is_not_believed_before_its_drive_can_have_reacted() {
 }
 
 #[test]
-fn a_reading_from_before_the_motion_does_not_show_its_end() {
+fn an_older_sensor_value_shows_no_arrival() {
     let mut shop = Shop::at_rest();
     shop.now = shop.now + Span::ms(5);
     shop.mechanism
@@ -125,12 +125,12 @@ fn a_reading_from_before_the_motion_does_not_show_its_end() {
     assert!(arrived(&shop, Move::PusherRetract));
 }
 
-/// Trouble that an update finds.
+/// Returns the troubles of an update.
 fn seen(shop: &mut Shop) -> Vec<Trouble> {
     shop.mechanism.update(shop.now, &shop.image).trouble
 }
 
-/// The stroke goes back and forth once more, and fails again.
+/// The stroke runs back and forth once more, and fails again.
 fn second_try(shop: &mut Shop, movement: Move, back: Move, first: &[Trouble]) -> Vec<Trouble> {
     assert_eq!(first[0], Trouble::Retried(movement, TIMEOUT));
     shop.mechanism.driven(back, shop.now, &shop.image);
@@ -148,7 +148,7 @@ fn second_try(shop: &mut Shop, movement: Move, back: Move, first: &[Trouble]) ->
 }
 
 #[test]
-fn an_actuator_that_takes_too_long_is_an_alarm_with_its_name() {
+fn a_late_actuator_is_an_alarm_with_its_name() {
     for (movement, ..) in MOTIONS {
         let mut shop = Shop::at_rest();
         for (point, state) in movement.arrival() {
@@ -188,7 +188,7 @@ fn the_opposite_order_replaces_a_motion_under_way() {
 }
 
 #[test]
-fn stale_sensors_say_nothing_and_the_actuator_has_its_whole_stroke() {
+fn stale_sensors_leave_the_whole_stroke() {
     let mut shop = Shop::at_rest();
     shop.now = shop.now + SENSOR_AGE;
     assert!(arrived(&shop, Move::PusherRetract), "old but believed");
@@ -209,7 +209,7 @@ fn stale_sensors_say_nothing_and_the_actuator_has_its_whole_stroke() {
 }
 
 #[test]
-fn two_end_sensors_at_once_or_none_leave_the_position_open() {
+fn two_or_no_end_sensors_leave_the_position_open() {
     for both in [true, false] {
         let mut shop = Shop::at_rest();
         shop.set(DigitalIn::PusherRetracted, both);
@@ -221,7 +221,7 @@ fn two_end_sensors_at_once_or_none_leave_the_position_open() {
 }
 
 #[test]
-fn the_guard_is_told_every_position_and_every_part() {
+fn the_situation_has_every_position_and_every_part() {
     let shop = Shop::at_rest();
     let parts = PartPlaces {
         nest: true,

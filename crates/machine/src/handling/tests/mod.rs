@@ -1,4 +1,4 @@
-//! Facts about feed, nest and sorter, on the default rig with sensors set by hand.
+//! Tests of feed, nest and sorter, on the default rig with sensors set by hand.
 #![allow(clippy::unwrap_used)]
 
 mod feed;

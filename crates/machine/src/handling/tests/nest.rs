@@ -1,4 +1,4 @@
-//! The nest takes a part, has it tested and hands it to the gripper, never letting it loose in between.
+//! The nest takes a part, tests it and hands it to the gripper, and never releases it in between.
 
 use super::{Shop, context, device};
 use crate::dut::em_relay::points::DigitalOut;
@@ -13,7 +13,7 @@ use crate::rig::axis::AxisStation;
 use crate::rig::point::DigitalIn;
 use units::{RigTime, Second};
 
-/// The nest with what stands beside it.
+/// A nest with its surroundings.
 struct Nest {
     shop: Shop,
     sort: Sort,
@@ -21,7 +21,7 @@ struct Nest {
 }
 
 impl Nest {
-    /// A part was just pushed in; the pusher is still there, the axis waits over the nest.
+    /// Makes a nest with a part just pushed in; the pusher is still there, the axis waits over the nest.
     fn loaded(golden: Option<String>) -> Self {
         let mut shop = Shop::at_rest();
         shop.carried_out(Move::AxisTo(AxisStation::Nest));
@@ -59,7 +59,7 @@ impl Nest {
         &self.shop.wants.rig.motions
     }
 
-    /// Up to the first job of the test.
+    /// Steps up to the first job of the test.
     fn testing(&mut self) -> NestState {
         let state = self.step(NestState::Empty, None);
         assert_eq!(self.motions(), [Move::ClampClose]);
@@ -73,7 +73,7 @@ impl Nest {
         self.step(state, None)
     }
 
-    /// The test ends in trouble 40 ms after it began.
+    /// Fails a job 40 ms after the start of the test.
     fn judged(&mut self) -> NestState {
         let state = self.testing();
         self.fails(state)
@@ -85,20 +85,20 @@ impl Nest {
             at: self.shop.now,
             trouble: Some("measure 05: silent".into()),
         };
-        // The first one ends the stage, the second one the switching off that follows.
+        // The first failure ends the stage, the second the switching off after it.
         let state = self.step(state, Some(failed.clone()));
         assert!(matches!(state, NestState::Testing(_)));
         self.step(state, Some(failed))
     }
 
-    /// The open fingers have come down around the part.
+    /// Lowers the open fingers around the part.
     fn fingers_around(&mut self) {
         self.shop.carried_out(Move::SortDown);
         self.sort = Sort::AtPart;
     }
 }
 
-/// The first job of a test.
+/// Returns the first job of a test.
 fn pins() -> NestJob {
     NestJob {
         nest: NestId::FIRST,
@@ -118,7 +118,7 @@ fn an_empty_nest_asks_for_nothing() {
 }
 
 #[test]
-fn the_test_begins_with_the_pins_once_the_probes_are_up() {
+fn with_probes_up_the_test_begins_with_the_pins() {
     let mut nest = Nest::loaded(None);
     let state = nest.testing();
     assert!(matches!(state, NestState::Testing(_)));
@@ -128,7 +128,7 @@ fn the_test_begins_with_the_pins_once_the_probes_are_up() {
 }
 
 #[test]
-fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
+fn a_failed_job_sends_the_part_to_retest() {
     let mut nest = Nest::loaded(None);
     let state = nest.judged();
     assert!(matches!(state, NestState::Judged));
@@ -144,8 +144,7 @@ fn a_failed_job_voids_the_part_under_test_and_sends_it_to_retest() {
 }
 
 #[test]
-fn a_golden_part_that_could_not_be_judged_is_tested_three_times_and_ends_in_retest_under_its_serial()
- {
+fn a_void_reference_part_is_tested_three_times() {
     let mut nest = Nest::loaded(Some("G-12-1".into()));
     let mut state = nest.judged();
     for tests in 1..3 {
@@ -161,7 +160,7 @@ fn a_golden_part_that_could_not_be_judged_is_tested_three_times_and_ends_in_rete
 }
 
 #[test]
-fn a_judged_part_stays_clamped_until_the_gripper_has_it() {
+fn the_nest_holds_a_judged_part_until_gripped() {
     let mut nest = Nest::loaded(None);
     let state = nest.judged();
     let state = nest.step(state, None);
@@ -181,7 +180,7 @@ fn a_judged_part_stays_clamped_until_the_gripper_has_it() {
     assert!(matches!(state, NestState::Lifting));
 }
 
-/// Takes the part up and out of the nest.
+/// Lifts the part out of the nest.
 fn lift(nest: &mut Nest) -> NestState {
     let state = nest.judged();
     nest.fingers_around();
@@ -195,7 +194,7 @@ fn lift(nest: &mut Nest) -> NestState {
 }
 
 #[test]
-fn the_part_changes_hands_when_z_is_up_and_the_nest_is_seen_empty() {
+fn the_gripper_owns_the_part_once_z_is_up() {
     let mut nest = Nest::loaded(None);
     let state = lift(&mut nest);
     let state = nest.step(state, None);
@@ -210,7 +209,7 @@ fn the_part_changes_hands_when_z_is_up_and_the_nest_is_seen_empty() {
 }
 
 #[test]
-fn the_first_part_has_no_cycle_and_the_next_counts_from_it() {
+fn the_cycle_time_begins_with_the_second_part() {
     for (before_ms, cycle) in [(None, None), (Some(500), Some(0.5))] {
         let mut nest = Nest::loaded(None);
         let state = lift(&mut nest);
@@ -225,7 +224,7 @@ fn the_first_part_has_no_cycle_and_the_next_counts_from_it() {
 }
 
 #[test]
-fn a_part_that_was_interrupted_is_clamped_and_not_tested() {
+fn an_interrupted_part_is_clamped_and_not_tested() {
     let mut nest = Nest::loaded(None);
     let part = nest.shop.ledger.part_mut(Place::NEST).unwrap();
     part.interrupted = Some("emergency_stop".into());

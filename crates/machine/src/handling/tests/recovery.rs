@@ -1,4 +1,4 @@
-//! Homing in an order that can be proved clear; parts are where they are seen.
+//! Homing moves in an order that is provably clear, and takes parts to be where the sensors show them.
 
 use super::Shop;
 use crate::handling::ledger::{Kind, Ledger};
@@ -19,7 +19,7 @@ const ORDER: [Move; 7] = [
     Move::AxisTo(AxisStation::Nest),
 ];
 
-/// Everything stands at its far end.
+/// Puts every actuator at its far end.
 fn nothing_home() -> Shop {
     let mut shop = Shop::at_rest();
     for movement in [
@@ -36,7 +36,7 @@ fn nothing_home() -> Shop {
     shop
 }
 
-/// Carries everything out that homing asks for; what was driven, in order.
+/// Carries out all commands of homing; returns the motions in order.
 fn carried_out(shop: &mut Shop) -> Vec<Move> {
     let mut recovery = Recovery::default();
     let mut driven = Vec::new();
@@ -59,18 +59,18 @@ fn carried_out(shop: &mut Shop) -> Vec<Move> {
 }
 
 #[test]
-fn actuators_go_home_one_after_the_other_with_z_first() {
+fn homing_moves_z_first_then_one_by_one() {
     assert_eq!(carried_out(&mut nothing_home()), ORDER);
 }
 
 #[test]
-fn what_is_at_home_already_is_not_moved_but_the_axis_is() {
+fn homing_moves_only_the_axis_from_rest() {
     let driven = carried_out(&mut Shop::at_rest());
     assert_eq!(driven, [Move::AxisTo(AxisStation::Nest)]);
 }
 
 #[test]
-fn a_part_that_the_pusher_had_brought_to_the_nest_is_neither_lost_nor_found() {
+fn a_delivered_part_is_neither_lost_nor_found() {
     let mut shop = Shop::at_rest();
     shop.ledger.enter_pocket();
     shop.set(DigitalIn::NestPresent, true);
@@ -81,7 +81,7 @@ fn a_part_that_the_pusher_had_brought_to_the_nest_is_neither_lost_nor_found() {
 }
 
 #[test]
-fn the_drive_is_reset_and_its_servo_on_before_anything_moves() {
+fn the_drive_is_reset_before_anything_moves() {
     let mut shop = nothing_home();
     let mut recovery = Recovery::default();
     let mut outputs = Vec::new();
@@ -100,7 +100,7 @@ fn the_drive_is_reset_and_its_servo_on_before_anything_moves() {
 }
 
 #[test]
-fn nothing_moves_before_the_places_of_parts_were_looked_at() {
+fn nothing_moves_before_the_part_sensors_are_read() {
     let mut shop = Shop::unread();
     let mut recovery = Recovery::default();
     for _ in 0..3 {
@@ -110,7 +110,7 @@ fn nothing_moves_before_the_places_of_parts_were_looked_at() {
 }
 
 #[test]
-fn a_motion_that_the_guard_refuses_waits_until_the_others_are_home() {
+fn a_refused_motion_waits_for_the_others() {
     let mut shop = nothing_home();
     shop.stands(Move::SortUp);
     shop.scan();
@@ -136,7 +136,7 @@ fn a_motion_that_the_guard_refuses_waits_until_the_others_are_home() {
 }
 
 #[test]
-fn a_part_that_nobody_knows_is_found_and_fingers_that_hold_one_stay_closed() {
+fn fingers_that_hold_a_found_part_stay_closed() {
     for (point, place) in [
         (DigitalIn::PocketPresent, "pocket"),
         (DigitalIn::NestPresent, "nest"),
@@ -156,9 +156,9 @@ fn a_part_that_nobody_knows_is_found_and_fingers_that_hold_one_stay_closed() {
     }
 }
 
-/// Every combination of what the ledger says and what is seen.
+/// Every combination of ledger and sensors.
 #[test]
-fn after_homing_the_ledger_says_what_the_sensors_say_whatever_it_said_before() {
+fn after_homing_the_ledger_agrees_with_the_sensors() {
     for before in 0..8_u8 {
         for seen in 0..8_u8 {
             let mut shop = Shop::at_rest();
@@ -190,7 +190,7 @@ fn after_homing_the_ledger_says_what_the_sensors_say_whatever_it_said_before() {
 }
 
 #[test]
-fn a_part_that_had_been_pushed_is_not_taken_for_the_one_that_the_fingers_lost() {
+fn a_pushed_part_never_counts_as_the_lost_one() {
     let mut shop = Shop::at_rest();
     shop.ledger = ledger(0b101);
     shop.set(DigitalIn::NestPresent, true);
@@ -202,7 +202,7 @@ fn a_part_that_had_been_pushed_is_not_taken_for_the_one_that_the_fingers_lost() 
 }
 
 #[test]
-fn a_part_that_was_to_fall_and_is_seen_in_the_fingers_is_neither_found_nor_lost() {
+fn a_part_still_in_the_fingers_is_not_lost() {
     for in_the_fingers in [true, false] {
         let mut shop = Shop::at_rest();
         shop.ledger = ledger(0b100);

@@ -1,4 +1,4 @@
-//! A rig whose sensors are set by hand: what a step machine sees and asks for, without any module.
+//! A rig with sensors set by hand, to test step machines without modules.
 
 use super::wiring;
 use crate::dut::em_relay::points::{self, AnalogIn, Counter, Points};
@@ -21,7 +21,7 @@ use units::{RigTime, Span};
 /// Longest stroke of every actuator in these tests.
 pub const TIMEOUT: Span = Span::ms(900);
 
-/// Sensors that are on with every actuator at its rest end, no part and safety as it should be.
+/// Sensors that are on with every actuator at rest, no part, and safety intact.
 const AT_REST: [DigitalIn; 11] = [
     DigitalIn::EmergencyStopOk,
     DigitalIn::DoorClosed,
@@ -36,7 +36,7 @@ const AT_REST: [DigitalIn; 11] = [
     DigitalIn::GripperOpen,
 ];
 
-/// What a turn asked for and told.
+/// Commands and events of a turn.
 #[derive(Debug, Default)]
 pub struct Asked {
     pub rig: Commands,
@@ -45,14 +45,14 @@ pub struct Asked {
 }
 
 impl Asked {
-    /// Codes of the alarms that come of it.
+    /// Returns the codes of the resulting alarms.
     pub fn alarms(&self) -> Vec<String> {
         let alarms = self.trouble.iter().cloned().map(Alarm::from);
         alarms.map(|alarm| alarm.code.name()).collect()
     }
 }
 
-/// Everything that a turn needs.
+/// The inputs of a turn.
 pub struct Shop {
     pub wiring: Arc<Wiring>,
     pub image: Image,
@@ -67,7 +67,7 @@ pub struct Shop {
 }
 
 impl Shop {
-    /// At rest, but no sensor was read yet.
+    /// Makes a shop at rest whose sensors are unread.
     pub fn unread() -> Self {
         let wiring = wiring();
         let points = Points::resolve(&wiring).unwrap();
@@ -87,14 +87,14 @@ impl Shop {
         }
     }
 
-    /// At rest and read.
+    /// Makes a shop at rest with all sensors read.
     pub fn at_rest() -> Self {
         let mut shop = Self::unread();
         shop.scan();
         shop
     }
 
-    /// A sensor changes; nobody has read it yet.
+    /// Changes a sensor without reading it.
     pub fn set(&mut self, point: impl Into<DigitalInput>, state: bool) {
         if state {
             self.on.insert(point.into());
@@ -103,17 +103,17 @@ impl Shop {
         }
     }
 
-    /// An input of the interface board changes.
+    /// Changes an input of the interface board.
     pub fn set_board(&mut self, point: points::DigitalIn, state: bool) {
         self.set(self.points.input(point), state);
     }
 
-    /// State of a sensor, read or not.
+    /// Returns the state of a sensor, read or not.
     pub fn is_on(&self, point: impl Into<DigitalInput>) -> bool {
         self.on.contains(&point.into())
     }
 
-    /// Every digital module is read now.
+    /// Reads every digital module.
     pub fn scan(&mut self) {
         let inputs = self.wiring.digital_inputs();
         let modules: BTreeSet<ModuleId> = inputs
@@ -141,13 +141,13 @@ impl Shop {
             .unwrap();
     }
 
-    /// Time passes and everything is read.
+    /// Lets time pass and reads everything.
     pub fn after(&mut self, ms: u64) {
         self.now = self.now + Span::ms(ms);
         self.scan();
     }
 
-    /// One module answers a command of the wiring in its own words.
+    /// Feeds the raw reply of a module to a command into the image.
     pub fn answer(&mut self, command: Command, module: ModuleId, reply: &str) {
         let decoded = command
             .decode(format!("{reply}\r").as_bytes(), false)
@@ -158,7 +158,7 @@ impl Shop {
             .unwrap();
     }
 
-    /// Beam of a chute answers its count.
+    /// Feeds the count of a chute's beam into the image.
     pub fn beam(&mut self, point: DigitalInput, count: u16) {
         let command = self.wiring.read_events(point);
         let module = self.wiring.digital_in(point).module;
@@ -166,30 +166,30 @@ impl Shop {
         self.answer(command, module, &format!("!{address}{count:05}"));
     }
 
-    /// A converter answers volts at one terminal.
+    /// Feeds volts at one terminal of a converter into the image.
     pub fn volts(&mut self, point: AnalogIn, volts: f64) {
         self.volts_at(self.points.analog(point), volts);
     }
 
-    /// The same of a point that a job has named.
+    /// Feeds volts for a point that a job names.
     pub fn volts_at(&mut self, point: AnalogInput, volts: f64) {
         let steps = (volts / 10.0 * 32768.0).round() as i16;
         let module = self.wiring.analog_in(point).module;
         self.reads(Point::Analog(point), module, &format!(">{steps:04X}"));
     }
 
-    /// A gate counter answers.
+    /// Feeds the count of a gate counter into the image.
     pub fn gate(&mut self, counter: Counter, count: u32) {
         self.count(self.points.counter(counter), count);
     }
 
-    /// The same of a counter that a job has named.
+    /// Feeds the count of a point that a job names.
     pub fn count(&mut self, counter: GatedCounter, count: u32) {
         let module = self.wiring.counter(counter).module;
         self.reads(Point::Count(counter), module, &format!(">{count:08X}"));
     }
 
-    /// The thermometer of the track answers.
+    /// Feeds the temperature of the track into the image.
     pub fn track(&mut self, celsius: f64) {
         let track = self.points.track;
         let module = self.wiring.temperature(track).module;
@@ -205,14 +205,14 @@ impl Shop {
         self.answer(command, module, reply);
     }
 
-    /// The sensors of a motion's end, as if the actuator were there.
+    /// Sets the sensors of a motion's end.
     pub fn stands(&mut self, movement: Move) {
         for (point, state) in opposite(movement).iter().chain(movement.arrival()) {
             self.set(*point, *state);
         }
     }
 
-    /// A motion is driven and has arrived and been seen 100 ms later.
+    /// Drives a motion and shows its arrival 100 ms later.
     pub fn carried_out(&mut self, movement: Move) {
         self.mechanism.driven(movement, self.now, &self.image);
         self.stands(movement);
@@ -221,7 +221,7 @@ impl Shop {
         assert!(found.trouble.is_empty(), "{found:?}");
     }
 
-    /// A turn that begins with empty wants.
+    /// Makes a turn without commands.
     pub fn turn(&mut self) -> Turn<'_> {
         self.wants = Asked::default();
         Turn {
@@ -238,13 +238,13 @@ impl Shop {
         }
     }
 
-    /// Codes of the alarms of the last turn.
+    /// Returns the codes of the last turn's alarms.
     pub fn alarms(&self) -> Vec<String> {
         self.wants.alarms()
     }
 }
 
-/// Sensors of the other end, which a motion leaves.
+/// Returns the sensors of the other end, which a motion leaves.
 fn opposite(movement: Move) -> &'static [(DigitalIn, bool)] {
     match movement {
         Move::ClampClose => &[
@@ -269,10 +269,10 @@ fn opposite(movement: Move) -> &'static [(DigitalIn, bool)] {
     }
 }
 
-/// Strokes in the order of the actuators; the axis has its table.
+/// Returns the strokes in the order of the actuators; the axis has its table.
 pub const LENGTH_MM: [f64; 8] = [12.0, 60.0, 8.0, 8.0, 12.0, 0.0, 40.0, 6.0];
 
-/// Nothing under way.
+/// Makes a mechanism without motions.
 pub fn mechanism(wiring: &Wiring) -> Mechanism {
     assert_eq!(Actuator::ALL.len(), LENGTH_MM.len());
     let strokes = Strokes {

@@ -1,4 +1,4 @@
-//! A part is let go only over its bin, when it is recorded, and its beam must see it: once.
+//! The sorter releases a part only over its bin and after its record, and its beam must count it once.
 
 use super::Shop;
 use crate::dut::em_relay::bins;
@@ -24,7 +24,7 @@ fn beam(shop: &mut Shop, bin: Bin, count: u16) {
     shop.beam(point, count);
 }
 
-/// The gripper holds a part for `bin`, z is up.
+/// Makes a sorter whose gripper holds a part for `bin`, with z up.
 fn loaded(bin: Bin) -> Shop {
     let mut shop = Shop::at_rest();
     shop.ledger.enter_pocket();
@@ -38,7 +38,7 @@ fn loaded(bin: Bin) -> Shop {
     shop
 }
 
-/// Over the bin, and its beam has been read after that.
+/// Moves over the bin and reads its beam afterwards.
 fn over(bin: Bin, count: u16) -> (Sort, Shop) {
     let mut shop = loaded(bin);
     let sort = step(Sort::Loaded, &mut shop, false);
@@ -51,7 +51,7 @@ fn over(bin: Bin, count: u16) -> (Sort, Shop) {
     (sort, shop)
 }
 
-/// The fingers have opened and the part falls.
+/// Opens the fingers; the part falls.
 fn falling(bin: Bin, count: u16) -> (Sort, Shop) {
     let (sort, mut shop) = over(bin, count);
     shop.recorded = 1;
@@ -62,7 +62,7 @@ fn falling(bin: Bin, count: u16) -> (Sort, Shop) {
     (sort, shop)
 }
 
-/// The guard has cleared the opening of the fingers.
+/// Drives the opening of the fingers after the guard's clearance.
 fn let_go(sort: Sort, shop: &mut Shop) -> Sort {
     assert!(matches!(sort, Sort::LettingGo(..)), "{sort:?}");
     let sort = sort.driven(Move::GripperOpen, &mut shop.ledger, shop.now);
@@ -71,7 +71,7 @@ fn let_go(sort: Sort, shop: &mut Shop) -> Sort {
 }
 
 #[test]
-fn z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open() {
+fn z_comes_down_only_during_a_test() {
     let ready = || {
         let mut shop = Shop::at_rest();
         shop.carried_out(HOME);
@@ -96,7 +96,7 @@ fn z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open() {
 }
 
 #[test]
-fn the_fingers_stand_around_the_part_once_z_is_down() {
+fn the_fingers_surround_the_part_once_z_is_down() {
     let mut shop = Shop::at_rest();
     shop.carried_out(HOME);
     let sort = step(Sort::OverNest, &mut shop, true);
@@ -111,7 +111,7 @@ fn the_fingers_stand_around_the_part_once_z_is_down() {
 }
 
 #[test]
-fn a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest() {
+fn an_unjudged_part_is_carried_to_retest() {
     for bin in Shop::at_rest().wiring.axis.bins() {
         let mut shop = loaded(bin);
         assert_eq!(step(Sort::Loaded, &mut shop, false), Sort::Carrying(bin));
@@ -127,7 +127,7 @@ fn a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest() {
 }
 
 #[test]
-fn a_part_is_let_go_only_when_its_record_is_durable() {
+fn a_release_needs_a_durable_record() {
     let (sort, mut shop) = over(Bin::PASS, 3);
     for recorded in [0, 1] {
         shop.recorded = recorded;
@@ -137,7 +137,7 @@ fn a_part_is_let_go_only_when_its_record_is_durable() {
 }
 
 #[test]
-fn a_part_is_in_the_fingers_until_their_opening_is_driven() {
+fn the_fingers_own_the_part_until_they_open() {
     let (sort, mut shop) = over(Bin::PASS, 3);
     shop.recorded = 1;
     let asked = step(sort, &mut shop, false);
@@ -153,7 +153,7 @@ fn a_part_is_in_the_fingers_until_their_opening_is_driven() {
 }
 
 #[test]
-fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
+fn a_release_needs_a_fresh_count_of_the_beam() {
     let mut shop = loaded(bins::TIME);
     shop.recorded = 1;
     beam(&mut shop, bins::TIME, 5);
@@ -171,7 +171,7 @@ fn a_part_is_let_go_only_when_the_beam_was_read_over_the_bin() {
 }
 
 #[test]
-fn a_part_is_not_let_go_while_the_one_before_still_falls() {
+fn a_release_waits_for_the_previous_fall() {
     let (sort, mut shop) = over(Bin::PASS, 0);
     shop.recorded = 2;
     shop.ledger.drop_over(bins::COIL, shop.now, 0);
@@ -183,7 +183,7 @@ fn a_part_is_not_let_go_while_the_one_before_still_falls() {
 }
 
 #[test]
-fn one_count_of_the_beam_lands_the_part_even_across_the_wrap() {
+fn one_count_lands_the_part_across_the_wrap() {
     for (before, after) in [(3, 4), (u16::MAX, 0)] {
         let (sort, mut shop) = falling(bins::VOLTAGE, before);
         beam(&mut shop, bins::VOLTAGE, after);
@@ -230,7 +230,7 @@ fn a_second_body_behind_the_part_is_an_alarm() {
 }
 
 #[test]
-fn a_part_that_its_beam_does_not_see_is_lost_after_a_second_and_a_half() {
+fn an_uncounted_part_is_lost_after_its_time() {
     let (sort, mut shop) = falling(Bin::PASS, 10);
     let since = shop.ledger.fall().map(|f| f.since).unwrap();
     shop.now = RigTime(since.0 + 1_500_000);
@@ -246,7 +246,7 @@ fn a_part_that_its_beam_does_not_see_is_lost_after_a_second_and_a_half() {
 }
 
 #[test]
-fn a_count_read_before_the_fingers_opened_says_nothing() {
+fn a_count_before_the_release_is_ignored() {
     let (sort, mut shop) = over(Bin::PASS, 10);
     shop.recorded = 1;
     let asked = step(sort, &mut shop, false);
@@ -259,7 +259,7 @@ fn a_count_read_before_the_fingers_opened_says_nothing() {
 }
 
 #[test]
-fn open_fingers_go_back_when_they_are_seen_empty() {
+fn open_fingers_return_only_when_empty() {
     let (sort, mut shop) = falling(Bin::PASS, 0);
     shop.set(DigitalIn::GripperPart, true);
     shop.scan();
@@ -272,7 +272,7 @@ fn open_fingers_go_back_when_they_are_seen_empty() {
 }
 
 #[test]
-fn a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told() {
+fn a_sticking_part_is_reported_and_kept() {
     let (sort, mut shop) = falling(Bin::PASS, 0);
     shop.set(DigitalIn::GripperPart, true);
     shop.after(500);
@@ -282,7 +282,7 @@ fn a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told() {
     assert!(shop.ledger.balances());
 }
 
-/// The fingers were to open, and then everything went safe: their sensor goes on showing the part.
+/// The opening of the fingers is requested, then all outputs go safe: the sensor still shows the part.
 fn never_opened() -> Shop {
     let (sort, mut shop) = over(Bin::PASS, 3);
     shop.recorded = 1;
@@ -292,14 +292,14 @@ fn never_opened() -> Shop {
     shop
 }
 
-/// Nothing came by the beam in time.
+/// Lets the time pass without a count of the beam.
 fn time_is_over(shop: &mut Shop) {
     let since = shop.ledger.fall().map(|it| it.since).unwrap();
     shop.now = RigTime(since.0 + 1_500_001);
 }
 
 #[test]
-fn a_part_whose_fingers_never_opened_is_theirs_and_not_lost() {
+fn a_part_in_closed_fingers_is_not_lost() {
     let mut shop = never_opened();
     time_is_over(&mut shop);
     shop.scan();
@@ -312,7 +312,7 @@ fn a_part_whose_fingers_never_opened_is_theirs_and_not_lost() {
 }
 
 #[test]
-fn nobody_declares_a_part_lost_who_cannot_see_the_fingers() {
+fn a_part_is_not_lost_while_fingers_are_unread() {
     let mut shop = never_opened();
     time_is_over(&mut shop);
     step(Sort::Returning, &mut shop, false);
@@ -328,7 +328,7 @@ fn nobody_declares_a_part_lost_who_cannot_see_the_fingers() {
 }
 
 #[test]
-fn fingers_that_take_the_next_part_do_not_bring_the_fallen_one_back() {
+fn the_next_part_does_not_replace_the_fallen_one() {
     let (sort, mut shop) = falling(Bin::PASS, 10);
     step(sort, &mut shop, false);
     shop.set(DigitalIn::GripperPart, true);

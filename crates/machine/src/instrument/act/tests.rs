@@ -1,4 +1,4 @@
-//! The runner carries acts out one after the other and says where the time went.
+//! The runner carries out acts in order and accounts for the time.
 #![allow(clippy::unwrap_used)]
 
 use crate::dut::em_relay::points::{AnalogIn, AnalogOut, Counter, DigitalIn, DigitalOut};
@@ -11,7 +11,7 @@ fn done(at: RigTime) -> JobDone {
     JobDone { at, trouble: None }
 }
 
-/// A shop that has read everything once, analog and counters included.
+/// A test shop that has read every point once, analog and counters included.
 fn read_once() -> Shop {
     let mut shop = Shop::at_rest();
     for (point, volts) in [
@@ -27,7 +27,7 @@ fn read_once() -> Shop {
     shop
 }
 
-/// One word to the board.
+/// Writes one word to the board.
 fn armed(shop: &Shop) -> Act {
     Act::Set(vec![(shop.points.output(DigitalOut::Arm), true)])
 }
@@ -41,7 +41,7 @@ fn gates(shop: &Shop) -> [Point; 2] {
 }
 
 #[test]
-fn every_act_of_the_bus_becomes_its_job_and_is_asked_once() {
+fn every_bus_act_becomes_one_job() {
     let shop = read_once();
     let (points, coil) = (&shop.points, analog(&shop, AnalogIn::CoilVoltageFine));
     let outputs = vec![(points.output(DigitalOut::Arm), true)];
@@ -95,7 +95,7 @@ fn every_act_of_the_bus_becomes_its_job_and_is_asked_once() {
 }
 
 #[test]
-fn what_was_read_is_kept_by_point() {
+fn readings_are_kept_by_point() {
     let shop = read_once();
     let (points, [gate, other]) = (&shop.points, gates(&shop));
     let reads = [
@@ -133,13 +133,13 @@ fn what_was_read_is_kept_by_point() {
     }
     let track = readings.temperatures(points.track).next().unwrap();
     assert_eq!(track.value, 23.0);
-    let curves = readings.trace.looks().iter().map(|it| it.signal.name);
+    let curves = readings.trace.samples().iter().map(|it| it.signal.name);
     let curves: Vec<_> = curves.collect();
     assert_eq!(curves, ["board", "coil_voltage_fine", "gate_0", "gate_1"]);
 }
 
 #[test]
-fn a_value_that_was_never_read_is_trouble_not_a_guess() {
+fn an_unread_value_is_trouble() {
     let shop = Shop::unread();
     for (read, name) in [
         (Read::Word(shop.points.board.clone()), "board"),
@@ -162,7 +162,7 @@ fn a_value_that_was_never_read_is_trouble_not_a_guess() {
 }
 
 #[test]
-fn a_wait_counts_from_the_reply_before_and_a_wait_since_mark_from_the_mark() {
+fn waits_count_from_reply_or_mark() {
     let shop = read_once();
     let start = shop.now;
     let board = || armed(&shop);
@@ -191,7 +191,7 @@ fn a_wait_counts_from_the_reply_before_and_a_wait_since_mark_from_the_mark() {
 }
 
 #[test]
-fn a_wait_since_mark_that_is_already_over_costs_nothing() {
+fn an_elapsed_wait_since_mark_costs_nothing() {
     let shop = read_once();
     let acts = vec![
         Act::Mark,
@@ -214,7 +214,7 @@ fn until(shop: &Shop, within: Span) -> Vec<Act> {
 }
 
 #[test]
-fn until_asks_again_as_long_as_the_point_is_inactive_then_keeps_that_it_came() {
+fn until_polls_until_the_point_is_active() {
     let mut shop = read_once();
     let mut runner = Runner::new(until(&shop, Span::ms(60)), shop.now);
     runner.step(shop.now, None, &shop.image);
@@ -230,8 +230,8 @@ fn until_asks_again_as_long_as_the_point_is_inactive_then_keeps_that_it_came() {
     assert_eq!(runner.spent().ramp, Span::ms(30));
 }
 
-/// The latch is seen at the second poll, `poll_ms` after the first, and the ramp is sent `sent_ms` after that; when, in ms
-/// after the mark, a wait of 40 ms since it is over.
+/// Polls every `poll_ms`, so that the second poll shows the latch, and starts the ramp `sent_ms` later; returns the
+/// time in ms after the mark at which a 40 ms wait since the mark ends.
 fn ramp_behind_an_event(poll_ms: u64, sent_ms: u64) -> u64 {
     let mut shop = read_once();
     let mut acts = until(&shop, Span::ms(200));
@@ -253,7 +253,7 @@ fn ramp_behind_an_event(poll_ms: u64, sent_ms: u64) -> u64 {
 }
 
 #[test]
-fn a_ramp_that_was_sent_late_is_waited_for_twice_as_much_longer() {
+fn a_late_ramp_doubles_its_delay() {
     assert_eq!(ramp_behind_an_event(3, 4), 40, "as planned");
     assert_eq!(ramp_behind_an_event(9, 4), 40, "as planned at the longest");
     assert_eq!(
@@ -265,7 +265,7 @@ fn a_ramp_that_was_sent_late_is_waited_for_twice_as_much_longer() {
 }
 
 #[test]
-fn until_gives_up_after_its_longest_wait_and_keeps_that_nothing_came() {
+fn until_gives_up_after_its_longest_wait() {
     let mut shop = read_once();
     let mut runner = Runner::new(until(&shop, Span::ms(60)), shop.now);
     runner.step(shop.now, None, &shop.image);
@@ -280,7 +280,7 @@ fn until_gives_up_after_its_longest_wait_and_keeps_that_nothing_came() {
 }
 
 #[test]
-fn until_takes_a_board_that_was_not_read_lately_for_trouble() {
+fn until_reports_a_stale_board_as_trouble() {
     let shop = read_once();
     let mut runner = Runner::new(until(&shop, Span::ms(200)), shop.now);
     runner.step(shop.now, None, &shop.image);
@@ -313,7 +313,7 @@ fn a_job_in_trouble_ends_the_acts() {
 }
 
 #[test]
-fn the_four_shares_of_the_time_add_up_to_the_time_that_passed() {
+fn the_four_times_add_up_to_the_elapsed_time() {
     let mut shop = read_once();
     let start = shop.now;
     let mut acts = vec![

@@ -1,4 +1,4 @@
-//! What of a test is kept, and what is told once.
+//! The samples that a trace keeps.
 #![allow(clippy::unwrap_used)]
 
 use super::*;
@@ -13,7 +13,7 @@ fn a_poll_that_changes_nothing_takes_two_looks() {
         trace.word("board", &[made, !made, false, true], RigTime(at));
     }
     let looks: Vec<(u64, f64)> = trace
-        .looks()
+        .samples()
         .iter()
         .map(|look| (look.at.0, look.value))
         .collect();
@@ -22,7 +22,7 @@ fn a_poll_that_changes_nothing_takes_two_looks() {
 }
 
 #[test]
-fn what_was_asked_is_told_and_what_is_too_much_is_not() {
+fn the_trace_keeps_its_first_samples() {
     let wiring = Shop::unread().wiring;
     let points = Points::resolve(&wiring).unwrap();
     let mut trace = Trace::default();
@@ -34,11 +34,11 @@ fn what_was_asked_is_told_and_what_is_too_much_is_not() {
     for (at, output) in [(8, DigitalOut::CoilDrive), (9, DigitalOut::Arm)] {
         trace.switched(&wiring, &[(points.output(output), true)], RigTime(at));
     }
-    let names: Vec<_> = trace.looks().iter().map(|it| it.signal.name).collect();
+    let names: Vec<_> = trace.samples().iter().map(|it| it.signal.name).collect();
     assert_eq!(names, ["supply_level", "supply_fine", "coil_drive"]);
     let mut much = trace.clone();
-    (0..MOST).for_each(|_| much.asked(&wiring, &levels, RigTime(11)));
-    assert_eq!(much.looks().len(), MOST);
+    (0..MAX_SAMPLES).for_each(|_| much.asked(&wiring, &levels, RigTime(11)));
+    assert_eq!(much.samples().len(), MAX_SAMPLES);
     trace.append(much);
-    assert_eq!(trace.looks().len(), MOST);
+    assert_eq!(trace.samples().len(), MAX_SAMPLES);
 }

@@ -1,9 +1,9 @@
-//! Whether the modules on the lines are the modules of the file.
+//! Compares the modules on the lines with the modules of the file.
 
 use super::{text, wiring};
 use crate::rig::commission::{judge, verification};
 
-/// What the module at `asked` says, judged; `None` when nobody asks that.
+/// Judges the answer `reply` to `asked`; `None` when verification does not ask that.
 fn judged(asked: &str, reply: &str) -> Option<Option<String>> {
     let wiring = wiring();
     let check = verification(&wiring)
@@ -38,7 +38,7 @@ fn a_module_as_wired_passes() {
 }
 
 #[test]
-fn a_module_that_is_not_as_wired_is_named_with_line_and_address() {
+fn a_mismatch_names_line_and_address() {
     for (asked, reply, message) in [
         (
             "$052",

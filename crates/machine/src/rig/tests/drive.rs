@@ -1,4 +1,4 @@
-//! What is put out, and what it takes to move something.
+//! Output values, and the clearance that a motion needs.
 
 use super::{text, wiring};
 use crate::guard::{Actuator, Guard, GuardSettings, Motion, PartSize, Position, Situation, Stroke};
@@ -33,7 +33,7 @@ fn driven(outputs: &mut Outputs, motion: &Motion, situation: &Situation) -> Vec<
 }
 
 #[test]
-fn at_start_every_output_is_written_to_its_safe_value() {
+fn at_start_every_output_gets_its_safe_value() {
     let mut outputs = Outputs::new(wiring());
     let writes: Vec<String> = outputs
         .writes()
@@ -98,7 +98,7 @@ fn one_jaw_alone_cannot_be_driven() {
 }
 
 #[test]
-fn the_axis_travels_on_a_rising_edge_after_its_point_bits() {
+fn the_axis_edge_follows_its_point_bits() {
     let mut outputs = Outputs::new(wiring());
     outputs.set(DigitalOut::AxisServoOn, true).unwrap();
     outputs.writes();
@@ -120,7 +120,7 @@ fn the_axis_travels_on_a_rising_edge_after_its_point_bits() {
 }
 
 #[test]
-fn a_lost_write_is_due_again_and_a_lost_edge_is_made_again() {
+fn lost_writes_and_edges_are_repeated() {
     let wiring = wiring();
     let mut outputs = Outputs::new(Arc::clone(&wiring));
     outputs.writes();
@@ -154,7 +154,7 @@ fn outputs_are_settled_when_every_write_was_confirmed() {
 }
 
 #[test]
-fn a_share_of_the_supply_is_written_as_the_nearest_corrected_step() {
+fn a_supply_share_becomes_the_nearest_corrected_step() {
     let wiring = wiring();
     let level = wiring.analog_output("supply_level").unwrap();
     let mut outputs = Outputs::new(wiring);

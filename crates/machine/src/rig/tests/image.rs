@@ -1,4 +1,4 @@
-//! What is asked, and what is then known.
+//! The commands that read points, and the image of their answers.
 
 use super::{motion, text, wiring};
 use crate::rig::image::{Image, Unexpected};
@@ -23,18 +23,18 @@ fn counter(wiring: &Wiring, name: &str) -> GatedCounter {
     wiring.gated_counter(name).unwrap()
 }
 
-/// What reads one analog input, and what reads one counter.
+/// Returns the commands that read one analog input and one counter.
 fn reads(wiring: &Wiring, point: Point) -> Command {
     wiring.reads(&[point])[0].1
 }
 
-/// The requests that read these points.
+/// Returns the requests that read these points.
 fn texts(wiring: &Wiring, points: &[Point]) -> Vec<String> {
     let reads = wiring.reads(points);
     reads.iter().map(|(_, command)| text(command)).collect()
 }
 
-/// The module on `line` answers `reply` to `command` at `at`.
+/// Feeds the answer `reply` to `command` of a module on `line` into the image at `at`.
 fn answer(
     image: &mut Image,
     line: LineId,
@@ -49,7 +49,7 @@ fn answer(
 }
 
 #[test]
-fn every_point_is_asked_for_at_its_own_terminal() {
+fn every_point_is_read_at_its_own_terminal() {
     let wiring = wiring();
     let track = wiring.thermometer("track_temperature").unwrap();
     for (point, asked) in [
@@ -90,7 +90,7 @@ fn two_kinds_may_declare_the_same_point() {
 }
 
 #[test]
-fn points_of_one_module_are_read_in_one_transaction_where_it_can() {
+fn points_of_one_module_share_a_transaction() {
     let wiring = wiring();
     let input = |name| Point::Input(wiring.digital_input(name).unwrap());
     let inputs = ["latch", "no_closed", "kelvin_nc"].map(input);
@@ -121,7 +121,7 @@ fn a_channel_mask_is_that_of_the_points_wanted() {
 }
 
 #[test]
-fn an_input_that_was_never_read_or_is_stale_has_no_value() {
+fn unread_and_stale_inputs_have_no_value() {
     let wiring = wiring();
     let mut image = Image::new(Arc::clone(&wiring));
     let age = Span::ms(100);
@@ -142,7 +142,7 @@ fn an_input_that_was_never_read_or_is_stale_has_no_value() {
 }
 
 #[test]
-fn the_high_byte_of_a_sixteen_input_module_comes_first() {
+fn the_high_byte_of_sixteen_inputs_comes_first() {
     let wiring = wiring();
     let mut image = Image::new(Arc::clone(&wiring));
     let poll = wiring.poll(wiring.emergency_stop_module());
@@ -175,7 +175,7 @@ fn a_reading_carries_value_terminal_and_bytes() {
 }
 
 #[test]
-fn a_reading_of_all_channels_reaches_each_point_and_blanks_are_no_numbers() {
+fn a_scan_reaches_each_point() {
     let wiring = wiring();
     let mut image = Image::new(Arc::clone(&wiring));
     let all = wiring.poll(wiring.module_named("coil_ai").unwrap());
@@ -250,7 +250,7 @@ fn an_answer_from_an_unwired_address_changes_nothing() {
 }
 
 #[test]
-fn a_module_that_was_reset_is_forgotten_and_reported_once() {
+fn a_reset_module_is_forgotten_and_reported_once() {
     let wiring = wiring();
     let mut image = Image::new(Arc::clone(&wiring));
     let module = wiring.emergency_stop_module();

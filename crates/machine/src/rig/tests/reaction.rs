@@ -1,4 +1,4 @@
-//! How long the emergency-stop contact may go unnoticed.
+//! The worst-case reaction to the emergency-stop contact.
 
 use crate::rig::settings::RigSettings;
 use crate::rig::wiring::Wiring;
@@ -9,10 +9,10 @@ fn settings() -> RigSettings {
 }
 
 #[test]
-fn the_bound_is_poll_failure_poll_and_a_write_to_each_module() {
-    // Frames of 13 + 12 + 2 characters with 30 ms, eleven times (poll, poll again, who is there, asked, given up,
-    // who is there, poll, given up, who is there, two writes), and 12 characters with 30 ms twice, for silence; each
-    // wire time rounded up to the microsecond.
+fn the_bound_adds_polls_one_failure_and_writes() {
+    // Frames of 13 + 12 + 2 characters with 30 ms, eleven times (poll, repeated poll, name, request, time-out, name,
+    // poll, time-out, name, two writes), and 12 characters with 30 ms twice, for silence; each wire time rounded up to
+    // the microsecond.
     let bound = Wiring::resolve(&settings(), crate::dut::FIXTURES)
         .unwrap()
         .longest_reaction();
@@ -20,7 +20,7 @@ fn the_bound_is_poll_failure_poll_and_a_write_to_each_module() {
 }
 
 #[test]
-fn a_slower_line_or_an_analog_module_beside_the_contact_lengthens_it() {
+fn slow_lines_and_analog_modules_lengthen_the_reaction() {
     let mut slow = settings();
     slow.line.get_mut("motion").unwrap().baud = 9600;
     slow.safety.estop_reaction_ms = 800.0;

@@ -297,7 +297,7 @@ fn a_lot_that_is_closed_finishes_the_parts_inside_and_is_complete() {
     until(&mut machine, State::Complete);
     assert_eq!(machine.ending, Some(Ending::Complete));
     let landed = machine.landed.len() as u64;
-    assert!(landed < 9 && landed == machine.station.ledger().own());
+    assert!(landed < 9 && landed == machine.station.ledger().own_parts());
     assert_eq!(machine.station.ledger().inside(), 0);
 }
 

@@ -1,4 +1,4 @@
-//! The feed: eight states, eleven inputs.
+//! The graph of the feed: eight states, eleven inputs.
 
 use super::{Graph, SEEN, show, truths};
 use crate::handling::feed::{Feed, TRIES};
@@ -20,7 +20,7 @@ fn name(feed: Feed) -> String {
     }
 }
 
-/// Every state; a release began `ago` before now.
+/// Returns every state; a release began `ago` before now.
 fn states(shop: &Shop, ago: Span) -> Vec<Feed> {
     let since = units::RigTime(shop.now.0 - ago.0);
     let mut states = vec![
@@ -37,7 +37,7 @@ fn states(shop: &Shop, ago: Span) -> Vec<Feed> {
     states
 }
 
-/// What the ledger must hold in a state: a part in the pocket while the feed has it there.
+/// Returns the ledger content that a state requires: a part in the pocket while the feed has one.
 fn holds(feed: Feed) -> bool {
     matches!(feed, Feed::Holding | Feed::Ready | Feed::Pushing)
 }
@@ -78,7 +78,7 @@ fn the_feed_is_the_drawing() {
             let ago = if late { Span::ms(1501) } else { Span::ms(1500) };
             for feed in states(&shop, ago) {
                 for [wanted, push, nest, found] in truths() {
-                    // A part that is pushed comes into an empty nest: that is what the pusher waited for.
+                    // The pusher waits for an empty nest, so the nest is empty during a push.
                     let nest = nest && feed != Feed::Pushing;
                     shop.ledger = ledger(feed, nest, found);
                     let next = feed.step(&mut shop.turn(), NestId::FIRST, wanted, push);
@@ -88,100 +88,84 @@ fn the_feed_is_the_drawing() {
             }
         }
     }
-    graph.is("feed", include_str!("../golden/feed.dot"), 64 * 3 * 11 * 16);
-    graph.is_told_by(FACTS, include_str!("../feed.rs"));
+    graph.assert_drawn("feed", include_str!("../golden/feed.dot"), 64 * 3 * 11 * 16);
+    graph.assert_tests(FACTS, include_str!("../feed.rs"));
 }
 
-/// From, to, and the test that walks there.
+/// From, to, and the test of this edge.
 const FACTS: &[(&str, &str, &str)] = &[
-    (
-        "Empty",
-        "Releasing1",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
-    ),
+    ("Empty", "Releasing1", "a_part_gets_its_number_in_the_nest"),
     (
         "Releasing1",
         "Holding",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
+        "a_part_gets_its_number_in_the_nest",
     ),
-    (
-        "Holding",
-        "Ready",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
-    ),
+    ("Holding", "Ready", "a_part_gets_its_number_in_the_nest"),
     (
         "Ready",
         "Pushing",
-        "the_pusher_starts_only_into_a_nest_that_is_free_in_every_respect",
+        "the_pusher_starts_only_into_a_free_nest",
     ),
     (
         "Pushing",
         "Retracting",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
+        "a_part_gets_its_number_in_the_nest",
     ),
     (
         "Pushing",
         "Pushing",
         "a_pusher_at_an_empty_nest_is_an_alarm",
     ),
-    (
-        "Retracting",
-        "Empty",
-        "a_part_goes_from_track_to_nest_and_gets_its_number_there",
-    ),
-    (
-        "Empty",
-        "Ready",
-        "a_part_left_in_the_pocket_is_fed_before_another_is_let_in",
-    ),
+    ("Retracting", "Empty", "a_part_gets_its_number_in_the_nest"),
+    ("Empty", "Ready", "a_part_in_the_pocket_is_fed_first"),
     (
         "Releasing1",
         "Closing1",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Closing1",
         "Releasing2",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Releasing2",
         "Closing2",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Closing2",
         "Releasing3",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Releasing3",
         "Closing3",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Closing3",
         "Empty",
-        "a_part_that_does_not_come_is_called_three_times_before_it_is_an_alarm",
+        "an_absent_part_is_an_alarm_after_three_attempts",
     ),
     (
         "Releasing2",
         "Holding",
-        "a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls",
+        "a_late_or_unwanted_part_ends_the_attempts",
     ),
     (
         "Releasing3",
         "Holding",
-        "a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls",
+        "a_late_or_unwanted_part_ends_the_attempts",
     ),
     (
         "Closing1",
         "Empty",
-        "a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls",
+        "a_late_or_unwanted_part_ends_the_attempts",
     ),
     (
         "Closing2",
         "Empty",
-        "a_part_that_comes_at_a_later_call_or_is_not_wanted_any_more_ends_the_calls",
+        "a_late_or_unwanted_part_ends_the_attempts",
     ),
 ];

@@ -1,4 +1,4 @@
-//! The nest: eight states, ten inputs.
+//! The graph of the nest: eight states, ten inputs.
 
 use super::{Graph, SEEN, show, truths};
 use crate::dut::device::TestOrder;
@@ -24,7 +24,7 @@ const STATES: [&str; 9] = [
     "Lifting",
 ];
 
-/// The state of this name; a test that is over has only its switching off before it.
+/// Returns the state with this name; a finished test has only its switching off left.
 fn state(name: &str, shop: &Shop, device: &Device) -> NestState {
     match name {
         "Empty" => NestState::Empty,
@@ -76,7 +76,7 @@ fn name(state: &NestState) -> &'static str {
     }
 }
 
-/// A part is in the nest in every state but the first, where it may be; it is judged before it is gripped.
+/// A part is in the nest in every state except the first, where it may be; it has its verdict before it is gripped.
 fn ledger(from: &str, part: bool, interrupted: bool, judged: bool) -> Ledger {
     let mut ledger = Ledger::default();
     if part || from != "Empty" {
@@ -148,55 +148,47 @@ fn the_nest_is_the_drawing() {
             }
         }
     }
-    graph.is("nest", include_str!("../golden/nest.dot"), 81 * 4 * 9 * 32);
-    graph.is_told_by(FACTS, include_str!("../nest.rs"));
+    graph.assert_drawn("nest", include_str!("../golden/nest.dot"), 81 * 4 * 9 * 32);
+    graph.assert_tests(FACTS, include_str!("../nest.rs"));
 }
 
-/// From, to, and the test that walks there.
+/// From, to, and the test of this edge.
 const FACTS: &[(&str, &str, &str)] = &[
     (
         "Empty",
         "Clamping",
-        "the_test_begins_with_the_pins_once_the_probes_are_up",
+        "with_probes_up_the_test_begins_with_the_pins",
     ),
     (
         "Clamping",
         "Probing",
-        "the_test_begins_with_the_pins_once_the_probes_are_up",
+        "with_probes_up_the_test_begins_with_the_pins",
     ),
     (
         "Probing",
         "Testing",
-        "the_test_begins_with_the_pins_once_the_probes_are_up",
+        "with_probes_up_the_test_begins_with_the_pins",
     ),
-    (
-        "Testing",
-        "Judged",
-        "a_failed_job_voids_the_part_under_test_and_sends_it_to_retest",
-    ),
+    ("Testing", "Judged", "a_failed_job_sends_the_part_to_retest"),
     (
         "Clamping",
         "Judged",
-        "a_part_that_was_interrupted_is_clamped_and_not_tested",
+        "an_interrupted_part_is_clamped_and_not_tested",
     ),
     (
         "Judged",
         "Gripping",
-        "a_judged_part_stays_clamped_until_the_gripper_has_it",
+        "the_nest_holds_a_judged_part_until_gripped",
     ),
     (
         "Gripping",
         "Unclamping",
-        "a_judged_part_stays_clamped_until_the_gripper_has_it",
+        "the_nest_holds_a_judged_part_until_gripped",
     ),
     (
         "Unclamping",
         "Lifting",
-        "a_judged_part_stays_clamped_until_the_gripper_has_it",
+        "the_nest_holds_a_judged_part_until_gripped",
     ),
-    (
-        "Lifting",
-        "Empty",
-        "the_part_changes_hands_when_z_is_up_and_the_nest_is_seen_empty",
-    ),
+    ("Lifting", "Empty", "the_gripper_owns_the_part_once_z_is_up"),
 ];

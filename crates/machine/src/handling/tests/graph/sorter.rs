@@ -1,6 +1,6 @@
-//! The sorter: nine states, eleven inputs, and what falls.
+//! The graph of the sorter: nine states, eleven inputs, and the fall.
 
-use super::{Graph, SEEN, Seen, show, truths};
+use super::{Graph, SEEN, SensedEnd, show, truths};
 use crate::handling::ledger::Ledger;
 use crate::handling::moves::Move;
 use crate::handling::place::{NestId, Place};
@@ -26,7 +26,7 @@ fn name(sort: Sort) -> &'static str {
     }
 }
 
-/// Every state, and the point of the axis that it has to do with.
+/// Returns every state, with its station of the axis.
 fn states(shop: &Shop) -> [(Sort, AxisStation); 9] {
     let over = RigTime(shop.now.0 - 500);
     let bin = AxisStation::Bin(Bin::PASS);
@@ -43,7 +43,7 @@ fn states(shop: &Shop) -> [(Sort, AxisStation); 9] {
     ]
 }
 
-/// A part is in the gripper from `Loaded` to `LettingGo`; one that was let go may fall, since long or not.
+/// A part is in the gripper from `Loaded` to `LettingGo`; a released one may be falling, for a short or a long time.
 fn ledger(sort: Sort, falling: bool, since: RigTime) -> Ledger {
     let mut ledger = Ledger::default();
     let mut lift = || {
@@ -86,7 +86,7 @@ fn the_sorter_is_the_drawing() {
                 show(&mut shop, &[DigitalIn::SortZUp], &[DigitalIn::SortZDown], z);
                 shop.set(DigitalIn::AxisInPosition, axis);
                 shop.set(DigitalIn::PusherRetracted, pusher);
-                shop.set(DigitalIn::GripperOpen, gripper == Seen::Rest);
+                shop.set(DigitalIn::GripperOpen, gripper == SensedEnd::Rest);
                 shop.set(DigitalIn::GripperPart, part);
                 shop.set(table.beam(Bin::PASS), dark);
                 shop.after(1);
@@ -112,59 +112,43 @@ fn the_sorter_is_the_drawing() {
             }
         }
     }
-    graph.is(
+    graph.assert_drawn(
         "sorter",
         include_str!("../golden/sorter.dot"),
         9 * 9 * 16 * 64 + 9 * 16 * 32,
     );
-    graph.is_told_by(FACTS, include_str!("../sort.rs"));
+    graph.assert_tests(FACTS, include_str!("../sort.rs"));
 }
 
-/// From, to, and the test that walks there.
+/// From, to, and the test of this edge.
 const FACTS: &[(&str, &str, &str)] = &[
-    (
-        "Returning",
-        "OverNest",
-        "z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open",
-    ),
-    (
-        "OverNest",
-        "Lowering",
-        "z_comes_down_only_during_a_test_with_the_pusher_back_and_the_fingers_open",
-    ),
+    ("Returning", "OverNest", "z_comes_down_only_during_a_test"),
+    ("OverNest", "Lowering", "z_comes_down_only_during_a_test"),
     (
         "Lowering",
         "AtPart",
-        "the_fingers_stand_around_the_part_once_z_is_down",
+        "the_fingers_surround_the_part_once_z_is_down",
     ),
     (
         "Loaded",
         "Carrying",
-        "a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest",
+        "an_unjudged_part_is_carried_to_retest",
     ),
     (
         "Carrying",
         "OverBin",
-        "a_part_is_carried_to_its_bin_and_an_unjudged_one_to_retest",
+        "an_unjudged_part_is_carried_to_retest",
     ),
-    (
-        "OverBin",
-        "LettingGo",
-        "a_part_is_let_go_only_when_its_record_is_durable",
-    ),
+    ("OverBin", "LettingGo", "a_release_needs_a_durable_record"),
     (
         "LettingGo",
         "Opening",
-        "a_part_is_in_the_fingers_until_their_opening_is_driven",
+        "the_fingers_own_the_part_until_they_open",
     ),
     (
         "Opening",
         "Returning",
-        "open_fingers_go_back_when_they_are_seen_empty",
+        "open_fingers_return_only_when_empty",
     ),
-    (
-        "Opening",
-        "Opening",
-        "a_part_that_sticks_to_the_open_fingers_is_kept_in_hand_and_told",
-    ),
+    ("Opening", "Opening", "a_sticking_part_is_reported_and_kept"),
 ];

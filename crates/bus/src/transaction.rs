@@ -1,16 +1,16 @@
-//! One transaction on an open port, with the rest, the doubts or the way back into step that belong to it.
+//! One transaction on an open port, with the rest, the confirmation and the resynchronisation that belong to it.
 
 use super::LineSettings;
-use super::exchange::{Exchange, Frame, Heard, Quiet};
-use super::owing::{Owing, question};
-use super::trust::Trust;
+use super::exchange::{Exchange, Frame, FrameEnd, SilenceEnd};
+use super::outstanding::{OutstandingReplies, question};
+use super::probation::Probation;
 use dcon::{Address, Command, Reply, ReplyError};
 use std::io;
 use std::mem::{replace, take};
 use tokio::io::{AsyncRead, AsyncWrite};
 use units::RigTime;
 
-/// What a try ran into; made into a [`super::LineError`] where line and command are known.
+/// Why a try failed; the line adds its name and the command to make a [`super::LineError`].
 pub(super) enum Trouble {
     Reply(ReplyError),
     TimeOut,
@@ -29,7 +29,7 @@ impl From<io::Error> for Trouble {
     }
 }
 
-/// The module heard the question: it replied, or declined.
+/// Returns true when the module understood the request: it replied or refused.
 fn is_answer(result: &Result<Reply, Trouble>) -> bool {
     match result {
         Ok(_) => true,
@@ -38,25 +38,25 @@ fn is_answer(result: &Result<Reply, Trouble>) -> bool {
     }
 }
 
-/// When a try was asked and answered.
+/// Times at which a try began and was answered.
 #[derive(Default)]
 pub(super) struct Times {
     pub(super) asked_at: RigTime,
     pub(super) answered_at: Option<RigTime>,
 }
 
-/// A port and what is known of the line behind it.
-pub(super) struct Talk<'a, P> {
+/// A port with the state of the line behind it.
+pub(super) struct Transaction<'a, P> {
     pub(super) exchange: Exchange<'a, P>,
     pub(super) settings: &'a LineSettings,
-    pub(super) owing: &'a mut Owing,
-    pub(super) trust: &'a mut Trust,
+    pub(super) outstanding: &'a mut OutstandingReplies,
+    pub(super) probation: &'a mut Probation,
     /// False after trouble, until the line has been silent for long enough.
     pub(super) silent: &'a mut bool,
 }
 
-impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
-    /// Asks `command`, already written out as `request`; what was heard is in `frame`.
+impl<P: AsyncRead + AsyncWrite + Unpin> Transaction<'_, P> {
+    /// Carries out `command`, encoded in `request`; leaves the bytes received in `frame`.
     pub(super) async fn transact(
         &mut self,
         command: &Command,
@@ -71,35 +71,38 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
                 .exchange
                 .silence(rest, now, now + rest + rest, |_| false)
                 .await?;
-            *self.silent = quiet != Quiet::Noisy;
+            *self.silent = quiet != SilenceEnd::Noisy;
             return Err(Trouble::NeverSilent);
         }
         self.exchange.discard().await?;
         let Some(address) = command.address() else {
             times.asked_at = self.now();
-            return self.tell(request).await;
+            return self.broadcast(request).await;
         };
         let result = self.attempt(command, address, request, frame, times).await;
         if !is_answer(&result) {
             return result;
         }
         let checksum = self.settings.checksum;
-        if self.owing.doubts(frame.bytes(), checksum, self.now()) {
-            return match self.confirmed(command, address, request, frame).await? {
+        if self
+            .outstanding
+            .could_be(frame.bytes(), checksum, self.now())
+        {
+            return match self.confirm(command, address, request, frame).await? {
                 true => result,
                 false => Err(Trouble::OutOfStep),
             };
         }
         match result {
-            Ok(first) if self.trust.on_probation(address) && command.repeatable() => {
-                self.repeated(command, address, request, frame, times, first)
+            Ok(first) if self.probation.applies_to(address) && command.repeatable() => {
+                self.read_again(command, address, request, frame, times, first)
                     .await
             }
             result => result,
         }
     }
 
-    /// Asked once, and led back into step if that was no answer.
+    /// Sends the request once, and resynchronises unless the module answered.
     async fn attempt(
         &mut self,
         command: &Command,
@@ -110,26 +113,31 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
     ) -> Result<Reply, Trouble> {
         times.asked_at = self.now();
         let result = self.ask(command, request, frame, times).await;
-        self.weigh(address, frame, &result);
+        self.update_probation(address, frame, &result);
         if !is_answer(&result) && !matches!(result, Err(Trouble::Broken(_))) {
-            self.find_step(command, address).await?;
+            self.resynchronise(command, address).await?;
         }
         result
     }
 
-    /// A whole answer speaks for its address, damage against it. Silence and an echo say nothing of a second
-    /// module.
-    fn weigh(&mut self, address: Address, frame: &Frame, result: &Result<Reply, Trouble>) {
+    /// Counts a whole answer towards the end of the address's probation and damage as its start. Silence and an echo
+    /// are no sign of a second module, and count as neither.
+    fn update_probation(
+        &mut self,
+        address: Address,
+        frame: &Frame,
+        result: &Result<Reply, Trouble>,
+    ) {
         if is_answer(result) {
-            self.trust.whole(address);
+            self.probation.count_whole(address);
         } else if !frame.bytes().is_empty() && !matches!(result, Err(Trouble::Echo)) {
-            self.trust.damaged(address);
+            self.probation.start(address);
         }
     }
 
-    /// Asks again until one of the answers can be believed ([`Command::believed`]): a second time, and a third if the
-    /// module is prompt enough to be asked thrice in the time that two late answers take.
-    async fn repeated(
+    /// Repeats the command until one of the answers is plausible beside the others ([`Command::believed`]): a second
+    /// time, and a third if the module is prompt enough to answer three times in the time of two late answers.
+    async fn read_again(
         &mut self,
         command: &Command,
         address: Address,
@@ -148,18 +156,22 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
                 .attempt(command, address, request, frame, times)
                 .await?;
             answers.push(next);
-            assert_eq!(answers.len(), heard.len() + 1, "an answer unheard");
-            assert!(answers.len() <= 3, "asked a fourth time");
+            assert_eq!(
+                answers.len(),
+                heard.len() + 1,
+                "answers and frames differ in number"
+            );
+            assert!(answers.len() <= 3, "more than three answers");
             let apart_ms = self.now().since(begun).0.div_ceil(1_000);
             if let Some(place) = command.believed(&answers, apart_ms) {
-                assert!(place < answers.len(), "believed what was not heard");
+                assert!(place < answers.len(), "the chosen answer does not exist");
                 if let Some(earlier) = heard.into_iter().nth(place) {
                     (*frame, *times) = earlier;
                 }
                 return Ok(answers[place]);
             }
             if answers.len() == 3 || self.now() > third_until {
-                self.trust.damaged(address);
+                self.probation.start(address);
                 return Err(Trouble::Contradicted);
             }
         }
@@ -169,15 +181,15 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
         self.exchange.pace.now()
     }
 
-    async fn tell(&mut self, request: &[u8]) -> Result<Reply, Trouble> {
+    async fn broadcast(&mut self, request: &[u8]) -> Result<Reply, Trouble> {
         let wire = self.settings.wire().time(request.len());
         let over = self.now() + wire + self.settings.turnaround();
-        self.exchange.tell(request, over).await?;
+        self.exchange.broadcast(request, over).await?;
         self.exchange.pace.rest_until(over).await;
         Ok(Reply::Sent)
     }
 
-    /// Question and reply, and the rest in which nothing more may come.
+    /// Sends the request, reads the reply, and checks that nothing follows in the rest.
     async fn ask(
         &mut self,
         command: &Command,
@@ -191,22 +203,22 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             .ask(request, self.now() + limit, frame)
             .await?;
         times.answered_at = Some(self.now());
-        let result = judge(command, self.settings.checksum, request, frame, heard);
-        if self.rests().await? || !is_answer(&result) {
+        let result = decode(command, self.settings.checksum, request, frame, heard);
+        if self.rest().await? || !is_answer(&result) {
             return result;
         }
         Err(Trouble::SecondReply)
     }
 
-    /// Waits for the turnaround; false when somebody talked into it.
-    async fn rests(&mut self) -> io::Result<bool> {
+    /// Waits for the turnaround; returns false when bytes arrived during it.
+    async fn rest(&mut self) -> io::Result<bool> {
         let over = self.now() + self.settings.turnaround();
         self.exchange.pace.rest_until(over).await;
         Ok(self.exchange.discard().await? == 0)
     }
 
-    /// The module says the same again and names itself, with nothing between.
-    async fn confirmed(
+    /// Checks that the module repeats its reply and then names itself, with no other bytes between.
+    async fn confirm(
         &mut self,
         command: &Command,
         address: Address,
@@ -224,70 +236,77 @@ impl<P: AsyncRead + AsyncWrite + Unpin> Talk<'_, P> {
             }
             same = is_answer(&again) && second.bytes() == first.bytes();
         }
-        Ok(self.find_step(command, address).await? && same)
+        Ok(self.resynchronise(command, address).await? && same)
     }
 
-    /// Asks the module who it is until it answers, for as long as a silence would have to last. True when it did, and
-    /// nothing else was heard. Every reply that `address` owes and that is not proved to have come stays owed.
-    async fn find_step(&mut self, command: &Command, address: Address) -> Result<bool, Trouble> {
-        self.owing.owed(*command, self.now());
+    /// Asks the module for its name until it answers, for as long as a required silence would last. Returns true when
+    /// it answered and no other bytes arrived. Replies of `address` not proved to have arrived stay outstanding.
+    async fn resynchronise(
+        &mut self,
+        command: &Command,
+        address: Address,
+    ) -> Result<bool, Trouble> {
+        self.outstanding.add(*command, self.now());
         let checksum = self.settings.checksum;
         let mut alone = true;
-        let limit = self.now() + self.settings.step_limit(command, address);
-        let patience = self.settings.time_out(&question(address));
-        // Once at least: the clock goes on between two lines of code. The name is given in microseconds or not before
-        // its time-out, so the limit ends this.
+        let limit = self.now() + self.settings.resynchronisation_limit(command, address);
+        let name_time_out = self.settings.time_out(&question(address));
+        // At least once: the clock advances between two lines of code. Each round lasts some microseconds or up to its
+        // time-out, so the limit ends the loop.
         let last_heard = loop {
-            let ask_name = self.owing.question(address);
-            self.owing.owed(ask_name, self.now());
-            let owing = &mut *self.owing;
-            let in_step =
-                |frame: &[u8]| owing.settle(address, frame, checksum) && !owing.owes(command);
-            let deadline = self.exchange.pace.now() + patience;
+            let ask_name = self.outstanding.question(address);
+            self.outstanding.add(ask_name, self.now());
+            let outstanding = &mut *self.outstanding;
+            let in_step = |frame: &[u8]| {
+                outstanding.settle(address, frame, checksum) && !outstanding.contains(command)
+            };
+            let deadline = self.exchange.pace.now() + name_time_out;
             let named = self
                 .exchange
                 .name(&ask_name, checksum, deadline, in_step)
                 .await?;
             alone &= !named.strays;
-            if named.by_module && self.rests().await? {
+            if named.by_module && self.rest().await? {
                 return Ok(alone);
             }
-            if self.now() + patience > limit {
+            if self.now() + name_time_out > limit {
                 break named.last_heard;
             }
         };
         let rest = self.settings.silence(command);
         let limit = self.now() + rest;
-        let owing = &mut *self.owing;
-        let in_step = |frame: &[u8]| owing.settle(address, frame, checksum) && !owing.owes(command);
+        let outstanding = &mut *self.outstanding;
+        let in_step = |frame: &[u8]| {
+            outstanding.settle(address, frame, checksum) && !outstanding.contains(command)
+        };
         let quiet = self
             .exchange
             .silence(rest, last_heard, limit, in_step)
             .await?;
-        *self.silent = quiet != Quiet::Noisy;
-        if quiet == Quiet::Named {
-            self.rests().await?;
+        *self.silent = quiet != SilenceEnd::Noisy;
+        if quiet == SilenceEnd::Named {
+            self.rest().await?;
         }
         Ok(false)
     }
 }
 
-/// Whether what was heard is the reply to `command`.
-fn judge(
+/// Decodes the frame received as the reply to `command`.
+fn decode(
     command: &Command,
     checksum: bool,
     request: &[u8],
     frame: &Frame,
-    heard: Heard,
+    heard: FrameEnd,
 ) -> Result<Reply, Trouble> {
     match heard {
-        Heard::Nothing => Err(Trouble::TimeOut),
-        Heard::TooLong => Err(Trouble::Reply(ReplyError::TooLong {
+        FrameEnd::TimedOut => Err(Trouble::TimeOut),
+        FrameEnd::TooLong => Err(Trouble::Reply(ReplyError::TooLong {
             length: frame.bytes().len(),
         })),
-        Heard::Whole | Heard::More if frame.bytes() == request => Err(Trouble::Echo),
-        Heard::More => Err(Trouble::SecondReply),
-        Heard::Whole => command
+        FrameEnd::Whole | FrameEnd::More if frame.bytes() == request => Err(Trouble::Echo),
+        FrameEnd::More => Err(Trouble::SecondReply),
+        FrameEnd::Whole => command
             .decode(frame.bytes(), checksum)
             .map_err(Trouble::Reply),
     }

@@ -1,11 +1,11 @@
-//! Damage seen at an address gives away the damage that passes for a reply.
+//! Visible damage at an address reveals the damage that passes for a reply.
 
 use super::*;
 use dcon::{AnalogIn, Channel, DataFormat, InputForm, TypeCode};
 
 /// A count whose last checksum digit is wrong.
 const DAMAGED: &[u8] = b">0000001ED5\r";
-/// 30 and two more, 90 000 000.
+/// The counts 31 and 90 000 000.
 const SOON: &[u8] = b">0000001FD5\r";
 const ELSEWHERE: &[u8] = b">055D4A80F9\r";
 
@@ -19,7 +19,7 @@ fn asked_of(script: Vec<Vec<Say>>, requests: &[(Command, u8)]) -> (Vec<Answer>, 
 }
 
 #[test]
-fn after_a_damaged_reply_an_address_is_heard_twice() {
+fn after_a_damaged_reply_an_address_is_read_twice() {
     let script = vec![say(DAMAGED), say(THIRTY), say(THIRTY)];
     let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1)]);
     assert!(matches!(got[0].outcome, Err(LineError::Reply { .. })));
@@ -28,7 +28,7 @@ fn after_a_damaged_reply_an_address_is_heard_twice() {
 }
 
 #[test]
-fn what_says_three_things_to_one_question_is_not_believed() {
+fn three_different_answers_to_one_request_are_rejected() {
     let script = vec![
         say(DAMAGED),
         say(ELSEWHERE),
@@ -40,14 +40,14 @@ fn what_says_three_things_to_one_question_is_not_believed() {
     let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1), (count(), 1)]);
     let text = got[1].outcome.as_ref().unwrap_err().to_string();
     assert!(
-        text.starts_with("line measure, 03: ") && text.contains("another value when asked again"),
+        text.starts_with("line measure, 03: ") && text.contains("repeated reads disagree"),
         "{text}"
     );
     assert_eq!((got[2].outcome.clone(), asked), (Ok(Reply::Count(30)), 6));
 }
 
 #[test]
-fn an_input_that_was_switched_between_two_answers_is_believed_when_the_third_says_so_too() {
+fn a_switched_input_needs_a_third_answer_that_agrees() {
     let port = Digital::ReadPort.to(Address(3));
     let told = |third| {
         let script = vec![
@@ -64,7 +64,7 @@ fn an_input_that_was_switched_between_two_answers_is_believed_when_the_third_say
         second: 0x7F,
     };
     assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Bits(bits)), 4));
-    // Its time is that of the second answer, when the input was first seen so.
+    // The time is that of the second answer, the first that shows the new input.
     assert!(got[1].asked_at >= got[0].answered_at + Span(2_000));
     assert!(got[1].answered_at.since(got[1].asked_at) < Span(3_000));
     let (got, _) = told(b">3B3F2C\r");
@@ -75,7 +75,7 @@ fn an_input_that_was_switched_between_two_answers_is_believed_when_the_third_say
 }
 
 #[test]
-fn a_count_after_a_reset_and_a_frequency_that_fell_are_believed_at_the_third_answer() {
+fn a_falling_count_or_frequency_needs_a_third_answer() {
     let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
     for (command, nine) in [(count(), Reply::Count(9)), (frequency, Reply::Frequency(9))] {
         let script = vec![say(DAMAGED), say(THIRTY), say(NINE), say(NINE)];
@@ -86,7 +86,7 @@ fn a_count_after_a_reset_and_a_frequency_that_fell_are_believed_at_the_third_ans
 }
 
 #[test]
-fn a_frequency_that_rose_is_no_count_that_went_on() {
+fn a_rising_frequency_needs_a_third_answer() {
     let frequency = Counter::ReadFrequency(UpTo::new(0).unwrap()).to(Address(3));
     let script = vec![say(DAMAGED), say(THIRTY), say(SOON), say(SOON)];
     let (got, asked) = asked_of(script, &[(count(), 1), (frequency, 1)]);
@@ -97,7 +97,7 @@ fn a_frequency_that_rose_is_no_count_that_went_on() {
 }
 
 #[test]
-fn a_module_that_takes_its_time_is_not_asked_a_third_time() {
+fn a_slow_module_is_not_read_a_third_time() {
     let late = |bytes| vec![(30_000, bytes)];
     let script = vec![say(DAMAGED), late(THIRTY), late(NINE), late(NINE)];
     let (got, asked) = asked_of(script, &[(count(), 1), (count(), 1)]);
@@ -109,7 +109,7 @@ fn a_module_that_takes_its_time_is_not_asked_a_third_time() {
 }
 
 #[test]
-fn other_addresses_and_outputs_are_believed_at_their_first_word() {
+fn other_addresses_and_outputs_need_no_confirmation() {
     let other = Counter::Read(UpTo::new(0).unwrap()).to(Address(5));
     let write = Digital::Write(OutputWord::sixteen(0x1234)).to(Address(3));
     let script = vec![say(DAMAGED), say(THIRTY), say(b">3E\r")];
@@ -124,8 +124,8 @@ fn the_probation_ends_with_a_hundred_whole_answers() {
     script.extend(vec![say(THIRTY); 300]);
     let (got, asked) = asked_of(script, &[(count(), 1); 61]);
     assert!(got[1..].iter().all(|answer| answer.outcome.is_ok()));
-    // Fifty are heard twice, ten once.
-    assert_eq!(asked, 1 + usize::from(PROBATION) + 10);
+    // The line asks fifty of them twice, ten once.
+    assert_eq!(asked, 1 + usize::from(PROBATION_ANSWERS) + 10);
 }
 
 fn volts() -> Command {
@@ -134,7 +134,7 @@ fn volts() -> Command {
     AnalogIn::ReadOne { channel, form }.to(Address(1))
 }
 
-/// The answer to a reading after damage: what was said of it, and how many were asked in all.
+/// Returns the answer to a reading after damage, and the number of requests in all; `said`: the module's replies.
 fn read_of(said: [&'static [u8]; 3]) -> (Answer, usize) {
     let mut script = vec![say(b">1000FE\r")];
     script.extend(said.map(say));
@@ -144,7 +144,7 @@ fn read_of(said: [&'static [u8]; 3]) -> (Answer, usize) {
 }
 
 #[test]
-fn an_input_that_moves_is_believed_between_two_others() {
+fn of_three_moving_readings_the_middle_one_counts() {
     let (got, asked) = read_of([b">1000FF\r", b">200000\r", b">300001\r"]);
     assert_eq!((&*got.raw, asked), (">200000", 4));
     assert!(got.outcome.is_ok(), "{got:?}");
@@ -152,7 +152,7 @@ fn an_input_that_moves_is_believed_between_two_others() {
 }
 
 #[test]
-fn damage_that_passes_within_the_noise_of_a_reading_is_not_believed() {
+fn damage_within_the_noise_of_a_reading_is_rejected() {
     let (damaged, whole, near) = (b">002000\r", b">003304\r", b">003405\r");
     for said in [
         [damaged, whole, near],
@@ -161,13 +161,13 @@ fn damage_that_passes_within_the_noise_of_a_reading_is_not_believed() {
     ] {
         let (got, _) = read_of(said.map(|bytes| bytes.as_slice()));
         assert_eq!(got.raw, ">003304", "{got:?}");
-        // The time is its own, not that of the whole question.
+        // The time is that of the accepted answer alone.
         assert!(got.answered_at.since(got.asked_at) < Span(3_000));
     }
 }
 
 #[test]
-fn a_silent_module_is_not_suspected_of_anything() {
+fn a_silent_module_is_not_put_on_probation() {
     let (got, asked) = asked_of(vec![vec![], say(THIRTY)], &[(count(), 1), (count(), 1)]);
     assert_eq!((got[1].outcome.clone(), asked), (Ok(Reply::Count(30)), 2));
 }

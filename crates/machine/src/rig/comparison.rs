@@ -1,20 +1,19 @@
-//! One answer of one module against the wiring.
+//! Compares one answer of one module with the wiring.
 //!
-//! Bits of the format byte that no setting speaks of (mains filter, model codes of digital modules) are
-//! left as found.
+//! Accepts any value in the bits of the format byte without a setting (mains filter, model codes of digital modules).
 
 use super::commission::Mismatch;
 use super::model::Model;
 use super::wiring::{Module, Wiring};
 use dcon::{BaudCode, Common, Config, DataFormat, FormatByte, Level};
 
-/// One module against its answers.
-pub(super) struct Judge<'a> {
+/// The wiring of one module, for comparison with its answers.
+pub(super) struct Comparison<'a> {
     pub(super) wiring: &'a Wiring,
     pub(super) module: &'a Module,
 }
 
-impl Judge<'_> {
+impl Comparison<'_> {
     fn mismatch(
         &self,
         what: &'static str,
@@ -74,7 +73,7 @@ impl Judge<'_> {
         })
     }
 
-    /// The format byte as it must be: bits that are not ours to judge are left as found.
+    /// Returns the required format byte; bits without a setting keep the value found.
     fn wanted_format(&self, found: FormatByte) -> FormatByte {
         const CHECKSUM: u8 = 0x40;
         const FAST: u8 = 0x20;
@@ -174,7 +173,7 @@ impl Judge<'_> {
         })
     }
 
-    /// A safe value can only be stored from the present output: no single command sets it right.
+    /// No single command can correct a safe value: the module stores its present output as the safe value.
     pub(super) fn safe_level(&self, found: Level) -> Option<Mismatch> {
         let safe = self.module.safe_volts;
         let volts = found.in_units(self.module.type_code).unwrap_or(f64::NAN);

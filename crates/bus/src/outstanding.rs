@@ -1,0 +1,103 @@
+//! Replies that may still be on their way.
+//!
+//! A `>` reply and the bits of a digital module carry no address. After a time-out one of them may arrive late and
+//! look like the answer to the next request. The line excludes this in two ways:
+//!
+//! 1. It asks the silent module for a reply that names the module ([`OutstandingReplies::question`]). A module serves
+//!    its requests in order, so this reply proves that nothing older is on its way. A question without an answer in
+//!    time is outstanding too: its reply may arrive after a later request timed out, and proves nothing about that
+//!    one. So the line attributes a reply to the oldest request that it fits, and asks a question that is not
+//!    outstanding as long as there is one.
+//! 2. If the module does not name itself, its reply stays outstanding for [`HORIZON`]. During that time the line
+//!    accepts a reply of the same form only when the module repeats it and then names itself, with no other bytes
+//!    between. A write must not be repeated, so the line rejects its reply.
+
+use dcon::{Address, Command, Common};
+use units::{RigTime, Span};
+
+/// How late after its time-out a reply may arrive. Clients of these modules allow one second at most, and no module is
+/// known to need it.
+const HORIZON: Span = Span::ms(1_000);
+
+/// Bound on the outstanding replies: each costs a time-out, and expires after the horizon.
+const MOST_OUTSTANDING: usize = 10_000;
+
+/// Questions whose replies name their module, change nothing, and are known to every module. Their replies differ in
+/// form: three bytes in hex, a product, a version.
+const QUESTIONS: [Common; 3] = [Common::ReadConfig, Common::ReadFirmware, Common::ReadName];
+
+/// Returns the first question; its time-out applies to the others too.
+pub(super) fn question(to: Address) -> Command {
+    QUESTIONS[0].to(to)
+}
+
+/// Requests without an answer, each with its expiry, oldest first; few, because each costs a time-out.
+#[derive(Debug, Default)]
+pub(super) struct OutstandingReplies(Vec<(Command, RigTime)>);
+
+impl OutstandingReplies {
+    /// Adds `command`, unanswered at `now`.
+    pub(super) fn add(&mut self, command: Command, now: RigTime) {
+        self.0.retain(|(_, until)| *until > now);
+        let latest = self.0.last().map(|(_, until)| *until);
+        assert!(latest <= Some(now + HORIZON), "replies added out of order");
+        assert!(
+            self.0.len() < MOST_OUTSTANDING,
+            "too many outstanding replies"
+        );
+        self.0.push((command, now + HORIZON));
+    }
+
+    /// Returns the question that asks a module for its name: if possible one that is not outstanding.
+    pub(super) fn question(&self, to: Address) -> Command {
+        let mut questions = QUESTIONS.into_iter().map(|question| question.to(to));
+        questions
+            .find(|question| !self.contains(question))
+            .unwrap_or_else(|| question(to))
+    }
+
+    /// Returns true when the reply to `command` may be on its way.
+    pub(super) fn contains(&self, command: &Command) -> bool {
+        self.0.iter().any(|(request, _)| request == command)
+    }
+
+    /// Removes the requests that `frame` proves answered: if it names `module`, the oldest that it fits and all older
+    /// ones of that module. Returns false when it names another module or fits no outstanding request.
+    pub(super) fn settle(&mut self, module: Address, frame: &[u8], with_checksum: bool) -> bool {
+        let asked = |request: &Command| request.address() == Some(module);
+        let answered = |request: &Command| asked(request) && fits(request, frame, with_checksum);
+        let Some(oldest) = self.0.iter().position(|(request, _)| answered(request)) else {
+            return false;
+        };
+        if !names(module, frame) {
+            return false;
+        }
+        let (before, mut place) = (self.0.len(), 0);
+        self.0.retain(|(request, _)| {
+            place += 1;
+            place > oldest + 1 || !asked(request)
+        });
+        assert!(self.0.len() < before, "nothing was settled");
+        true
+    }
+
+    /// Returns true when `frame` fits an outstanding reply.
+    pub(super) fn could_be(&self, frame: &[u8], with_checksum: bool, now: RigTime) -> bool {
+        let mut open = self.0.iter().filter(|(_, until)| *until > now);
+        open.any(|(request, _)| fits(request, frame, with_checksum))
+    }
+}
+
+/// Returns true when `frame` is a reply to `request` or its refusal.
+fn fits(request: &Command, frame: &[u8], with_checksum: bool) -> bool {
+    match request.decode(frame, with_checksum) {
+        Ok(_) => true,
+        Err(reason) => reason.is_answer(),
+    }
+}
+
+/// Returns true for `!AA` and `?AA` frames, which name their module.
+fn names(Address(module): Address, frame: &[u8]) -> bool {
+    let lead = matches!(frame.first(), Some(b'!' | b'?'));
+    lead && frame.get(1..3) == Some(format!("{module:02X}").as_bytes())
+}
